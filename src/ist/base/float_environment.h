@@ -1,0 +1,22 @@
+#pragma once
+
+#include <xmmintrin.h>
+
+namespace ist {
+
+/// Arithmetic as IEEE 754 has it (round to nearest, no flush to zero, no denormals are zero) while
+/// this object lives; the caller's setting comes back after. Building and querying hold one in each
+/// thread, so that a host that changed MXCSR gets the same bits as one that did not.
+class ScopedFloatEnvironment {
+ public:
+  ScopedFloatEnvironment() noexcept : saved_(_mm_getcsr()) { _mm_setcsr(kDefault); }
+  ~ScopedFloatEnvironment() { _mm_setcsr(saved_); }
+  ScopedFloatEnvironment(const ScopedFloatEnvironment&) = delete;
+  ScopedFloatEnvironment& operator=(const ScopedFloatEnvironment&) = delete;
+
+ private:
+  static constexpr unsigned kDefault = 0x1F80;  // all exceptions masked, nothing else set
+  unsigned saved_;
+};
+
+}  // namespace ist

@@ -1,0 +1,49 @@
+#include "ist/base/parallel.h"
+
+#include <gtest/gtest.h>
+#include <xmmintrin.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace ist {
+namespace {
+
+TEST(ParallelFor, CoversEachItemOnceInRangesThatDoNotDependOnTheThreads) {
+  for (const std::size_t threads : {1u, 2u, 7u}) {
+    const ScopedThreadLimit limit(threads);
+    for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 1000u}) {
+      std::vector<int> visits(count), range_begin(count, -1);
+      parallel_for(count, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          ++visits[i];
+          range_begin[i] = static_cast<int>(begin);
+        }
+      });
+      EXPECT_EQ(visits, std::vector<int>(count, 1));
+      for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(range_begin[i], i / 64 * 64);
+    }
+  }
+}
+
+TEST(ParallelFor, AnExceptionReachesTheCaller) {
+  EXPECT_THROW(parallel_for(100, 1, [](std::size_t begin, std::size_t) {
+                 if (begin == 57) throw std::runtime_error("57");
+               }),
+               std::runtime_error);
+}
+
+TEST(ParallelFor, RunsWithIeeeArithmeticAndRestoresTheCallers) {
+  constexpr unsigned kFlushToZero = 0x8000, kRoundUp = 0x4000, kDefault = 0x1F80;
+  const unsigned before = _mm_getcsr();
+  _mm_setcsr(kDefault | kFlushToZero | kRoundUp);
+  std::vector<unsigned> seen(64);
+  parallel_for(64, 1, [&](std::size_t begin, std::size_t) { seen[begin] = _mm_getcsr(); });
+  const unsigned after = _mm_getcsr();
+  _mm_setcsr(before);
+  EXPECT_EQ(seen, std::vector<unsigned>(64, kDefault));
+  EXPECT_EQ(after & (kFlushToZero | kRoundUp), kFlushToZero | kRoundUp);
+}
+
+}  // namespace
+}  // namespace ist
