@@ -27,9 +27,10 @@ TEST(ParallelFor, CoversEachItemOnceInRangesThatDoNotDependOnTheThreads) {
 }
 
 TEST(ParallelFor, AnExceptionReachesTheCaller) {
-  EXPECT_THROW(parallel_for(100, 1, [](std::size_t begin, std::size_t) {
-                 if (begin == 57) throw std::runtime_error("57");
-               }),
+  EXPECT_THROW(parallel_for(100, 1,
+                            [](std::size_t begin, std::size_t) {
+                              if (begin == 57) throw std::runtime_error("57");
+                            }),
                std::runtime_error);
 }
 

@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 
@@ -19,6 +20,8 @@ void parallel_for(std::size_t count, std::size_t grain,
     body(range * grain, std::min(count, (range + 1) * grain));
   });
 }
+
+void parallel_sort(std::span<std::uint64_t> keys) { tbb::parallel_sort(keys.begin(), keys.end()); }
 
 struct ScopedThreadLimit::Control {
   tbb::global_control limit;

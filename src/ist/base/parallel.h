@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 
 namespace ist {
 
@@ -13,7 +15,10 @@ namespace ist {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Bounds the threads that parallel_for uses while this object lives.
+/// Sorts ascending, on all cores.
+void parallel_sort(std::span<std::uint64_t> keys);
+
+/// Bounds the threads that the functions above use while this object lives.
 class ScopedThreadLimit {
  public:
   explicit ScopedThreadLimit(std::size_t threads);

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+namespace ist {
+
+/// A file that is there whole or not at all: written under a temporary name in the same folder, and
+/// renamed by commit(). Where that never comes, the temporary file is removed and an older file of
+/// the same name stays as it was. A target that is no regular file, such as /dev/stdout, is written
+/// directly.
+///
+/// Every function throws kFileUnwritable, naming the file and the cause.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path target);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(const void* data, std::size_t bytes);
+  /// Overwrites from `offset`; for headers that are known last.
+  void write_at(std::size_t offset, const void* data, std::size_t bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* doing) const;
+
+  std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
+  int descriptor_ = -1;
+};
+
+}  // namespace ist

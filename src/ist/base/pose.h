@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+namespace ist {
+
+/// The rigid motion nearest to `pose`, or nothing when `pose` is none: a number is not finite, the
+/// last row is not 0 0 0 1, the rotation is farther than 1e-5 from orthonormal (any entry of
+/// RᵀR - I), or it mirrors. The rotation of the result is orthonormal to a few 1e-16; one that is
+/// exactly orthonormal, such as the identity or a quarter turn, comes back bit for bit.
+///
+/// Cost: some 200 flops, no allocation. Source: the Newton iteration for the polar factor, N. J.
+/// Higham, Computing the polar decomposition, SIAM J. Sci. Stat. Comput. 7(4), 1986, in the form
+/// without an inverse, which converges quadratically from here.
+[[nodiscard]] std::optional<Eigen::Isometry3d> project_to_rigid(
+    const Eigen::Isometry3d& pose) noexcept;
+
+}  // namespace ist

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace ist {
+
+/// How far a build is: written by the threads that build, read by one that shows it, at any time.
+class Progress {
+ public:
+  /// `name` must outlive this object: stages are named by literals.
+  void begin_stage(const char* name, std::uint64_t total) noexcept {
+    done_.store(0, std::memory_order_relaxed);
+    total_.store(total, std::memory_order_relaxed);
+    stage_.store(name, std::memory_order_relaxed);
+  }
+  void add(std::uint64_t done) noexcept { done_.fetch_add(done, std::memory_order_relaxed); }
+
+  [[nodiscard]] const char* stage() const noexcept {
+    return stage_.load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] double fraction() const noexcept {
+    const auto total = static_cast<double>(total_.load(std::memory_order_relaxed));
+    const auto done = static_cast<double>(done_.load(std::memory_order_relaxed));
+    return total > 0 ? (done < total ? done / total : 1.0) : 0.0;
+  }
+
+ private:
+  std::atomic<const char*> stage_{""};
+  std::atomic<std::uint64_t> done_{0}, total_{0};
+};
+
+}  // namespace ist

@@ -1,0 +1,86 @@
+#include "ist/tree/tree_builder.h"
+
+#include <bit>
+#include <chrono>
+
+#include "ist/base/float_environment.h"
+#include "ist/voxel/voxelizer.h"
+
+namespace ist {
+namespace {
+
+// Bytes a leaf of what is built on the voxels: a node above a leaf for every three leaves, 5 bytes
+// each, and for each node a saved sphere.
+constexpr std::uint64_t kOctreeBytes = 3;
+constexpr std::uint64_t kCodeBytes = 8;  // a level's codes, while its spheres are made
+
+ProximityTree make_proximity_tree(const TriangleMesh& mesh, const VoxelSet& surface) {
+  const std::uint32_t cells = surface.lattice.cells + 2 * ProximityTree::kMargin;
+  return {
+      LinearOctree(proximity_voxels(mesh, surface), static_cast<int>(std::bit_width(cells - 1)))};
+}
+
+class StageTimes {
+ public:
+  explicit StageTimes(BuildReport* report) : report_(report) {}
+  void end(const char* name) {
+    const auto now = std::chrono::steady_clock::now();
+    if (report_ != nullptr) {
+      report_->stages.push_back(
+          {name, std::chrono::duration<double, std::milli>(now - begin_).count()});
+    }
+    begin_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  BuildReport* report_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildReport* report,
+                      Progress* progress) {
+  const ScopedFloatEnvironment environment;
+  StageTimes times(report);
+  const OrientationResult oriented = orient_outward(mesh);
+  if (report != nullptr) report->turned_components = oriented.turned_components;
+  times.end("orientation");
+
+  const bool tight = options.spheres == SpherePolicy::kTight;
+  VoxelizerOptions voxelizer{options.voxel_size, tight || options.keep_triangles,
+                             options.max_memory, kOctreeBytes, 0};
+  if (tight) {
+    voxelizer.bytes_per_voxel += 3 * sizeof(Sphere) / 2 + kCodeBytes;
+    voxelizer.bytes_per_pair +=
+        sizeof(std::uint32_t);  // the lists of the level above, while merged
+  }
+  VoxelSet voxels = voxelize(mesh, voxelizer, progress);
+  times.end("voxels");
+
+  if (progress != nullptr) progress->begin_stage("folding the octree", 0);
+  SphereTree::Parts parts{voxels.lattice,
+                          LinearOctree(voxels.codes, voxels.lattice.depth),
+                          oriented.orientation,
+                          std::move(voxels.normals),
+                          {},
+                          std::nullopt,
+                          std::nullopt};
+  times.end("octree");
+
+  if (tight) {
+    parts.tight = make_tight_spheres(mesh, voxels, parts.octree, progress);
+    times.end("tight spheres");
+  }
+  if (options.proximity) {
+    if (progress != nullptr) progress->begin_stage("finding proximity voxels", 0);
+    parts.proximity = make_proximity_tree(mesh, voxels);
+    times.end("proximity voxels");
+  }
+  if (options.keep_triangles) {
+    parts.triangles = LeafTriangles{std::move(mesh), std::move(voxels.triangles)};
+  }
+  return SphereTree(std::move(parts));
+}
+
+}  // namespace ist

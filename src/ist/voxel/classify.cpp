@@ -1,0 +1,191 @@
+#include "ist/voxel/classify.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ist/base/error.h"
+#include "ist/base/parallel.h"
+#include "ist/voxel/triangle_bins.h"
+#include "ist/voxel/triangle_clip.h"
+
+namespace ist {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRange = 2;  // voxel edges
+constexpr std::size_t kBlockCells = 1u << 3 * TriangleBins::kLevel;
+constexpr std::size_t kBlocksARange = 16;
+
+// The angle whose cosine this is, to 7e-5, without libm, whose bits depend on the processor.
+// Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 4.4.45.
+double arc_cosine(double cosine) {
+  constexpr double kPi = 3.141592653589793;
+  const double x = std::min(1.0, std::abs(cosine));
+  const double angle =
+      std::sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
+  return cosine < 0 ? kPi - angle : angle;
+}
+
+Vector3d unit_or_zero(const Vector3d& v) {
+  const double length = v.norm();
+  return length > 0 ? Vector3d(v / length) : Vector3d(Vector3d::Zero());
+}
+
+// The outward direction at every corner, edge and face. Only signs of dot products are taken, so
+// none but the faces' is of unit length.
+class PseudoNormals {
+ public:
+  explicit PseudoNormals(const TriangleMesh& mesh)
+      : faces_(mesh.triangles.size()),
+        vertices_(mesh.vertices.size(), Vector3d::Zero()),
+        edges_(mesh.triangles.size()),
+        triangles_(mesh.triangles) {
+    struct Side {
+      std::uint64_t edge;
+      std::uint32_t triangle, which;
+    };
+    std::vector<Side> sides;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle& corners = mesh.triangles[t];
+      const auto vertex = [&](std::uint32_t i) { return mesh.vertices[corners[i % 3]]; };
+      faces_[t] = unit_or_zero((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const Vector3d to_next = unit_or_zero(vertex(i + 1) - vertex(i));
+        const Vector3d to_last = unit_or_zero(vertex(i + 2) - vertex(i));
+        vertices_[corners[i]] += arc_cosine(to_next.dot(to_last)) * faces_[t];
+        const std::uint64_t a = corners[i], b = corners[(i + 1) % 3];
+        sides.push_back({std::min(a, b) << 32 | std::max(a, b), t, i});
+      }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
+      return p.edge != q.edge ? p.edge < q.edge : p.triangle < q.triangle;
+    });
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+      Vector3d sum = Vector3d::Zero();
+      for (end = begin; end < sides.size() && sides[end].edge == sides[begin].edge; ++end) {
+        sum += faces_[sides[end].triangle];
+      }
+      for (std::size_t i = begin; i < end; ++i) edges_[sides[i].triangle][sides[i].which] = sum;
+    }
+  }
+
+  [[nodiscard]] const Vector3d& at(std::uint32_t triangle, int feature) const {
+    const auto i = static_cast<std::size_t>(feature);
+    if (feature == NearestPoint::kInside) return faces_[triangle];
+    return i < 3 ? vertices_[triangles_[triangle][i]] : edges_[triangle][i - 3];
+  }
+  [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
+    return faces_[triangle].isZero(0);
+  }
+
+ private:
+  std::vector<Vector3d> faces_, vertices_;
+  std::vector<std::array<Vector3d, 3>> edges_;
+  const std::vector<Triangle>& triangles_;
+};
+
+// The side of the nearest triangle for each cell of one block.
+class BlockClassifier {
+ public:
+  BlockClassifier(const LatticeMesh& mesh, const PseudoNormals& normals, const VoxelSet& surface)
+      : mesh_(mesh), normals_(normals), surface_(surface) {}
+
+  void classify(std::uint64_t code, std::span<const std::uint32_t> triangles,
+                std::vector<std::uint64_t>& found) {
+    nearest_.fill({std::numeric_limits<double>::infinity(), false});
+    for (const std::uint32_t t : triangles) {
+      if (!normals_.is_degenerate(t)) take_in(t, morton_decode(code));
+    }
+    for (std::size_t i = 0; i < kBlockCells; ++i) {
+      const std::uint64_t cell_code = code * kBlockCells + i;
+      if (nearest_[i].outside && nearest_[i].distance2 <= kRange * kRange &&
+          !is_surface(morton_decode(cell_code))) {
+        found.push_back(cell_code);
+      }
+    }
+  }
+
+ private:
+  struct Nearest {
+    double distance2;
+    bool outside;
+  };
+
+  void take_in(std::uint32_t t, const Cell& block) {
+    const auto corners = mesh_.corners(t);
+    Cell first, last;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      const double begin = block[i] * TriangleBins::kEdge;
+      const auto [least, greatest] =
+          std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      const double low = std::max(begin, std::ceil(least - kRange - 0.5));
+      const double high =
+          std::min(begin + TriangleBins::kEdge - 1, std::floor(greatest + kRange - 0.5));
+      if (low > high) return;
+      first[i] = static_cast<std::uint32_t>(low);
+      last[i] = static_cast<std::uint32_t>(high);
+    }
+    for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
+      for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+        for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
+          const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
+          const NearestPoint nearest = nearest_on_triangle(corners, centre);
+          const Vector3d away = centre - nearest.point;
+          Nearest& known = nearest_[morton_encode({x, y, z}) % kBlockCells];
+          if (away.squaredNorm() >= known.distance2) continue;
+          known = {away.squaredNorm(), away.dot(normals_.at(t, nearest.feature)) > 0};
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_surface(Cell cell) const {
+    for (std::uint32_t& index : cell) {
+      if (index < kProximityMargin) return false;
+      index -= kProximityMargin;
+      if (index >= surface_.lattice.cells) return false;
+    }
+    return std::binary_search(surface_.codes.begin(), surface_.codes.end(), morton_encode(cell));
+  }
+
+  const LatticeMesh& mesh_;
+  const PseudoNormals& normals_;
+  const VoxelSet& surface_;
+  std::array<Nearest, kBlockCells> nearest_;
+};
+
+}  // namespace
+
+std::vector<std::uint64_t> proximity_voxels(const TriangleMesh& mesh, const VoxelSet& surface) {
+  const std::uint32_t cells = surface.lattice.cells + 2 * kProximityMargin;
+  if (cells > Lattice::kMaxCells) {
+    throw Error(
+        ErrorCode::kVoxelSizeTooSmall,
+        fmt::format("proximity voxels need a margin of {} voxels on each side, {} an axis, and "
+                    "{} is the most: use a slightly larger voxel size",
+                    kProximityMargin, cells, Lattice::kMaxCells));
+  }
+  const LatticeMesh lattice_mesh(mesh, surface.lattice, kProximityMargin);
+  const PseudoNormals normals(mesh);
+  const TriangleBins bins = bin_triangles(lattice_mesh, cells, kRange);
+  const std::size_t blocks = bins.codes.size();
+  std::vector<std::vector<std::uint64_t>> parts((blocks + kBlocksARange - 1) / kBlocksARange);
+  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    BlockClassifier classifier(lattice_mesh, normals, surface);
+    for (std::size_t b = begin; b < end; ++b) {
+      classifier.classify(bins.codes[b], bins.triangles[b], parts[begin / kBlocksARange]);
+    }
+  });
+  std::vector<std::uint64_t> codes;
+  for (const auto& part : parts) codes.insert(codes.end(), part.begin(), part.end());
+  return codes;
+}
+
+}  // namespace ist

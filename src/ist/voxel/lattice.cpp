@@ -1,0 +1,48 @@
+#include "ist/voxel/lattice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "ist/base/error.h"
+
+namespace ist {
+
+double round_up_for_people(double size) {
+  const double rounded = std::stod(fmt::format("{:.2e}", size));
+  return rounded >= size ? rounded : std::stod(fmt::format("{:.2e}", size * 1.01));
+}
+
+Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
+                     double voxel_size) {
+  if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
+    throw Error(ErrorCode::kVoxelSizeInvalid,
+                fmt::format("voxel size {}: give a positive number of mesh units", voxel_size));
+  }
+  const double extent =
+      std::max({box_max[0] - box_min[0], box_max[1] - box_min[1], box_max[2] - box_min[2]});
+  if (!(extent >= 1e-12 && extent <= 1e15)) {
+    throw Error(ErrorCode::kMeshExtent,
+                fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
+                            extent));
+  }
+  const double cells = std::max(1.0, std::ceil(extent / voxel_size));
+  if (!(cells <= Lattice::kMaxCells)) {
+    throw Error(ErrorCode::kVoxelSizeTooSmall,
+                fmt::format("voxel size {} needs {:.0f} voxels along the largest extent of {} "
+                            "units, and {} is the most: the smallest size for this mesh is {}",
+                            voxel_size, cells, extent, Lattice::kMaxCells,
+                            round_up_for_people(extent / Lattice::kMaxCells)));
+  }
+  Lattice lattice;
+  lattice.corner = {box_min[0], box_min[1], box_min[2]};
+  lattice.voxel_size = voxel_size;
+  lattice.cells = static_cast<std::uint32_t>(cells);
+  lattice.depth = static_cast<int>(std::bit_width(lattice.cells - 1));
+  return lattice;
+}
+
+}  // namespace ist

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "ist/voxel/morton.h"
+
+namespace ist {
+
+/// The grid of voxels of one body and the octree's cubes over it.
+///
+/// Lattice units put the grid's corner at 0 and make a voxel's edge 1, so that every box is a pair
+/// of integers and a scene scaled by a power of two gives the same numbers. The tree's frame has
+/// the axes and units of the mesh and its origin at the root cube's centre.
+struct Lattice {
+  static constexpr std::uint32_t kMaxCells = 1u << 16;
+  /// The relative pad of the build: geometry this close to a cube, as a part of the grid's extent,
+  /// counts as inside. Covers the rounding of lattice coordinates (2⁻⁵² of the extent) many times.
+  static constexpr double kPad = 1e-9;
+
+  std::array<double, 3> corner{};  ///< minimum of the mesh's bounding box, mesh units
+  double voxel_size = 1;           ///< edge of a voxel, mesh units
+  std::uint32_t cells = 1;         ///< voxels along each axis, at most kMaxCells
+  int depth = 0;                   ///< level of the root: ceil(log2(cells))
+
+  friend bool operator==(const Lattice&, const Lattice&) = default;
+
+  [[nodiscard]] Eigen::Vector3d to_lattice(const Eigen::Vector3d& vertex) const noexcept {
+    return {(vertex[0] - corner[0]) / voxel_size, (vertex[1] - corner[1]) / voxel_size,
+            (vertex[2] - corner[2]) / voxel_size};
+  }
+
+  /// The pad in lattice units.
+  [[nodiscard]] double pad() const noexcept { return kPad * cells; }
+
+  /// The root cube's centre on each axis, in lattice units.
+  [[nodiscard]] double root_centre() const noexcept {
+    return 0.5 * static_cast<double>(std::uint64_t{1} << depth);
+  }
+
+  /// The edge of a cube at `level`, mesh units.
+  [[nodiscard]] double edge(int level) const noexcept {
+    return voxel_size * static_cast<double>(std::uint64_t{1} << level);
+  }
+};
+
+/// The lattice over a box of mesh units: cells = max(1, ceil(largest extent / voxel_size)).
+///
+/// Throws kVoxelSizeInvalid when the size is not positive and finite, kMeshExtent when the largest
+/// extent is zero or outside [1e-12, 1e15], kVoxelSizeTooSmall when it would need more than 2^16
+/// voxels an axis, with the smallest size that would do.
+[[nodiscard]] Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
+                                   double voxel_size);
+
+/// `size` rounded up to three significant digits, to be named in a remedy.
+[[nodiscard]] double round_up_for_people(double size);
+
+}  // namespace ist

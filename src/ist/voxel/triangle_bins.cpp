@@ -1,0 +1,136 @@
+#include "ist/voxel/triangle_bins.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "ist/base/assert.h"
+#include "ist/base/parallel.h"
+
+namespace ist {
+namespace {
+
+constexpr int kTriangleBits = 28;  // the other 36 hold a block's code: 4,096 blocks an axis
+constexpr std::size_t kTrianglesARange = 4096;
+
+// Visits the blocks below one cube of the octree that a triangle meets. A triangle that spans the
+// grid is found in time that grows with its area, not with its bounding box.
+class BlockFinder {
+ public:
+  BlockFinder(const TriangleBox& triangle, double pad, std::uint32_t blocks,
+              std::vector<std::uint64_t>& found, std::uint64_t id)
+      : triangle_(triangle), pad_(pad), blocks_(blocks), found_(found), id_(id) {}
+
+  void visit(const Cell& cube, int level) {
+    const std::uint32_t first[3] = {cube[0] << level, cube[1] << level, cube[2] << level};
+    if (first[0] >= blocks_ || first[1] >= blocks_ || first[2] >= blocks_) return;
+    const double half = 0.5 * TriangleBins::kEdge * static_cast<double>(1u << level);
+    const auto centre = [&](int i) { return (2.0 * cube[static_cast<std::size_t>(i)] + 1) * half; };
+    if (!triangle_.meets(centre(0), centre(1), centre(2), half + pad_)) return;
+    if (level == 0) {
+      found_.push_back(morton_encode(cube) << kTriangleBits | id_);
+      return;
+    }
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      visit({2 * cube[0] + (octant & 1), 2 * cube[1] + (octant >> 1 & 1),
+             2 * cube[2] + (octant >> 2)},
+            level - 1);
+    }
+  }
+
+ private:
+  const TriangleBox& triangle_;
+  double pad_;
+  std::uint32_t blocks_;
+  std::vector<std::uint64_t>& found_;
+  std::uint64_t id_;
+};
+
+void find_blocks(const TriangleBox& triangle, std::uint32_t cells, double pad, std::uint64_t id,
+                 std::vector<std::uint64_t>& found) {
+  const std::uint32_t blocks = (cells + TriangleBins::kEdge - 1) / TriangleBins::kEdge;
+  BlockFinder finder(triangle, pad, blocks, found, id);
+  // Begin with cubes as large as the triangle: it meets three of them on an axis at the most.
+  Cell first, last;
+  std::uint32_t widest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const auto block = [&](double x) {
+      const double index = std::floor(x / TriangleBins::kEdge);
+      return static_cast<std::uint32_t>(std::clamp(index, 0.0, static_cast<double>(blocks - 1)));
+    };
+    // A block whose closed cube only touches the triangle from above begins at its maximum.
+    first[i] = block(triangle.min()[axis] - pad - 0.5);
+    last[i] = block(triangle.max()[axis] + pad);
+    widest = std::max(widest, last[i] - first[i]);
+  }
+  const auto level = static_cast<int>(std::bit_width(widest));
+  for (std::uint32_t z = first[2] >> level; z <= last[2] >> level; ++z) {
+    for (std::uint32_t y = first[1] >> level; y <= last[1] >> level; ++y) {
+      for (std::uint32_t x = first[0] >> level; x <= last[0] >> level; ++x) {
+        finder.visit({x, y, z}, level);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+LatticeMesh::LatticeMesh(const TriangleMesh& mesh, const Lattice& lattice, double offset)
+    : triangles_(&mesh.triangles), vertices_(mesh.vertices.size()) {
+  std::transform(mesh.vertices.begin(), mesh.vertices.end(), vertices_.begin(),
+                 [&](const Eigen::Vector3d& vertex) {
+                   return Eigen::Vector3d(lattice.to_lattice(vertex).array() + offset);
+                 });
+}
+
+double expected_pairs(const TriangleMesh& mesh, double cube_edge) {
+  double areas = 0, extents = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
+                          &c = mesh.vertices[t[2]];
+    areas += 0.5 * (b - a).cross(c - a).cwiseAbs().sum();
+    extents += (a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c)).sum();
+  }
+  return areas / (cube_edge * cube_edge) + extents / cube_edge +
+         static_cast<double>(mesh.triangles.size());
+}
+
+TriangleBins bin_triangles(const LatticeMesh& mesh, std::uint32_t cells, double pad) {
+  const std::size_t triangles = mesh.triangle_count();
+  IST_ASSERT(triangles >> kTriangleBits == 0);
+  std::vector<std::vector<std::uint64_t>> parts((triangles + kTrianglesARange - 1) /
+                                                kTrianglesARange);
+  parallel_for(triangles, kTrianglesARange, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint64_t>& found = parts[begin / kTrianglesARange];
+    for (std::size_t t = begin; t < end; ++t) {
+      find_blocks(mesh.box(static_cast<std::uint32_t>(t)), cells, pad, t, found);
+    }
+  });
+  std::size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  std::vector<std::uint64_t> pairs;
+  pairs.reserve(count);
+  for (auto& part : parts) {
+    pairs.insert(pairs.end(), part.begin(), part.end());
+    part = {};
+  }
+  parallel_sort(pairs);
+
+  TriangleBins bins;
+  bins.triangles.ids.reserve(count);
+  for (const std::uint64_t pair : pairs) {
+    const std::uint64_t code = pair >> kTriangleBits;
+    if (bins.codes.empty() || bins.codes.back() != code) {
+      bins.codes.push_back(code);
+      bins.triangles.first.push_back(static_cast<std::uint32_t>(bins.triangles.ids.size()));
+    }
+    bins.triangles.ids.push_back(
+        static_cast<std::uint32_t>(pair & ((std::uint64_t{1} << kTriangleBits) - 1)));
+  }
+  bins.triangles.first.push_back(static_cast<std::uint32_t>(count));
+  return bins;
+}
+
+}  // namespace ist

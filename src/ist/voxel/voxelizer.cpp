@@ -1,0 +1,295 @@
+#include "ist/voxel/voxelizer.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ist/base/error.h"
+#include "ist/base/parallel.h"
+#include "ist/voxel/triangle_bins.h"
+#include "ist/voxel/triangle_clip.h"
+
+namespace ist {
+namespace {
+
+constexpr std::size_t kBlockCells = 1u << 3 * TriangleBins::kLevel;
+constexpr std::size_t kBlocksARange = 16;
+constexpr double kMaxCount = 4294967294.0;  // of voxels and of pairs: indices have 32 bits
+
+// The voxels of one block: bit i stands for the voxel whose Morton code ends in i.
+using Occupancy = std::array<std::uint64_t, kBlockCells / 64>;
+
+// Spread bits of 0 … 15, so that a cell's code in its block is three look-ups.
+constexpr std::array<std::uint32_t, TriangleBins::kEdge> kSpread = [] {
+  std::array<std::uint32_t, TriangleBins::kEdge> spread{};
+  for (std::uint32_t i = 0; i < spread.size(); ++i) {
+    spread[i] = static_cast<std::uint32_t>(spread_bits(i));
+  }
+  return spread;
+}();
+
+// What is meant by "the grown cube": a little less than the pad that is promised, so that rounding
+// cannot make it more.
+double inner_pad(const Lattice& lattice) { return lattice.pad() * (1 - 1.0 / 1024); }
+
+// Calls visit(code in the block, cell) for each voxel of the block that meets the triangle.
+template <typename Visit>
+void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattice& lattice,
+                    const Visit& visit) {
+  const double pad = inner_pad(lattice);
+  Cell first, last;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double begin = block[i] * TriangleBins::kEdge;
+    const double end = std::min<double>(begin + TriangleBins::kEdge, lattice.cells) - 1;
+    const double low = std::max(begin, std::ceil(triangle.min()[axis] - 1 - pad));
+    const double high = std::min(end, std::floor(triangle.max()[axis] + pad));
+    if (low > high) return;
+    first[i] = static_cast<std::uint32_t>(low);
+    last[i] = static_cast<std::uint32_t>(high);
+  }
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+      for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
+        if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad)) {
+          visit(kSpread[x % TriangleBins::kEdge] | kSpread[y % TriangleBins::kEdge] << 1 |
+                    kSpread[z % TriangleBins::kEdge] << 2,
+                Cell{x, y, z});
+        }
+      }
+    }
+  }
+}
+
+// Which voxels are occupied, before anything is stored for them.
+struct Survey {
+  TriangleBins bins;
+  std::vector<Occupancy> occupancy;        // one a block
+  std::vector<std::uint64_t> first_voxel;  // of each block, and the total
+  std::vector<std::uint64_t> first_pair;   // likewise, of voxel and triangle
+  [[nodiscard]] std::uint64_t voxels() const { return first_voxel.back(); }
+  [[nodiscard]] std::uint64_t pairs() const { return first_pair.back(); }
+};
+
+Survey survey(const LatticeMesh& mesh, const Lattice& lattice, Progress& progress) {
+  progress.begin_stage("sorting triangles into blocks", 0);
+  Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}};
+  const std::size_t blocks = result.bins.codes.size();
+  progress.begin_stage("finding surface voxels", blocks);
+  result.occupancy.resize(blocks);
+  result.first_voxel.resize(blocks + 1);
+  result.first_pair.resize(blocks + 1);
+  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      Occupancy& occupied = result.occupancy[b];
+      const Cell block = morton_decode(result.bins.codes[b]);
+      std::uint64_t pairs = 0, voxels = 0;
+      for (const std::uint32_t t : result.bins.triangles[b]) {
+        for_each_voxel(mesh.box(t), block, lattice, [&](std::uint32_t code, const Cell&) {
+          occupied[code / 64] |= std::uint64_t{1} << code % 64;
+          ++pairs;
+        });
+      }
+      for (const std::uint64_t word : occupied) {
+        voxels += static_cast<std::uint64_t>(std::popcount(word));
+      }
+      result.first_voxel[b + 1] = voxels;
+      result.first_pair[b + 1] = pairs;
+    }
+    progress.add(end - begin);
+  });
+  for (std::size_t b = 0; b < blocks; ++b) {
+    result.first_voxel[b + 1] += result.first_voxel[b];
+    result.first_pair[b + 1] += result.first_pair[b];
+  }
+  return result;
+}
+
+double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
+  const auto voxels = static_cast<double>(survey.voxels());
+  const auto pairs = static_cast<double>(survey.pairs());
+  if (voxels > kMaxCount || pairs > kMaxCount) return HUGE_VAL;
+  const double own = sizeof(std::uint64_t) + sizeof(PackedNormal) +
+                     (options.keep_triangles ? sizeof(std::uint32_t) : 0);
+  const double own_pairs = options.keep_triangles ? sizeof(std::uint32_t) : 0;
+  return static_cast<double>(survey.occupancy.size()) * sizeof(Occupancy) +
+         voxels * (own + static_cast<double>(options.bytes_per_voxel)) +
+         pairs * (own_pairs + static_cast<double>(options.bytes_per_pair));
+}
+
+// The survey's own need, known before it is made: keys of the bins, twice while they are joined.
+double survey_bytes(const TriangleMesh& mesh, double voxel_size) {
+  return 2 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge);
+}
+
+// The survey at one voxel size, or nothing where the voxels would not fit.
+std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& lattice,
+                                     const VoxelizerOptions& options, Progress& progress) {
+  const auto limit = static_cast<double>(options.max_memory);
+  if (survey_bytes(mesh, lattice.voxel_size) > limit) return std::nullopt;
+  const LatticeMesh lattice_mesh(mesh, lattice);
+  Survey result = survey(lattice_mesh, lattice, progress);
+  if (bytes_needed(result, options) > limit) return std::nullopt;
+  return result;
+}
+
+[[noreturn]] void refuse(const TriangleMesh& mesh, const Eigen::Vector3d& low,
+                         const Eigen::Vector3d& high, const VoxelizerOptions& options,
+                         Progress& progress) {
+  const auto fits = [&](double size) {
+    const Lattice lattice = make_lattice(low, high, size);
+    return fitting_survey(mesh, lattice, options, progress).has_value();
+  };
+  const std::string limit =
+      fmt::format("voxel size {} needs more than the {:.1f} MiB of memory allowed",
+                  options.voxel_size, static_cast<double>(options.max_memory) / (1 << 20));
+  const double one_voxel = (high - low).maxCoeff();
+  double too_small = options.voxel_size, enough = too_small;
+  while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
+  if (!fits(enough)) {
+    throw Error(
+        ErrorCode::kMemoryLimit,
+        limit + ", and so does any other: allow more memory, or use a mesh of fewer triangles");
+  }
+  for (int step = 0; step < 6; ++step) {
+    const double middle = std::sqrt(too_small * enough);
+    (fits(middle) ? enough : too_small) = middle;
+  }
+  double named = round_up_for_people(enough);
+  while (!fits(named)) named = round_up_for_people(1.01 * named);
+  throw Error(ErrorCode::kMemoryLimit,
+              fmt::format("{}: allow more, or use a voxel size of {} or larger", limit, named));
+}
+
+// Sums up what lies in the voxels of one block, and writes the voxels to their places.
+class BlockWriter {
+ public:
+  BlockWriter(const LatticeMesh& mesh, const Survey& survey, VoxelSet& set)
+      : mesh_(mesh), survey_(survey), set_(set) {}
+
+  void write(std::size_t block) {
+    const std::uint64_t code = survey_.bins.codes[block];
+    const Occupancy& occupied = survey_.occupancy[block];
+    std::uint32_t rank = 0;
+    for (std::size_t word = 0; word < occupied.size(); ++word) {
+      for (std::uint64_t bits = occupied[word]; bits != 0; bits &= bits - 1) {
+        const std::size_t in_block = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
+        rank_[in_block] = rank;
+        set_.codes[survey_.first_voxel[block] + rank++] = code * kBlockCells + in_block;
+      }
+    }
+    sums_.assign(rank, {});
+    pairs_.clear();
+    for (const std::uint32_t t : survey_.bins.triangles[block]) add(t, morton_decode(code));
+    for (std::uint32_t i = 0; i < rank; ++i) {
+      set_.normals[survey_.first_voxel[block] + i] = PackedNormal(sums_[i].normal, sums_[i].area);
+    }
+    if (!set_.triangles.empty()) write_lists(block, rank);
+  }
+
+ private:
+  struct Sum {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double area = 0;
+    std::uint32_t triangles = 0;
+  };
+  struct Pair {
+    std::uint32_t rank, triangle;
+  };
+
+  void add(std::uint32_t t, const Cell& block) {
+    // A triangle that only touches a voxel counts too, but less than any that enters it.
+    constexpr double kTouch = 1e-6;
+    const auto corners = mesh_.corners(t);
+    const std::optional<Eigen::Vector3d> normal = unit_normal(corners);
+    const double pad = set_.lattice.pad();
+    for_each_voxel(
+        mesh_.box(t), block, set_.lattice, [&](std::uint32_t in_block, const Cell& cell) {
+          Sum& sum = sums_[rank_[in_block]];
+          ++sum.triangles;
+          if (!set_.triangles.empty()) pairs_.push_back({rank_[in_block], t});
+          if (!normal) return;
+          const Eigen::Vector3d low(cell[0] - pad, cell[1] - pad, cell[2] - pad);
+          const double edge = 1 + 2 * pad;
+          clip_triangle(corners, low, {low[0] + edge, low[1] + edge, low[2] + edge}, clipped_);
+          const double area = clipped_.area() + kTouch;
+          sum.normal += area * *normal;
+          sum.area += area;
+        });
+  }
+
+  void write_lists(std::size_t block, std::uint32_t voxels) {
+    std::uint64_t next = survey_.first_pair[block];
+    for (std::uint32_t i = 0; i < voxels; ++i) {
+      set_.triangles.first[survey_.first_voxel[block] + i] = static_cast<std::uint32_t>(next);
+      next += sums_[i].triangles;
+      sums_[i].triangles = 0;
+    }
+    for (const Pair& pair : pairs_) {
+      const std::uint32_t first = set_.triangles.first[survey_.first_voxel[block] + pair.rank];
+      set_.triangles.ids[first + sums_[pair.rank].triangles++] = pair.triangle;
+    }
+  }
+
+  static std::optional<Eigen::Vector3d> unit_normal(const std::array<Eigen::Vector3d, 3>& corners) {
+    const Eigen::Vector3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+    const Eigen::Vector3d twice_area = ab.cross(ac);
+    const double square = twice_area.squaredNorm();
+    // Free of scale: the area against the longest edge, whose square bounds it.
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
+    if (!(square > 1e-24 * longest * longest)) return std::nullopt;
+    return twice_area / std::sqrt(square);
+  }
+
+  const LatticeMesh& mesh_;
+  const Survey& survey_;
+  VoxelSet& set_;
+  std::array<std::uint32_t, kBlockCells> rank_{};
+  std::vector<Sum> sums_;
+  std::vector<Pair> pairs_;
+  ClippedTriangle clipped_;
+};
+
+}  // namespace
+
+VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
+  Progress unseen;
+  Progress& shown = progress != nullptr ? *progress : unseen;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = -low;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      low = low.cwiseMin(mesh.vertices[vertex]);
+      high = high.cwiseMax(mesh.vertices[vertex]);
+    }
+  }
+  VoxelSet set;
+  set.lattice = make_lattice(low, high, options.voxel_size);
+  const std::optional<Survey> found = fitting_survey(mesh, set.lattice, options, shown);
+  if (!found) refuse(mesh, low, high, options, shown);
+
+  const LatticeMesh lattice_mesh(mesh, set.lattice);
+  const std::size_t blocks = found->bins.codes.size();
+  shown.begin_stage("writing voxels and normals", blocks);
+  set.codes.resize(found->voxels());
+  set.normals.resize(found->voxels());
+  if (options.keep_triangles) {
+    set.triangles.first.resize(found->voxels() + 1);
+    set.triangles.first.back() = static_cast<std::uint32_t>(found->pairs());
+    set.triangles.ids.resize(found->pairs());
+  }
+  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    const auto writer = std::make_unique<BlockWriter>(lattice_mesh, *found, set);
+    for (std::size_t b = begin; b < end; ++b) writer->write(b);
+    shown.add(end - begin);
+  });
+  return set;
+}
+
+}  // namespace ist
