@@ -22,23 +22,27 @@ constexpr std::size_t kBlockCells = 1u << 3 * TriangleBins::kLevel;
 constexpr std::size_t kBlocksARange = 16;
 constexpr double kMaxCount = 4294967294.0;  // of voxels and of pairs: indices have 32 bits
 
-// The voxels of one block: bit i stands for the voxel whose Morton code ends in i.
-using Occupancy = std::array<std::uint64_t, kBlockCells / 64>;
+// A voxel in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11. Ascending, they run along x.
+using BlockCell = std::uint16_t;
 
-// Spread bits of 0 … 15, so that a cell's code in its block is three look-ups.
-constexpr std::array<std::uint32_t, TriangleBins::kEdge> kSpread = [] {
-  std::array<std::uint32_t, TriangleBins::kEdge> spread{};
-  for (std::uint32_t i = 0; i < spread.size(); ++i) {
-    spread[i] = static_cast<std::uint32_t>(spread_bits(i));
-  }
-  return spread;
-}();
+std::size_t morton_in_block(BlockCell cell) {
+  // Spread bits of 0 … 15: a cell's code is three look-ups.
+  static constexpr std::array<std::uint16_t, TriangleBins::kEdge> kSpread = [] {
+    std::array<std::uint16_t, TriangleBins::kEdge> spread{};
+    for (std::uint32_t i = 0; i < spread.size(); ++i) {
+      spread[i] = static_cast<std::uint16_t>(spread_bits(i));
+    }
+    return spread;
+  }();
+  return static_cast<std::size_t>(kSpread[cell & 15] | kSpread[cell >> 4 & 15] << 1 |
+                                  kSpread[cell >> 8] << 2);
+}
 
 // What is meant by "the grown cube": a little less than the pad that is promised, so that rounding
 // cannot make it more.
 double inner_pad(const Lattice& lattice) { return lattice.pad() * (1 - 1.0 / 1024); }
 
-// Calls visit(code in the block, cell) for each voxel of the block that meets the triangle.
+// Calls visit(cell) for each voxel of the block that meets the triangle, ascending.
 template <typename Visit>
 void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattice& lattice,
                     const Visit& visit) {
@@ -58,19 +62,25 @@ void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattic
     for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
       for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
         if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad)) {
-          visit(kSpread[x % TriangleBins::kEdge] | kSpread[y % TriangleBins::kEdge] << 1 |
-                    kSpread[z % TriangleBins::kEdge] << 2,
-                Cell{x, y, z});
+          visit(static_cast<BlockCell>((x & 15) | (y & 15) << 4 | (z & 15) << 8));
         }
       }
     }
   }
 }
 
-// Which voxels are occupied, before anything is stored for them.
+// One block: which of its voxels are occupied, and by which of its triangles.
+struct BlockSurvey {
+  std::array<std::uint64_t, kBlockCells / 64> occupied{};  // by the last bits of the Morton code
+  std::vector<BlockCell>
+      cells;  // of the first triangle, the second …: pairs, before they have a place
+  std::vector<std::uint16_t> cells_of;  // how many each triangle has
+};
+
+// All voxels and pairs, before anything is made of them.
 struct Survey {
   TriangleBins bins;
-  std::vector<Occupancy> occupancy;        // one a block
+  std::vector<BlockSurvey> blocks;
   std::vector<std::uint64_t> first_voxel;  // of each block, and the total
   std::vector<std::uint64_t> first_pair;   // likewise, of voxel and triangle
   [[nodiscard]] std::uint64_t voxels() const { return first_voxel.back(); }
@@ -82,25 +92,31 @@ Survey survey(const LatticeMesh& mesh, const Lattice& lattice, Progress& progres
   Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}};
   const std::size_t blocks = result.bins.codes.size();
   progress.begin_stage("finding surface voxels", blocks);
-  result.occupancy.resize(blocks);
+  result.blocks.resize(blocks);
   result.first_voxel.resize(blocks + 1);
   result.first_pair.resize(blocks + 1);
   parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    std::vector<BlockCell> cells;
     for (std::size_t b = begin; b < end; ++b) {
-      Occupancy& occupied = result.occupancy[b];
-      const Cell block = morton_decode(result.bins.codes[b]);
-      std::uint64_t pairs = 0, voxels = 0;
+      BlockSurvey& block = result.blocks[b];
+      const Cell place = morton_decode(result.bins.codes[b]);
+      cells.clear();
       for (const std::uint32_t t : result.bins.triangles[b]) {
-        for_each_voxel(mesh.box(t), block, lattice, [&](std::uint32_t code, const Cell&) {
-          occupied[code / 64] |= std::uint64_t{1} << code % 64;
-          ++pairs;
+        const std::size_t before = cells.size();
+        for_each_voxel(mesh.box(t), place, lattice, [&](BlockCell cell) {
+          const std::size_t code = morton_in_block(cell);
+          block.occupied[code / 64] |= std::uint64_t{1} << code % 64;
+          cells.push_back(cell);
         });
+        block.cells_of.push_back(static_cast<std::uint16_t>(cells.size() - before));
       }
-      for (const std::uint64_t word : occupied) {
+      block.cells.assign(cells.begin(), cells.end());
+      std::uint64_t voxels = 0;
+      for (const std::uint64_t word : block.occupied) {
         voxels += static_cast<std::uint64_t>(std::popcount(word));
       }
       result.first_voxel[b + 1] = voxels;
-      result.first_pair[b + 1] = pairs;
+      result.first_pair[b + 1] = cells.size();
     }
     progress.add(end - begin);
   });
@@ -118,14 +134,16 @@ double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
   const double own = sizeof(std::uint64_t) + sizeof(PackedNormal) +
                      (options.keep_triangles ? sizeof(std::uint32_t) : 0);
   const double own_pairs = options.keep_triangles ? sizeof(std::uint32_t) : 0;
-  return static_cast<double>(survey.occupancy.size()) * sizeof(Occupancy) +
+  return static_cast<double>(survey.blocks.size()) * sizeof(BlockSurvey) +
          voxels * (own + static_cast<double>(options.bytes_per_voxel)) +
-         pairs * (own_pairs + static_cast<double>(options.bytes_per_pair));
+         pairs * (sizeof(BlockCell) + own_pairs + static_cast<double>(options.bytes_per_pair));
 }
 
-// The survey's own need, known before it is made: keys of the bins, twice while they are joined.
+// The survey's own need, known before it is made: keys of the bins, twice while they are joined,
+// and a cell for each pair.
 double survey_bytes(const TriangleMesh& mesh, double voxel_size) {
-  return 2 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge);
+  return 2 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge) +
+         sizeof(BlockCell) * expected_pairs(mesh, voxel_size);
 }
 
 // The survey at one voxel size, or nothing where the voxels would not fit.
@@ -173,24 +191,30 @@ class BlockWriter {
   BlockWriter(const LatticeMesh& mesh, const Survey& survey, VoxelSet& set)
       : mesh_(mesh), survey_(survey), set_(set) {}
 
-  void write(std::size_t block) {
-    const std::uint64_t code = survey_.bins.codes[block];
-    const Occupancy& occupied = survey_.occupancy[block];
-    std::uint32_t rank = 0;
-    for (std::size_t word = 0; word < occupied.size(); ++word) {
-      for (std::uint64_t bits = occupied[word]; bits != 0; bits &= bits - 1) {
+  void write(std::size_t b) {
+    const BlockSurvey& block = survey_.blocks[b];
+    const std::uint64_t code = survey_.bins.codes[b];
+    std::uint16_t voxels = 0;
+    for (std::size_t word = 0; word < block.occupied.size(); ++word) {
+      for (std::uint64_t bits = block.occupied[word]; bits != 0; bits &= bits - 1) {
         const std::size_t in_block = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
-        rank_[in_block] = rank;
-        set_.codes[survey_.first_voxel[block] + rank++] = code * kBlockCells + in_block;
+        rank_[in_block] = voxels;
+        set_.codes[survey_.first_voxel[b] + voxels++] = code * kBlockCells + in_block;
       }
     }
-    sums_.assign(rank, {});
-    pairs_.clear();
-    for (const std::uint32_t t : survey_.bins.triangles[block]) add(t, morton_decode(code));
-    for (std::uint32_t i = 0; i < rank; ++i) {
-      set_.normals[survey_.first_voxel[block] + i] = PackedNormal(sums_[i].normal, sums_[i].area);
+    sums_.assign(voxels, {});
+    ranks_.clear();
+    std::size_t next = 0;
+    const auto triangles = survey_.bins.triangles[b];
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const std::size_t count = block.cells_of[i];
+      add(triangles[i], morton_decode(code), {block.cells.data() + next, count});
+      next += count;
     }
-    if (!set_.triangles.empty()) write_lists(block, rank);
+    for (std::uint32_t i = 0; i < voxels; ++i) {
+      set_.normals[survey_.first_voxel[b] + i] = PackedNormal(sums_[i].normal, sums_[i].area);
+    }
+    if (!set_.triangles.empty()) write_lists(b);
   }
 
  private:
@@ -199,41 +223,48 @@ class BlockWriter {
     double area = 0;
     std::uint32_t triangles = 0;
   };
-  struct Pair {
-    std::uint32_t rank, triangle;
-  };
 
-  void add(std::uint32_t t, const Cell& block) {
+  void add(std::uint32_t t, const Cell& block, std::span<const BlockCell> cells) {
     // A triangle that only touches a voxel counts too, but less than any that enters it.
     constexpr double kTouch = 1e-6;
     const auto corners = mesh_.corners(t);
     const std::optional<Eigen::Vector3d> normal = unit_normal(corners);
-    const double pad = set_.lattice.pad();
-    for_each_voxel(
-        mesh_.box(t), block, set_.lattice, [&](std::uint32_t in_block, const Cell& cell) {
-          Sum& sum = sums_[rank_[in_block]];
-          ++sum.triangles;
-          if (!set_.triangles.empty()) pairs_.push_back({rank_[in_block], t});
-          if (!normal) return;
-          const Eigen::Vector3d low(cell[0] - pad, cell[1] - pad, cell[2] - pad);
-          const double edge = 1 + 2 * pad;
-          clip_triangle(corners, low, {low[0] + edge, low[1] + edge, low[2] + edge}, clipped_);
-          const double area = clipped_.area() + kTouch;
-          sum.normal += area * *normal;
-          sum.area += area;
-        });
+    Eigen::Index steepest = 0;
+    const double slope = normal ? normal->cwiseAbs().maxCoeff(&steepest) : 1;
+    TriangleSlicer slicer(corners, set_.lattice.pad());
+    for (const BlockCell cell : cells) {
+      const std::uint16_t rank = rank_[morton_in_block(cell)];
+      ranks_.push_back(rank);
+      Sum& sum = sums_[rank];
+      ++sum.triangles;
+      if (!normal) continue;
+      const ClippedTriangle& inside =
+          slicer.cube(block[0] * TriangleBins::kEdge + (cell & 15u),
+                      block[1] * TriangleBins::kEdge + (cell >> 4 & 15u),
+                      block[2] * TriangleBins::kEdge + (cell >> 8 & 15u));
+      const double area = kTouch + inside.projected_area(static_cast<int>(steepest)) / slope;
+      sum.normal += area * *normal;
+      sum.area += area;
+    }
   }
 
-  void write_lists(std::size_t block, std::uint32_t voxels) {
-    std::uint64_t next = survey_.first_pair[block];
-    for (std::uint32_t i = 0; i < voxels; ++i) {
-      set_.triangles.first[survey_.first_voxel[block] + i] = static_cast<std::uint32_t>(next);
-      next += sums_[i].triangles;
-      sums_[i].triangles = 0;
+  void write_lists(std::size_t b) {
+    std::uint64_t next = survey_.first_pair[b];
+    std::uint32_t* first = set_.triangles.first.data() + survey_.first_voxel[b];
+    for (Sum& sum : sums_) {
+      *first++ = static_cast<std::uint32_t>(next);
+      next += sum.triangles;
+      sum.triangles = 0;
     }
-    for (const Pair& pair : pairs_) {
-      const std::uint32_t first = set_.triangles.first[survey_.first_voxel[block] + pair.rank];
-      set_.triangles.ids[first + sums_[pair.rank].triangles++] = pair.triangle;
+    first -= sums_.size();
+    const BlockSurvey& block = survey_.blocks[b];
+    const auto triangles = survey_.bins.triangles[b];
+    std::size_t pair = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (std::uint16_t count = block.cells_of[i]; count > 0; --count, ++pair) {
+        const std::uint16_t rank = ranks_[pair];
+        set_.triangles.ids[first[rank] + sums_[rank].triangles++] = triangles[i];
+      }
     }
   }
 
@@ -250,10 +281,9 @@ class BlockWriter {
   const LatticeMesh& mesh_;
   const Survey& survey_;
   VoxelSet& set_;
-  std::array<std::uint32_t, kBlockCells> rank_{};
+  std::array<std::uint16_t, kBlockCells> rank_{};  // of a voxel among those of its block
+  std::vector<std::uint16_t> ranks_;               // of each pair of the block
   std::vector<Sum> sums_;
-  std::vector<Pair> pairs_;
-  ClippedTriangle clipped_;
 };
 
 }  // namespace
