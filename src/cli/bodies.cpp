@@ -1,0 +1,84 @@
+#include "cli/bodies.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "cli/progress_bar.h"
+#include "ist/mesh/mesh_check.h"
+#include "ist/mesh/mesh_io.h"
+#include "ist/tree/tree_io.h"
+
+namespace ist::cli {
+namespace {
+
+SphereTree load_body(const std::filesystem::path& file, bool is_tree, const BodyFiles& files) {
+  if (is_tree) return read_tree(file);
+  CheckedMesh checked = load_mesh(file);
+  BuildOptions options;
+  options.voxel_size = *files.voxel_size;
+  options.spheres = files.policy.value_or(SpherePolicy::kTight);
+  options.max_memory = files.max_memory;
+  SphereTree tree = build_with_progress(std::move(checked.mesh), options, checked.warnings);
+  print_warnings(checked.warnings);
+  return tree;
+}
+
+}  // namespace
+
+CheckedMesh load_mesh(const std::filesystem::path& file) {
+  CheckedMesh checked{read_mesh(file), {}};
+  for (const std::string& warning : warnings(check_mesh(checked.mesh))) {
+    checked.warnings.push_back(fmt::format("{}: {}", file.string(), warning));
+  }
+  return checked;
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
+SphereTree build_with_progress(TriangleMesh mesh, const BuildOptions& options,
+                               std::vector<std::string>& warnings, BuildReport* report) {
+  Progress progress;
+  const ProgressBar bar(progress);
+  BuildReport own;
+  BuildReport& filled = report != nullptr ? *report : own;
+  SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
+  if (filled.turned_components > 0) {
+    warnings.push_back(fmt::format("{} closed component{} inside out: turned outward",
+                                   filled.turned_components,
+                                   filled.turned_components == 1 ? " was" : "s were"));
+  }
+  if (tree.orientation() == Orientation::kAssumed) {
+    warnings.push_back(
+        "the mesh is not closed and consistent, so which side is outside is assumed from its winding");
+  }
+  return tree;
+}
+
+Bodies load_bodies(const BodyFiles& files) {
+  const bool fixed_is_tree = is_tree_file(files.fixed), moving_is_tree = is_tree_file(files.moving);
+  if (fixed_is_tree && moving_is_tree && files.voxel_size) {
+    throw CLI::ValidationError("--voxel-size", "both bodies are trees, which have their voxel sizes");
+  }
+  if (!(fixed_is_tree && moving_is_tree) && !files.voxel_size) {
+    throw CLI::ValidationError(
+        "--voxel-size",
+        fmt::format("needed, because {} is a mesh",
+                    fixed_is_tree ? files.moving.string() : files.fixed.string()));
+  }
+  Bodies bodies{load_body(files.fixed, fixed_is_tree, files),
+                load_body(files.moving, moving_is_tree, files), SpherePolicy::kTable};
+  const bool both_tight =
+      bodies.fixed.has(SpherePolicy::kTight) && bodies.moving.has(SpherePolicy::kTight);
+  bodies.policy = files.policy.value_or(both_tight ? SpherePolicy::kTight : SpherePolicy::kTable);
+  bodies.fixed.require(bodies.policy, files.fixed.string());
+  bodies.moving.require(bodies.policy, files.moving.string());
+  return bodies;
+}
+
+}  // namespace ist::cli

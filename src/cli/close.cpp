@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/query_options.h"
+#include "cli/query_run.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr double kMostSteps = 1e6;
+
+struct Options {
+  QueryOptions query;
+  std::string axis;
+  double from = 0, to = 0, step = 0;
+};
+
+std::vector<Eigen::Isometry3d> straight_path(const Options& options) {
+  const double length = std::abs(options.to - options.from);
+  if (!std::isfinite(options.from) || !std::isfinite(options.to)) {
+    throw CLI::ValidationError("--from, --to", "give finite numbers");
+  }
+  if (!(options.step > 0) || !(length / options.step <= kMostSteps)) {
+    throw CLI::ValidationError(
+        "--step", fmt::format("give a positive number that makes at most {:.0f} steps", kMostSteps));
+  }
+  const auto steps = static_cast<int>(std::floor(length / options.step * (1 + 1e-12)));
+  std::vector<Eigen::Isometry3d> poses;
+  for (int i = 0; i <= steps; ++i) {
+    Eigen::Isometry3d& pose = poses.emplace_back(Eigen::Isometry3d::Identity());
+    const double distance = i * options.step;
+    pose.translation()[options.axis[0] - 'x'] =
+        options.to < options.from ? options.from - distance : options.from + distance;
+  }
+  return poses;
+}
+
+}  // namespace
+
+void add_close(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("close", "Find where two bodies touch, along a straight path");
+  const auto options = std::make_shared<Options>();
+  add_query_options(*command, options->query);
+  command->add_option("--axis", options->axis, "the axis along which the moving body goes")
+      ->required()
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  command->add_option("--from", options->from, "first displacement, in mesh units")->required();
+  command->add_option("--to", options->to, "last displacement")->required();
+  command->add_option("--step", options->step, "distance from one pose to the next")->required();
+  command->footer(
+      "Line i is the answer at displacement from + i * step.\n"
+      "Example: ist close maxilla.stl mandible.stl --voxel-size 0.4 --axis z --from -3 --to 0 --step 0.1");
+  command->callback([options] {
+    const auto poses = straight_path(*options);
+    run_queries(load_bodies(options->query.body_files()), poses, options->query);
+  });
+}
+
+}  // namespace ist::cli

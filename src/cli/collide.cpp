@@ -1,0 +1,33 @@
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/poses.h"
+#include "cli/query_options.h"
+#include "cli/query_run.h"
+
+namespace ist::cli {
+
+void add_collide(CLI::App& app) {
+  struct Options {
+    QueryOptions query;
+    std::filesystem::path poses;
+  };
+  CLI::App* command =
+      app.add_subcommand("collide", "Find where two bodies touch, at poses from a file");
+  const auto options = std::make_shared<Options>();
+  add_query_options(*command, options->query);
+  command
+      ->add_option("--poses", options->poses,
+                   "JSON: an array of objects with \"pose\", 16 numbers, column-major, which map "
+                   "moving to fixed coordinates")
+      ->required();
+  command->footer(
+      "A contact is a pair of voxels; the surfaces in them are no farther apart than \"resolution\".\n"
+      "Example: ist collide maxilla.stl mandible.stl --voxel-size 0.4 --poses poses.json --json");
+  command->callback([options] {
+    const auto poses = read_poses(options->poses);
+    run_queries(load_bodies(options->query.body_files()), poses, options->query);
+  });
+}
+
+}  // namespace ist::cli

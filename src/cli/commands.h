@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// The subcommands, one file each. Each function adds its options to `app` and what to do when it is
+/// chosen. Data goes to stdout, everything else to stderr; a failure is an ist::Error or a CLI::Error,
+/// caught in main alone.
+namespace ist::cli {
+
+void add_demo(CLI::App& app);
+void add_build(CLI::App& app);
+void add_info(CLI::App& app);
+void add_export(CLI::App& app);
+void add_collide(CLI::App& app);
+void add_close(CLI::App& app);
+
+}  // namespace ist::cli

@@ -1,0 +1,67 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "cli/commands.h"
+#include "ist/base/error.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr int kFailed = 1, kUsage = 2, kBadInput = 3;
+
+int exit_code(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kFileUnwritable: return kFailed;
+    case ErrorCode::kVoxelSizeInvalid:
+    case ErrorCode::kVoxelSizeTooSmall:
+    case ErrorCode::kMemoryLimit:
+    case ErrorCode::kPolicyMissing: return kUsage;
+    default: return kBadInput;
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Finds where two rigid triangle meshes touch. Try 'ist demo' first: it needs no files.\n"
+      "Lengths are in the unit of the mesh files, millimetres by habit.",
+      "ist");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", IST_VERSION);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer(
+      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file.\n"
+      "Research software, not a medical device.");
+  add_demo(app);
+  add_build(app);
+  add_info(app);
+  add_export(app);
+  add_collide(app);
+  add_close(app);
+  app.parse(argc, argv);
+  return 0;
+}
+
+}  // namespace
+}  // namespace ist::cli
+
+int main(int argc, char** argv) try {
+  return ist::cli::run(argc, argv);
+} catch (const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    CLI::App app;  // help and version texts are the messages of these errors
+    return app.exit(error);
+  }
+  std::fprintf(stderr, "ist: %s\nTry 'ist --help', or 'ist SUBCOMMAND --help'.\n", error.what());
+  return ist::cli::kUsage;
+} catch (const ist::Error& error) {
+  std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
+  return ist::cli::exit_code(error.code());
+} catch (const std::bad_alloc&) {
+  std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
+  return ist::cli::kFailed;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "ist: %s\n", error.what());
+  return ist::cli::kFailed;
+}

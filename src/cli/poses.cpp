@@ -1,0 +1,86 @@
+#include "cli/poses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ist/base/error.h"
+#include "ist/base/input_file.h"
+#include "ist/base/pose.h"
+
+namespace ist::cli {
+namespace {
+
+[[noreturn]] void fail(ErrorCode code, const std::filesystem::path& file, const std::string& what) {
+  throw Error(code, fmt::format("{}: {}", file.string(), what));
+}
+
+// Takes nothing in; finds where a text stops being JSON.
+struct Locator : nlohmann::json_sax<nlohmann::json> {
+  std::string error;
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(std::int64_t) override { return true; }
+  bool number_unsigned(std::uint64_t) override { return true; }
+  bool number_float(double, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(std::vector<std::uint8_t>&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(std::string&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& e) override {
+    error = e.what();
+    return false;
+  }
+};
+
+nlohmann::json parse(const std::filesystem::path& file) {
+  InputFile input(file);
+  std::string text(input.size(), '\0');
+  text.resize(input.read(text.data(), text.size()));
+  Locator locator;
+  if (!nlohmann::json::sax_parse(text, &locator)) {
+    fail(ErrorCode::kInputInvalid, file, fmt::format("not JSON: {}", locator.error));
+  }
+  return nlohmann::json::parse(text);
+}
+
+}  // namespace
+
+std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
+  const nlohmann::json list = parse(file);
+  if (!list.is_array() || list.empty()) {
+    fail(ErrorCode::kInputInvalid, file,
+         "give an array of objects with \"pose\", 16 numbers, column-major");
+  }
+  std::vector<Eigen::Isometry3d> poses;
+  for (const nlohmann::json& item : list) {
+    const auto place = fmt::format("item {}", poses.size());
+    const auto pose = item.is_object() ? item.find("pose") : item.end();
+    const bool is_matrix = pose != item.end() && pose->is_array() && pose->size() == 16 &&
+                           std::all_of(pose->begin(), pose->end(),
+                                       [](const nlohmann::json& x) { return x.is_number(); });
+    if (!is_matrix) {
+      fail(ErrorCode::kInputInvalid, file,
+           place + ": give \"pose\" as an array of 16 numbers, column-major");
+    }
+    Eigen::Isometry3d& matrix = poses.emplace_back();
+    for (Eigen::Index i = 0; i < 16; ++i) {
+      matrix.matrix().data()[i] = (*pose)[static_cast<std::size_t>(i)].get<double>();
+    }
+    if (!project_to_rigid(matrix)) {
+      fail(ErrorCode::kPoseInvalid, file,
+           place + ": not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the "
+                   "last row 0 0 0 1 (the 16 numbers are column-major)");
+    }
+  }
+  return poses;
+}
+
+}  // namespace ist::cli

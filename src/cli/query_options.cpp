@@ -1,0 +1,51 @@
+#include "cli/query_options.h"
+
+namespace ist::cli {
+
+std::vector<std::string> policy_names() {
+  std::vector<std::string> names;
+  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+    names.emplace_back(to_string(policy));
+  }
+  return names;
+}
+
+void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
+  command
+      .add_option("--max-memory", bytes,
+                  "most memory that voxels and tree may take, in bytes; K, M and G are understood")
+      ->transform(CLI::AsSizeValue(false))
+      ->default_str("4G");
+}
+
+BodyFiles QueryOptions::body_files() const {
+  BodyFiles named = files;
+  if (!spheres.empty()) named.policy = sphere_policy(spheres);
+  return named;
+}
+
+void add_query_options(CLI::App& command, QueryOptions& options) {
+  command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")->required();
+  command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
+      ->required();
+  command.add_option("--voxel-size", options.files.voxel_size,
+                     "edge of a voxel, in mesh units; for meshes, which are voxelised first");
+  command
+      .add_option("--spheres", options.spheres,
+                  "how nodes are read as spheres; by default the tightest that both bodies have")
+      ->check(CLI::IsMember(policy_names()));
+  command.add_option("--engine", options.engines, "which query; may be given several times")
+      ->check(CLI::IsMember({"reference"}))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->capture_default_str();
+  command.add_option("--repeat", options.repeat, "how often to time each pose")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--contacts", options.contacts,
+                     "write the contacts here, one JSON object each, in fixed coordinates");
+  add_max_memory(command, options.files.max_memory);
+  command.add_flag("--json", options.json, "print one JSON object a line");
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/bodies.h"
+
+namespace ist::cli {
+
+/// The names that --spheres takes.
+[[nodiscard]] std::vector<std::string> policy_names();
+
+void add_max_memory(CLI::App& command, std::uint64_t& bytes);
+
+/// What collide and close share.
+struct QueryOptions {
+  BodyFiles files;
+  std::string spheres;             ///< empty: the best that both bodies have
+  std::vector<std::string> engines{"reference"};
+  int repeat = 1;
+  std::filesystem::path contacts;  ///< empty: not written
+  bool json = false;
+
+  /// The files with the policy that is named.
+  [[nodiscard]] BodyFiles body_files() const;
+};
+
+void add_query_options(CLI::App& command, QueryOptions& options);
+
+}  // namespace ist::cli

@@ -1,0 +1,182 @@
+#include "cli/query_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ist/base/output_file.h"
+#include "ist/query/reference.h"
+#include "ist/tree/saved_spheres.h"
+
+namespace ist::cli {
+namespace {
+
+double microseconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// What one engine answered at one pose, and how long each time took.
+struct Answer {
+  QueryResult result;
+  std::vector<double> microseconds;
+
+  [[nodiscard]] double fastest() const {
+    return *std::min_element(microseconds.begin(), microseconds.end());
+  }
+  [[nodiscard]] double median() const {
+    std::vector<double> sorted = microseconds;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t half = sorted.size() / 2;
+    return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
+  }
+};
+
+// One engine on one pair of bodies, with a span that grows until every contact fits.
+class Engine {
+ public:
+  Engine(std::string name, const Bodies& bodies)
+      : name_(std::move(name)), query_(bodies.fixed, bodies.moving, bodies.policy) {}
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] double resolution(const QueryResult& result) const {
+    return query_.resolution(result);
+  }
+  [[nodiscard]] std::span<const Contact> contacts(const QueryResult& result) const {
+    return {contacts_.data(), static_cast<std::size_t>(result.contacts)};
+  }
+
+  QueryResult ask(const Eigen::Isometry3d& pose, double& microseconds) {
+    while (true) {
+      const auto begin = std::chrono::steady_clock::now();
+      const QueryResult result = query_.collide(pose, contacts_);
+      microseconds = microseconds_since(begin);
+      if (!result.truncated) return result;
+      contacts_.resize(2 * result.contacts);
+    }
+  }
+
+ private:
+  std::string name_;
+  ReferenceQuery query_;
+  std::vector<Contact> contacts_ = std::vector<Contact>(1 << 16);
+};
+
+nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const Bodies& bodies,
+                                 const Answer& answer) {
+  const QueryResult& r = answer.result;
+  return {{"index", index},
+          {"engine", engine.name()},
+          {"spheres", to_string(bodies.policy)},
+          {"target", "scalar"},
+          {"workers", 1},
+          {"voxel_size", {bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size}},
+          {"resolution", engine.resolution(r)},
+          {"complete", r.complete},
+          {"truncated", r.truncated},
+          {"level", r.level},
+          {"colliding", r.contacts > 0},
+          {"inside", nullptr},
+          {"contacts", r.contacts},
+          {"gap_lower", nullptr},
+          {"gap_upper", nullptr},
+          {"sphere_tests", r.sphere_tests},
+          {"microseconds_min", answer.fastest()},
+          {"microseconds_median", answer.median()}};
+}
+
+void print_table(const std::vector<Engine>& engines, const Bodies& bodies,
+                 const std::vector<std::vector<Answer>>& answers) {
+  fmt::print("spheres {}, voxel size {} and {}\n", to_string(bodies.policy),
+             bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size);
+  fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine", "touch",
+             "contacts", "tests", "median µs", "min µs", "rate Hz");
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const Answer& answer = answers[i][e];
+      fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12.1f} {:>10.1f} {:>10.0f}\n", i,
+                 engines[e].name(), answer.result.contacts > 0 ? "yes" : "no",
+                 answer.result.contacts, answer.result.sphere_tests, answer.median(),
+                 answer.fastest(), 1e6 / answer.median());
+    }
+  }
+}
+
+// Centres of the touching spheres, in fixed coordinates.
+class ContactWriter {
+ public:
+  ContactWriter(const std::filesystem::path& file, const Bodies& bodies)
+      : file_(file), bodies_(bodies), fixed_(level_spheres(bodies.fixed, bodies.policy, 0)),
+        moving_(level_spheres(bodies.moving, bodies.policy, 0)) {}
+
+  void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const Contact> contacts) {
+    std::string lines;
+    for (const Contact& contact : contacts) {
+      const Eigen::Vector3d fixed = in_mesh(bodies_.fixed.lattice(), fixed_[contact.fixed].centre);
+      const Eigen::Vector3d moving =
+          pose * in_mesh(bodies_.moving.lattice(), moving_[contact.moving].centre);
+      const nlohmann::ordered_json line{{"index", index},
+                                        {"fixed_centre", {fixed[0], fixed[1], fixed[2]}},
+                                        {"moving_centre", {moving[0], moving[1], moving[2]}}};
+      lines += line.dump() + '\n';
+      if (lines.size() > (1 << 20)) flush(lines);
+    }
+    flush(lines);
+  }
+  void commit() { file_.commit(); }
+
+ private:
+  void flush(std::string& lines) {
+    file_.write(lines.data(), lines.size());
+    lines.clear();
+  }
+  static Eigen::Vector3d in_mesh(const Lattice& lattice, const Eigen::Vector3d& centre) {
+    const double half = lattice.voxel_size * lattice.root_centre();
+    return centre + Eigen::Vector3d(lattice.corner[0] + half, lattice.corner[1] + half,
+                                    lattice.corner[2] + half);
+  }
+
+  OutputFile file_;
+  const Bodies& bodies_;
+  std::vector<Ball> fixed_, moving_;
+};
+
+}  // namespace
+
+void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
+                 const QueryOptions& options) {
+  std::vector<Engine> engines;
+  for (const std::string& name : options.engines) engines.emplace_back(name, bodies);
+  std::unique_ptr<ContactWriter> writer;
+  if (!options.contacts.empty()) writer = std::make_unique<ContactWriter>(options.contacts, bodies);
+
+  std::vector<std::vector<Answer>> answers(poses.size(), std::vector<Answer>(engines.size()));
+  for (int round = 0; round < options.repeat; ++round) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      for (std::size_t e = 0; e < engines.size(); ++e) {
+        double microseconds = 0;
+        answers[i][e].result = engines[e].ask(poses[i], microseconds);
+        answers[i][e].microseconds.push_back(microseconds);
+        if (writer != nullptr && round == 0 && e == 0) {
+          writer->write(i, poses[i], engines[e].contacts(answers[i][e].result));
+        }
+      }
+    }
+  }
+  if (writer != nullptr) writer->commit();
+  if (!options.json) {
+    print_table(engines, bodies, answers);
+    return;
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      fmt::print("{}\n", json_line(i, engines[e], bodies, answers[i][e]).dump());
+    }
+  }
+}
+
+}  // namespace ist::cli
