@@ -55,7 +55,8 @@ SphereTree build_with_progress(TriangleMesh mesh, const BuildOptions& options,
   }
   if (tree.orientation() == Orientation::kAssumed) {
     warnings.push_back(
-        "the mesh is not closed and consistent, so which side is outside is assumed from its winding");
+        "the mesh is not closed and consistent, so which side is outside is assumed from its "
+        "winding");
   }
   return tree;
 }
@@ -63,13 +64,13 @@ SphereTree build_with_progress(TriangleMesh mesh, const BuildOptions& options,
 Bodies load_bodies(const BodyFiles& files) {
   const bool fixed_is_tree = is_tree_file(files.fixed), moving_is_tree = is_tree_file(files.moving);
   if (fixed_is_tree && moving_is_tree && files.voxel_size) {
-    throw CLI::ValidationError("--voxel-size", "both bodies are trees, which have their voxel sizes");
+    throw CLI::ValidationError("--voxel-size",
+                               "both bodies are trees, which have their voxel sizes");
   }
   if (!(fixed_is_tree && moving_is_tree) && !files.voxel_size) {
     throw CLI::ValidationError(
-        "--voxel-size",
-        fmt::format("needed, because {} is a mesh",
-                    fixed_is_tree ? files.moving.string() : files.fixed.string()));
+        "--voxel-size", fmt::format("needed, because {} is a mesh",
+                                    fixed_is_tree ? files.moving.string() : files.fixed.string()));
   }
   Bodies bodies{load_body(files.fixed, fixed_is_tree, files),
                 load_body(files.moving, moving_is_tree, files), SpherePolicy::kTable};

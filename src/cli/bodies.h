@@ -33,8 +33,8 @@ struct Bodies {
 
 struct BodyFiles {
   std::filesystem::path fixed, moving;
-  std::optional<double> voxel_size;     ///< for meshes
-  std::optional<SpherePolicy> policy;   ///< none: the best that both have
+  std::optional<double> voxel_size;    ///< for meshes
+  std::optional<SpherePolicy> policy;  ///< none: the best that both have
   std::uint64_t max_memory = BuildOptions{}.max_memory;
 };
 

@@ -49,7 +49,8 @@ void run(Options options) {
     return;
   }
   fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),
-             octree.leaf_count(), octree.node_count(), octree.depth(), static_cast<double>(bytes) / 1e6);
+             octree.leaf_count(), octree.node_count(), octree.depth(),
+             static_cast<double>(bytes) / 1e6);
   if (tree.proximity()) {
     fmt::print("proximity voxels: {}\n", tree.proximity()->octree.leaf_count());
   }
@@ -63,11 +64,14 @@ void run(Options options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<Options>();
-  command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")->required();
+  command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
+      ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();
   command->add_option("--voxel-size", options->build.voxel_size, "edge of a voxel, in mesh units")
       ->required();
-  command->add_option("--spheres", options->spheres, "what to save beside simple and table, which need no saving")
+  command
+      ->add_option("--spheres", options->spheres,
+                   "what to save beside simple and table, which need no saving")
       ->check(CLI::IsMember(policy_names()))
       ->capture_default_str();
   command->add_flag("--exact", options->build.keep_triangles, "keep each voxel's triangles");

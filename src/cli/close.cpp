@@ -25,7 +25,8 @@ std::vector<Eigen::Isometry3d> straight_path(const Options& options) {
   }
   if (!(options.step > 0) || !(length / options.step <= kMostSteps)) {
     throw CLI::ValidationError(
-        "--step", fmt::format("give a positive number that makes at most {:.0f} steps", kMostSteps));
+        "--step",
+        fmt::format("give a positive number that makes at most {:.0f} steps", kMostSteps));
   }
   const auto steps = static_cast<int>(std::floor(length / options.step * (1 + 1e-12)));
   std::vector<Eigen::Isometry3d> poses;
@@ -53,7 +54,8 @@ void add_close(CLI::App& app) {
   command->add_option("--step", options->step, "distance from one pose to the next")->required();
   command->footer(
       "Line i is the answer at displacement from + i * step.\n"
-      "Example: ist close maxilla.stl mandible.stl --voxel-size 0.4 --axis z --from -3 --to 0 --step 0.1");
+      "Example: ist close maxilla.stl mandible.stl --voxel-size 0.4 --axis z --from -3 --to 0 "
+      "--step 0.1");
   command->callback([options] {
     const auto poses = straight_path(*options);
     run_queries(load_bodies(options->query.body_files()), poses, options->query);

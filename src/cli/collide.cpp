@@ -22,7 +22,8 @@ void add_collide(CLI::App& app) {
                    "moving to fixed coordinates")
       ->required();
   command->footer(
-      "A contact is a pair of voxels; the surfaces in them are no farther apart than \"resolution\".\n"
+      "A contact is a pair of voxels; the surfaces in them are no farther apart than "
+      "\"resolution\".\n"
       "Example: ist collide maxilla.stl mandible.stl --voxel-size 0.4 --poses poses.json --json");
   command->callback([options] {
     const auto poses = read_poses(options->poses);

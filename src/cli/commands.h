@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-/// The subcommands, one file each. Each function adds its options to `app` and what to do when it is
-/// chosen. Data goes to stdout, everything else to stderr; a failure is an ist::Error or a CLI::Error,
-/// caught in main alone.
+/// The subcommands, one file each. Each function adds its options to `app` and what to do when it
+/// is chosen. Data goes to stdout, everything else to stderr; a failure is an ist::Error or a
+/// CLI::Error, caught in main alone.
 namespace ist::cli {
 
 void add_demo(CLI::App& app);

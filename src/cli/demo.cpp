@@ -41,7 +41,8 @@ Row ask(ReferenceQuery& query, double displacement, std::vector<Contact>& contac
   for (double& time : times) {
     const auto begin = std::chrono::steady_clock::now();
     row.result = query.collide(pose, contacts);
-    time = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    time =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   }
   std::sort(times.begin(), times.end());
   row.microseconds = times[kRepeats / 2];
@@ -61,8 +62,8 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, SpherePolicy p
   std::vector<Contact> contacts(1 << 20);
   const double size = upper.lattice().voxel_size;
   if (!options.json) {
-    fmt::print("\n{} spheres, voxels of {} mm ({} and {}), reference query\n", to_string(policy), size,
-               upper.octree().leaf_count(), lower.octree().leaf_count());
+    fmt::print("\n{} spheres, voxels of {} mm ({} and {}), reference query\n", to_string(policy),
+               size, upper.octree().leaf_count(), lower.octree().leaf_count());
     fmt::print("{:>8} {:>9} {:>10} {:>9}  rate (10 Hz, then a decade each 8 characters)\n", "dz mm",
                "contacts", "tests", "µs");
   }
@@ -81,8 +82,8 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, SpherePolicy p
       fmt::print("{}\n", line.dump());
     } else {
       fmt::print("{:>8.1f} {:>9} {:>10} {:>9.1f}  {:<40} {:.0f} Hz{}\n", displacement,
-                 row.result.contacts, row.result.sphere_tests, row.microseconds, rate_bar(hertz), hertz,
-                 hertz < 1000 ? "  (a hand needs 1000)" : "");
+                 row.result.contacts, row.result.sphere_tests, row.microseconds, rate_bar(hertz),
+                 hertz, hertz < 1000 ? "  (a hand needs 1000)" : "");
     }
   }
 }

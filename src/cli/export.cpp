@@ -27,7 +27,9 @@ struct Options {
 // A PLY file in binary, made in memory: what is looked at is small.
 class PlyFile {
  public:
-  void begin(const std::string& header) { bytes_ = "ply\nformat binary_little_endian 1.0\n" + header + "end_header\n"; }
+  void begin(const std::string& header) {
+    bytes_ = "ply\nformat binary_little_endian 1.0\n" + header + "end_header\n";
+  }
   template <typename T>
   void add(T value) {
     char raw[sizeof(T)];
@@ -52,10 +54,11 @@ Eigen::Vector3d origin(const Lattice& lattice) {
 std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy, const Options& options) {
   const std::vector<Ball> spheres = level_spheres(tree, policy, options.level);
   PlyFile ply;
-  ply.begin(fmt::format("comment {} spheres of level {}: points with a radius\n"
-                        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-                        "property float radius\n",
-                        to_string(policy), options.level, spheres.size()));
+  ply.begin(
+      fmt::format("comment {} spheres of level {}: points with a radius\n"
+                  "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+                  "property float radius\n",
+                  to_string(policy), options.level, spheres.size()));
   for (const Ball& ball : spheres) {
     const Eigen::Vector3d centre = origin(tree.lattice()) + ball.centre;
     for (Eigen::Index i = 0; i < 3; ++i) ply.add(static_cast<float>(centre[i]));
@@ -80,7 +83,8 @@ std::size_t write_voxels(const SphereTree& tree, const Options& options) {
         Cell neighbour = morton_decode(codes[i]);
         std::uint32_t& index = neighbour[static_cast<std::size_t>(axis)];
         index += side == 1 ? 1u : ~0u;
-        if (index < end && std::binary_search(codes.begin(), codes.end(), morton_encode(neighbour))) {
+        if (index < end &&
+            std::binary_search(codes.begin(), codes.end(), morton_encode(neighbour))) {
           continue;
         }
         faces.push_back({i * 8, axis, side});
@@ -88,13 +92,16 @@ std::size_t write_voxels(const SphereTree& tree, const Options& options) {
     }
   }
   PlyFile ply;
-  ply.begin(fmt::format("comment voxels of level {}: cubes, inner faces left out\n"
-                        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-                        "element face {}\nproperty list uchar uint vertex_indices\n",
-                        options.level, 8 * codes.size(), faces.size()));
+  ply.begin(
+      fmt::format("comment voxels of level {}: cubes, inner faces left out\n"
+                  "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+                  "element face {}\nproperty list uchar uint vertex_indices\n",
+                  options.level, 8 * codes.size(), faces.size()));
   const double half = 0.5 * tree.lattice().edge(options.level);
   for (const std::uint64_t code : codes) {
-    const Eigen::Vector3d centre = origin(tree.lattice()) + tree.lattice().voxel_size * cube_centre(tree.lattice(), options.level, code);
+    const Eigen::Vector3d centre =
+        origin(tree.lattice()) +
+        tree.lattice().voxel_size * cube_centre(tree.lattice(), options.level, code);
     for (int corner = 0; corner < 8; ++corner) {
       for (int i = 0; i < 3; ++i) {
         ply.add(static_cast<float>(centre[i] + ((corner >> i & 1) != 0 ? half : -half)));
@@ -122,13 +129,17 @@ void run(const Options& options) {
   if (options.level > tree.depth()) {
     throw CLI::ValidationError("--level", fmt::format("the tree has levels 0 to {}", tree.depth()));
   }
-  SpherePolicy policy = tree.has(SpherePolicy::kTight) ? SpherePolicy::kTight : SpherePolicy::kTable;
+  SpherePolicy policy =
+      tree.has(SpherePolicy::kTight) ? SpherePolicy::kTight : SpherePolicy::kTable;
   if (!options.spheres.empty()) policy = *sphere_policy(options.spheres);
   tree.require(policy, options.tree.string());
   const std::size_t count =
       options.what == "voxels" ? write_voxels(tree, options) : write_spheres(tree, policy, options);
   if (options.json) {
-    nlohmann::ordered_json line{{"file", options.output.string()}, {"what", options.what}, {"level", options.level}, {"count", count}};
+    nlohmann::ordered_json line{{"file", options.output.string()},
+                                {"what", options.what},
+                                {"level", options.level},
+                                {"count", count}};
     fmt::print("{}\n", line.dump());
   } else {
     fmt::print("{}: {} {}\n", options.output.string(), count, options.what);
@@ -145,12 +156,17 @@ void add_export(CLI::App& app) {
   command->add_option("--what", options->what, "cubes, or points with a property 'radius'")
       ->required()
       ->check(CLI::IsMember({"voxels", "spheres"}));
-  command->add_option("--level", options->level, "0 for the leaves")->required()->check(CLI::Range(0, 17));
-  command->add_option("--spheres", options->spheres, "which spheres; by default the tightest that the tree has")
+  command->add_option("--level", options->level, "0 for the leaves")
+      ->required()
+      ->check(CLI::Range(0, 17));
+  command
+      ->add_option("--spheres", options->spheres,
+                   "which spheres; by default the tightest that the tree has")
       ->check(CLI::IsMember(policy_names()));
   command->add_option("-o,--output", options->output, "the PLY file to write")->required();
   command->add_flag("--json", options->json, "print one JSON object");
-  command->footer("Example: ist export jaw.ist --what spheres --spheres table --level 2 -o spheres.ply");
+  command->footer(
+      "Example: ist export jaw.ist --what spheres --spheres table --level 2 -o spheres.ply");
   command->callback([options] { run(*options); });
 }
 

@@ -39,7 +39,7 @@ void show_mesh(const Options& options) {
                                     {"box_min", {low[0], low[1], low[2]}},
                                     {"box_max", {high[0], high[1], high[2]}},
                                     {"warnings", warnings(report)}}
-                         .dump());
+                           .dump());
     return;
   }
   fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", options.file.string(),
@@ -102,13 +102,13 @@ void show_tree(const Options& options) {
 }  // namespace
 
 void add_info(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "Show what a mesh or a tree holds, level by level");
+  CLI::App* command =
+      app.add_subcommand("info", "Show what a mesh or a tree holds, level by level");
   const auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "STL, OBJ or PLY mesh, or tree")->required();
   command->add_flag("--json", options->json, "print one JSON object");
-  command->callback([options] {
-    is_tree_file(options->file) ? show_tree(*options) : show_mesh(*options);
-  });
+  command->callback(
+      [options] { is_tree_file(options->file) ? show_tree(*options) : show_mesh(*options); });
 }
 
 }  // namespace ist::cli

@@ -13,12 +13,15 @@ constexpr int kFailed = 1, kUsage = 2, kBadInput = 3;
 
 int exit_code(ErrorCode code) {
   switch (code) {
-    case ErrorCode::kFileUnwritable: return kFailed;
+    case ErrorCode::kFileUnwritable:
+      return kFailed;
     case ErrorCode::kVoxelSizeInvalid:
     case ErrorCode::kVoxelSizeTooSmall:
     case ErrorCode::kMemoryLimit:
-    case ErrorCode::kPolicyMissing: return kUsage;
-    default: return kBadInput;
+    case ErrorCode::kPolicyMissing:
+      return kUsage;
+    default:
+      return kBadInput;
   }
 }
 

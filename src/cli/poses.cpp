@@ -76,8 +76,9 @@ std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
     }
     if (!project_to_rigid(matrix)) {
       fail(ErrorCode::kPoseInvalid, file,
-           place + ": not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the "
-                   "last row 0 0 0 1 (the 16 numbers are column-major)");
+           place +
+               ": not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the "
+               "last row 0 0 0 1 (the 16 numbers are column-major)");
     }
   }
   return poses;

@@ -25,7 +25,8 @@ BodyFiles QueryOptions::body_files() const {
 }
 
 void add_query_options(CLI::App& command, QueryOptions& options) {
-  command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")->required();
+  command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")
+      ->required();
   command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,

@@ -18,7 +18,7 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes);
 /// What collide and close share.
 struct QueryOptions {
   BodyFiles files;
-  std::string spheres;             ///< empty: the best that both bodies have
+  std::string spheres;  ///< empty: the best that both bodies have
   std::vector<std::string> engines{"reference"};
   int repeat = 1;
   std::filesystem::path contacts;  ///< empty: not written

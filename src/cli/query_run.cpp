@@ -17,7 +17,8 @@ namespace ist::cli {
 namespace {
 
 double microseconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
 // What one engine answered at one pose, and how long each time took.
@@ -110,7 +111,9 @@ void print_table(const std::vector<Engine>& engines, const Bodies& bodies,
 class ContactWriter {
  public:
   ContactWriter(const std::filesystem::path& file, const Bodies& bodies)
-      : file_(file), bodies_(bodies), fixed_(level_spheres(bodies.fixed, bodies.policy, 0)),
+      : file_(file),
+        bodies_(bodies),
+        fixed_(level_spheres(bodies.fixed, bodies.policy, 0)),
         moving_(level_spheres(bodies.moving, bodies.policy, 0)) {}
 
   void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const Contact> contacts) {

@@ -8,8 +8,8 @@
 
 namespace ist::cli {
 
-/// Asks every pose of every engine, `repeat` times round the whole list with the engines in turn, and
-/// prints a line for each pose and engine; writes the contacts where they are asked for.
+/// Asks every pose of every engine, `repeat` times round the whole list with the engines in turn,
+/// and prints a line for each pose and engine; writes the contacts where they are asked for.
 void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
                  const QueryOptions& options);
 

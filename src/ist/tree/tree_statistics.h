@@ -16,8 +16,8 @@ struct LevelSpheres {
 
 /// One level of a tree, as the article's figures 8 and 9 show it.
 struct LevelStatistics {
-  int level;                          ///< 0 for the leaves
-  double edge;                        ///< of a node's cube, mesh units
+  int level;    ///< 0 for the leaves
+  double edge;  ///< of a node's cube, mesh units
   std::uint32_t nodes;
   std::vector<LevelSpheres> spheres;  ///< one a policy that the tree has
 };

@@ -1,0 +1,123 @@
+#include "ist/mesh/mesh_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include "ist/mesh/edges.h"
+
+namespace ist {
+namespace {
+
+bool is_degenerate(const TriangleMesh& mesh, const Triangle& triangle) {
+  if (has_equal_indices(triangle)) return true;
+  Eigen::Vector3d u = mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]];
+  Eigen::Vector3d v = mesh.vertices[triangle[2]] - mesh.vertices[triangle[0]];
+  // Scaled by the larger extent, so that the fourth powers stay in range whatever the unit.
+  const double extent = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  if (!(extent > 0)) return true;
+  u /= extent;
+  v /= extent;
+  constexpr double kThinnest = 1e-12;
+  const double longest2 = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
+  return u.cross(v).squaredNorm() <= kThinnest * kThinnest * longest2 * longest2;
+}
+
+std::size_t count_duplicates(const TriangleMesh& mesh) {
+  std::vector<Triangle> sorted;
+  sorted.reserve(mesh.triangles.size());
+  for (Triangle triangle : mesh.triangles) {
+    if (has_equal_indices(triangle)) continue;
+    std::sort(triangle.begin(), triangle.end());
+    sorted.push_back(triangle);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t duplicates = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) duplicates += sorted[i] == sorted[i - 1];
+  return duplicates;
+}
+
+void count_edges(std::span<const EdgeUse> uses, MeshReport& report) {
+  for_each_edge(uses, [&report](std::span<const EdgeUse> edge) {
+    ++report.edges;
+    if (edge.size() == 1) ++report.boundary_edges;
+    if (edge.size() > 2) ++report.non_manifold_edges;
+    if (edge.size() == 2 && edge[0].forward == edge[1].forward) ++report.inconsistent_edges;
+  });
+}
+
+void count_components(const TriangleMesh& mesh, std::span<const EdgeUse> uses, MeshReport& report) {
+  DisjointSets sets(mesh.vertices.size());
+  for (const EdgeUse& use : uses) sets.join(use.low, use.high);
+  std::vector<bool> used(mesh.vertices.size(), false), open(mesh.vertices.size(), false);
+  for (const EdgeUse& use : uses) used[sets.find(use.low)] = true;
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    if (edge.size() == 1) open[sets.find(edge[0].low)] = true;
+  });
+  report.components = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+  report.open_components = static_cast<std::size_t>(std::count(open.begin(), open.end(), true));
+}
+
+// Six times the volume of a tetrahedron is a determinant; relative to one of the mesh's own
+// vertices, so that the place of the mesh does not blur the sum.
+double signed_volume(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return 0;
+  const Eigen::Vector3d origin = mesh.vertices[mesh.triangles[0][0]];
+  double sixfold = 0;
+  for (const Triangle& t : mesh.triangles)
+    sixfold += (mesh.vertices[t[0]] - origin)
+                   .dot((mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));
+  return sixfold / 6;
+}
+
+}  // namespace
+
+MeshReport check_mesh(const TriangleMesh& mesh) {
+  MeshReport report;
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  count_edges(uses, report);
+  count_components(mesh, uses, report);
+  report.duplicate_triangles = count_duplicates(mesh);
+  report.degenerate_triangles = static_cast<std::size_t>(
+      std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                    [&mesh](const Triangle& t) { return is_degenerate(mesh, t); }));
+  report.closed = report.edges > 0 && report.boundary_edges == 0 && report.non_manifold_edges == 0;
+  report.consistent = report.inconsistent_edges == 0;
+  if (!mesh.vertices.empty()) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+    report.box_min = box.min();
+    report.box_max = box.max();
+  }
+  report.signed_volume = signed_volume(mesh);
+  return report;
+}
+
+std::vector<std::string> warnings(const MeshReport& report) {
+  std::vector<std::string> sentences;
+  const auto warn = [&sentences](std::size_t count, std::string_view one, std::string_view many) {
+    if (count == 1) sentences.emplace_back(one);
+    if (count > 1) sentences.push_back(fmt::format(fmt::runtime(many), count));
+  };
+  warn(report.boundary_edges,
+       "The surface is open: 1 edge is the side of one triangle only. What is inside is a guess.",
+       "The surface is open: {} edges are sides of one triangle only. What is inside is a guess.");
+  warn(report.non_manifold_edges, "1 edge is the side of more than two triangles.",
+       "{} edges are sides of more than two triangles.");
+  warn(report.inconsistent_edges,
+       "At 1 edge the two triangles are turned opposite ways; normals there are a guess.",
+       "At {} edges the two triangles are turned opposite ways; normals there are a guess.");
+  warn(report.duplicate_triangles, "1 triangle is there twice.",
+       "{} triangles repeat an earlier one.");
+  warn(report.degenerate_triangles, "1 triangle has no area.", "{} triangles have no area.");
+  if (report.closed && report.consistent && report.signed_volume < 0)
+    sentences.emplace_back("The surface is inside out: its volume is negative.");
+  return sentences;
+}
+
+}  // namespace ist

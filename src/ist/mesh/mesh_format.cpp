@@ -1,0 +1,67 @@
+#include "ist/mesh/mesh_format.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ist/mesh/text_reader.h"
+
+namespace ist {
+namespace {
+
+bool is_text(std::string_view content) {
+  // A NUL or Ctrl-Z at the end is what some programs close a text with.
+  const std::size_t last = content.find_last_not_of(std::string_view("\0\x1A", 2));
+  return std::all_of(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(last + 1),
+                     [](char c) {
+                       const auto byte = static_cast<unsigned char>(c);
+                       return byte >= 0x20 || (byte >= '\t' && byte <= '\r');
+                     });
+}
+
+// Whether the first line that says anything, past comments and lone words, is one of an OBJ.
+bool begins_like_obj(std::string_view content, std::string_view file) {
+  TextReader reader(content, file, TextReader::LineEnd::kContinuedByBackslash);
+  while (reader.next_line()) {
+    const std::string_view word = reader.word();
+    if (word.starts_with('#')) continue;
+    if (!is_obj_statement(word)) return false;
+    if (!reader.word().empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+CheckedContent check_content(std::string content, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const std::string extension = file.extension().string();
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+  if (has_size_of_binary_stl(content)) return check_binary_stl(std::move(content), name);
+  if (content.starts_with(kByteOrderMark)) content.erase(0, kByteOrderMark.size());
+  TextReader reader(content, name);
+  const std::string_view first_word = reader.word_of_any_line();
+  if (content.find_first_not_of(" \t\r\n") == std::string::npos)
+    fail_mesh(ErrorCode::kMeshEmpty, name, "", "the file is empty; export the mesh again");
+  if (first_word == "ply" && content.starts_with("ply")) return check_ply(content, name);
+  if (is_text(content)) {
+    if (same_word(first_word, "solid")) return check_text_stl(content, name);
+    if (same_word(extension, ".obj") || begins_like_obj(content, name))
+      return check_obj(content, name);
+  }
+  // What remains is no mesh, or one that was cut early, or a binary STL of the wrong size. A text
+  // of several lines, or one that is longer than a header of STL, is none of these.
+  const bool could_be_cut = std::string_view("solid").starts_with(content) ||
+                            std::string_view("ply").starts_with(content) ||
+                            same_word(extension, ".stl");
+  const bool could_be_header =
+      content.size() <= kStlCountEnd && content.find_first_of("\r\n") == std::string::npos;
+  if (is_text(content) ? could_be_cut && could_be_header
+                       : could_be_cut || begins_like_binary_stl(content))
+    return check_binary_stl(std::move(content), name);
+  fail_mesh(ErrorCode::kNotAMesh, name, "",
+            "its content is in no format that is read here: STL (binary or text), PLY (binary or "
+            "text) or OBJ; convert the mesh to one of them");
+}
+
+}  // namespace ist

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "ist/mesh/mesh_format.h"
+#include "ist/mesh/text_reader.h"
+
+namespace ist {
+namespace {
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view content, std::string_view file)
+      : reader_(content, file, TextReader::LineEnd::kContinuedByBackslash), file_(file) {}
+
+  CheckedContent check() {
+    bool statement_seen = false;
+    bool other_seen = false;
+    while (reader_.next_line()) {
+      const std::string_view statement = word();
+      if (statement == "v") {
+        read_vertex();
+      } else if (statement == "f") {
+        read_face();
+      } else if (!statement.empty()) {
+        (is_obj_statement(statement) ? statement_seen : other_seen) = true;
+      }
+    }
+    if (highest_ > static_cast<std::int64_t>(content_.vertices()))
+      bad_index(highest_, highest_line_);
+    if (content_.faces() == 0) fail_without_faces(statement_seen, other_seen);
+    return content_.finish();
+  }
+
+ private:
+  // The next word of the line, up to a comment; "1.#IND" is a number that is none.
+  std::string_view word() {
+    const std::string_view found = reader_.word();
+    const std::size_t comment = found.find('#');
+    if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
+    reader_.skip_line();
+    return found.substr(0, comment);
+  }
+
+  // What follows the three coordinates, a weight or a colour, is no part of the surface.
+  void read_vertex() {
+    std::array<float, 3> vertex{};
+    for (float& coordinate : vertex) coordinate = reader_.coordinate(word());
+    content_.add_vertex(vertex);
+  }
+
+  void read_face() {
+    corners_.clear();
+    for (std::string_view corner = word(); !corner.empty(); corner = word())
+      corners_.push_back(read_corner(corner.substr(0, corner.find('/'))));
+    if (corners_.size() < 3)
+      reader_.fail_malformed(fmt::format(
+          "a face has {} corners, and needs three; export the mesh again", corners_.size()));
+    if (corners_.size() > kMaxCorners)
+      reader_.fail(ErrorCode::kNotAMesh,
+                   fmt::format("a face has {} corners, more than {}; triangulate the mesh first",
+                               corners_.size(), kMaxCorners));
+    content_.add_face(corners_);
+  }
+
+  // Counts from 1, or from the last vertex so far with -1. A vertex may follow the face.
+  std::uint32_t read_corner(std::string_view digits) {
+    const std::int64_t named = reader_.integer(digits);
+    const auto so_far = static_cast<std::int64_t>(content_.vertices());
+    const std::int64_t index = named < 0 ? so_far + named : named - 1;
+    if (named == 0 || index < 0 || index >= std::numeric_limits<std::int32_t>::max())
+      bad_index(named, reader_.line_number());
+    if (named > highest_) {
+      highest_ = named;
+      highest_line_ = reader_.line_number();
+    }
+    return static_cast<std::uint32_t>(index);
+  }
+
+  [[noreturn]] void bad_index(std::int64_t named, std::size_t line) const {
+    fail_mesh(
+        ErrorCode::kMeshBadIndex, file_, fmt::format("line {}", line),
+        fmt::format("a face names vertex {}, which is not there; export the mesh again", named));
+  }
+
+  [[noreturn]] void fail_without_faces(bool statement_seen, bool other_seen) const {
+    if (content_.vertices() > 0)
+      fail_mesh(ErrorCode::kMeshPointsOnly, file_, "",
+                fmt::format("it has {} vertices, but no face; export the surface as polygons",
+                            content_.vertices()));
+    if (other_seen && !statement_seen)
+      fail_mesh(ErrorCode::kNotAMesh, file_, "",
+                "it is named as an OBJ, but no line of it is one of an OBJ; export the mesh again");
+    fail_mesh(ErrorCode::kMeshEmpty, file_, "",
+              "it is an OBJ without a vertex; export the mesh again");
+  }
+
+  TextReader reader_;
+  std::string_view file_;
+  PlyContent content_;
+  std::vector<std::uint32_t> corners_;
+  std::int64_t highest_ = 0;      // the highest index that a face names
+  std::size_t highest_line_ = 0;  // and where
+};
+
+}  // namespace
+
+bool is_obj_statement(std::string_view word) {
+  constexpr std::array<std::string_view, 12> kStatements = {
+      "v", "vt", "vn", "vp", "f", "l", "p", "o", "g", "s", "usemtl", "mtllib"};
+  return std::find(kStatements.begin(), kStatements.end(), word) != kStatements.end();
+}
+
+CheckedContent check_obj(std::string_view content, std::string_view file) {
+  return ObjReader(content, file).check();
+}
+
+}  // namespace ist

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "ist/base/assert.h"
+#include "ist/mesh/binary_content.h"
+#include "ist/mesh/file_bytes.h"
+#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/text_reader.h"
+
+namespace ist {
+namespace {
+
+// Zero for a triangle without area, as the format has it.
+std::array<float, 3> unit_normal(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                 const Eigen::Vector3d& c) {
+  Eigen::Vector3d u = b - a, v = c - a;
+  // Scaled first, so that the squares of tiny and of huge triangles stay in range.
+  const double longest = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  if (!(longest > 0)) return {};
+  u /= longest;
+  v /= longest;
+  const Eigen::Vector3d normal = u.cross(v);
+  const double length = std::sqrt(normal.squaredNorm());
+  if (!(length > 0)) return {};
+  return {static_cast<float>(normal.x() / length), static_cast<float>(normal.y() / length),
+          static_cast<float>(normal.z() / length)};
+}
+
+}  // namespace
+
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max())
+    fail_mesh(ErrorCode::kFileUnwritable, file.string(), "",
+              "an STL holds no more than 2^32 - 1 triangles; write the mesh in parts");
+  std::string bytes(kStlCountEnd + kStlFacetBytes * mesh.triangles.size(), '\0');
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  std::memcpy(bytes.data() + kStlHeaderBytes, &count, sizeof count);
+  char* facet = bytes.data() + kStlCountEnd;
+  for (const Triangle& triangle : mesh.triangles) {
+    std::array<Eigen::Vector3d, 3> corners;
+    std::array<float, 9> narrowed{};
+    for (std::size_t i = 0; i < 9; ++i) {
+      IST_ASSERT(triangle[i / 3] < mesh.vertices.size());
+      corners[i / 3] = mesh.vertices[triangle[i / 3]];
+      narrowed[i] = static_cast<float>(corners[i / 3][static_cast<Eigen::Index>(i % 3)]);
+      if (!std::isfinite(narrowed[i]))
+        fail_mesh(ErrorCode::kMeshNotFinite, file.string(), "",
+                  fmt::format("vertex {} is not finite as a float, and an STL holds floats; scale "
+                              "the mesh",
+                              triangle[i / 3]));
+    }
+    const std::array<float, 3> normal = unit_normal(corners[0], corners[1], corners[2]);
+    std::memcpy(facet, normal.data(), sizeof normal);
+    std::memcpy(facet + sizeof normal, narrowed.data(), sizeof narrowed);
+    facet += kStlFacetBytes;
+  }
+  write_file(file, bytes);
+}
+
+}  // namespace ist

@@ -1,0 +1,119 @@
+#include "ist/mesh/text_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace ist {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Long words are cut in messages: the file may be no text at all.
+std::string_view shown(std::string_view word) { return word.substr(0, 40); }
+
+}  // namespace
+
+void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
+               std::string_view cause) {
+  throw Error(code, fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause));
+}
+
+bool same_word(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
+}
+
+bool TextReader::is_blank(char c) const {
+  return static_cast<unsigned char>(c) <= 0x20 ||
+         (c == '\\' && line_end_ == LineEnd::kContinuedByBackslash);
+}
+
+bool TextReader::next_line() {
+  while (next_open_ < text_.size()) {
+    cursor_ = next_open_;
+    line_number_ = next_line_number_;
+    for (bool continued = true; continued;) {
+      line_close_ = std::min(text_.find_first_of("\r\n", next_open_), text_.size());
+      const bool pair = text_.substr(line_close_, 2) == "\r\n";
+      next_open_ = std::min(line_close_ + (pair ? 2 : 1), text_.size());
+      ++next_line_number_;
+      continued = line_end_ == LineEnd::kContinuedByBackslash && line_close_ > cursor_ &&
+                  text_[line_close_ - 1] == '\\' && next_open_ < text_.size();
+    }
+    while (cursor_ < line_close_ && is_blank(text_[cursor_])) ++cursor_;
+    if (cursor_ < line_close_) return true;
+  }
+  cursor_ = line_close_ = text_.size();
+  return false;
+}
+
+std::string_view TextReader::word() {
+  while (cursor_ < line_close_ && is_blank(text_[cursor_])) ++cursor_;
+  const std::size_t open = cursor_;
+  while (cursor_ < line_close_ && !is_blank(text_[cursor_])) ++cursor_;
+  return text_.substr(open, cursor_ - open);
+}
+
+std::string_view TextReader::word_of_any_line() {
+  std::string_view found = word();
+  while (found.empty() && next_line()) found = word();
+  return found;
+}
+
+float TextReader::coordinate(std::string_view word) const {
+  if (word.empty()) fail_malformed("a coordinate is missing; export the mesh again");
+  const auto not_finite = [&] {
+    fail(
+        ErrorCode::kMeshNotFinite,
+        fmt::format("the coordinate '{}' is not finite as a float; mend the mesh where it was made",
+                    shown(word)));
+  };
+  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+  const char* const end = digits.data() + digits.size();
+  float value = 0;
+  auto [stop, error] = std::from_chars(digits.data(), end, value);
+  if (error == std::errc::result_out_of_range) {
+    // Too near to zero for a float is zero; only too far from it is an error.
+    double wide = 0;
+    const std::errc wide_error = std::from_chars(digits.data(), end, wide).ec;
+    const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
+                                                : digits.find_first_of("-", 1) != digits.npos;
+    if (!tiny) not_finite();
+    value = 0;
+  } else if (error != std::errc() || stop != end) {
+    // "1.#QNAN" and "-1.#IND" are what older Windows runtimes print for NaN.
+    if (stop != end && *stop == '#') not_finite();
+    if (error == std::errc() && !std::isfinite(value)) not_finite();
+    fail_malformed(fmt::format("'{}' is not a number; export the mesh again", shown(word)));
+  }
+  if (!std::isfinite(value)) not_finite();
+  return value;
+}
+
+std::int64_t TextReader::integer(std::string_view word) const {
+  if (word.empty()) fail_malformed("an integer is missing; export the mesh again");
+  std::int64_t value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || stop != end)
+    fail_malformed(fmt::format("'{}' is not an integer; export the mesh again", shown(word)));
+  return value;
+}
+
+void TextReader::fail(ErrorCode code, std::string_view cause) const {
+  fail_mesh(code, file_, fmt::format("line {}", line_number_), cause);
+}
+
+void TextReader::fail_malformed(std::string_view cause) const {
+  const auto blank = [this](char c) { return is_blank(c); };
+  const std::string_view rest = text_.substr(cursor_);
+  if (std::all_of(rest.begin(), rest.end(), blank))
+    fail(ErrorCode::kMeshTruncated, fmt::format("the file ends here, but {}", cause));
+  fail(ErrorCode::kNotAMesh, cause);
+}
+
+}  // namespace ist

@@ -1,0 +1,87 @@
+#include "ist/mesh/triangulate.h"
+
+#include <Eigen/Geometry>
+
+#include "ist/base/assert.h"
+
+namespace ist {
+namespace {
+
+// The polygon's vector area, twice: its direction is the normal. Relative to the first corner, so
+// that the place of the polygon does not blur it.
+Eigen::Vector3d newell_normal(std::span<const std::uint32_t> corners,
+                              std::span<const Eigen::Vector3d> vertices) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d origin = vertices[corners[0]];
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+    normal += (vertices[corners[i]] - origin).cross(vertices[corners[i + 1]] - origin);
+  return normal;
+}
+
+class Polygon {
+ public:
+  Polygon(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices)
+      : left_(corners.begin(), corners.end()),
+        vertices_(vertices),
+        normal_(newell_normal(corners, vertices)) {}
+
+  [[nodiscard]] std::size_t size() const { return left_.size(); }
+
+  // More than zero where the path a, b, c turns left as seen against the normal.
+  [[nodiscard]] double turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[b]).dot(normal_);
+  }
+
+  [[nodiscard]] Triangle corner(std::size_t i) const {
+    const std::size_t n = left_.size();
+    return {left_[(i + n - 1) % n], left_[i], left_[(i + 1) % n]};
+  }
+
+  [[nodiscard]] bool is_convex() const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const auto [a, b, c] = corner(i);
+      if (turn(a, b, c) < 0) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_ear(std::size_t i) const {
+    const auto [a, b, c] = corner(i);
+    if (!(turn(a, b, c) > 0)) return false;
+    for (const std::uint32_t other : left_) {
+      if (other == a || other == b || other == c) continue;
+      if (turn(a, b, other) >= 0 && turn(b, c, other) >= 0 && turn(c, a, other) >= 0) return false;
+    }
+    return true;
+  }
+
+  void clip(std::size_t i) { left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(i)); }
+
+ private:
+  std::vector<std::uint32_t> left_;
+  std::span<const Eigen::Vector3d> vertices_;
+  Eigen::Vector3d normal_;
+};
+
+}  // namespace
+
+void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices,
+                 std::vector<Triangle>& out) {
+  IST_ASSERT(corners.size() >= 3);
+  if (corners.size() == 3) {
+    out.push_back({corners[0], corners[1], corners[2]});
+    return;
+  }
+  Polygon polygon(corners, vertices);
+  while (polygon.size() > 3 && !polygon.is_convex()) {
+    std::size_t ear = 0;
+    while (ear < polygon.size() && !polygon.is_ear(ear)) ++ear;
+    if (ear == polygon.size()) break;  // it crosses itself: there is no right answer
+    out.push_back(polygon.corner(ear));
+    polygon.clip(ear);
+  }
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    out.push_back({polygon.corner(0)[1], polygon.corner(i)[1], polygon.corner(i + 1)[1]});
+}
+
+}  // namespace ist

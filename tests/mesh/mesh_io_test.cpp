@@ -1,0 +1,192 @@
+#include "ist/mesh/mesh_io.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "support/data_dir.h"
+#include "support/mesh_files.h"
+#include "support/shapes.h"
+#include "support/skip.h"
+#include "support/temp_dir.h"
+
+namespace ist {
+namespace {
+
+using test::all_formats;
+using test::corners;
+using test::narrowed;
+using test::replaced;
+using test::TempDir;
+
+const TriangleMesh kBox = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
+
+TriangleMesh read_bytes(std::string_view bytes, std::string_view name = "mesh") {
+  const TempDir folder;
+  return read_mesh(folder.write(name, bytes));
+}
+
+TEST(ReadMesh, TellsTheFormatByTheContent) {
+  for (const auto& [name, bytes] : all_formats(kBox)) {
+    for (const char* file : {"mesh", "mesh.stl", "mesh.obj", "mesh.ply", "mesh.off"}) {
+      const TriangleMesh mesh = read_bytes(bytes, file);
+      EXPECT_EQ(corners(mesh), corners(narrowed(kBox))) << name << " as " << file;
+      EXPECT_EQ(mesh.vertices.size(), 8u) << name;
+    }
+  }
+}
+
+TEST(ReadMesh, NumbersVerticesByFirstAppearance) {
+  for (const auto& [name, bytes] : all_formats(kBox)) {
+    std::uint32_t next = 0;
+    for (const Triangle& triangle : read_bytes(bytes).triangles)
+      for (const std::uint32_t vertex : triangle) {
+        EXPECT_LE(vertex, next) << name;
+        next = std::max(next, vertex + 1);
+      }
+  }
+}
+
+TEST(ReadMesh, TextMayHaveAnyLineEndsBlanksAndCase) {
+  const auto expected = corners(narrowed(kBox));
+  for (const auto& text : {test::as_text_stl(kBox), test::as_text_ply(kBox), test::as_obj(kBox)}) {
+    for (const char* line_end : {"\r\n", "\r", "\n\n", " \t\n \t", "\n\r\n"})
+      EXPECT_EQ(corners(read_bytes(replaced(text, "\n", line_end))), expected);
+    EXPECT_EQ(corners(read_bytes(text.substr(0, text.size() - 1))), expected);
+    EXPECT_EQ(corners(read_bytes(text + std::string("\x1A\0\0", 3))), expected);
+  }
+  EXPECT_EQ(corners(read_bytes(std::string("\xEF\xBB\xBF") + test::as_obj(kBox))), expected);
+  EXPECT_EQ(corners(read_bytes(std::string("\xEF\xBB\xBF") + test::as_text_stl(kBox))), expected);
+  std::string upper = test::as_text_stl(kBox);
+  for (char& c : upper) c = static_cast<char>(std::toupper(c));
+  EXPECT_EQ(corners(read_bytes(upper)), expected);
+}
+
+TEST(ReadMesh, IgnoresTheNormalsOfAnStl) {
+  for (const char* normal : {"nan nan nan", "-nan(ind) 0 0", "", "0 0", "vertex 1 2 3"}) {
+    const std::string text =
+        replaced(test::as_text_stl(kBox), "normal 0 0 1", std::string("normal ") + normal);
+    EXPECT_EQ(corners(read_bytes(text)), corners(narrowed(kBox))) << normal;
+  }
+  std::string bytes = test::as_binary_stl(kBox);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(bytes.data() + 84, &nan, sizeof nan);
+  EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(kBox)));
+}
+
+TEST(ReadMesh, JoinsTheSolidsOfAnStl) {
+  const TriangleMesh other = test::moved(kBox, {5, 0, 0});
+  const std::string two =
+      test::as_text_stl(kBox) + "solid\nendsolid\n\nsolid endsolid\n" +
+      test::as_text_stl(other).substr(std::string("solid made by hand\n").size());
+  EXPECT_EQ(corners(read_bytes(two)), corners(narrowed(test::joined(kBox, other))));
+}
+
+TEST(ReadMesh, WeldsExactlyAndTakesMinusZeroForZero) {
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0.0 -0 -0e5\nv 1.0 0 -0\nv 0 -1 0\nv 1.0000001 0 0\n"
+      "f 1 2 3\nf 6 5 4\nf 7 3 4\n";
+  const TriangleMesh mesh = read_bytes(text);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 1, 0}, {4, 2, 0}}));
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    for (const double x : vertex) EXPECT_FALSE(x == 0 && std::signbit(x));
+}
+
+TEST(ReadMesh, RoundsNumbersOnceHoweverTheyAreSpelled) {
+  const TriangleMesh mesh = read_bytes(
+      "v +.5 5. 0.1000000000000000055511151231257827\n"
+      "v 0.00000000000000000000012345678e20 123456789012345678901234567890e-27 16777216.999\n"
+      "v 1e-46 1e-400 1e-40\nf 1 2 3\n");
+  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(0.5, 5, 0.1f));
+  EXPECT_EQ(mesh.vertices[1], Eigen::Vector3d(0.012345678f, 123.456789012345f, 16777216.999f));
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(0, 0, 1e-40f));
+}
+
+TEST(ReadMesh, ReadsWhatObjWritersWrite) {
+  const TriangleMesh mesh = read_bytes(
+      "# comment \\\n still a comment, f 9 9 9\n"
+      "mtllib /dev/zero\ng a b\ns 1\nusemtl c:\\path\n"
+      "  v 0 0 0 1.0   # a weight\n\tv 1 0 0 0.5 0.5 0.5\nv 1 \\\n 1 0\n"
+      "vt 0.5\nvn nan nan nan\nvp 1\nl 1 2\np 1\n"
+      "f 1/1/1 2//1 3/1\n  f -3 -1\\\r\n 4# a vertex that comes later\ncurv 0 1\nv 0 1 0\n");
+  EXPECT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(ReadMesh, ReadsPlyWithMoreThanASurface) {
+  const TriangleMesh mesh = read_bytes(
+      "ply\r\nformat ascii 1.0\r\ncomment TextureFile x\r\nobj_info y\r\nelement camera 1\r\n"
+      "property float view\r\nelement nothing 4000000000\r\nelement vertex 3\r\n"
+      "property uchar red\r\nproperty double z\r\nproperty int32 y\r\nproperty list uchar float "
+      "w\r\n"
+      "property float64 x\r\ncomment z\r\nelement edge 1\r\nproperty int a\r\n"
+      "element face 1\r\nproperty list uint8 uint16 vertex_index\r\n"
+      "property list uchar float texcoord\r\nend_header\r\n"
+      "7\r\n255 3.5 2 0 1\r\n0 0 0 2 0.5 nan 0\r\n0 1 1 1 9 1\r\n5\r\n3 0 2 1 0\r\n");
+  EXPECT_EQ(corners(mesh), (std::vector<std::array<double, 9>>{{1, 2, 3.5, 1, 1, 1, 0, 0, 0}}));
+}
+
+double doubled_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const double signed_area =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).z();
+    EXPECT_GT(signed_area, 0);
+    area += signed_area;
+  }
+  return area;
+}
+
+TEST(ReadMesh, CutsPolygonsIntoTrianglesInside) {
+  struct Case {
+    std::string vertices;
+    std::size_t corners;
+    double doubled_area;
+  };
+  for (const auto& [vertices, n, area] : std::vector<Case>{
+           {"v 0 0 5\nv 2 0 5\nv 2 1 5\nv 0 1 5\n", 4, 4},                    // a rectangle
+           {"v 0 0 5\nv 3 -1 5\nv 1 0 5\nv 3 1 5\n", 4, 2},                   // an arrow head
+           {"v 0 0 5\nv 2 0 5\nv 2 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\n", 6, 8},  // an L
+           {"v 0 0 5\nv 4 0 5\nv 4 3 5\nv 3 3 5\nv 3 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\n", 8, 16}}) {
+    for (std::size_t first = 0; first < n; ++first) {  // wherever the polygon begins
+      std::string face = "f";
+      for (std::size_t i = 0; i < n; ++i)
+        face.append(" ").append(std::to_string((first + i) % n + 1));
+      const TriangleMesh mesh = read_bytes(vertices + face + "\n");
+      EXPECT_EQ(mesh.triangles.size(), n - 2);
+      EXPECT_EQ(doubled_area(mesh), area) << vertices << face;
+    }
+  }
+}
+
+TEST(ReadMesh, GivesTrianglesForPolygonsWithoutAnAnswer) {
+  const std::string star = "v 0 3 0\nv 2 -2 0\nv -3 1 0\nv 3 1 0\nv -2 -2 0\n";
+  EXPECT_EQ(read_bytes(star + "f 1 2 3 4 5\n").triangles.size(), 3u);
+  EXPECT_EQ(read_bytes(star + "f 1 2 1 2 1 2\n").triangles.size(), 4u);
+  EXPECT_EQ(read_bytes("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 3 2 4\n").triangles.size(), 2u);
+}
+
+TEST(ReadMesh, ReadsTheSameJawFromEveryFormat) {
+  if (!std::filesystem::is_directory(test::data_dir()))
+    IST_SKIP("no folder of real meshes at " << test::data_dir());
+  const TriangleMesh mesh = read_mesh(test::data_dir() / "human_maxilla.stl");
+  const auto expected = corners(mesh);
+  const TempDir folder;
+  for (const auto& [name, bytes] : all_formats(mesh)) {
+    const TriangleMesh again = read_mesh(folder.write("mesh", bytes));
+    EXPECT_TRUE(again.triangles == mesh.triangles && corners(again) == expected) << name;
+  }
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ist/mesh/triangle_mesh.h"
+
+namespace ist::test {
+
+/// A mesh as the bytes of a file, coordinates narrowed to float and spelled so that they come back
+/// the same. Plain: what most programs write.
+[[nodiscard]] std::string as_binary_stl(const TriangleMesh& mesh, std::string header = "");
+[[nodiscard]] std::string as_text_stl(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_text_ply(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_binary_ply(const TriangleMesh& mesh, bool big_endian);
+[[nodiscard]] std::string as_obj(const TriangleMesh& mesh);
+
+/// All of these forms, by name, and those that mislead: a binary STL whose header begins like text.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> all_formats(
+    const TriangleMesh& mesh);
+
+/// The triangles by their corners, whatever the indices.
+[[nodiscard]] std::vector<std::array<double, 9>> corners(const TriangleMesh& mesh);
+
+/// The mesh with its coordinates rounded to float.
+[[nodiscard]] TriangleMesh narrowed(TriangleMesh mesh);
+
+/// The text with every `from` turned into `to`.
+[[nodiscard]] std::string replaced(std::string text, const std::string& from,
+                                   const std::string& to);
+
+}  // namespace ist::test
