@@ -41,9 +41,7 @@ struct Locator : nlohmann::json_sax<nlohmann::json> {
 };
 
 nlohmann::json parse(const std::filesystem::path& file) {
-  InputFile input(file);
-  std::string text(input.size(), '\0');
-  text.resize(input.read(text.data(), text.size()));
+  const std::string text = InputFile(file).read_rest();
   Locator locator;
   if (!nlohmann::json::sax_parse(text, &locator)) {
     fail(ErrorCode::kInputInvalid, file, fmt::format("not JSON: {}", locator.error));

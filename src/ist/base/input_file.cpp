@@ -45,6 +45,20 @@ std::size_t InputFile::read(void* data, std::size_t bytes) {
   return bytes - left;
 }
 
+std::string InputFile::read_rest() {
+  std::string bytes;
+  std::size_t filled = 0, ask = size_ + 1;
+  while (true) {
+    bytes.resize(filled + ask);
+    const std::size_t got = read(bytes.data() + filled, ask);
+    filled += got;
+    if (got < ask) break;
+    ask = filled;
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
 void InputFile::fail(const char* cause) const {
   throw Error(ErrorCode::kFileUnreadable,
               fmt::format("{}: cannot read the file: {}: check the name and its permissions",

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace ist {
 
@@ -21,6 +22,9 @@ class InputFile {
 
   /// Reads up to `bytes`; fewer only at the end of the file. Returns the number read.
   std::size_t read(void* data, std::size_t bytes);
+
+  /// What is left of the file, as it is now: it may have grown or shrunk since it was opened.
+  [[nodiscard]] std::string read_rest();
 
  private:
   [[noreturn]] void fail(const char* cause) const;

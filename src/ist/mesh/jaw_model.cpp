@@ -7,9 +7,9 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
-#include "ist/mesh/jaw_section.h"
-#include "ist/mesh/jaw_spline.h"
-#include "ist/mesh/jaw_tube.h"
+#include "ist/mesh/jaw/jaw_section.h"
+#include "ist/mesh/jaw/jaw_spline.h"
+#include "ist/mesh/jaw/jaw_tube.h"
 
 namespace ist {
 namespace {

@@ -11,11 +11,11 @@
 #include <span>
 #include <utility>
 
-#include "ist/mesh/file_bytes.h"
-#include "ist/mesh/mesh_format.h"
-#include "ist/mesh/text_reader.h"
-#include "ist/mesh/triangulate.h"
-#include "ist/mesh/weld.h"
+#include "ist/base/input_file.h"
+#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/format/triangulate.h"
+#include "ist/mesh/format/weld.h"
 
 namespace ist {
 namespace {
@@ -107,7 +107,7 @@ void check_extent(const TriangleMesh& mesh, const std::string& file) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-  TriangleMesh mesh = parse(check_content(read_file(file), file), file.string());
+  TriangleMesh mesh = parse(check_content(InputFile(file).read_rest(), file), file.string());
   check_extent(mesh, file.string());
   return mesh;
 }

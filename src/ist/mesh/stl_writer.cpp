@@ -8,10 +8,10 @@
 #include <string>
 
 #include "ist/base/assert.h"
-#include "ist/mesh/binary_content.h"
-#include "ist/mesh/file_bytes.h"
+#include "ist/base/output_file.h"
+#include "ist/mesh/format/binary_content.h"
+#include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh_io.h"
-#include "ist/mesh/text_reader.h"
 
 namespace ist {
 namespace {
@@ -60,7 +60,9 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
     std::memcpy(facet + sizeof normal, narrowed.data(), sizeof narrowed);
     facet += kStlFacetBytes;
   }
-  write_file(file, bytes);
+  OutputFile output(file);
+  output.write(bytes.data(), bytes.size());
+  output.commit();
 }
 
 }  // namespace ist

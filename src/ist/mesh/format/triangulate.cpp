@@ -1,4 +1,4 @@
-#include "ist/mesh/triangulate.h"
+#include "ist/mesh/format/triangulate.h"
 
 #include <Eigen/Geometry>
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "ist/mesh/mesh_format.h"
-#include "ist/mesh/text_reader.h"
+#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {

@@ -1,4 +1,4 @@
-#include "ist/mesh/ply_header.h"
+#include "ist/mesh/format/ply_header.h"
 
 #include <fmt/format.h>
 

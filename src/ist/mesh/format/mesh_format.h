@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "ist/mesh/binary_content.h"
+#include "ist/mesh/format/binary_content.h"
 
 namespace ist {
 

@@ -1,9 +1,9 @@
-#include "ist/mesh/jaw_tooth.h"
+#include "ist/mesh/jaw/jaw_tooth.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ist/mesh/jaw_spline.h"
+#include "ist/mesh/jaw/jaw_spline.h"
 
 namespace ist {
 namespace {

@@ -1,8 +1,8 @@
 #include <array>
 #include <cmath>
 
-#include "ist/mesh/jaw_section.h"
-#include "ist/mesh/jaw_spline.h"
+#include "ist/mesh/jaw/jaw_section.h"
+#include "ist/mesh/jaw/jaw_spline.h"
 
 namespace ist {
 namespace {

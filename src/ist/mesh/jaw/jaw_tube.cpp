@@ -1,4 +1,4 @@
-#include "ist/mesh/jaw_tube.h"
+#include "ist/mesh/jaw/jaw_tube.h"
 
 #include "ist/base/assert.h"
 

@@ -1,11 +1,11 @@
-#include "ist/mesh/jaw_arch.h"
+#include "ist/mesh/jaw/jaw_arch.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "ist/mesh/jaw_spline.h"
+#include "ist/mesh/jaw/jaw_spline.h"
 
 namespace ist {
 namespace {

@@ -1,4 +1,4 @@
-#include "ist/mesh/text_reader.h"
+#include "ist/mesh/format/text_reader.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ist/mesh/text_reader.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 

@@ -1,9 +1,9 @@
-#include "ist/mesh/mesh_format.h"
+#include "ist/mesh/format/mesh_format.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "ist/mesh/text_reader.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {

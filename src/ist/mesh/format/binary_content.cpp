@@ -1,4 +1,4 @@
-#include "ist/mesh/binary_content.h"
+#include "ist/mesh/format/binary_content.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "ist/mesh/jaw_arch.h"
-#include "ist/mesh/jaw_tooth.h"
+#include "ist/mesh/jaw/jaw_arch.h"
+#include "ist/mesh/jaw/jaw_tooth.h"
 
 namespace ist {
 

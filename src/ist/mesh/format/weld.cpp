@@ -1,4 +1,4 @@
-#include "ist/mesh/weld.h"
+#include "ist/mesh/format/weld.h"
 
 #include <bit>
 #include <limits>

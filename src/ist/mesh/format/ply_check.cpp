@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "ist/mesh/mesh_format.h"
-#include "ist/mesh/ply_header.h"
-#include "ist/mesh/text_reader.h"
+#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/ply_header.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {

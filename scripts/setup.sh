@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Installs from Debian 12's packages what is missing to build and test. Works as root or with sudo,
+# and does nothing where all is there.
+#
+#   scripts/setup.sh           what the library, the command and the tests need
+#   scripts/setup.sh --bench   also what the benchmarks and the plots need
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config
+  libeigen3-dev libtbb-dev libassimp-dev libfmt-dev libxxhash-dev
+  libcli11-dev nlohmann-json3-dev
+  libgtest-dev libgmp-dev)
+for argument in "$@"; do
+  case $argument in
+    --bench) packages+=(libbenchmark-dev python3 python3-matplotlib) ;;
+    -h | --help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${packages[@]}"; do
+  state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$state" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "setup: everything is installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "setup: these packages are missing, and neither root nor sudo is here to install them:" >&2
+    echo "  apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "setup: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+  "${missing[@]}" >/dev/null
+echo "setup: done"
