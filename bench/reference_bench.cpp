@@ -1,0 +1,69 @@
+// The published query along a closing, by policy: spheres made on the fly against spheres saved.
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ist/query/reference.h"
+#include "support/bodies.h"
+
+namespace ist::bench {
+namespace {
+
+// Both trees of a voxel size, made once; `tight` ones answer every policy.
+const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
+  static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
+  auto& pair = made[voxel_size];
+  if (pair == nullptr) {
+    pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
+        build(upper_jaw(), voxel_size, SpherePolicy::kTight),
+        build(lower_jaw(), voxel_size, SpherePolicy::kTight));
+  }
+  return *pair;
+}
+
+void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, SphereSource source,
+             double dz) {
+  const auto& [fixed, moving] = trees(voxel_size);
+  ReferenceQuery query(fixed, moving, policy, source);
+  std::vector<Contact> contacts(1 << 20);
+  const Eigen::Isometry3d pose = closing(dz);
+  QueryResult result;
+  for (auto _ : state) benchmark::DoNotOptimize(result = query.collide(pose, contacts));
+  const auto tests = static_cast<double>(result.sphere_tests);
+  state.counters["contacts"] = static_cast<double>(result.contacts);
+  state.counters["sphere_tests"] = tests;
+  state.counters["per_test"] = benchmark::Counter(
+      tests, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  if (source == SphereSource::kSaved) {
+    state.counters["saved_MB"] =
+        static_cast<double>(sizeof(Ball)) / 1e6 *
+        static_cast<double>(fixed.octree().node_count() + moving.octree().node_count());
+  }
+  state.SetLabel(pair_name());
+}
+
+const int kRegistered = [] {
+  for (const double size : {0.8, 0.2}) {
+    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+      for (const auto source : {SphereSource::kOnTheFly, SphereSource::kSaved}) {
+        for (const double dz : kClosing) {
+          const std::string name = "reference/" + std::to_string(size).substr(0, 3) + "/" +
+                                   std::string(to_string(policy)) +
+                                   (source == SphereSource::kSaved ? "/saved/" : "/on_the_fly/") +
+                                   std::to_string(dz).substr(0, 4);
+          benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+            collide(state, size, policy, source, dz);
+          })->Unit(benchmark::kMicrosecond);
+        }
+      }
+    }
+  }
+  return 0;
+}();
+
+}  // namespace
+}  // namespace ist::bench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "ist/mesh/triangle_mesh.h"
+#include "ist/tree/tree_builder.h"
+
+namespace ist::bench {
+
+/// The upper and the lower jaw that is measured: the real pair of IST_DATA_DIR (by default
+/// ../shared/data beside the project's root), or the built-in one where that is not there. Read
+/// once.
+[[nodiscard]] const TriangleMesh& upper_jaw();
+[[nodiscard]] const TriangleMesh& lower_jaw();
+/// "human" or "built-in".
+[[nodiscard]] const char* pair_name();
+
+[[nodiscard]] SphereTree build(const TriangleMesh& mesh, double voxel_size, SpherePolicy spheres);
+
+/// The closing: the lower jaw turned by 0.0003 rad about z, so that no face of one body is parallel
+/// to one of the other, and moved by `dz` along z.
+[[nodiscard]] Eigen::Isometry3d closing(double dz);
+
+/// Displacements that are measured: full occlusion, …, just before contact.
+inline constexpr double kClosing[] = {0, -0.5, -1, -1.5, -2};
+
+}  // namespace ist::bench

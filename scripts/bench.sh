@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Runs the benchmarks and keeps their raw results in perf/results/<machine>/, one JSON file a program.
+#
+#   scripts/bench.sh                    all programs
+#   scripts/bench.sh build_bench …      some; further arguments after -- go to each program
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/setup.sh --bench >&2
+cmake --preset bench >/dev/null
+cmake --build --preset bench | tail -n 1 >&2
+
+programs=()
+while [ $# -gt 0 ] && [ "$1" != -- ]; do programs+=("$1"); shift; done
+[ $# -eq 0 ] || shift
+[ ${#programs[@]} -gt 0 ] || programs=(build_bench load_bench reference_bench)
+
+machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr -cs 'A-Za-z0-9' '-' | sed 's/-$//')
+results=perf/results/$machine-$(nproc)
+mkdir -p "$results"
+for program in "${programs[@]}"; do
+  build/bench/bench/"$program" --benchmark_out="$results/$program.json" --benchmark_out_format=json \
+    --benchmark_context=commit="$(git rev-parse --short HEAD 2>/dev/null || echo none)" \
+    --benchmark_context=compiler="$(g++ --version | head -n 1)" "$@"
+done
