@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -121,6 +122,15 @@ TEST(ReadMesh, ReadsWhatObjWritersWrite) {
       "f 1/1/1 2//1 3/1\n  f -3 -1\\\r\n 4# a vertex that comes later\ncurv 0 1\nv 0 1 0\n");
   EXPECT_EQ(mesh.vertices.size(), 4u);
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST(ReadMesh, TheFirstCoordinateMayLookLikeALineEnd) {
+  for (const std::uint32_t bits : {0x3F80000Au, 0x0A00803Fu, 0x3F800A0Du, 0x3F80000Du}) {
+    TriangleMesh mesh = test::icosphere(0, 1);
+    mesh.vertices[0].x() = static_cast<double>(std::bit_cast<float>(bits));
+    for (const auto& [name, bytes] : all_formats(mesh))
+      EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(mesh))) << name;
+  }
 }
 
 TEST(ReadMesh, ReadsPlyWithMoreThanASurface) {

@@ -36,11 +36,15 @@ CheckedContent StlContent::finish() {
   return {"stl", std::move(bytes_), facets_};
 }
 
+// assimp 5.2 takes a first byte of 0x0A after the header for the rest of a line end. So vertex 0 is
+// one at the origin that no face names, and the others are counted from 1.
+PlyContent::PlyContent() { add_vertex({0, 0, 0}); }
+
 void PlyContent::add_vertex(const std::array<float, 3>& vertex) { append(vertices_, vertex); }
 
 void PlyContent::add_face(std::span<const std::uint32_t> corners) {
   append(faces_, static_cast<std::uint32_t>(corners.size()));
-  for (const std::uint32_t corner : corners) append(faces_, corner);
+  for (const std::uint32_t corner : corners) append(faces_, corner + 1);
   ++face_count_;
 }
 
@@ -49,7 +53,7 @@ CheckedContent PlyContent::finish() {
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\nelement face {}\n"
       "property list uint uint vertex_indices\nend_header\n",
-      vertices(), face_count_);
+      vertices() + 1, face_count_);
   bytes.reserve(bytes.size() + vertices_.size() + faces_.size());
   bytes += std::exchange(vertices_, {});
   bytes += std::exchange(faces_, {});

@@ -34,10 +34,11 @@ class StlContent {
 /// Writes binary PLY: all vertices and faces, in any order of calls.
 class PlyContent {
  public:
+  PlyContent();
   void add_vertex(const std::array<float, 3>& vertex);
   /// The corners are indices of vertices, checked by the caller.
   void add_face(std::span<const std::uint32_t> corners);
-  [[nodiscard]] std::size_t vertices() const { return vertices_.size() / 12; }
+  [[nodiscard]] std::size_t vertices() const { return vertices_.size() / 12 - 1; }
   [[nodiscard]] std::size_t faces() const { return face_count_; }
   /// The content; leaves this object empty.
   [[nodiscard]] CheckedContent finish();
