@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Checks that the code keeps the order of its rooms: includes go one way, and what only one file may
+# do, only one does. Prints each breach and fails if there is any.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+failed=0
+breach() { echo "$*" >&2; failed=1; }
+
+layers=(base mesh voxel tree query)
+for i in "${!layers[@]}"; do
+  for later in "${layers[@]:i+1}"; do
+    found=$(grep -rnE "#include \"ist/$later/" "src/ist/${layers[i]}" || true)
+    [ -z "$found" ] || breach "${layers[i]} includes $later, which stands after it: $found"
+  done
+done
+found=$(grep -rn '#include "cli/' src/ist || true)
+[ -z "$found" ] || breach "the library includes the command: $found"
+
+only() {  # what, pattern, the one file (a pattern), where to look
+  local found
+  found=$(grep -rlE "$2" $4 | grep -vxE "$3" || true)
+  [ -z "$found" ] || breach "$1 is also in: $found"
+}
+only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' src
+only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/parallel\.cpp' src
+only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/cli/main\.cpp' src
+only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' src/ist
+
+long=$(git ls-files '*.h' '*.cpp' 2>/dev/null | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
+[ -z "$long" ] || breach "longer than 400 lines: $long"
+exit $failed
