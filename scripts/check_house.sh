@@ -22,7 +22,7 @@ only() {  # what, pattern, the one file (a pattern), where to look
   [ -z "$found" ] || breach "$1 is also in: $found"
 }
 only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' src
-only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/parallel\.cpp' src
+only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/tbb_ranges\.cpp' src
 only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/cli/main\.cpp' src
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' src/ist
 

@@ -10,6 +10,7 @@
 
 #include "cli/bodies.h"
 #include "cli/commands.h"
+#include "cli/query_options.h"
 #include "ist/mesh/jaw_model.h"
 #include "ist/mesh/mesh_io.h"
 #include "ist/query/reference.h"
@@ -89,6 +90,11 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, SpherePolicy p
 }
 
 void run(const Options& options) {
+  for (const double size : options.voxel_sizes) {
+    if (!(size > 0 && std::isfinite(size))) {
+      throw CLI::ValidationError("--voxel-size", "give positive numbers of millimetres");
+    }
+  }
   const TriangleMesh upper_mesh = make_jaw(Jaw::kUpper, options.seed);
   const TriangleMesh lower_mesh = make_jaw(Jaw::kLower, options.seed);
   if (!options.json) {
@@ -126,6 +132,7 @@ void add_demo(CLI::App& app) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--seed", options->seed, "another number makes other jaws")
+      ->check(no_minus(""))
       ->capture_default_str();
   command->add_option("--keep", options->keep, "folder to write upper_jaw.stl and lower_jaw.stl to")
       ->check(CLI::ExistingDirectory);

@@ -2,6 +2,9 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "ist/base/error.h"
@@ -42,7 +45,17 @@ int run(int argc, char** argv) {
   add_export(app);
   add_collide(app);
   add_close(app);
-  app.parse(argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {  // or the version: asked for, and printed by whose it is
+    return app.exit(help);
+  } catch (const CLI::RequiredError&) {
+    const std::vector<std::string> strange = app.remaining();
+    if (!app.get_subcommands().empty() || strange.empty()) throw;
+    throw CLI::ValidationError(strange.front(), "no such subcommand or option");
+  }
+  // What a full disk swallowed shows here at the latest.
+  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
   return 0;
 }
 
@@ -52,10 +65,6 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) try {
   return ist::cli::run(argc, argv);
 } catch (const CLI::ParseError& error) {
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-    CLI::App app;  // help and version texts are the messages of these errors
-    return app.exit(error);
-  }
   std::fprintf(stderr, "ist: %s\nTry 'ist --help', or 'ist SUBCOMMAND --help'.\n", error.what());
   return ist::cli::kUsage;
 } catch (const ist::Error& error) {

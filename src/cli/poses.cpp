@@ -34,8 +34,11 @@ struct Locator : nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return true; }
   bool start_array(std::size_t) override { return true; }
   bool end_array() override { return true; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& e) override {
+  bool parse_error(std::size_t byte, const std::string&,
+                   const nlohmann::json::exception& e) override {
     error = e.what();
+    constexpr int kOverflow = 406;  // the one error that names no line
+    if (e.id == kOverflow) error += fmt::format(" at byte {}", byte);
     return false;
   }
 };

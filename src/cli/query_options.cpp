@@ -1,5 +1,7 @@
 #include "cli/query_options.h"
 
+#include <fmt/format.h>
+
 namespace ist::cli {
 
 std::vector<std::string> policy_names() {
@@ -10,11 +12,21 @@ std::vector<std::string> policy_names() {
   return names;
 }
 
+CLI::Validator no_minus(const std::string& what) {
+  return {[what](const std::string& text) {
+            return text.find('-') == std::string::npos
+                       ? std::string()
+                       : fmt::format("give a positive number{}", what.empty() ? "" : " of " + what);
+          },
+          ""};
+}
+
 void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
   command
       .add_option("--max-memory", bytes,
                   "most memory that voxels and tree may take, in bytes; K, M and G are understood")
       ->transform(CLI::AsSizeValue(false))
+      ->transform(no_minus("bytes"))  // of the two transformations, the first to be done
       ->default_str("4G");
 }
 

@@ -13,6 +13,9 @@ namespace ist::cli {
 /// The names that --spheres takes.
 [[nodiscard]] std::vector<std::string> policy_names();
 
+/// Refuses a minus, which would wrap round in a number without sign. `what` is counted, or empty.
+[[nodiscard]] CLI::Validator no_minus(const std::string& what);
+
 void add_max_memory(CLI::App& command, std::uint64_t& bytes);
 
 /// What collide and close share.

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -23,6 +25,19 @@ TEST(ParallelFor, CoversEachItemOnceInRangesThatDoNotDependOnTheThreads) {
       EXPECT_EQ(visits, std::vector<int>(count, 1));
       for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(range_begin[i], i / 64 * 64);
     }
+  }
+}
+
+TEST(ParallelSort, SortsAnyLength) {
+  for (const std::size_t count : {0u, 1u, 2u, 16383u, 16384u, 16385u, 100000u, 1000003u}) {
+    std::vector<std::uint64_t> keys(count);
+    std::uint64_t state = count;
+    for (std::uint64_t& key : keys)
+      key = state = state * 6364136223846793005u + 1442695040888963407u;
+    std::vector<std::uint64_t> expected = keys;
+    std::sort(expected.begin(), expected.end());
+    parallel_sort(keys);
+    EXPECT_EQ(keys, expected);
   }
 }
 

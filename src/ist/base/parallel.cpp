@@ -1,34 +1,62 @@
 #include "ist/base/parallel.h"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
+#include <atomic>
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/tbb_ranges.h"
 
 namespace ist {
+namespace {
+
+// What TBB promises, said again where a tool can see it that cannot look into TBB: what was written
+// before a loop is there in each of its ranges, and what the ranges wrote is there after the loop.
+std::atomic<std::size_t> loops_begun{0};
+
+struct Loop {
+  std::size_t count, grain;
+  const std::function<void(std::size_t, std::size_t)>& body;
+  std::atomic<std::size_t> ranges_ended{0};
+
+  void run(std::size_t range) {
+    const ScopedFloatEnvironment environment;
+    body(range * grain, std::min(count, (range + 1) * grain));
+    ranges_ended.fetch_add(1, std::memory_order_release);
+  }
+};
+
+}  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   IST_ASSERT(grain > 0);
-  const std::size_t ranges = (count + grain - 1) / grain;
-  tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t range) {
-    const ScopedFloatEnvironment environment;
-    body(range * grain, std::min(count, (range + 1) * grain));
-  });
+  Loop loop{count, grain, body, {}};
+  loops_begun.fetch_add(1, std::memory_order_release);
+  tbb_ranges((count + grain - 1) / grain,
+             [](void* context, std::size_t range) {
+               static_cast<void>(loops_begun.load(std::memory_order_acquire));
+               static_cast<Loop*>(context)->run(range);
+             },
+             &loop);
+  static_cast<void>(loop.ranges_ended.load(std::memory_order_acquire));
 }
 
-void parallel_sort(std::span<std::uint64_t> keys) { tbb::parallel_sort(keys.begin(), keys.end()); }
-
-struct ScopedThreadLimit::Control {
-  tbb::global_control limit;
-};
-
-ScopedThreadLimit::ScopedThreadLimit(std::size_t threads)
-    : control_(new Control{{tbb::global_control::max_allowed_parallelism, threads}}) {}
-ScopedThreadLimit::~ScopedThreadLimit() = default;
+void parallel_sort(std::span<std::uint64_t> keys) {
+  constexpr std::size_t kSmallest = 1
+                                    << 14;  // sorted in less time than another thread takes to come
+  std::size_t run = std::max(kSmallest, (keys.size() + 15) / 16);
+  parallel_for(keys.size(), run, [keys](std::size_t begin, std::size_t end) {
+    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin),
+              keys.begin() + static_cast<std::ptrdiff_t>(end));
+  });
+  for (; run < keys.size(); run *= 2) {
+    parallel_for(keys.size(), 2 * run, [keys, run](std::size_t begin, std::size_t end) {
+      const auto first = keys.begin() + static_cast<std::ptrdiff_t>(begin);
+      std::inplace_merge(first, first + static_cast<std::ptrdiff_t>(std::min(run, end - begin)),
+                         keys.begin() + static_cast<std::ptrdiff_t>(end));
+    });
+  }
+}
 
 }  // namespace ist

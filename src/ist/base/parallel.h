@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
+
+#include "ist/base/tbb_ranges.h"
 
 namespace ist {
 
@@ -21,14 +22,12 @@ void parallel_sort(std::span<std::uint64_t> keys);
 /// Bounds the threads that the functions above use while this object lives.
 class ScopedThreadLimit {
  public:
-  explicit ScopedThreadLimit(std::size_t threads);
-  ~ScopedThreadLimit();
+  explicit ScopedThreadLimit(std::size_t threads) : limit_(threads) {}
   ScopedThreadLimit(const ScopedThreadLimit&) = delete;
   ScopedThreadLimit& operator=(const ScopedThreadLimit&) = delete;
 
  private:
-  struct Control;
-  std::unique_ptr<Control> control_;
+  TbbThreadLimit limit_;
 };
 
 }  // namespace ist

@@ -26,7 +26,9 @@ struct QueryResult {
   int level = 0;                   ///< down to which it searched
   std::uint64_t contacts = 0;      ///< all that there are, in the span or not
   std::uint64_t sphere_tests = 0;  ///< pairs of spheres tested
-  double pad = 0;                  ///< what the reach of a sphere test was grown by, mesh units
+  /// Leaf spheres in a contact are no farther apart, mesh units: what the reach of a sphere test
+  /// was grown by, and what the test may err by on top.
+  double pad = 0;
 };
 
 }  // namespace ist

@@ -8,9 +8,11 @@
 namespace ist {
 namespace {
 
-// The centres, the rotation of the moving one and the distance are some twenty operations on
-// numbers no larger than the two reaches and the translation between them.
-constexpr double kRounding = 32 * 0x1p-53;
+// What a test errs by, in parts of the two reaches and the translation t between the frames, with u
+// = 2⁻⁵³: a centre 4u of its length, and the moving one 6u more, for √3 · 3u of rotation and a sum;
+// t 3u of its own; the distance and the sum of radii, equal where it matters, 5u; the rotation's
+// being a little off orthonormal, 4u of a moving radius. No length is counted for more than 11u.
+constexpr double kRounding = 16 * 0x1p-53;
 
 // A cube with more than this times the other's edge is opened alone.
 constexpr double kLarger = 1.4142135623730951;
@@ -41,7 +43,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   pose_ = *relative;
   const double reach = fixed_.reach() + moving_.reach();
   const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  pad_ = kRounding * (reach + kSqrt3 * farthest);
+  slack_ = kRounding * reach + kRounding * kSqrt3 * farthest;
   tests_ = 0;
   found_.clear();
 
@@ -49,7 +51,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   Node b = root(moving_, saved_moving_);
   to_fixed_frame(b);
   // Decided by one coordinate where they are far apart, because the square of a distance overflows.
-  if (touch(a.ball, b.ball) && farthest <= reach + pad_) descend(a, b);
+  if (touch(a.ball, b.ball) && farthest <= reach + slack_) descend(a, b);
 
   std::sort(found_.begin(), found_.end(), [](const Contact& p, const Contact& q) {
     return p.fixed != q.fixed ? p.fixed < q.fixed : p.moving < q.moving;
@@ -58,7 +60,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   result.contacts = found_.size();
   result.truncated = found_.size() > out.size();
   result.sphere_tests = tests_;
-  result.pad = pad_;
+  result.pad = 2 * slack_;
   return result;
 }
 
@@ -106,7 +108,7 @@ bool ReferenceQuery::touch(const Ball& a, const Ball& b) noexcept {
   ++tests_;
   const double dx = a.centre[0] - b.centre[0], dy = a.centre[1] - b.centre[1],
                dz = a.centre[2] - b.centre[2];
-  const double reach = (a.radius + b.radius) + pad_;
+  const double reach = (a.radius + b.radius) + slack_;
   // Rejected by >, so that what cannot be compared is kept.
   return !((dx * dx + dy * dy) + dz * dz > reach * reach);
 }

@@ -77,7 +77,7 @@ class ReferenceQuery {
   SpherePolicy policy_;
   SavedSpheres saved_fixed_, saved_moving_;  // empty with kOnTheFly
   RelativePose pose_;
-  double pad_ = 0;
+  double slack_ = 0;  // what a test may err by, and a reach is grown by
   std::uint64_t tests_ = 0;
   std::vector<Contact> found_;
 };

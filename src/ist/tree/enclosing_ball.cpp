@@ -20,10 +20,12 @@ struct Farthest {
   double distance2;
 };
 
-Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& centre) noexcept {
+// `centre` is seen from `origin`.
+Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& origin,
+                       const Vector3d& centre) noexcept {
   Farthest farthest{0, -1};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance2 = square(points[i] - centre);
+    const double distance2 = square((points[i] - origin) - centre);
     if (distance2 > farthest.distance2) farthest = {i, distance2};
   }
   return farthest;
@@ -90,23 +92,29 @@ bool take_in(Basis& basis, const Vector3d& point) noexcept {
 
 Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept {
   IST_ASSERT(!points.empty());
-  const Vector3d& first = points[farthest_from(points, points[0]).index];
-  const Vector3d& second = points[farthest_from(points, first).index];
+  // All is seen from one of the points, so that a small ball far out rounds like one at the origin.
+  const Vector3d& origin = points[0];
+  const Vector3d zero = Vector3d::Zero();
   Basis basis;
-  basis.points[0] = first;
-  basis.points[1] = second;
+  basis.points[0] = points[farthest_from(points, origin, zero).index] - origin;
+  basis.points[1] = points[farthest_from(points, origin, basis.points[0]).index] - origin;
   basis.count = 2;
-  basis.centre = first + 0.5 * (second - first);
-  basis.radius2 = square(first - basis.centre);
-  Farthest outside = farthest_from(points, basis.centre);
-  Ball best{basis.centre, outside.distance2};
+  basis.centre = basis.points[0] + 0.5 * (basis.points[1] - basis.points[0]);
+  basis.radius2 = square(basis.points[0] - basis.centre);
+  Farthest outside = farthest_from(points, origin, basis.centre);
+  Vector3d centre = basis.centre;
+  double least = outside.distance2;
   const double enough = (1 + tolerance) * (1 + tolerance);
   for (int pass = 0; pass < kMaxPasses && outside.distance2 > basis.radius2 * enough; ++pass) {
-    if (!take_in(basis, points[outside.index])) break;
-    outside = farthest_from(points, basis.centre);
-    if (outside.distance2 < best.radius) best = {basis.centre, outside.distance2};
+    if (!take_in(basis, points[outside.index] - origin)) break;
+    outside = farthest_from(points, origin, basis.centre);
+    if (outside.distance2 < least) {
+      centre = basis.centre;
+      least = outside.distance2;
+    }
   }
-  return {best.centre, std::sqrt(best.radius)};
+  centre += origin;
+  return {centre, std::sqrt(farthest_from(points, centre, zero).distance2)};
 }
 
 }  // namespace ist

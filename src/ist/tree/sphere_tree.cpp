@@ -12,10 +12,11 @@
 namespace ist {
 namespace {
 
-// In half edges of the root. A ball of the table reaches at most √2/2 + 3/2 half edges from its
-// node's centre, for two children along an edge; a node's own centre is at most √3 half edges of
-// the root from the root's, less √3 of its own. So the root's ball reaches farthest.
-constexpr double kImplicitReach = 2.2071067811865480;
+// In half edges of the root, rounded up. A ball of the table reaches at most (√12 + √96)/6 half
+// edges from its node's centre, for three children of which no two share a face; a node's own
+// centre is at most √3 half edges of the root from the root's, less √3 of its own. So the root's
+// ball reaches farthest.
+constexpr double kImplicitReach = 2.21034343104508;
 
 }  // namespace
 

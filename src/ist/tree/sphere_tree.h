@@ -40,7 +40,7 @@ class SphereTree {
     std::vector<PackedNormal> normals;       ///< one a leaf
     SphereLevels tight;                      ///< empty where not built
     std::optional<LeafTriangles> triangles;  ///< where built to answer exactly
-    std::optional<ProximityTree> proximity;  ///< where asked for
+    std::optional<ProximityTree> proximity;  ///< where asked for, and there are any such cells
   };
 
   /// Parts that do not fit each other are a bug of the caller.

@@ -7,6 +7,7 @@
 
 #include "ist/base/parallel.h"
 #include "ist/tree/enclosing_ball.h"
+#include "ist/voxel/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
 

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <chrono>
+#include <optional>
 
 #include "ist/base/float_environment.h"
 #include "ist/voxel/voxelizer.h"
@@ -14,10 +15,13 @@ namespace {
 constexpr std::uint64_t kOctreeBytes = 3;
 constexpr std::uint64_t kCodeBytes = 8;  // a level's codes, while its spheres are made
 
-ProximityTree make_proximity_tree(const TriangleMesh& mesh, const VoxelSet& surface) {
+// Nothing where there are no such voxels: a mesh without area has no outside.
+std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
+                                                 const VoxelSet& surface) {
+  const std::vector<std::uint64_t> codes = proximity_voxels(mesh, surface);
+  if (codes.empty()) return std::nullopt;
   const std::uint32_t cells = surface.lattice.cells + 2 * ProximityTree::kMargin;
-  return {
-      LinearOctree(proximity_voxels(mesh, surface), static_cast<int>(std::bit_width(cells - 1)))};
+  return ProximityTree{LinearOctree(codes, static_cast<int>(std::bit_width(cells - 1)))};
 }
 
 class StageTimes {

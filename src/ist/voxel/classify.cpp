@@ -10,8 +10,8 @@
 
 #include "ist/base/error.h"
 #include "ist/base/parallel.h"
+#include "ist/voxel/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
-#include "ist/voxel/triangle_clip.h"
 
 namespace ist {
 namespace {

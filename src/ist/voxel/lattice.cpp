@@ -12,8 +12,12 @@
 namespace ist {
 
 double round_up_for_people(double size) {
-  const double rounded = std::stod(fmt::format("{:.2e}", size));
-  return rounded >= size ? rounded : std::stod(fmt::format("{:.2e}", size * 1.01));
+  const std::string text = fmt::format("{:.2e}", size);
+  const double rounded = std::stod(text);
+  if (rounded >= size) return rounded;
+  const int exponent = std::stoi(text.substr(text.find('e') + 1));
+  const double last_digit = std::stod(fmt::format("1e{}", exponent - 2));
+  return std::stod(fmt::format("{:.2e}", rounded + last_digit));
 }
 
 Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,

@@ -130,31 +130,4 @@ const ClippedTriangle& TriangleSlicer::cube(std::uint32_t x, std::uint32_t y,
   return clip_between(*in_row_, 0, x - pad_, x + 1.0 + pad_, cube_);
 }
 
-NearestPoint nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& triangle,
-                                 const Eigen::Vector3d& point) noexcept {
-  const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
-  const Eigen::Vector3d ab = b - a, ac = c - a, ap = point - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return {a, 0};
-  const Eigen::Vector3d bp = point - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return {b, 1};
-  // An edge of length zero is passed over: the other two have its end points.
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) return {a + d1 / (d1 - d3) * ab, 3};
-  const Eigen::Vector3d cp = point - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return {c, 2};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) return {a + d2 / (d2 - d6) * ac, 5};
-  const double va = d3 * d6 - d5 * d4;
-  const double along_bc = (d4 - d3) + (d5 - d6);
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && along_bc > 0) {
-    return {b + (d4 - d3) / along_bc * (c - b), 4};
-  }
-  const double sum = (va + vb) + vc;
-  if (!(sum > 0)) return {a, 0};
-  return {a + (vb / sum) * ab + (vc / sum) * ac, NearestPoint::kInside};
-}
-
 }  // namespace ist

@@ -1,0 +1,76 @@
+#include "ist/voxel/nearest_point.h"
+
+#include <Eigen/Geometry>
+#include <limits>
+
+namespace ist {
+namespace {
+
+// Where the weights of the corners would be rounding: the nearest of the three edges, or the foot
+// of the perpendicular, while there is a plane to speak of.
+NearestPoint nearest_on_sliver(const std::array<Eigen::Vector3d, 3>& triangle,
+                               const Eigen::Vector3d& normal, bool has_plane,
+                               const Eigen::Vector3d& point) noexcept {
+  NearestPoint nearest{};
+  double least = std::numeric_limits<double>::infinity();
+  bool inside = has_plane;
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    const Eigen::Vector3d& from = triangle[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& to = triangle[static_cast<std::size_t>(next)];
+    const Eigen::Vector3d side = to - from, offset = point - from;
+    const double along = side.dot(offset), length2 = side.squaredNorm();
+    NearestPoint on_side{from, i};
+    if (along >= length2 && length2 > 0) {
+      on_side = {to, next};
+    } else if (along > 0) {
+      on_side = {from + along / length2 * side, 3 + i};
+    }
+    const double distance2 = (point - on_side.point).squaredNorm();
+    if (distance2 < least) {
+      least = distance2;
+      nearest = on_side;
+    }
+    inside = inside && side.cross(offset).dot(normal) > 0;
+  }
+  if (!inside) return nearest;
+  const double height = (point - triangle[0]).dot(normal) / normal.squaredNorm();
+  return {point - height * normal, NearestPoint::kInside};
+}
+
+}  // namespace
+
+NearestPoint nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& triangle,
+                                 const Eigen::Vector3d& point) noexcept {
+  const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = point - a;
+  // The squared sine of the corner at a. The weights below lose as many digits as it has zeros; the
+  // plane itself, half as many.
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double area2 = normal.squaredNorm(), sides2 = ab.squaredNorm() * ac.squaredNorm();
+  if (!(area2 > 1e-6 * sides2)) {
+    return nearest_on_sliver(triangle, normal, area2 > 1e-16 * sides2, point);
+  }
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {a, 0};
+  const Eigen::Vector3d bp = point - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {b, 1};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) return {a + d1 / (d1 - d3) * ab, 3};
+  const Eigen::Vector3d cp = point - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {c, 2};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) return {a + d2 / (d2 - d6) * ac, 5};
+  const double va = d3 * d6 - d5 * d4;
+  const double along_bc = (d4 - d3) + (d5 - d6);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && along_bc > 0) {
+    return {b + (d4 - d3) / along_bc * (c - b), 4};
+  }
+  const double sum = (va + vb) + vc;
+  if (!(sum > 0)) return {a, 0};
+  return {a + (vb / sum) * ab + (vc / sum) * ac, NearestPoint::kInside};
+}
+
+}  // namespace ist

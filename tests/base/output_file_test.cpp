@@ -1,0 +1,120 @@
+#include "ist/base/output_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "support/errors.h"
+#include "support/skip.h"
+#include "support/temp_dir.h"
+
+namespace ist {
+namespace {
+
+using test::error_of;
+using test::file_content;
+
+void write(OutputFile& file, const std::string& text) { file.write(text.data(), text.size()); }
+
+TEST(OutputFile, IsThereWholeAfterCommitAndNothingElseIs) {
+  const test::TempDir folder;
+  const auto target = folder.path() / "out";
+  {
+    OutputFile file(target);
+    write(file, "????body");
+    EXPECT_FALSE(std::filesystem::exists(target));
+    write(file, " and end");
+    file.write_at(0, "head", 4);
+    EXPECT_FALSE(std::filesystem::exists(target));
+    file.commit();
+    EXPECT_EQ(file_content(target), "headbody and end");
+  }
+  EXPECT_EQ(file_content(target), "headbody and end");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(OutputFile, IsNotThereWithoutCommit) {
+  const test::TempDir folder;
+  {
+    OutputFile file(folder.path() / "out");
+    write(file, "half of it");
+  }
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(OutputFile, AnOlderFileStaysAsItWasUntilCommit) {
+  const test::TempDir folder;
+  const auto target = folder.write("out", "old");
+  {
+    OutputFile file(target);
+    write(file, "new, but given up");
+  }
+  EXPECT_EQ(file_content(target), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+  OutputFile file(target);
+  write(file, "new");
+  EXPECT_EQ(file_content(target), "old");
+  file.commit();
+  EXPECT_EQ(file_content(target), "new");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(OutputFile, TwoOfOneNameDoNotMix) {
+  const test::TempDir folder;
+  const auto target = folder.path() / "out";
+  OutputFile first(target), second(target);
+  write(first, "first");
+  write(second, "second");
+  first.commit();
+  EXPECT_EQ(file_content(target), "first");
+  second.commit();
+  EXPECT_EQ(file_content(target), "second");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(OutputFile, WritesThroughALinkWithoutReplacingIt) {
+  const test::TempDir folder;
+  const auto target = folder.write("real", "old");
+  std::filesystem::create_symlink(target, folder.path() / "link");
+  OutputFile file(folder.path() / "link");
+  write(file, "new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link"));
+  EXPECT_EQ(file_content(target), "new");
+}
+
+TEST(OutputFile, AFolderThatDoesNotExistIsNamed) {
+  const test::TempDir folder;
+  const auto error = error_of([&] { OutputFile file(folder.path() / "missing" / "out"); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
+  EXPECT_NE(std::string(error->what()).find("missing/out"), std::string::npos) << error->what();
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(OutputFile, AFolderInTheFilesPlaceIsRefused) {
+  const test::TempDir folder;
+  const auto error = error_of([&] {
+    OutputFile file(folder.path());
+    file.commit();
+  });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
+}
+
+TEST(OutputFile, AFullDiskIsReported) {
+  if (!std::filesystem::exists("/dev/full")) IST_SKIP("there is no /dev/full");
+  const auto error = error_of([] {
+    OutputFile file("/dev/full");
+    write(file, "text");
+    file.commit();
+  });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
+  EXPECT_NE(std::string(error->what()).find("/dev/full"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+}  // namespace
+}  // namespace ist

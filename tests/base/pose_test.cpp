@@ -1,0 +1,130 @@
+#include "ist/base/pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/exact.h"
+#include "support/seeded.h"
+
+namespace ist {
+namespace {
+
+Eigen::Isometry3d pose_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation;
+  pose.translation() = translation;
+  return pose;
+}
+
+Eigen::Matrix3d random_rotation(test::Seeded& seeded) {
+  return Eigen::AngleAxisd(seeded.between(-3, 3), seeded.direction()).toRotationMatrix();
+}
+
+// The largest entry of |RᵀR - I|, its sums exact.
+double distance_from_orthonormal(const Eigen::Matrix3d& rotation) {
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const mpq_class entry =
+          dot(test::exact(rotation.col(i)), test::exact(rotation.col(j))) - (i == j ? 1 : 0);
+      largest = std::max(largest, std::abs(entry.get_d()));
+    }
+  }
+  return largest;
+}
+
+TEST(ProjectToRigid, IdentityAndQuarterTurnsComeBackBitForBit) {
+  int turns = 0;
+  for (int code = 0; code < 6 * 8; ++code) {  // each order of the axes, each mirroring
+    constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                   {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < 3; ++i) rotation(i, kOrders[code / 8][i]) = (code >> i & 1) != 0 ? -1 : 1;
+    const Eigen::Isometry3d pose = pose_of(rotation, {0.1, -1e9, 1e-300});
+    const auto rigid = project_to_rigid(pose);
+    ASSERT_EQ(rigid.has_value(), rotation.determinant() > 0);
+    if (!rigid) continue;
+    ++turns;
+    EXPECT_EQ(rigid->matrix(), pose.matrix());
+  }
+  EXPECT_EQ(turns, 24);
+}
+
+TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
+  test::Seeded seeded(1);
+  for (int i = 0; i < 300; ++i) {
+    const double error = i % 3 == 0 ? 0 : (i % 3 == 1 ? 1e-9 : 1e-6);
+    Eigen::Matrix3d rotation = random_rotation(seeded);
+    for (int k = 0; k < 9; ++k) rotation(k) += seeded.between(-error, error);
+    const Eigen::Vector3d translation = seeded.point(-100, 100);
+    const auto rigid = project_to_rigid(pose_of(rotation, translation));
+    ASSERT_TRUE(rigid);
+    EXPECT_LE(distance_from_orthonormal(rigid->linear()), 1e-15);
+    EXPECT_LE((rigid->linear() - rotation).norm(), 3 * error + 1e-15);
+    EXPECT_EQ(rigid->translation(), translation);
+    EXPECT_EQ(rigid->matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+  }
+}
+
+TEST(ProjectToRigid, TheNearestRotationIsThePolarFactor) {
+  test::Seeded seeded(2);
+  for (int i = 0; i < 100; ++i) {
+    // R·S with S symmetric and near the identity has the polar factor R.
+    const Eigen::Matrix3d rotation = random_rotation(seeded);
+    Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = row; column < 3; ++column) {
+        const double entry = seeded.between(-3e-6, 3e-6);
+        stretch(row, column) += entry;
+        if (row != column) stretch(column, row) += entry;
+      }
+    }
+    const auto rigid = project_to_rigid(pose_of(rotation * stretch, Eigen::Vector3d::Zero()));
+    ASSERT_TRUE(rigid);
+    EXPECT_LE((rigid->linear() - rotation).cwiseAbs().maxCoeff(), 2e-15);
+  }
+}
+
+TEST(ProjectToRigid, RefusesWhatIsFartherThanTheToleranceFromOrthonormal) {
+  for (int k = 0; k < 9; ++k) {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    rotation(k) += 4e-6;  // RᵀR moves by twice as much on the diagonal
+    EXPECT_TRUE(project_to_rigid(pose_of(rotation, Eigen::Vector3d::Zero()))) << k;
+    rotation = Eigen::Matrix3d::Identity();
+    rotation(k) += 1e-4;
+    EXPECT_FALSE(project_to_rigid(pose_of(rotation, Eigen::Vector3d::Zero()))) << k;
+  }
+  EXPECT_FALSE(project_to_rigid(pose_of(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero())));
+}
+
+TEST(ProjectToRigid, RefusesMirrorings) {
+  test::Seeded seeded(3);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Matrix3d mirrored = -random_rotation(seeded);
+    EXPECT_FALSE(project_to_rigid(pose_of(mirrored, Eigen::Vector3d::Zero())));
+  }
+}
+
+TEST(ProjectToRigid, RefusesNumbersThatAreNotFiniteWhereverTheyAre) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()}) {
+    for (int k = 0; k < 16; ++k) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.matrix().data()[k] = bad;
+      EXPECT_FALSE(project_to_rigid(pose)) << bad << " at " << k;
+    }
+  }
+}
+
+TEST(ProjectToRigid, RefusesALastRowThatIsNot0001) {
+  for (int column = 0; column < 4; ++column) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.matrix()(3, column) += 1e-12;
+    EXPECT_FALSE(project_to_rigid(pose)) << column;
+  }
+}
+
+}  // namespace
+}  // namespace ist

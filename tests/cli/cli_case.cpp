@@ -1,0 +1,53 @@
+#include "cli/cli_case.h"
+
+#include <sstream>
+
+#include "ist/mesh/mesh_io.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+
+CommandResult CliTest::ist_well(const std::vector<std::string>& arguments) {
+  CommandResult result = ist(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result;
+}
+
+std::string CliTest::mesh(const std::string& name, const TriangleMesh& mesh) const {
+  write_stl(mesh, dir_.path() / name);
+  return path(name);
+}
+
+std::string CliTest::ball() const { return mesh("ball.stl", icosphere(2, 2)); }
+
+std::string CliTest::ball_tree(const std::string& name, const std::string& spheres) const {
+  ist_well({"build", ball(), "-o", path(name), "--voxel-size", "0.5", "--spheres", spheres});
+  return path(name);
+}
+
+std::string CliTest::poses(const std::vector<double>& shifts) const {
+  nlohmann::json list = nlohmann::json::array();
+  for (const double x : shifts) {
+    list.push_back({{"label", "not looked at"},
+                    {"pose", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1}},
+                    {"distance", nullptr}});
+  }
+  return write("poses.json", list.dump());
+}
+
+std::vector<nlohmann::json> CliTest::json_lines(const std::string& text) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(nlohmann::json::parse(line, nullptr, false));
+    EXPECT_TRUE(lines.back().is_object()) << line;
+  }
+  return lines;
+}
+
+::testing::AssertionResult says(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "no \"" << part << "\" in: " << text;
+}
+
+}  // namespace ist::test

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ist/mesh/triangle_mesh.h"
+#include "support/run_command.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+
+/// A test of the command in a folder of its own, with small meshes in it.
+class CliTest : public ::testing::Test {
+ protected:
+  static CommandResult ist(const std::vector<std::string>& arguments) {
+    return run_command(IST_COMMAND, arguments);
+  }
+  /// Runs what must succeed.
+  static CommandResult ist_well(const std::vector<std::string>& arguments);
+
+  /// The path of a file in the folder, there or not.
+  [[nodiscard]] std::string path(const std::string& name) const { return dir_.path() / name; }
+  [[nodiscard]] bool exists(const std::string& name) const {
+    return std::filesystem::exists(dir_.path() / name);
+  }
+  std::string write(const std::string& name, const std::string& content) const {
+    return dir_.write(name, content);
+  }
+  /// Writes a mesh, and returns its path.
+  [[nodiscard]] std::string mesh(const std::string& name, const TriangleMesh& mesh) const;
+  /// A ball of radius 2 round the origin, closed and consistent.
+  [[nodiscard]] std::string ball() const;
+  /// A tree of it, at voxel size 0.5.
+  [[nodiscard]] std::string ball_tree(const std::string& name = "ball.ist",
+                                      const std::string& spheres = "tight") const;
+  /// Shifts along x as a file of poses.
+  [[nodiscard]] std::string poses(const std::vector<double>& shifts) const;
+
+  /// The lines of a text, each an object of JSON.
+  static std::vector<nlohmann::json> json_lines(const std::string& text);
+
+  const TempDir dir_;
+};
+
+/// Whether the text is in it.
+[[nodiscard]] ::testing::AssertionResult says(const std::string& text, const std::string& part);
+
+}  // namespace ist::test

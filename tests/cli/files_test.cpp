@@ -1,0 +1,230 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "cli/cli_case.h"
+#include "ist/tree/tree_io.h"
+#include "support/ply_file.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+class Files : public CliTest {};
+
+TEST_F(Files, BuildSaysWhatItMade) {
+  const CommandResult result =
+      ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5", "--json", "--exact",
+                "--classes", "surface,proximity"});
+  const auto lines = json_lines(result.out);
+  ASSERT_EQ(lines.size(), 1u);
+  const json& line = lines[0];
+  const SphereTree tree = read_tree(path("out.ist"));
+  EXPECT_EQ(line["file"], path("out.ist"));
+  EXPECT_EQ(line["triangles"], 320);
+  EXPECT_EQ(line["voxel_size"], 0.5);
+  EXPECT_EQ(line["spheres"], "tight");
+  EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
+  EXPECT_EQ(line["nodes"], tree.octree().node_count());
+  EXPECT_EQ(line["depth"], 3);
+  EXPECT_EQ(line["bytes"], std::filesystem::file_size(path("out.ist")));
+  EXPECT_TRUE(line["memory"].is_number_unsigned());
+  EXPECT_EQ(line["proximity_voxels"], tree.proximity()->octree.leaf_count());
+  EXPECT_EQ(line["warnings"], json::array());
+  EXPECT_GT(line["milliseconds"].size(), 2u);
+  for (const json& stage : line["milliseconds"]) EXPECT_TRUE(stage.is_number());
+  EXPECT_TRUE(tree.triangles());
+
+  const CommandResult plain =
+      ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5"});
+  EXPECT_TRUE(says(plain.out, std::to_string(tree.octree().leaf_count()) + " voxels"));
+  EXPECT_TRUE(says(plain.out, "depth 3"));
+  EXPECT_TRUE(says(plain.out, "ms"));
+}
+
+TEST_F(Files, BuildReplacesAFileOnlyWhenItSucceeds) {
+  const std::string tree = ball_tree(), before = file_content(tree);
+  const std::size_t entries = dir_.entries();
+  EXPECT_EQ(ist({"build", write("bad.stl", "solid"), "-o", tree, "--voxel-size", "1"}).exit_code,
+            3);
+  EXPECT_EQ(ist({"build", ball(), "-o", tree, "--voxel-size", "0"}).exit_code, 2);
+  EXPECT_EQ(file_content(tree), before);
+  ist_well({"build", ball(), "-o", tree, "--voxel-size", "1"});
+  EXPECT_NE(file_content(tree), before);
+  EXPECT_EQ(read_tree(tree).lattice().voxel_size, 1);
+  EXPECT_EQ(dir_.entries(), entries + 1);
+}
+
+TEST_F(Files, WhatCannotBeWrittenIsAFailure) {
+  for (const std::string& target : {path("none/out.ist"), dir_.path().string()}) {
+    const CommandResult result = ist({"build", ball(), "-o", target, "--voxel-size", "1"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, target + ": "));
+  }
+  EXPECT_FALSE(exists("none"));
+  const CommandResult result =
+      ist({"export", ball_tree(), "--what", "voxels", "--level", "0", "-o", path("none/out.ply")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, "none/out.ply: "));
+}
+
+TEST_F(Files, InfoOfAMesh) {
+  const auto lines = json_lines(ist_well({"info", ball(), "--json"}).out);
+  ASSERT_EQ(lines.size(), 1u);
+  const json& line = lines[0];
+  EXPECT_EQ(line["kind"], "mesh");
+  EXPECT_EQ(line["vertices"], 162);
+  EXPECT_EQ(line["triangles"], 320);
+  EXPECT_EQ(line["components"], 1);
+  for (const char* key : {"boundary_edges", "non_manifold_edges", "duplicate_triangles",
+                          "degenerate_triangles", "inconsistent_edges"}) {
+    EXPECT_EQ(line[key], 0) << key;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(line["box_min"][i].get<double>(), -2, 0.1);
+    EXPECT_NEAR(line["box_max"][i].get<double>(), 2, 0.1);
+  }
+  EXPECT_EQ(line["warnings"], json::array());
+  EXPECT_TRUE(says(ist_well({"info", ball()}).out, "320 triangles and 162 vertices"));
+  const auto open = json_lines(ist_well({"info", mesh("open.stl", open_strip(2)), "--json"}).out);
+  EXPECT_EQ(open.at(0)["boundary_edges"], 6);
+  EXPECT_GT(open.at(0)["warnings"].size(), 0u);
+}
+
+TEST_F(Files, InfoOfATree) {
+  const std::string file = ball_tree();
+  const SphereTree tree = read_tree(file);
+  const auto lines = json_lines(ist_well({"info", file, "--json"}).out);
+  ASSERT_EQ(lines.size(), 1u);
+  const json& line = lines[0];
+  EXPECT_EQ(line["kind"], "tree");
+  EXPECT_EQ(line["voxel_size"], 0.5);
+  EXPECT_EQ(line["cells"], 8);
+  EXPECT_EQ(line["depth"], 3);
+  EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
+  EXPECT_EQ(line["orientation"], "outward");
+  EXPECT_EQ(line["triangles"], false);
+  EXPECT_EQ(line["proximity"], false);
+  ASSERT_EQ(line["levels"].size(), 4u);
+  for (std::size_t level = 0; level < 4; ++level) {
+    const json& row = line["levels"][level];
+    EXPECT_EQ(row["level"], level);
+    EXPECT_EQ(row["edge"], std::ldexp(0.5, static_cast<int>(level)));
+    EXPECT_EQ(row["nodes"], tree.octree().node_count(static_cast<int>(level)));
+    EXPECT_LE(row["volume"]["table"], row["volume"]["simple"]);
+    EXPECT_GT(row["volume"]["tight"], 0);
+  }
+  EXPECT_TRUE(says(ist_well({"info", file}).out, "orientation outward"));
+}
+
+TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
+  const std::string file = ball_tree();
+  const SphereTree tree = read_tree(file);
+  for (const char* spheres : {"simple", "table", "tight", ""}) {
+    for (int level = 0; level <= 3; ++level) {
+      std::vector<std::string> arguments{"export",  file,          "--what",
+                                         "spheres", "--level",     std::to_string(level),
+                                         "-o",      path("s.ply"), "--json"};
+      if (*spheres != '\0') arguments.insert(arguments.end(), {"--spheres", spheres});
+      const auto lines = json_lines(ist_well(arguments).out);
+      const PlyFile ply = parse_ply(file_content(path("s.ply")));
+      EXPECT_EQ(ply.vertices.size(), tree.octree().node_count(level));
+      ASSERT_EQ(lines.size(), 1u);
+      EXPECT_EQ(lines[0]["count"], ply.vertices.size());
+      EXPECT_EQ(lines[0]["what"], "spheres");
+      EXPECT_EQ(lines[0]["level"], level);
+      EXPECT_TRUE(ply.faces.empty());
+      const float circumradius = std::ldexp(0.5f, level) * 0.8660254f;
+      for (const auto& sphere : ply.vertices) {
+        ASSERT_EQ(sphere.size(), 4u);
+        // Each comes to the surface of the ball, and none is larger than its cube asks for.
+        const float distance = std::hypot(sphere.at("x"), sphere.at("y"), sphere.at("z"));
+        EXPECT_LE(std::abs(distance - 2), sphere.at("radius") + 0.1);
+        EXPECT_LE(sphere.at("radius"), circumradius * 1.01f);
+        if (std::string(spheres) == "simple") {
+          EXPECT_FLOAT_EQ(sphere.at("radius"), circumradius);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Files, ExportedVoxelsAreClosed) {
+  const std::string file = ball_tree();
+  const SphereTree tree = read_tree(file);
+  for (int level = 0; level <= 3; ++level) {
+    ist_well({"export", file, "--what", "voxels", "--level", std::to_string(level), "-o",
+              path("v.ply")});
+    const PlyFile ply = parse_ply(file_content(path("v.ply")));
+    EXPECT_EQ(ply.vertices.size(), 8u * tree.octree().node_count(level));
+    const auto place = [&](std::uint32_t vertex) {
+      const auto& v = ply.vertices.at(vertex);
+      return std::array<float, 3>{v.at("x"), v.at("y"), v.at("z")};
+    };
+    // How often each edge runs forward, less how often back; and the volume under the faces.
+    std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, std::pair<int, int>> edges;
+    std::set<std::set<std::array<float, 3>>> places;
+    double volume = 0;
+    for (const auto& face : ply.faces) {
+      ASSERT_EQ(face.size(), 4u);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto a = place(face[i]), b = place(face[(i + 1) % 4]);
+        ASSERT_NE(a, b);
+        auto& [uses, turn] = edges[std::minmax(a, b)];
+        ++uses;
+        turn += a < b ? 1 : -1;
+      }
+      EXPECT_TRUE(
+          places.insert({place(face[0]), place(face[1]), place(face[2]), place(face[3])}).second)
+          << "a face between two voxels";
+      const auto p = place(face[0]), q = place(face[1]), r = place(face[2]);
+      const Eigen::Vector3d a(p[0], p[1], p[2]), b(q[0], q[1], q[2]), c(r[0], r[1], r[2]);
+      volume += a.dot((b - a).cross(c - a)) / 3;
+    }
+    for (const auto& [edge, count] : edges) {
+      EXPECT_EQ(count.first % 2, 0);
+      EXPECT_EQ(count.second, 0);
+    }
+    const double cube = std::pow(std::ldexp(0.5, level), 3);
+    EXPECT_NEAR(volume, cube * tree.octree().node_count(level), 1e-4) << "faces turn outward";
+  }
+}
+
+TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
+  const CommandResult result =
+      ist_well({"demo", "--voxel-size", "3", "--json", "--keep", dir_.path()});
+  EXPECT_EQ(result.err, "");
+  const auto lines = json_lines(result.out);
+  EXPECT_EQ(lines.size(), 21u);  // three policies, seven displacements
+  for (const json& line : lines) {
+    for (const char* key : {"voxel_size", "spheres", "engine", "displacement", "contacts",
+                            "sphere_tests", "microseconds_median", "hertz"}) {
+      EXPECT_TRUE(line.contains(key)) << key;
+    }
+    EXPECT_EQ(line["voxel_size"], 3);
+    EXPECT_TRUE(line["displacement"] != 0 || line["contacts"] > 0);
+  }
+  EXPECT_EQ(dir_.entries(), 2u);
+
+  // What it keeps are meshes for the other subcommands.
+  const std::string upper = path("upper_jaw.stl"), lower = path("lower_jaw.stl");
+  const CommandResult built =
+      ist_well({"build", upper, "-o", path("upper.ist"), "--voxel-size", "2"});
+  EXPECT_EQ(built.err, "");
+  const CommandResult closed =
+      ist_well({"close", path("upper.ist"), lower, "--voxel-size", "2", "--axis", "z", "--from",
+                "-12", "--to", "0", "--step", "3", "--json"});
+  EXPECT_EQ(closed.err, "");
+  const auto path_lines = json_lines(closed.out);
+  ASSERT_EQ(path_lines.size(), 5u);
+  EXPECT_EQ(path_lines.front()["colliding"], false);
+  EXPECT_EQ(path_lines.back()["colliding"], true);
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,121 @@
+#include "cli/cli_case.h"
+#include "support/data_dir.h"
+#include "support/shapes.h"
+#include "support/skip.h"
+
+namespace ist::test {
+namespace {
+
+class Input : public CliTest {
+ protected:
+  // What a file does wrong: exit code 3, the file's name, what is wrong, and nothing written.
+  void refuses(const std::vector<std::string>& arguments, const std::string& file,
+               const std::string& part) const {
+    const std::size_t before = dir_.entries();
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, file + ": "));
+    EXPECT_TRUE(says(result.err, part));
+    EXPECT_EQ(dir_.entries(), before);
+  }
+};
+
+TEST_F(Input, MeshesThatAreNone) {
+  const std::string out = path("out.ist"), list = poses({0}), good = ball();
+  const std::pair<std::string, std::string> bad[] = {
+      {path("none.stl"), "check"},
+      {dir_.path(), "folder"},
+      {write("empty.stl", ""), "empty"},
+      {write("text.txt", "what it is, nobody knows\n"), "STL"},
+      {write("cut.stl", file_content(good).substr(0, 1000)), "1000"}};
+  for (const auto& [file, part] : bad) {
+    refuses({"build", file, "-o", out, "--voxel-size", "0.5"}, file, part);
+    refuses({"info", file}, file, "");
+    refuses({"collide", file, good, "--voxel-size", "0.5", "--poses", list}, file, "");
+    refuses({"collide", good, file, "--voxel-size", "0.5", "--poses", list}, file, "");
+    refuses({"export", file, "--what", "voxels", "--level", "0", "-o", out}, file, "");
+  }
+  refuses({"export", good, "--what", "voxels", "--level", "0", "-o", out}, good, "ist build");
+}
+
+TEST_F(Input, TreesThatAreBroken) {
+  const std::string tree = file_content(ball_tree()), list = poses({0}), good = ball();
+  std::string flipped = tree;
+  flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
+  for (const std::string& file :
+       {write("cut.ist", tree.substr(0, tree.size() - 1)), write("longer.ist", tree + "x"),
+        write("head.ist", tree.substr(0, 12)), write("flipped.ist", flipped)}) {
+    refuses({"info", file}, file, "build");
+    refuses({"collide", file, good, "--voxel-size", "0.5", "--poses", list}, file, "build");
+  }
+}
+
+TEST_F(Input, PosesThatAreNone) {
+  const std::string mesh = ball();
+  const std::string good = R"({"pose":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";
+  const auto list = [](const std::string& items) { return "[" + items + "]"; };
+  const std::pair<std::string, std::string> bad[] = {
+      {"", "line 1, column 1"},
+      {"[\n {\"pose\": [1, 2,}\n]", "line 2, column 17"},
+      {"{}", "array of objects"},
+      {"17", "array of objects"},
+      {"[]", "array of objects"},
+      {list(good + ", 17"), "item 1"},
+      {list(good + R"(, {"place": 3})"), "item 1"},
+      {list(good + R"(, {"pose": 3})"), "item 1"},
+      {list(good + R"(, {"pose":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0]})"), "item 1"},
+      {list(good + R"(, {"pose":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1,0]})"), "item 1"},
+      {list(R"({"pose":["1",0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "item 0"},
+      {list(R"({"pose":[null,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "item 0"},
+      {list(R"({"pose":[NaN,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "line 1, column 11"},
+      {list(R"({"pose":[1e999,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "1e999"},
+      {list(good + R"(,{"pose":[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "item 1: not a rigid"},
+      {list(good + R"(,{"pose":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "mirror"},
+      {list(good + R"(,{"pose":[1,0,0,5, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "last row"}};
+  for (const auto& [text, part] : bad) {
+    SCOPED_TRACE(text);
+    const std::string file = write("bad.json", text);
+    refuses({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses", file}, file, part);
+  }
+  refuses({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses", path("none.json")},
+          path("none.json"), "No such file");
+}
+
+TEST_F(Input, WhatIsWrongWithAMeshIsAWarning) {
+  const std::string open = mesh("open.stl", open_strip(3));
+  const CommandResult built =
+      ist_well({"build", open, "-o", path("out.ist"), "--voxel-size", "0.5", "--json"});
+  EXPECT_TRUE(says(built.err, "warning: " + open));
+  const auto lines = json_lines(built.out);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_GT(lines[0]["warnings"].size(), 0u);
+  const CommandResult turned = ist_well({"build", mesh("turned.stl", inside_out(icosphere(1, 1))),
+                                         "-o", path("turned.ist"), "--voxel-size", "0.5"});
+  EXPECT_TRUE(says(turned.err, "inside out"));
+  const CommandResult good =
+      ist_well({"build", ball(), "-o", path("good.ist"), "--voxel-size", "0.5"});
+  EXPECT_EQ(good.err, "");
+}
+
+TEST_F(Input, BadAndDirtyFilesOfOthers) {
+  const auto folder = data_dir() / "bad_input";
+  if (!std::filesystem::exists(folder)) IST_SKIP(folder << " is not there");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    SCOPED_TRACE(entry.path());
+    const CommandResult result =
+        ist({"build", entry.path(), "-o", path("out.ist"), "--voxel-size", "1e9"});
+    EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 3) << result.exit_code << result.err;
+    EXPECT_EQ(exists("out.ist"), result.exit_code == 0);
+    EXPECT_EQ(dir_.entries(), result.exit_code == 0 ? 1u : 0u);
+    EXPECT_TRUE(result.exit_code == 0 || says(result.err, entry.path().string()));
+    std::filesystem::remove(path("out.ist"));
+  }
+  EXPECT_GT(files, 0u);
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,190 @@
+#include "cli/cli_case.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+class Usage : public CliTest {
+ protected:
+  // What is no use of the command: says so, and does nothing.
+  void refuses(const std::vector<std::string>& arguments, const std::string& part) const {
+    std::string spelled = "ist";
+    for (const std::string& argument : arguments) spelled += " " + argument;
+    SCOPED_TRACE(spelled);
+    const std::size_t before = dir_.entries();
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, part));
+    EXPECT_EQ(result.err.rfind("ist: ", 0), 0u) << result.err;
+    EXPECT_EQ(dir_.entries(), before);
+  }
+};
+
+TEST_F(Usage, HelpTeaches) {
+  const CommandResult help = ist_well({"--help"});
+  EXPECT_TRUE(says(help.out, "ist demo"));
+  EXPECT_TRUE(says(help.out, "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file"));
+  EXPECT_EQ(help.err, "");
+  const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
+      {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
+      {"build",
+       {"MESH", "--output", "--voxel-size", "--spheres", "--exact", "--classes", "--max-memory",
+        "--json", "Example: ist build"}},
+      {"info", {"FILE", "--json"}},
+      {"export", {"TREE", "--what", "--level", "--spheres", "--output", "Example: ist export"}},
+      {"collide",
+       {"FIXED", "MOVING", "--poses", "column-major", "--voxel-size", "--spheres", "--engine",
+        "--repeat", "--contacts", "--json", "Example: ist collide"}},
+      {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}}};
+  for (const auto& [command, parts] : taught) {
+    EXPECT_TRUE(says(help.out, "\n  " + command));
+    const CommandResult result = ist_well({command, "--help"});
+    EXPECT_TRUE(says(result.out, "Usage: ist " + command));
+    for (const std::string& part : parts) EXPECT_TRUE(says(result.out, part)) << command;
+    EXPECT_EQ(result.err, "");
+  }
+}
+
+TEST_F(Usage, Version) {
+  const CommandResult result = ist_well({"--version"});
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '.'), 2) << result.out;
+  EXPECT_EQ(result.out.find_first_not_of("0123456789.\n"), std::string::npos) << result.out;
+}
+
+TEST_F(Usage, SubcommandsAndFlagsThatAreNotThere) {
+  refuses({}, "subcommand is required");
+  refuses({"nonsense"}, "nonsense: no such subcommand");
+  refuses({"--nonsense"}, "--nonsense: no such");
+  for (const char* command : {"demo", "build", "info", "export", "collide", "close"}) {
+    const CommandResult result = ist({command, "--nonsense", "1"});
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, "--help"));
+  }
+  refuses({"info", ball(), "--nonsense"}, "--nonsense");
+  refuses({"info", ball(), "more"}, "more");
+}
+
+TEST_F(Usage, VoxelSizes) {
+  const std::string mesh = ball(), tree = path("out.ist"), list = poses({0});
+  const std::pair<const char*, const char*> bad[] = {{"0", "positive"},
+                                                     {"-1", "positive"},
+                                                     {"nan", "positive"},
+                                                     {"inf", "positive"},
+                                                     {"1e-9", "smallest size for this mesh is"},
+                                                     {"x", "--voxel-size"}};
+  for (const auto& [size, part] : bad) {
+    refuses({"build", mesh, "-o", tree, "--voxel-size", size}, part);
+    refuses({"collide", mesh, mesh, "--poses", list, "--voxel-size", size}, part);
+  }
+  refuses({"build", mesh, "-o", tree}, "--voxel-size");
+  for (const char* size : {"0", "-3", "nan", "inf", "3,0", "x"}) {
+    refuses({"demo", "--voxel-size", size}, "--voxel-size");
+  }
+}
+
+TEST_F(Usage, OptionsOfBuild) {
+  const std::string mesh = ball(), tree = path("out.ist");
+  const auto refuses_with = [&](const std::string& flag, const std::string& value,
+                                const std::string& part) {
+    refuses({"build", mesh, "-o", tree, "--voxel-size", "0.5", flag, value}, part);
+  };
+  refuses({"build", mesh, "--voxel-size", "0.5"}, "--output");
+  refuses_with("--classes", "nonsense", "surface,proximity");
+  refuses_with("--classes", "surface,nonsense", "nonsense");
+  refuses_with("--spheres", "cubes", "simple,table,tight");
+  refuses_with("--max-memory", "10", "allow more");
+  refuses_with("--max-memory", "-5", "positive");
+  refuses_with("--max-memory", "lots", "--max-memory");
+  // Under a limit that a coarser grid would keep, it is named.
+  refuses({"build", mesh, "-o", tree, "--voxel-size", "0.001", "--max-memory", "1M"},
+          "use a voxel size of");
+}
+
+TEST_F(Usage, OptionsOfQueries) {
+  const std::string mesh = ball(), list = poses({0});
+  const auto refuses_with = [&](const std::string& flag, const std::string& value,
+                                const std::string& part) {
+    refuses({"collide", mesh, mesh, "--poses", list, "--voxel-size", "0.5", flag, value}, part);
+  };
+  refuses_with("--repeat", "0", "1 to");
+  refuses_with("--repeat", "-1", "1 to");
+  refuses_with("--repeat", "1.5", "--repeat");
+  refuses_with("--engine", "nonsense", "reference");
+  refuses_with("--spheres", "nonsense", "simple,table,tight");
+  refuses({"collide", mesh, mesh, "--voxel-size", "0.5"}, "--poses");
+  refuses({"collide", mesh, "--poses", list, "--voxel-size", "0.5"}, "MOVING");
+}
+
+TEST_F(Usage, OptionsOfClose) {
+  const std::string mesh = ball();
+  const auto refuses_with = [&](const std::string& axis, const std::string& from,
+                                const std::string& to, const std::string& step,
+                                const std::string& part) {
+    refuses({"close", mesh, mesh, "--voxel-size", "0.5", "--axis", axis, "--from", from, "--to", to,
+             "--step", step},
+            part);
+  };
+  refuses_with("w", "0", "1", "0.1", "x,y,z");
+  refuses_with("xy", "0", "1", "0.1", "x,y,z");
+  for (const char* step : {"0", "-0.1", "nan", "1e-9", "1e-320"}) {
+    refuses_with("x", "0", "1", step, "--step");
+  }
+  refuses_with("x", "nan", "1", "0.1", "finite");
+  refuses_with("x", "0", "inf", "0.1", "finite");
+  refuses_with("x", "-1e308", "1e308", "1", "--step");
+}
+
+TEST_F(Usage, OptionsOfExport) {
+  const std::string tree = ball_tree(), out = path("out.ply");
+  refuses({"export", tree, "--what", "else", "--level", "0", "-o", out}, "voxels,spheres");
+  refuses({"export", tree, "--what", "voxels", "--level", "9", "-o", out}, "levels 0 to 3");
+  refuses({"export", tree, "--what", "voxels", "--level", "99", "-o", out}, "--level");
+  refuses({"export", tree, "--what", "voxels", "--level", "-1", "-o", out}, "--level");
+  refuses({"export", tree, "--what", "voxels", "--level", "0", "--spheres", "table", "-o", out},
+          "goes with --what spheres");
+  refuses({"export", tree, "--what", "voxels", "-o", out}, "--level");
+  refuses({"export", ball_tree("plain.ist", "table"), "--what", "spheres", "--level", "0",
+           "--spheres", "tight", "-o", out},
+          "build it with --spheres tight");
+}
+
+TEST_F(Usage, OptionsOfDemo) {
+  refuses({"demo", "--keep", path("none")}, "none");
+  refuses({"demo", "--seed", "-1"}, "--seed");
+}
+
+// The voxel size is for meshes: needed where there is one, refused where there is none.
+TEST_F(Usage, VoxelSizeGoesWithMeshes) {
+  const std::string mesh = ball(), tree = ball_tree(), list = poses({0});
+  refuses({"collide", mesh, mesh, "--poses", list}, "ball.stl is a mesh");
+  refuses({"collide", tree, mesh, "--poses", list}, "ball.stl is a mesh");
+  refuses({"collide", mesh, tree, "--poses", list}, "ball.stl is a mesh");
+  refuses({"collide", tree, tree, "--poses", list, "--voxel-size", "0.5"}, "both bodies are trees");
+  const auto sizes = [&](const std::string& fixed, const std::string& moving) {
+    const auto result =
+        ist_well({"collide", fixed, moving, "--poses", list, "--voxel-size", "0.25", "--json"});
+    return json_lines(result.out).at(0)["voxel_size"];
+  };
+  EXPECT_EQ(sizes(tree, mesh), (nlohmann::json{0.5, 0.25}));
+  EXPECT_EQ(sizes(mesh, tree), (nlohmann::json{0.25, 0.5}));
+  EXPECT_EQ(sizes(mesh, mesh), (nlohmann::json{0.25, 0.25}));
+}
+
+TEST_F(Usage, SpheresThatATreeDoesNotHave) {
+  const std::string tight = ball_tree(), plain = ball_tree("plain.ist", "table");
+  const std::string list = poses({0});
+  refuses({"collide", tight, plain, "--poses", list, "--spheres", "tight"},
+          "plain.ist: the tree holds no tight spheres: build it with --spheres tight");
+  const auto spheres = [&](const std::string& fixed, const std::string& moving) {
+    const auto result = ist_well({"collide", fixed, moving, "--poses", list, "--json"});
+    return json_lines(result.out).at(0)["spheres"];
+  };
+  EXPECT_EQ(spheres(tight, tight), "tight");
+  EXPECT_EQ(spheres(tight, plain), "table");
+  EXPECT_EQ(spheres(plain, tight), "table");
+}
+
+}  // namespace
+}  // namespace ist::test

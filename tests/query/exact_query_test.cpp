@@ -1,0 +1,143 @@
+#include "support/exact_query.h"
+
+#include <gtest/gtest.h>
+
+#include "query/query_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+ExactPolygon polygon(std::initializer_list<std::array<double, 3>> corners) {
+  ExactPolygon result;
+  for (const auto& [x, y, z] : corners) {
+    result.push_back({mpq_class(x), mpq_class(y), mpq_class(z)});
+  }
+  return result;
+}
+
+bool meet(const ExactPolygon& a, const ExactPolygon& b) {
+  EXPECT_EQ(polygons_meet(a, b), polygons_meet(b, a));
+  return polygons_meet(a, b);
+}
+
+TEST(ExactPolygons, TouchingCountsAndTheLeastGapDoesNot) {
+  const auto floor = polygon({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}});
+  EXPECT_TRUE(meet(floor, polygon({{1, 1, -1}, {1, 1, 1}, {1, 2, 1}})));            // through
+  EXPECT_TRUE(meet(floor, polygon({{1, 1, 0}, {1, 1, 1}, {1, 2, 1}})));             // corner in
+  EXPECT_TRUE(meet(floor, polygon({{2, 2, 0}, {2, 2, 1}, {3, 3, 1}})));             // on edge
+  EXPECT_TRUE(meet(floor, polygon({{4, 0, 0}, {5, 0, 1}, {5, 1, 1}})));             // corners
+  EXPECT_FALSE(meet(floor, polygon({{1, 1, 0x1p-900}, {1, 1, 1}, {1, 2, 1}})));     // above
+  EXPECT_FALSE(meet(floor, polygon({{2, 2 + 0x1p-50, 0}, {2, 3, 1}, {3, 3, 1}})));  // beside
+  EXPECT_FALSE(meet(floor, polygon({{-0x1p-900, 0, 0}, {-1, 0, 1}, {-1, 1, 0}})));
+}
+
+TEST(ExactPolygons, InOnePlane) {
+  const auto floor = polygon({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}});
+  EXPECT_TRUE(meet(floor, polygon({{1, 1, 0}, {1.5, 1, 0}, {1, 1.5, 0}})));  // inside
+  EXPECT_TRUE(meet(floor, polygon({{2, 2, 0}, {4, 4, 0}, {2, 4, 0}})));      // by a corner
+  EXPECT_TRUE(meet(floor, polygon({{1, 0, 0}, {2, -1, 0}, {3, 0, 0}})));     // by an edge
+  EXPECT_FALSE(meet(floor, polygon({{3, 3, 0}, {4, 4, 0}, {3, 4, 0}})));
+}
+
+TEST(ExactPolygons, FlatToSegmentsAndPoints) {
+  const auto floor = polygon({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}});
+  const auto segment = polygon({{1, 1, -1}, {1, 1, 1}, {1, 1, 0}});
+  const auto point = polygon({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}});
+  EXPECT_TRUE(meet(floor, segment));
+  EXPECT_TRUE(meet(floor, point));
+  EXPECT_TRUE(meet(segment, point));
+  EXPECT_TRUE(meet(point, point));
+  EXPECT_TRUE(meet(segment, polygon({{0, 1, 0.5}, {2, 1, 0.5}})));
+  EXPECT_TRUE(meet(segment, polygon({{1, 1, 1}, {1, 1, 3}})));
+  EXPECT_FALSE(meet(segment, polygon({{1, 1, 1.5}, {1, 1, 3}})));
+  EXPECT_FALSE(meet(segment, polygon({{0, 1.5, 0.5}, {2, 1.5, 0.5}})));
+  EXPECT_FALSE(meet(point, polygon({{1, 1, 0x1p-1000}})));
+  EXPECT_FALSE(meet(floor, {}));
+}
+
+TEST(ExactPolygons, ClippingKeepsWhatLiesOnTheBox) {
+  const ExactPoint low{0, 0, 0}, high{1, 1, 1};
+  const auto cut = clipped(polygon({{-1, 0.5, 1}, {3, 0.5, 1}, {1, 0.5, -1}}), low, high);
+  EXPECT_FALSE(cut.empty());
+  for (const ExactPoint& p : cut) {
+    for (const mpq_class& x : p) EXPECT_TRUE(x >= 0 && x <= 1);
+  }
+  EXPECT_EQ(clipped(polygon({{1, 1, 1}, {2, 1, 1}, {1, 2, 1}}), low, high).front(),
+            (ExactPoint{1, 1, 1}));
+  EXPECT_TRUE(clipped(polygon({{1 + 0x1p-52, 0, 0}, {2, 0, 0}, {2, 1, 0}}), low, high).empty());
+}
+
+// One voxel each, of edges 1 and 1: all that an oracle says of them is known.
+class OneVoxelPair : public ::testing::Test {
+ protected:
+  const TriangleMesh mesh_ = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 1});
+  const SphereTree tree_ = tree_of(mesh_, 1);
+  const ExactBody body_{mesh_, tree_};
+  [[nodiscard]] bool cubes_meet(const Eigen::Isometry3d& pose) const {
+    const ExactPair pair(body_, body_, pose);
+    const bool meets = pair.geometry_meets(SpherePolicy::kSimple, 0, 0);
+    EXPECT_EQ(meets, pair.geometry_meets(SpherePolicy::kTable, 0, 0));
+    return meets;
+  }
+};
+
+TEST_F(OneVoxelPair, CubesTouchByFaceEdgeAndCorner) {
+  for (const Eigen::Vector3d& at : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, -1),
+                                    Eigen::Vector3d(-1, 1, 1), Eigen::Vector3d(0.5, 1, 0)}) {
+    EXPECT_TRUE(cubes_meet(shift(at)));
+    EXPECT_FALSE(cubes_meet(shift(at * (1 + 0x1p-52))));
+  }
+}
+
+TEST_F(OneVoxelPair, CubesThatOnlyAnEdgeAxisSeparates) {
+  // Two edges cross at right angles: one cube turned about z, the other about x, by 3-4-5.
+  Eigen::Matrix3d about_z, about_x;
+  about_z << 0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1;
+  about_x << 1, 0, 0, 0, 0.6, -0.8, 0, 0.8, 0.6;
+  Random random(7);
+  int meeting = 0, apart = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Eigen::Isometry3d pose = pose_of(about_z * about_x, random.point(-1.5, 1.5));
+    // Against corners and edges sampled finely: a point in both cubes proves that they meet.
+    bool sampled = false;
+    for (int s = 0; s < 9 * 9 * 9 && !sampled; ++s) {
+      const Eigen::Vector3d p = pose * Eigen::Vector3d(s % 9 / 8.0, s / 9 % 9 / 8.0, s / 81 / 8.0);
+      sampled = p.minCoeff() >= 0 && p.maxCoeff() <= 1;
+    }
+    const bool meets = cubes_meet(pose);
+    EXPECT_TRUE(meets || !sampled);
+    (meets ? meeting : apart) += 1;
+  }
+  EXPECT_GT(meeting, 50);
+  EXPECT_GT(apart, 50);
+}
+
+TEST_F(OneVoxelPair, BoundsMeetToTheLastBit) {
+  const Eigen::Vector3d diagonal(1, 1, 1);  // √3 apart: circumspheres touch in a point
+  EXPECT_TRUE(ExactPair(body_, body_, shift(diagonal)).bounds_meet(SpherePolicy::kTable, 0, 0, 0));
+  const Eigen::Vector3d beyond(1, 1, 1 + 0x1p-50);
+  const ExactPair pair(body_, body_, shift(beyond));
+  EXPECT_FALSE(pair.bounds_meet(SpherePolicy::kTable, 0, 0, 0));
+  EXPECT_FALSE(pair.bounds_meet(SpherePolicy::kTable, 0, 0, 0x1p-51));
+  EXPECT_TRUE(pair.bounds_meet(SpherePolicy::kTable, 0, 0, 0x1p-50));
+  EXPECT_FALSE(
+      ExactPair(body_, body_, shift(diagonal)).bounds_meet(SpherePolicy::kTable, 0, 0, -0x1p-60));
+}
+
+TEST_F(OneVoxelPair, ThePromiseIsCheckedBothWays) {
+  const std::vector<Contact> none, one{{0, 0}}, twice{{0, 0}, {0, 0}}, strange{{0, 0}, {0, 1}};
+  for (const SpherePolicy policy : kPolicies) {
+    const ExactPair touching(body_, body_, Eigen::Isometry3d::Identity());
+    EXPECT_TRUE(keeps_promise(touching, policy, one, 0));
+    EXPECT_FALSE(keeps_promise(touching, policy, none, 0));
+    EXPECT_FALSE(keeps_promise(touching, policy, twice, 0));
+    EXPECT_FALSE(keeps_promise(touching, policy, strange, 0));
+    const ExactPair apart(body_, body_, shift({3, 0, 0}));
+    EXPECT_TRUE(keeps_promise(apart, policy, none, 0));
+    EXPECT_FALSE(keeps_promise(apart, policy, one, 0));
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

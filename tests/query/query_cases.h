@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "ist/mesh/triangle_mesh.h"
+#include "ist/query/contact.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist::test {
+
+inline constexpr SpherePolicy kPolicies[] = {SpherePolicy::kSimple, SpherePolicy::kTable,
+                                             SpherePolicy::kTight};
+
+/// Numbers from a seed, the same with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  /// In [low, high), a multiple of (high - low) / 2^32.
+  double uniform(double low, double high) {
+    return low + (high - low) * 0x1p-32 * static_cast<double>(engine_() >> 32);
+  }
+  /// Below `count`.
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+  Eigen::Vector3d point(double low, double high) {
+    const double x = uniform(low, high), y = uniform(low, high), z = uniform(low, high);
+    return {x, y, z};
+  }
+  Eigen::Vector3d direction();
+  Eigen::Matrix3d rotation();
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Small meshes of all kinds: spheres, boxes, soups, single triangles, slivers.
+[[nodiscard]] TriangleMesh random_mesh(Random& random);
+
+/// A tree of about `cells` voxels along the mesh's largest extent, with tight spheres.
+[[nodiscard]] SphereTree tree_of(const TriangleMesh& mesh, double cells);
+
+/// The 24 turns of the cube onto itself, exact in double.
+[[nodiscard]] std::vector<Eigen::Matrix3d> quarter_turns();
+
+[[nodiscard]] Eigen::Isometry3d pose_of(const Eigen::Matrix3d& rotation,
+                                        const Eigen::Vector3d& translation);
+[[nodiscard]] Eigen::Isometry3d shift(const Eigen::Vector3d& translation);
+
+/// An answer with all its contacts.
+struct Answer {
+  QueryResult result;
+  std::vector<Contact> contacts;
+};
+
+/// Asks any engine for all contacts of a pose.
+template <class Query>
+[[nodiscard]] Answer ask(Query& query, const Eigen::Isometry3d& pose) {
+  Answer answer{{}, std::vector<Contact>(1 << 12)};
+  answer.result = query.collide(pose, answer.contacts);
+  if (answer.result.truncated) {
+    answer.contacts.resize(answer.result.contacts);
+    answer.result = query.collide(pose, answer.contacts);
+  }
+  answer.contacts.resize(answer.result.contacts);
+  return answer;
+}
+
+/// The last double `t` in [from, to] at which `touches(t)`: true at `from` and false at `to`.
+template <class Touches>
+[[nodiscard]] double last_touching(double from, double to, const Touches& touches) {
+  while (true) {
+    const double middle = from + 0.5 * (to - from);
+    if (middle == from || middle == to) return from;
+    (touches(middle) ? from : to) = middle;
+  }
+}
+
+}  // namespace ist::test

@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ist/mesh/mesh_io.h"
+#include "ist/query/reference.h"
+#include "ist/tree/tree_builder.h"
+#include "query/query_cases.h"
+#include "support/data_dir.h"
+#include "support/skip.h"
+
+namespace ist::test {
+namespace {
+
+struct RealPair {
+  const char *name, *fixed, *moving;
+  double voxel_size;
+};
+
+class RealPairs : public ::testing::TestWithParam<RealPair> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Pairs, RealPairs,
+    ::testing::Values(RealPair{"human", "human_maxilla.stl", "human_mandible.stl", 0.4},
+                      RealPair{"spl", "spl_cranium_face.stl", "spl_mandible.stl", 0.5}),
+    [](const auto& pair) { return std::string(pair.param.name); });
+
+// Contacts wherever triangles meet, none where the surfaces are farther apart than the resolution.
+TEST_P(RealPairs, AgreeWithExactTriangles) {
+  const auto [name, fixed_file, moving_file, voxel_size] = GetParam();
+  const auto truth_file = data_dir() / (std::string("truth_") + name + ".json");
+  if (!std::filesystem::exists(truth_file)) IST_SKIP(truth_file << " is not there");
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(truth_file));
+  ASSERT_EQ(truth.size(), 12u);
+
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
+  const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
+  std::vector<Contact> contacts(1 << 18);
+  for (const SpherePolicy policy : kPolicies) {
+    ReferenceQuery query(fixed, moving, policy);
+    int free = 0;
+    for (const nlohmann::json& item : truth) {
+      SCOPED_TRACE(std::string(to_string(policy)) + ", " + item["label"].get<std::string>());
+      const auto numbers = item["pose"].get<std::vector<double>>();
+      Eigen::Isometry3d pose;
+      std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+      const QueryResult result = query.collide(pose, contacts);
+      EXPECT_EQ(result.status, QueryStatus::kDone);
+      EXPECT_FALSE(result.truncated);
+      EXPECT_TRUE(result.contacts > 0 || item["triangle_pairs"] == 0);
+      EXPECT_TRUE(result.contacts == 0 || item["distance"] <= query.resolution(result));
+      free += result.contacts == 0;
+    }
+    EXPECT_GE(free, 1);
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace ist::test {
+
+/// The most bytes that any one `new` asks for while `action` runs, on any thread. A program that
+/// calls this has its operator new replaced.
+[[nodiscard]] std::size_t largest_allocation(const std::function<void()>& action);
+
+}  // namespace ist::test

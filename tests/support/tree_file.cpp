@@ -1,0 +1,61 @@
+#include "support/tree_file.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <stdexcept>
+
+#include "ist/tree/tree_io.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+
+TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
+  const auto octree = [](std::size_t at, const LinearOctree& of, std::size_t& of_leaves,
+                         std::size_t& of_masks) {
+    of_leaves = at + 4 * static_cast<std::size_t>(of.depth());
+    of_masks = of_leaves + 4;
+    return of_masks + of.node_count() - of.leaf_count();
+  };
+  const std::size_t leaf_count = tree.octree().leaf_count();
+  normals = octree(kNodes, tree.octree(), leaves, masks);
+  tight = normals + 4 * leaf_count;
+  counts = tight + 16 * tree.octree().node_count();
+  vertices = counts + 24;
+  const auto& [mesh, lists] = *tree.triangles();
+  triangles = vertices + 24 * mesh.vertices.size();
+  list_begins = triangles + 12 * mesh.triangles.size();
+  list_ids = list_begins + 4 * (leaf_count + 1);
+  proximity_depth = list_ids + 4 * lists.ids.size();
+  proximity_nodes = proximity_depth + 4;
+  const std::size_t end =
+      octree(proximity_nodes, tree.proximity()->octree, proximity_leaves, proximity_masks);
+  if (end != bytes.size()) throw std::logic_error("the file is not as its format is described");
+}
+
+void TreeFile::seal() {
+  put<std::uint64_t>(kBytes, bytes.size());
+  put<std::uint64_t>(kChecksum, XXH3_64bits(bytes.data() + kBody, bytes.size() - kBody));
+}
+
+std::string file_of(const SphereTree& tree) {
+  const TempDir folder;
+  const auto file = folder.path() / "tree.ist";
+  write_tree(tree, file);
+  return file_content(file);
+}
+
+// A file in memory: thousands of files on a disk would be waited for.
+SphereTree tree_of_bytes(const std::string& bytes) {
+  struct Descriptor {
+    int number = ::memfd_create("tree", MFD_CLOEXEC);
+    ~Descriptor() { ::close(number); }
+  } const file;
+  if (::write(file.number, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("cannot write a file in memory");
+  }
+  return read_tree("/proc/self/fd/" + std::to_string(file.number));
+}
+
+}  // namespace ist::test

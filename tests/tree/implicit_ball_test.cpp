@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/sphere_policy.h"
+#include "support/exact.h"
+#include "support/seeded.h"
+
+namespace ist {
+namespace {
+
+using test::ExactBox;
+using test::ExactPoint;
+
+Lattice lattice_of(int depth, double voxel_size) {
+  Lattice lattice;
+  lattice.depth = depth;
+  lattice.cells = 1u << std::min(depth, 16);
+  lattice.voxel_size = voxel_size;
+  return lattice;
+}
+
+// The corners of what a ball must hold: the node's cube, or those of its children.
+std::vector<ExactPoint> corners_to_hold(const Lattice& lattice, SpherePolicy policy, int level,
+                                        std::uint64_t code, unsigned mask) {
+  std::vector<ExactBox> cubes;
+  if (level == 0 || policy == SpherePolicy::kSimple) {
+    cubes.push_back(test::node_cube(lattice, level, code));
+  } else {
+    for (std::uint64_t child = 0; child < 8; ++child) {
+      if ((mask >> child & 1) != 0) {
+        cubes.push_back(test::node_cube(lattice, level - 1, code * 8 + child));
+      }
+    }
+  }
+  std::vector<ExactPoint> corners;
+  const ExactPoint origin = test::frame_origin(lattice);
+  for (const ExactBox& cube : cubes) {
+    for (int corner = 0; corner < 8; ++corner) {
+      ExactPoint p;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        p[axis] = ((corner >> axis & 1) != 0 ? cube.high[axis] : cube.low[axis]) - origin[axis];
+      }
+      corners.push_back(p);
+    }
+  }
+  return corners;
+}
+
+// Holds the cubes and is the smallest that does, but for `slack`.
+void expect_the_smallest_ball(const Lattice& lattice, SpherePolicy policy, int level,
+                              std::uint64_t code, std::uint8_t mask, double slack) {
+  const Ball ball = implicit_ball(policy, lattice, level, cube_centre(lattice, level, code), mask);
+  const auto corners = corners_to_hold(lattice, policy, level, code, mask);
+  const ExactPoint centre = test::exact(ball.centre);
+  const mpq_class enough = mpq_class(ball.radius) + mpq_class(slack);
+  for (const ExactPoint& corner : corners) {
+    EXPECT_LE(test::square(corner - centre), enough * enough) << level << ' ' << int{mask};
+  }
+  const double smallest = std::sqrt(test::smallest_ball(corners).radius_squared.get_d());
+  EXPECT_LE(ball.radius, smallest * (1 + 4e-16) + slack);
+}
+
+// A power of two rounds nothing; thirds of a half edge do, where the table's centres have them.
+TEST(ImplicitBall, HoldsTheCubesExactlyWhereTheVoxelSizeIsAPowerOfTwo) {
+  const Lattice lattice = lattice_of(10, 0.25);
+  test::Seeded seeded(1);
+  for (int i = 0; i < 200; ++i) {
+    const int level = static_cast<int>(seeded.below(11));
+    const std::uint64_t code = seeded.bits() % (std::uint64_t{1} << 3 * (10 - level));
+    expect_the_smallest_ball(lattice, SpherePolicy::kSimple, level, code, 255, 0);
+    const unsigned octant = seeded.below(8);
+    const auto one = static_cast<std::uint8_t>(1u << octant);
+    expect_the_smallest_ball(lattice, SpherePolicy::kTable, level, code, one, 1e-15 * 512);
+  }
+}
+
+TEST(ImplicitBall, OfEveryMaskIsTheSmallestRoundTheChildrensCubes) {
+  const Lattice lattice = lattice_of(3, 0.2);
+  const double slack = 0x1p-51 * lattice.edge(3);
+  for (unsigned mask = 1; mask < 256; ++mask) {
+    for (int level = 1; level <= 3; ++level) {
+      const std::uint64_t code = (mask * 73) % (std::uint64_t{1} << 3 * (3 - level));
+      expect_the_smallest_ball(lattice, SpherePolicy::kTable, level, code,
+                               static_cast<std::uint8_t>(mask), slack);
+    }
+  }
+}
+
+TEST(ImplicitBall, HoldsTheCubesToARoundingOfTheGridsExtentAtAnySize) {
+  test::Seeded seeded(2);
+  for (int i = 0; i < 300; ++i) {
+    const int depth = static_cast<int>(seeded.below(17));
+    const Lattice lattice = lattice_of(
+        depth, std::ldexp(seeded.between(0.5, 1), static_cast<int>(seeded.below(40)) - 20));
+    const int level = static_cast<int>(seeded.below(static_cast<std::uint32_t>(depth) + 1));
+    const std::uint64_t code = seeded.bits() % (std::uint64_t{1} << 3 * (depth - level));
+    const auto mask = static_cast<std::uint8_t>(1 + seeded.below(255));
+    const double slack = 0x1p-51 * lattice.edge(depth);
+    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
+      expect_the_smallest_ball(lattice, policy, level, code, mask, slack);
+    }
+  }
+}
+
+TEST(ImplicitBall, OfALeafIsTheCircumsphereWhateverTheMask) {
+  const Lattice lattice = lattice_of(2, 1);
+  for (const std::uint8_t mask : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{255}}) {
+    const Ball ball =
+        implicit_ball(SpherePolicy::kTable, lattice, 0, cube_centre(lattice, 0, 5), mask);
+    EXPECT_EQ(ball.radius, 0.5 * kSqrt3);
+    EXPECT_EQ(ball.centre, Eigen::Vector3d(-0.5, -1.5, -0.5));
+  }
+}
+
+TEST(SpherePolicy, HasNamesThatComeBack) {
+  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+    EXPECT_EQ(sphere_policy(to_string(policy)), policy);
+    EXPECT_EQ(is_implicit(policy), policy != SpherePolicy::kTight);
+  }
+  EXPECT_EQ(sphere_policy("Tight"), std::nullopt);
+  EXPECT_EQ(sphere_policy(""), std::nullopt);
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,118 @@
+#include "ist/tree/linear_octree.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+
+#include "support/seeded.h"
+
+namespace ist {
+namespace {
+
+using Codes = std::vector<std::uint64_t>;
+using Masks = std::vector<std::vector<std::uint8_t>>;
+
+Codes random_codes(test::Seeded& seeded, int depth, std::size_t count) {
+  std::set<std::uint64_t> codes;
+  const std::uint64_t end = std::uint64_t{1} << 3 * depth;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t code = seeded.bits() % end;
+    codes.insert({code, code ^ seeded.below(64) % end});  // siblings and cousins too
+  }
+  return {codes.begin(), codes.end()};
+}
+
+Masks masks_of(const LinearOctree& octree) {
+  Masks masks;
+  for (int level = 1; level <= octree.depth(); ++level) {
+    masks.emplace_back(octree.masks(level).begin(), octree.masks(level).end());
+  }
+  return masks;
+}
+
+void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int depth) {
+  ASSERT_EQ(octree.depth(), depth);
+  EXPECT_EQ(octree.leaf_count(), leaves.size());
+  std::set<std::uint64_t> below(leaves.begin(), leaves.end());
+  EXPECT_EQ(octree.codes(0), leaves);
+  std::uint64_t nodes = leaves.size();
+  for (int level = 1; level <= depth; ++level) {
+    std::set<std::uint64_t> parents;
+    for (const std::uint64_t code : below) parents.insert(code / 8);
+    ASSERT_EQ(octree.node_count(level), parents.size());
+    ASSERT_EQ(octree.masks(level).size(), parents.size());
+    ASSERT_EQ(octree.codes(level), Codes(parents.begin(), parents.end()));
+    std::uint32_t node = 0;
+    for (const std::uint64_t parent : parents) {
+      const auto first = below.lower_bound(parent * 8), end = below.lower_bound(parent * 8 + 8);
+      unsigned mask = 0;
+      for (auto child = first; child != end; ++child) mask |= 1u << (*child - parent * 8);
+      ASSERT_EQ(octree.mask(level, node), mask);
+      ASSERT_EQ(octree.first_child(level, node), std::distance(below.begin(), first));
+      ++node;
+    }
+    nodes += parents.size();
+    below = parents;
+  }
+  EXPECT_EQ(below, std::set<std::uint64_t>{0});
+  EXPECT_EQ(octree.node_count(), nodes);
+}
+
+TEST(LinearOctree, HasTheParentsOfItsLeavesAndNoOthers) {
+  test::Seeded seeded(1);
+  for (int depth = 1; depth <= 17; ++depth) {
+    for (const std::size_t count : {1u, 10u, 300u}) {
+      const Codes leaves = random_codes(seeded, depth, count);
+      expect_the_tree_of(LinearOctree(leaves, depth), leaves, depth);
+    }
+  }
+}
+
+TEST(LinearOctree, OfOneVoxelIsALeafAndNothingElse) {
+  const LinearOctree octree(Codes{0}, 0);
+  expect_the_tree_of(octree, {0}, 0);
+  expect_the_tree_of(LinearOctree(Masks{}), {0}, 0);
+  EXPECT_EQ(octree.node_count(), 1u);
+}
+
+TEST(LinearOctree, FullLevelsHaveAllCodes) {
+  Codes leaves(512);
+  for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = i;
+  expect_the_tree_of(LinearOctree(leaves, 3), leaves, 3);
+}
+
+TEST(LinearOctree, FollowsFromItsMasks) {
+  test::Seeded seeded(2);
+  for (int depth = 0; depth <= 16; ++depth) {
+    const Codes leaves = depth == 0 ? Codes{0} : random_codes(seeded, depth, 200);
+    const LinearOctree octree(leaves, depth);
+    const Masks masks = masks_of(octree);
+    ASSERT_TRUE(LinearOctree::is_tree(masks));
+    expect_the_tree_of(LinearOctree(masks), leaves, depth);
+  }
+}
+
+TEST(LinearOctree, MasksThatAreNoTreeAreKnown) {
+  const Masks masks{{0x81, 0x01, 0xFF}, {0x03, 0x10}, {0x05}};  // 11 leaves, then 3, 2, 1
+  ASSERT_TRUE(LinearOctree::is_tree(masks));
+  const auto is_tree_with = [&](auto change) {
+    Masks changed = masks;
+    change(changed);
+    return LinearOctree::is_tree(changed);
+  };
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[0][1] = 0; })) << "a leaf's parent without children";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[2][0] = 0; })) << "a root without children";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[1][0] = 0x07; })) << "more children than nodes";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[1][0] = 0x01; })) << "fewer children than nodes";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[0].push_back(1); })) << "a node without a parent";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[0].pop_back(); })) << "a node missing";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[2].push_back(1); })) << "two roots";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[2].clear(); })) << "no root";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m[1].clear(); })) << "an empty level";
+  EXPECT_FALSE(is_tree_with([](Masks& m) { m.pop_back(); })) << "no common root";
+  EXPECT_TRUE(is_tree_with([](Masks& m) { m[0][0] = 0x42; })) << "other leaves are another tree";
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,177 @@
+#include "ist/tree/sphere_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/tree_builder.h"
+#include "ist/tree/tree_statistics.h"
+#include "support/errors.h"
+#include "support/exact.h"
+#include "support/seeded.h"
+#include "support/shapes.h"
+
+namespace ist {
+namespace {
+
+constexpr SpherePolicy kPolicies[] = {SpherePolicy::kSimple, SpherePolicy::kTable,
+                                      SpherePolicy::kTight};
+
+TriangleMesh random_mesh(std::uint64_t seed, int triangles) {
+  test::Seeded seeded(seed);
+  TriangleMesh mesh;
+  for (int i = 0; i < triangles; ++i) {
+    mesh = test::joined(
+        mesh, test::triangle(seeded.point(-1, 1), seeded.point(-1, 1), seeded.point(-1, 1)));
+  }
+  return mesh;
+}
+
+SphereTree tree_of(const TriangleMesh& mesh, double voxel_size) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  return build_tree(mesh, options);
+}
+
+// |centre| + radius <= reach, in rationals.
+void expect_within_reach(const SphereTree& tree) {
+  for (const SpherePolicy policy : kPolicies) {
+    for (const auto& level : save_spheres(tree, policy)) {
+      for (const Ball& ball : level) {
+        const mpq_class room = mpq_class(tree.reach()) - mpq_class(ball.radius);
+        ASSERT_GE(room, 0);
+        ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << to_string(policy);
+      }
+    }
+  }
+}
+
+TEST(SphereTree, NoSphereReachesFartherThanItsReach) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    expect_within_reach(tree_of(random_mesh(seed, 5), 0.11));
+  }
+  expect_within_reach(tree_of(test::icosphere(2, 1), 0.1));
+  expect_within_reach(tree_of(test::icosphere(2, 1), 100));
+}
+
+// The balls of the table that stick out farthest: each mask at the root, and each at all levels.
+TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
+  for (const double voxel_size : {1.0, 0.3, 1e-7, 12345.678}) {
+    for (unsigned mask = 1; mask < 256; ++mask) {
+      for (const std::uint8_t below : {std::uint8_t{0x81}, static_cast<std::uint8_t>(mask)}) {
+        std::vector<std::vector<std::uint8_t>> masks(3);
+        std::size_t nodes = 1;
+        for (int level = 2; level >= 0; --level) {
+          auto& here = masks[static_cast<std::size_t>(level)];
+          here.assign(nodes, level == 2 ? static_cast<std::uint8_t>(mask) : below);
+          nodes = 0;
+          for (const std::uint8_t m : here) nodes += static_cast<unsigned>(std::popcount(m));
+        }
+        SphereTree::Parts parts{Lattice{{0, 0, 0}, voxel_size, 8, 3},
+                                LinearOctree(masks),
+                                Orientation::kOutward,
+                                std::vector<PackedNormal>(nodes),
+                                {},
+                                std::nullopt,
+                                std::nullopt};
+        const SphereTree tree(std::move(parts));
+        for (const auto& ball : level_spheres(tree, SpherePolicy::kTable, 3)) {
+          const mpq_class room = mpq_class(tree.reach()) - mpq_class(ball.radius);
+          ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << mask;
+        }
+        for (const auto& ball : level_spheres(tree, SpherePolicy::kSimple, 0)) {
+          ASSERT_LE(ball.centre.norm() + ball.radius, tree.reach() * (1 + 1e-15)) << mask;
+        }
+      }
+    }
+  }
+}
+
+TEST(SphereTree, ItsLargestLeafRadiusIsThat) {
+  const SphereTree tree = tree_of(test::icosphere(2, 1), 0.1);
+  for (const SpherePolicy policy : kPolicies) {
+    double largest = 0;
+    for (const Ball& ball : level_spheres(tree, policy, 0))
+      largest = std::max(largest, ball.radius);
+    EXPECT_EQ(tree.largest_leaf_radius(policy), largest) << to_string(policy);
+  }
+}
+
+TEST(SphereTree, OfOneVoxelIsOneSphereAPolicy) {
+  for (const TriangleMesh& mesh :
+       {test::icosphere(1, 1), test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+        test::triangle({0, 0, 0}, {1, 2, 3}, {0, 0, 0})}) {
+    BuildOptions options;
+    options.voxel_size = 5;
+    options.keep_triangles = true;
+    const SphereTree tree = build_tree(mesh, options);
+    EXPECT_EQ(tree.depth(), 0);
+    EXPECT_EQ(tree.octree().node_count(), 1u);
+    EXPECT_EQ(tree.triangles()->lists.ids.size(), mesh.triangles.size());
+    expect_within_reach(tree);
+    for (const SpherePolicy policy : kPolicies) {
+      const SavedSpheres saved = save_spheres(tree, policy);
+      ASSERT_EQ(saved.size(), 1u);
+      ASSERT_EQ(saved[0].size(), 1u);
+    }
+    EXPECT_EQ(tree.ball(SpherePolicy::kTable, 0, 0, {0, 0, 0}).radius, 2.5 * kSqrt3);
+    EXPECT_EQ(level_statistics(tree).size(), 1u);
+  }
+}
+
+TEST(SphereTree, APowerOfTwoScalesEverythingExactly) {
+  const TriangleMesh mesh = random_mesh(4, 10);
+  const SphereTree tree = tree_of(mesh, 0.17);
+  for (int k = -35; k <= 40; k += 25) {
+    const double factor = std::ldexp(1.0, k);
+    TriangleMesh scaled = mesh;
+    for (Eigen::Vector3d& vertex : scaled.vertices) vertex *= factor;
+    const SphereTree other = tree_of(scaled, 0.17 * factor);
+    ASSERT_EQ(other.octree().codes(0), tree.octree().codes(0));
+    EXPECT_EQ(other.reach(), tree.reach() * factor);
+    for (const SpherePolicy policy : kPolicies) {
+      const SavedSpheres a = save_spheres(tree, policy), b = save_spheres(other, policy);
+      for (std::size_t level = 0; level < a.size(); ++level) {
+        for (std::size_t node = 0; node < a[level].size(); ++node) {
+          ASSERT_EQ(b[level][node].centre, factor * a[level][node].centre);
+          ASSERT_EQ(b[level][node].radius, factor * a[level][node].radius);
+        }
+      }
+    }
+  }
+}
+
+TEST(SphereTree, SpheresThatItLacksAreNamedWithTheRemedy) {
+  BuildOptions options;
+  options.voxel_size = 0.3;
+  options.spheres = SpherePolicy::kTable;
+  const SphereTree tree = build_tree(test::icosphere(1, 1), options);
+  EXPECT_FALSE(tree.has(SpherePolicy::kTight));
+  EXPECT_NO_THROW(tree.require(SpherePolicy::kSimple, "upper"));
+  EXPECT_NO_THROW(tree.require(SpherePolicy::kTable, "upper"));
+  const auto error = test::error_of([&] { tree.require(SpherePolicy::kTight, "upper"); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
+  EXPECT_NE(std::string(error->what()).find("upper"), std::string::npos);
+}
+
+TEST(TreeStatistics, AddUpWhatTheLevelsHold) {
+  const SphereTree tree = tree_of(test::icosphere(2, 1), 0.1);
+  const auto levels = level_statistics(tree);
+  ASSERT_EQ(levels.size(), static_cast<std::size_t>(tree.depth()) + 1);
+  for (const LevelStatistics& level : levels) {
+    EXPECT_EQ(level.nodes, tree.octree().node_count(level.level));
+    EXPECT_EQ(level.edge, 0.1 * (1 << level.level));
+    ASSERT_EQ(level.spheres.size(), 3u);
+    // The circumsphere of a cube of edge e: (√3/2) π e³.
+    const double cube_ball = unit_ball_volume(level.edge);
+    EXPECT_NEAR(level.spheres[0].volume, cube_ball * level.nodes, 1e-9 * cube_ball * level.nodes);
+    EXPECT_LE(level.spheres[1].volume, level.spheres[0].volume * (1 + 1e-12));
+  }
+  EXPECT_NEAR(unit_ball_volume(2), 8 * 2.720699046351327, 1e-12);
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,221 @@
+// Damaged tree files: whatever is wrong with one, reading it ends in an ist::Error.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "ist/tree/tree_builder.h"
+#include "support/errors.h"
+#include "support/largest_allocation.h"
+#include "support/shapes.h"
+#include "support/tree_file.h"
+
+namespace ist {
+namespace {
+
+using test::TreeFile;
+
+const SphereTree& small_tree() {
+  static const SphereTree tree = [] {
+    BuildOptions options;
+    options.voxel_size = 0.7;
+    options.keep_triangles = true;
+    options.proximity = true;
+    return build_tree(test::box({0, 0, 0}, {2, 1, 1}), options);
+  }();
+  return tree;
+}
+
+const TreeFile& small_file() {
+  static const TreeFile file(small_tree());
+  return file;
+}
+
+std::string error_of_bytes(const std::string& bytes) {
+  return test::error_name([&] { (void)test::tree_of_bytes(bytes); });
+}
+
+// One damaged field; the checksum is right again.
+struct Damage {
+  const char* name;
+  std::function<void(TreeFile&)> apply;
+  const char* error = "tree-corrupt";
+};
+
+void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
+
+class DamagedField : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedField, IsAnError) {
+  TreeFile file = small_file();
+  ASSERT_EQ(error_of_bytes(file.bytes), "none");
+  GetParam().apply(file);
+  ASSERT_NE(file.bytes, small_file().bytes) << "nothing was damaged";
+  file.seal();
+  EXPECT_EQ(error_of_bytes(file.bytes), GetParam().error);
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <typename T>
+Damage put(const char* name, std::size_t offset, T value, const char* error = "tree-corrupt") {
+  return {name, [=](TreeFile& f) { f.put<T>(offset, value); }, error};
+}
+
+// At a place that is known only with the file.
+template <typename T>
+Damage put(const char* name, std::size_t TreeFile::*array, std::size_t offset, T value,
+           const char* error = "tree-corrupt") {
+  return {name, [=](TreeFile& f) { f.put<T>(f.*array + offset, value); }, error};
+}
+
+template <typename T>
+Damage add(const char* name, std::size_t TreeFile::*array, std::size_t offset, T change,
+           const char* error = "tree-corrupt") {
+  return {name,
+          [=](TreeFile& f) {
+            const std::size_t at = f.*array + offset;
+            f.put<T>(at, static_cast<T>(f.get<T>(at) + change));
+          },
+          error};
+}
+
+const std::vector<Damage>& damages() {
+  using F = TreeFile;
+  constexpr std::uint32_t kMany = 0xFFFFFFFF;
+  static const std::vector<Damage> all = {
+      put("CornerNaN", F::kCorner, kNaN),
+      put("CornerInfinite", F::kCorner + 16, -kInfinity),
+      put("VoxelSizeZero", F::kVoxelSize, 0.0),
+      put("VoxelSizeNegative", F::kVoxelSize, -0.7),
+      put("VoxelSizeNaN", F::kVoxelSize, kNaN),
+      put("VoxelSizeInfinite", F::kVoxelSize, kInfinity),
+      put("VoxelSizeBeyondAllMeasure", F::kVoxelSize, 1e300),
+      put("CellsZero", F::kCells, 0u),
+      put("CellsTooMany", F::kCells, 70000u),
+      put("CellsOfAnotherDepth", F::kCells, 9u),
+      put("DepthOneMore", F::kDepth, 3u, "tree-truncated"),
+      put("DepthHuge", F::kDepth, kMany),
+      put("OrientationUnknown", F::kOrientation, 7u),
+      put("SectionUnknown", F::kSections, 15u),
+      put("SectionMissing", F::kSections, 3u),
+      add("NodeCountOneMore", &F::leaves, static_cast<std::size_t>(-8), 1u),
+      add("NodeCountOneLess", &F::leaves, static_cast<std::size_t>(-8), kMany, "tree-truncated"),
+      put("NodeCountHuge", F::kNodes, kMany, "tree-truncated"),
+      add("LeafCountOneMore", &F::leaves, 0, 1u),
+      add("LeafCountOneLess", &F::leaves, 0, kMany, "tree-truncated"),
+      put("LeafCountHuge", &F::leaves, 0, kMany, "tree-truncated"),
+      put("MaskZero", &F::masks, 0, std::uint8_t{0}),
+      add("MaskWithAnotherNumberOfChildren", &F::masks, 0, std::uint8_t{0x80}),
+      put("TightCentreNaN", &F::tight, 4, static_cast<float>(kNaN)),
+      put("TightRadiusNegative", &F::tight, 12, -1.0f),
+      put("TightRadiusNaN", &F::tight, 12, static_cast<float>(kNaN)),
+      put("TightRadiusInfinite", &F::tight, 12, static_cast<float>(kInfinity)),
+      put("TightRootNaN", &F::counts, static_cast<std::size_t>(-16), static_cast<float>(kNaN)),
+      put("VertexCountHuge", &F::counts, 0, ~std::uint64_t{0}, "tree-truncated"),
+      put("TriangleCountHuge", &F::counts, 8, std::uint64_t{1} << 60, "tree-truncated"),
+      put("ListCountHuge", &F::counts, 16, std::uint64_t{1} << 62, "tree-truncated"),
+      put("VertexNaN", &F::vertices, 8, kNaN),
+      put("VertexInfinite", &F::triangles, static_cast<std::size_t>(-8), kInfinity),
+      put("TriangleNamesAVertexThatIsNotThere", &F::triangles, 4, 8u),
+      put("ListsDoNotBeginAtZero", &F::list_begins, 0, 1u),
+      put("ListsDecrease", &F::list_begins, 8, 0u),
+      put("ListEmpty", &F::list_begins, 4, 0u),
+      put("ListBeginsBeyondTheEntries", &F::list_begins, 8, 0x7FFFFFFFu),
+      add("ListsEndBeforeTheEntries", &F::list_ids, static_cast<std::size_t>(-4), kMany),
+      put("ListNamesATriangleThatIsNotThere", &F::list_ids, 0, 12u),
+      {"ListNotAscending",
+       [](F& f) {
+         const auto first = f.get<std::uint32_t>(f.list_ids);
+         f.put(f.list_ids, f.get<std::uint32_t>(f.list_ids + 4));
+         f.put(f.list_ids + 4, first);
+       }},
+      {"ListNamesATriangleTwice",
+       [](F& f) { f.put(f.list_ids, f.get<std::uint32_t>(f.list_ids + 4)); }},
+      put("ProximityDepthHuge", &F::proximity_depth, 0, 18u),
+      add("ProximityDepthOneMore", &F::proximity_depth, 0, 1u, "tree-truncated"),
+      put("ProximityMaskZero", &F::proximity_masks, 0, std::uint8_t{0}),
+      add("ProximityLeafCountWrong", &F::proximity_leaves, 0, 1u),
+      put("ProximityNodeCountHuge", &F::proximity_nodes, 0, kMany, "tree-truncated"),
+  };
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(TreeFile, DamagedField, testing::ValuesIn(damages()),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
+  const auto with = [](std::size_t offset, auto value) {
+    TreeFile file = small_file();
+    file.put(offset, value);
+    return error_of_bytes(file.bytes);
+  };
+  EXPECT_EQ(with(TreeFile::kMagic, 'x'), "not-a-tree");
+  EXPECT_EQ(with(TreeFile::kVersion, 2u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kVersion, 0u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kByteOrder, 0x04030201u), "not-a-tree");
+  EXPECT_EQ(with(TreeFile::kBytes, std::uint64_t{32}), "tree-truncated");
+  EXPECT_EQ(with(TreeFile::kChecksum, std::uint64_t{0}), "tree-corrupt");
+}
+
+TEST(DamagedTree, CutAnywhereItIsAnError) {
+  const std::string& whole = small_file().bytes;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    TreeFile file = small_file();
+    file.bytes.resize(length);
+    const std::string plain = error_of_bytes(file.bytes);
+    ASSERT_EQ(plain, length < 8 ? "not-a-tree" : "tree-truncated") << length;
+    if (length < TreeFile::kBody) continue;
+    file.seal();  // even where its size and checksum are right
+    ASSERT_EQ(error_of_bytes(file.bytes), "tree-truncated") << length;
+  }
+}
+
+TEST(DamagedTree, WithAnyBitFlippedItIsAnError) {
+  std::string bytes = small_file().bytes;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto flip = static_cast<char>(1 << bit % 8);
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+    ASSERT_NE(error_of_bytes(bytes), "none") << bit;
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ flip);
+  }
+}
+
+// With the checksum made right after, some files are other good trees; none may do harm.
+TEST(DamagedTree, WithAnyByteChangedAndSealedItIsATreeOrAnError) {
+  for (std::size_t at = TreeFile::kBody; at < small_file().bytes.size(); ++at) {
+    for (const int value : {0, 1, 0x7F, 0xFF}) {
+      TreeFile file = small_file();
+      file.put(at, static_cast<unsigned char>(value));
+      file.seal();
+      (void)error_of_bytes(file.bytes);
+    }
+  }
+}
+
+TEST(DamagedTree, TrailingBytesAreAnError) {
+  TreeFile file = small_file();
+  file.bytes += '\0';
+  EXPECT_EQ(error_of_bytes(file.bytes), "tree-truncated");
+  file.seal();
+  EXPECT_EQ(error_of_bytes(file.bytes), "tree-corrupt");
+}
+
+TEST(DamagedTree, NoCountMakesItAllocateMoreThanTheFileIsLong) {
+  for (const Damage& damage : damages()) {
+    TreeFile file = small_file();
+    damage.apply(file);
+    file.seal();
+    const std::size_t largest = test::largest_allocation([&] { (void)error_of_bytes(file.bytes); });
+    EXPECT_LE(largest, file.bytes.size() + 4096) << damage.name;
+  }
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,121 @@
+#include "ist/tree/tree_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "ist/tree/tree_builder.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+#include "support/temp_dir.h"
+#include "support/tree_file.h"
+
+namespace ist {
+namespace {
+
+template <typename T>
+void expect_same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+void expect_equal(const LinearOctree& a, const LinearOctree& b) {
+  ASSERT_EQ(a.depth(), b.depth());
+  EXPECT_EQ(a.leaf_count(), b.leaf_count());
+  for (int level = 0; level <= a.depth(); ++level) {
+    ASSERT_EQ(a.codes(level), b.codes(level));
+    for (std::uint32_t node = 0; level > 0 && node < a.node_count(level); ++node) {
+      ASSERT_EQ(a.mask(level, node), b.mask(level, node));
+      ASSERT_EQ(a.first_child(level, node), b.first_child(level, node));
+    }
+  }
+}
+
+void expect_equal(const SphereTree& a, const SphereTree& b) {
+  EXPECT_EQ(a.lattice(), b.lattice());
+  EXPECT_EQ(a.orientation(), b.orientation());
+  EXPECT_EQ(a.reach(), b.reach());
+  expect_equal(a.octree(), b.octree());
+  expect_same_bytes(a.normals(), b.normals());
+  ASSERT_EQ(a.has(SpherePolicy::kTight), b.has(SpherePolicy::kTight));
+  for (int level = 0; a.has(SpherePolicy::kTight) && level <= a.depth(); ++level) {
+    expect_same_bytes(a.tight(level), b.tight(level));
+  }
+  EXPECT_EQ(a.largest_leaf_radius(SpherePolicy::kSimple),
+            b.largest_leaf_radius(SpherePolicy::kSimple));
+  ASSERT_EQ(a.triangles().has_value(), b.triangles().has_value());
+  if (a.triangles()) {
+    EXPECT_EQ(a.triangles()->mesh.vertices, b.triangles()->mesh.vertices);
+    EXPECT_EQ(a.triangles()->mesh.triangles, b.triangles()->mesh.triangles);
+    EXPECT_EQ(a.triangles()->lists.first, b.triangles()->lists.first);
+    EXPECT_EQ(a.triangles()->lists.ids, b.triangles()->lists.ids);
+  }
+  ASSERT_EQ(a.proximity().has_value(), b.proximity().has_value());
+  if (a.proximity()) expect_equal(a.proximity()->octree, b.proximity()->octree);
+}
+
+SphereTree tree_of(const TriangleMesh& mesh, double voxel_size, unsigned sections) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.spheres = (sections & 1) != 0 ? SpherePolicy::kTight : SpherePolicy::kTable;
+  options.keep_triangles = (sections & 2) != 0;
+  options.proximity = (sections & 4) != 0;
+  return build_tree(mesh, options);
+}
+
+TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
+  for (const auto& [mesh, voxel_size] :
+       {std::pair(test::icosphere(2, 1), 0.2), std::pair(test::open_strip(3), 0.4),
+        std::pair(test::icosphere(1, 1), 10.0)}) {
+    for (unsigned sections = 0; sections < 8; ++sections) {
+      const SphereTree tree = tree_of(mesh, voxel_size, sections);
+      const std::string bytes = test::file_of(tree);
+      const SphereTree back = test::tree_of_bytes(bytes);
+      expect_equal(tree, back);
+      EXPECT_EQ(test::file_of(back), bytes);
+    }
+  }
+}
+
+TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
+  const test::TempDir folder;
+  const auto file = folder.path() / "tree.ist";
+  const std::uint64_t written = write_tree(tree_of(test::icosphere(1, 1), 0.3, 7), file);
+  EXPECT_EQ(written, std::filesystem::file_size(file));
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(test::error_name([&] {
+              (void)write_tree(tree_of(test::icosphere(1, 1), 0.3, 0), folder.path() / "no" / "t");
+            }),
+            "file-unwritable");
+}
+
+TEST(TreeFile, BeginsAsItsDescriptionSays) {
+  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 7));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\1\0\0\0\4\3\2\1", 16));
+}
+
+TEST(TreeFile, IsKnownByItsBeginning) {
+  const test::TempDir folder;
+  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 0));
+  EXPECT_TRUE(is_tree_file(folder.write("a", bytes)));
+  EXPECT_TRUE(is_tree_file(folder.write("b", bytes.substr(0, 8))));
+  EXPECT_FALSE(is_tree_file(folder.write("c", bytes.substr(0, 7))));
+  EXPECT_FALSE(is_tree_file(folder.write("d", "solid")));
+  EXPECT_FALSE(is_tree_file(folder.write("e", "")));
+  EXPECT_EQ(test::error_name([&] { (void)is_tree_file(folder.path() / "missing"); }),
+            "file-unreadable");
+}
+
+TEST(TreeFile, ErrorsNameTheFile) {
+  const test::TempDir folder;
+  const auto file = folder.write("broken.ist", "no tree at all, but long enough to be one");
+  const auto error = test::error_of([&] { (void)read_tree(file); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kNotATree);
+  EXPECT_NE(std::string(error->what()).find("broken.ist"), std::string::npos);
+  EXPECT_EQ(test::error_name([&] { (void)read_tree(folder.path() / "missing"); }),
+            "file-unreadable");
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "ist/voxel/nearest_point.h"
+#include "support/exact.h"
+#include "support/seeded.h"
+
+namespace ist {
+namespace {
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+using test::exact;
+
+double exact_distance(const Eigen::Vector3d& p, const test::ExactPolygon& piece) {
+  return std::sqrt(test::distance_squared(exact(p), piece).get_d());
+}
+
+// The point is on the triangle, on the feature that is named, and no other is nearer.
+void expect_nearest(const Corners& triangle, const Eigen::Vector3d& from, double tolerance) {
+  const NearestPoint nearest = nearest_on_triangle(triangle, from);
+  ASSERT_TRUE(nearest.point.allFinite());
+  const test::ExactPolygon piece = test::exact_triangle(triangle);
+  EXPECT_LE(exact_distance(nearest.point, piece), tolerance);
+  EXPECT_NEAR((from - nearest.point).norm(), exact_distance(from, piece), tolerance);
+  ASSERT_GE(nearest.feature, 0);
+  ASSERT_LE(nearest.feature, NearestPoint::kInside);
+  if (nearest.feature == NearestPoint::kInside) return;
+  const auto i = static_cast<std::size_t>(nearest.feature % 3);
+  if (nearest.feature < 3) {
+    EXPECT_EQ(nearest.point, triangle[i]);
+  } else {
+    const Eigen::Vector3d &a = triangle[i], &b = triangle[(i + 1) % 3];
+    EXPECT_LE(exact_distance(nearest.point, test::exact_triangle({a, b, b})), tolerance);
+  }
+}
+
+TEST(NearestOnTriangle, IsAsNearAsTheExactNearestPoint) {
+  test::Seeded seeded(1);
+  for (int i = 0; i < 5000; ++i) {
+    const Corners triangle{seeded.point(-1, 1), seeded.point(-1, 1), seeded.point(-1, 1)};
+    expect_nearest(triangle, seeded.point(-2, 2), 1e-12);
+  }
+}
+
+TEST(NearestOnTriangle, IsRightWherePointsLieOnCornersEdgesAndAboveThem) {
+  test::Seeded seeded(2);
+  for (int i = 0; i < 5000; ++i) {
+    const Corners triangle{seeded.point_on_grid(-2, 2, 1), seeded.point_on_grid(-2, 2, 1),
+                           seeded.point_on_grid(-2, 2, 1)};  // many of them degenerate
+    expect_nearest(triangle, seeded.point_on_grid(-3, 3, 0.5), 1e-13);
+  }
+}
+
+TEST(NearestOnTriangle, NamesTheFeature) {
+  const Corners triangle{Eigen::Vector3d(0, 0, 0), {4, 0, 0}, {0, 4, 0}};
+  const auto feature = [&](double x, double y) {
+    return nearest_on_triangle(triangle, {x, y, 1}).feature;
+  };
+  EXPECT_EQ(feature(-1, -1), 0);
+  EXPECT_EQ(feature(6, -1), 1);
+  EXPECT_EQ(feature(-1, 6), 2);
+  EXPECT_EQ(feature(2, -1), 3);
+  EXPECT_EQ(feature(3, 3), 4);
+  EXPECT_EQ(feature(-1, 2), 5);
+  EXPECT_EQ(feature(1, 1), NearestPoint::kInside);
+}
+
+TEST(NearestOnTriangle, OfASegmentOrAPointIsThatOfTheSegmentOrThePoint) {
+  test::Seeded seeded(3);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
+    const Eigen::Vector3d from = seeded.point(-2, 2);
+    expect_nearest({a, a, a}, from, 1e-15);
+    expect_nearest({a, a, b}, from, 1e-13);
+    expect_nearest({a, b, a}, from, 1e-13);
+    expect_nearest({a, b, b}, from, 1e-13);
+  }
+}
+
+// The three corners on a line but for rounding, in any order.
+TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
+  test::Seeded seeded(4);
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
+    const Eigen::Vector3d between = a + seeded.between(0, 1) * (b - a);
+    const Eigen::Vector3d from = seeded.point(-2, 2);
+    expect_nearest({a, b, between}, from, 1e-7);
+    expect_nearest({between, a, b}, from, 1e-7);
+    expect_nearest({b, between, a}, from, 1e-7);
+  }
+}
+
+TEST(NearestOnTriangle, OfASliverOfAspectAMillionIsRightToAThousandthOfItsWidth) {
+  test::Seeded seeded(5);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
+    const Eigen::Vector3d c = a + seeded.between(0, 1) * (b - a) + 1e-6 * seeded.direction();
+    expect_nearest({a, b, c}, seeded.point(-2, 2), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,107 @@
+#include "ist/voxel/packed_normal.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "support/seeded.h"
+
+namespace ist {
+namespace {
+
+using Eigen::Vector3d;
+
+double angle_in_degrees(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * (180 / 3.141592653589793);
+}
+
+Vector3d stored(const Vector3d& normal) { return PackedNormal(normal, 1).direction(); }
+
+TEST(PackedNormal, ADirectionComesBackWithinSixHundredthsOfADegree) {
+  test::Seeded seeded(1);
+  double worst = 0;
+  for (int i = 0; i < 300'000; ++i) {
+    const Vector3d normal = seeded.direction();
+    const Vector3d back = stored(normal);
+    worst = std::max(worst, angle_in_degrees(normal, back));
+    ASSERT_NEAR(back.norm(), 1, 1e-15);
+  }
+  EXPECT_LE(worst, 0.06);
+}
+
+TEST(PackedNormal, DirectionsNearTheFoldsComeBackToo) {
+  test::Seeded seeded(2);
+  for (int i = 0; i < 30'000; ++i) {
+    Vector3d normal = seeded.direction();
+    normal[static_cast<Eigen::Index>(seeded.below(3))] *= i % 4 == 0 ? 0 : 1e-4;
+    normal.normalize();
+    ASSERT_LE(angle_in_degrees(normal, stored(normal)), 0.06) << normal.transpose();
+  }
+}
+
+TEST(PackedNormal, AxesComeBackExactly) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const Vector3d normal = sign * Vector3d::Unit(axis);
+      EXPECT_EQ(stored(normal), normal);
+    }
+  }
+}
+
+TEST(PackedNormal, MirroringANormalMirrorsWhatIsStored) {
+  test::Seeded seeded(3);
+  for (int i = 0; i < 100'000; ++i) {
+    const Vector3d normal = seeded.direction();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto mirrored = [axis](Vector3d v) {
+        v[axis] = -v[axis];
+        return v;
+      };
+      // The stored steps are the same; unfolding the lower half rounds once more.
+      const Vector3d difference = stored(mirrored(normal)) - mirrored(stored(normal));
+      ASSERT_LE(difference.cwiseAbs().maxCoeff(), axis == 2 ? 1e-15 : 0.0) << normal.transpose();
+    }
+  }
+}
+
+TEST(PackedNormal, CoherenceIsTheLengthOfTheSumByTheWeight) {
+  test::Seeded seeded(4);
+  for (int i = 0; i < 10'000; ++i) {
+    const double weight = seeded.between(0.1, 100), coherence = seeded.between(0, 1);
+    const Vector3d sum = coherence * weight * seeded.direction();
+    const PackedNormal packed(sum, weight);
+    EXPECT_NEAR(packed.coherence(), coherence, 0.5 / 255 + 1e-12);
+    EXPECT_TRUE(packed.coherence() == 0 || angle_in_degrees(sum, packed.direction()) <= 0.06);
+  }
+  EXPECT_EQ(PackedNormal({0, 0, 1 + 1e-12}, 1).coherence(), 1.0) << "rounding stays below 1";
+}
+
+TEST(PackedNormal, WhatHasNoDirectionIsZeroAndNeverNaN) {
+  EXPECT_EQ(PackedNormal().word(), 0u);
+  for (const auto& [sum, weight] :
+       {std::pair(Vector3d(0, 0, 0), 0.0), std::pair(Vector3d(0, 0, 0), 5.0),
+        std::pair(Vector3d(1e-9, 0, 0), 5.0), std::pair(Vector3d(0, 0, 5e-324), 5e-324)}) {
+    const PackedNormal packed(sum, weight);
+    EXPECT_TRUE(packed.direction().allFinite());
+    if (packed.coherence() == 0) {
+      EXPECT_EQ(packed.word(), 0u);
+      EXPECT_EQ(packed.direction(), Vector3d(0, 0, 0));
+    }
+  }
+}
+
+TEST(PackedNormal, AnyWordIsANormal) {
+  test::Seeded seeded(5);
+  for (int i = 0; i < 200'000; ++i) {
+    const auto word = static_cast<std::uint32_t>(seeded.bits());
+    const PackedNormal normal = PackedNormal::from_word(word);
+    ASSERT_EQ(normal.word(), word);
+    ASSERT_NEAR(normal.direction().norm(), (word & 255) == 0 ? 0 : 1, 1e-15);
+  }
+  for (const std::uint32_t word : {0u, 255u, 0xFFFFFFFFu, 0xFFF000FFu, 0x000FFFFFu}) {
+    EXPECT_TRUE(PackedNormal::from_word(word).direction().allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace ist
