@@ -20,7 +20,8 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
   options.voxel_size = *files.voxel_size;
   options.spheres = files.policy.value_or(SpherePolicy::kTight);
   options.max_memory = files.max_memory;
-  SphereTree tree = build_with_progress(std::move(checked.mesh), options, checked.warnings);
+  SphereTree tree =
+      build_with_progress(file.string(), std::move(checked.mesh), options, checked.warnings);
   print_warnings(checked.warnings);
   return tree;
 }
@@ -41,22 +42,23 @@ void print_warnings(const std::vector<std::string>& warnings) {
   }
 }
 
-SphereTree build_with_progress(TriangleMesh mesh, const BuildOptions& options,
-                               std::vector<std::string>& warnings, BuildReport* report) {
+SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
+                               const BuildOptions& options, std::vector<std::string>& warnings,
+                               BuildReport* report) {
   Progress progress;
   const ProgressBar bar(progress);
   BuildReport own;
   BuildReport& filled = report != nullptr ? *report : own;
   SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
   if (filled.turned_components > 0) {
-    warnings.push_back(fmt::format("{} closed component{} inside out: turned outward",
+    warnings.push_back(fmt::format("{}: {} closed component{} inside out: turned outward", name,
                                    filled.turned_components,
                                    filled.turned_components == 1 ? " was" : "s were"));
   }
   if (tree.orientation() == Orientation::kAssumed) {
-    warnings.push_back(
-        "the mesh is not closed and consistent, so which side is outside is assumed from its "
-        "winding");
+    warnings.push_back(fmt::format(
+        "{}: not closed and consistent: its outside is assumed from the winding of its triangles",
+        name));
   }
   return tree;
 }

@@ -20,8 +20,10 @@ struct CheckedMesh {
 /// Prints "warning: …" lines to stderr.
 void print_warnings(const std::vector<std::string>& warnings);
 
-/// Builds a tree under a progress bar; a component that had to be turned is added to `warnings`.
-[[nodiscard]] SphereTree build_with_progress(TriangleMesh mesh, const BuildOptions& options,
+/// Builds a tree under a progress bar; what had to be turned or assumed of the mesh, which is
+/// called `name`, is added to `warnings`.
+[[nodiscard]] SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
+                                             const BuildOptions& options,
                                              std::vector<std::string>& warnings,
                                              BuildReport* report = nullptr);
 

@@ -26,8 +26,8 @@ void run(Options options) {
   CheckedMesh checked = load_mesh(options.mesh);
   const std::size_t triangles = checked.mesh.triangles.size();
   BuildReport report;
-  const SphereTree tree =
-      build_with_progress(std::move(checked.mesh), options.build, checked.warnings, &report);
+  const SphereTree tree = build_with_progress(options.mesh.string(), std::move(checked.mesh),
+                                              options.build, checked.warnings, &report);
   print_warnings(checked.warnings);
   const std::uint64_t bytes = write_tree(tree, options.output);
 

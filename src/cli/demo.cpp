@@ -110,8 +110,8 @@ void run(const Options& options) {
     build.voxel_size = size;
     std::vector<std::string> warnings;
     const auto begin = std::chrono::steady_clock::now();
-    const SphereTree upper = build_with_progress(upper_mesh, build, warnings);
-    const SphereTree lower = build_with_progress(lower_mesh, build, warnings);
+    const SphereTree upper = build_with_progress("upper jaw", upper_mesh, build, warnings);
+    const SphereTree lower = build_with_progress("lower jaw", lower_mesh, build, warnings);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     print_warnings(warnings);

@@ -165,8 +165,8 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
     return fitting_survey(mesh, lattice, options, progress).has_value();
   };
   const std::string limit =
-      fmt::format("voxel size {} needs more than the {:.1f} MiB of memory allowed",
-                  options.voxel_size, static_cast<double>(options.max_memory) / (1 << 20));
+      fmt::format("voxel size {} needs more than the {} bytes of memory allowed",
+                  options.voxel_size, options.max_memory);
   const double one_voxel = (high - low).maxCoeff();
   double too_small = options.voxel_size, enough = too_small;
   while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
