@@ -123,6 +123,21 @@ TEST(VoxelizerExact, BoxesOnThePlanesOfTheGrid) {
   }
 }
 
+// The voxelizer works in blocks of 16³ voxels: planes of the grid that part blocks are special.
+TEST(VoxelizerExact, BoxesOnThePlanesBetweenBlocks) {
+  for (const double size : {1.0, 0.1, 1.0 / 3, 0.7}) {
+    const auto corner = [size](int x, int y, int z) {
+      return Vector3d(x * size, y * size, z * size);
+    };
+    TriangleMesh mesh = test::box(corner(0, 0, 0), corner(50, 48, 2));
+    for (const int plane : {16, 32, 48}) {
+      mesh = test::joined(mesh, test::box(corner(plane, 1, 1), corner(plane + 1, 5, plane)));
+      mesh = test::joined(mesh, test::box(corner(1, plane - 3, 1), corner(4, plane, 16)));
+    }
+    expect_exactly_the_voxels(mesh, size);
+  }
+}
+
 TEST(VoxelizerExact, AFaceOnAPlaneOfTheGridOccupiesBothSides) {
   TriangleMesh mesh = test::triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0});
   add(mesh, {4, 4, 4}, {4, 4, 4}, {4, 4, 4});
