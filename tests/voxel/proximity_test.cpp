@@ -139,6 +139,23 @@ TEST(Proximity, OfAnLShapeWithANotch) {
   expect_exactly_the_proximity_voxels(l_shape(), 0.37);
 }
 
+// Beyond a sharp corner or edge, some of the faces that meet there turn their backs to a point
+// outside.
+TEST(Proximity, RoundSharpCornersAndEdges) {
+  TriangleMesh spike;
+  spike.vertices = {{0, 0, 0}, {0.9, 0.1, 0.2}, {0.2, 0.8, -0.1}, {2.9, 3.1, 4}};
+  spike.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  TriangleMesh wedge;
+  wedge.vertices = {{0, 0, 0}, {3, 0.4, 0.1}, {0.2, 3, 3}, {3.1, 3.2, 2.9}, {0.5, -0.6, 0.8}};
+  wedge.triangles = {{0, 1, 4}, {1, 3, 4}, {3, 2, 4}, {2, 0, 4}, {0, 2, 1}, {1, 2, 3}};
+  for (TriangleMesh mesh : {spike, wedge}) {
+    for (int turn = 0; turn < 3; ++turn) {  // another triangle comes first
+      expect_exactly_the_proximity_voxels(mesh, 0.47);
+      std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + 1, mesh.triangles.end());
+    }
+  }
+}
+
 TEST(Proximity, OfAShellWithACavityLooksIntoTheCavity) {
   const TriangleMesh shell = test::joined(test::box({0, 0, 0}, {9, 9, 9}),
                                           test::inside_out(test::box({2, 2, 2}, {7, 7, 7})));
