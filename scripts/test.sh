@@ -15,7 +15,10 @@ run() {  # preset, targets to build, then arguments for ctest
   echo "== preset $preset"
   cmake --preset "$preset" >/dev/null
   # shellcheck disable=SC2086  # targets are words
-  cmake --build --preset "$preset" --target $targets -- -j"$jobs" | tail -n 1
+  if ! cmake --build --preset "$preset" --target $targets -- -j"$jobs" >"build/$preset.log"; then
+    cat "build/$preset.log"
+    exit 1
+  fi
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "cli/progress_bar.h"
+#include "ist/base/error.h"
 #include "ist/mesh/mesh_check.h"
 #include "ist/mesh/mesh_io.h"
 #include "ist/tree/tree_io.h"
@@ -29,6 +30,11 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
 }  // namespace
 
 CheckedMesh load_mesh(const std::filesystem::path& file) {
+  if (is_tree_file(file)) {
+    throw Error(ErrorCode::kNotAMesh,
+                fmt::format("{}: it is a tree already: name the mesh that it was built from",
+                            file.string()));
+  }
   CheckedMesh checked{read_mesh(file), {}};
   for (const std::string& warning : warnings(check_mesh(checked.mesh))) {
     checked.warnings.push_back(fmt::format("{}: {}", file.string(), warning));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,7 +23,15 @@ struct Options {
 
 void run(Options options) {
   options.build.spheres = *sphere_policy(options.spheres);
-  for (const std::string& name : options.classes) options.build.proximity |= name == "proximity";
+  const auto names = [&](const char* name) {
+    return std::find(options.classes.begin(), options.classes.end(), name) != options.classes.end();
+  };
+  if (!names("surface")) {
+    throw CLI::ValidationError("--classes",
+                               "surface voxels are always made: give surface,proximity");
+  }
+  options.build.proximity = names("proximity");
+  keep_inputs(options.output, {options.mesh});
   CheckedMesh checked = load_mesh(options.mesh);
   const std::size_t triangles = checked.mesh.triangles.size();
   BuildReport report;
@@ -81,7 +90,7 @@ void add_build(CLI::App& app) {
       ->capture_default_str();
   add_max_memory(*command, options->build.max_memory);
   command->add_flag("--json", options->json, "print one JSON object");
-  command->footer("Example: ist build jaw.stl -o jaw.ist --voxel-size 0.2");
+  add_example(*command, "Example: ist build jaw.stl -o jaw.ist --voxel-size 0.2");
   command->callback([options] { run(*options); });
 }
 

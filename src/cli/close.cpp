@@ -52,11 +52,16 @@ void add_close(CLI::App& app) {
   command->add_option("--from", options->from, "first displacement, in mesh units")->required();
   command->add_option("--to", options->to, "last displacement")->required();
   command->add_option("--step", options->step, "distance from one pose to the next")->required();
-  command->footer(
-      "Line i is the answer at displacement from + i * step.\n"
+  add_example(
+      *command,
+      "Line i is the answer i steps from --from towards --to, which is reached where it is a whole "
+      "number of\n"
+      "steps away.\n"
       "Example: ist close maxilla.stl mandible.stl --voxel-size 0.4 --axis z --from -3 --to 0 "
       "--step 0.1");
   command->callback([options] {
+    const QueryOptions& query = options->query;
+    keep_inputs(query.contacts, {query.files.fixed, query.files.moving});
     const auto poses = straight_path(*options);
     run_queries(load_bodies(options->query.body_files()), poses, options->query);
   });

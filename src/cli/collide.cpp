@@ -21,11 +21,14 @@ void add_collide(CLI::App& app) {
                    "JSON: an array of objects with \"pose\", 16 numbers, column-major, which map "
                    "moving to fixed coordinates")
       ->required();
-  command->footer(
+  add_example(
+      *command,
       "A contact is a pair of voxels; the surfaces in them are no farther apart than "
       "\"resolution\".\n"
       "Example: ist collide maxilla.stl mandible.stl --voxel-size 0.4 --poses poses.json --json");
   command->callback([options] {
+    const QueryOptions& query = options->query;
+    keep_inputs(query.contacts, {query.files.fixed, query.files.moving, options->poses});
     const auto poses = read_poses(options->poses);
     run_queries(load_bodies(options->query.body_files()), poses, options->query);
   });

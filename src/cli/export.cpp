@@ -46,11 +46,6 @@ class PlyFile {
   std::string bytes_;
 };
 
-Eigen::Vector3d origin(const Lattice& lattice) {
-  const double half = lattice.voxel_size * lattice.root_centre();
-  return {lattice.corner[0] + half, lattice.corner[1] + half, lattice.corner[2] + half};
-}
-
 std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy, const Options& options) {
   const std::vector<Ball> spheres = level_spheres(tree, policy, options.level);
   PlyFile ply;
@@ -60,7 +55,7 @@ std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy, const Opt
                   "property float radius\n",
                   to_string(policy), options.level, spheres.size()));
   for (const Ball& ball : spheres) {
-    const Eigen::Vector3d centre = origin(tree.lattice()) + ball.centre;
+    const Eigen::Vector3d centre = tree.lattice().origin() + ball.centre;
     for (Eigen::Index i = 0; i < 3; ++i) ply.add(static_cast<float>(centre[i]));
     ply.add(static_cast<float>(ball.radius));
   }
@@ -100,7 +95,7 @@ std::size_t write_voxels(const SphereTree& tree, const Options& options) {
   const double half = 0.5 * tree.lattice().edge(options.level);
   for (const std::uint64_t code : codes) {
     const Eigen::Vector3d centre =
-        origin(tree.lattice()) +
+        tree.lattice().origin() +
         tree.lattice().voxel_size * cube_centre(tree.lattice(), options.level, code);
     for (int corner = 0; corner < 8; ++corner) {
       for (int i = 0; i < 3; ++i) {
@@ -125,6 +120,7 @@ void run(const Options& options) {
   if (options.what == "voxels" && !options.spheres.empty()) {
     throw CLI::ValidationError("--spheres", "goes with --what spheres");
   }
+  keep_inputs(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
   if (options.level > tree.depth()) {
     throw CLI::ValidationError("--level", fmt::format("the tree has levels 0 to {}", tree.depth()));
@@ -165,7 +161,8 @@ void add_export(CLI::App& app) {
       ->check(CLI::IsMember(policy_names()));
   command->add_option("-o,--output", options->output, "the PLY file to write")->required();
   command->add_flag("--json", options->json, "print one JSON object");
-  command->footer(
+  add_example(
+      *command,
       "Example: ist export jaw.ist --what spheres --spheres table --level 2 -o spheres.ply");
   command->callback([options] { run(*options); });
 }

@@ -5,6 +5,7 @@
 
 #include "cli/bodies.h"
 #include "cli/commands.h"
+#include "cli/query_options.h"
 #include "ist/mesh/mesh_check.h"
 #include "ist/mesh/mesh_io.h"
 #include "ist/mesh/orientation.h"
@@ -83,7 +84,9 @@ void show_tree(const Options& options) {
   fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n", orientation,
              tree.triangles() ? tree.triangles()->mesh.triangles.size() : 0,
              tree.proximity() ? tree.proximity()->octree.leaf_count() : 0);
-  fmt::print("volume of the spheres, in circumspheres of a voxel, and time to make them\n");
+  fmt::print(
+      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight: to read "
+      "them)\n");
   fmt::print("{:>5} {:>10} {:>10}", "level", "edge", "nodes");
   for (const LevelSpheres& spheres : levels.front().spheres) {
     fmt::print(" {:>14} {:>9}", to_string(spheres.policy), "ms");
@@ -107,6 +110,7 @@ void add_info(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "STL, OBJ or PLY mesh, or tree")->required();
   command->add_flag("--json", options->json, "print one JSON object");
+  add_example(*command, "Example: ist info jaw.ist");
   command->callback(
       [options] { is_tree_file(options->file) ? show_tree(*options) : show_mesh(*options); });
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
+
 namespace ist::cli {
 
 std::vector<std::string> policy_names() {
@@ -19,6 +21,21 @@ CLI::Validator no_minus(const std::string& what) {
                        : fmt::format("give a positive number{}", what.empty() ? "" : " of " + what);
           },
           ""};
+}
+
+void add_example(CLI::App& command, const std::string& example) {
+  command.footer(example + "\n" + command.get_parent()->get_footer());
+}
+
+void keep_inputs(const std::filesystem::path& output,
+                 std::initializer_list<std::filesystem::path> inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code neither;
+    if (!output.empty() && std::filesystem::equivalent(output, input, neither)) {
+      throw CLI::ValidationError(output.string(),
+                                 "writing it would destroy an input: name another file");
+    }
+  }
 }
 
 void add_max_memory(CLI::App& command, std::uint64_t& bytes) {

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,13 @@ namespace ist::cli {
 
 /// Refuses a minus, which would wrap round in a number without sign. `what` is counted, or empty.
 [[nodiscard]] CLI::Validator no_minus(const std::string& what);
+
+/// Adds to a subcommand's help an example, and what every help ends with.
+void add_example(CLI::App& command, const std::string& example);
+
+/// Throws CLI::ValidationError where writing `output` would destroy one of the `inputs`.
+void keep_inputs(const std::filesystem::path& output,
+                 std::initializer_list<std::filesystem::path> inputs);
 
 void add_max_memory(CLI::App& command, std::uint64_t& bytes);
 

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/progress_bar.h"
 #include "ist/base/output_file.h"
+#include "ist/base/pose.h"
 #include "ist/query/reference.h"
 #include "ist/tree/saved_spheres.h"
 
@@ -117,11 +119,13 @@ class ContactWriter {
         moving_(level_spheres(bodies.moving, bodies.policy, 0)) {}
 
   void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const Contact> contacts) {
+    // As the query does: the pose that is answered for is the rigid one nearest to what was given.
+    const Eigen::Isometry3d rigid = *project_to_rigid(pose);
     std::string lines;
     for (const Contact& contact : contacts) {
-      const Eigen::Vector3d fixed = in_mesh(bodies_.fixed.lattice(), fixed_[contact.fixed].centre);
+      const Eigen::Vector3d fixed = bodies_.fixed.lattice().origin() + fixed_[contact.fixed].centre;
       const Eigen::Vector3d moving =
-          pose * in_mesh(bodies_.moving.lattice(), moving_[contact.moving].centre);
+          rigid * (bodies_.moving.lattice().origin() + moving_[contact.moving].centre);
       const nlohmann::ordered_json line{{"index", index},
                                         {"fixed_centre", {fixed[0], fixed[1], fixed[2]}},
                                         {"moving_centre", {moving[0], moving[1], moving[2]}}};
@@ -137,12 +141,6 @@ class ContactWriter {
     file_.write(lines.data(), lines.size());
     lines.clear();
   }
-  static Eigen::Vector3d in_mesh(const Lattice& lattice, const Eigen::Vector3d& centre) {
-    const double half = lattice.voxel_size * lattice.root_centre();
-    return centre + Eigen::Vector3d(lattice.corner[0] + half, lattice.corner[1] + half,
-                                    lattice.corner[2] + half);
-  }
-
   OutputFile file_;
   const Bodies& bodies_;
   std::vector<Ball> fixed_, moving_;
@@ -158,6 +156,9 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   if (!options.contacts.empty()) writer = std::make_unique<ContactWriter>(options.contacts, bodies);
 
   std::vector<std::vector<Answer>> answers(poses.size(), std::vector<Answer>(engines.size()));
+  Progress progress;
+  progress.begin_stage("asking", static_cast<std::uint64_t>(options.repeat) * poses.size());
+  auto bar = std::make_unique<ProgressBar>(progress);
   for (int round = 0; round < options.repeat; ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       for (std::size_t e = 0; e < engines.size(); ++e) {
@@ -168,8 +169,10 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
           writer->write(i, poses[i], engines[e].contacts(answers[i][e].result));
         }
       }
+      progress.add(1);
     }
   }
+  bar.reset();
   if (writer != nullptr) writer->commit();
   if (!options.json) {
     print_table(engines, bodies, answers);

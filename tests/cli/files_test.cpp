@@ -195,6 +195,20 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
   }
 }
 
+TEST_F(Files, AnInputIsNeverOverwritten) {
+  const std::string mesh = ball(), tree = path("kept.ist");
+  ASSERT_EQ(ist({"build", mesh, "-o", tree, "--voxel-size", "0.5"}).exit_code, 0);
+  const std::string mesh_before = file_content(mesh), tree_before = file_content(tree);
+  EXPECT_EQ(ist({"build", mesh, "-o", mesh, "--voxel-size", "0.5"}).exit_code, 2);
+  EXPECT_EQ(ist({"export", tree, "--what", "voxels", "--level", "0", "-o", tree}).exit_code, 2);
+  EXPECT_EQ(ist({"close", tree, tree, "--axis", "z", "--from", "0", "--to", "1", "--step", "1",
+                 "--contacts", tree})
+                .exit_code,
+            2);
+  EXPECT_EQ(file_content(mesh), mesh_before);
+  EXPECT_EQ(file_content(tree), tree_before);
+}
+
 TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
   const CommandResult result =
       ist_well({"demo", "--voxel-size", "3", "--json", "--keep", dir_.path()});

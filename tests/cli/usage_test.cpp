@@ -93,6 +93,7 @@ TEST_F(Usage, OptionsOfBuild) {
   refuses({"build", mesh, "--voxel-size", "0.5"}, "--output");
   refuses_with("--classes", "nonsense", "surface,proximity");
   refuses_with("--classes", "surface,nonsense", "nonsense");
+  refuses_with("--classes", "proximity", "surface voxels are always made");
   refuses_with("--spheres", "cubes", "simple,table,tight");
   refuses_with("--max-memory", "10", "allow more");
   refuses_with("--max-memory", "-5", "positive");

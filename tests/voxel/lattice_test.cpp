@@ -24,7 +24,8 @@ TEST(Lattice, HasAsManyCellsAsTheLargestExtentNeeds) {
   EXPECT_EQ(over(1, 8.5, 1, 1).cells, 9u);
   EXPECT_EQ(over(1, 1, 8.0000001, 1).cells, 9u);
   EXPECT_EQ(over(0.5, 0, 0, 1).cells, 1u);
-  EXPECT_EQ(over(0.5, 0, 0, 1e300).cells, 1u);
+  EXPECT_EQ(over(0.5, 0, 0, 500).cells, 1u);
+  EXPECT_EQ(error_name([] { (void)over(0.5, 0, 0, 501); }), "voxel-size-invalid");
   EXPECT_EQ(over(65536, 0, 0, 1).cells, 65536u);
 }
 

@@ -41,7 +41,8 @@ class ReferenceQuery {
   ///             the first of them
   ///
   /// Cost: 5 to 15 ns a sphere test, 10 to 60 ns a contact for the order. Allocates when a pose has
-  /// more contacts than any before; this is the specification, not the fast path.
+  /// more contacts than any before, and can throw std::bad_alloc; this is the specification, not
+  /// the fast path.
   [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out);
 
   /// Surfaces in a contact are no farther apart, mesh units: 2 (rA + rB) + pad, with rA and rB the

@@ -3,12 +3,9 @@
 #include <Eigen/Core>
 #include <span>
 
-namespace ist {
+#include "ist/tree/ball.h"
 
-struct Ball {
-  Eigen::Vector3d centre;
-  double radius;
-};
+namespace ist {
 
 /// A ball that holds the points, at least one, with a radius at most `1 + tolerance` times the
 /// smallest. Same unit and frame as the points. Contains them up to the rounding of one distance.

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "ist/tree/enclosing_ball.h"
+#include "ist/tree/ball.h"
 #include "ist/tree/lookup_table.h"
 #include "ist/voxel/lattice.h"
 

@@ -22,8 +22,8 @@ using SphereLevels = std::vector<std::vector<Sphere>>;
 /// where nothing is left of a triangle, round its point nearest to the cube's centre. So each ball
 /// holds a surface point, and all geometry of its node.
 ///
-/// A radius is at most 1 % above the smallest for its payload, and rounded up when it becomes
-/// float, after the centre was.
+/// A radius is at most 1 % above the smallest for its payload, but for what the centre moves when
+/// it becomes float (2⁻²⁴ of its distance from the frame's origin); then it is rounded up.
 ///
 /// @param voxels with their triangles, as the octree's leaves
 ///

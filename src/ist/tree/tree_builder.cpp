@@ -15,6 +15,11 @@ namespace {
 constexpr std::uint64_t kOctreeBytes = 3;
 constexpr std::uint64_t kCodeBytes = 8;  // a level's codes, while its spheres are made
 
+// A surface voxel has two to three proximity voxels, whose codes are there twice while joined. A
+// triangle has its normals, half a corner's, three sides while they are sorted, and some bins.
+constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
+constexpr std::uint64_t kPseudoNormalBytes = 256;
+
 // Nothing where there are no such voxels: a mesh without area has no outside.
 std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
                                                  const VoxelSet& surface) {
@@ -56,8 +61,12 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                              options.max_memory, kOctreeBytes, 0};
   if (tight) {
     voxelizer.bytes_per_voxel += 3 * sizeof(Sphere) / 2 + kCodeBytes;
-    voxelizer.bytes_per_pair +=
-        sizeof(std::uint32_t);  // the lists of the level above, while merged
+    // The lists of two levels and the parts of one, while they are merged.
+    voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
+  }
+  if (options.proximity) {
+    voxelizer.bytes_per_voxel += kProximityBytes;
+    voxelizer.bytes_per_triangle += kPseudoNormalBytes;
   }
   VoxelSet voxels = voxelize(mesh, voxelizer, progress);
   times.end("voxels");

@@ -208,8 +208,8 @@ void verify_lattice(const Reader& reader, const Lattice& lattice) {
                  "the voxel size is not a positive number");
   reader.require(lattice.cells >= 1 && lattice.cells <= Lattice::kMaxCells,
                  "the number of voxels an axis is out of range");
-  // The mesh's extent is in [1e-12, 1e15], and a voxel may be as much larger as anyone likes.
-  reader.require(lattice.cells == 1 || lattice.voxel_size * lattice.cells <= 2e15,
+  constexpr double kLargestExtent = 1e15;
+  reader.require(lattice.voxel_size * lattice.cells <= Lattice::kMaxRelativeSize * kLargestExtent,
                  "the grid is larger than any mesh may be");
   reader.require(lattice.depth == static_cast<int>(std::bit_width(lattice.cells - 1)),
                  "its depth does not fit its voxels");

@@ -4,20 +4,32 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "ist/base/error.h"
 
 namespace ist {
 
+namespace {
+
+// Not std::stod, which reads numbers as the host's locale has them.
+double number(std::string_view text) {
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+}  // namespace
+
 double round_up_for_people(double size) {
   const std::string text = fmt::format("{:.2e}", size);
-  const double rounded = std::stod(text);
+  const double rounded = number(text);
   if (rounded >= size) return rounded;
-  const int exponent = std::stoi(text.substr(text.find('e') + 1));
-  const double last_digit = std::stod(fmt::format("1e{}", exponent - 2));
-  return std::stod(fmt::format("{:.2e}", rounded + last_digit));
+  const std::string last_digit = "0.01" + text.substr(text.find('e'));
+  return number(fmt::format("{:.2e}", rounded + number(last_digit)));
 }
 
 Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
@@ -32,6 +44,13 @@ Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_
     throw Error(ErrorCode::kMeshExtent,
                 fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
                             extent));
+  }
+  if (voxel_size > Lattice::kMaxRelativeSize * extent) {
+    throw Error(
+        ErrorCode::kVoxelSizeInvalid,
+        fmt::format("voxel size {} is more than {} times the largest extent of {} units: use a "
+                    "smaller one",
+                    voxel_size, Lattice::kMaxRelativeSize, extent));
   }
   const double cells = std::max(1.0, std::ceil(extent / voxel_size));
   if (!(cells <= Lattice::kMaxCells)) {

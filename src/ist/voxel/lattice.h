@@ -19,6 +19,10 @@ struct Lattice {
   /// counts as inside. Covers the rounding of lattice coordinates (2⁻⁵² of the extent) many times.
   static constexpr double kPad = 1e-9;
 
+  /// A voxel may be this many times larger than the mesh: more, and the mesh is lost in the
+  /// rounding of its own tree's frame.
+  static constexpr double kMaxRelativeSize = 1000;
+
   std::array<double, 3> corner{};  ///< minimum of the mesh's bounding box, mesh units
   double voxel_size = 1;           ///< edge of a voxel, mesh units
   std::uint32_t cells = 1;         ///< voxels along each axis, at most kMaxCells
@@ -39,6 +43,12 @@ struct Lattice {
     return 0.5 * static_cast<double>(std::uint64_t{1} << depth);
   }
 
+  /// The root cube's centre, the origin of the tree's frame, in mesh coordinates; rounded.
+  [[nodiscard]] Eigen::Vector3d origin() const noexcept {
+    const double half = voxel_size * root_centre();
+    return {corner[0] + half, corner[1] + half, corner[2] + half};
+  }
+
   /// The edge of a cube at `level`, mesh units.
   [[nodiscard]] double edge(int level) const noexcept {
     return voxel_size * static_cast<double>(std::uint64_t{1} << level);
@@ -47,9 +57,9 @@ struct Lattice {
 
 /// The lattice over a box of mesh units: cells = max(1, ceil(largest extent / voxel_size)).
 ///
-/// Throws kVoxelSizeInvalid when the size is not positive and finite, kMeshExtent when the largest
-/// extent is zero or outside [1e-12, 1e15], kVoxelSizeTooSmall when it would need more than 2^16
-/// voxels an axis, with the smallest size that would do.
+/// Throws kVoxelSizeInvalid when the size is not positive and finite or over 1,000 times the
+/// extent, kMeshExtent when the largest extent is zero or outside [1e-12, 1e15], kVoxelSizeTooSmall
+/// when it would need more than 2^16 voxels an axis, with the smallest size that would do.
 [[nodiscard]] Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
                                    double voxel_size);
 

@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "ist/base/assert.h"
+#include "ist/base/error.h"
 #include "ist/base/parallel.h"
 
 namespace ist {
 namespace {
 
 constexpr int kTriangleBits = 28;  // the other 36 hold a block's code: 4,096 blocks an axis
+static_assert(kMaxTriangles < std::size_t{1} << kTriangleBits);
 constexpr std::size_t kTrianglesARange = 4096;
 
 // Visits the blocks below one cube of the octree that a triangle meets. A triangle that spans the
@@ -99,7 +102,7 @@ double expected_pairs(const TriangleMesh& mesh, double cube_edge) {
 
 TriangleBins bin_triangles(const LatticeMesh& mesh, std::uint32_t cells, double pad) {
   const std::size_t triangles = mesh.triangle_count();
-  IST_ASSERT(triangles >> kTriangleBits == 0);
+  IST_ASSERT(triangles <= kMaxTriangles);
   std::vector<std::vector<std::uint64_t>> parts((triangles + kTrianglesARange - 1) /
                                                 kTrianglesARange);
   parallel_for(triangles, kTrianglesARange, [&](std::size_t begin, std::size_t end) {
@@ -110,6 +113,11 @@ TriangleBins bin_triangles(const LatticeMesh& mesh, std::uint32_t cells, double 
   });
   std::size_t count = 0;
   for (const auto& part : parts) count += part.size();
+  if (count > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(
+        ErrorCode::kMemoryLimit,
+        "the mesh has too many triangles for this voxel size: simplify it, or use a larger one");
+  }
   std::vector<std::uint64_t> pairs;
   pairs.reserve(count);
   for (auto& part : parts) {

@@ -46,8 +46,11 @@ struct TriangleBins {
 /// Source: Steiner's formula; L. A. Santaló, Integral Geometry and Geometric Probability, 1976.
 [[nodiscard]] double expected_pairs(const TriangleMesh& mesh, double cube_edge);
 
+/// The most triangles that a mesh may have to be sorted into blocks.
+inline constexpr std::size_t kMaxTriangles = (std::size_t{1} << 28) - 1;
+
 /// Sorts the triangles of a mesh into blocks; padded and non-strict, as the voxels are.
-/// At most 2^28 triangles. Cost: O(pairs · log pairs).
+/// Precondition: at most kMaxTriangles of them. Cost: O(pairs · log pairs).
 ///
 /// @param cells blocks cover this many cells along each axis, from 0
 /// @param pad   blocks are grown by this much, in cells

@@ -77,9 +77,13 @@ struct BlockSurvey {
   std::vector<std::uint16_t> cells_of;  // how many each triangle has
 };
 
+// A block's own bytes: its survey and its places in the sums.
+constexpr double kBlockBytes = sizeof(BlockSurvey) + 2 * sizeof(std::uint64_t);
+
 // All voxels and pairs, before anything is made of them.
 struct Survey {
   TriangleBins bins;
+  std::size_t triangles;  // of the mesh
   std::vector<BlockSurvey> blocks;
   std::vector<std::uint64_t> first_voxel;  // of each block, and the total
   std::vector<std::uint64_t> first_pair;   // likewise, of voxel and triangle
@@ -87,10 +91,14 @@ struct Survey {
   [[nodiscard]] std::uint64_t pairs() const { return first_pair.back(); }
 };
 
-Survey survey(const LatticeMesh& mesh, const Lattice& lattice, Progress& progress) {
+// Nothing where the blocks alone need more than `max_bytes`.
+std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, double max_bytes,
+                             Progress& progress) {
   progress.begin_stage("sorting triangles into blocks", 0);
-  Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}};
+  Survey result{
+      bin_triangles(mesh, lattice.cells, lattice.pad()), mesh.triangle_count(), {}, {}, {}};
   const std::size_t blocks = result.bins.codes.size();
+  if (static_cast<double>(blocks) * kBlockBytes > max_bytes) return std::nullopt;
   progress.begin_stage("finding surface voxels", blocks);
   result.blocks.resize(blocks);
   result.first_voxel.resize(blocks + 1);
@@ -134,15 +142,16 @@ double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
   const double own = sizeof(std::uint64_t) + sizeof(PackedNormal) +
                      (options.keep_triangles ? sizeof(std::uint32_t) : 0);
   const double own_pairs = options.keep_triangles ? sizeof(std::uint32_t) : 0;
-  return static_cast<double>(survey.blocks.size()) * sizeof(BlockSurvey) +
+  return static_cast<double>(survey.blocks.size()) * kBlockBytes +
          voxels * (own + static_cast<double>(options.bytes_per_voxel)) +
-         pairs * (sizeof(BlockCell) + own_pairs + static_cast<double>(options.bytes_per_pair));
+         pairs * (sizeof(BlockCell) + own_pairs + static_cast<double>(options.bytes_per_pair)) +
+         static_cast<double>(survey.triangles) * static_cast<double>(options.bytes_per_triangle);
 }
 
 // The survey's own need, known before it is made: keys of the bins, twice while they are joined,
 // and a cell for each pair.
 double survey_bytes(const TriangleMesh& mesh, double voxel_size) {
-  return 2 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge) +
+  return 3 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge) +
          sizeof(BlockCell) * expected_pairs(mesh, voxel_size);
 }
 
@@ -152,8 +161,8 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
   const auto limit = static_cast<double>(options.max_memory);
   if (survey_bytes(mesh, lattice.voxel_size) > limit) return std::nullopt;
   const LatticeMesh lattice_mesh(mesh, lattice);
-  Survey result = survey(lattice_mesh, lattice, progress);
-  if (bytes_needed(result, options) > limit) return std::nullopt;
+  std::optional<Survey> result = survey(lattice_mesh, lattice, limit, progress);
+  if (result && bytes_needed(*result, options) > limit) result.reset();
   return result;
 }
 
@@ -164,9 +173,11 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
     const Lattice lattice = make_lattice(low, high, size);
     return fitting_survey(mesh, lattice, options, progress).has_value();
   };
-  const std::string limit =
-      fmt::format("voxel size {} needs more than the {} bytes of memory allowed",
-                  options.voxel_size, options.max_memory);
+  const std::string limit = fmt::format(
+      "voxel size {} needs more than the {} bytes of memory allowed, or more than 2^32 voxels or "
+      "pairs "
+      "of voxel and triangle",
+      options.voxel_size, options.max_memory);
   const double one_voxel = (high - low).maxCoeff();
   double too_small = options.voxel_size, enough = too_small;
   while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
@@ -298,6 +309,11 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
       low = low.cwiseMin(mesh.vertices[vertex]);
       high = high.cwiseMax(mesh.vertices[vertex]);
     }
+  }
+  if (mesh.triangles.size() > kMaxTriangles) {
+    throw Error(ErrorCode::kMemoryLimit,
+                fmt::format("the mesh has {} triangles, and {} is the most: simplify it",
+                            mesh.triangles.size(), kMaxTriangles));
   }
   VoxelSet set;
   set.lattice = make_lattice(low, high, options.voxel_size);

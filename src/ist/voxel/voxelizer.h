@@ -14,8 +14,8 @@ struct VoxelizerOptions {
   bool keep_triangles = false;  ///< list the triangles of each voxel
   /// Bytes that the voxels, and what the caller makes of them, may take.
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
-  /// What the caller will add: bytes a voxel, and bytes a pair of voxel and triangle.
-  std::uint64_t bytes_per_voxel = 0, bytes_per_pair = 0;
+  /// What the caller will add: bytes a voxel, a pair of voxel and triangle, and a triangle.
+  std::uint64_t bytes_per_voxel = 0, bytes_per_pair = 0, bytes_per_triangle = 0;
 };
 
 /// Finds every voxel whose closed cube meets a triangle, and none whose cube grown by

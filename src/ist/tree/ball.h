@@ -1,0 +1,12 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace ist {
+
+struct Ball {
+  Eigen::Vector3d centre;
+  double radius;
+};
+
+}  // namespace ist
