@@ -53,9 +53,10 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   // Decided by one coordinate where they are far apart, because the square of a distance overflows.
   if (touch(a.ball, b.ball) && farthest <= reach + slack_) descend(a, b);
 
-  std::sort(found_.begin(), found_.end(), [](const Contact& p, const Contact& q) {
-    return p.fixed != q.fixed ? p.fixed < q.fixed : p.moving < q.moving;
-  });
+  // One number to compare, for a branch on each of two could not be foreseen.
+  const auto key = [](const Contact& c) { return std::uint64_t{c.fixed} << 32 | c.moving; };
+  std::sort(found_.begin(), found_.end(),
+            [key](const Contact& p, const Contact& q) { return key(p) < key(q); });
   std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
   result.contacts = found_.size();
   result.truncated = found_.size() > out.size();
