@@ -40,7 +40,7 @@ class ReferenceQuery {
   /// short,
   ///             the first of them
   ///
-  /// Cost: 5 to 15 ns a sphere test, 10 to 60 ns a contact for the order. Allocates when a pose has
+  /// Cost: 5 to 20 ns a sphere test, 10 to 60 ns a contact for the order. Allocates when a pose has
   /// more contacts than any before, and can throw std::bad_alloc; this is the specification, not
   /// the fast path.
   [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out);
