@@ -123,8 +123,8 @@ void run(const Options& options) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     print_warnings(warnings);
     if (!options.json) fmt::print("\nboth trees at {} mm built in {:.2f} s\n", size, seconds);
-    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
-      close_jaws(upper, lower, policy, options);
+    for (const SpherePolicy policy : kSpherePolicies) {
+      if (upper.has(policy)) close_jaws(upper, lower, policy, options);
     }
   }
 }

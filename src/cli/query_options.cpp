@@ -8,7 +8,7 @@ namespace ist::cli {
 
 std::vector<std::string> policy_names() {
   std::vector<std::string> names;
-  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     names.emplace_back(to_string(policy));
   }
   return names;

@@ -29,7 +29,7 @@ struct BuildReport {
 };
 
 /// From a mesh to a tree: turns it outward, finds its voxels, folds them into an octree and makes
-/// the spheres that are saved.
+/// the bounds that are saved.
 ///
 /// @param report, progress filled in, if not null
 ///

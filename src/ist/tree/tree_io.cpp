@@ -37,7 +37,12 @@ struct Preamble {
 };
 static_assert(sizeof(Preamble) == 32 && std::is_trivially_copyable_v<Preamble>);
 
-enum Section : std::uint32_t { kTightSection = 1, kTrianglesSection = 2, kProximitySection = 4 };
+enum Section : std::uint32_t {
+  kBallsSection = 1,
+  kTrianglesSection = 2,
+  kProximitySection = 4,
+  kSlabsSection = 8
+};
 
 class Checksum {
  public:
@@ -94,6 +99,25 @@ void write_octree(Writer& writer, const LinearOctree& octree) {
   for (int level = 1; level <= octree.depth(); ++level) writer.value(octree.node_count(level));
   writer.value(octree.leaf_count());
   for (int level = 1; level <= octree.depth(); ++level) writer.array(octree.masks(level));
+}
+
+// One bound a node, in the order of the nodes, without the blocks' empty slots.
+template <typename Packed, typename Block>
+void write_bounds(Writer& writer, const LinearOctree& octree,
+                  const std::vector<std::vector<Block>>& blocks) {
+  for (int level = 0; level <= octree.depth(); ++level) {
+    const std::span<const OctreeNode> parents = octree.nodes(level + 1);
+    std::vector<Packed> packed;
+    packed.reserve(octree.node_count(level));
+    for (std::size_t parent = 0; parent + 1 < parents.size(); ++parent) {
+      const auto children =
+          static_cast<int>(parents[parent + 1].first_child - parents[parent].first_child);
+      for (int slot = 0; slot < children; ++slot) {
+        packed.push_back(blocks[static_cast<std::size_t>(level)][parent][slot]);
+      }
+    }
+    writer.array(packed);
+  }
 }
 
 // Reads straight into the arrays that the tree will own. A count is believed only as far as the
@@ -215,14 +239,41 @@ void verify_lattice(const Reader& reader, const Lattice& lattice) {
                  "its depth does not fit its voxels");
 }
 
-void verify_spheres(const Reader& reader, const SphereLevels& levels) {
-  for (const auto& level : levels) {
-    reader.require(level.empty() || all_finite(&level.front().x, 4 * level.size()),
-                   "a sphere is not finite");
-    reader.require(
-        std::all_of(level.begin(), level.end(), [](const Sphere& s) { return s.r >= 0; }),
-        "a sphere has a negative radius");
+bool is_valid(const PackedBall& ball) { return ball.r > 0; }
+
+bool is_valid(const PackedSlab& slab) {
+  const int x = slab.nx, y = slab.ny, z = slab.nz;
+  return std::abs(x) <= 126 && std::abs(y) <= 126 && std::abs(z) <= 126 &&
+         x * x + y * y + z * z <= 128 * 128 && slab.offset >= -127 && slab.half > 0;
+}
+
+template <typename Packed>
+using Levels = std::vector<std::vector<Packed>>;
+
+template <typename Packed>
+Levels<Packed> read_bounds(Reader& reader, const StoredOctree& stored) {
+  Levels<Packed> levels{reader.array<Packed>(stored.leaves)};
+  for (const std::uint32_t nodes : stored.nodes) levels.push_back(reader.array<Packed>(nodes));
+  return levels;
+}
+
+template <typename Block, typename Packed>
+std::vector<std::vector<Block>> verified(const Reader& reader, const LinearOctree& octree,
+                                         Levels<Packed> levels, const char* otherwise) {
+  std::vector<std::vector<Block>> blocks(levels.size());
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const std::span<const OctreeNode> parents = octree.nodes(static_cast<int>(level) + 1);
+    blocks[level].resize(parents.size() - 1);
+    for (std::size_t parent = 0; parent + 1 < parents.size(); ++parent) {
+      const std::uint32_t first = parents[parent].first_child;
+      for (std::uint32_t node = first; node < parents[parent + 1].first_child; ++node) {
+        reader.require(is_valid(levels[level][node]), otherwise);
+        blocks[level][parent].set(static_cast<int>(node - first), levels[level][node]);
+      }
+    }
+    levels[level] = {};
   }
+  return blocks;
 }
 
 void verify_triangles(const Reader& reader, const LeafTriangles& leaves) {
@@ -260,14 +311,18 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
   writer.value(lattice.cells);
   writer.value(static_cast<std::uint32_t>(lattice.depth));
   writer.value(static_cast<std::uint32_t>(tree.orientation()));
-  const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kTightSection : 0u) |
+  const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
+                                 (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
                                  (tree.proximity() ? kProximitySection : 0u);
   writer.value(sections);
   write_octree(writer, tree.octree());
   writer.array(tree.normals());
   if (tree.has(SpherePolicy::kTight)) {
-    for (int level = 0; level <= tree.depth(); ++level) writer.array(tree.tight(level));
+    write_bounds<PackedBall>(writer, tree.octree(), tree.bounds().balls);
+  }
+  if (tree.has(SpherePolicy::kSlab)) {
+    write_bounds<PackedSlab>(writer, tree.octree(), tree.bounds().slabs);
   }
   if (tree.triangles()) {
     const auto& [mesh, lists] = *tree.triangles();
@@ -300,11 +355,10 @@ SphereTree read_tree(const std::filesystem::path& file) {
   StoredOctree stored = read_octree(reader, depth);
   std::vector<PackedNormal> normals = reader.array<PackedNormal>(stored.leaves);
 
-  SphereLevels tight;
-  if ((sections & kTightSection) != 0) {
-    tight.push_back(reader.array<Sphere>(stored.leaves));
-    for (const std::uint32_t nodes : stored.nodes) tight.push_back(reader.array<Sphere>(nodes));
-  }
+  Levels<PackedBall> balls;
+  if ((sections & kBallsSection) != 0) balls = read_bounds<PackedBall>(reader, stored);
+  Levels<PackedSlab> slabs;
+  if ((sections & kSlabsSection) != 0) slabs = read_bounds<PackedSlab>(reader, stored);
   std::optional<LeafTriangles> triangles;
   if ((sections & kTrianglesSection) != 0) {
     const auto counts = reader.value<std::array<std::uint64_t, 3>>();
@@ -322,19 +376,23 @@ SphereTree read_tree(const std::filesystem::path& file) {
   }
 
   reader.verify_checksum();
-  reader.require(sections <= 7, "it lists a section that is not known");
+  reader.require(sections <= 15, "it lists a section that is not known");
+  reader.require(slabs.empty() || !balls.empty(), "it has slabs without balls");
   reader.require(orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is not known");
   verify_lattice(reader, lattice);
-  verify_spheres(reader, tight);
   if (triangles) verify_triangles(reader, *triangles);
   SphereTree::Parts parts{lattice,
                           verified(reader, std::move(stored)),
                           static_cast<Orientation>(orientation),
                           std::move(normals),
-                          std::move(tight),
+                          {},
                           std::move(triangles),
                           std::nullopt};
+  parts.bounds.balls =
+      verified<BallBlock>(reader, parts.octree, std::move(balls), "a ball has no radius");
+  parts.bounds.slabs = verified<SlabBlock>(reader, parts.octree, std::move(slabs),
+                                           "a slab's numbers are out of range");
   if (proximity) parts.proximity = ProximityTree{verified(reader, std::move(*proximity))};
   return SphereTree(std::move(parts));
 }
