@@ -41,11 +41,16 @@ class LinearOctree {
   /// Nodes of all levels, leaves included.
   [[nodiscard]] std::uint64_t node_count() const noexcept;
 
-  /// The nodes at `level`, 1 … depth, and one more that closes the last one's children: node i has
-  /// nodes[i + 1].first_child - nodes[i].first_child. At level depth + 1 stands the root's parent,
-  /// whose only child is the root, and whose cube has the root's centre and twice its edge.
+  /// The nodes at `level`, 1 … depth, and one more, whose first child is where the last one's
+  /// children end. At level depth + 1 stands the root's parent, whose only child is the root, and
+  /// whose cube has the root's centre and twice its edge.
   [[nodiscard]] std::span<const OctreeNode> nodes(int level) const noexcept {
     return nodes_[index(level)];
+  }
+  /// Of a node at `level`, 1 … depth + 1.
+  [[nodiscard]] int child_count(int level, std::uint32_t node) const noexcept {
+    const std::span<const OctreeNode> here = nodes(level);
+    return static_cast<int>(here[node + 1].first_child - here[node].first_child);
   }
   /// Of a node at `level` >= 1: bit k says that child k is there.
   [[nodiscard]] std::uint8_t mask(int level, std::uint32_t node) const noexcept {

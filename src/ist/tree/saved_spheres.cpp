@@ -20,10 +20,8 @@ std::vector<Ball> level_spheres(const SphereTree& tree, SpherePolicy policy, int
     }
     return spheres;
   }
-  const std::span<const OctreeNode> parents = octree.nodes(level + 1);
-  for (std::uint32_t parent = 0; parent + 1 < parents.size(); ++parent) {
-    const std::uint32_t children = parents[parent + 1].first_child - parents[parent].first_child;
-    for (int slot = 0; slot < static_cast<int>(children); ++slot) {
+  for (std::uint32_t parent = 0; parent < tree.balls(level).size(); ++parent) {
+    for (int slot = 0; slot < octree.child_count(level + 1, parent); ++slot) {
       spheres.push_back(tree.saved_ball(level, parent, slot));
     }
   }

@@ -40,12 +40,9 @@ SphereTree::SphereTree(Parts parts) : parts_(std::move(parts)) {
   reach_ = kImplicitReach * 0.5 * parts_.lattice.edge(parts_.lattice.depth);
   if (!has(SpherePolicy::kTight)) return;
   for (int level = 0; level <= depth(); ++level) {
-    const std::span<const OctreeNode> parents = parts_.octree.nodes(level + 1);
     double largest = 0, farthest2 = 0;
-    for (std::uint32_t parent = 0; parent + 1 < parents.size(); ++parent) {
-      const auto children =
-          static_cast<int>(parents[parent + 1].first_child - parents[parent].first_child);
-      for (int slot = 0; slot < children; ++slot) {
+    for (std::uint32_t parent = 0; parent < balls(level).size(); ++parent) {
+      for (int slot = 0; slot < parts_.octree.child_count(level + 1, parent); ++slot) {
         const Ball ball = saved_ball(level, parent, slot);
         largest = std::max(largest, ball.radius);
         farthest2 = std::max(farthest2, ball.centre.squaredNorm());
