@@ -22,6 +22,7 @@ int exit_code(ErrorCode code) {
     case ErrorCode::kVoxelSizeTooSmall:
     case ErrorCode::kMemoryLimit:
     case ErrorCode::kPolicyMissing:
+    case ErrorCode::kTargetMissing:
       return kUsage;
     default:
       return kBadInput;
