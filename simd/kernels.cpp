@@ -39,7 +39,9 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
   const auto unit = hn::Set(d, side.ball_unit);
   const std::uint32_t first = side.names_addresses ? 8 * parent : node.first_child;
   for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
-    const auto store = [&](Lane lane, hn::Vec<Eight> v) { hn::StoreU(v, d, out.lane[lane] + at + k); };
+    const auto store = [&](Lane lane, hn::Vec<Eight> v) {
+      hn::StoreU(v, d, out.lane[lane] + at + k);
+    };
     const auto place = [&](int axis, const std::int16_t* q) {
       return hn::Add(hn::Set(d, node.centre[axis] * side.voxel_size),
                      hn::Mul(FloatsOf(q + k), unit));
@@ -105,7 +107,8 @@ HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows&
 // of room is needed behind them.
 template <bool kSlabs>
 HWY_INLINE std::size_t TouchRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
-                                std::size_t begin, std::size_t end, std::uint32_t* HWY_RESTRICT out) {
+                                std::size_t begin, std::size_t end,
+                                std::uint32_t* HWY_RESTRICT out) {
   const Full d;
   const hn::RebindToUnsigned<Full> du;
   const auto x = hn::Set(d, f.x[row]), y = hn::Set(d, f.y[row]), z = hn::Set(d, f.z[row]);
@@ -128,8 +131,8 @@ HWY_INLINE std::size_t TouchRow(const FixedRows& f, std::size_t row, const Movin
     const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
     auto apart = hn::Gt(squared, hn::Mul(reach, reach));
     if constexpr (kSlabs) {
-      const auto above_fixed = hn::Sub(
-          hn::Add(hn::Add(hn::Mul(dx, nx), hn::Mul(dy, ny)), hn::Mul(dz, nz)), offset);
+      const auto above_fixed =
+          hn::Sub(hn::Add(hn::Add(hn::Mul(dx, nx), hn::Mul(dy, ny)), hn::Mul(dz, nz)), offset);
       apart = hn::Or(apart, hn::Gt(hn::Abs(above_fixed), hn::Add(r, half)));
       const auto above_moving =
           hn::Add(hn::Add(hn::Add(hn::Mul(dx, load(kNormalX)), hn::Mul(dy, load(kNormalY))),
@@ -224,8 +227,8 @@ class Advancer {
     for (std::size_t g = 0; g < batch.groups; ++g) {
       for (std::uint32_t row = 0; row < batch.rows[g]; ++row) {
         const std::size_t before = out_.moving_count;
-        out_.moving_count += TouchRow<kSlabs>(scratch_.rows[g], row, scratch_.moving, batch.begin[g],
-                                              batch.end[g], out_.moving + before);
+        out_.moving_count += TouchRow<kSlabs>(scratch_.rows[g], row, scratch_.moving,
+                                              batch.begin[g], batch.end[g], out_.moving + before);
         end_row(out_, batch.name[g] + row, before);
       }
       tests_ += batch.rows[g] * (batch.end[g] - batch.begin[g]);
@@ -267,10 +270,9 @@ class Advancer {
 std::uint64_t Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
                       SearchCursor& cursor, Frontier& out, SearchScratch& scratch) {
   Frontier next = out;  // a copy, so that the compiler may keep it in registers
-  const std::uint64_t tests =
-      step.fixed.slabs != nullptr
-          ? Advancer<true>(step, pose, in, next, scratch).Run(cursor)
-          : Advancer<false>(step, pose, in, next, scratch).Run(cursor);
+  const std::uint64_t tests = step.fixed.slabs != nullptr
+                                  ? Advancer<true>(step, pose, in, next, scratch).Run(cursor)
+                                  : Advancer<false>(step, pose, in, next, scratch).Run(cursor);
   out = next;
   return tests;
 }
@@ -307,8 +309,10 @@ struct Compiled {
 };
 
 // One target's functions, or null where this compiler does not make them.
-#define IST_KERNELS(NAME, TARGET) \
-  Compiled { HWY_##TARGET, { NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts) } }
+#define IST_KERNELS(NAME, TARGET)                                                            \
+  Compiled {                                                                                 \
+    HWY_##TARGET, { NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts) } \
+  }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),
                                   IST_KERNELS("sse4", SSE4), IST_KERNELS("ssse3", SSSE3)};

@@ -2,11 +2,18 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace ist {
 
 void tbb_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* context) {
   tbb::parallel_for(std::size_t{0}, ranges, [=](std::size_t range) { run(context, range); });
+}
+
+void tbb_aside(void (*run)(void*), void* context) {
+  // An arena of one place, kept for no caller. The arena lives on until its task has ended.
+  tbb::task_arena arena(1, 0, tbb::task_arena::priority::high);
+  arena.enqueue([=] { run(context); });
 }
 
 struct TbbThreadLimit::Control {

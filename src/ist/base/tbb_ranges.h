@@ -9,6 +9,10 @@ namespace ist {
 /// reaches the caller. The seam to TBB: everything else calls parallel_for.
 void tbb_ranges(std::size_t ranges, void (*run)(void* context, std::size_t range), void* context);
 
+/// Calls `run(context)` once, on a thread of TBB's beside whatever else TBB does, as soon as it has
+/// one to give; returns at once. It has one to give even where it is limited to a single thread.
+void tbb_aside(void (*run)(void* context), void* context);
+
 /// Bounds TBB's threads while it lives.
 class TbbThreadLimit {
  public:

@@ -121,7 +121,7 @@ std::uint32_t decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& 
   const std::uint32_t parent = side.opens ? node : node / 8;
   const std::uint32_t slot = side.opens ? 0 : node % 8;
   const std::uint32_t count = side.opens ? child_count(side, node) : 1;
-  const std::uint32_t name = !side.opens             ? node
+  const std::uint32_t name = !side.opens            ? node
                              : side.names_addresses ? 8 * node
                                                     : side.nodes[node].first_child;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -169,9 +169,9 @@ template <std::size_t N>
   const float above_fixed =
       ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
   if (std::abs(above_fixed) > m.lane[kRadius][at] + f.half[row]) return false;
-  const float above_moving = ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) +
-                              dz * m.lane[kNormalZ][at]) +
-                             m.lane[kOffset][at];
+  const float above_moving =
+      ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
+      m.lane[kOffset][at];
   return !(std::abs(above_moving) > m.lane[kHalf][at] + f.scaled_radius[row]);
 }
 

@@ -12,15 +12,14 @@
 namespace ist {
 namespace {
 
-// What the kernels err by, in parts of |A| + |B| + |t|, u = 2⁻²⁴. |A| bounds a node's centre plus its
-// radius, and by more than a fourth the corners of the root cube.
+// What the kernels err by, in parts of |A| + |B| + |t|, u = 2⁻²⁴. |A| bounds a node's centre plus
+// its radius, and by more than a fourth the corners of the root cube.
 //   Decoding a centre, parent's cube and offset in it: the factor and the product 2u of each, the
-//   sum u; the two are together no longer than the root cube's half diagonal, so 2.6u|A| for blocks,
-//   and 4u|A| for the table, which adds three numbers.
-//   Turning the fixed one: entries, products and two sums of three, √3 (1 + 1 + 2)u|a|, and adding
-//   the translation u(|a| + |t|), itself narrowed, u|t|: 8u|A| + 2u|t|.
-//   Difference, squares and their sums: 2.5u of the distance, which is about rA + rB; radii 2u, pad,
-//   sum and square 2.5u: 7u (rA + rB).
+//   sum u; the two are together no longer than the root cube's half diagonal, so 2.6u|A| for
+//   blocks, and 4u|A| for the table, which adds three numbers. Turning the fixed one: entries,
+//   products and two sums of three, √3 (1 + 1 + 2)u|a|, and adding the translation u(|a| + |t|),
+//   itself narrowed, u|t|: 8u|A| + 2u|t|. Difference, squares and their sums: 2.5u of the distance,
+//   which is about rA + rB; radii 2u, pad, sum and square 2.5u: 7u (rA + rB).
 // |a| + rA <= |A|, so no length is counted for more than 12u.
 constexpr double kBallRounding = 12.5 * 0x1p-24;
 // In a slab's test the same difference meets a normal that errs by 7u, in a dot product of 5u, less

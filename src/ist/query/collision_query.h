@@ -17,14 +17,16 @@ namespace ist {
 
 struct CollisionOptions {
   std::optional<SpherePolicy> policy;  ///< by default the tightest that both trees have
-  /// An instruction set of all_kernels(); empty: IST_TARGET's, or the best. All give the same answer.
+  /// An instruction set of all_kernels(); empty: IST_TARGET's, or the best. All give the same
+  /// answer.
   std::string target;
   /// Pairs of nodes that are alive at one level before they are searched further; 12 bytes each, a
   /// level and worker. The answer does not depend on it. The default keeps a level's frontier in a
   /// core's own cache, half a megabyte of it; a quarter as many cost a tenth of the time more where
   /// jaws are closed, four times as many gain nothing.
   std::size_t frontier_pairs = 1 << 16;
-  /// 1: all is done in the calling thread. 2: a resident thread helps where it can, see SharedSearch.
+  /// 1: all is done in the calling thread. 2: a resident thread helps where it can, see
+  /// SharedSearch.
   int workers = 1;
   /// With two workers: how soon after a query begins the next one is expected; 0 when they follow
   /// one another at once.

@@ -24,10 +24,9 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   if (farthest > reaches + test.slack) return test;
   double squared = 0;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double moved =
-        ((pose.rotation(i, 0) * b.centre[0] + pose.rotation(i, 1) * b.centre[1]) +
-         pose.rotation(i, 2) * b.centre[2]) +
-        pose.translation[i];
+    const double moved = ((pose.rotation(i, 0) * b.centre[0] + pose.rotation(i, 1) * b.centre[1]) +
+                          pose.rotation(i, 2) * b.centre[2]) +
+                         pose.translation[i];
     squared += (a.centre[i] - moved) * (a.centre[i] - moved);
   }
   const double reach = (a.radius + b.radius) + test.slack;

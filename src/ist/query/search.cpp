@@ -95,8 +95,8 @@ std::uint64_t Search::descend(std::size_t step, const Frontier& in, std::size_t 
 std::size_t Search::bytes() const noexcept {
   std::size_t bytes = sizeof(SearchScratch);
   for (const Memory& memory : memory_) {
-    bytes += memory.groups.size() * sizeof(SearchGroup) +
-             memory.moving.size() * sizeof(std::uint32_t);
+    bytes +=
+        memory.groups.size() * sizeof(SearchGroup) + memory.moving.size() * sizeof(std::uint32_t);
   }
   return bytes;
 }

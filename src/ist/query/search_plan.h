@@ -39,7 +39,7 @@ class SearchPlan {
   };
   std::vector<SearchStep> steps_;
   std::vector<Sizes> sizes_;
-  const OctreeNode* fixed_leaves_ = nullptr;   // the leaves' parents, where named by address
+  const OctreeNode* fixed_leaves_ = nullptr;  // the leaves' parents, where named by address
   const OctreeNode* moving_leaves_ = nullptr;
 };
 
