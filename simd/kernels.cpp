@@ -20,6 +20,9 @@ using Eight = hn::CappedTag<float, 8>;
 // that they are gone again.
 constexpr std::size_t kAhead = 24;
 
+// Read from memory: Highway 1.0.3's Iota writes its lanes there one by one, and waits for them.
+alignas(64) constexpr std::uint32_t kSlots[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+
 template <typename Integer>
 HWY_INLINE hn::Vec<Eight> FloatsOf(const Integer* HWY_RESTRICT values) {
   const Eight d;
@@ -59,7 +62,7 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
       store(kOffset, hn::Mul(FloatsOf(slab.offset + k), slab_unit));
       store(kHalf, hn::Mul(FloatsOf(slab.half + k), slab_unit));
     }
-    hn::StoreU(hn::Iota(du, first + static_cast<std::uint32_t>(k)), du, out.name + at + k);
+    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kSlots + k)), du, out.name + at + k);
   }
   return child_count(side, parent);
 }
@@ -158,7 +161,6 @@ HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
   if (side.balls != nullptr) __builtin_prefetch(side.balls + parent);
   if (side.slabs != nullptr) {
     __builtin_prefetch(side.slabs + parent);
-    __builtin_prefetch(&side.slabs[parent].half[7]);
   }
 }
 
