@@ -68,12 +68,7 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
 }
 
 // What has no blocks, or is not opened, is the scalar form's.
-template <bool kSlabs, std::size_t N>
-HWY_INLINE std::uint32_t Decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& out,
-                                std::size_t at) {
-  if (side.opens && side.balls != nullptr) return DecodeBlock<kSlabs>(side, node, out, at);
-  return decode(side, node, out, at);
-}
+HWY_INLINE bool HasBlocks(const SearchSide& side) { return side.opens && side.balls != nullptr; }
 
 // Vector twin of ist::turn, for all eight rows.
 template <bool kSlabs>
@@ -156,12 +151,11 @@ struct Batch {
   std::uint32_t rows[SearchScratch::kGroups], name[SearchScratch::kGroups];
 };
 
+template <bool kSlabs>
 HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
   __builtin_prefetch(side.nodes + parent);
-  if (side.balls != nullptr) __builtin_prefetch(side.balls + parent);
-  if (side.slabs != nullptr) {
-    __builtin_prefetch(side.slabs + parent);
-  }
+  __builtin_prefetch(side.balls + parent);
+  if constexpr (kSlabs) __builtin_prefetch(side.slabs + parent);
 }
 
 template <bool kSlabs>
@@ -195,13 +189,28 @@ class Advancer {
     return step_.moving.opens ? 8 * moving : moving;
   }
 
-  std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
+  HWY_INLINE std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
+    const SearchSide side = step_.moving;  // a copy, which the lanes' stores cannot change
+    const std::uint32_t* const ids = in_.moving;
+    if (!HasBlocks(side)) {
+      for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
+      return at;
+    }
     const std::size_t last = in_.moving_count - 1;
     for (std::uint32_t i = begin; i < end; ++i) {
-      Prefetch(step_.moving, in_.moving[HWY_MIN(i + kAhead, last)] >> (step_.moving.opens ? 0 : 3));
-      at += Decode<kSlabs>(step_.moving, in_.moving[i], scratch_.moving, at);
+      Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
+      at += DecodeBlock<kSlabs>(side, ids[i], scratch_.moving, at);
     }
     return at;
+  }
+
+  HWY_INLINE std::uint32_t DecodeFixed(std::uint32_t node, FixedRows& rows) {
+    const SearchSide side = step_.fixed;
+    const std::uint32_t count = HasBlocks(side)
+                                    ? DecodeBlock<kSlabs>(side, node, scratch_.fixed, 0)
+                                    : decode(side, node, scratch_.fixed, 0);
+    Turn<kSlabs>(pose_, scratch_.fixed, rows);
+    return count;
   }
 
   // As many groups from `first` on as fit into the scratch memory and surely into `out`.
@@ -218,9 +227,8 @@ class Advancer {
       const std::size_t g = batch.groups++;
       batch.begin[g] = at;
       batch.end[g] = at = DecodeMoving(begin, group.end, at);
-      batch.rows[g] = Decode<kSlabs>(step_.fixed, group.fixed, scratch_.fixed, 0);
+      batch.rows[g] = DecodeFixed(group.fixed, scratch_.rows[g]);
       batch.name[g] = scratch_.fixed.name[0];
-      Turn<kSlabs>(pose_, scratch_.fixed, scratch_.rows[g]);
       begin = group.end;
     }
   }
@@ -242,8 +250,7 @@ class Advancer {
   bool RowByRow(SearchCursor& cursor) {
     const SearchGroup group = in_.groups[cursor.group];
     const std::uint32_t begin = Begin(cursor.group);
-    const std::uint32_t rows = Decode<kSlabs>(step_.fixed, group.fixed, scratch_.fixed, 0);
-    Turn<kSlabs>(pose_, scratch_.fixed, scratch_.rows[0]);
+    const std::uint32_t rows = DecodeFixed(group.fixed, scratch_.rows[0]);
     constexpr std::uint32_t kPiece = MovingLanes::kSize / 8;
     for (; cursor.row < rows; ++cursor.row) {
       if (!has_room(out_, 1, MostLanes(group.end - begin))) return false;
