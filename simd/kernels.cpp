@@ -204,11 +204,14 @@ class Advancer {
     return at;
   }
 
-  HWY_INLINE std::uint32_t DecodeFixed(std::uint32_t node, FixedRows& rows) {
+  HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, FixedRows& rows) {
     const SearchSide side = step_.fixed;
-    const std::uint32_t count = HasBlocks(side)
-                                    ? DecodeBlock<kSlabs>(side, node, scratch_.fixed, 0)
-                                    : decode(side, node, scratch_.fixed, 0);
+    const std::uint32_t node = in_.groups[group].fixed;
+    if (HasBlocks(side)) {
+      Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);
+    }
+    const std::uint32_t count = HasBlocks(side) ? DecodeBlock<kSlabs>(side, node, scratch_.fixed, 0)
+                                                : decode(side, node, scratch_.fixed, 0);
     Turn<kSlabs>(pose_, scratch_.fixed, rows);
     return count;
   }
@@ -227,7 +230,7 @@ class Advancer {
       const std::size_t g = batch.groups++;
       batch.begin[g] = at;
       batch.end[g] = at = DecodeMoving(begin, group.end, at);
-      batch.rows[g] = DecodeFixed(group.fixed, scratch_.rows[g]);
+      batch.rows[g] = DecodeFixed(first + g, scratch_.rows[g]);
       batch.name[g] = scratch_.fixed.name[0];
       begin = group.end;
     }
@@ -250,7 +253,7 @@ class Advancer {
   bool RowByRow(SearchCursor& cursor) {
     const SearchGroup group = in_.groups[cursor.group];
     const std::uint32_t begin = Begin(cursor.group);
-    const std::uint32_t rows = DecodeFixed(group.fixed, scratch_.rows[0]);
+    const std::uint32_t rows = DecodeFixed(cursor.group, scratch_.rows[0]);
     constexpr std::uint32_t kPiece = MovingLanes::kSize / 8;
     for (; cursor.row < rows; ++cursor.row) {
       if (!has_room(out_, 1, MostLanes(group.end - begin))) return false;
