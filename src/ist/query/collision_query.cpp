@@ -106,6 +106,11 @@ std::size_t CollisionQuery::bytes() const noexcept {
   return alone != nullptr ? alone->bytes() : std::get_if<SharedSearch>(&search_)->bytes();
 }
 
+SharedSearch::Sharing CollisionQuery::sharing() const noexcept {
+  const auto* shared = std::get_if<SharedSearch>(&search_);
+  return shared != nullptr ? shared->sharing() : SharedSearch::Sharing{};
+}
+
 double CollisionQuery::resolution(const QueryResult& result) const noexcept {
   return 2 * (fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_)) +
          result.pad;

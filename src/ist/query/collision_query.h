@@ -70,6 +70,8 @@ class CollisionQuery {
   [[nodiscard]] int workers() const noexcept {
     return std::holds_alternative<SharedSearch>(search_) ? 2 : 1;
   }
+  /// How often the second worker helped; nothing with one worker.
+  [[nodiscard]] SharedSearch::Sharing sharing() const noexcept;
   /// Bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
 

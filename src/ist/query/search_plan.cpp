@@ -57,6 +57,8 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
     const bool open_a = a > 0 && (b == 0 || edge_b <= kLarger * edge_a);
     const bool open_b = b > 0 && (a == 0 || edge_a <= kLarger * edge_b);
+    const std::size_t before =
+        std::size_t{fixed.octree().node_count(a)} * moving.octree().node_count(b);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
     SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b)};
@@ -65,7 +67,7 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     step.fixed.names_addresses = a == 0 && b > 0;
     step.moving.names_addresses = b == 0 && a > 0;
     steps_.push_back(step);
-    sizes_.push_back({fixed.octree().node_count(a), moving.octree().node_count(b)});
+    sizes_.push_back({moving.octree().node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
   }
   if (steps_.empty()) return;
   if (!steps_.back().fixed.opens) fixed_leaves_ = steps_.back().fixed.nodes;

@@ -22,12 +22,14 @@ class SearchPlan {
 
   [[nodiscard]] const std::vector<SearchStep>& steps() const noexcept { return steps_; }
 
-  /// The most moving nodes that one fixed node can meet after each step, and the most pairs.
+  /// The most moving nodes that one fixed node can meet after a step.
   [[nodiscard]] std::size_t longest_row(std::size_t step) const noexcept {
-    return sizes_[step].moving;
+    return sizes_[step].row;
   }
+  /// The most pairs that there can be after it, if every node that is opened had eight children: so
+  /// much room is never found to be too little.
   [[nodiscard]] std::size_t most_pairs(std::size_t step) const noexcept {
-    return sizes_[step].fixed * sizes_[step].moving;
+    return sizes_[step].pairs;
   }
 
   /// The leaves' indices, where contacts name them by address because that tree ended first.
@@ -35,7 +37,7 @@ class SearchPlan {
 
  private:
   struct Sizes {
-    std::size_t fixed, moving;  // nodes
+    std::size_t row, pairs;
   };
   std::vector<SearchStep> steps_;
   std::vector<Sizes> sizes_;

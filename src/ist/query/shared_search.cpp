@@ -37,13 +37,16 @@ SharedSearch::~SharedSearch() {
 
 std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
+  ++sharing_.queries;
   std::uint64_t tests = 0;
   const std::size_t step = caller_.widen(pose, kFewestPairs, tests);
   const Frontier& pairs = caller_.frontier(step);
   if (step == plan_.steps().size() || pairs.moving_count < kFewestPairs ||
-      pairs.moving_count > kMostPairs || job_.busy()) {
+      pairs.moving_count > kMostPairs) {
     return tests + caller_.descend(step, pairs, 0, pose, sink);
   }
+  ++sharing_.worth;
+  if (job_.busy()) return tests + caller_.descend(step, pairs, 0, pose, sink);
   share(pose, step, pairs);
   if (!worker_.offer(job_)) return tests + caller_.descend(step, pairs, 0, pose, sink);
 
@@ -57,11 +60,13 @@ std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexc
     if (board_.take(index, kPatience) && parts_[index].whole) {
       sink.append({found_.data() + parts_[index].begin, parts_[index].count});
       tests += parts_[index].tests;
+      ++sharing_.chunks;
     } else {
       search(index);
+      ++sharing_.dropped;
     }
   }
-  worker_.retract(job_);
+  if (!worker_.retract(job_)) ++sharing_.shared;
   return tests;
 }
 

@@ -30,6 +30,16 @@ class SharedSearch {
   /// As Search::run.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
 
+  /// What became of the queries since it was made.
+  struct Sharing {
+    std::uint64_t queries = 0;  ///< all
+    std::uint64_t worth = 0;    ///< with work enough to be shared
+    std::uint64_t shared = 0;   ///< that the worker took up
+    std::uint64_t chunks = 0;   ///< that it did in them
+    std::uint64_t dropped = 0;  ///< that it did too late, or had no room for
+  };
+  [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
+
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -57,6 +67,7 @@ class SharedSearch {
   Search caller_, helper_;
   std::chrono::nanoseconds period_;
   Shared shared_;
+  Sharing sharing_;
   std::size_t chunk_count_ = 0;
   ChunkBoard board_;
   std::vector<Part> parts_;
