@@ -306,6 +306,23 @@ void WriteContacts(const Frontier& leaves, Contact* HWY_RESTRICT out) {
   }
 }
 
+// The parts, each for itself.
+std::uint32_t DecodePart(const SearchSide& side, std::uint32_t node, MovingLanes& out,
+                         std::size_t at) {
+  return side.slabs != nullptr ? Decode<true>(side, node, out, at)
+                               : Decode<false>(side, node, out, at);
+}
+
+void TurnPart(const SearchPose& pose, bool slabs, const FixedLanes& fixed, FixedRows& rows) {
+  return slabs ? Turn<true>(pose, fixed, rows) : Turn<false>(pose, fixed, rows);
+}
+
+std::size_t TouchRowPart(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
+                         std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out) {
+  return slabs ? TouchRow<true>(rows, row, moving, begin, end, out)
+               : TouchRow<false>(rows, row, moving, begin, end, out);
+}
+
 }  // namespace ist::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -321,9 +338,14 @@ struct Compiled {
 };
 
 // One target's functions, or null where this compiler does not make them.
-#define IST_KERNELS(NAME, TARGET)                                                            \
-  Compiled {                                                                                 \
-    HWY_##TARGET, { NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts) } \
+#define IST_KERNELS(NAME, TARGET)                                               \
+  Compiled {                                                                    \
+    HWY_##TARGET, {                                                             \
+      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts), { \
+        HWY_CHOOSE_##TARGET(DecodePart), HWY_CHOOSE_##TARGET(TurnPart),         \
+            HWY_CHOOSE_##TARGET(TouchRowPart)                                   \
+      }                                                                         \
+    }                                                                           \
   }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),

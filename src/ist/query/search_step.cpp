@@ -3,6 +3,22 @@
 #include "ist/query/bound_lanes.h"
 
 namespace ist {
+namespace {
+
+void turn_rows(const SearchPose& pose, bool slabs, const FixedLanes& fixed, FixedRows& rows) {
+  for (std::size_t at = 0; at < FixedLanes::kSize; ++at) turn(pose, slabs, fixed, at, rows);
+}
+
+std::size_t touch_row(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
+                      std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out) {
+  std::size_t count = 0;
+  for (std::size_t at = begin; at < end; ++at) {
+    if (touch(rows, row, moving, at, slabs)) out[count++] = moving.name[at];
+  }
+  return count;
+}
+
+}  // namespace
 
 std::uint64_t advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
                              SearchCursor& cursor, Frontier& out, SearchScratch& scratch) {
@@ -38,5 +54,10 @@ void write_contacts_scalar(const Frontier& leaves, Contact* out) {
     for (; i < leaves.groups[g].end; ++i) out[i] = {leaves.groups[g].fixed, leaves.moving[i]};
   }
 }
+
+constinit const Kernels kScalarKernels{"scalar",
+                                       advance_scalar,
+                                       write_contacts_scalar,
+                                       {decode<MovingLanes::kSize>, turn_rows, touch_row}};
 
 }  // namespace ist

@@ -83,6 +83,9 @@ struct SearchCursor {
   std::uint32_t row = 0;
 };
 
+template <std::size_t N>
+struct BoundLanes;
+struct FixedRows;
 struct SearchScratch;
 
 /// Tests the pairs of `in` from `cursor` on, and appends to `out` those whose bounds touch, until
@@ -107,14 +110,28 @@ inline constexpr std::size_t kContactSlack = 8;
 /// Cost: 1 ns a contact.
 void write_contacts_scalar(const Frontier& leaves, Contact* out);
 
+/// What a step is made of, each part for itself, to be tested and measured.
+struct StepParts {
+  /// The nodes that stand for a frontier's `node`, into lanes from `at` on; see ist::decode.
+  std::uint32_t (*decode)(const SearchSide& side, std::uint32_t node, BoundLanes<1024>& out,
+                          std::size_t at);
+  /// All eight rows; see ist::turn.
+  void (*turn)(const SearchPose& pose, bool slabs, const BoundLanes<8>& fixed, FixedRows& rows);
+  /// One row against the lanes [begin, end), `begin` a multiple of 16; see ist::touch. Writes the
+  /// names of those that touch, with 16 more for room behind them, and returns how many there are.
+  std::size_t (*touch_row)(const FixedRows& rows, std::size_t row, const BoundLanes<1024>& moving,
+                           std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out);
+};
+
 /// The functions that a query is made of, for one instruction set.
 struct Kernels {
   const char* target;  ///< `scalar`, `avx3`, …
   AdvanceFunction advance;
   WriteContactsFunction write_contacts;
+  StepParts parts;
 };
 
 /// The plain form of all, which every processor runs.
-inline constexpr Kernels kScalarKernels{"scalar", advance_scalar, write_contacts_scalar};
+extern const Kernels kScalarKernels;
 
 }  // namespace ist
