@@ -70,6 +70,12 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
 // What has no blocks, or is not opened, is the scalar form's.
 HWY_INLINE bool HasBlocks(const SearchSide& side) { return side.opens && side.balls != nullptr; }
 
+template <bool kSlabs, std::size_t N>
+HWY_INLINE std::uint32_t Decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& out,
+                                std::size_t at) {
+  return HasBlocks(side) ? DecodeBlock<kSlabs>(side, node, out, at) : decode(side, node, out, at);
+}
+
 // Vector twin of ist::turn, for all eight rows.
 template <bool kSlabs>
 HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows& rows) {
@@ -210,8 +216,7 @@ class Advancer {
     if (HasBlocks(side)) {
       Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);
     }
-    const std::uint32_t count = HasBlocks(side) ? DecodeBlock<kSlabs>(side, node, scratch_.fixed, 0)
-                                                : decode(side, node, scratch_.fixed, 0);
+    const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);
     Turn<kSlabs>(pose_, scratch_.fixed, rows);
     return count;
   }
