@@ -13,14 +13,14 @@
 namespace ist::bench {
 namespace {
 
-// Both trees of a voxel size, made once; `tight` ones answer every policy.
+// Both trees of a voxel size, made once; `slab` ones answer every policy.
 const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
   static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
   auto& pair = made[voxel_size];
   if (pair == nullptr) {
     pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
-        build(upper_jaw(), voxel_size, SpherePolicy::kTight),
-        build(lower_jaw(), voxel_size, SpherePolicy::kTight));
+        build(upper_jaw(), voxel_size, SpherePolicy::kSlab),
+        build(lower_jaw(), voxel_size, SpherePolicy::kSlab));
   }
   return *pair;
 }
@@ -48,7 +48,7 @@ void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, Sp
 
 const int kRegistered = [] {
   for (const double size : {0.8, 0.2}) {
-    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
       for (const auto source : {SphereSource::kOnTheFly, SphereSource::kSaved}) {
         for (const double dz : kClosing) {
           const std::string name = "reference/" + std::to_string(size).substr(0, 3) + "/" +

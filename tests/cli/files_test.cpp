@@ -46,6 +46,24 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_TRUE(says(plain.out, "ms"));
 }
 
+TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
+  std::uintmax_t bytes = 0;
+  for (const char* spheres : {"table", "tight", "slab"}) {
+    const auto lines = json_lines(ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size",
+                                            "0.5", "--spheres", spheres, "--json"})
+                                      .out);
+    EXPECT_EQ(lines.at(0)["spheres"], spheres);
+    const SphereTree tree = read_tree(path("out.ist"));
+    EXPECT_EQ(to_string(tree.tightest()), spheres);
+    // 8 bytes a ball, and 5 a slab.
+    const std::uintmax_t more = std::filesystem::file_size(path("out.ist")) - bytes;
+    if (bytes > 0) {
+      EXPECT_EQ(more, tree.octree().node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
+    }
+    bytes += more;
+  }
+}
+
 TEST_F(Files, BuildReplacesAFileOnlyWhenItSucceeds) {
   const std::string tree = ball_tree(), before = file_content(tree);
   const std::size_t entries = dir_.entries();
@@ -118,14 +136,15 @@ TEST_F(Files, InfoOfATree) {
     EXPECT_EQ(row["nodes"], tree.octree().node_count(static_cast<int>(level)));
     EXPECT_LE(row["volume"]["table"], row["volume"]["simple"]);
     EXPECT_GT(row["volume"]["tight"], 0);
+    EXPECT_FALSE(row["volume"].contains("slab"));
   }
   EXPECT_TRUE(says(ist_well({"info", file}).out, "orientation outward"));
 }
 
 TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
-  const std::string file = ball_tree();
+  const std::string file = ball_tree("ball.ist", "slab");
   const SphereTree tree = read_tree(file);
-  for (const char* spheres : {"simple", "table", "tight", ""}) {
+  for (const char* spheres : {"simple", "table", "tight", "slab", ""}) {
     for (int level = 0; level <= 3; ++level) {
       std::vector<std::string> arguments{"export",  file,          "--what",
                                          "spheres", "--level",     std::to_string(level),
