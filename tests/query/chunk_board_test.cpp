@@ -117,14 +117,14 @@ void pause(std::uint64_t times) {
   while (times-- > 0) _mm_pause();
 }
 
-// Goes on until `enough` is seen, for ten seconds at most: two threads may share a core for a while
-// and not meet.
+// Goes on until `enough` is seen, for three seconds at most: two threads may share a core for
+// a while and not meet.
 class Rounds {
  public:
   bool more(bool enough) const { return !enough && std::chrono::steady_clock::now() < end_; }
 
  private:
-  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + 10s;
+  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + 3s;
 };
 
 TEST(ChunkBoardThread, EachChunkIsDoneOnceAndItsResultIsSeen) {

@@ -1,6 +1,7 @@
 #include "ist/base/tbb_ranges.h"
 
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -11,10 +12,13 @@ void tbb_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* conte
 }
 
 void tbb_aside(void (*run)(void*), void* context) {
-  // An arena of one place, kept for no caller. The arena lives on until its task has ended.
-  tbb::task_arena arena(1, 0, tbb::task_arena::priority::high);
+  // An arena with no place but its caller's, who never comes: TBB lends such a one a worker for
+  // what is enqueued, even where it is limited to one thread. It lives until its task has ended.
+  tbb::task_arena arena(1, 1, tbb::task_arena::priority::high);
   arena.enqueue([=] { run(context); });
 }
+
+std::size_t tbb_threads() { return static_cast<std::size_t>(tbb::info::default_concurrency()); }
 
 struct TbbThreadLimit::Control {
   tbb::global_control limit;

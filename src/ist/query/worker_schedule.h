@@ -11,29 +11,30 @@ namespace worker_schedule {
 
 using Clock = std::chrono::steady_clock;
 using Nanoseconds = std::chrono::nanoseconds;
-using namespace std::chrono_literals;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
 /// How long before the expected tick the worker rises. Its timer wakes it 55 to 80 µs late in the
 /// median and 95 to 155 µs at nine of ten (125 and 190 µs had it not set its timer slack to 1 ns);
 /// and a caller that waits for its own timer comes as early or late as that.
-constexpr Nanoseconds kLead = 150us;
+constexpr Nanoseconds kLead = microseconds(150);
 
 /// How long it polls on for a tick that is late, before it gives that one up.
-constexpr Nanoseconds kLate = 200us;
+constexpr Nanoseconds kLate = microseconds(200);
 
 /// How long it polls after a tick began, or its work for it ended: in a loop with a period, until
 /// the query that ticked has come to where it splits; in a loop without, until the next tick.
-constexpr Nanoseconds kLinger = 100us, kLingerBackToBack = 200us;
+constexpr Nanoseconds kLinger = microseconds(100), kLingerBackToBack = microseconds(200);
 
 /// Between looks for a loop without a period. A look costs 5 to 10 µs, so this is 1 to 2 % of a
 /// core, and a loop that begins again runs half of this alone.
-constexpr Nanoseconds kNap = 500us;
+constexpr Nanoseconds kNap = microseconds(500);
 
 /// Between looks when no tick has come for 100 ms or 100 periods; also the longest nap of any, and
 /// so the longest that the worker outlives its last handle.
-constexpr Nanoseconds kLongNap = 10ms;
+constexpr Nanoseconds kLongNap = milliseconds(10);
 
-constexpr Nanoseconds kLongestPeriod = 1s;
+constexpr Nanoseconds kLongestPeriod = milliseconds(1000);
 
 /// When to look into the mailbox next; polling is looking `now`.
 ///
@@ -45,11 +46,11 @@ inline Clock::time_point next_look(Clock::time_point now, Clock::time_point tick
                                    Clock::time_point sign, Nanoseconds period) noexcept {
   period = std::clamp(period, Nanoseconds{0}, kLongestPeriod);
   const Nanoseconds silence = now - sign;
-  if (silence < (period == 0ns ? kLingerBackToBack : kLinger)) return now;
-  if (silence > std::max<Nanoseconds>(100ms, 100 * period)) return now + kLongNap;
-  if (period == 0ns) return now + kNap;
+  if (silence < (period == Nanoseconds{0} ? kLingerBackToBack : kLinger)) return now;
+  if (silence > std::max<Nanoseconds>(milliseconds(100), 100 * period)) return now + kLongNap;
+  if (period == Nanoseconds{0}) return now + kNap;
   const Nanoseconds since = now - tick;
-  if (since < 0ns) return now + std::min(period, kLongNap);
+  if (since < Nanoseconds{0}) return now + std::min(period, kLongNap);
   const Nanoseconds phase = since % period;
   if (phase + kLead >= period || (since >= period && phase < kLate)) return now;
   return now + std::min(period - phase - kLead, kLongNap);

@@ -6,7 +6,6 @@
 
 #include <thread>
 
-#include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/tbb_ranges.h"
 #include "ist/query/worker_schedule.h"
@@ -15,6 +14,7 @@ namespace ist {
 namespace {
 
 using namespace worker_schedule;
+using namespace std::chrono_literals;
 
 // All of this is static and has no destructor: a task that TBB starts late, or a handle in a static
 // object that goes after everything else, finds it there.
@@ -160,8 +160,7 @@ class WorkerLoop {
 namespace {
 
 void stay(void*) {
-  Task queued = Task::kQueued;
-  if (!task.compare_exchange_strong(queued, Task::kRunning)) return;
+  task.store(Task::kRunning);
   Task none = Task::kNone;
   do {
     const ScopedTimerSlack slack;
