@@ -53,6 +53,8 @@ class Engine {
                                                   const SphereTree& moving,
                                                   const EngineOptions& options);
 
+using Engines = std::vector<std::unique_ptr<Engine>>;
+
 /// The instruction sets of simd that this processor has, best first: "avx3, avx2, …".
 [[nodiscard]] std::string target_names();
 

@@ -68,6 +68,7 @@ void QueryOptions::check() const {
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
+  named.keep_triangles = verify;
   return named;
 }
 
@@ -107,6 +108,10 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->capture_default_str();
   command.add_option("--contacts", options.contacts,
                      "write the contacts here, one JSON object each, in fixed coordinates");
+  command.add_flag(
+      "--verify", options.verify,
+      "check each engine's answers against what is promised, 0.1 s a pose or more; exit "
+      "code 5 if one is not kept");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
 }

@@ -37,11 +37,12 @@ struct QueryOptions {
   int workers = 1;
   int repeat = 1;
   std::filesystem::path contacts;  ///< empty: not written
+  bool verify = false;
   bool json = false;
 
   /// Throws CLI::ValidationError where options contradict each other, and kTargetMissing.
   void check() const;
-  /// The files with the policy that is named.
+  /// The files, with the policy that is named.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

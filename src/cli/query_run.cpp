@@ -10,6 +10,7 @@
 
 #include "cli/engine.h"
 #include "cli/progress_bar.h"
+#include "cli/verify.h"
 #include "ist/base/output_file.h"
 #include "ist/base/pose.h"
 #include "ist/tree/saved_spheres.h"
@@ -32,8 +33,6 @@ struct Answer {
     return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
   }
 };
-
-using Engines = std::vector<std::unique_ptr<Engine>>;
 
 nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const Bodies& bodies,
                                  const Answer& answer) {
@@ -147,6 +146,7 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
     }
   }
   bar.reset();
+  if (options.verify) verify(engines, bodies, poses);
   if (writer != nullptr) writer->commit();
   if (!options.json) {
     print_table(engines, bodies, answers);
