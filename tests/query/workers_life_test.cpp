@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -11,6 +12,8 @@
 #include "ist/base/parallel.h"
 #include "ist/query/workers.h"
 #include "query/worker_cases.h"
+#include "support/largest_allocation.h"
+#include "support/system_calls.h"
 
 namespace ist::test {
 namespace {
@@ -90,6 +93,42 @@ TEST(ResidentWorkerThread, LeavesParallelLoopsTheirThreads) {
   Counting counting;
   ASSERT_TRUE(offered(worker, counting.job));  // it has its thread
   EXPECT_TRUE(two_threads_meet(60s));
+}
+
+// All that a query does with the worker, until this helped twenty times, or for two seconds.
+bool right_all_the_time(ResidentWorker& worker, Sum& sum) {
+  bool right = true;
+  const auto give_up = Clock::now() + 2s;
+  for (int helped = 0; helped < 20 && Clock::now() < give_up;) {
+    worker.tick(Clock::now(), 0ns);
+    right = right && sum.with(worker) == Sum::without();
+    helped += sum.helped;
+  }
+  return right;
+}
+
+TEST(ResidentWorkerCaller, AllocatesNothing) {
+  ResidentWorker worker;
+  Sum sum;
+  ASSERT_TRUE(offered(worker, sum.job));
+  bool right = false;
+  EXPECT_EQ(largest_allocation([&] { right = right_all_the_time(worker, sum); }), 0u);
+  EXPECT_TRUE(right);
+}
+
+TEST(ResidentWorkerCaller, MakesNoSystemCall) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto play = [](bool call) {
+    ResidentWorker worker;
+    Sum sum;
+    static_cast<void>(offered(worker, sum.job));
+    forbid_system_calls();
+    const bool right = right_all_the_time(worker, sum);
+    if (call) std::this_thread::sleep_for(1us);
+    end_process(right ? 0 : 1);
+  };
+  EXPECT_EXIT(play(false), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(play(true), testing::KilledBySignal(SIGSYS), "");  // it would have been noticed
 }
 
 TEST(ResidentWorkerExit, AProcessEndsWithAHandleInAStatic) {
