@@ -22,6 +22,6 @@ run() {  # preset, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
-run thread "base_test voxel_test tree_test workers_test" -R 'Thread|Parallel'
+run thread "base_test voxel_test tree_test search_test workers_test" -R 'Thread|Parallel'
 run sanitize all -E 'RealPairs|DemoMakes|Saved$|OfAnIcosphere'
 run test all
