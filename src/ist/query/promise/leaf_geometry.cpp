@@ -43,18 +43,27 @@ bool pierces(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vect
   return third != 0 && (first > 0) == (third > 0);
 }
 
-// Whether an edge of one passes through the other.
-bool edge_pierces(const ClippedTriangle& edges, const ClippedTriangle& face,
+// Whether an edge of one passes through the other, or a line from the middle of the one to its
+// corner: where a body meets its mirror image, edges only meet edges.
+bool line_pierces(const ClippedTriangle& lines, const ClippedTriangle& face,
                   double tolerance) noexcept {
   const auto corner = [](const ClippedTriangle& polygon, int i) -> const Vector3d& {
     return polygon.corners[static_cast<std::size_t>(i)];
   };
-  for (int i = 0, last = edges.count - 1; i < edges.count; last = i++) {
+  const auto pierces_face = [&](const Vector3d& p, const Vector3d& q) {
     for (int j = 2; j < face.count; ++j) {
-      if (pierces(corner(edges, last), corner(edges, i), corner(face, 0), corner(face, j - 1),
-                  corner(face, j), tolerance)) {
+      if (pierces(p, q, corner(face, 0), corner(face, j - 1), corner(face, j), tolerance)) {
         return true;
       }
+    }
+    return false;
+  };
+  Vector3d middle = Vector3d::Zero();
+  for (int i = 0; i < lines.count; ++i) middle += corner(lines, i) / lines.count;
+  for (int i = 0, last = lines.count - 1; i < lines.count; last = i++) {
+    if (pierces_face(corner(lines, last), corner(lines, i)) ||
+        pierces_face(middle, corner(lines, i))) {
+      return true;
     }
   }
   return false;
@@ -109,7 +118,7 @@ std::vector<ClippedTriangle> leaf_polygons(const SphereTree& tree, std::uint32_t
 }
 
 bool surely_cross(const ClippedTriangle& a, const ClippedTriangle& b, double tolerance) noexcept {
-  return edge_pierces(a, b, tolerance) || edge_pierces(b, a, tolerance);
+  return line_pierces(a, b, tolerance) || line_pierces(b, a, tolerance);
 }
 
 }  // namespace ist

@@ -35,9 +35,9 @@ class CubeAxes {
 [[nodiscard]] std::vector<ClippedTriangle> leaf_polygons(const SphereTree& tree, std::uint32_t leaf,
                                                          std::uint64_t code);
 
-/// Whether two convex polygons cross for certain: an edge of one would still pass through a
-/// triangle of the other if each corner moved by `tolerance`. Not those that only touch, nor those
-/// that lie in one plane.
+/// Whether two convex polygons cross for certain: a line in one would still pass through a triangle
+/// of the other if each corner moved by `tolerance`. Not those that only touch, nor those that lie
+/// in one plane.
 [[nodiscard]] bool surely_cross(const ClippedTriangle& a, const ClippedTriangle& b,
                                 double tolerance) noexcept;
 
