@@ -233,16 +233,23 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
       ist_well({"demo", "--voxel-size", "3", "--json", "--keep", dir_.path()});
   EXPECT_EQ(result.err, "");
   const auto lines = json_lines(result.out);
-  EXPECT_EQ(lines.size(), 21u);  // three policies, seven displacements
-  for (const json& line : lines) {
-    for (const char* key : {"voxel_size", "spheres", "engine", "displacement", "contacts",
-                            "sphere_tests", "microseconds_median", "hertz"}) {
+  EXPECT_EQ(lines.size(), 21u);  // the published query, one worker, two; seven displacements
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const json& line = lines[i];
+    for (const char* key : {"voxel_size", "spheres", "engine", "target", "workers", "displacement",
+                            "contacts", "sphere_tests", "microseconds_median", "hertz"}) {
       EXPECT_TRUE(line.contains(key)) << key;
     }
+    EXPECT_EQ(line["engine"], i < 7 ? "reference" : "simd");
+    EXPECT_EQ(line["workers"], i < 14 ? 1 : 2);
+    EXPECT_EQ(line["contacts"], lines[i < 14 ? i : i - 7]["contacts"]);
     EXPECT_EQ(line["voxel_size"], 3);
     EXPECT_TRUE(line["displacement"] != 0 || line["contacts"] > 0);
   }
   EXPECT_EQ(dir_.entries(), 2u);
+  const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
+  EXPECT_TRUE(says(table.out, "published"));
+  EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '|'), 8);  // a row each, and its legend
 
   // What it keeps are meshes for the other subcommands.
   const std::string upper = path("upper_jaw.stl"), lower = path("lower_jaw.stl");

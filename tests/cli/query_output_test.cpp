@@ -2,7 +2,8 @@
 #include <map>
 
 #include "cli/cli_case.h"
-#include "ist/tree/sphere_policy.h"
+#include "ist/query/kernels.h"
+#include "ist/tree/tree_builder.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -44,7 +45,7 @@ class QueryOutput : public CliTest {
     EXPECT_EQ(line["complete"], true);
     EXPECT_EQ(line["truncated"], false);
     EXPECT_EQ(line["level"], 0);
-    EXPECT_EQ(line["target"], "scalar");
+    EXPECT_EQ(line["target"], line["engine"] == "simd" ? find_kernels({}).target : "scalar");
     EXPECT_EQ(line["workers"], 1);
     EXPECT_GE(line["sphere_tests"], 1);
     EXPECT_GT(line["microseconds_min"], 0);
@@ -62,8 +63,8 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     check_line(lines[i]);
     EXPECT_EQ(lines[i]["index"], i);
-    EXPECT_EQ(lines[i]["engine"], "reference");
-    EXPECT_EQ(lines[i]["spheres"], "tight");
+    EXPECT_EQ(lines[i]["engine"], "simd");
+    EXPECT_EQ(lines[i]["spheres"], to_string(BuildOptions{}.spheres));
     EXPECT_EQ(lines[i]["voxel_size"], (json{0.5, 0.5}));
     EXPECT_EQ(lines[i]["colliding"], i != 1);
   }
@@ -73,15 +74,17 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
 
 TEST_F(QueryOutput, LinesGoByIndexThenByEngineHoweverOftenTheyAreAsked) {
   const std::string mesh = ball();
-  const CommandResult result =
-      ist_well({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses", poses({0, 1, 2}), "--json",
-                "--repeat", "5", "--engine", "reference", "--engine", "reference"});
-  const auto lines = json_lines(result.out);
-  ASSERT_EQ(lines.size(), 6u);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    check_line(lines[i]);
-    EXPECT_EQ(lines[i]["index"], i / 2);
-    EXPECT_EQ(lines[i]["contacts"], lines[i / 2 * 2]["contacts"]);
+  for (const auto& [first, second] : {std::pair("reference", "simd"), {"simd", "reference"}}) {
+    const CommandResult result = ist_well({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses",
+                                           poses({0, 1, 2}), "--json", "--spheres", "table",
+                                           "--repeat", "5", "--engine", first, "--engine", second});
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 6u);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      check_line(lines[i]);
+      EXPECT_EQ(lines[i]["index"], i / 2);
+      EXPECT_EQ(lines[i]["engine"], i % 2 == 0 ? first : second);
+    }
   }
 }
 
@@ -147,7 +150,7 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
     const CommandResult result =
         ist_well({"collide", tree, ball(), "--voxel-size", "0.4", "--poses", poses({3.5, 100, 1}),
                   "--contacts", path("contacts.jsonl"), "--json", "--repeat", "3", "--spheres",
-                  spheres, "--engine", "reference", "--engine", "reference"});
+                  spheres, "--engine", "reference", "--engine", "simd"});
     const auto lines = json_lines(result.out);
     std::map<std::size_t, std::size_t> count;
     std::size_t last = 0;

@@ -24,7 +24,9 @@ class Usage : public CliTest {
 TEST_F(Usage, HelpTeaches) {
   const CommandResult help = ist_well({"--help"});
   EXPECT_TRUE(says(help.out, "ist demo"));
-  EXPECT_TRUE(says(help.out, "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file"));
+  EXPECT_TRUE(
+      says(help.out,
+           "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 5 a result breaks a promise"));
   EXPECT_EQ(help.err, "");
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
@@ -35,7 +37,8 @@ TEST_F(Usage, HelpTeaches) {
       {"export", {"TREE", "--what", "--level", "--spheres", "--output", "Example: ist export"}},
       {"collide",
        {"FIXED", "MOVING", "--poses", "column-major", "--voxel-size", "--spheres", "--engine",
-        "--repeat", "--contacts", "--json", "Example: ist collide"}},
+        "--workers", "--target", "IST_TARGET", "--repeat", "--verify", "--contacts", "--json",
+        "Example: ist collide"}},
       {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}}};
   for (const auto& [command, parts] : taught) {
     EXPECT_TRUE(says(help.out, "\n  " + command));
