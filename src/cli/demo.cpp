@@ -131,10 +131,12 @@ void run(const Options& options) {
     fmt::print("Two jaws made from seed {}, upper {} triangles, lower {} triangles.\n",
                options.seed, upper_mesh.triangles.size(), lower_mesh.triangles.size());
     fmt::print(
-        "They close along z, at dz = 0 all the way: microseconds an answer, of the published "
-        "query\n"
-        "with its lookup table and of the fast path ({} spheres, {}); bars for one worker, from\n"
-        "10 Hz on, six characters a factor of ten, | at the 1000 Hz that a hand needs.\n",
+        "They close along z; at dz = 0 mm they are closed. Microseconds an answer: of the "
+        "published\n"
+        "query with its lookup table, and of the fast path ({} spheres, {}) with one worker\n"
+        "and with two. Bars: the rate of one worker, from 10 Hz on, six characters a factor of "
+        "ten;\n"
+        "| is at 1000 Hz, which a hand needs.\n",
         to_string(BuildOptions{}.spheres), find_kernels({}).target);
   }
   if (!options.keep.empty()) {

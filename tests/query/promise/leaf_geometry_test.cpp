@@ -74,13 +74,13 @@ TEST(SurelyCross, ThroughTouchingAndApart) {
   EXPECT_TRUE(cross({{1, 2, -1}, {1, 2, 1}, {2, 3, 1}}));
   EXPECT_TRUE(cross({{-1, 1, -1}, {5, 1, -1}, {2, 1, 1}}));  // all its edges pass outside
   EXPECT_TRUE(cross({{1, 2, -1e-9}, {1, 2, 1}, {2, 3, 1}}));
-  EXPECT_FALSE(cross({{1, 2, 0}, {1, 2, 1}, {2, 3, 1}}));         // touches with a corner
-  EXPECT_FALSE(cross({{1, 2, 1e-9}, {1, 2, 1}, {2, 3, 1}}));      // just apart
-  EXPECT_FALSE(cross({{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));         // in one plane
-  EXPECT_FALSE(cross({{5, 2, -1}, {5, 2, 1}, {6, 3, 1}}));        // beside it
-  EXPECT_FALSE(cross({{4, 2, -1}, {4, 2, 1}, {6, 3, 1}}));        // along its edge
-  EXPECT_FALSE(cross({{1, 2, 1}, {1, 2, 1}, {1, 2, 1}}));         // a point
-  EXPECT_TRUE(cross({{1, 2, -1}, {1, 2, 1}, {1, 2 + 1e-7, 1}}));  // a sliver
+  EXPECT_FALSE(cross({{1, 2, 0}, {1, 2, 1}, {2, 3, 1}}));              // touches with a corner
+  EXPECT_FALSE(cross({{1, 2, 1e-9}, {1, 2, 1}, {2, 3, 1}}));           // just apart
+  EXPECT_FALSE(cross({{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));              // in one plane
+  EXPECT_FALSE(cross({{5, 2, -1}, {5, 2, 1}, {6, 3, 1}}));             // beside it
+  EXPECT_FALSE(cross({{4, 2, -1}, {4, 2, 1}, {6, 3, 1}}));             // along its edge
+  EXPECT_FALSE(cross({{1, 2, 1}, {1, 2, 1}, {1, 2, 1}}));              // a point
+  EXPECT_TRUE(cross({{1, 2, -1}, {1, 2, 1}, {1, 2 + 1e-7, 1}}));       // a sliver
   EXPECT_TRUE(cross({{0, 1, -1}, {0, 1, 1}, {4, 1, 1}, {4, 1, -1}}));  // from edge to edge
   EXPECT_FALSE(surely_cross(face, ClippedTriangle{}, 1e-12));
   // What would be apart, had each corner moved by as much as is doubted.
