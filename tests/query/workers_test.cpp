@@ -202,6 +202,19 @@ TEST(ResidentWorkerThread, IsAwakeForTicksWithAPeriodAndSleepsBetween) {
   EXPECT_LT(share, 0.9);
 }
 
+TEST(ResidentWorkerThread, IsFoundInLongTicksThatFollowBackToBack) {
+  ResidentWorker worker;
+  std::this_thread::sleep_for(150ms);  // it naps
+  Counting counting;
+  EXPECT_TRUE(eventually([&] {
+    worker.tick(Clock::now(), 0ns);
+    bool found = false;
+    for (const auto end = Clock::now() + 3ms; !found && Clock::now() < end;)
+      found = worker.offer(counting.job);
+    return found;
+  }));
+}
+
 TEST(ResidentWorkerThread, UsesLittleWhenNobodyTicks) {
   ResidentWorker worker;
   std::this_thread::sleep_for(300ms);  // the last tick is forgotten

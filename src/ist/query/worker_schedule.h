@@ -14,24 +14,28 @@ using Nanoseconds = std::chrono::nanoseconds;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// How long before the expected tick the worker rises. Its timer wakes it 55 to 80 µs late in the
+/// How long before the expected tick the worker rises. Its timer wakes it 50 to 80 µs late in the
 /// median and 95 to 155 µs at nine of ten (125 and 190 µs had it not set its timer slack to 1 ns);
-/// and a caller that waits for its own timer comes as early or late as that.
+/// and a caller that waits for its own timer comes as early or late as that. Of ticks at 1 kHz, 83
+/// to 89 % found it polling, for 22 % of a core. With real-time threads, which rise sooner, it was
+/// 99.8 % for 29 %; with a lead of 100 µs 99.5 % for 23 %, and of 50 µs 95 % for 18 %.
 constexpr Nanoseconds kLead = microseconds(150);
 
 /// How long it polls on for a tick that is late, before it gives that one up.
 constexpr Nanoseconds kLate = microseconds(200);
 
-/// How long it polls after a tick began, or its work for it ended: in a loop with a period, until
-/// the query that ticked has come to where it splits; in a loop without, until the next tick.
+/// How long it polls after it noticed a tick, or ended its work for it: in a loop with a period,
+/// until the query that ticked has come to where it splits; in a loop without, until the next tick,
+/// which comes as soon as the caller has used the last answer. 99 % of such ticks found it polling.
 constexpr Nanoseconds kLinger = microseconds(100), kLingerBackToBack = microseconds(200);
 
-/// Between looks for a loop without a period. A look costs 5 to 10 µs, so this is 1 to 2 % of a
-/// core, and a loop that begins again runs half of this alone.
+/// Between looks for a loop without a period. A look costs 20 to 35 µs of a core, mostly for rising
+/// and going to sleep: 4 to 7 % for 100 ms after the last tick. A loop that begins again is noticed
+/// half of this later.
 constexpr Nanoseconds kNap = microseconds(500);
 
-/// Between looks when no tick has come for 100 ms or 100 periods; also the longest nap of any, and
-/// so the longest that the worker outlives its last handle.
+/// Between looks when no tick has come for 100 ms or 100 periods: 0.2 to 0.4 % of a core. Also the
+/// longest nap of any, and so the longest that the worker outlives its last handle.
 constexpr Nanoseconds kLongNap = milliseconds(10);
 
 constexpr Nanoseconds kLongestPeriod = milliseconds(1000);

@@ -43,9 +43,13 @@ class Job {
 /// worker does not happen to poll at that moment the query does the work itself. Where TBB has no
 /// thread to give, no offer succeeds; in a child process after fork() no job is ever entered.
 ///
+/// A refused offer is cheap, and a query does well to make it again before each piece of its work:
+/// the worker polls for a while after each tick that it notices, but where long ticks follow back
+/// to back that is in their midst, and no first offer would ever find it.
+///
 /// tick(), offer() and retract() touch atomics and nothing else: no lock, no allocation, no system
-/// call; 1 to 10 ns, and 100 where the worker is polling. They may be called by several threads. As
-/// a refused offer is that cheap, a query does well to make it again while it has work to share.
+/// call; 1 to 10 ns, and 100 where the worker is polling. They may be called by several threads. A
+/// job begins and ends 0.4 µs after it was offered if there is nothing in it.
 class ResidentWorker {
  public:
   /// Takes a thread, if no other object has; it is there 0.1 ms later or when TBB has one to give.
