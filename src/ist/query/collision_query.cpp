@@ -89,7 +89,8 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose,
   if (!roots.touch) return result;
 
   const SearchPose narrowed = narrow(*relative, fixed_.reach() + moving_.reach());
-  result.pad = 2 * double{narrowed.ball_pad};
+  // What was added to a reach, and what the test may err by on top.
+  result.pad = 2 * double{policy_ == SpherePolicy::kSlab ? narrowed.slab_pad : narrowed.ball_pad};
   ContactSink sink(out);
   if (auto* alone = std::get_if<Search>(&search_)) {
     result.sphere_tests += alone->run(narrowed, sink);

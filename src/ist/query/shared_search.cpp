@@ -48,14 +48,18 @@ std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexc
   ++sharing_.worth;
   if (job_.busy()) return tests + caller_.descend(step, pairs, 0, pose, sink);
   share(pose, step, pairs);
-  if (!worker_.offer(job_)) return tests + caller_.descend(step, pairs, 0, pose, sink);
-
   const auto search = [&](std::size_t index) {
     std::size_t first = 0;
     const Frontier part = chunk(index, first);
     tests += caller_.descend(step, part, first, pose, sink);
   };
-  while (const auto index = board_.claim_front()) search(*index);
+  // Where long queries follow one another the worker begins to poll in their midst, so it is asked
+  // before each chunk.
+  bool taken = worker_.offer(job_);
+  while (const auto index = board_.claim_front()) {
+    search(*index);
+    if (!taken) taken = worker_.offer(job_);
+  }
   for (std::size_t index = board_.close(); index < chunk_count_; ++index) {
     if (board_.take(index, kPatience) && parts_[index].whole) {
       sink.append({found_.data() + parts_[index].begin, parts_[index].count});
@@ -66,7 +70,7 @@ std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexc
       ++sharing_.dropped;
     }
   }
-  if (!worker_.retract(job_)) ++sharing_.shared;
+  if (taken && !worker_.retract(job_)) ++sharing_.shared;
   return tests;
 }
 

@@ -65,12 +65,12 @@ TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
   CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
   EXPECT_EQ(allocations_of([&] {
               for (const auto give_up = Clock::now() + 60s;
-                   Clock::now() < give_up && query.chunks_helped() < 200;) {
+                   Clock::now() < give_up && query.sharing().chunks < 200;) {
                 static_cast<void>(query.collide(scene.pose, out));
               }
             }),
             0u);
-  EXPECT_GE(query.chunks_helped(), 200u);
+  EXPECT_GE(query.sharing().chunks, 200u);
 }
 
 }  // namespace

@@ -25,24 +25,24 @@ class SystemCalls : public ::testing::Test {
 
 // Queries along the scene's closing, before and after the call is forbidden, and at the end
 // whether the second worker, where there is one, did its part.
-[[noreturn]] void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
+void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
   std::vector<Contact> out(1 << 16);
   CollisionQuery query(scene.fixed, scene.moving, options_of(policy, "", workers));
   const auto enough = [&](std::uint64_t helped) {
-    return workers == 1 || query.chunks_helped() >= helped;
+    return workers == 1 || query.sharing().chunks >= helped;
   };
   const auto give_up = Clock::now() + 60s;
   while (!enough(1) && Clock::now() < give_up) {  // it is there
     static_cast<void>(query.collide(scene.pose, out));
   }
-  const std::uint64_t helped = query.chunks_helped() + 100;
+  const std::uint64_t helped = query.sharing().chunks + 100;
   forbid_system_calls();
   for (int i = 0; i < 1000 || (!enough(helped) && Clock::now() < give_up); ++i) {
     Eigen::Isometry3d pose = scene.pose;
     pose.translation()[2] += 0.01 * (i % 100);
     static_cast<void>(query.collide(pose, out));
   }
-  _exit(enough(helped) ? 0 : 1);
+  end_process(enough(helped) ? 0 : 1);
 }
 
 TEST_F(SystemCalls, AreCaught) {
@@ -50,13 +50,13 @@ TEST_F(SystemCalls, AreCaught) {
       {
         forbid_system_calls();
         static_cast<void>(getppid());
-        _exit(0);
+        end_process(0);
       },
       ::testing::KilledBySignal(SIGSYS), "");
   EXPECT_EXIT(
       {
         forbid_system_calls();
-        _exit(7);
+        end_process(7);
       },
       ::testing::ExitedWithCode(7), "");
 }
