@@ -14,7 +14,8 @@ namespace ist {
 /// Where the reference takes its spheres from.
 enum class SphereSource : std::uint8_t {
   kOnTheFly,  ///< derived from the octree at each visit, as published, or unpacked from the tree
-  kSaved,     ///< made once, at construction, and read back: the article's first proposal
+  kSaved,     ///< made once, at construction, and read back: the article's first proposal. Slabs
+              ///< are unpacked all the same
 };
 
 /// The published query, plain and in double: depth first down both trees at once, each colliding
