@@ -26,9 +26,9 @@ constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver
 // A query with two workers, and the answer of one.
 class SharedSearchThread : public ::testing::Test {
  protected:
-  // Until `done`, or for a minute: a machine that is busy is no failure.
+  // Until `done`, or for five minutes: a machine that is busy is no failure.
   bool ask_until(CollisionQuery& query, const std::function<bool()>& done) const {
-    for (const auto give_up = Clock::now() + 60s; Clock::now() < give_up;) {
+    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
       if (!same(ask(query, scene_.pose), expected_)) return false;
       if (done()) return true;
     }
@@ -40,8 +40,8 @@ class SharedSearchThread : public ::testing::Test {
   }
 
   const Scene& scene_ = scenes()[0];
-  const CollisionOptions alone_ = options_of(SpherePolicy::kTight);
-  const CollisionOptions shared_ = options_of(SpherePolicy::kTight, "", 2);
+  const CollisionOptions alone_ = options_of(SpherePolicy::kSlab);
+  const CollisionOptions shared_ = options_of(SpherePolicy::kSlab, "", 2);
   const Answer expected_ = [this] {
     CollisionQuery query(scene_.fixed, scene_.moving, alone_);
     return ask(query, scene_.pose);
@@ -51,7 +51,7 @@ class SharedSearchThread : public ::testing::Test {
 TEST_F(SharedSearchThread, GivesTheAnswerOfOneWorker) {
   CollisionQuery query(scene_.fixed, scene_.moving, shared_);
   int queries = 0;
-  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 1000 && query.sharing().chunks > 200; }));
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
   std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
 }
 
@@ -63,7 +63,7 @@ TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
       const Stall stall(point);
       ASSERT_TRUE(ask_until(query, Stall::reached));
       const std::uint64_t helped = query.sharing().chunks;
-      for (int later = 0; later < 50; ++later) {
+      for (int later = 0; later < 10; ++later) {
         ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
       }
       EXPECT_EQ(query.sharing().chunks, helped);
@@ -75,14 +75,14 @@ TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
 // Each time it stalls it is let go on in the midst of later queries.
 TEST_F(SharedSearchThread, ForgetsAWorkerThatIsLate) {
   CollisionQuery query(scene_.fixed, scene_.moving, shared_);
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < 12; ++round) {
     const Stall stall(kHandOvers[round % 4]);
     ASSERT_TRUE(ask_until(query, Stall::reached));
     std::jthread releaser([&] {
-      std::this_thread::sleep_for(round * 20us);
+      std::this_thread::sleep_for(round * 50us);
       Stall::release();
     });
-    for (int later = 0; later < 20; ++later) {
+    for (int later = 0; later < 6; ++later) {
       ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
     }
   }
@@ -111,12 +111,12 @@ TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
   for (int owner = 0; owner < 3; ++owner) {
     owners.emplace_back([this, &helped] {
       CollisionQuery query(scene_.fixed, scene_.moving, shared_);
-      EXPECT_TRUE(ask_until(query, [&] { return query.sharing().chunks > 50; }));
+      EXPECT_TRUE(ask_until(query, [&] { return query.sharing().chunks > 10; }));
       helped += query.sharing().chunks;
     });
   }
   owners.clear();
-  EXPECT_GT(helped, 150u);
+  EXPECT_GT(helped, 30u);
 }
 
 // In turn with poses that have nothing to share, and none at all.
@@ -133,7 +133,7 @@ TEST_F(SharedSearchThread, PosesOfAnySizeFollowEachOther) {
   int turn = 0;
   EXPECT_TRUE(ask_until(query, [&] {
     for (const auto& [pose, answer] : cases) EXPECT_TRUE(same(ask(query, pose), answer));
-    return HasFailure() || (++turn >= 100 && query.sharing().chunks > 100);
+    return HasFailure() || (++turn >= 20 && query.sharing().chunks > 10);
   }));
 }
 
@@ -149,7 +149,7 @@ TEST_F(SharedSearchThread, MoreContactsThanTheWorkerHasRoomFor) {
   const Answer expected = ask(single, pose);
   EXPECT_GT(expected.result.contacts, 1u << 20);
   Answer answer = expected;
-  const auto give_up = Clock::now() + 60s;
+  const auto give_up = Clock::now() + 300s;
   for (int repeat = 0; repeat < 10 || (query.sharing().chunks == 0 && Clock::now() < give_up);
        ++repeat) {
     answer.contacts.assign(answer.contacts.size(), {});
