@@ -116,7 +116,8 @@ void beside_reference(benchmark::State& state, double dz) {
   const double published = of_reference.quantile(0.5);
   const QueryResult result = reference.collide(closing(dz), contacts);
   state.counters["reference_us"] = published;
-  state.counters["reference_ns_a_test"] = 1e3 * published / static_cast<double>(result.sphere_tests);
+  state.counters["reference_ns_a_test"] =
+      1e3 * published / static_cast<double>(result.sphere_tests);
   state.counters["one_us"] = of_one.quantile(0.5);
   state.counters["two_us"] = of_two.quantile(0.5);
   state.counters["one_times"] = published / of_one.quantile(0.5);
@@ -152,7 +153,7 @@ void worker_stalled(benchmark::State& state, double dz) {
     begin = Clock::now();
     static_cast<void>(two.collide(closing(dz), contacts));
     of_two.add(microseconds(begin, Clock::now()));
-    met += stalled ? 1 : 0;
+    if (stalled) ++met;
   }
   hand_over_hook.store(nullptr);
   state.counters["met_stalled"] = static_cast<double>(met);
@@ -165,11 +166,10 @@ std::string number(double value) { return std::to_string(value).substr(0, value 
 
 void add(const Case& c, int queries) {
   for (const double dz : kClosing) {
-    const std::string name = "query/" + number(c.voxel_size) + "/" +
-                             std::string(to_string(*c.options.policy)) + "/" +
-                             (c.options.target.empty() ? "best" : c.options.target) + "/" +
-                             std::to_string(c.options.workers) + (c.paced ? "/paced/" : "/row/") +
-                             number(dz);
+    const std::string name =
+        "query/" + number(c.voxel_size) + "/" + std::string(to_string(*c.options.policy)) + "/" +
+        (c.options.target.empty() ? "best" : c.options.target) + "/" +
+        std::to_string(c.options.workers) + (c.paced ? "/paced/" : "/row/") + number(dz);
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) { collide(s, c, dz); })
         ->Unit(benchmark::kMicrosecond)
         ->UseManualTime()

@@ -1,10 +1,7 @@
 // The published query along a closing, by policy: spheres made on the fly against spheres saved.
 #include <benchmark/benchmark.h>
 
-#include <map>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ist/query/reference.h"
@@ -12,18 +9,6 @@
 
 namespace ist::bench {
 namespace {
-
-// Both trees of a voxel size, made once; `slab` ones answer every policy.
-const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
-  static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
-  auto& pair = made[voxel_size];
-  if (pair == nullptr) {
-    pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
-        build(upper_jaw(), voxel_size, SpherePolicy::kSlab),
-        build(lower_jaw(), voxel_size, SpherePolicy::kSlab));
-  }
-  return *pair;
-}
 
 void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, SphereSource source,
              double dz) {

@@ -5,7 +5,8 @@
 
 namespace ist::bench {
 
-/// Lets ticks begin a period apart, as a servo loop does: sleeps until just before each, then polls.
+/// Lets ticks begin a period apart, as a servo loop does: sleeps until just before each, then
+/// polls.
 class Pacer {
  public:
   using Clock = std::chrono::steady_clock;

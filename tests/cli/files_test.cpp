@@ -27,7 +27,7 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_EQ(line["file"], path("out.ist"));
   EXPECT_EQ(line["triangles"], 320);
   EXPECT_EQ(line["voxel_size"], 0.5);
-  EXPECT_EQ(line["spheres"], "tight");
+  EXPECT_EQ(line["spheres"], "slab");
   EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
   EXPECT_EQ(line["nodes"], tree.octree().node_count());
   EXPECT_EQ(line["depth"], 3);
