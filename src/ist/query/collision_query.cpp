@@ -23,15 +23,9 @@ namespace {
 // |a| + rA <= |A|, so no length is counted for more than 12u.
 constexpr double kBallRounding = 12.5 * 0x1p-24;
 // In a slab's test the same difference meets a normal that errs by 7u, in a dot product of 5u, less
-// an offset, against a sum: 16u (rA + rB) at most.
+// an offset, against a sum: 16u (rA + rB) at most. A radius is at most 1.01 √3 half edges of
+// the root, and |A| at least 2.21 of them, so rA < 0.8|A|: 2.6u|A| + 8u|a| + 16u rA < 17u|A|.
 constexpr double kSlabRounding = 17 * 0x1p-24;
-
-SpherePolicy tightest(const SphereTree& fixed, const SphereTree& moving) {
-  for (const auto policy : {SpherePolicy::kSlab, SpherePolicy::kTight}) {
-    if (fixed.has(policy) && moving.has(policy)) return policy;
-  }
-  return SpherePolicy::kTable;
-}
 
 float round_up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), HUGE_VALF);
@@ -60,7 +54,7 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
                                const CollisionOptions& options)
     : fixed_(fixed),
       moving_(moving),
-      policy_(options.policy.value_or(tightest(fixed, moving))),
+      policy_(options.policy.value_or(std::min(fixed.tightest(), moving.tightest()))),
       kernels_(find_kernels(options.target)),
       plan_(fixed, moving, policy_) {
   IST_ASSERT(options.workers == 1 || options.workers == 2);

@@ -22,8 +22,8 @@ struct CollisionOptions {
   std::string target;
   /// Pairs of nodes that are alive at one level before they are searched further; 12 bytes each, a
   /// level and worker. The answer does not depend on it. The default keeps a level's frontier in a
-  /// core's own cache, half a megabyte of it; a quarter as many cost a tenth of the time more where
-  /// jaws are closed, four times as many gain nothing.
+  /// core's own cache, three quarters of a megabyte at most; a quarter as many cost a tenth of the
+  /// time more where jaws are closed, four times as many gain nothing.
   std::size_t frontier_pairs = 1 << 16;
   /// 1: all is done in the calling thread. 2: a resident thread helps where it can, see
   /// SharedSearch.

@@ -1,6 +1,7 @@
 #include "ist/query/search.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace ist {
 
@@ -37,12 +38,17 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   for (std::size_t i = 0; i <= steps; ++i) {
     const std::size_t most = i == 0 ? 1 : plan.most_pairs(i - 1);
     const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
-    const std::size_t capacity = std::max(row, std::min(pairs, most));
+    const std::size_t capacity = std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
     Memory& memory = memory_.emplace_back();
     memory.groups.resize(capacity + kFrontierSlack);
     memory.moving.resize(capacity + kFrontierSlack);
     frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
   }
+  // The first dispatch: with pads without end all touches, wherever the bodies lie.
+  SearchPose pose{};
+  pose.ball_pad = pose.slab_pad = std::numeric_limits<float>::infinity();
+  std::uint64_t tests = 0;
+  static_cast<void>(widen(pose, 64, tests));
 }
 
 std::uint64_t Search::run(const SearchPose& pose, ContactSink& sink) noexcept {

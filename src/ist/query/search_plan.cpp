@@ -53,7 +53,7 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
   require_addresses(fixed, "fixed");
   require_addresses(moving, "moving");
   int a = fixed.depth(), b = moving.depth();
-  while (a > 0 || b > 0) {
+  while (a > 0 || b > 0 || steps_.empty()) {  // two leaves alone are a step too
     const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
     const bool open_a = a > 0 && (b == 0 || edge_b <= kLarger * edge_a);
     const bool open_b = b > 0 && (a == 0 || edge_a <= kLarger * edge_b);
@@ -69,7 +69,6 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     steps_.push_back(step);
     sizes_.push_back({moving.octree().node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
   }
-  if (steps_.empty()) return;
   if (!steps_.back().fixed.opens) fixed_leaves_ = steps_.back().fixed.nodes;
   if (!steps_.back().moving.opens) moving_leaves_ = steps_.back().moving.nodes;
 }

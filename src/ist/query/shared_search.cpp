@@ -5,9 +5,11 @@
 namespace ist {
 namespace {
 
-// Fewer pairs are not worth sharing; more than so many are shared no further down.
-constexpr std::size_t kFewestPairs = 512, kMostPairs = 1 << 15;
-// A chunk of so many pairs and all below them takes 5 µs where jaws are closed, and never over 10.
+// Fewer pairs are not worth sharing; and a step makes at most 64 of one.
+constexpr std::size_t kFewestPairs = 512, kMostPairs = 64 * kFewestPairs;
+// A chunk of so many pairs and all below them takes 5 µs where jaws are closed. Where surfaces
+// lie on each other, or one node meets many, it can take far longer: if it is the worker's last, it
+// is dropped after kPatience.
 constexpr std::size_t kChunkPairs = 24;
 // How long the caller waits, once it is done, for the chunk that the worker has in hand.
 constexpr std::chrono::microseconds kPatience{20};
@@ -41,8 +43,7 @@ std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexc
   std::uint64_t tests = 0;
   const std::size_t step = caller_.widen(pose, kFewestPairs, tests);
   const Frontier& pairs = caller_.frontier(step);
-  if (step == plan_.steps().size() || pairs.moving_count < kFewestPairs ||
-      pairs.moving_count > kMostPairs) {
+  if (step == plan_.steps().size() || pairs.moving_count < kFewestPairs) {
     return tests + caller_.descend(step, pairs, 0, pose, sink);
   }
   ++sharing_.worth;
@@ -120,7 +121,9 @@ void SharedSearch::help() noexcept {
 std::size_t SharedSearch::bytes() const noexcept {
   return caller_.bytes() + helper_.bytes() + found_.size() * sizeof(Contact) +
          shared_.groups.size() * sizeof(SearchGroup) +
-         shared_.moving.size() * sizeof(std::uint32_t);
+         shared_.moving.size() * sizeof(std::uint32_t) + parts_.size() * sizeof(Part) +
+         shared_.chunk_ends.size() * sizeof(std::size_t) +
+         board_.capacity() * sizeof(std::uint64_t);
 }
 
 }  // namespace ist

@@ -20,7 +20,7 @@ namespace ist {
 /// the caller has returned is dropped, and until it is back the caller searches alone.
 class SharedSearch {
  public:
-  /// Memory: twice that of a Search and 2 MB. @param period as for ResidentWorker::tick
+  /// Memory: twice that of a Search and 2.6 MB. @param period as for ResidentWorker::tick
   SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs,
                std::chrono::nanoseconds period);
   ~SharedSearch();

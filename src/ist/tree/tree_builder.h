@@ -12,10 +12,10 @@
 namespace ist {
 
 struct BuildOptions {
-  double voxel_size = 0;                        ///< mesh units
+  double voxel_size = 0;                       ///< mesh units
   SpherePolicy spheres = SpherePolicy::kSlab;  ///< what to save; the implicit ones cost nothing
-  bool keep_triangles = false;                  ///< to answer exactly
-  bool proximity = false;                       ///< proximity voxels besides surface voxels
+  bool keep_triangles = false;                 ///< to answer exactly
+  bool proximity = false;                      ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
 };
 

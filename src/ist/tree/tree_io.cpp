@@ -86,6 +86,9 @@ void verify_lattice(const TreeReader& reader, const Lattice& lattice) {
   constexpr double kLargestExtent = 1e15;
   reader.require(lattice.voxel_size * lattice.cells <= Lattice::kMaxRelativeSize * kLargestExtent,
                  "the grid is larger than any mesh may be");
+  constexpr double kSmallestExtent = 1e-12;  // half of it, for cells times size may round down
+  reader.require(lattice.voxel_size * lattice.cells >= 0.5 * kSmallestExtent,
+                 "the grid is smaller than any mesh may be");
   reader.require(lattice.depth == static_cast<int>(std::bit_width(lattice.cells - 1)),
                  "its depth does not fit its voxels");
 }

@@ -3,9 +3,9 @@
 #include <chrono>
 #include <csignal>
 
-#include "support/system_calls.h"
 #include "query/search/scenes.h"
 #include "support/skip.h"
+#include "support/system_calls.h"
 
 namespace ist::test {
 namespace {

@@ -38,7 +38,7 @@ const std::vector<std::unique_ptr<PlannedSearch>>& all_plans() {
     std::vector<std::unique_ptr<PlannedSearch>> all;
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const Sizes cells :
-           {Sizes{12, 9}, Sizes{3, 14}, Sizes{14, 2}, Sizes{1, 9}, Sizes{9, 1}}) {
+           {Sizes{12, 9}, Sizes{3, 14}, Sizes{14, 2}, Sizes{1, 9}, Sizes{9, 1}, Sizes{1, 1}}) {
         all.push_back(std::make_unique<PlannedSearch>(tree_of(ball, cells.fixed),
                                                       tree_of(block, cells.moving), policy));
       }

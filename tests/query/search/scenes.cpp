@@ -31,6 +31,14 @@ std::span<const Scene> scenes() {
   return all;
 }
 
+const Scene& shells() {
+  static const Scene scene = [] {
+    const TriangleMesh ball = icosphere(3, 1);
+    return Scene{"shells", tree_of(ball, 24), tree_of(ball, 24), shift({0.01, 0.02, 0.005})};
+  }();
+  return scene;
+}
+
 CollisionOptions options_of(SpherePolicy policy, const std::string& target, int workers) {
   CollisionOptions options;
   options.policy = policy;

@@ -20,6 +20,9 @@ struct Scene {
 /// way round, where leaves come at different depths. Made once.
 [[nodiscard]] std::span<const Scene> scenes();
 
+/// A ball almost on itself: little to make, and more pairs than are needed to share the work.
+[[nodiscard]] const Scene& shells();
+
 [[nodiscard]] CollisionOptions options_of(SpherePolicy policy, const std::string& target = "",
                                           int workers = 1);
 
