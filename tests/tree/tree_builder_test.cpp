@@ -56,8 +56,8 @@ TEST(BuildTree, SavesWhatItIsAskedFor) {
   BuildOptions options;
   options.voxel_size = 0.2;
   EXPECT_EQ(build_tree(test::icosphere(1, 1), options).tightest(), SpherePolicy::kSlab);
-  options.spheres = SpherePolicy::kSlab;
-  EXPECT_EQ(build_tree(test::icosphere(1, 1), options).tightest(), SpherePolicy::kSlab);
+  options.spheres = SpherePolicy::kTight;
+  EXPECT_EQ(build_tree(test::icosphere(1, 1), options).tightest(), SpherePolicy::kTight);
 }
 
 TEST(BuildTree, TurnsAnInsideOutMeshOutwardAndReportsIt) {
