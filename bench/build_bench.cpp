@@ -40,7 +40,7 @@ void build_upper_jaw(benchmark::State& state, double voxel_size, SpherePolicy po
 }
 
 const int kRegistered = [] {
-  for (const auto policy : {SpherePolicy::kTable, SpherePolicy::kTight}) {
+  for (const auto policy : {SpherePolicy::kTable, SpherePolicy::kTight, SpherePolicy::kSlab}) {
     for (const double size : {0.8, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1}) {
       const std::string name =
           "build/" + std::string(to_string(policy)) + "/" + std::to_string(size).substr(0, 4);

@@ -38,6 +38,9 @@ BENCHMARK_CAPTURE(load_and_ask, table, SpherePolicy::kTable)
 BENCHMARK_CAPTURE(load_and_ask, tight, SpherePolicy::kTight)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+BENCHMARK_CAPTURE(load_and_ask, slab, SpherePolicy::kSlab)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace ist::bench

@@ -1,10 +1,7 @@
 // The published query along a closing, by policy: spheres made on the fly against spheres saved.
 #include <benchmark/benchmark.h>
 
-#include <map>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ist/query/reference.h"
@@ -12,18 +9,6 @@
 
 namespace ist::bench {
 namespace {
-
-// Both trees of a voxel size, made once; `tight` ones answer every policy.
-const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
-  static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
-  auto& pair = made[voxel_size];
-  if (pair == nullptr) {
-    pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
-        build(upper_jaw(), voxel_size, SpherePolicy::kTight),
-        build(lower_jaw(), voxel_size, SpherePolicy::kTight));
-  }
-  return *pair;
-}
 
 void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, SphereSource source,
              double dz) {
@@ -48,7 +33,7 @@ void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, Sp
 
 const int kRegistered = [] {
   for (const double size : {0.8, 0.2}) {
-    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
       for (const auto source : {SphereSource::kOnTheFly, SphereSource::kSaved}) {
         for (const double dz : kClosing) {
           const std::string name = "reference/" + std::to_string(size).substr(0, 3) + "/" +

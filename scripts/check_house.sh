@@ -13,19 +13,24 @@ for i in "${!layers[@]}"; do
     [ -z "$found" ] || breach "${layers[i]} includes $later, which stands after it: $found"
   done
 done
-found=$(grep -rn '#include "cli/' src/ist || true)
+found=$(grep -rn '#include "cli/' src/ist simd || true)
 [ -z "$found" ] || breach "the library includes the command: $found"
+found=$(grep -rnE '#include "ist/' simd | grep -vE '"ist/(base|tree|query)/' || true)
+[ -z "$found" ] || breach "simd includes more than base, tree and query: $found"
+found=$(grep -rn '#include "simd/' src | grep -v '"simd/kernels\.h"' || true)
+[ -z "$found" ] || breach "the vector twins have one door, simd/kernels.h: $found"
 
 only() {  # what, pattern, the one file (a pattern), where to look
   local found
   found=$(grep -rlE "$2" $4 | grep -vxE "$3" || true)
   [ -z "$found" ] || breach "$1 is also in: $found"
 }
-only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' src
-only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/tbb_ranges\.cpp' src
+only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' "src simd"
+only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/tbb_ranges\.cpp' "src simd"
+only "Highway" '#include [<"]hwy/' 'simd/[a-z_]+(\.cpp|-inl\.h)' "src simd tests bench"
 only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/cli/main\.cpp' src
-only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' src/ist
+only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 
-long=$(find src tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
+long=$(find src simd tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
 [ -z "$long" ] || breach "longer than 400 lines: $long"
 exit $failed

@@ -7,7 +7,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
-  libeigen3-dev libtbb-dev libassimp-dev libfmt-dev libxxhash-dev
+  libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmp-dev)
 for argument in "$@"; do

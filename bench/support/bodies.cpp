@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <memory>
 
 #include "ist/mesh/jaw_model.h"
 #include "ist/mesh/mesh_io.h"
@@ -37,6 +39,17 @@ SphereTree build(const TriangleMesh& mesh, double voxel_size, SpherePolicy spher
   options.voxel_size = voxel_size;
   options.spheres = spheres;
   return build_tree(mesh, options);
+}
+
+const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
+  static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
+  auto& pair = made[voxel_size];
+  if (pair == nullptr) {
+    pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
+        build(upper_jaw(), voxel_size, SpherePolicy::kSlab),
+        build(lower_jaw(), voxel_size, SpherePolicy::kSlab));
+  }
+  return *pair;
 }
 
 Eigen::Isometry3d closing(double dz) {

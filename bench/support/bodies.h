@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "ist/mesh/triangle_mesh.h"
 #include "ist/tree/tree_builder.h"
@@ -16,6 +17,9 @@ namespace ist::bench {
 [[nodiscard]] const char* pair_name();
 
 [[nodiscard]] SphereTree build(const TriangleMesh& mesh, double voxel_size, SpherePolicy spheres);
+
+/// Both trees of a voxel size, which answer every policy; made once.
+[[nodiscard]] const std::pair<SphereTree, SphereTree>& trees(double voxel_size);
 
 /// The closing: the lower jaw turned by 0.0003 rad about z, so that no face of one body is parallel
 /// to one of the other, and moved by `dz` along z.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/progress_bar.h"
@@ -19,7 +20,8 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
   CheckedMesh checked = load_mesh(file);
   BuildOptions options;
   options.voxel_size = *files.voxel_size;
-  options.spheres = files.policy.value_or(SpherePolicy::kTight);
+  options.spheres = files.policy.value_or(options.spheres);
+  options.keep_triangles = files.keep_triangles && !is_implicit(options.spheres);
   options.max_memory = files.max_memory;
   SphereTree tree =
       build_with_progress(file.string(), std::move(checked.mesh), options, checked.warnings);
@@ -82,9 +84,8 @@ Bodies load_bodies(const BodyFiles& files) {
   }
   Bodies bodies{load_body(files.fixed, fixed_is_tree, files),
                 load_body(files.moving, moving_is_tree, files), SpherePolicy::kTable};
-  const bool both_tight =
-      bodies.fixed.has(SpherePolicy::kTight) && bodies.moving.has(SpherePolicy::kTight);
-  bodies.policy = files.policy.value_or(both_tight ? SpherePolicy::kTight : SpherePolicy::kTable);
+  bodies.policy =
+      files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
   bodies.fixed.require(bodies.policy, files.fixed.string());
   bodies.moving.require(bodies.policy, files.moving.string());
   return bodies;

@@ -37,6 +37,7 @@ struct BodyFiles {
   std::filesystem::path fixed, moving;
   std::optional<double> voxel_size;    ///< for meshes
   std::optional<SpherePolicy> policy;  ///< none: the best that both have
+  bool keep_triangles = false;         ///< of meshes
   std::uint64_t max_memory = BuildOptions{}.max_memory;
 };
 

@@ -61,9 +61,10 @@ void add_close(CLI::App& app) {
       "--step 0.1");
   command->callback([options] {
     const QueryOptions& query = options->query;
+    query.check();
     keep_inputs(query.contacts, {query.files.fixed, query.files.moving});
     const auto poses = straight_path(*options);
-    run_queries(load_bodies(options->query.body_files()), poses, options->query);
+    run_queries(load_bodies(query.body_files()), poses, query);
   });
 }
 

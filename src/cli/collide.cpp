@@ -28,9 +28,10 @@ void add_collide(CLI::App& app) {
       "Example: ist collide maxilla.stl mandible.stl --voxel-size 0.4 --poses poses.json --json");
   command->callback([options] {
     const QueryOptions& query = options->query;
+    query.check();
     keep_inputs(query.contacts, {query.files.fixed, query.files.moving, options->poses});
     const auto poses = read_poses(options->poses);
-    run_queries(load_bodies(options->query.body_files()), poses, options->query);
+    run_queries(load_bodies(query.body_files()), poses, query);
   });
 }
 

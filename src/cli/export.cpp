@@ -125,9 +125,8 @@ void run(const Options& options) {
   if (options.level > tree.depth()) {
     throw CLI::ValidationError("--level", fmt::format("the tree has levels 0 to {}", tree.depth()));
   }
-  SpherePolicy policy =
-      tree.has(SpherePolicy::kTight) ? SpherePolicy::kTight : SpherePolicy::kTable;
-  if (!options.spheres.empty()) policy = *sphere_policy(options.spheres);
+  const SpherePolicy policy =
+      options.spheres.empty() ? tree.tightest() : *sphere_policy(options.spheres);
   tree.require(policy, options.tree.string());
   const std::size_t count =
       options.what == "voxels" ? write_voxels(tree, options) : write_spheres(tree, policy, options);
@@ -157,7 +156,7 @@ void add_export(CLI::App& app) {
       ->check(CLI::Range(0, 17));
   command
       ->add_option("--spheres", options->spheres,
-                   "which spheres; by default the tightest that the tree has")
+                   "which spheres, of slab the balls; by default the tightest that the tree has")
       ->check(CLI::IsMember(policy_names()));
   command->add_option("-o,--output", options->output, "the PLY file to write")->required();
   command->add_flag("--json", options->json, "print one JSON object");

@@ -85,8 +85,8 @@ void show_tree(const Options& options) {
              tree.triangles() ? tree.triangles()->mesh.triangles.size() : 0,
              tree.proximity() ? tree.proximity()->octree.leaf_count() : 0);
   fmt::print(
-      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight: to read "
-      "them)\n");
+      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight "
+      "and slab: to read them)\n");
   fmt::print("{:>5} {:>10} {:>10}", "level", "edge", "nodes");
   for (const LevelSpheres& spheres : levels.front().spheres) {
     fmt::print(" {:>14} {:>9}", to_string(spheres.policy), "ms");

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/verify.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
 namespace {
 
-constexpr int kFailed = 1, kUsage = 2, kBadInput = 3;
+constexpr int kFailed = 1, kUsage = 2, kBadInput = 3, kPromiseBroken = 5;
 
 int exit_code(ErrorCode code) {
   switch (code) {
@@ -22,6 +23,7 @@ int exit_code(ErrorCode code) {
     case ErrorCode::kVoxelSizeTooSmall:
     case ErrorCode::kMemoryLimit:
     case ErrorCode::kPolicyMissing:
+    case ErrorCode::kTargetMissing:
       return kUsage;
     default:
       return kBadInput;
@@ -37,7 +39,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", IST_VERSION);
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
-      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file.\n"
+      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 5 a result breaks a promise "
+      "(--verify).\n"
       "Research software, not a medical device.");
   add_demo(app);
   add_build(app);
@@ -70,6 +73,9 @@ int main(int argc, char** argv) try {
 } catch (const ist::Error& error) {
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
   return ist::cli::exit_code(error.code());
+} catch (const ist::cli::PromiseBroken& broken) {
+  std::fprintf(stderr, "ist: %s\n", broken.what());
+  return ist::cli::kPromiseBroken;
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
   return ist::cli::kFailed;

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
+
+#include "ist/query/kernels.h"
 
 namespace ist::cli {
 
 std::vector<std::string> policy_names() {
   std::vector<std::string> names;
-  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     names.emplace_back(to_string(policy));
   }
   return names;
@@ -47,9 +50,25 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
       ->default_str("4G");
 }
 
+void QueryOptions::check() const {
+  for (auto name = engines.begin(); name != engines.end(); ++name) {
+    if (std::find(std::next(name), engines.end(), *name) != engines.end()) {
+      throw CLI::ValidationError("--engine", fmt::format("{} is named twice", *name));
+    }
+  }
+  if (std::find(engines.begin(), engines.end(), "simd") != engines.end()) {
+    static_cast<void>(find_kernels(target));  // before anything is built
+    return;
+  }
+  constexpr const char* kNoSimd = "goes with --engine simd: the reference is scalar, in one thread";
+  if (!target.empty()) throw CLI::ValidationError("--target", kNoSimd);
+  if (workers != 1) throw CLI::ValidationError("--workers", kNoSimd);
+}
+
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
+  named.keep_triangles = verify;
   return named;
 }
 
@@ -64,16 +83,35 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       .add_option("--spheres", options.spheres,
                   "how nodes are read as spheres; by default the tightest that both bodies have")
       ->check(CLI::IsMember(policy_names()));
-  command.add_option("--engine", options.engines, "which query; may be given several times")
-      ->check(CLI::IsMember({"reference"}))
+  command
+      .add_option(
+          "--engine", options.engines,
+          "simd is the fast path, reference the published query; may be given for each, and "
+          "they are asked in turn")
+      ->check(CLI::IsMember(std::vector<std::string>(kEngineNames.begin(), kEngineNames.end())))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->capture_default_str();
+  command
+      .add_option("--workers", options.workers,
+                  "threads of simd; a second one helps where queries follow at once, so name no "
+                  "other engine beside it")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  command.add_option("--target", options.target,
+                     fmt::format("instruction set of simd: {} on this processor; by default what "
+                                 "the environment's IST_TARGET names, or the first. All answer "
+                                 "alike",
+                                 target_names()));
   command.add_option("--repeat", options.repeat, "how often to time each pose")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command.add_option("--contacts", options.contacts,
                      "write the contacts here, one JSON object each, in fixed coordinates");
+  command.add_flag(
+      "--verify", options.verify,
+      "check each engine's answers against what is promised, 0.1 s a pose or more; exit "
+      "code 5 if one is not kept");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
 }

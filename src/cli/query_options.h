@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/bodies.h"
+#include "cli/engine.h"
 
 namespace ist::cli {
 
@@ -31,12 +32,17 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes);
 struct QueryOptions {
   BodyFiles files;
   std::string spheres;  ///< empty: the best that both bodies have
-  std::vector<std::string> engines{"reference"};
+  std::vector<std::string> engines{kEngineNames.front()};
+  std::string target;  ///< empty: IST_TARGET's, or the best
+  int workers = 1;
   int repeat = 1;
   std::filesystem::path contacts;  ///< empty: not written
+  bool verify = false;
   bool json = false;
 
-  /// The files with the policy that is named.
+  /// Throws CLI::ValidationError where options contradict each other, and kTargetMissing.
+  void check() const;
+  /// The files, with the policy that is named.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

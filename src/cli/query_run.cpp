@@ -3,25 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/engine.h"
 #include "cli/progress_bar.h"
+#include "cli/verify.h"
 #include "ist/base/output_file.h"
 #include "ist/base/pose.h"
-#include "ist/query/reference.h"
 #include "ist/tree/saved_spheres.h"
 
 namespace ist::cli {
 namespace {
-
-double microseconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
 
 // What one engine answered at one pose, and how long each time took.
 struct Answer {
@@ -39,44 +34,14 @@ struct Answer {
   }
 };
 
-// One engine on one pair of bodies, with a span that grows until every contact fits.
-class Engine {
- public:
-  Engine(std::string name, const Bodies& bodies)
-      : name_(std::move(name)), query_(bodies.fixed, bodies.moving, bodies.policy) {}
-
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] double resolution(const QueryResult& result) const {
-    return query_.resolution(result);
-  }
-  [[nodiscard]] std::span<const Contact> contacts(const QueryResult& result) const {
-    return {contacts_.data(), static_cast<std::size_t>(result.contacts)};
-  }
-
-  QueryResult ask(const Eigen::Isometry3d& pose, double& microseconds) {
-    while (true) {
-      const auto begin = std::chrono::steady_clock::now();
-      const QueryResult result = query_.collide(pose, contacts_);
-      microseconds = microseconds_since(begin);
-      if (!result.truncated) return result;
-      contacts_.resize(2 * result.contacts);
-    }
-  }
-
- private:
-  std::string name_;
-  ReferenceQuery query_;
-  std::vector<Contact> contacts_ = std::vector<Contact>(1 << 16);
-};
-
 nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const Bodies& bodies,
                                  const Answer& answer) {
   const QueryResult& r = answer.result;
   return {{"index", index},
           {"engine", engine.name()},
           {"spheres", to_string(bodies.policy)},
-          {"target", "scalar"},
-          {"workers", 1},
+          {"target", engine.target()},
+          {"workers", engine.workers()},
           {"voxel_size", {bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size}},
           {"resolution", engine.resolution(r)},
           {"complete", r.complete},
@@ -92,17 +57,22 @@ nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const 
           {"microseconds_median", answer.median()}};
 }
 
-void print_table(const std::vector<Engine>& engines, const Bodies& bodies,
+void print_table(const Engines& engines, const Bodies& bodies,
                  const std::vector<std::vector<Answer>>& answers) {
-  fmt::print("spheres {}, voxel size {} and {}\n", to_string(bodies.policy),
+  fmt::print("spheres {}, voxel size {} and {}", to_string(bodies.policy),
              bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size);
+  for (const auto& engine : engines) {
+    fmt::print("; {}: {}, {} worker{}", engine->name(), engine->target(), engine->workers(),
+               engine->workers() == 1 ? "" : "s");
+  }
+  fmt::print("\n");
   fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine", "touch",
              "contacts", "tests", "median µs", "min µs", "rate Hz");
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Answer& answer = answers[i][e];
       fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12.1f} {:>10.1f} {:>10.0f}\n", i,
-                 engines[e].name(), answer.result.contacts > 0 ? "yes" : "no",
+                 engines[e]->name(), answer.result.contacts > 0 ? "yes" : "no",
                  answer.result.contacts, answer.result.sphere_tests, answer.median(),
                  answer.fastest(), 1e6 / answer.median());
     }
@@ -150,8 +120,11 @@ class ContactWriter {
 
 void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
                  const QueryOptions& options) {
-  std::vector<Engine> engines;
-  for (const std::string& name : options.engines) engines.emplace_back(name, bodies);
+  const EngineOptions with{bodies.policy, options.target, options.workers};
+  Engines engines;
+  for (const std::string& name : options.engines) {
+    engines.push_back(make_engine(name, bodies.fixed, bodies.moving, with));
+  }
   std::unique_ptr<ContactWriter> writer;
   if (!options.contacts.empty()) writer = std::make_unique<ContactWriter>(options.contacts, bodies);
 
@@ -162,17 +135,18 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   for (int round = 0; round < options.repeat; ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       for (std::size_t e = 0; e < engines.size(); ++e) {
-        double microseconds = 0;
-        answers[i][e].result = engines[e].ask(poses[i], microseconds);
+        const auto [result, microseconds] = engines[e]->ask(poses[i]);
+        answers[i][e].result = result;
         answers[i][e].microseconds.push_back(microseconds);
         if (writer != nullptr && round == 0 && e == 0) {
-          writer->write(i, poses[i], engines[e].contacts(answers[i][e].result));
+          writer->write(i, poses[i], engines[e]->contacts());
         }
       }
       progress.add(1);
     }
   }
   bar.reset();
+  if (options.verify) verify(engines, bodies, poses);
   if (writer != nullptr) writer->commit();
   if (!options.json) {
     print_table(engines, bodies, answers);
@@ -180,7 +154,7 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      fmt::print("{}\n", json_line(i, engines[e], bodies, answers[i][e]).dump());
+      fmt::print("{}\n", json_line(i, *engines[e], bodies, answers[i][e]).dump());
     }
   }
 }

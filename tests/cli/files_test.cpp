@@ -27,7 +27,7 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_EQ(line["file"], path("out.ist"));
   EXPECT_EQ(line["triangles"], 320);
   EXPECT_EQ(line["voxel_size"], 0.5);
-  EXPECT_EQ(line["spheres"], "tight");
+  EXPECT_EQ(line["spheres"], "slab");
   EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
   EXPECT_EQ(line["nodes"], tree.octree().node_count());
   EXPECT_EQ(line["depth"], 3);
@@ -44,6 +44,24 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_TRUE(says(plain.out, std::to_string(tree.octree().leaf_count()) + " voxels"));
   EXPECT_TRUE(says(plain.out, "depth 3"));
   EXPECT_TRUE(says(plain.out, "ms"));
+}
+
+TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
+  std::uintmax_t bytes = 0;
+  for (const char* spheres : {"table", "tight", "slab"}) {
+    const auto lines = json_lines(ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size",
+                                            "0.5", "--spheres", spheres, "--json"})
+                                      .out);
+    EXPECT_EQ(lines.at(0)["spheres"], spheres);
+    const SphereTree tree = read_tree(path("out.ist"));
+    EXPECT_EQ(to_string(tree.tightest()), spheres);
+    // 8 bytes a ball, and 5 a slab.
+    const std::uintmax_t more = std::filesystem::file_size(path("out.ist")) - bytes;
+    if (bytes > 0) {
+      EXPECT_EQ(more, tree.octree().node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
+    }
+    bytes += more;
+  }
 }
 
 TEST_F(Files, BuildReplacesAFileOnlyWhenItSucceeds) {
@@ -118,14 +136,15 @@ TEST_F(Files, InfoOfATree) {
     EXPECT_EQ(row["nodes"], tree.octree().node_count(static_cast<int>(level)));
     EXPECT_LE(row["volume"]["table"], row["volume"]["simple"]);
     EXPECT_GT(row["volume"]["tight"], 0);
+    EXPECT_FALSE(row["volume"].contains("slab"));
   }
   EXPECT_TRUE(says(ist_well({"info", file}).out, "orientation outward"));
 }
 
 TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
-  const std::string file = ball_tree();
+  const std::string file = ball_tree("ball.ist", "slab");
   const SphereTree tree = read_tree(file);
-  for (const char* spheres : {"simple", "table", "tight", ""}) {
+  for (const char* spheres : {"simple", "table", "tight", "slab", ""}) {
     for (int level = 0; level <= 3; ++level) {
       std::vector<std::string> arguments{"export",  file,          "--what",
                                          "spheres", "--level",     std::to_string(level),
@@ -214,16 +233,23 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
       ist_well({"demo", "--voxel-size", "3", "--json", "--keep", dir_.path()});
   EXPECT_EQ(result.err, "");
   const auto lines = json_lines(result.out);
-  EXPECT_EQ(lines.size(), 21u);  // three policies, seven displacements
-  for (const json& line : lines) {
-    for (const char* key : {"voxel_size", "spheres", "engine", "displacement", "contacts",
-                            "sphere_tests", "microseconds_median", "hertz"}) {
+  EXPECT_EQ(lines.size(), 21u);  // the published query, one worker, two; seven displacements
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const json& line = lines[i];
+    for (const char* key : {"voxel_size", "spheres", "engine", "target", "workers", "displacement",
+                            "contacts", "sphere_tests", "microseconds_median", "hertz"}) {
       EXPECT_TRUE(line.contains(key)) << key;
     }
+    EXPECT_EQ(line["engine"], i < 7 ? "reference" : "simd");
+    EXPECT_EQ(line["workers"], i < 14 ? 1 : 2);
+    EXPECT_EQ(line["contacts"], lines[i < 14 ? i : i - 7]["contacts"]);
     EXPECT_EQ(line["voxel_size"], 3);
     EXPECT_TRUE(line["displacement"] != 0 || line["contacts"] > 0);
   }
   EXPECT_EQ(dir_.entries(), 2u);
+  const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
+  EXPECT_TRUE(says(table.out, "published"));
+  EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '|'), 8);  // a row each, and its legend
 
   // What it keeps are meshes for the other subcommands.
   const std::string upper = path("upper_jaw.stl"), lower = path("lower_jaw.stl");

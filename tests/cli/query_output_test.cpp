@@ -2,6 +2,8 @@
 #include <map>
 
 #include "cli/cli_case.h"
+#include "ist/query/kernels.h"
+#include "ist/tree/tree_builder.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -43,7 +45,7 @@ class QueryOutput : public CliTest {
     EXPECT_EQ(line["complete"], true);
     EXPECT_EQ(line["truncated"], false);
     EXPECT_EQ(line["level"], 0);
-    EXPECT_EQ(line["target"], "scalar");
+    EXPECT_EQ(line["target"], line["engine"] == "simd" ? find_kernels({}).target : "scalar");
     EXPECT_EQ(line["workers"], 1);
     EXPECT_GE(line["sphere_tests"], 1);
     EXPECT_GT(line["microseconds_min"], 0);
@@ -61,8 +63,8 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     check_line(lines[i]);
     EXPECT_EQ(lines[i]["index"], i);
-    EXPECT_EQ(lines[i]["engine"], "reference");
-    EXPECT_EQ(lines[i]["spheres"], "tight");
+    EXPECT_EQ(lines[i]["engine"], "simd");
+    EXPECT_EQ(lines[i]["spheres"], to_string(BuildOptions{}.spheres));
     EXPECT_EQ(lines[i]["voxel_size"], (json{0.5, 0.5}));
     EXPECT_EQ(lines[i]["colliding"], i != 1);
   }
@@ -72,15 +74,17 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
 
 TEST_F(QueryOutput, LinesGoByIndexThenByEngineHoweverOftenTheyAreAsked) {
   const std::string mesh = ball();
-  const CommandResult result =
-      ist_well({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses", poses({0, 1, 2}), "--json",
-                "--repeat", "5", "--engine", "reference", "--engine", "reference"});
-  const auto lines = json_lines(result.out);
-  ASSERT_EQ(lines.size(), 6u);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    check_line(lines[i]);
-    EXPECT_EQ(lines[i]["index"], i / 2);
-    EXPECT_EQ(lines[i]["contacts"], lines[i / 2 * 2]["contacts"]);
+  for (const auto& [first, second] : {std::pair("reference", "simd"), {"simd", "reference"}}) {
+    const CommandResult result = ist_well({"collide", mesh, mesh, "--voxel-size", "0.5", "--poses",
+                                           poses({0, 1, 2}), "--json", "--spheres", "table",
+                                           "--repeat", "5", "--engine", first, "--engine", second});
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 6u);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      check_line(lines[i]);
+      EXPECT_EQ(lines[i]["index"], i / 2);
+      EXPECT_EQ(lines[i]["engine"], i % 2 == 0 ? first : second);
+    }
   }
 }
 
@@ -93,40 +97,45 @@ TEST_F(QueryOutput, WarningsStayOutOfTheData) {
 }
 
 TEST_F(QueryOutput, EveryPolicyAndATableForPeople) {
-  const std::string tree = ball_tree(), list = poses({0, 3.9});
-  for (const char* spheres : {"simple", "table", "tight"}) {
+  const std::string tree = ball_tree("ball.ist", "slab"), list = poses({0, 3.9});
+  for (const SpherePolicy policy : kSpherePolicies) {
+    const std::string spheres(to_string(policy));
     const CommandResult as_json =
         ist_well({"collide", tree, tree, "--poses", list, "--spheres", spheres, "--json"});
     for (const json& line : json_lines(as_json.out)) EXPECT_EQ(line["spheres"], spheres);
     const CommandResult plain =
         ist_well({"collide", tree, tree, "--poses", list, "--spheres", spheres});
-    EXPECT_TRUE(says(plain.out, std::string("spheres ") + spheres));
+    EXPECT_TRUE(says(plain.out, "spheres " + spheres));
     EXPECT_TRUE(says(plain.out, "contacts"));
     EXPECT_EQ(std::count(plain.out.begin(), plain.out.end(), '\n'), 4);
   }
 }
 
 TEST_F(QueryOutput, CloseGoesAlongItsPath) {
-  const std::string tree = ball_tree();
+  std::string tree;
   const auto close = [&](const std::string& from, const std::string& to, const std::string& step) {
     const CommandResult result = ist_well(
         {"close", tree, tree, "--axis", "y", "--from", from, "--to", to, "--step", step, "--json"});
     return json_lines(result.out);
   };
-  const auto down = close("6", "0", "0.5");
-  ASSERT_EQ(down.size(), 13u);
-  for (std::size_t i = 0; i < down.size(); ++i) {
-    check_line(down[i]);
-    EXPECT_EQ(down[i]["index"], i);
-    // Balls of radius 2: they touch at 4, and are free where farther apart than the resolution.
-    const double distance = 6 - 0.5 * static_cast<double>(i) - 4;
-    EXPECT_TRUE(down[i]["colliding"] == true || distance > -0.05 || distance < -3.5) << i;
-    EXPECT_TRUE(down[i]["colliding"] == false || distance <= down[i]["resolution"]) << i;
-  }
-  const auto up = close("0", "6", "0.5");
-  ASSERT_EQ(up.size(), 13u);
-  for (std::size_t i = 0; i < up.size(); ++i) {
-    EXPECT_EQ(up[i]["contacts"], down[12 - i]["contacts"]);
+  for (const char* spheres : {"tight", "slab"}) {
+    tree = ball_tree("ball.ist", spheres);
+    const auto down = close("6", "0", "0.5");
+    ASSERT_EQ(down.size(), 13u);
+    for (std::size_t i = 0; i < down.size(); ++i) {
+      check_line(down[i]);
+      EXPECT_EQ(down[i]["index"], i);
+      EXPECT_EQ(down[i]["spheres"], spheres);
+      // Balls of radius 2: they touch at 4, and are free where farther apart than the resolution.
+      const double distance = 6 - 0.5 * static_cast<double>(i) - 4;
+      EXPECT_TRUE(down[i]["colliding"] == true || distance > -0.05 || distance < -3.5) << i;
+      EXPECT_TRUE(down[i]["colliding"] == false || distance <= down[i]["resolution"]) << i;
+    }
+    const auto up = close("0", "6", "0.5");
+    ASSERT_EQ(up.size(), 13u);
+    for (std::size_t i = 0; i < up.size(); ++i) {
+      EXPECT_EQ(up[i]["contacts"], down[12 - i]["contacts"]);
+    }
   }
   EXPECT_EQ(close("1", "1", "0.5").size(), 1u);
   EXPECT_EQ(close("0", "0.3", "0.1").size(), 4u);  // though 0.3 / 0.1 is less than 3 in double
@@ -135,12 +144,13 @@ TEST_F(QueryOutput, CloseGoesAlongItsPath) {
 }
 
 TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
-  const std::string tree = ball_tree();
-  for (const char* spheres : {"simple", "table", "tight"}) {
+  const std::string tree = ball_tree("ball.ist", "slab");
+  for (const SpherePolicy policy : kSpherePolicies) {
+    const std::string spheres(to_string(policy));
     const CommandResult result =
         ist_well({"collide", tree, ball(), "--voxel-size", "0.4", "--poses", poses({3.5, 100, 1}),
                   "--contacts", path("contacts.jsonl"), "--json", "--repeat", "3", "--spheres",
-                  spheres, "--engine", "reference", "--engine", "reference"});
+                  spheres, "--engine", "reference", "--engine", "simd"});
     const auto lines = json_lines(result.out);
     std::map<std::size_t, std::size_t> count;
     std::size_t last = 0;

@@ -24,7 +24,9 @@ class Usage : public CliTest {
 TEST_F(Usage, HelpTeaches) {
   const CommandResult help = ist_well({"--help"});
   EXPECT_TRUE(says(help.out, "ist demo"));
-  EXPECT_TRUE(says(help.out, "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file"));
+  EXPECT_TRUE(
+      says(help.out,
+           "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 5 a result breaks a promise"));
   EXPECT_EQ(help.err, "");
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
@@ -35,7 +37,8 @@ TEST_F(Usage, HelpTeaches) {
       {"export", {"TREE", "--what", "--level", "--spheres", "--output", "Example: ist export"}},
       {"collide",
        {"FIXED", "MOVING", "--poses", "column-major", "--voxel-size", "--spheres", "--engine",
-        "--repeat", "--contacts", "--json", "Example: ist collide"}},
+        "--workers", "--target", "IST_TARGET", "--repeat", "--verify", "--contacts", "--json",
+        "Example: ist collide"}},
       {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}}};
   for (const auto& [command, parts] : taught) {
     EXPECT_TRUE(says(help.out, "\n  " + command));
@@ -94,7 +97,7 @@ TEST_F(Usage, OptionsOfBuild) {
   refuses_with("--classes", "nonsense", "surface,proximity");
   refuses_with("--classes", "surface,nonsense", "nonsense");
   refuses_with("--classes", "proximity", "surface voxels are always made");
-  refuses_with("--spheres", "cubes", "simple,table,tight");
+  refuses_with("--spheres", "cubes", "simple,table,tight,slab");
   refuses_with("--max-memory", "10", "allow more");
   refuses_with("--max-memory", "-5", "positive");
   refuses_with("--max-memory", "lots", "--max-memory");
@@ -113,7 +116,7 @@ TEST_F(Usage, OptionsOfQueries) {
   refuses_with("--repeat", "-1", "1 to");
   refuses_with("--repeat", "1.5", "--repeat");
   refuses_with("--engine", "nonsense", "reference");
-  refuses_with("--spheres", "nonsense", "simple,table,tight");
+  refuses_with("--spheres", "nonsense", "simple,table,tight,slab");
   refuses({"collide", mesh, mesh, "--voxel-size", "0.5"}, "--poses");
   refuses({"collide", mesh, "--poses", list, "--voxel-size", "0.5"}, "MOVING");
 }
@@ -149,6 +152,8 @@ TEST_F(Usage, OptionsOfExport) {
   refuses({"export", ball_tree("plain.ist", "table"), "--what", "spheres", "--level", "0",
            "--spheres", "tight", "-o", out},
           "build it with --spheres tight");
+  refuses({"export", tree, "--what", "spheres", "--level", "0", "--spheres", "slab", "-o", out},
+          "build it with --spheres slab");
 }
 
 TEST_F(Usage, OptionsOfDemo) {
@@ -175,9 +180,11 @@ TEST_F(Usage, VoxelSizeGoesWithMeshes) {
 
 TEST_F(Usage, SpheresThatATreeDoesNotHave) {
   const std::string tight = ball_tree(), plain = ball_tree("plain.ist", "table");
-  const std::string list = poses({0});
+  const std::string slab = ball_tree("slab.ist", "slab"), list = poses({0});
   refuses({"collide", tight, plain, "--poses", list, "--spheres", "tight"},
           "plain.ist: the tree holds no tight spheres: build it with --spheres tight");
+  refuses({"collide", slab, tight, "--poses", list, "--spheres", "slab"},
+          "ball.ist: the tree holds no slab spheres: build it with --spheres slab");
   const auto spheres = [&](const std::string& fixed, const std::string& moving) {
     const auto result = ist_well({"collide", fixed, moving, "--poses", list, "--json"});
     return json_lines(result.out).at(0)["spheres"];
@@ -185,6 +192,9 @@ TEST_F(Usage, SpheresThatATreeDoesNotHave) {
   EXPECT_EQ(spheres(tight, tight), "tight");
   EXPECT_EQ(spheres(tight, plain), "table");
   EXPECT_EQ(spheres(plain, tight), "table");
+  EXPECT_EQ(spheres(slab, slab), "slab");
+  EXPECT_EQ(spheres(slab, tight), "tight");
+  EXPECT_EQ(spheres(plain, slab), "table");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "query/query_cases.h"
 #include "support/shapes.h"
 
@@ -57,15 +59,14 @@ TEST(ExactPolygons, FlatToSegmentsAndPoints) {
 }
 
 TEST(ExactPolygons, ClippingKeepsWhatLiesOnTheBox) {
-  const ExactPoint low{0, 0, 0}, high{1, 1, 1};
-  const auto cut = clipped(polygon({{-1, 0.5, 1}, {3, 0.5, 1}, {1, 0.5, -1}}), low, high);
+  const ExactBox unit{{0, 0, 0}, {1, 1, 1}};
+  const auto cut = clip(polygon({{-1, 0.5, 1}, {3, 0.5, 1}, {1, 0.5, -1}}), unit);
   EXPECT_FALSE(cut.empty());
   for (const ExactPoint& p : cut) {
-    for (const mpq_class& x : p) EXPECT_TRUE(x >= 0 && x <= 1);
+    for (const mpq_class& x : p.coordinates) EXPECT_TRUE(x >= 0 && x <= 1);
   }
-  EXPECT_EQ(clipped(polygon({{1, 1, 1}, {2, 1, 1}, {1, 2, 1}}), low, high).front(),
-            (ExactPoint{1, 1, 1}));
-  EXPECT_TRUE(clipped(polygon({{1 + 0x1p-52, 0, 0}, {2, 0, 0}, {2, 1, 0}}), low, high).empty());
+  EXPECT_EQ(clip(polygon({{1, 1, 1}, {2, 1, 1}, {1, 2, 1}}), unit).front(), (ExactPoint{1, 1, 1}));
+  EXPECT_TRUE(clip(polygon({{1 + 0x1p-52, 0, 0}, {2, 0, 0}, {2, 1, 0}}), unit).empty());
 }
 
 // One voxel each, of edges 1 and 1: all that an oracle says of them is known.
@@ -125,9 +126,33 @@ TEST_F(OneVoxelPair, BoundsMeetToTheLastBit) {
       ExactPair(body_, body_, shift(diagonal)).bounds_meet(SpherePolicy::kTable, 0, 0, -0x1p-60));
 }
 
+// Two squares, one over the other: heights over either's slab, and balls that reach farther.
+TEST(ExactPairs, SlabsMeetToTheLastBit) {
+  const TriangleMesh square = open_strip(1);
+  const SphereTree tree = tree_of(square, 1);
+  const ExactBody body(square, tree);
+  const Slab slab = tree.saved_slab(0, 0, 0);
+  ASSERT_EQ(slab.normal.cwiseAbs(), Eigen::Vector3d(0, 0, 126.0 / 128));
+  ASSERT_EQ(slab.offset, 0);
+  const mpq_class reach = mpq_class(slab.half) + mpq_class(tree.saved_ball(0, 0, 0).radius);
+  for (const double pad : {0.0, 0x1p-20, -0x1p-20}) {
+    const auto meet = [&](SpherePolicy policy, double gap) {
+      const ExactPair above(body, body, shift({0, 0, gap})), below(body, body, shift({0, 0, -gap}));
+      const bool meets = above.bounds_meet(policy, 0, 0, pad);
+      EXPECT_EQ(below.bounds_meet(policy, 0, 0, pad), meets);
+      return meets;
+    };
+    const double last =
+        last_touching(0, 2, [&](double gap) { return meet(SpherePolicy::kSlab, gap); });
+    EXPECT_LE(126 * mpq_class(last) / 128, reach + mpq_class(pad));
+    EXPECT_GT(126 * mpq_class(std::nextafter(last, 2)) / 128, reach + mpq_class(pad));
+    EXPECT_TRUE(meet(SpherePolicy::kTight, last + 0.5));
+  }
+}
+
 TEST_F(OneVoxelPair, ThePromiseIsCheckedBothWays) {
   const std::vector<Contact> none, one{{0, 0}}, twice{{0, 0}, {0, 0}}, strange{{0, 0}, {0, 1}};
-  for (const SpherePolicy policy : kPolicies) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     const ExactPair touching(body_, body_, Eigen::Isometry3d::Identity());
     EXPECT_TRUE(keeps_promise(touching, policy, one, 0));
     EXPECT_FALSE(keeps_promise(touching, policy, none, 0));

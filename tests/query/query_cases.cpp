@@ -60,7 +60,7 @@ SphereTree tree_of(const TriangleMesh& mesh, double cells) {
   for (const Eigen::Vector3d& vertex : mesh.vertices) bounds.extend(vertex);
   BuildOptions options;
   options.voxel_size = bounds.sizes().maxCoeff() / cells;
-  options.spheres = SpherePolicy::kTight;
+  options.spheres = SpherePolicy::kSlab;
   return build_tree(mesh, options);
 }
 

@@ -11,9 +11,6 @@
 
 namespace ist::test {
 
-inline constexpr SpherePolicy kPolicies[] = {SpherePolicy::kSimple, SpherePolicy::kTable,
-                                             SpherePolicy::kTight};
-
 /// Numbers from a seed, the same with every standard library.
 class Random {
  public:
@@ -38,7 +35,7 @@ class Random {
 /// Small meshes of all kinds: spheres, boxes, soups, single triangles, slivers.
 [[nodiscard]] TriangleMesh random_mesh(Random& random);
 
-/// A tree of about `cells` voxels along the mesh's largest extent, with tight spheres.
+/// A tree of about `cells` voxels along the mesh's largest extent, for every policy.
 [[nodiscard]] SphereTree tree_of(const TriangleMesh& mesh, double cells);
 
 /// The 24 turns of the cube onto itself, exact in double.

@@ -38,10 +38,11 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
 
   BuildOptions options;
   options.voxel_size = voxel_size;
+  options.spheres = SpherePolicy::kSlab;
   const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
   const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
   std::vector<Contact> contacts(1 << 18);
-  for (const SpherePolicy policy : kPolicies) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     ReferenceQuery query(fixed, moving, policy);
     int free = 0;
     for (const nlohmann::json& item : truth) {

@@ -66,7 +66,7 @@ class ReferenceInvariance : public ::testing::TestWithParam<SpherePolicy> {
   ReferenceQuery query_{fixed_, moving_, GetParam()};
 };
 
-INSTANTIATE_TEST_SUITE_P(Policies, ReferenceInvariance, ::testing::ValuesIn(kPolicies),
+INSTANTIATE_TEST_SUITE_P(Policies, ReferenceInvariance, ::testing::ValuesIn(kSpherePolicies),
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
 
 TEST_P(ReferenceInvariance, PowersOfTwoScaleLengthsAndChangeNothingElse) {

@@ -10,31 +10,7 @@
 namespace ist::test {
 namespace {
 
-// The points x with normal · x <= offset.
-struct HalfSpace {
-  ExactPoint normal;
-  mpq_class offset;
-};
-
-ExactPoint exact(double x, double y, double z) {
-  return {mpq_class(x), mpq_class(y), mpq_class(z)};
-}
-
-ExactPoint minus(const ExactPoint& a, const ExactPoint& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-ExactPoint negative(const ExactPoint& a) { return {-a[0], -a[1], -a[2]}; }
-
-mpq_class dot(const ExactPoint& a, const ExactPoint& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-ExactPoint cross(const ExactPoint& a, const ExactPoint& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-bool is_zero(const ExactPoint& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
+Eigen::Vector3d rounded(const ExactPoint& a) { return {a[0].get_d(), a[1].get_d(), a[2].get_d()}; }
 
 ExactPoint unit(std::size_t axis) {
   ExactPoint direction;
@@ -42,88 +18,7 @@ ExactPoint unit(std::size_t axis) {
   return direction;
 }
 
-Eigen::Vector3d rounded(const ExactPoint& a) { return {a[0].get_d(), a[1].get_d(), a[2].get_d()}; }
-
-// Sutherland and Hodgman's clipping. In rational numbers it is exact, and holds for segments and
-// points as well.
-ExactPolygon cut(const ExactPolygon& polygon, const HalfSpace& half) {
-  std::vector<mpq_class> beyond;
-  for (const ExactPoint& p : polygon) beyond.emplace_back(dot(half.normal, p) - half.offset);
-  ExactPolygon kept;
-  for (std::size_t to = 0; to < polygon.size(); ++to) {
-    const std::size_t from = (to == 0 ? polygon.size() : to) - 1;
-    if (sgn(beyond[from]) * sgn(beyond[to]) < 0) {
-      const mpq_class part = beyond[from] / (beyond[from] - beyond[to]);
-      ExactPoint& crossing = kept.emplace_back();
-      for (std::size_t i = 0; i < 3; ++i) {
-        crossing[i] = polygon[from][i] + part * (polygon[to][i] - polygon[from][i]);
-      }
-    }
-    if (sgn(beyond[to]) <= 0) kept.push_back(polygon[to]);
-  }
-  return kept;
-}
-
-void add_equal(std::vector<HalfSpace>& halves, const ExactPoint& normal, const ExactPoint& at) {
-  const mpq_class offset = dot(normal, at);
-  halves.push_back({normal, offset});
-  halves.push_back({negative(normal), -offset});
-}
-
-// A polygon as the intersection of half spaces.
-std::vector<HalfSpace> half_spaces(const ExactPolygon& polygon) {
-  std::vector<HalfSpace> halves;
-  const ExactPoint& first = polygon.front();
-  ExactPoint normal, along;
-  for (std::size_t i = 1; i < polygon.size(); ++i) {
-    const ExactPoint side = minus(polygon[i], first);
-    if (is_zero(along)) along = side;
-    const ExactPoint area = cross(minus(polygon[i - 1], first), side);
-    for (std::size_t k = 0; k < 3; ++k) normal[k] += area[k];
-  }
-  if (!is_zero(normal)) {
-    add_equal(halves, normal, first);
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const ExactPoint& p = polygon[i];
-      const ExactPoint outward = cross(minus(polygon[(i + 1) % polygon.size()], p), normal);
-      halves.push_back({outward, dot(outward, p)});
-    }
-    return halves;
-  }
-  if (is_zero(along)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) add_equal(halves, unit(axis), first);
-    return halves;
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) add_equal(halves, cross(along, unit(axis)), first);
-  mpq_class low = dot(along, first), high = low;
-  for (const ExactPoint& p : polygon) {
-    low = std::min<mpq_class>(low, dot(along, p));
-    high = std::max<mpq_class>(high, dot(along, p));
-  }
-  halves.push_back({along, high});
-  halves.push_back({negative(along), -low});
-  return halves;
-}
-
 }  // namespace
-
-bool polygons_meet(const ExactPolygon& a, const ExactPolygon& b) {
-  if (a.empty() || b.empty()) return false;
-  ExactPolygon left = a;
-  for (const HalfSpace& half : half_spaces(b)) {
-    left = cut(left, half);
-    if (left.empty()) return false;
-  }
-  return true;
-}
-
-ExactPolygon clipped(ExactPolygon polygon, const ExactPoint& low, const ExactPoint& high) {
-  for (std::size_t axis = 0; axis < 3 && !polygon.empty(); ++axis) {
-    polygon = cut(polygon, {unit(axis), high[axis]});
-    polygon = cut(polygon, {negative(unit(axis)), -low[axis]});
-  }
-  return polygon;
-}
 
 ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
     : tree_(tree), voxel_size_(tree.lattice().voxel_size) {
@@ -141,13 +36,14 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
     leaf.rounded_centre = rounded(leaf.cube_centre);
   }
   if (!tree.has(SpherePolicy::kTight)) return;
+  unpack_bounds();
   const double reach = 0.5 * lattice.voxel_size + 1e-9 * lattice.edge(lattice.depth);
   for (const Triangle& t : mesh.triangles) {
     ExactPolygon triangle;
     Eigen::AlignedBox3d box;
     for (const std::uint32_t v : t) {
       const Eigen::Vector3d& vertex = mesh.vertices[v];
-      triangle.push_back(minus(exact(vertex[0], vertex[1], vertex[2]), origin_));
+      triangle.push_back(exact(vertex) - origin_);
       box.extend(rounded(triangle.back()));
     }
     for (Leaf& leaf : leaves_) {
@@ -155,16 +51,42 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
       if (((box.min() - c).array() > reach).any() || ((c - box.max()).array() > reach).any()) {
         continue;
       }
-      ExactPoint low, high;
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = leaf.cube_centre[i] - voxel_size_ / 2;
-        high[i] = leaf.cube_centre[i] + voxel_size_ / 2;
-      }
-      Polygon polygon{clipped(triangle, low, high), {}};
+      const ExactBox cube = grown({leaf.cube_centre, leaf.cube_centre}, voxel_size_ / 2);
+      Polygon polygon{clip(triangle, cube), {}};
       if (polygon.corners.empty()) continue;
       for (const ExactPoint& p : polygon.corners) polygon.rounded.push_back(rounded(p));
       leaf.polygons.push_back(std::move(polygon));
     }
+  }
+}
+
+// From the description of the blocks.
+void ExactBody::unpack_bounds() {
+  const std::vector<std::uint64_t> codes = tree_.octree().codes(0);
+  const mpq_class unit = voxel_size_ / 32768, slab_unit = voxel_size_ / 256;
+  std::size_t parent = 0;
+  int slot = 0;
+  for (std::size_t leaf = 0; leaf < codes.size(); ++leaf, ++slot) {
+    if (leaf > 0 && codes[leaf] >> 3 != codes[leaf - 1] >> 3) {
+      ++parent;
+      slot = 0;
+    }
+    Bound& bound = leaves_[leaf].bound;
+    const PackedBall ball = tree_.balls(0)[parent][slot];
+    bound.centre = leaves_[leaf].cube_centre;  // of the parent's cube: half an edge away, or none
+    for (std::size_t i = 0; i < 3 && tree_.depth() > 0; ++i) {
+      bound.centre[i] += ((codes[leaf] >> i & 1) != 0 ? -1 : 1) * voxel_size_ / 2;
+    }
+    bound.centre =
+        bound.centre + unit * ExactPoint{{mpq_class(ball.x), mpq_class(ball.y), mpq_class(ball.z)}};
+    bound.radius = ball.r * unit;
+    bound.rounded_centre = rounded(bound.centre);
+    if (!tree_.has(SpherePolicy::kSlab)) continue;
+    const PackedSlab slab = tree_.slabs(0)[parent][slot];
+    bound.normal = mpq_class(1, 128) *
+                   ExactPoint{{mpq_class(slab.nx), mpq_class(slab.ny), mpq_class(slab.nz)}};
+    bound.offset = slab.offset * slab_unit;
+    bound.half = slab.half * slab_unit;
   }
 }
 
@@ -231,8 +153,8 @@ bool ExactPair::cubes_meet(std::uint32_t fixed_leaf, std::uint32_t moving_leaf) 
       (fixed_.leaves_[fixed_leaf].rounded_centre - moved_centres_[moving_leaf]).norm();
   if (distance > 0.8661 * edges + margin_) return false;  // circumspheres
   if (distance < 0.4999 * edges - margin_) return true;   // inscribed spheres
-  const ExactPoint apart = minus(fixed_.leaves_[fixed_leaf].cube_centre,
-                                 in_fixed_frame(moving_.leaves_[moving_leaf].cube_centre));
+  const ExactPoint apart = fixed_.leaves_[fixed_leaf].cube_centre -
+                           in_fixed_frame(moving_.leaves_[moving_leaf].cube_centre);
   return std::none_of(axes_.begin(), axes_.end(), [&apart](const Axis& axis) {
     return abs(dot(axis.direction, apart)) > axis.reach;
   });
@@ -298,22 +220,42 @@ bool ExactPair::bounds_meet(SpherePolicy policy, std::uint32_t fixed_leaf,
         (a.rounded_centre - moved_centres_[moving_leaf]).norm() - (0.5 * kSqrt3 * edges + pad);
     if (apart > margin_ || apart < -margin_) return apart < 0;
     // d <= √3/2 e + pad, by squares: d² - 3/4 e² - pad² <= √3 e pad.
-    const ExactPoint between = minus(a.cube_centre, in_fixed_frame(b.cube_centre));
+    const ExactPoint between = a.cube_centre - in_fixed_frame(b.cube_centre);
     const mpq_class e = fixed_.voxel_size_ + moving_.voxel_size_, p(pad);
     const mpq_class left = dot(between, between) - mpq_class(3, 4) * e * e - p * p;
     const mpq_class left2 = left * left, right2 = 3 * e * e * p * p;
     return sgn(p) >= 0 ? sgn(left) <= 0 || left2 <= right2 : sgn(left) <= 0 && left2 >= right2;
   }
-  const Sphere& s = fixed_.tree_.tight(0)[fixed_leaf];
-  const Sphere& t = moving_.tree_.tight(0)[moving_leaf];
-  const Eigen::Vector3d moved =
-      rounded_rotation_ * Eigen::Vector3d(t.x, t.y, t.z) + rounded_translation_;
-  const double reach = double{s.r} + double{t.r} + pad;
-  const double apart = (Eigen::Vector3d(s.x, s.y, s.z) - moved).norm() - reach;
-  if (apart > margin_ || apart < -margin_) return apart < 0;
-  const ExactPoint between = minus(exact(s.x, s.y, s.z), in_fixed_frame(exact(t.x, t.y, t.z)));
-  const mpq_class sum = mpq_class(s.r) + mpq_class(t.r) + mpq_class(pad);
-  return sgn(sum) >= 0 && dot(between, between) <= sum * sum;
+  const ExactBody::Bound &s = a.bound, &t = b.bound;
+  const Eigen::Vector3d apart =
+      (rounded_rotation_ * t.rounded_centre + rounded_translation_) - s.rounded_centre;
+  const double wide = apart.norm() - (s.radius.get_d() + t.radius.get_d() + pad);
+  if (wide > margin_) return false;
+  if (wide >= -margin_) {
+    const ExactPoint exactly = in_fixed_frame(t.centre) - s.centre;
+    const mpq_class sum = s.radius + t.radius + mpq_class(pad);
+    if (sgn(sum) < 0 || square(exactly) > sum * sum) return false;
+  }
+  return policy != SpherePolicy::kSlab || slabs_met(s, t, apart, pad);
+}
+
+// Whether each ball comes within `pad` of the other's slab; `apart` is from fixed to moving centre.
+bool ExactPair::slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound& moving,
+                          const Eigen::Vector3d& apart, double pad) const {
+  const auto beyond = [&](const ExactBody::Bound& slab, const Eigen::Vector3d& normal,
+                          const ExactBody::Bound& ball) {
+    const double height = normal.dot(apart) - (&slab == &fixed ? 1 : -1) * slab.offset.get_d();
+    return std::abs(height) - (slab.half.get_d() + ball.radius.get_d() + pad);
+  };
+  const double farthest =
+      std::max(beyond(fixed, rounded(fixed.normal), moving),
+               beyond(moving, rounded_rotation_ * rounded(moving.normal), fixed));
+  if (farthest > margin_ || farthest < -margin_) return farthest < 0;
+  const ExactPoint exactly = in_fixed_frame(moving.centre) - fixed.centre;
+  const ExactPoint turned = in_fixed_frame(moving.normal) - translation_;
+  return abs(dot(fixed.normal, exactly) - fixed.offset) <=
+             fixed.half + moving.radius + mpq_class(pad) &&
+         abs(dot(turned, exactly) + moving.offset) <= moving.half + fixed.radius + mpq_class(pad);
 }
 
 ::testing::AssertionResult keeps_promise(const ExactPair& pair, SpherePolicy policy,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -12,20 +11,9 @@
 #include "ist/mesh/triangle_mesh.h"
 #include "ist/query/contact.h"
 #include "ist/tree/sphere_tree.h"
+#include "support/exact_polygon.h"
 
 namespace ist::test {
-
-using ExactPoint = std::array<mpq_class, 3>;
-/// A convex polygon by its corners, in turn. It may be flat to a segment or a point; no corners are
-/// the empty set.
-using ExactPolygon = std::vector<ExactPoint>;
-
-/// Whether two convex polygons in space share a point. Touching counts.
-[[nodiscard]] bool polygons_meet(const ExactPolygon& a, const ExactPolygon& b);
-
-/// The part of a polygon in the closed box [low, high].
-[[nodiscard]] ExactPolygon clipped(ExactPolygon polygon, const ExactPoint& low,
-                                   const ExactPoint& high);
 
 /// The leaves of one body in rational numbers, in the tree's frame: the axes and units of the mesh,
 /// and the origin at corner + root_centre · voxel_size, which no double need hold.
@@ -45,11 +33,18 @@ class ExactBody {
     ExactPolygon corners;
     std::vector<Eigen::Vector3d> rounded;
   };
+  struct Bound {  // saved ball and slab, where the tree has them
+    ExactPoint centre, normal;
+    mpq_class radius, offset, half;
+    Eigen::Vector3d rounded_centre;
+  };
   struct Leaf {
     ExactPoint cube_centre;
     Eigen::Vector3d rounded_centre;
     std::vector<Polygon> polygons;  // of the triangles, clipped to the cube; empty if not tight
+    Bound bound;
   };
+  void unpack_bounds();
 
   const SphereTree& tree_;
   mpq_class voxel_size_;
@@ -72,12 +67,13 @@ class ExactPair {
   [[nodiscard]] const ExactBody& moving() const { return moving_; }
 
   /// Whether what the spheres stand for meets: the closed cubes for `simple` and `table`, the
-  /// triangles clipped to the closed cubes for `tight`.
+  /// triangles clipped to the closed cubes for `tight` and `slab`.
   [[nodiscard]] bool geometry_meets(SpherePolicy policy, std::uint32_t fixed_leaf,
                                     std::uint32_t moving_leaf) const;
 
   /// Whether the leaf balls come within `pad` of each other: d <= rA + rB + pad. The balls are
-  /// the circumspheres of the true cubes, or for `tight` the saved ones. `pad` may be negative.
+  /// the circumspheres of the true cubes, or for `tight` the saved ones; for `slab`, whether each
+  /// of them also comes within `pad` of the other's slab. `pad` may be negative.
   [[nodiscard]] bool bounds_meet(SpherePolicy policy, std::uint32_t fixed_leaf,
                                  std::uint32_t moving_leaf, double pad) const;
 
@@ -93,11 +89,13 @@ class ExactPair {
   [[nodiscard]] bool cubes_meet(std::uint32_t fixed_leaf, std::uint32_t moving_leaf) const;
   [[nodiscard]] bool polygons_apart(const ExactBody::Polygon& fixed,
                                     std::span<const Eigen::Vector3d> moving) const;
+  [[nodiscard]] bool slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound& moving,
+                               const Eigen::Vector3d& apart, double pad) const;
   [[nodiscard]] bool triangles_meet(std::uint32_t fixed_leaf, std::uint32_t moving_leaf) const;
 
   const ExactBody& fixed_;
   const ExactBody& moving_;
-  std::array<std::array<mpq_class, 3>, 3> rotation_;
+  std::array<ExactPoint, 3> rotation_;
   ExactPoint translation_;
   std::vector<Axis> axes_;  // all that can separate two cubes
   Eigen::Matrix3d rounded_rotation_;

@@ -20,8 +20,9 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   };
   const std::size_t leaf_count = tree.octree().leaf_count();
   normals = octree(kNodes, tree.octree(), leaves, masks);
-  tight = normals + 4 * leaf_count;
-  counts = tight + 16 * tree.octree().node_count();
+  balls = normals + 4 * leaf_count;
+  slabs = balls + 8 * tree.octree().node_count();
+  counts = slabs + 5 * tree.octree().node_count();
   vertices = counts + 24;
   const auto& [mesh, lists] = *tree.triangles();
   triangles = vertices + 24 * mesh.vertices.size();

@@ -24,8 +24,8 @@ class TreeFile {
 
   std::string bytes;
   /// Of the arrays, in the order of the file. Nodes at levels 1 … depth begin at kNodes.
-  std::size_t leaves, masks, normals, tight, counts, vertices, triangles, list_begins, list_ids,
-      proximity_depth, proximity_nodes, proximity_leaves, proximity_masks;
+  std::size_t leaves, masks, normals, balls, slabs, counts, vertices, triangles, list_begins,
+      list_ids, proximity_depth, proximity_nodes, proximity_leaves, proximity_masks;
 
   template <typename T>
   [[nodiscard]] T get(std::size_t offset) const {

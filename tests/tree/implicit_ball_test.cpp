@@ -115,9 +115,10 @@ TEST(ImplicitBall, OfALeafIsTheCircumsphereWhateverTheMask) {
 }
 
 TEST(SpherePolicy, HasNamesThatComeBack) {
-  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     EXPECT_EQ(sphere_policy(to_string(policy)), policy);
-    EXPECT_EQ(is_implicit(policy), policy != SpherePolicy::kTight);
+    EXPECT_EQ(is_implicit(policy),
+              policy == SpherePolicy::kSimple || policy == SpherePolicy::kTable);
   }
   EXPECT_EQ(sphere_policy("Tight"), std::nullopt);
   EXPECT_EQ(sphere_policy(""), std::nullopt);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <set>
 
+#include "ist/voxel/morton.h"
 #include "support/seeded.h"
 
 namespace ist {
@@ -43,6 +44,8 @@ void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int dep
     ASSERT_EQ(octree.node_count(level), parents.size());
     ASSERT_EQ(octree.masks(level).size(), parents.size());
     ASSERT_EQ(octree.codes(level), Codes(parents.begin(), parents.end()));
+    ASSERT_EQ(octree.nodes(level).size(), parents.size() + 1);
+    ASSERT_EQ(octree.nodes(level).back().first_child, below.size());
     std::uint32_t node = 0;
     for (const std::uint64_t parent : parents) {
       const auto first = below.lower_bound(parent * 8), end = below.lower_bound(parent * 8 + 8);
@@ -50,6 +53,15 @@ void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int dep
       for (auto child = first; child != end; ++child) mask |= 1u << (*child - parent * 8);
       ASSERT_EQ(octree.mask(level, node), mask);
       ASSERT_EQ(octree.first_child(level, node), std::distance(below.begin(), first));
+      ASSERT_EQ(octree.nodes(level)[node].first_child, octree.first_child(level, node));
+      ASSERT_EQ(octree.child_count(level, node), std::popcount(mask));
+      const Cell cell = morton_decode(parent);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // In half leaf edges, all is integer.
+        const std::int64_t edge = std::int64_t{2} << level, root = std::int64_t{1} << depth;
+        const std::int64_t centre = cell[axis] * edge + edge / 2 - root;
+        ASSERT_EQ(2 * double{octree.nodes(level)[node].centre[axis]}, static_cast<double>(centre));
+      }
       ++node;
     }
     nodes += parents.size();
@@ -57,6 +69,11 @@ void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int dep
   }
   EXPECT_EQ(below, std::set<std::uint64_t>{0});
   EXPECT_EQ(octree.node_count(), nodes);
+  ASSERT_EQ(octree.nodes(depth + 1).size(), 2u);
+  const OctreeNode above = octree.nodes(depth + 1)[0];
+  EXPECT_TRUE(above.centre[0] == 0 && above.centre[1] == 0 && above.centre[2] == 0);
+  EXPECT_EQ(above.first_child, 0u);
+  EXPECT_EQ(octree.child_count(depth + 1, 0), 1);
 }
 
 TEST(LinearOctree, HasTheParentsOfItsLeavesAndNoOthers) {

@@ -16,9 +16,6 @@
 namespace ist {
 namespace {
 
-constexpr SpherePolicy kPolicies[] = {SpherePolicy::kSimple, SpherePolicy::kTable,
-                                      SpherePolicy::kTight};
-
 TriangleMesh random_mesh(std::uint64_t seed, int triangles) {
   test::Seeded seeded(seed);
   TriangleMesh mesh;
@@ -32,12 +29,13 @@ TriangleMesh random_mesh(std::uint64_t seed, int triangles) {
 SphereTree tree_of(const TriangleMesh& mesh, double voxel_size) {
   BuildOptions options;
   options.voxel_size = voxel_size;
+  options.spheres = SpherePolicy::kSlab;
   return build_tree(mesh, options);
 }
 
 // |centre| + radius <= reach, in rationals.
 void expect_within_reach(const SphereTree& tree) {
-  for (const SpherePolicy policy : kPolicies) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     for (const auto& level : save_spheres(tree, policy)) {
       for (const Ball& ball : level) {
         const mpq_class room = mpq_class(tree.reach()) - mpq_class(ball.radius);
@@ -91,7 +89,7 @@ TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
 
 TEST(SphereTree, ItsLargestLeafRadiusIsThat) {
   const SphereTree tree = tree_of(test::icosphere(2, 1), 0.1);
-  for (const SpherePolicy policy : kPolicies) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     double largest = 0;
     for (const Ball& ball : level_spheres(tree, policy, 0))
       largest = std::max(largest, ball.radius);
@@ -105,13 +103,14 @@ TEST(SphereTree, OfOneVoxelIsOneSphereAPolicy) {
         test::triangle({0, 0, 0}, {1, 2, 3}, {0, 0, 0})}) {
     BuildOptions options;
     options.voxel_size = 5;
+    options.spheres = SpherePolicy::kSlab;
     options.keep_triangles = true;
     const SphereTree tree = build_tree(mesh, options);
     EXPECT_EQ(tree.depth(), 0);
     EXPECT_EQ(tree.octree().node_count(), 1u);
     EXPECT_EQ(tree.triangles()->lists.ids.size(), mesh.triangles.size());
     expect_within_reach(tree);
-    for (const SpherePolicy policy : kPolicies) {
+    for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres saved = save_spheres(tree, policy);
       ASSERT_EQ(saved.size(), 1u);
       ASSERT_EQ(saved[0].size(), 1u);
@@ -131,7 +130,7 @@ TEST(SphereTree, APowerOfTwoScalesEverythingExactly) {
     const SphereTree other = tree_of(scaled, 0.17 * factor);
     ASSERT_EQ(other.octree().codes(0), tree.octree().codes(0));
     EXPECT_EQ(other.reach(), tree.reach() * factor);
-    for (const SpherePolicy policy : kPolicies) {
+    for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres a = save_spheres(tree, policy), b = save_spheres(other, policy);
       for (std::size_t level = 0; level < a.size(); ++level) {
         for (std::size_t node = 0; node < a[level].size(); ++node) {
@@ -143,18 +142,60 @@ TEST(SphereTree, APowerOfTwoScalesEverythingExactly) {
   }
 }
 
+// Unpacked from the blocks as they are described; each number is right to one rounding.
+TEST(SphereTree, UnpacksItsBounds) {
+  const double voxel_size = 0.11;
+  const SphereTree tree = tree_of(random_mesh(5, 6), voxel_size);
+  const auto expect_near = [](double got, const mpq_class& exact) {
+    EXPECT_LE(abs(mpq_class(got) - exact), abs(exact) * mpq_class(0x1p-53)) << got;
+  };
+  for (int level = 0; level <= tree.depth(); ++level) {
+    const mpq_class edge = mpq_class(voxel_size) * (1 << level), unit = edge / 32768;
+    for (std::uint32_t parent = 0; parent < tree.balls(level).size(); ++parent) {
+      const OctreeNode& from = tree.octree().nodes(level + 1)[parent];
+      for (int slot = 0; slot < tree.octree().child_count(level + 1, parent); ++slot) {
+        const PackedBall packed = tree.balls(level)[parent][slot];
+        const Ball ball = tree.saved_ball(level, parent, slot);
+        const int centre[] = {packed.x, packed.y, packed.z};
+        for (int i = 0; i < 3; ++i) {
+          const mpq_class origin = mpq_class(double{from.centre[i]}) * mpq_class(voxel_size);
+          expect_near(ball.centre[i], origin + centre[i] * unit);
+        }
+        expect_near(ball.radius, packed.r * unit);
+        const PackedSlab thin = tree.slabs(level)[parent][slot];
+        const Slab slab = tree.saved_slab(level, parent, slot);
+        EXPECT_EQ(128 * slab.normal, Eigen::Vector3d(thin.nx, thin.ny, thin.nz));
+        expect_near(slab.offset, thin.offset * edge / 256);
+        expect_near(slab.half, thin.half * edge / 256);
+      }
+    }
+  }
+}
+
 TEST(SphereTree, SpheresThatItLacksAreNamedWithTheRemedy) {
-  BuildOptions options;
-  options.voxel_size = 0.3;
-  options.spheres = SpherePolicy::kTable;
-  const SphereTree tree = build_tree(test::icosphere(1, 1), options);
-  EXPECT_FALSE(tree.has(SpherePolicy::kTight));
-  EXPECT_NO_THROW(tree.require(SpherePolicy::kSimple, "upper"));
-  EXPECT_NO_THROW(tree.require(SpherePolicy::kTable, "upper"));
-  const auto error = test::error_of([&] { tree.require(SpherePolicy::kTight, "upper"); });
-  ASSERT_TRUE(error);
-  EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
-  EXPECT_NE(std::string(error->what()).find("upper"), std::string::npos);
+  const auto of = [](SpherePolicy policy) {
+    BuildOptions options;
+    options.voxel_size = 0.3;
+    options.spheres = policy;
+    return build_tree(test::icosphere(1, 1), options);
+  };
+  const auto expect_has_up_to = [](const SphereTree& tree, SpherePolicy last) {
+    EXPECT_EQ(tree.tightest(), last);
+    for (const SpherePolicy policy : kSpherePolicies) {
+      EXPECT_EQ(tree.has(policy), policy <= last) << to_string(policy);
+      const auto error = test::error_of([&] { tree.require(policy, "upper"); });
+      ASSERT_EQ(error.has_value(), policy > last) << to_string(policy);
+      if (!error) continue;
+      EXPECT_EQ(error->code(), ErrorCode::kPolicyMissing);
+      const std::string remedy = "--spheres " + std::string(to_string(policy));
+      EXPECT_NE(std::string(error->what()).find("upper"), std::string::npos);
+      EXPECT_NE(std::string(error->what()).find(remedy), std::string::npos);
+    }
+  };
+  expect_has_up_to(of(SpherePolicy::kSimple), SpherePolicy::kTable);
+  expect_has_up_to(of(SpherePolicy::kTable), SpherePolicy::kTable);
+  expect_has_up_to(of(SpherePolicy::kTight), SpherePolicy::kTight);
+  expect_has_up_to(of(SpherePolicy::kSlab), SpherePolicy::kSlab);
 }
 
 TEST(TreeStatistics, AddUpWhatTheLevelsHold) {
@@ -164,11 +205,12 @@ TEST(TreeStatistics, AddUpWhatTheLevelsHold) {
   for (const LevelStatistics& level : levels) {
     EXPECT_EQ(level.nodes, tree.octree().node_count(level.level));
     EXPECT_EQ(level.edge, 0.1 * (1 << level.level));
-    ASSERT_EQ(level.spheres.size(), 3u);
+    ASSERT_EQ(level.spheres.size(), kSpherePolicies.size());
     // The circumsphere of a cube of edge e: (√3/2) π e³.
     const double cube_ball = unit_ball_volume(level.edge);
     EXPECT_NEAR(level.spheres[0].volume, cube_ball * level.nodes, 1e-9 * cube_ball * level.nodes);
     EXPECT_LE(level.spheres[1].volume, level.spheres[0].volume * (1 + 1e-12));
+    EXPECT_EQ(level.spheres[3].volume, level.spheres[2].volume) << "slab has the balls of tight";
   }
   EXPECT_NEAR(unit_ball_volume(2), 8 * 2.720699046351327, 1e-12);
 }

@@ -17,6 +17,7 @@ namespace {
 BuildOptions everything(double voxel_size) {
   BuildOptions options;
   options.voxel_size = voxel_size;
+  options.spheres = SpherePolicy::kSlab;
   options.keep_triangles = true;
   options.proximity = true;
   return options;
@@ -49,6 +50,14 @@ TEST(BuildTree, KeepsNoMoreThanItIsAskedFor) {
   EXPECT_FALSE(tree.has(SpherePolicy::kTight));
   EXPECT_FALSE(tree.triangles());
   EXPECT_FALSE(tree.proximity());
+}
+
+TEST(BuildTree, SavesWhatItIsAskedFor) {
+  BuildOptions options;
+  options.voxel_size = 0.2;
+  EXPECT_EQ(build_tree(test::icosphere(1, 1), options).tightest(), SpherePolicy::kSlab);
+  options.spheres = SpherePolicy::kTight;
+  EXPECT_EQ(build_tree(test::icosphere(1, 1), options).tightest(), SpherePolicy::kTight);
 }
 
 TEST(BuildTree, TurnsAnInsideOutMeshOutwardAndReportsIt) {
@@ -96,9 +105,12 @@ TEST(BuildTree, IsTheSameForAnyNumberOfThreadsAndAnyArithmeticOfTheHost) {
     EXPECT_EQ(tree.octree().codes(0), reference.octree().codes(0));
     EXPECT_EQ(words(tree), words(reference));
     for (int level = 0; level <= tree.depth(); ++level) {
-      ASSERT_EQ(tree.tight(level).size(), reference.tight(level).size());
-      EXPECT_EQ(std::memcmp(tree.tight(level).data(), reference.tight(level).data(),
-                            tree.tight(level).size() * sizeof(Sphere)),
+      ASSERT_EQ(tree.balls(level).size(), reference.balls(level).size());
+      EXPECT_EQ(std::memcmp(tree.balls(level).data(), reference.balls(level).data(),
+                            tree.balls(level).size_bytes()),
+                0);
+      EXPECT_EQ(std::memcmp(tree.slabs(level).data(), reference.slabs(level).data(),
+                            tree.slabs(level).size_bytes()),
                 0);
     }
     EXPECT_EQ(tree.proximity()->octree.codes(0), reference.proximity()->octree.codes(0));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <ostream>
@@ -24,6 +25,7 @@ const SphereTree& small_tree() {
   static const SphereTree tree = [] {
     BuildOptions options;
     options.voxel_size = 0.7;
+    options.spheres = SpherePolicy::kSlab;
     options.keep_triangles = true;
     options.proximity = true;
     return build_tree(test::box({0, 0, 0}, {2, 1, 1}), options);
@@ -86,6 +88,12 @@ Damage add(const char* name, std::size_t TreeFile::*array, std::size_t offset, T
           error};
 }
 
+// The section that they stand in, and its bit.
+void drop_balls(TreeFile& file) {
+  file.bytes.erase(file.balls, file.slabs - file.balls);
+  file.put(TreeFile::kSections, file.get<std::uint32_t>(TreeFile::kSections) & ~1u);
+}
+
 const std::vector<Damage>& damages() {
   using F = TreeFile;
   constexpr std::uint32_t kMany = 0xFFFFFFFF;
@@ -103,9 +111,10 @@ const std::vector<Damage>& damages() {
       put("DepthOneMore", F::kDepth, 3u, "tree-truncated"),
       put("DepthHuge", F::kDepth, kMany),
       put("OrientationUnknown", F::kOrientation, 7u),
-      put("SectionUnknown", F::kSections, 15u),
-      put("SectionMissing", F::kSections, 3u),
-      add("NodeCountOneMore", &F::leaves, static_cast<std::size_t>(-8), 1u),
+      put("SectionUnknown", F::kSections, 31u),
+      put("SectionMissing", F::kSections, 11u),
+      {"SlabsWithoutBalls", drop_balls},
+      add("NodeCountOneMore", &F::leaves, static_cast<std::size_t>(-8), 1u, "tree-truncated"),
       add("NodeCountOneLess", &F::leaves, static_cast<std::size_t>(-8), kMany, "tree-truncated"),
       put("NodeCountHuge", F::kNodes, kMany, "tree-truncated"),
       add("LeafCountOneMore", &F::leaves, 0, 1u),
@@ -113,11 +122,15 @@ const std::vector<Damage>& damages() {
       put("LeafCountHuge", &F::leaves, 0, kMany, "tree-truncated"),
       put("MaskZero", &F::masks, 0, std::uint8_t{0}),
       add("MaskWithAnotherNumberOfChildren", &F::masks, 0, std::uint8_t{0x80}),
-      put("TightCentreNaN", &F::tight, 4, static_cast<float>(kNaN)),
-      put("TightRadiusNegative", &F::tight, 12, -1.0f),
-      put("TightRadiusNaN", &F::tight, 12, static_cast<float>(kNaN)),
-      put("TightRadiusInfinite", &F::tight, 12, static_cast<float>(kInfinity)),
-      put("TightRootNaN", &F::counts, static_cast<std::size_t>(-16), static_cast<float>(kNaN)),
+      put("BallRadiusZero", &F::balls, 6, std::uint16_t{0}),
+      put("BallRadiusOfTheRootZero", &F::slabs, static_cast<std::size_t>(-2), std::uint16_t{0}),
+      put("SlabNormalTooLong", &F::slabs, 0, std::array<std::int8_t, 3>{100, 100, 0}),
+      put("SlabNormalXTooLarge", &F::slabs, 0, std::array<std::int8_t, 3>{127, 0, 0}),
+      put("SlabNormalYTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{0, -127, 0}),
+      put("SlabNormalZTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{0, 0, -128}),
+      put("SlabOffsetTooSmall", &F::slabs, 3, std::int8_t{-128}),
+      put("SlabWithoutWidth", &F::slabs, 4, std::uint8_t{0}),
+      put("SlabOfTheRootWithoutWidth", &F::counts, static_cast<std::size_t>(-1), std::uint8_t{0}),
       put("VertexCountHuge", &F::counts, 0, ~std::uint64_t{0}, "tree-truncated"),
       put("TriangleCountHuge", &F::counts, 8, std::uint64_t{1} << 60, "tree-truncated"),
       put("ListCountHuge", &F::counts, 16, std::uint64_t{1} << 62, "tree-truncated"),
@@ -157,11 +170,24 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
     return error_of_bytes(file.bytes);
   };
   EXPECT_EQ(with(TreeFile::kMagic, 'x'), "not-a-tree");
-  EXPECT_EQ(with(TreeFile::kVersion, 2u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kVersion, 3u), "tree-version");
   EXPECT_EQ(with(TreeFile::kVersion, 0u), "tree-version");
   EXPECT_EQ(with(TreeFile::kByteOrder, 0x04030201u), "not-a-tree");
   EXPECT_EQ(with(TreeFile::kBytes, std::uint64_t{32}), "tree-truncated");
   EXPECT_EQ(with(TreeFile::kChecksum, std::uint64_t{0}), "tree-corrupt");
+}
+
+// Files of version 1 had other spheres.
+TEST(DamagedTree, OfVersion1IsRefusedWithTheRemedy) {
+  TreeFile file = small_file();
+  file.put(TreeFile::kVersion, 1u);
+  const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kTreeVersion);
+  const std::string what = error->what();
+  EXPECT_NE(what.find("it is of version 1, and this program reads version 2: build it again"),
+            std::string::npos)
+      << what;
 }
 
 TEST(DamagedTree, CutAnywhereItIsAnError) {

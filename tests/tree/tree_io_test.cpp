@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <span>
 
 #include "ist/tree/tree_builder.h"
 #include "support/errors.h"
@@ -14,9 +15,9 @@ namespace ist {
 namespace {
 
 template <typename T>
-void expect_same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+void expect_same_bytes(std::span<const T> a, std::span<const T> b) {
   ASSERT_EQ(a.size(), b.size());
-  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
 void expect_equal(const LinearOctree& a, const LinearOctree& b) {
@@ -36,13 +37,13 @@ void expect_equal(const SphereTree& a, const SphereTree& b) {
   EXPECT_EQ(a.orientation(), b.orientation());
   EXPECT_EQ(a.reach(), b.reach());
   expect_equal(a.octree(), b.octree());
-  expect_same_bytes(a.normals(), b.normals());
-  ASSERT_EQ(a.has(SpherePolicy::kTight), b.has(SpherePolicy::kTight));
-  for (int level = 0; a.has(SpherePolicy::kTight) && level <= a.depth(); ++level) {
-    expect_same_bytes(a.tight(level), b.tight(level));
+  expect_same_bytes(std::span(a.normals()), std::span(b.normals()));
+  ASSERT_EQ(a.tightest(), b.tightest());
+  for (int level = 0; level <= a.depth(); ++level) {
+    if (a.has(SpherePolicy::kTight)) expect_same_bytes(a.balls(level), b.balls(level));
+    if (a.has(SpherePolicy::kSlab)) expect_same_bytes(a.slabs(level), b.slabs(level));
   }
-  EXPECT_EQ(a.largest_leaf_radius(SpherePolicy::kSimple),
-            b.largest_leaf_radius(SpherePolicy::kSimple));
+  EXPECT_EQ(a.largest_leaf_radius(a.tightest()), b.largest_leaf_radius(b.tightest()));
   ASSERT_EQ(a.triangles().has_value(), b.triangles().has_value());
   if (a.triangles()) {
     EXPECT_EQ(a.triangles()->mesh.vertices, b.triangles()->mesh.vertices);
@@ -57,7 +58,9 @@ void expect_equal(const SphereTree& a, const SphereTree& b) {
 SphereTree tree_of(const TriangleMesh& mesh, double voxel_size, unsigned sections) {
   BuildOptions options;
   options.voxel_size = voxel_size;
-  options.spheres = (sections & 1) != 0 ? SpherePolicy::kTight : SpherePolicy::kTable;
+  options.spheres = (sections & 8) != 0   ? SpherePolicy::kSlab
+                    : (sections & 1) != 0 ? SpherePolicy::kTight
+                                          : SpherePolicy::kTable;
   options.keep_triangles = (sections & 2) != 0;
   options.proximity = (sections & 4) != 0;
   return build_tree(mesh, options);
@@ -67,7 +70,7 @@ TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
   for (const auto& [mesh, voxel_size] :
        {std::pair(test::icosphere(2, 1), 0.2), std::pair(test::open_strip(3), 0.4),
         std::pair(test::icosphere(1, 1), 10.0)}) {
-    for (unsigned sections = 0; sections < 8; ++sections) {
+    for (unsigned sections = 0; sections < 16; ++sections) {
       const SphereTree tree = tree_of(mesh, voxel_size, sections);
       const std::string bytes = test::file_of(tree);
       const SphereTree back = test::tree_of_bytes(bytes);
@@ -80,7 +83,7 @@ TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
 TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
   const test::TempDir folder;
   const auto file = folder.path() / "tree.ist";
-  const std::uint64_t written = write_tree(tree_of(test::icosphere(1, 1), 0.3, 7), file);
+  const std::uint64_t written = write_tree(tree_of(test::icosphere(1, 1), 0.3, 15), file);
   EXPECT_EQ(written, std::filesystem::file_size(file));
   EXPECT_EQ(folder.entries(), 1u);
   EXPECT_EQ(test::error_name([&] {
@@ -90,8 +93,8 @@ TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
 }
 
 TEST(TreeFile, BeginsAsItsDescriptionSays) {
-  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 7));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\1\0\0\0\4\3\2\1", 16));
+  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 15));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\2\0\0\0\4\3\2\1", 16));
 }
 
 TEST(TreeFile, IsKnownByItsBeginning) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "ist/base/float_environment.h"
 
@@ -12,10 +13,26 @@ namespace {
 // = 2⁻⁵³: a centre 4u of its length, and the moving one 6u more, for √3 · 3u of rotation and a sum;
 // t 3u of its own; the distance and the sum of radii, equal where it matters, 5u; the rotation's
 // being a little off orthonormal, 4u of a moving radius. No length is counted for more than 11u.
-constexpr double kRounding = 16 * 0x1p-53;
+//
+// A slab is tested where the balls touch, so the centres are no farther apart than both radii. The
+// centres err as above. A height over the moving slab errs by 10u of the distance more, 5u for its
+// turned normal, 4u for difference and product and 1u for the offset taken off; by 1u of the
+// offset, 3u of the half width and 3u of the other radius, for what they are and their sum; and by
+// 8u and 4u of the radii for the rotation. Offset and half width are less than the cube's edge,
+// and that is less than the reach: no length is counted for more than 22u.
+constexpr double kRounding = 24 * 0x1p-53;
 
 // A cube with more than this times the other's edge is opened alone.
 constexpr double kLarger = 1.4142135623730951;
+
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+// Whether a ball lies outside a slab; `centre` is the ball's, from that of the slab's own ball.
+bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noexcept {
+  return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
+}
 
 }  // namespace
 
@@ -51,7 +68,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   Node b = root(moving_, saved_moving_);
   to_fixed_frame(b);
   // Decided by one coordinate where they are far apart, because the square of a distance overflows.
-  if (touch(a.ball, b.ball) && farthest <= reach + slack_) descend(a, b);
+  if (touch(a, b) && farthest <= reach + slack_) descend(a, b);
 
   // One number to compare, for a branch on each of two could not be foreseen.
   const auto key = [](const Contact& c) { return std::uint64_t{c.fixed} << 32 | c.moving; };
@@ -65,15 +82,21 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   return result;
 }
 
-Ball ReferenceQuery::ball(const SphereTree& tree, const SavedSpheres& saved,
-                          const Node& node) const {
-  return saved.empty() ? tree.ball(policy_, node.level, node.index, node.cube_centre)
-                       : saved[static_cast<std::size_t>(node.level)][node.index];
+void ReferenceQuery::bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent,
+                           int slot, Node& node) const {
+  if (!saved.empty()) {
+    node.ball = saved[static_cast<std::size_t>(node.level)][node.index];
+  } else if (is_implicit(policy_)) {
+    node.ball = tree.ball(policy_, node.level, node.index, node.cube_centre);
+  } else {
+    node.ball = tree.saved_ball(node.level, parent, slot);
+  }
+  if (policy_ == SpherePolicy::kSlab) node.slab = tree.saved_slab(node.level, parent, slot);
 }
 
 ReferenceQuery::Node ReferenceQuery::root(const SphereTree& tree, const SavedSpheres& saved) const {
-  Node node{tree.depth(), 0, Eigen::Vector3d::Zero(), {}};
-  node.ball = ball(tree, saved, node);
+  Node node{tree.depth(), 0, Eigen::Vector3d::Zero(), {}, {}};
+  bound(tree, saved, 0, 0, node);
   return node;
 }
 
@@ -85,33 +108,36 @@ void ReferenceQuery::open(const SphereTree& tree, const SavedSpheres& saved, con
   std::uint32_t index = octree.first_child(node.level, node.index);
   for (unsigned bits = octree.mask(node.level, node.index); bits != 0; bits &= bits - 1) {
     const int k = std::countr_zero(bits);
-    Node& child = children.nodes[children.count++];
+    const int slot = children.count++;
+    Node& child = children.nodes[slot];
     child.level = node.level - 1;
     child.index = index++;
     child.cube_centre = {node.cube_centre[0] + ((k & 1) != 0 ? half : -half),
                          node.cube_centre[1] + ((k & 2) != 0 ? half : -half),
                          node.cube_centre[2] + ((k & 4) != 0 ? half : -half)};
-    child.ball = ball(tree, saved, child);
+    bound(tree, saved, node.index, slot, child);
   }
 }
 
 void ReferenceQuery::to_fixed_frame(Node& node) const noexcept {
-  const Eigen::Vector3d& c = node.ball.centre;
   const Eigen::Matrix3d& r = pose_.rotation;
-  Eigen::Vector3d moved;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    moved[i] = ((r(i, 0) * c[0] + r(i, 1) * c[1]) + r(i, 2) * c[2]) + pose_.translation[i];
-  }
-  node.ball.centre = moved;
+  const auto turned = [&r](const Eigen::Vector3d& v) {
+    return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
+                           (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
+                           (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
+  };
+  node.ball.centre = turned(node.ball.centre) + pose_.translation;
+  if (policy_ == SpherePolicy::kSlab) node.slab.normal = turned(node.slab.normal);
 }
 
-bool ReferenceQuery::touch(const Ball& a, const Ball& b) noexcept {
+// Rejected by >, so that what cannot be compared is kept.
+bool ReferenceQuery::touch(const Node& a, const Node& b) noexcept {
   ++tests_;
-  const double dx = a.centre[0] - b.centre[0], dy = a.centre[1] - b.centre[1],
-               dz = a.centre[2] - b.centre[2];
-  const double reach = (a.radius + b.radius) + slack_;
-  // Rejected by >, so that what cannot be compared is kept.
-  return !((dx * dx + dy * dy) + dz * dz > reach * reach);
+  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+  const double reach = (a.ball.radius + b.ball.radius) + slack_;
+  if (dot(apart, apart) > reach * reach) return false;
+  return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + slack_) ||
+                                             beyond(b.slab, -apart, a.ball.radius + slack_));
 }
 
 void ReferenceQuery::descend(const Node& a, const Node& b) {
@@ -138,7 +164,7 @@ void ReferenceQuery::descend(const Node& a, const Node& b) {
   }
   for (int i = 0; i < of_a.count; ++i) {
     for (int j = 0; j < of_b.count; ++j) {
-      if (touch(of_a.nodes[i].ball, of_b.nodes[j].ball)) descend(of_a.nodes[i], of_b.nodes[j]);
+      if (touch(of_a.nodes[i], of_b.nodes[j])) descend(of_a.nodes[i], of_b.nodes[j]);
     }
   }
 }

@@ -13,8 +13,9 @@ namespace ist {
 
 /// Where the reference takes its spheres from.
 enum class SphereSource : std::uint8_t {
-  kOnTheFly,  ///< derived from the octree at each visit, as published; `tight` is read as saved
-  kSaved,     ///< made once, at construction, and read back: the article's first proposal
+  kOnTheFly,  ///< derived from the octree at each visit, as published, or unpacked from the tree
+  kSaved,     ///< made once, at construction, and read back: the article's first proposal. Slabs
+              ///< are unpacked all the same
 };
 
 /// The published query, plain and in double: depth first down both trees at once, each colliding
@@ -22,7 +23,8 @@ enum class SphereSource : std::uint8_t {
 ///
 /// One departure: contacts are sorted at the end, so that there is one order for every engine. And
 /// where the voxel sizes differ, so that one cube has over √2 times the other's edge, only the
-/// larger is opened; with equal sizes both always are, as published.
+/// larger is opened; with equal sizes both always are, as published. With kSlab, a pair whose balls
+/// touch is dropped all the same where one's ball lies outside the other's slab.
 ///
 /// Holds references to both trees, which must outlive it. One query object belongs to one thread.
 /// Source: the article that the method comes from, section II.E.
@@ -58,19 +60,21 @@ class ReferenceQuery {
     std::uint32_t index;
     Eigen::Vector3d cube_centre;  // in voxel edges from the root cube's centre
     Ball ball;                    // in the fixed tree's frame
+    Slab slab;                    // likewise; with kSlab alone
   };
   struct Children {
     int count;
     Node nodes[8];
   };
 
-  [[nodiscard]] Ball ball(const SphereTree& tree, const SavedSpheres& saved,
-                          const Node& node) const;
+  // Finds the bounds of a node that is child `slot` of `parent`.
+  void bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent, int slot,
+             Node& node) const;
   [[nodiscard]] Node root(const SphereTree& tree, const SavedSpheres& saved) const;
   void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
             Children& children) const;
   void to_fixed_frame(Node& node) const noexcept;
-  [[nodiscard]] bool touch(const Ball& a, const Ball& b) noexcept;
+  [[nodiscard]] bool touch(const Node& a, const Node& b) noexcept;
   void descend(const Node& a, const Node& b);
 
   const SphereTree& fixed_;

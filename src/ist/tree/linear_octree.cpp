@@ -5,44 +5,69 @@
 #include "ist/base/assert.h"
 
 namespace ist {
+namespace {
 
-LinearOctree::LinearOctree(std::span<const std::uint64_t> leaf_codes, int depth)
-    : leaf_count_(static_cast<std::uint32_t>(leaf_codes.size())),
-      levels_(static_cast<std::size_t>(depth)) {
+using Masks = std::vector<std::vector<std::uint8_t>>;
+
+Masks fold(std::span<const std::uint64_t> leaf_codes, int depth) {
   IST_ASSERT(!leaf_codes.empty() && leaf_codes.size() <= UINT32_MAX);
   IST_ASSERT(leaf_codes.back() >> 3 * depth == 0);
+  Masks masks(static_cast<std::size_t>(depth));
   std::vector<std::uint64_t> below, parents;
-  for (Level& level : levels_) {
-    const std::span<const std::uint64_t> children = below.empty() ? leaf_codes : below;
+  for (std::vector<std::uint8_t>& level : masks) {
     parents.clear();
-    for (std::size_t child = 0; child < children.size(); ++child) {
-      const std::uint64_t parent = children[child] >> 3;
-      if (parents.empty() || parents.back() != parent) {
-        parents.push_back(parent);
-        level.first_child.push_back(static_cast<std::uint32_t>(child));
-        level.masks.push_back(0);
+    for (const std::uint64_t child : below.empty() ? leaf_codes : below) {
+      if (parents.empty() || parents.back() != child >> 3) {
+        parents.push_back(child >> 3);
+        level.push_back(0);
       }
-      level.masks.back() =
-          static_cast<std::uint8_t>(level.masks.back() | 1u << (children[child] & 7));
+      level.back() = static_cast<std::uint8_t>(level.back() | 1u << (child & 7));
     }
-    level.first_child.shrink_to_fit();
-    level.masks.shrink_to_fit();
+    level.shrink_to_fit();
     std::swap(below, parents);
+  }
+  return masks;
+}
+
+// Appends the nodes below `parents`, each with its centre; `half` is half their edge.
+void place_children(std::span<const OctreeNode> parents, std::span<const std::uint8_t> masks,
+                    float half, std::vector<OctreeNode>& nodes) {
+  for (std::size_t parent = 0; parent < masks.size(); ++parent) {
+    const float(&from)[3] = parents[parent].centre;
+    for (unsigned bits = masks[parent]; bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      nodes.push_back(
+          {{from[0] + ((k & 1) != 0 ? half : -half), from[1] + ((k & 2) != 0 ? half : -half),
+            from[2] + ((k & 4) != 0 ? half : -half)},
+           0});
+    }
   }
 }
 
-LinearOctree::LinearOctree(std::vector<std::vector<std::uint8_t>> masks) : levels_(masks.size()) {
-  IST_ASSERT(is_tree(masks));
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    Level& level = levels_[i];
-    level.masks = std::move(masks[i]);
-    level.first_child.resize(level.masks.size());
-    std::uint32_t children = 0;
-    for (std::size_t node = 0; node < level.masks.size(); ++node) {
-      level.first_child[node] = children;
-      children += static_cast<std::uint32_t>(std::popcount(level.masks[node]));
+}  // namespace
+
+LinearOctree::LinearOctree(std::span<const std::uint64_t> leaf_codes, int depth)
+    : LinearOctree(fold(leaf_codes, depth)) {}
+
+LinearOctree::LinearOctree(Masks of_levels)
+    : masks_(std::move(of_levels)), nodes_(masks_.size() + 1) {
+  IST_ASSERT(is_tree(masks_));
+  nodes_.back() = {{{0, 0, 0}, 0}, {{0, 0, 0}, 1}};
+  for (int level = depth(); level >= 1; --level) {
+    std::vector<OctreeNode>& here = nodes_[index(level)];
+    here.reserve(std::size_t{node_count(level)} + 1);
+    if (level == depth()) {
+      here.push_back({{0, 0, 0}, 0});
+    } else {
+      place_children(nodes(level + 1), masks(level + 1),
+                     static_cast<float>(std::uint64_t{1} << (level - 1)), here);
     }
-    if (i == 0) leaf_count_ = children;
+    std::uint32_t children = 0;
+    for (std::uint32_t node = 0; node < node_count(level); ++node) {
+      here[node].first_child = children;
+      children += static_cast<std::uint32_t>(std::popcount(mask(level, node)));
+    }
+    here.push_back({{0, 0, 0}, children});
   }
 }
 
@@ -63,8 +88,8 @@ bool LinearOctree::is_tree(std::span<const std::vector<std::uint8_t>> masks) noe
 }
 
 std::uint64_t LinearOctree::node_count() const noexcept {
-  std::uint64_t count = leaf_count_;
-  for (const Level& level : levels_) count += level.masks.size();
+  std::uint64_t count = leaf_count();
+  for (const auto& level : masks_) count += level.size();
   return count;
 }
 
@@ -85,9 +110,8 @@ std::vector<std::uint64_t> LinearOctree::codes(int level) const {
 
 std::uint64_t LinearOctree::bytes() const noexcept {
   std::uint64_t bytes = 0;
-  for (const Level& level : levels_) {
-    bytes += level.masks.capacity() + level.first_child.capacity() * sizeof(std::uint32_t);
-  }
+  for (const auto& level : masks_) bytes += level.capacity();
+  for (const auto& level : nodes_) bytes += level.capacity() * sizeof(OctreeNode);
   return bytes;
 }
 

@@ -10,11 +10,20 @@ Eigen::Vector3d cube_centre(const Lattice& lattice, int level, std::uint64_t cod
 }
 
 std::vector<Ball> level_spheres(const SphereTree& tree, SpherePolicy policy, int level) {
-  const std::vector<std::uint64_t> codes = tree.octree().codes(level);
-  std::vector<Ball> spheres(codes.size());
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    spheres[i] = tree.ball(policy, level, static_cast<std::uint32_t>(i),
-                           cube_centre(tree.lattice(), level, codes[i]));
+  const LinearOctree& octree = tree.octree();
+  std::vector<Ball> spheres;
+  spheres.reserve(octree.node_count(level));
+  if (is_implicit(policy)) {
+    for (const std::uint64_t code : octree.codes(level)) {
+      spheres.push_back(tree.ball(policy, level, static_cast<std::uint32_t>(spheres.size()),
+                                  cube_centre(tree.lattice(), level, code)));
+    }
+    return spheres;
+  }
+  for (std::uint32_t parent = 0; parent < tree.balls(level).size(); ++parent) {
+    for (int slot = 0; slot < octree.child_count(level + 1, parent); ++slot) {
+      spheres.push_back(tree.saved_ball(level, parent, slot));
+    }
   }
   return spheres;
 }

@@ -7,7 +7,8 @@
 namespace ist {
 
 /// Every node's sphere under one policy, in double and in the tree's frame: one array a level,
-/// leaves first. What "save the tree" costs in bytes, and what statistics and pictures are made of.
+/// leaves first; under `slab` the balls alone. What "save the tree" costs in bytes, and what
+/// statistics and pictures are made of.
 using SavedSpheres = std::vector<std::vector<Ball>>;
 
 /// Cost: 10 ns and 32 bytes a node. Precondition: tree.has(policy).

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -17,7 +17,12 @@ enum class SpherePolicy : std::uint8_t {
   kSimple,  ///< the circumsphere of the node's cube
   kTable,   ///< the smallest ball round the children's cubes, from the lookup table
   kTight,   ///< the ball round the triangles clipped to the cube, saved with the tree
+  kSlab,    ///< the tight ball, cut by a thin slab round the same triangles, saved too
 };
+
+/// All of them, from the loosest to the tightest.
+inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePolicy::kTable,
+                                               SpherePolicy::kTight, SpherePolicy::kSlab};
 
 [[nodiscard]] constexpr std::string_view to_string(SpherePolicy policy) noexcept {
   switch (policy) {
@@ -27,12 +32,14 @@ enum class SpherePolicy : std::uint8_t {
       return "table";
     case SpherePolicy::kTight:
       return "tight";
+    case SpherePolicy::kSlab:
+      return "slab";
   }
   return "";
 }
 
 [[nodiscard]] constexpr std::optional<SpherePolicy> sphere_policy(std::string_view name) noexcept {
-  for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+  for (const SpherePolicy policy : kSpherePolicies) {
     if (name == to_string(policy)) return policy;
   }
   return std::nullopt;
@@ -40,7 +47,7 @@ enum class SpherePolicy : std::uint8_t {
 
 /// Whether a node's sphere follows from the octree alone.
 [[nodiscard]] constexpr bool is_implicit(SpherePolicy policy) noexcept {
-  return policy != SpherePolicy::kTight;
+  return policy == SpherePolicy::kSimple || policy == SpherePolicy::kTable;
 }
 
 /// √3, rounded up: the circumradius of a cube by half its edge.

@@ -5,15 +5,20 @@
 #include <optional>
 
 #include "ist/base/float_environment.h"
+#include "ist/tree/bound_builder.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist {
 namespace {
 
-// Bytes a leaf of what is built on the voxels: a node above a leaf for every three leaves, 5 bytes
-// each, and for each node a saved sphere.
-constexpr std::uint64_t kOctreeBytes = 3;
-constexpr std::uint64_t kCodeBytes = 8;  // a level's codes, while its spheres are made
+// Bytes a leaf of what is built on the voxels, each for a parent: on a surface there is one for
+// every three leaves, all levels together, and three for every eight are counted.
+constexpr std::uint64_t bytes_a_leaf(std::uint64_t bytes_a_parent) {
+  return (3 * bytes_a_parent + 7) / 8;
+}
+constexpr std::uint64_t kOctreeBytes = bytes_a_leaf(sizeof(OctreeNode) + 1);
+constexpr std::uint64_t kBallBytes = bytes_a_leaf(sizeof(BallBlock));
+constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock));
 
 // A surface voxel has two to three proximity voxels, whose codes are there twice while joined. A
 // triangle has its normals, half a corner's, three sides while they are sorted, and some bins.
@@ -56,11 +61,12 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   if (report != nullptr) report->turned_components = oriented.turned_components;
   times.end("orientation");
 
-  const bool tight = options.spheres == SpherePolicy::kTight;
-  VoxelizerOptions voxelizer{options.voxel_size, tight || options.keep_triangles,
+  const bool saved = !is_implicit(options.spheres);
+  VoxelizerOptions voxelizer{options.voxel_size, saved || options.keep_triangles,
                              options.max_memory, kOctreeBytes, 0};
-  if (tight) {
-    voxelizer.bytes_per_voxel += 3 * sizeof(Sphere) / 2 + kCodeBytes;
+  if (saved) {
+    voxelizer.bytes_per_voxel += kBallBytes;
+    if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
     // The lists of two levels and the parts of one, while they are merged.
     voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
   }
@@ -81,9 +87,9 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                           std::nullopt};
   times.end("octree");
 
-  if (tight) {
-    parts.tight = make_tight_spheres(mesh, voxels, parts.octree, progress);
-    times.end("tight spheres");
+  if (saved) {
+    parts.bounds = build_bounds(options.spheres, mesh, voxels, parts.octree, progress);
+    times.end("bounds");
   }
   if (options.proximity) {
     if (progress != nullptr) progress->begin_stage("finding proximity voxels", 0);

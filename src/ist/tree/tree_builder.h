@@ -12,10 +12,10 @@
 namespace ist {
 
 struct BuildOptions {
-  double voxel_size = 0;                        ///< mesh units
-  SpherePolicy spheres = SpherePolicy::kTight;  ///< what to save; the implicit ones cost nothing
-  bool keep_triangles = false;                  ///< to answer exactly
-  bool proximity = false;                       ///< proximity voxels besides surface voxels
+  double voxel_size = 0;                       ///< mesh units
+  SpherePolicy spheres = SpherePolicy::kSlab;  ///< what to save; the implicit ones cost nothing
+  bool keep_triangles = false;                 ///< to answer exactly
+  bool proximity = false;                      ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
 };
 
@@ -29,7 +29,7 @@ struct BuildReport {
 };
 
 /// From a mesh to a tree: turns it outward, finds its voxels, folds them into an octree and makes
-/// the spheres that are saved.
+/// the bounds that are saved.
 ///
 /// @param report, progress filled in, if not null
 ///

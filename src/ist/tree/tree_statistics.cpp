@@ -30,7 +30,7 @@ std::vector<LevelStatistics> level_statistics(const SphereTree& tree) {
   for (int level = 0; level <= tree.depth(); ++level) {
     LevelStatistics& statistics = levels.emplace_back(
         LevelStatistics{level, tree.lattice().edge(level), tree.octree().node_count(level), {}});
-    for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable, SpherePolicy::kTight}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
       if (tree.has(policy)) statistics.spheres.push_back(make(tree, policy, level));
     }
   }

@@ -1,0 +1,216 @@
+// The fast query along a closing: by voxel size, policy, instruction set and workers, back to back
+// and paced at 1 kHz; beside the published query in one run; and with the second worker stalled.
+#include <benchmark/benchmark.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ist/query/collision_query.h"
+#include "ist/query/kernels.h"
+#include "ist/query/reference.h"
+#include "support/bodies.h"
+#include "support/latencies.h"
+#include "support/pacer.h"
+
+namespace ist::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kTick{1};
+constexpr std::size_t kContacts = 1 << 20;
+
+double microseconds(Clock::time_point begin, Clock::time_point end) {
+  return std::chrono::duration<double, std::micro>(end - begin).count();
+}
+
+// Ends the program where an engine is not what its scalar twin is: its time would mean nothing.
+void check_against_twin(const SphereTree& fixed, const SphereTree& moving,
+                        const CollisionOptions& options, double dz) {
+  CollisionOptions plain = options;
+  plain.target = "scalar";
+  plain.workers = 1;
+  CollisionQuery query(fixed, moving, options), twin(fixed, moving, plain);
+  std::vector<Contact> a(kContacts), b(kContacts);
+  const QueryResult of_a = query.collide(closing(dz), a), of_b = twin.collide(closing(dz), b);
+  if (of_a.contacts == of_b.contacts && of_a.sphere_tests == of_b.sphere_tests && a == b) return;
+  std::cerr << "the query differs from its scalar twin at dz = " << dz << '\n';
+  std::exit(1);
+}
+
+struct Case {
+  double voxel_size;
+  CollisionOptions options;
+  bool paced;
+};
+
+// One query after the other, round the whole closing, so that no pose is asked twice in a row; the
+// times of one pose are kept.
+void collide(benchmark::State& state, const Case& c, double dz) {
+  const auto& [fixed, moving] = trees(c.voxel_size);
+  check_against_twin(fixed, moving, c.options, dz);
+  CollisionQuery query(fixed, moving, c.options);
+  std::vector<Contact> contacts(kContacts);
+  Latencies latencies;
+  QueryResult result;
+  Pacer pacer(kTick);
+  const auto before = ResidentWorker::usage();
+  for (auto _ : state) {
+    for (const double other : kClosing) {
+      if (c.paced) pacer.wait();
+      const auto begin = Clock::now();
+      const QueryResult answer = query.collide(closing(other), contacts);
+      const auto end = Clock::now();
+      if (other != dz) continue;
+      result = answer;
+      latencies.add(microseconds(begin, end));
+      state.SetIterationTime(std::chrono::duration<double>(end - begin).count());
+    }
+  }
+  const auto after = ResidentWorker::usage();
+  latencies.report(state);
+  state.counters["contacts"] = static_cast<double>(result.contacts);
+  state.counters["tests"] = static_cast<double>(result.sphere_tests);
+  state.counters["ns_a_test"] =
+      1e3 * latencies.quantile(0.5) / static_cast<double>(result.sphere_tests);
+  state.counters["query_MB"] = static_cast<double>(query.bytes()) / 1e6;
+  if (c.options.workers == 2) {
+    const auto sharing = query.sharing();
+    state.counters["worth"] = static_cast<double>(sharing.worth);
+    state.counters["shared"] = static_cast<double>(sharing.shared);
+    state.counters["dropped"] = static_cast<double>(sharing.dropped);
+    state.counters["helper_share"] = static_cast<double>((after.cpu - before.cpu).count()) /
+                                     static_cast<double>((after.wall - before.wall).count());
+  }
+  state.SetLabel(pair_name());
+}
+
+// The published query, one worker and two, in turn: what the ratios of perf/ are made of.
+void beside_reference(benchmark::State& state, double dz) {
+  const auto& [fixed, moving] = trees(0.2);
+  ReferenceQuery reference(fixed, moving, SpherePolicy::kTable);
+  CollisionOptions alone, helped;
+  helped.workers = 2;
+  helped.period = std::chrono::nanoseconds(0);
+  CollisionQuery one(fixed, moving, alone), two(fixed, moving, helped);
+  std::vector<Contact> contacts(kContacts);
+  Latencies of_reference, of_one, of_two;
+  const auto ask = [&](auto& query, Latencies& latencies) {
+    QueryResult result;
+    for (const double other : kClosing) {
+      const auto begin = Clock::now();
+      result = query.collide(closing(other), contacts);
+      if (other == dz) latencies.add(microseconds(begin, Clock::now()));
+    }
+    return result;
+  };
+  for (auto _ : state) {
+    static_cast<void>(ask(reference, of_reference));
+    for (int i = 0; i < 10; ++i) static_cast<void>(ask(one, of_one));
+    for (int i = 0; i < 10; ++i) static_cast<void>(ask(two, of_two));
+  }
+  const double published = of_reference.quantile(0.5);
+  const QueryResult result = reference.collide(closing(dz), contacts);
+  state.counters["reference_us"] = published;
+  state.counters["reference_ns_a_test"] =
+      1e3 * published / static_cast<double>(result.sphere_tests);
+  state.counters["one_us"] = of_one.quantile(0.5);
+  state.counters["two_us"] = of_two.quantile(0.5);
+  state.counters["one_times"] = published / of_one.quantile(0.5);
+  state.counters["two_times"] = published / of_two.quantile(0.5);
+  state.SetLabel(pair_name());
+}
+
+std::atomic<bool> stalled{false};
+
+// The worker stands still for 50 ms at a time, wherever it is handed something; what the caller
+// takes then, beside what it takes alone.
+void worker_stalled(benchmark::State& state, double dz) {
+  const auto& [fixed, moving] = trees(0.2);
+  CollisionOptions alone, helped;
+  helped.workers = 2;
+  helped.period = kTick;
+  CollisionQuery one(fixed, moving, alone), two(fixed, moving, helped);
+  std::vector<Contact> contacts(kContacts);
+  Latencies of_one, of_two;
+  hand_over_hook.store([](HandOver) noexcept {
+    stalled = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    stalled = false;
+  });
+  Pacer pacer(kTick);
+  std::size_t met = 0;
+  for (auto _ : state) {
+    pacer.wait();
+    auto begin = Clock::now();
+    static_cast<void>(one.collide(closing(dz), contacts));
+    of_one.add(microseconds(begin, Clock::now()));
+    pacer.wait();
+    begin = Clock::now();
+    static_cast<void>(two.collide(closing(dz), contacts));
+    of_two.add(microseconds(begin, Clock::now()));
+    if (stalled) ++met;
+  }
+  hand_over_hook.store(nullptr);
+  state.counters["met_stalled"] = static_cast<double>(met);
+  of_one.report(state, "one_");
+  of_two.report(state, "stalled_");
+  state.SetLabel(pair_name());
+}
+
+std::string number(double value) { return std::to_string(value).substr(0, value < 0 ? 4 : 3); }
+
+void add(const Case& c, int queries) {
+  for (const double dz : kClosing) {
+    const std::string name =
+        "query/" + number(c.voxel_size) + "/" + std::string(to_string(*c.options.policy)) + "/" +
+        (c.options.target.empty() ? "best" : c.options.target) + "/" +
+        std::to_string(c.options.workers) + (c.paced ? "/paced/" : "/row/") + number(dz);
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) { collide(s, c, dz); })
+        ->Unit(benchmark::kMicrosecond)
+        ->UseManualTime()
+        ->Iterations(queries);
+  }
+}
+
+CollisionOptions options(SpherePolicy policy, int workers, std::string target = "") {
+  CollisionOptions options;
+  options.policy = policy;
+  options.workers = workers;
+  options.target = std::move(target);
+  return options;
+}
+
+const int kRegistered = [] {
+  for (const double dz : kClosing) {
+    benchmark::RegisterBenchmark(("beside_reference/" + number(dz)).c_str(),
+                                 [dz](benchmark::State& state) { beside_reference(state, dz); })
+        ->Iterations(10)
+        ->Unit(benchmark::kMillisecond);
+  }
+  for (const double size : {0.8, 0.4, 0.2}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      for (const int workers : {1, 2}) {
+        CollisionOptions in_a_row = options(policy, workers);
+        in_a_row.period = std::chrono::nanoseconds(0);
+        add({size, in_a_row, false}, 1000);
+      }
+    }
+  }
+  for (const int workers : {1, 2}) add({0.2, options(SpherePolicy::kSlab, workers), true}, 1000);
+  for (const Kernels& kernels : all_kernels()) {
+    add({0.2, options(SpherePolicy::kSlab, 1, kernels.target), false}, 100);
+  }
+  benchmark::RegisterBenchmark("worker_stalled/0.0",
+                               [](benchmark::State& state) { worker_stalled(state, 0); })
+      ->Iterations(1000)
+      ->Unit(benchmark::kMillisecond);
+  return 0;
+}();
+
+}  // namespace
+}  // namespace ist::bench

@@ -1,0 +1,37 @@
+#include "ist/query/root_test.h"
+
+namespace ist {
+namespace {
+
+// As in reference.cpp, whose argument holds here too.
+constexpr double kRounding = 24 * 0x1p-53;
+
+Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
+  return is_implicit(policy) ? tree.ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
+                             : tree.saved_ball(tree.depth(), 0, 0);
+}
+
+}  // namespace
+
+RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                    const RelativePose& pose) noexcept {
+  const Ball a = root_ball(fixed, policy), b = root_ball(moving, policy);
+  const double reaches = fixed.reach() + moving.reach();
+  const double farthest = pose.translation.cwiseAbs().maxCoeff();
+  RootTest test{};
+  test.slack = kRounding * reaches + kRounding * kSqrt3 * farthest;
+  // Decided by one coordinate where they are far apart, because the square of a distance overflows.
+  if (farthest > reaches + test.slack) return test;
+  double squared = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double moved = ((pose.rotation(i, 0) * b.centre[0] + pose.rotation(i, 1) * b.centre[1]) +
+                          pose.rotation(i, 2) * b.centre[2]) +
+                         pose.translation[i];
+    squared += (a.centre[i] - moved) * (a.centre[i] - moved);
+  }
+  const double reach = (a.radius + b.radius) + test.slack;
+  test.touch = !(squared > reach * reach);
+  return test;
+}
+
+}  // namespace ist

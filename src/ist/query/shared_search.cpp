@@ -1,0 +1,129 @@
+#include "ist/query/shared_search.h"
+
+#include <algorithm>
+
+namespace ist {
+namespace {
+
+// Fewer pairs are not worth sharing; and a step makes at most 64 of one.
+constexpr std::size_t kFewestPairs = 512, kMostPairs = 64 * kFewestPairs;
+// A chunk of so many pairs and all below them takes 5 µs where jaws are closed. Where surfaces
+// lie on each other, or one node meets many, it can take far longer: if it is the worker's last, it
+// is dropped after kPatience.
+constexpr std::size_t kChunkPairs = 24;
+// How long the caller waits, once it is done, for the chunk that the worker has in hand.
+constexpr std::chrono::microseconds kPatience{20};
+constexpr std::size_t kFoundContacts = 1 << 18;
+
+}  // namespace
+
+SharedSearch::SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs,
+                           std::chrono::nanoseconds period)
+    : plan_(plan),
+      caller_(plan, kernels, pairs),
+      helper_(plan, kernels, pairs),
+      period_(period),
+      board_(kMostPairs / kChunkPairs + 1),
+      parts_(board_.capacity()),
+      found_(kFoundContacts),
+      job_([](void* self) noexcept { static_cast<SharedSearch*>(self)->help(); }, this) {
+  shared_.groups.resize(kMostPairs + kFrontierSlack);
+  shared_.moving.resize(kMostPairs + kFrontierSlack);
+  shared_.chunk_ends.resize(board_.capacity());
+}
+
+SharedSearch::~SharedSearch() {
+  worker_.retract(job_);
+  job_.wait_idle();
+}
+
+std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexcept {
+  worker_.tick(std::chrono::steady_clock::now(), period_);
+  ++sharing_.queries;
+  std::uint64_t tests = 0;
+  const std::size_t step = caller_.widen(pose, kFewestPairs, tests);
+  const Frontier& pairs = caller_.frontier(step);
+  if (step == plan_.steps().size() || pairs.moving_count < kFewestPairs) {
+    return tests + caller_.descend(step, pairs, 0, pose, sink);
+  }
+  ++sharing_.worth;
+  if (job_.busy()) return tests + caller_.descend(step, pairs, 0, pose, sink);
+  share(pose, step, pairs);
+  const auto search = [&](std::size_t index) {
+    std::size_t first = 0;
+    const Frontier part = chunk(index, first);
+    tests += caller_.descend(step, part, first, pose, sink);
+  };
+  // Where long queries follow one another the worker begins to poll in their midst, so it is asked
+  // before each chunk.
+  bool taken = worker_.offer(job_);
+  while (const auto index = board_.claim_front()) {
+    search(*index);
+    if (!taken) taken = worker_.offer(job_);
+  }
+  for (std::size_t index = board_.close(); index < chunk_count_; ++index) {
+    if (board_.take(index, kPatience) && parts_[index].whole) {
+      sink.append({found_.data() + parts_[index].begin, parts_[index].count});
+      tests += parts_[index].tests;
+      ++sharing_.chunks;
+    } else {
+      search(index);
+      ++sharing_.dropped;
+    }
+  }
+  if (taken && !worker_.retract(job_)) ++sharing_.shared;
+  return tests;
+}
+
+void SharedSearch::share(const SearchPose& pose, std::size_t step,
+                         const Frontier& frontier) noexcept {
+  shared_.pose = pose;
+  shared_.step = step;
+  std::copy_n(frontier.groups, frontier.group_count, shared_.groups.begin());
+  std::copy_n(frontier.moving, frontier.moving_count, shared_.moving.begin());
+  shared_.frontier = {shared_.groups.data(), shared_.moving.data(), frontier.group_count,
+                      frontier.moving_count, kMostPairs};
+  chunk_count_ = 0;
+  std::uint32_t begin = 0;
+  for (std::size_t g = 0; g < frontier.group_count; ++g) {
+    if (frontier.groups[g].end - begin < kChunkPairs && g + 1 < frontier.group_count) continue;
+    shared_.chunk_ends[chunk_count_++] = g + 1;
+    begin = frontier.groups[g].end;
+  }
+  shared_.epoch = board_.open(chunk_count_);
+}
+
+Frontier SharedSearch::chunk(std::size_t index, std::size_t& first) const noexcept {
+  first = index == 0 ? 0 : shared_.chunk_ends[index - 1];
+  Frontier part = shared_.frontier;
+  part.group_count = shared_.chunk_ends[index];
+  return part;
+}
+
+void SharedSearch::help() noexcept {
+  std::size_t used = 0;
+  while (const auto index = board_.claim_back(shared_.epoch)) {
+    hand_over(HandOver::kClaimed);
+    ContactSink sink(std::span<Contact>(found_).subspan(used));
+    std::size_t first = 0;
+    const Frontier part = chunk(*index, first);
+    Part& made = parts_[*index];
+    made.begin = used;
+    made.tests = helper_.descend(shared_.step, part, first, shared_.pose, sink);
+    made.count = sink.count();
+    made.whole = !sink.truncated();
+    if (made.whole) used += made.count;
+    hand_over(HandOver::kWorked);
+    board_.finish(shared_.epoch, *index);
+  }
+}
+
+std::size_t SharedSearch::bytes() const noexcept {
+  return caller_.bytes() + helper_.bytes() + found_.size() * sizeof(Contact) +
+         shared_.groups.size() * sizeof(SearchGroup) +
+         shared_.moving.size() * sizeof(std::uint32_t) + parts_.size() * sizeof(Part) +
+         shared_.chunk_ends.size() * sizeof(std::size_t) +
+         board_.capacity() * sizeof(std::uint64_t);
+}
+
+}  // namespace ist

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace ist {
+
+/// A node's saved ball, in units of 2^-16 of its parent cube's edge: the centre from the parent
+/// cube's centre, and the radius.
+struct PackedBall {
+  static constexpr double kUnit = 0x1p-16;  ///< of the parent cube's edge
+  std::int16_t x, y, z;
+  std::uint16_t r;
+
+  friend bool operator==(const PackedBall&, const PackedBall&) = default;
+};
+static_assert(sizeof(PackedBall) == 8);
+
+/// A node's saved slab, the points x with |n · (x - c) - offset| <= half, where c is the centre of
+/// the node's saved ball. The normal is in units of 2^-7 and no longer than 1, offset and half
+/// width in units of 2^-8 of the node's own cube's edge, which is 128 of the ball's units.
+struct PackedSlab {
+  static constexpr double kNormalUnit = 0x1p-7;
+  static constexpr double kUnit = 0x1p-8;  ///< of the cube's edge
+  std::int8_t nx, ny, nz, offset;
+  std::uint8_t half;
+
+  friend bool operator==(const PackedSlab&, const PackedSlab&) = default;
+};
+static_assert(sizeof(PackedSlab) == 5);
+
+/// The balls of one parent's children, a cache line: slot j is the j-th child that is there, and
+/// slots beyond the last one are zero.
+struct alignas(64) BallBlock {
+  std::int16_t x[8], y[8], z[8];
+  std::uint16_t r[8];
+
+  [[nodiscard]] PackedBall operator[](int slot) const noexcept {
+    return {x[slot], y[slot], z[slot], r[slot]};
+  }
+  void set(int slot, PackedBall ball) noexcept {
+    x[slot] = ball.x;
+    y[slot] = ball.y;
+    z[slot] = ball.z;
+    r[slot] = ball.r;
+  }
+};
+static_assert(sizeof(BallBlock) == 64);
+
+/// The slabs of one parent's children, in the slots of their balls.
+struct SlabBlock {
+  std::int8_t nx[8], ny[8], nz[8], offset[8];
+  std::uint8_t half[8];
+
+  [[nodiscard]] PackedSlab operator[](int slot) const noexcept {
+    return {nx[slot], ny[slot], nz[slot], offset[slot], half[slot]};
+  }
+  void set(int slot, PackedSlab slab) noexcept {
+    nx[slot] = slab.nx;
+    ny[slot] = slab.ny;
+    nz[slot] = slab.nz;
+    offset[slot] = slab.offset;
+    half[slot] = slab.half;
+  }
+};
+static_assert(sizeof(SlabBlock) == 40);
+
+/// What a tree saves: `balls[L][p]` and `slabs[L][p]` bound the children, at level L, of parent p
+/// at level L + 1. At L = depth the parent is the root's (LinearOctree::nodes), and slot 0 the
+/// root.
+struct BoundBlocks {
+  std::vector<std::vector<BallBlock>> balls;  ///< one array a level, leaves first; or none
+  std::vector<std::vector<SlabBlock>> slabs;  ///< likewise; only where there are balls
+};
+
+}  // namespace ist

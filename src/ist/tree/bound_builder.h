@@ -1,0 +1,29 @@
+#pragma once
+
+#include "ist/base/progress.h"
+#include "ist/mesh/triangle_mesh.h"
+#include "ist/tree/bound_blocks.h"
+#include "ist/tree/linear_octree.h"
+#include "ist/tree/sphere_policy.h"
+#include "ist/voxel/voxel_set.h"
+
+namespace ist {
+
+/// For each node the ball round the triangles clipped to its cube grown by the lattice's pad, and
+/// where nothing is left of a triangle, round its point nearest to the cube's centre; with `slab`,
+/// a thin slab round them too. So each bound holds a surface point, and all geometry of its node.
+///
+/// A ball's radius is at most 1 % above the smallest for its payload, and what rounding costs:
+/// 3 · 2⁻¹⁶ of the parent cube's edge, and twice the pad (pack_ball). A slab is no thinner than
+/// 2⁻⁸ of its cube's edge.
+///
+/// @param policy kTight or kSlab
+/// @param voxels with their triangles, as the octree's leaves
+///
+/// Cost: 0.6 µs a pair of leaf and triangle on one core, all levels; memory 6 bytes a pair besides
+/// the result. The same result for any number of threads.
+[[nodiscard]] BoundBlocks build_bounds(SpherePolicy policy, const TriangleMesh& mesh,
+                                       const VoxelSet& voxels, const LinearOctree& octree,
+                                       Progress* progress = nullptr);
+
+}  // namespace ist

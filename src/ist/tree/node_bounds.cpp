@@ -1,0 +1,116 @@
+#include "ist/tree/node_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "ist/base/assert.h"
+#include "ist/tree/enclosing_ball.h"
+#include "ist/tree/symmetric_eigen.h"
+
+namespace ist {
+namespace {
+
+using Eigen::Vector3d;
+
+// What the ball's centre spends of the 1 %.
+constexpr double kTolerance = 0.008;
+
+double dot(const Vector3d& a, const Vector3d& b) noexcept {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+double nearest(double value) noexcept { return std::floor(value + 0.5); }
+
+Vector3d least_spread(std::span<const Vector3d> points) noexcept {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& p : points) mean += p - points[0];
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vector3d& p : points) {
+    const Vector3d d = (p - points[0]) - mean;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = i; j < 3; ++j) spread(i, j) += d[i] * d[j];
+    }
+  }
+  return symmetric_eigen(spread).vectors.col(0);
+}
+
+// How far points reach along a normal as it is packed.
+struct Reach {
+  PackedSlab normal;  // and nothing else of it
+  double least, greatest;
+};
+
+// `axis` is of length 1, to a few roundings: 126 times it, rounded, is no longer than 128.
+Reach reach_along(const Vector3d& axis, std::span<const Vector3d> points,
+                  const Vector3d& from) noexcept {
+  const Vector3d rounded(nearest(126 * axis[0]), nearest(126 * axis[1]), nearest(126 * axis[2]));
+  const Vector3d normal = PackedSlab::kNormalUnit * rounded;
+  const double first = dot(normal, points[0] - from);
+  Reach reach{{static_cast<std::int8_t>(rounded[0]), static_cast<std::int8_t>(rounded[1]),
+               static_cast<std::int8_t>(rounded[2]), 0, 0},
+              first,
+              first};
+  for (const Vector3d& p : points.subspan(1)) {
+    const double height = dot(normal, p - from);
+    reach.least = std::min(reach.least, height);
+    reach.greatest = std::max(reach.greatest, height);
+  }
+  return reach;
+}
+
+}  // namespace
+
+PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
+                     double parent_edge) noexcept {
+  const Vector3d centre = enclosing_ball(payload.points, kTolerance).centre;
+  const double unit = PackedBall::kUnit * parent_edge;
+  const auto packed = [&](Eigen::Index axis) {
+    const double units = nearest((centre[axis] - parent_centre[axis]) / unit);
+    return static_cast<std::int16_t>(std::clamp(units, -32768.0, 32767.0));
+  };
+  PackedBall ball{packed(0), packed(1), packed(2), 0};
+  const Vector3d rounded = centre_of(ball, parent_centre, parent_edge);
+  double farthest2 = 0;
+  for (const Vector3d& p : payload.points) {
+    const Vector3d d = p - rounded;
+    farthest2 = std::max(farthest2, dot(d, d));
+  }
+  // A distance errs by a few 2⁻⁵³ of itself.
+  const double units = std::ceil((std::sqrt(farthest2) + payload.slack) / unit);
+  IST_ASSERT(units >= 1 && units <= 65535);
+  ball.r = static_cast<std::uint16_t>(units);
+  return ball;
+}
+
+Vector3d centre_of(const PackedBall& ball, const Vector3d& parent_centre,
+                   double parent_edge) noexcept {
+  const double unit = PackedBall::kUnit * parent_edge;
+  return {parent_centre[0] + unit * ball.x, parent_centre[1] + unit * ball.y,
+          parent_centre[2] + unit * ball.z};
+}
+
+PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge) noexcept {
+  Reach reach = reach_along(least_spread(payload.points), payload.points, centre);
+  const double area = std::sqrt(dot(payload.area, payload.area));
+  if (area > 0) {
+    const Reach other = reach_along(payload.area / area, payload.points, centre);
+    if (other.greatest - other.least < reach.greatest - reach.least) reach = other;
+  }
+  const double unit = PackedSlab::kUnit * edge;
+  const double offset =
+      std::clamp(nearest(0.5 * (reach.least + reach.greatest) / unit), -127.0, 127.0);
+  const double half = std::max(reach.greatest - unit * offset, unit * offset - reach.least);
+  // Heights err by a dozen 2⁻⁵³ of the cube's edge.
+  const double units = std::ceil((half + payload.slack) / unit);
+  // Where the centre lies among the points, no height is over 0.87 edges and no offset over half of
+  // that, and all fits. Where it does not, this is a slab that holds everything.
+  if (units > 255) return {0, 0, 0, 0, 255};
+  PackedSlab slab = reach.normal;
+  slab.offset = static_cast<std::int8_t>(offset);
+  slab.half = static_cast<std::uint8_t>(units);
+  return slab;
+}
+
+}  // namespace ist

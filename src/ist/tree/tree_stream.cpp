@@ -1,0 +1,103 @@
+#include "ist/tree/tree_stream.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <bit>
+
+#include "ist/tree/tree_io.h"
+
+namespace ist {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "arrays are written as they lie in memory");
+
+constexpr std::uint32_t kByteOrder = 0x01020304;
+
+struct Preamble {
+  std::array<unsigned char, 8> magic = kTreeFileMagic;
+  std::uint32_t version = kTreeFileVersion;
+  std::uint32_t byte_order = kByteOrder;
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+};
+static_assert(sizeof(Preamble) == 32 && std::is_trivially_copyable_v<Preamble>);
+
+}  // namespace
+
+Checksum::Checksum() : state_(XXH3_createState()) { XXH3_64bits_reset(state_.get()); }
+void Checksum::add(const void* data, std::size_t bytes) {
+  XXH3_64bits_update(state_.get(), data, bytes);
+}
+std::uint64_t Checksum::value() const { return XXH3_64bits_digest(state_.get()); }
+void Checksum::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
+
+TreeWriter::TreeWriter(const std::filesystem::path& file) : file_(file) {
+  const Preamble later;
+  file_.write(&later, sizeof(later));
+}
+
+void TreeWriter::bytes(const void* data, std::size_t count) {
+  file_.write(data, count);
+  checksum_.add(data, count);
+  bytes_ += count;
+}
+
+std::uint64_t TreeWriter::commit() {
+  Preamble preamble;
+  preamble.bytes = sizeof(preamble) + bytes_;
+  preamble.checksum = checksum_.value();
+  file_.write_at(0, &preamble, sizeof(preamble));
+  file_.commit();
+  return preamble.bytes;
+}
+
+TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(file_.size()) {
+  Preamble preamble;
+  const std::size_t got = file_.read(&preamble, sizeof(preamble));
+  if (got < sizeof(kTreeFileMagic) || preamble.magic != kTreeFileMagic) {
+    fail(ErrorCode::kNotATree, "it is no tree file: make one with ist build");
+  }
+  if (got < sizeof(preamble)) truncated();
+  if (preamble.byte_order != kByteOrder) {
+    fail(ErrorCode::kNotATree, "it was written in another byte order: build it again here");
+  }
+  if (preamble.version != kTreeFileVersion) {
+    fail(ErrorCode::kTreeVersion,
+         fmt::format("it is of version {}, and this program reads version {}: build it again",
+                     preamble.version, kTreeFileVersion));
+  }
+  if (preamble.bytes != file_.size()) {
+    fail(ErrorCode::kTreeTruncated,
+         fmt::format("it has {} bytes and should have {}: copy or build it again", file_.size(),
+                     preamble.bytes));
+  }
+  expected_ = preamble.checksum;
+  left_ -= sizeof(preamble);
+}
+
+void TreeReader::verify_checksum() const {
+  if (left_ != 0) corrupt("there is more in it than it lists");
+  if (checksum_.value() != expected_) corrupt("its checksum does not match its content");
+}
+
+void TreeReader::bytes(void* data, std::uint64_t count) {
+  if (count > left_ || file_.read(data, count) != count) truncated();
+  checksum_.add(data, count);
+  left_ -= count;
+}
+
+void TreeReader::truncated() const {
+  fail(ErrorCode::kTreeTruncated, "it ends before its content does: copy or build it again");
+}
+
+void TreeReader::corrupt(const char* what) const {
+  fail(ErrorCode::kTreeCorrupt, fmt::format("{}: build it again", what));
+}
+
+void TreeReader::fail(ErrorCode code, const std::string& what) const {
+  throw Error(code, fmt::format("{}: {}", file_.path().string(), what));
+}
+
+}  // namespace ist

@@ -1,0 +1,120 @@
+#include <algorithm>
+
+#include "cli/cli_case.h"
+#include "ist/query/kernels.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+// The engines of collide and close, their instruction sets and their workers.
+class Engines : public CliTest {
+ protected:
+  [[nodiscard]] std::vector<std::string> question(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"collide", tree_,    tree_,      "--poses",
+                                       list_,     "--json", "--repeat", "2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  // The answers alone: without how they were come by, and how fast.
+  static std::vector<json> answers(const CommandResult& result) {
+    std::vector<json> lines = json_lines(result.out);
+    for (json& line : lines) {
+      for (const char* key : {"target", "workers", "microseconds_min", "microseconds_median"}) {
+        line.erase(key);
+      }
+    }
+    return lines;
+  }
+  void refuses(const std::vector<std::string>& arguments, const std::string& part) const {
+    const CommandResult result = ist(question(arguments));
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, part));
+  }
+  // With the environment's IST_TARGET set.
+  static CommandResult with_target(const std::string& target, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"IST_TARGET=" + target, IST_COMMAND});
+    return run_command("/usr/bin/env", arguments);
+  }
+
+  const std::string tree_ = ball_tree("ball.ist", "slab");
+  const std::string list_ = poses({0, 1, 3.9, 100});
+};
+
+TEST_F(Engines, EveryTargetAnswersAlike) {
+  for (const char* spheres : {"table", "slab"}) {
+    const auto expected = answers(ist_well(question({"--spheres", spheres})));
+    ASSERT_EQ(expected.size(), 4u);
+    EXPECT_GT(expected[0]["contacts"], 0);
+    for (const Kernels& kernels : all_kernels()) {
+      const CommandResult named =
+          ist_well(question({"--spheres", spheres, "--target", kernels.target}));
+      EXPECT_EQ(answers(named), expected);
+      for (const json& line : json_lines(named.out)) EXPECT_EQ(line["target"], kernels.target);
+    }
+  }
+}
+
+TEST_F(Engines, TheEnvironmentNamesATarget) {
+  const auto target_of = [](const CommandResult& result) {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return json_lines(result.out).at(0)["target"];
+  };
+  EXPECT_EQ(target_of(ist(question({}))), find_kernels({}).target);
+  EXPECT_EQ(target_of(with_target("scalar", question({}))), "scalar");
+  EXPECT_EQ(target_of(with_target("scalar", question({"--target", all_kernels()[0].target}))),
+            all_kernels()[0].target);
+  EXPECT_EQ(target_of(with_target("nonsense", question({"--engine", "reference"}))), "scalar");
+  const CommandResult refused = with_target("nonsense", question({}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(says(refused.err, "IST_TARGET=nonsense"));
+  EXPECT_TRUE(says(refused.err, "scalar"));
+}
+
+TEST_F(Engines, TwoWorkersAnswerLikeOne) {
+  const auto contacts = [this] { return file_content(path("contacts.jsonl")); };
+  for (const char* spheres : {"simple", "slab"}) {
+    const auto ask = [&](const std::string& workers) {
+      const CommandResult result = ist_well(question(
+          {"--spheres", spheres, "--workers", workers, "--contacts", path("contacts.jsonl")}));
+      for (const json& line : json_lines(result.out)) {
+        EXPECT_EQ(std::to_string(line["workers"].get<int>()), workers);
+      }
+      return answers(result);
+    };
+    const auto alone = ask("1");
+    const std::string of_one = contacts();
+    EXPECT_EQ(ask("2"), alone);
+    EXPECT_EQ(contacts(), of_one);
+  }
+}
+
+TEST_F(Engines, TheReferenceAgreesWhereSpheresAreCubes) {
+  for (const char* spheres : {"simple", "table"}) {
+    const auto lines = answers(
+        ist_well(question({"--spheres", spheres, "--engine", "simd", "--engine", "reference"})));
+    ASSERT_EQ(lines.size(), 8u);
+    for (std::size_t i = 0; i < lines.size(); i += 2) {
+      EXPECT_EQ(lines[i]["colliding"], lines[i + 1]["colliding"]);
+      EXPECT_NEAR(lines[i]["resolution"], lines[i + 1]["resolution"], 1e-3);
+    }
+  }
+}
+
+TEST_F(Engines, WhatContradictsItselfIsRefused) {
+  refuses({"--engine", "simd", "--engine", "simd"}, "--engine: simd is named twice");
+  refuses({"--engine", "reference", "--engine", "simd", "--engine", "reference"},
+          "--engine: reference is named twice");
+  refuses({"--engine", "reference", "--target", "scalar"}, "--target: goes with --engine simd");
+  refuses({"--engine", "reference", "--workers", "2"}, "--workers: goes with --engine simd");
+  refuses({"--target", "nonsense"}, "target nonsense: this processor has no such instruction set");
+  refuses({"--target", "nonsense"}, "scalar");
+  for (const char* workers : {"0", "3", "-1", "x"}) refuses({"--workers", workers}, "--workers");
+  ist_well(question(
+      {"--engine", "reference", "--engine", "simd", "--target", "scalar", "--workers", "2"}));
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "query/search/scenes.h"
+#include "support/skip.h"
+#include "support/system_calls.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// Each in a child process, begun anew, that ends at the first system call.
+class SystemCalls : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    if (!can_forbid_system_calls()) IST_SKIP("this kernel does not filter system calls");
+  }
+};
+
+// Queries along the scene's closing, before and after the call is forbidden, and at the end
+// whether the second worker, where there is one, did its part.
+void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
+  std::vector<Contact> out(1 << 16);
+  CollisionQuery query(scene.fixed, scene.moving, options_of(policy, "", workers));
+  const auto enough = [&](std::uint64_t helped) {
+    return workers == 1 || query.sharing().chunks >= helped;
+  };
+  const auto give_up = Clock::now() + 60s;
+  while (!enough(1) && Clock::now() < give_up) {  // it is there
+    static_cast<void>(query.collide(scene.pose, out));
+  }
+  const std::uint64_t helped = query.sharing().chunks + 100;
+  forbid_system_calls();
+  for (int i = 0; i < 1000 || (!enough(helped) && Clock::now() < give_up); ++i) {
+    Eigen::Isometry3d pose = scene.pose;
+    pose.translation()[2] += 0.01 * (i % 100);
+    static_cast<void>(query.collide(pose, out));
+  }
+  end_process(enough(helped) ? 0 : 1);
+}
+
+TEST_F(SystemCalls, AreCaught) {
+  EXPECT_EXIT(
+      {
+        forbid_system_calls();
+        static_cast<void>(getppid());
+        end_process(0);
+      },
+      ::testing::KilledBySignal(SIGSYS), "");
+  EXPECT_EXIT(
+      {
+        forbid_system_calls();
+        end_process(7);
+      },
+      ::testing::ExitedWithCode(7), "");
+}
+
+TEST_F(SystemCalls, AQueryMakesNone) {
+  for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
+    EXPECT_EXIT(query_in_silence(scenes()[0], policy, 1), ::testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(query_in_silence(scenes()[2], policy, 1), ::testing::ExitedWithCode(0), "");
+  }
+}
+
+TEST_F(SystemCalls, ACallerWithASecondWorkerMakesNone) {
+  EXPECT_EXIT(query_in_silence(scenes()[0], SpherePolicy::kTight, 2), ::testing::ExitedWithCode(0),
+              "");
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <string>
+
+#include "ist/query/collision_query.h"
+#include "query/query_cases.h"
+
+namespace ist::test {
+
+/// Two bodies that touch in many places, with bounds for every policy.
+struct Scene {
+  std::string name;
+  SphereTree fixed, moving;
+  Eigen::Isometry3d pose;
+};
+
+/// Two jaws that are closed; two balls of like voxels; a fine ball and a coarse one, and the other
+/// way round, where leaves come at different depths. Made once.
+[[nodiscard]] std::span<const Scene> scenes();
+
+/// A ball almost on itself: little to make, and more pairs than are needed to share the work.
+[[nodiscard]] const Scene& shells();
+
+[[nodiscard]] CollisionOptions options_of(SpherePolicy policy, const std::string& target = "",
+                                          int workers = 1);
+
+/// Whether two answers are the same bits.
+[[nodiscard]] bool same(const Answer& a, const Answer& b);
+
+}  // namespace ist::test

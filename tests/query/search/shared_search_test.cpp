@@ -1,0 +1,175 @@
+#include "ist/query/shared_search.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "ist/tree/tree_builder.h"
+#include "query/search/scenes.h"
+#include "query/search/stall.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
+                                   HandOver::kWorked};
+
+// A query with two workers, and the answer of one.
+class SharedSearchThread : public ::testing::Test {
+ protected:
+  // Until `done`, or for five minutes: a machine that is busy is no failure.
+  bool ask_until(CollisionQuery& query, const std::function<bool()>& done) const {
+    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+      if (!same(ask(query, scene_.pose), expected_)) return false;
+      if (done()) return true;
+    }
+    return false;
+  }
+  bool ask_until_helped(CollisionQuery& query) const {
+    const std::uint64_t before = query.sharing().chunks;
+    return ask_until(query, [&] { return query.sharing().chunks > before; });
+  }
+
+  const Scene& scene_ = shells();
+  const CollisionOptions alone_ = options_of(SpherePolicy::kSlab);
+  const CollisionOptions shared_ = options_of(SpherePolicy::kSlab, "", 2);
+  const Answer expected_ = [this] {
+    CollisionQuery query(scene_.fixed, scene_.moving, alone_);
+    return ask(query, scene_.pose);
+  }();
+};
+
+TEST_F(SharedSearchThread, GivesTheAnswerOfOneWorker) {
+  CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+  int queries = 0;
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
+  std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
+}
+
+TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
+  CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+  for (const HandOver point : kHandOvers) {
+    SCOPED_TRACE(static_cast<int>(point));
+    {
+      const Stall stall(point);
+      ASSERT_TRUE(ask_until(query, Stall::reached));
+      const std::uint64_t helped = query.sharing().chunks;
+      for (int later = 0; later < 10; ++later) {
+        ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
+      }
+      EXPECT_EQ(query.sharing().chunks, helped);
+    }
+    ASSERT_TRUE(ask_until_helped(query));  // it works again
+  }
+}
+
+// Each time it stalls it is let go on in the midst of later queries.
+TEST_F(SharedSearchThread, ForgetsAWorkerThatIsLate) {
+  CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+  for (int round = 0; round < 12; ++round) {
+    const Stall stall(kHandOvers[round % 4]);
+    ASSERT_TRUE(ask_until(query, Stall::reached));
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(round * 50us);
+      Stall::release();
+    });
+    for (int later = 0; later < 6; ++later) {
+      ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
+    }
+  }
+}
+
+TEST_F(SharedSearchThread, IsNotDestroyedUnderAWorkerThatIsLate) {
+  for (const HandOver point : kHandOvers) {
+    std::optional<CollisionQuery> query(std::in_place, scene_.fixed, scene_.moving, shared_);
+    const Stall stall(point);
+    ASSERT_TRUE(ask_until(*query, Stall::reached));
+    std::atomic<bool> destroyed{false};
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(20ms);
+      // Only a worker that has entered the search is waited for.
+      EXPECT_TRUE(point == HandOver::kSeen || !destroyed);
+      Stall::release();
+    });
+    query.reset();
+    destroyed = true;
+  }
+}
+
+TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
+  std::atomic<std::uint64_t> helped{0};
+  std::vector<std::jthread> owners;
+  for (int owner = 0; owner < 3; ++owner) {
+    owners.emplace_back([this, &helped] {
+      CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+      EXPECT_TRUE(ask_until(query, [&] { return query.sharing().chunks > 10; }));
+      helped += query.sharing().chunks;
+    });
+  }
+  owners.clear();
+  EXPECT_GT(helped, 30u);
+}
+
+// In turn with poses that have nothing to share, and none at all.
+TEST_F(SharedSearchThread, PosesOfAnySizeFollowEachOther) {
+  CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+  CollisionQuery single(scene_.fixed, scene_.moving, alone_);
+  std::vector<std::pair<Eigen::Isometry3d, Answer>> cases;
+  for (const double dz : {0.0, -0.5, -1.5, -2.0, -3.0, -200.0}) {
+    const Eigen::Isometry3d pose = shift({0, 0, dz});
+    cases.emplace_back(pose, ask(single, pose));
+  }
+  EXPECT_GT(cases.front().second.result.contacts, 1000u);
+  EXPECT_EQ(cases.back().second.result.sphere_tests, 1u);
+  int turn = 0;
+  EXPECT_TRUE(ask_until(query, [&] {
+    for (const auto& [pose, answer] : cases) EXPECT_TRUE(same(ask(query, pose), answer));
+    return HasFailure() || (++turn >= 20 && query.sharing().chunks > 10);
+  }));
+}
+
+// More contacts than the worker has room for: it leaves some chunks to the caller.
+// Too many contacts for ThreadSanitizer's patience.
+class SharedSearch : public SharedSearchThread {};
+
+TEST_F(SharedSearch, MoreContactsThanTheWorkerHasRoomFor) {
+  BuildOptions build;
+  build.voxel_size = 2.0 / 150;
+  build.spheres = SpherePolicy::kSimple;
+  const SphereTree ball = build_tree(icosphere(4, 1), build);
+  const Eigen::Isometry3d pose = shift({build.voxel_size / 4, 0, 0});
+  CollisionQuery query(ball, ball, options_of(SpherePolicy::kSimple, "", 2));
+  CollisionQuery single(ball, ball, options_of(SpherePolicy::kSimple));
+  const Answer expected = ask(single, pose);
+  EXPECT_GT(expected.result.contacts, 1u << 20);
+  Answer answer = expected;
+  const auto give_up = Clock::now() + 300s;
+  for (int repeat = 0; repeat < 10 || (query.sharing().chunks == 0 && Clock::now() < give_up);
+       ++repeat) {
+    answer.contacts.assign(answer.contacts.size(), {});
+    answer.result = query.collide(pose, answer.contacts);
+    ASSERT_TRUE(same(answer, expected));
+  }
+  EXPECT_GT(query.sharing().chunks, 0u);
+  // A short span takes the first of them, whoever found them.
+  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, expected.contacts.size() / 2,
+                                   expected.contacts.size() - 1}) {
+    std::vector<Contact> first(length);
+    const QueryResult result = query.collide(pose, first);
+    EXPECT_TRUE(result.truncated);
+    EXPECT_EQ(result.contacts, expected.contacts.size());
+    EXPECT_TRUE(std::equal(first.begin(), first.end(), expected.contacts.begin()));
+  }
+}
+
+}  // namespace
+}  // namespace ist::test
