@@ -12,7 +12,7 @@ cmake --build --preset bench | tail -n 1 >&2
 programs=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do programs+=("$1"); shift; done
 [ $# -eq 0 ] || shift
-[ ${#programs[@]} -gt 0 ] || programs=(build_bench load_bench query_bench reference_bench)
+[ ${#programs[@]} -gt 0 ] || programs=(build_bench kernel_bench load_bench query_bench reference_bench)
 
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr -cs 'A-Za-z0-9' '-' | sed 's/-$//')
 results=perf/results/$machine-$(nproc)

@@ -33,14 +33,14 @@ TEST(Allocations, AreCountedHoweverMemoryIsAskedFor) {
 }
 
 TEST(Allocations, TheReferenceMakesSome) {
-  const Scene& scene = scenes()[1];
+  const Scene& scene = solids()[0];
   ReferenceQuery query(scene.fixed, scene.moving, SpherePolicy::kTight);
   EXPECT_GT(allocations_of([&] { static_cast<void>(query.collide(scene.pose, {})); }), 0u);
 }
 
 // From the very first query on: all was reserved by the constructor. Nor does the worker make any.
 TEST(Allocations, AQueryMakesNone) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : solids()) {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const int workers : {1, 2}) {
         std::vector<Contact> out(1 << 16);
@@ -60,7 +60,7 @@ TEST(Allocations, AQueryMakesNone) {
 }
 
 TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
-  const Scene& scene = scenes()[0];
+  const Scene& scene = jaws();
   std::vector<Contact> out(1 << 16);
   CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
   EXPECT_EQ(allocations_of([&] {

@@ -62,14 +62,13 @@ TEST_F(SystemCalls, AreCaught) {
 
 TEST_F(SystemCalls, AQueryMakesNone) {
   for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
-    EXPECT_EXIT(query_in_silence(scenes()[0], policy, 1), ::testing::ExitedWithCode(0), "");
-    EXPECT_EXIT(query_in_silence(scenes()[2], policy, 1), ::testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(query_in_silence(jaws(), policy, 1), ::testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(query_in_silence(solids()[1], policy, 1), ::testing::ExitedWithCode(0), "");
   }
 }
 
 TEST_F(SystemCalls, ACallerWithASecondWorkerMakesNone) {
-  EXPECT_EXIT(query_in_silence(scenes()[0], SpherePolicy::kTight, 2), ::testing::ExitedWithCode(0),
-              "");
+  EXPECT_EXIT(query_in_silence(jaws(), SpherePolicy::kTight, 2), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class CollisionQueryTest : public ::testing::TestWithParam<std::string> {
       check(query);
     }
   }
-  const Scene& scene_ = scenes()[1];
+  const Scene& scene_ = solids()[0];
 };
 
 INSTANTIATE_TEST_SUITE_P(Targets, CollisionQueryTest, ::testing::ValuesIn(all_targets()), name_of);

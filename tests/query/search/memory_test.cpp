@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, Memory, ::testing::ValuesIn(all_targets()), na
 
 // However often the frontiers are full and cut.
 TEST_P(Memory, OfAnySizeGivesTheSameAnswer) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : solids()) {
     for (const SpherePolicy policy : kSpherePolicies) {
       CollisionOptions options = options_of(policy, "scalar");
       CollisionQuery unbounded(scene.fixed, scene.moving, options);
@@ -37,7 +37,7 @@ TEST_P(Memory, OfAnySizeGivesTheSameAnswer) {
 
 // Spans of every length up to some hundreds, and about the number of contacts.
 TEST_P(Memory, TooShortForAllContactsHoldsTheFirst) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : solids()) {
     for (const std::size_t pairs : {65536u, 7u}) {
       CollisionOptions options = options_of(SpherePolicy::kSlab, GetParam());
       options.frontier_pairs = pairs;

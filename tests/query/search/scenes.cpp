@@ -17,12 +17,16 @@ Eigen::Isometry3d turned(const Eigen::Vector3d& translation) {
 
 }  // namespace
 
-std::span<const Scene> scenes() {
+const Scene& jaws() {
+  static const Scene scene{"jaws", tree_of(make_jaw(Jaw::kUpper, 1), 110),
+                           tree_of(make_jaw(Jaw::kLower, 1), 140), shift({0, 0, -0.25})};
+  return scene;
+}
+
+std::span<const Scene> solids() {
   static const std::vector<Scene> all = [] {
     const TriangleMesh ball = icosphere(3, 1), block = box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8});
     std::vector<Scene> made;
-    made.push_back({"jaws", tree_of(make_jaw(Jaw::kUpper, 1), 110),
-                    tree_of(make_jaw(Jaw::kLower, 1), 140), shift({0, 0, -0.25})});
     made.push_back({"equal", tree_of(ball, 30), tree_of(block, 27), turned({0.5, 0.25, 0})});
     made.push_back({"coarse in fine", tree_of(ball, 40), tree_of(block, 5), turned({0.5, 0.5, 0})});
     made.push_back({"fine in coarse", tree_of(ball, 4), tree_of(block, 36), turned({0, 0.5, 0.5})});

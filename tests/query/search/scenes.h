@@ -16,9 +16,14 @@ struct Scene {
   Eigen::Isometry3d pose;
 };
 
-/// Two jaws that are closed; two balls of like voxels; a fine ball and a coarse one, and the other
-/// way round, where leaves come at different depths. Made once.
-[[nodiscard]] std::span<const Scene> scenes();
+// All are made once, by whoever asks first: each test is a process of its own.
+
+/// Two jaws that are closed.
+[[nodiscard]] const Scene& jaws();
+
+/// A ball and a block of like voxels; a fine ball and a coarse block, and the other way round, where
+/// leaves come at different depths.
+[[nodiscard]] std::span<const Scene> solids();
 
 /// A ball almost on itself: little to make, and more pairs than are needed to share the work.
 [[nodiscard]] const Scene& shells();
