@@ -6,6 +6,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/kernels.h"
+#include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/root_test.h"
 
@@ -107,8 +108,7 @@ SharedSearch::Sharing CollisionQuery::sharing() const noexcept {
 }
 
 double CollisionQuery::resolution(const QueryResult& result) const noexcept {
-  return 2 * (fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_)) +
-         result.pad;
+  return resolution_of(result, fixed_, moving_, policy_);
 }
 
 }  // namespace ist

@@ -5,25 +5,10 @@
 #include <cmath>
 
 #include "ist/base/float_environment.h"
+#include "ist/query/query_rules.h"
 
 namespace ist {
 namespace {
-
-// What a test errs by, in parts of the two reaches and the translation t between the frames, with u
-// = 2⁻⁵³: a centre 4u of its length, and the moving one 6u more, for √3 · 3u of rotation and a sum;
-// t 3u of its own; the distance and the sum of radii, equal where it matters, 5u; the rotation's
-// being a little off orthonormal, 4u of a moving radius. No length is counted for more than 11u.
-//
-// A slab is tested where the balls touch, so the centres are no farther apart than both radii. The
-// centres err as above. A height over the moving slab errs by 10u of the distance more, 5u for its
-// turned normal, 4u for difference and product and 1u for the offset taken off; by 1u of the
-// offset, 3u of the half width and 3u of the other radius, for what they are and their sum; and by
-// 8u and 4u of the radii for the rotation. Offset and half width are less than the cube's edge,
-// and that is less than the reach: no length is counted for more than 22u.
-constexpr double kRounding = 24 * 0x1p-53;
-
-// A cube with more than this times the other's edge is opened alone.
-constexpr double kLarger = 1.4142135623730951;
 
 double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -60,7 +45,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   pose_ = *relative;
   const double reach = fixed_.reach() + moving_.reach();
   const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  slack_ = kRounding * reach + kRounding * kSqrt3 * farthest;
+  slack_ = slack_in_double(reach, farthest);
   tests_ = 0;
   found_.clear();
 
@@ -80,6 +65,10 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   result.sphere_tests = tests_;
   result.pad = 2 * slack_;
   return result;
+}
+
+double ReferenceQuery::resolution(const QueryResult& result) const noexcept {
+  return resolution_of(result, fixed_, moving_, policy_);
 }
 
 void ReferenceQuery::bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent,
@@ -146,8 +135,8 @@ void ReferenceQuery::descend(const Node& a, const Node& b) {
     return;
   }
   const double edge_a = fixed_.lattice().edge(a.level), edge_b = moving_.lattice().edge(b.level);
-  const bool open_a = a.level > 0 && (b.level == 0 || edge_b <= kLarger * edge_a);
-  const bool open_b = b.level > 0 && (a.level == 0 || edge_a <= kLarger * edge_b);
+  const bool open_a = opens(a.level, edge_a, b.level, edge_b);
+  const bool open_b = opens(b.level, edge_b, a.level, edge_a);
   Children of_a, of_b;
   if (open_a) {
     open(fixed_, saved_fixed_, a, of_a);

@@ -49,10 +49,7 @@ class ReferenceQuery {
 
   /// Surfaces in a contact are no farther apart, mesh units: 2 (rA + rB) + pad, with rA and rB the
   /// largest leaf radii of the two trees.
-  [[nodiscard]] double resolution(const QueryResult& result) const noexcept {
-    return 2 * (fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_)) +
-           result.pad;
-  }
+  [[nodiscard]] double resolution(const QueryResult& result) const noexcept;
 
  private:
   struct Node {

@@ -1,10 +1,9 @@
 #include "ist/query/root_test.h"
 
+#include "ist/query/query_rules.h"
+
 namespace ist {
 namespace {
-
-// As in reference.cpp, whose argument holds here too.
-constexpr double kRounding = 24 * 0x1p-53;
 
 Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
   return is_implicit(policy) ? tree.ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
@@ -19,7 +18,7 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   const double reaches = fixed.reach() + moving.reach();
   const double farthest = pose.translation.cwiseAbs().maxCoeff();
   RootTest test{};
-  test.slack = kRounding * reaches + kRounding * kSqrt3 * farthest;
+  test.slack = slack_in_double(reaches, farthest);
   // Decided by one coordinate where they are far apart, because the square of a distance overflows.
   if (farthest > reaches + test.slack) return test;
   double squared = 0;

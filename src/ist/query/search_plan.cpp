@@ -4,11 +4,11 @@
 
 #include "ist/base/error.h"
 #include "ist/query/bound_lanes.h"
+#include "ist/query/query_rules.h"
 
 namespace ist {
 namespace {
 
-constexpr double kLarger = 1.4142135623730951;
 // Of parents, so that an address is 32 bits.
 constexpr std::uint32_t kMostParents = 1U << 29;
 constexpr std::uint8_t kRootMask = 1;  // of the root's parent
@@ -55,8 +55,7 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
   int a = fixed.depth(), b = moving.depth();
   while (a > 0 || b > 0 || steps_.empty()) {  // two leaves alone are a step too
     const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
-    const bool open_a = a > 0 && (b == 0 || edge_b <= kLarger * edge_a);
-    const bool open_b = b > 0 && (a == 0 || edge_a <= kLarger * edge_b);
+    const bool open_a = opens(a, edge_a, b, edge_b), open_b = opens(b, edge_b, a, edge_a);
     const std::size_t before =
         std::size_t{fixed.octree().node_count(a)} * moving.octree().node_count(b);
     a -= open_a ? 1 : 0;
