@@ -40,7 +40,7 @@ class Judged {
     for (const auto& engine : engines_) {
       EXPECT_TRUE(same(ask(*engine, pose), answer)) << engine->target();
     }
-    const ExactPair exact(exact_fixed_, exact_moving_, pose);
+    const ExactPair exact = this->exact(pose);
     EXPECT_TRUE(keeps_promise(exact, policy_, answer.contacts, answer.result.pad)) << "pose\n"
                                                                                    << pose.matrix();
     std::vector<Contact> differing;
@@ -59,6 +59,10 @@ class Judged {
   [[nodiscard]] const SphereTree& fixed() const { return fixed_; }
   [[nodiscard]] const SphereTree& moving() const { return moving_; }
   [[nodiscard]] CollisionQuery& query() { return *engines_.front(); }
+  [[nodiscard]] ReferenceQuery& reference() { return reference_; }
+  [[nodiscard]] ExactPair exact(const Eigen::Isometry3d& pose) const {
+    return {exact_fixed_, exact_moving_, pose};
+  }
 
  private:
   SpherePolicy policy_;
@@ -195,6 +199,64 @@ TEST_P(Promise, IsKeptWhereTheLastContactEnds) {
         bodies.check(pose(last * (1 - ulp * 0x1p-24)));
         bodies.check(pose(last * (1 + ulp * 0x1p-24)));
       }
+    }
+  }
+}
+
+// A bent square of two triangles, by the origin, so that a pose's last bit is a small step.
+TriangleMesh plate(Random& random) {
+  const double bend = random.uniform(0.001, 0.3);
+  const auto corner = [&](double x, double y) {
+    return Eigen::Vector3d(x, y, random.uniform(-bend, bend));
+  };
+  TriangleMesh mesh;
+  mesh.vertices = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+// Two leaves that are roots, whose balls go on overlapping where a ball leaves the other's slab.
+// Nothing lies above them, so here bounds that meet must be in the answer, and not geometry alone.
+TEST(PromiseOfOneVoxel, IsKeptWhereSlabsAlonePart) {
+  constexpr SpherePolicy kSlab = SpherePolicy::kSlab;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(4000 + seed);
+    const TriangleMesh a = plate(random), b = plate(random);
+    Judged bodies(a, 0.9, b, 0.9, kSlab);
+    const SphereTree &fixed = bodies.fixed(), &moving = bodies.moving();
+    ASSERT_EQ(fixed.octree().node_count() + moving.octree().node_count(), 2u);
+    CollisionQuery balls(fixed, moving, options_of(SpherePolicy::kTight));
+
+    // Out of one of the slabs along its normal, from where the balls' centres are one.
+    const Eigen::Matrix3d rotation = random.rotation();
+    const Eigen::Vector3d centre = fixed.lattice().origin() + fixed.saved_ball(0, 0, 0).centre;
+    const Eigen::Vector3d moving_centre =
+        moving.lattice().origin() + moving.saved_ball(0, 0, 0).centre;
+    const Eigen::Vector3d normal = seed % 2 == 0 ? fixed.saved_slab(0, 0, 0).normal
+                                                 : rotation * moving.saved_slab(0, 0, 0).normal;
+    const auto pose = [&](double gap) {
+      return pose_of(rotation, centre - rotation * moving_centre + gap * normal);
+    };
+    const double last = last_touching(
+        0, 4, [&](double gap) { return bodies.exact(pose(gap)).bounds_meet(kSlab, 0, 0, 0); });
+    const auto last_of = [&](auto& query) {
+      return last_touching(0, 4,
+                           [&](double gap) { return ask(query, pose(gap)).result.contacts > 0; });
+    };
+    const double last_answered = last_of(bodies.query());
+    EXPECT_GE(last_answered, last);
+    EXPECT_GE(last_of(bodies.reference()), last);
+    EXPECT_EQ(bodies.check(pose(last)), 1u);
+    EXPECT_EQ(bodies.check(pose(last_answered)), 1u);
+    const double first_apart = std::nextafter(last_answered, 4);
+    EXPECT_EQ(bodies.check(pose(first_apart)), 0u);
+    EXPECT_EQ(ask(balls, pose(first_apart)).result.contacts, 1u) << "the balls part too";
+    for (int ulp = 1; ulp <= 8; ++ulp) {
+      EXPECT_EQ(bodies.check(pose(last * (1 - ulp * 0x1p-24))), 1u);
+      bodies.check(pose(last * (1 + ulp * 0x1p-24)));
+      bodies.check(pose(last_answered * (1 - ulp * 0x1p-24)));
+      EXPECT_EQ(bodies.check(pose(last_answered * (1 + ulp * 0x1p-24))), 0u);
     }
   }
 }
