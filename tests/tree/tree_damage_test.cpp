@@ -105,6 +105,8 @@ const std::vector<Damage>& damages() {
       put("VoxelSizeNaN", F::kVoxelSize, kNaN),
       put("VoxelSizeInfinite", F::kVoxelSize, kInfinity),
       put("VoxelSizeBeyondAllMeasure", F::kVoxelSize, 1e300),
+      put("VoxelSizeBelowAllMeasure", F::kVoxelSize, 1e-30),
+      put("VoxelSizeDenormal", F::kVoxelSize, std::numeric_limits<double>::denorm_min()),
       put("CellsZero", F::kCells, 0u),
       put("CellsTooMany", F::kCells, 70000u),
       put("CellsOfAnotherDepth", F::kCells, 9u),
@@ -188,6 +190,25 @@ TEST(DamagedTree, OfVersion1IsRefusedWithTheRemedy) {
   EXPECT_NE(what.find("it is of version 1, and this program reads version 2: build it again"),
             std::string::npos)
       << what;
+}
+
+// Queries square lengths in float, so the lattice's numbers must be good together too.
+TEST(DamagedTree, OfAGridThatNoMeshHasSaysWhy) {
+  const auto with = [](double voxel_size) {
+    TreeFile file = small_file();
+    file.put(TreeFile::kVoxelSize, voxel_size);
+    file.seal();
+    const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });
+    return error ? std::string(error->what()) : "none";
+  };
+  const auto says = [](const std::string& what, const std::string& part) {
+    EXPECT_NE(what.find(part), std::string::npos) << what;
+  };
+  says(with(1e-30), "the grid is smaller than any mesh may be: build it again");
+  says(with(1e20), "the grid is larger than any mesh may be: build it again");
+  // Of three voxels an axis.
+  EXPECT_EQ(with(1e-12 / 3), "none");
+  EXPECT_EQ(with(1e15 / 3), "none");
 }
 
 TEST(DamagedTree, CutAnywhereItIsAnError) {
