@@ -107,11 +107,13 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command.add_option("--contacts", options.contacts,
-                     "write the contacts here, one JSON object each, in fixed coordinates");
+                     "write the first engine's contacts here, one JSON object each, in fixed "
+                     "coordinates");
   command.add_flag(
       "--verify", options.verify,
-      "check each engine's answers against what is promised, 0.1 s a pose or more; exit "
-      "code 5 if one is not kept");
+      "ask each engine each pose once more and check those answers against what is promised, some "
+      "0.1 s a pose; exit code 5 if a promise is broken. With tight and slab, only meshes and "
+      "trees built with --exact show whether a pair is missing");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
 }

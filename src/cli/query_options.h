@@ -42,7 +42,7 @@ struct QueryOptions {
 
   /// Throws CLI::ValidationError where options contradict each other, and kTargetMissing.
   void check() const;
-  /// The files, with the policy that is named.
+  /// The files, with the policy that is named; triangles are kept for --verify.
   [[nodiscard]] BodyFiles body_files() const;
 };
 
