@@ -15,16 +15,17 @@ namespace ist {
 enum class SphereSource : std::uint8_t {
   kOnTheFly,  ///< derived from the octree at each visit, as published, or unpacked from the tree
   kSaved,     ///< made once, at construction, and read back: the article's first proposal. Slabs
-              ///< are unpacked all the same
+              ///< are unpacked at each visit all the same
 };
 
 /// The published query, plain and in double: depth first down both trees at once, each colliding
 /// pair of nodes tested child by child. It specifies the answer that every faster engine must give.
 ///
-/// One departure: contacts are sorted at the end, so that there is one order for every engine. And
-/// where the voxel sizes differ, so that one cube has over √2 times the other's edge, only the
-/// larger is opened; with equal sizes both always are, as published. With kSlab, a pair whose balls
-/// touch is dropped all the same where one's ball lies outside the other's slab.
+/// It departs from what is published in three things. Contacts are sorted at the end, so that there
+/// is one order for every engine. Where the voxel sizes differ, so that one cube has over √2 times
+/// the other's edge, only the larger is opened; with equal sizes both always are, as published.
+/// With kSlab, a pair whose balls touch is dropped all the same where one's ball lies outside the
+/// other's slab.
 ///
 /// Holds references to both trees, which must outlive it. One query object belongs to one thread.
 /// Source: the article that the method comes from, section II.E.
@@ -39,8 +40,7 @@ class ReferenceQuery {
   ///
   /// @param pose maps moving mesh coordinates to fixed mesh coordinates
   /// @param out  takes the contacts, sorted by fixed and then by moving leaf; where it is too
-  /// short,
-  ///             the first of them
+  ///             short, the first of them
   ///
   /// Cost: 5 to 20 ns a sphere test, 10 to 60 ns a contact for the order. Allocates when a pose has
   /// more contacts than any before, and can throw std::bad_alloc; this is the specification, not

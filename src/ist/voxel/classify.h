@@ -18,8 +18,7 @@ inline constexpr std::uint32_t kProximityMargin = 2;
 ///
 /// @param surface the mesh's surface voxels
 /// @return Morton codes, ascending, of cells counted from kProximityMargin below the grid's corner
-/// on
-///         each axis. The same for any number of threads.
+///         on each axis. The same for any number of threads.
 ///
 /// Throws kVoxelSizeTooSmall where the grid has no room left for the margin.
 /// Cost: some 200 cells a surface voxel and triangle. Source: the classes of W. A. McNeely et al.,
