@@ -29,6 +29,7 @@ void build_upper_jaw(benchmark::State& state, double voxel_size, SpherePolicy po
     state.counters["tree_MB"] = static_cast<double>(tree.bytes()) / 1e6;
   }
   state.counters["peak_MB"] = peak_memory_mb();
+  state.counters["triangles"] = static_cast<double>(mesh.triangles.size());
   for (auto& [name, times] : stages) {
     std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
                      times.end());
