@@ -2,10 +2,12 @@
 // and paced at 1 kHz; beside the published query in one run; and with the second worker stalled.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,48 +48,67 @@ struct Case {
   double voxel_size;
   CollisionOptions options;
   bool paced;
+  int rounds;
 };
 
-// One query after the other, round the whole closing, so that no pose is asked twice in a row; the
-// times of one pose are kept.
-void collide(benchmark::State& state, const Case& c, double dz) {
-  const auto& [fixed, moving] = trees(c.voxel_size);
-  check_against_twin(fixed, moving, c.options, dz);
-  CollisionQuery query(fixed, moving, c.options);
-  std::vector<Contact> contacts(kContacts);
-  Latencies latencies;
-  QueryResult result;
-  Pacer pacer(kTick);
-  const auto before = ResidentWorker::usage();
-  for (auto _ : state) {
-    for (const double other : kClosing) {
-      if (c.paced) pacer.wait();
-      const auto begin = Clock::now();
-      const QueryResult answer = query.collide(closing(other), contacts);
-      const auto end = Clock::now();
-      if (other != dz) continue;
-      result = answer;
-      latencies.add(microseconds(begin, end));
-      state.SetIterationTime(std::chrono::duration<double>(end - begin).count());
+// A case's queries, one after the other round the whole closing, so that no pose is asked twice in
+// a row. All poses are measured together, when the first of them is to be reported.
+class Closing {
+ public:
+  explicit Closing(Case c) : case_(std::move(c)) {}
+
+  void report(benchmark::State& state, std::size_t pose) {
+    for (auto _ : state) {
+      if (contacts_.empty()) measure();
+      state.SetIterationTime(1e-6 * latencies_[pose].quantile(0.5));
     }
+    const QueryResult& result = results_[pose];
+    latencies_[pose].report(state);
+    state.counters["contacts"] = static_cast<double>(result.contacts);
+    state.counters["tests"] = static_cast<double>(result.sphere_tests);
+    state.counters["ns_a_test"] =
+        1e3 * latencies_[pose].quantile(0.5) / static_cast<double>(result.sphere_tests);
+    state.counters["query_MB"] = static_cast<double>(bytes_) / 1e6;
+    if (case_.options.workers == 2) {
+      state.counters["worth"] = static_cast<double>(sharing_.worth);
+      state.counters["shared"] = static_cast<double>(sharing_.shared);
+      state.counters["dropped"] = static_cast<double>(sharing_.dropped);
+      state.counters["helper_share"] = helper_share_;
+    }
+    state.SetLabel(pair_name());
   }
-  const auto after = ResidentWorker::usage();
-  latencies.report(state);
-  state.counters["contacts"] = static_cast<double>(result.contacts);
-  state.counters["tests"] = static_cast<double>(result.sphere_tests);
-  state.counters["ns_a_test"] =
-      1e3 * latencies.quantile(0.5) / static_cast<double>(result.sphere_tests);
-  state.counters["query_MB"] = static_cast<double>(query.bytes()) / 1e6;
-  if (c.options.workers == 2) {
-    const auto sharing = query.sharing();
-    state.counters["worth"] = static_cast<double>(sharing.worth);
-    state.counters["shared"] = static_cast<double>(sharing.shared);
-    state.counters["dropped"] = static_cast<double>(sharing.dropped);
-    state.counters["helper_share"] = static_cast<double>((after.cpu - before.cpu).count()) /
-                                     static_cast<double>((after.wall - before.wall).count());
+
+ private:
+  void measure() {
+    const auto& [fixed, moving] = trees(case_.voxel_size);
+    for (const double dz : kClosing) check_against_twin(fixed, moving, case_.options, dz);
+    CollisionQuery query(fixed, moving, case_.options);
+    contacts_.resize(kContacts);
+    Pacer pacer(kTick);
+    const auto before = ResidentWorker::usage();
+    for (int round = 0; round < case_.rounds; ++round) {
+      for (std::size_t pose = 0; pose < std::size(kClosing); ++pose) {
+        if (case_.paced) pacer.wait();
+        const auto begin = Clock::now();
+        results_[pose] = query.collide(closing(kClosing[pose]), contacts_);
+        latencies_[pose].add(microseconds(begin, Clock::now()));
+      }
+    }
+    const auto after = ResidentWorker::usage();
+    helper_share_ = static_cast<double>((after.cpu - before.cpu).count()) /
+                    static_cast<double>((after.wall - before.wall).count());
+    sharing_ = query.sharing();
+    bytes_ = query.bytes();
   }
-  state.SetLabel(pair_name());
-}
+
+  Case case_;
+  std::vector<Contact> contacts_;
+  std::array<Latencies, std::size(kClosing)> latencies_;
+  std::array<QueryResult, std::size(kClosing)> results_;
+  SharedSearch::Sharing sharing_;
+  double helper_share_ = 0;
+  std::size_t bytes_ = 0;
+};
 
 // The published query, one worker and two, in turn: what the ratios of perf/ are made of.
 void beside_reference(benchmark::State& state, double dz) {
@@ -164,16 +185,19 @@ void worker_stalled(benchmark::State& state, double dz) {
 
 std::string number(double value) { return std::to_string(value).substr(0, value < 0 ? 4 : 3); }
 
-void add(const Case& c, int queries) {
-  for (const double dz : kClosing) {
-    const std::string name =
-        "query/" + number(c.voxel_size) + "/" + std::string(to_string(*c.options.policy)) + "/" +
-        (c.options.target.empty() ? "best" : c.options.target) + "/" +
-        std::to_string(c.options.workers) + (c.paced ? "/paced/" : "/row/") + number(dz);
-    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& s) { collide(s, c, dz); })
+void add(const Case& c) {
+  const auto run = std::make_shared<Closing>(c);
+  for (std::size_t pose = 0; pose < std::size(kClosing); ++pose) {
+    const std::string name = "query/" + number(c.voxel_size) + "/" +
+                             std::string(to_string(*c.options.policy)) + "/" +
+                             (c.options.target.empty() ? "best" : c.options.target) + "/" +
+                             std::to_string(c.options.workers) + (c.paced ? "/paced/" : "/row/") +
+                             number(kClosing[pose]);
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [=](benchmark::State& state) { run->report(state, pose); })
         ->Unit(benchmark::kMicrosecond)
         ->UseManualTime()
-        ->Iterations(queries);
+        ->Iterations(1);
   }
 }
 
@@ -197,13 +221,13 @@ const int kRegistered = [] {
       for (const int workers : {1, 2}) {
         CollisionOptions in_a_row = options(policy, workers);
         in_a_row.period = std::chrono::nanoseconds(0);
-        add({size, in_a_row, false}, 1000);
+        add({size, in_a_row, false, 1000});
       }
     }
   }
-  for (const int workers : {1, 2}) add({0.2, options(SpherePolicy::kSlab, workers), true}, 1000);
+  for (const int workers : {1, 2}) add({0.2, options(SpherePolicy::kSlab, workers), true, 1000});
   for (const Kernels& kernels : all_kernels()) {
-    add({0.2, options(SpherePolicy::kSlab, 1, kernels.target), false}, 100);
+    add({0.2, options(SpherePolicy::kSlab, 1, kernels.target), false, 100});
   }
   benchmark::RegisterBenchmark("worker_stalled/0.0",
                                [](benchmark::State& state) { worker_stalled(state, 0); })
