@@ -3,8 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -39,6 +41,8 @@ void check_against_twin(const SphereTree& fixed, const SphereTree& moving,
   CollisionQuery query(fixed, moving, options), twin(fixed, moving, plain);
   std::vector<Contact> a(kContacts), b(kContacts);
   const QueryResult of_a = query.collide(closing(dz), a), of_b = twin.collide(closing(dz), b);
+  a.resize(std::min<std::uint64_t>(a.size(), of_a.contacts));  // what lies behind them is no answer
+  b.resize(std::min<std::uint64_t>(b.size(), of_b.contacts));
   if (of_a.contacts == of_b.contacts && of_a.sphere_tests == of_b.sphere_tests && a == b) return;
   std::cerr << "the query differs from its scalar twin at dz = " << dz << '\n';
   std::exit(1);
