@@ -2,8 +2,8 @@
 // and paced at 1 kHz; beside the published query in one run; and with the second worker stalled.
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
