@@ -23,6 +23,6 @@ run() {  # preset, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
-run thread "base_test voxel_test tree_test search_test workers_test" -R 'Thread|Parallel'
+run thread "base_test tree_test search_test workers_test" -R 'Thread|Parallel'
 run sanitize "mesh_test tree_test search_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden.Jaws|MoreContactsThan|House'
 run test all

@@ -75,7 +75,7 @@ TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
 // Each time it stalls it is let go on in the midst of later queries.
 TEST_F(SharedSearchThread, ForgetsAWorkerThatIsLate) {
   CollisionQuery query(scene_.fixed, scene_.moving, shared_);
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 8; ++round) {
     const Stall stall(kHandOvers[round % 4]);
     ASSERT_TRUE(ask_until(query, Stall::reached));
     std::jthread releaser([&] {
