@@ -21,7 +21,7 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
   BuildOptions options;
   options.voxel_size = *files.voxel_size;
   options.spheres = files.policy.value_or(options.spheres);
-  options.keep_triangles = files.keep_triangles && !is_implicit(options.spheres);
+  options.keep_triangles = files.keep_triangles;
   options.max_memory = files.max_memory;
   SphereTree tree =
       build_with_progress(file.string(), std::move(checked.mesh), options, checked.warnings);

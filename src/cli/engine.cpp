@@ -26,7 +26,7 @@ class EngineOf : public Engine {
       const std::chrono::duration<double, std::micro> time =
           std::chrono::steady_clock::now() - begin;
       count_ = result.contacts;
-      if (!result.truncated) return {result, time.count()};
+      if (!result.truncated) return {result, time.count(), std::nullopt, std::nullopt};
       contacts_.resize(2 * count_);
     }
   }
@@ -45,10 +45,47 @@ class Reference final : public EngineOf<ReferenceQuery> {
 
 class Simd final : public EngineOf<CollisionQuery> {
  public:
-  using EngineOf::EngineOf;
+  Simd(const SphereTree& fixed, const SphereTree& moving, const CollisionOptions& simd,
+       const EngineOptions& options)
+      : EngineOf(fixed, moving, simd), options_(options), pairs_(options.exact ? 1 << 14 : 0) {}
+
+  [[nodiscard]] Answer ask(const Eigen::Isometry3d& pose) override {
+    Answer answer = timed(pose);
+    if (options_.gap) answer.gap = query_.gap(pose, *options_.gap).gap;
+    return answer;
+  }
   [[nodiscard]] std::string_view name() const override { return "simd"; }
   [[nodiscard]] std::string_view target() const override { return query_.target(); }
   [[nodiscard]] int workers() const override { return query_.workers(); }
+
+ private:
+  ExactResult collide(const Eigen::Isometry3d& pose) {
+    if (options_.exact) return query_.collide_exact(pose, pairs_, contacts_);
+    ExactResult result;
+    result.leaves = options_.max_tests ? query_.collide(pose, contacts_, {*options_.max_tests})
+                                       : query_.collide(pose, contacts_);
+    return result;
+  }
+
+  Answer timed(const Eigen::Isometry3d& pose) {
+    while (true) {
+      const auto begin = std::chrono::steady_clock::now();
+      const ExactResult result = collide(pose);
+      const std::chrono::duration<double, std::micro> time =
+          std::chrono::steady_clock::now() - begin;
+      count_ = result.leaves.contacts;
+      if (result.leaves.truncated) contacts_.resize(2 * count_);
+      if (result.truncated) pairs_.resize(2 * result.triangle_pairs);
+      if (result.leaves.truncated || result.truncated) continue;
+      Answer answer{result.leaves, time.count(), std::nullopt, std::nullopt};
+      if (options_.max_tests) answer.gap = result.leaves.gap;
+      if (options_.exact) answer.triangle_pairs = result.triangle_pairs;
+      return answer;
+    }
+  }
+
+  EngineOptions options_;
+  std::vector<TrianglePair> pairs_;
 };
 
 }  // namespace
@@ -61,7 +98,7 @@ std::unique_ptr<Engine> make_engine(std::string_view name, const SphereTree& fix
   simd.target = options.target;
   simd.workers = options.workers;
   simd.period = {};  // the command asks one query after the other
-  return std::make_unique<Simd>(fixed, moving, simd);
+  return std::make_unique<Simd>(fixed, moving, simd, options);
 }
 
 std::string target_names() {

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,11 +18,14 @@ namespace ist::cli {
 /// The names that --engine takes, the default first.
 inline constexpr std::array kEngineNames = {"simd", "reference"};
 
-/// What an engine is made with, beside the trees. `target` and `workers` are simd's alone.
+/// What an engine is made with, beside the trees. All but the policy are simd's alone.
 struct EngineOptions {
   SpherePolicy policy;
   std::string target;  ///< empty: IST_TARGET's, or the best
   int workers = 1;
+  bool exact = false;                           ///< triangles too, and who is inside whom
+  std::optional<std::uint64_t> max_tests = {};  ///< that a query may make
+  std::optional<double> gap = {};               ///< the tolerance of the gap, if it is asked for
 };
 
 /// One query on one pair of trees, with a span that grows until every contact fits.
@@ -28,7 +33,9 @@ class Engine {
  public:
   struct Answer {
     QueryResult result;
-    double microseconds;  ///< of the query alone, the span long enough
+    double microseconds;  ///< of the query alone, the spans long enough; the gap's is not counted
+    std::optional<std::uint64_t> triangle_pairs;  ///< where they were asked for
+    std::optional<GapInterval> gap;               ///< where it was asked for
   };
 
   virtual ~Engine() = default;

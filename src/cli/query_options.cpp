@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <system_error>
 
 #include "ist/query/kernels.h"
@@ -56,6 +58,19 @@ void QueryOptions::check() const {
       throw CLI::ValidationError("--engine", fmt::format("{} is named twice", *name));
     }
   }
+  if (gap && !std::isfinite(*gap)) {
+    throw CLI::ValidationError("--gap", "give a tolerance in mesh units");
+  }
+  if (max_tests && exact) {
+    throw CLI::ValidationError("--max-tests", "contradicts --exact, which tests all");
+  }
+  if (max_tests && gap) {
+    throw CLI::ValidationError("--max-tests", "contradicts --gap, which tests what it must");
+  }
+  if (max_tests && verify) {
+    throw CLI::ValidationError("--max-tests",
+                               "contradicts --verify, which asks for complete answers");
+  }
   if (std::find(engines.begin(), engines.end(), "simd") != engines.end()) {
     static_cast<void>(find_kernels(target));  // before anything is built
     return;
@@ -63,12 +78,16 @@ void QueryOptions::check() const {
   constexpr const char* kNoSimd = "goes with --engine simd: the reference is scalar, in one thread";
   if (!target.empty()) throw CLI::ValidationError("--target", kNoSimd);
   if (workers != 1) throw CLI::ValidationError("--workers", kNoSimd);
+  constexpr const char* kNoAnswer = "goes with --engine simd: the reference finds leaves alone";
+  if (exact) throw CLI::ValidationError("--exact", kNoAnswer);
+  if (gap) throw CLI::ValidationError("--gap", kNoAnswer);
+  if (max_tests) throw CLI::ValidationError("--max-tests", kNoAnswer);
 }
 
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
-  named.keep_triangles = verify;
+  named.keep_triangles = verify || exact || gap.has_value();
   return named;
 }
 
@@ -103,6 +122,19 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
                                  "the environment's IST_TARGET names, or the first. All answer "
                                  "alike",
                                  target_names()));
+  command.add_flag("--exact", options.exact,
+                   "find the pairs of triangles that meet, touching included, and which body lies "
+                   "inside the other; of meshes, or of trees built with --exact");
+  command
+      .add_option("--gap", options.gap,
+                  "find the distance between the surfaces, to within this tolerance in mesh units; "
+                  "of trees without triangles, as far as their voxels tell")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::max()));
+  command
+      .add_option("--max-tests", options.max_tests,
+                  "stop after so many tests, and print what is known by then: the level, and an "
+                  "interval that the gap is in")
+      ->transform(no_minus("tests"));
   command.add_option("--repeat", options.repeat, "how often to time each pose")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

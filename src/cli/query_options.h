@@ -37,12 +37,16 @@ struct QueryOptions {
   int workers = 1;
   int repeat = 1;
   std::filesystem::path contacts;  ///< empty: not written
+  bool exact = false;
+  std::optional<std::uint64_t> max_tests;
+  std::optional<double> gap;
   bool verify = false;
   bool json = false;
 
   /// Throws CLI::ValidationError where options contradict each other, and kTargetMissing.
   void check() const;
-  /// The files, with the policy that is named; triangles are kept for --verify.
+  /// The files, with the policy that is named; triangles are kept for --verify,
+  /// --exact and --gap.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/engine.h"
 #include "cli/progress_bar.h"
 #include "cli/verify.h"
+#include "ist/base/error.h"
 #include "ist/base/output_file.h"
 #include "ist/base/pose.h"
+#include "ist/query/inside.h"
 #include "ist/tree/saved_spheres.h"
 
 namespace ist::cli {
@@ -20,8 +23,16 @@ namespace {
 
 // What one engine answered at one pose, and how long each time took.
 struct Answer {
-  QueryResult result;
+  Engine::Answer last;
+  std::optional<Inside> inside;  // where nothing touches, and it was asked
   std::vector<double> microseconds;
+
+  // Nothing where it stopped before it knew.
+  [[nodiscard]] std::optional<bool> colliding() const {
+    if (last.triangle_pairs) return *last.triangle_pairs > 0;
+    if (last.result.contacts == 0 && !last.result.complete) return std::nullopt;
+    return last.result.contacts > 0;
+  }
 
   [[nodiscard]] double fastest() const {
     return *std::min_element(microseconds.begin(), microseconds.end());
@@ -34,27 +45,74 @@ struct Answer {
   }
 };
 
+template <class Number>
+nlohmann::ordered_json or_null(const std::optional<Number>& number) {
+  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
+}
+
 nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const Bodies& bodies,
-                                 const Answer& answer) {
-  const QueryResult& r = answer.result;
-  return {{"index", index},
-          {"engine", engine.name()},
-          {"spheres", to_string(bodies.policy)},
-          {"target", engine.target()},
-          {"workers", engine.workers()},
-          {"voxel_size", {bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size}},
-          {"resolution", engine.resolution(r)},
-          {"complete", r.complete},
-          {"truncated", r.truncated},
-          {"level", r.level},
-          {"colliding", r.contacts > 0},
-          {"inside", nullptr},
-          {"contacts", r.contacts},
-          {"gap_lower", nullptr},
-          {"gap_upper", nullptr},
-          {"sphere_tests", r.sphere_tests},
-          {"microseconds_min", answer.fastest()},
-          {"microseconds_median", answer.median()}};
+                                 const QueryOptions& options, const Answer& answer) {
+  const QueryResult& r = answer.last.result;
+  std::optional<double> gap_lower, gap_upper;
+  if (answer.last.gap) {
+    gap_lower = answer.last.gap->lower;
+    gap_upper = answer.last.gap->upper;
+  }
+  std::optional<std::string> inside;
+  if (answer.inside) inside = to_string(*answer.inside);
+  nlohmann::ordered_json line{
+      {"index", index},
+      {"engine", engine.name()},
+      {"spheres", to_string(bodies.policy)},
+      {"target", engine.target()},
+      {"workers", engine.workers()},
+      {"voxel_size", {bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size}},
+      {"resolution", engine.resolution(r)},
+      {"complete", r.complete},
+      {"truncated", r.truncated},
+      {"level", r.level},
+      {"colliding", or_null(answer.colliding())},
+      {"inside", or_null(inside)},
+      {"contacts", r.contacts}};
+  if (options.exact) line["triangle_pairs"] = or_null(answer.last.triangle_pairs);
+  line["gap_lower"] = or_null(gap_lower);
+  line["gap_upper"] = or_null(gap_upper);
+  line["sphere_tests"] = r.sphere_tests;
+  line["microseconds_min"] = answer.fastest();
+  line["microseconds_median"] = answer.median();
+  return line;
+}
+
+const char* touch(const std::optional<bool>& colliding) {
+  return !colliding ? "?" : *colliding ? "yes" : "no";
+}
+
+// What is more than leaves, for those that asked: a line of words under the table's.
+void print_beside(const Answer& answer) {
+  const Engine::Answer& last = answer.last;
+  std::string words;
+  const auto add = [&words](const std::string& more) {
+    words += (words.empty() ? "" : ", ") + more;
+  };
+  if (last.triangle_pairs) add(fmt::format("{} pairs of triangles", *last.triangle_pairs));
+  if (answer.inside && *answer.inside != Inside::kNone) {
+    add(fmt::format("the {} body is inside", to_string(*answer.inside)));
+  }
+  if (last.gap) {
+    add(fmt::format("gap {:.6g} to {:.6g}", last.gap->lower, last.gap->upper));
+  }
+  if (!last.result.complete) add(fmt::format("stopped at level {}", last.result.level));
+  if (!words.empty()) fmt::print("{:>5}  {}\n", "", words);
+}
+
+void require_triangles(const Bodies& bodies) {
+  for (const auto& [tree, name] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
+    if (tree->triangles()) continue;
+    throw Error(
+        ErrorCode::kPolicyMissing,
+        fmt::format("{}: the tree has no triangles: build it with --exact, or name the mesh",
+                    name));
+  }
 }
 
 void print_table(const Engines& engines, const Bodies& bodies,
@@ -72,9 +130,10 @@ void print_table(const Engines& engines, const Bodies& bodies,
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Answer& answer = answers[i][e];
       fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12.1f} {:>10.1f} {:>10.0f}\n", i,
-                 engines[e]->name(), answer.result.contacts > 0 ? "yes" : "no",
-                 answer.result.contacts, answer.result.sphere_tests, answer.median(),
-                 answer.fastest(), 1e6 / answer.median());
+                 engines[e]->name(), touch(answer.colliding()), answer.last.result.contacts,
+                 answer.last.result.sphere_tests, answer.median(), answer.fastest(),
+                 1e6 / answer.median());
+      print_beside(answer);
     }
   }
 }
@@ -120,7 +179,13 @@ class ContactWriter {
 
 void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
                  const QueryOptions& options) {
-  const EngineOptions with{bodies.policy, options.target, options.workers};
+  const EngineOptions with{bodies.policy, options.target,    options.workers,
+                           options.exact, options.max_tests, options.gap};
+  std::optional<InsideTest> inside;
+  if (options.exact) {
+    require_triangles(bodies);
+    inside.emplace(bodies.fixed.triangles()->mesh, bodies.moving.triangles()->mesh);
+  }
   Engines engines;
   for (const std::string& name : options.engines) {
     engines.push_back(make_engine(name, bodies.fixed, bodies.moving, with));
@@ -135,9 +200,12 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   for (int round = 0; round < options.repeat; ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       for (std::size_t e = 0; e < engines.size(); ++e) {
-        const auto [result, microseconds] = engines[e]->ask(poses[i]);
-        answers[i][e].result = result;
-        answers[i][e].microseconds.push_back(microseconds);
+        Answer& answer = answers[i][e];
+        answer.last = engines[e]->ask(poses[i]);
+        answer.microseconds.push_back(answer.last.microseconds);
+        if (inside && round == 0 && answer.last.triangle_pairs == 0U) {
+          answer.inside = inside->at(*project_to_rigid(poses[i]));
+        }
         if (writer != nullptr && round == 0 && e == 0) {
           writer->write(i, poses[i], engines[e]->contacts());
         }
@@ -154,7 +222,7 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      fmt::print("{}\n", json_line(i, *engines[e], bodies, answers[i][e]).dump());
+      fmt::print("{}\n", json_line(i, *engines[e], bodies, options, answers[i][e]).dump());
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ist/mesh/mesh_io.h"
+#include "ist/query/collision_query.h"
 #include "ist/query/reference.h"
 #include "ist/tree/tree_builder.h"
 #include "query/query_cases.h"
@@ -58,6 +59,34 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
       free += result.contacts == 0;
     }
     EXPECT_GE(free, 1);
+  }
+}
+
+// To the last pair of triangles, and the distance to within what the truth is rounded to.
+TEST_P(RealPairs, HaveTheTrianglesThatMeet) {
+  const auto [name, fixed_file, moving_file, voxel_size] = GetParam();
+  const auto truth_file = data_dir() / (std::string("truth_") + name + ".json");
+  if (!std::filesystem::exists(truth_file)) IST_SKIP(truth_file << " is not there");
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(truth_file));
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.keep_triangles = true;
+  const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
+  const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
+  CollisionQuery query(fixed, moving);
+  std::vector<TrianglePair> pairs(1 << 14);
+  for (const nlohmann::json& item : truth) {
+    SCOPED_TRACE(item["label"].get<std::string>());
+    const auto numbers = item["pose"].get<std::vector<double>>();
+    Eigen::Isometry3d pose;
+    std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+    const ExactResult result = query.collide_exact(pose, pairs);
+    EXPECT_EQ(result.triangle_pairs, item["triangle_pairs"]);
+    EXPECT_EQ(query.touches(pose), result.triangle_pairs > 0 ? Touch::kYes : Touch::kNo);
+    const GapInterval gap = query.gap(pose, 1e-3).gap;
+    EXPECT_LE(gap.lower, item["distance"].get<double>() + 1e-5);
+    EXPECT_GE(gap.upper, item["distance"].get<double>() - 1e-5);
+    EXPECT_LE(gap.upper - gap.lower, 1e-3 + 1e-5);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -173,6 +174,33 @@ template <std::size_t N>
       ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
       m.lane[kOffset][at];
   return !(std::abs(above_moving) > m.lane[kHalf][at] + f.scaled_radius[row]);
+}
+
+/// As touch(), and takes into account how far the pair is apart. A pair that slabs keep apart is so
+/// by the largest of its three distances.
+template <std::size_t N>
+[[nodiscard]] bool measure(const FixedRows& f, std::size_t row, const BoundLanes<N>& m,
+                           std::size_t at, bool slabs, Measure& measure) noexcept {
+  const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
+              dz = m.lane[kZ][at] - f.z[row];
+  const float reach = m.lane[kRadius][at] + f.radius[row];
+  const float distance = std::sqrt((dx * dx + dy * dy) + dz * dz);
+  float apart = distance - reach;
+  if (slabs) {
+    const float above_fixed =
+        ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
+    const float above_moving =
+        ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
+        m.lane[kOffset][at];
+    apart = std::max(apart, std::abs(above_fixed) - (m.lane[kRadius][at] + f.half[row]));
+    apart = std::max(apart, (std::abs(above_moving) - (m.lane[kHalf][at] + f.scaled_radius[row])) *
+                                (1 / kSlabScale));
+  }
+  const bool touching = touch(f, row, m, at, slabs);
+  float& least = touching ? measure.touching : measure.pruned;
+  least = std::min(least, apart);
+  measure.farthest = std::min(measure.farthest, distance + reach);
+  return touching;
 }
 
 }  // namespace ist

@@ -2,51 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/query/kernels.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/root_test.h"
+#include "ist/query/search_pose.h"
 
 namespace ist {
 namespace {
 
-// What the kernels err by, in parts of |A| + |B| + |t|, u = 2⁻²⁴. |A| bounds a node's centre plus
-// its radius, and by more than a fourth the corners of the root cube.
-//   Decoding a centre, parent's cube and offset in it: the factor and the product 2u of each, the
-//   sum u; the two are together no longer than the root cube's half diagonal, so 2.6u|A| for
-//   blocks, and 4u|A| for the table, which adds three numbers. Turning the fixed one: entries,
-//   products and two sums of three, √3 (1 + 1 + 2)u|a|, and adding the translation u(|a| + |t|),
-//   itself narrowed, u|t|: 8u|A| + 2u|t|. Difference, squares and their sums: 2.5u of the distance,
-//   which is about rA + rB; radii 2u, pad, sum and square 2.5u: 7u (rA + rB).
-// |a| + rA <= |A|, so no length is counted for more than 12u.
-constexpr double kBallRounding = 12.5 * 0x1p-24;
-// In a slab's test the same difference meets a normal that errs by 7u, in a dot product of 5u, less
-// an offset, against a sum: 16u (rA + rB) at most. A radius is at most 1.01 √3 half edges of
-// the root, and |A| at least 2.21 of them, so rA < 0.8|A|: 2.6u|A| + 8u|a| + 16u rA < 17u|A|.
-constexpr double kSlabRounding = 17 * 0x1p-24;
+// A stream looks at so many contacts at a time.
+constexpr std::size_t kWindow = 1 << 12;
+// How far the search for the nearest pair looks first, in parts of what is known to be far enough,
+// and then each time.
+constexpr double kFirstLook = 0.125, kLookFarther = 1.25;
 
-float round_up(double value) noexcept {
-  return std::nextafter(static_cast<float>(value), HUGE_VALF);
+// Pairs in a frontier where the first contact will do.
+constexpr std::size_t kFewPairs = 1 << 10;
+
+QueryResult invalid_pose() {
+  QueryResult result;
+  result.status = QueryStatus::kInvalidPose;
+  result.complete = false;
+  return result;
 }
 
-SearchPose narrow(const RelativePose& pose, double reaches) noexcept {
-  SearchPose narrow{};
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    double moved = 0;
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      narrow.rotation[3 * i + j] = static_cast<float>(pose.rotation(j, i));
-      moved -= pose.rotation(j, i) * pose.translation[j];
-    }
-    narrow.translation[i] = static_cast<float>(moved);
-  }
-  const Eigen::Vector3d& t = pose.translation;
-  const double lengths = reaches + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
-  narrow.ball_pad = round_up(kBallRounding * lengths);
-  narrow.slab_pad = round_up(kSlabRounding * lengths);
-  return narrow;
+// What is known when the roots are tested. Where they do not touch, that is all.
+QueryResult of_roots(const RootTest& roots) {
+  QueryResult result;
+  result.sphere_tests = 1;
+  result.pad = 2 * roots.slack;
+  if (!roots.touch) result.gap = roots.gap;
+  return result;
 }
 
 }  // namespace
@@ -64,37 +56,199 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
   } else {
     search_.emplace<Search>(plan_, kernels_, options.frontier_pairs);
   }
-  static_cast<void>(collide(Eigen::Isometry3d::Identity(), {}));
+  window_.resize(kWindow + kContactSlack);
+  if (fixed.triangles() && moving.triangles()) {
+    exact_.emplace(fixed, moving, options.triangle_pairs);
+    for (const Eigen::Vector3d& v : moving.triangles()->mesh.vertices) {
+      largest_coordinate_ = std::max(largest_coordinate_, v.cwiseAbs().maxCoeff());
+    }
+  }
+  static_cast<void>(collide(Eigen::Isometry3d::Identity(), std::span<Contact>()));
 }
 
 QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose,
                                     std::span<Contact> out) noexcept {
   const ScopedFloatEnvironment environment;
-  QueryResult result;
-  const std::optional<RelativePose> relative =
-      relative_pose(pose, fixed_.lattice(), moving_.lattice());
-  if (!relative) {
-    result.status = QueryStatus::kInvalidPose;
-    result.complete = false;
-    return result;
-  }
-  result.sphere_tests = 1;
-  const RootTest roots = test_roots(fixed_, moving_, policy_, *relative);
-  result.pad = 2 * roots.slack;
-  if (!roots.touch) return result;
-
-  const SearchPose narrowed = narrow(*relative, fixed_.reach() + moving_.reach());
-  // What was added to a reach, and what the test may err by on top.
-  result.pad = 2 * double{policy_ == SpherePolicy::kSlab ? narrowed.slab_pad : narrowed.ball_pad};
   ContactSink sink(out);
-  if (auto* alone = std::get_if<Search>(&search_)) {
-    result.sphere_tests += alone->run(narrowed, sink);
+  return search(pose, sink);
+}
+
+QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, ContactStream& stream) noexcept {
+  const ScopedFloatEnvironment environment;
+  ContactSink sink(window_, stream);
+  return search(pose, sink);
+}
+
+std::optional<CollisionQuery::Approach> CollisionQuery::approach(
+    const Eigen::Isometry3d& pose) const noexcept {
+  const auto relative = relative_pose(pose, fixed_.lattice(), moving_.lattice());
+  if (!relative) return std::nullopt;
+  // A moved vertex errs by 2⁻⁵¹ of its place, an axis: a pair of triangles that meet so is looked
+  // for even where they do not.
+  const double grow =
+      exact_ ? 0x1p-48 * (largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff()) : 0;
+  return Approach{*relative, test_roots(fixed_, moving_, policy_, *relative, grow), grow};
+}
+
+SearchPose CollisionQuery::narrowed(const Approach& approach, double grow) const noexcept {
+  return narrow(approach.relative, fixed_.reach() + moving_.reach(), approach.grow + grow);
+}
+
+double CollisionQuery::pad_of(const SearchPose& pose) const noexcept {
+  return policy_ == SpherePolicy::kSlab ? pose.slab_pad : pose.ball_pad;
+}
+
+QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& sink,
+                                   Hurry hurry) noexcept {
+  const std::optional<Approach> bodies = approach(pose);
+  if (!bodies) return invalid_pose();
+  QueryResult result = of_roots(bodies->roots);
+  if (!bodies->roots.touch) return result;
+
+  const SearchPose from = narrowed(*bodies);
+  // What was added to a reach, and what the test may err by on top.
+  result.pad = 2 * pad_of(from);
+  if (hurry == Hurry::kFirst) {
+    Search& first = alone();
+    first.limit(kFewPairs);
+    result.sphere_tests += first.run(from, sink);
+    first.limit(std::numeric_limits<std::size_t>::max());
+  } else if (auto* shared = std::get_if<SharedSearch>(&search_)) {
+    result.sphere_tests += shared->run(from, sink);
   } else {
-    result.sphere_tests += std::get_if<SharedSearch>(&search_)->run(narrowed, sink);
+    result.sphere_tests += alone().run(from, sink);
   }
   result.contacts = sink.count();
   result.truncated = sink.truncated();
   return result;
+}
+
+QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Contact> out,
+                                    const Budget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
+  const std::optional<Approach> bodies = approach(pose);
+  if (!bodies) return invalid_pose();
+  QueryResult result = of_roots(bodies->roots);
+  result.gap = bodies->roots.gap;
+  if (!bodies->roots.touch) return result;
+
+  const SearchPose from = narrowed(*bodies);
+  const double pad = pad_of(from);
+  result.pad = 2 * pad;
+  Budget left = budget;
+  left.sphere_tests -= left.sphere_tests > 0 ? 1U : 0U;
+  ContactSink sink(out);
+  const Search::Known known = alone().run_within(left, from, sink);
+  const std::size_t steps_left = plan_.steps().size() - known.steps;
+  result.complete = steps_left == 0;
+  result.level = static_cast<int>(steps_left);
+  result.sphere_tests += known.tests;
+  result.contacts = sink.count();
+  result.truncated = sink.truncated();
+  // Surfaces in a pair that was not opened may touch.
+  const double apart = result.complete && result.contacts == 0
+                           ? std::min(known.inner.pruned, known.leaves.pruned)
+                           : 0;
+  const double farthest = std::min(known.inner.farthest, known.leaves.farthest);
+  result.gap->lower = std::max(result.gap->lower, apart - pad);
+  result.gap->upper = std::min(result.gap->upper, farthest + pad);
+  return result;
+}
+
+GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) noexcept {
+  const ScopedFloatEnvironment environment;
+  const std::optional<Approach> bodies = approach(pose);
+  if (!bodies) return {QueryStatus::kInvalidPose, {}, 0};
+  const SearchPose plain = narrowed(*bodies);
+  const double pad = pad_of(plain);
+  Search& search = alone();
+  GapResult result{QueryStatus::kDone, bodies->roots.gap, 1};
+  if (pad > fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_))
+    return result;
+  const Dive near = search.dive(plain);
+  result.sphere_tests += near.tests;
+  double& lower = result.gap.lower;
+  double& upper = result.gap.upper;
+  upper = std::min(upper, near.farthest + pad);
+  if (exact_) {
+    exact_->begin_nearest(*project_to_rigid(pose), upper);
+    static_cast<void>(exact_->take({near.leaves, near.count}));
+    upper = exact_->distance() + exact_->distance_error();
+    if (upper == 0) lower = 0;
+  }
+  const auto far_enough = [&] { return tolerance > 0 ? upper - tolerance : upper; };
+  // Looks ever farther: one search as far as the nearest pair so far could find far too much.
+  for (double within = std::max(lower, kFirstLook * upper); lower < far_enough();
+       within *= kLookFarther) {
+    within = std::min(within, far_enough());
+    const SearchPose grown = narrowed(*bodies, within);  // finds all that is nearer
+    if (exact_) {
+      ContactSink sink(window_, *exact_);
+      search.limit(kFewPairs);  // a pair that meets ends it soon
+      result.sphere_tests += search.run(grown, sink);
+      search.limit(std::numeric_limits<std::size_t>::max());
+      const double distance = exact_->distance(), error = exact_->distance_error();
+      upper = distance + error;
+      lower = distance > 0 ? std::max(lower, std::min(within, distance - error)) : 0;
+      if (distance <= within || within >= far_enough()) break;
+      continue;
+    }
+    ContactSink sink(std::span<Contact>{});
+    const Search::Known known = search.run_within({}, grown, sink);
+    result.sphere_tests += known.tests;
+    upper = std::min(upper, std::min(known.inner.farthest, known.leaves.farthest) - within + pad);
+    if (sink.count() > 0) {  // the nearest leaves are among them
+      lower = std::max(lower, within + known.leaves.touching - pad);
+      break;
+    }
+    lower = std::max(lower, within);
+  }
+  return result;
+}
+
+ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,
+                                          std::span<TrianglePair> out,
+                                          std::span<Contact> leaves) noexcept {
+  IST_ASSERT(is_exact());
+  const ScopedFloatEnvironment environment;
+  ExactResult result;
+  ContactSink sink(leaves);
+  result.leaves = search(pose, sink);
+  const auto rigid = project_to_rigid(pose);
+  if (!rigid) return result;
+  exact_->begin(*rigid, out);
+  do {
+    if (result.leaves.truncated) {
+      ContactSink all(window_, *exact_);
+      static_cast<void>(search(pose, all));
+    } else {
+      static_cast<void>(exact_->take(leaves.first(result.leaves.contacts)));
+    }
+  } while (exact_->next_pass());
+  exact_->finish();
+  result.triangle_pairs = exact_->count();
+  result.truncated = result.triangle_pairs > out.size();
+  return result;
+}
+
+Touch CollisionQuery::touches(const Eigen::Isometry3d& pose) noexcept {
+  const ScopedFloatEnvironment environment;
+  const auto rigid = project_to_rigid(pose);
+  if (!rigid) return Touch::kInvalidPose;
+  struct First final : ContactStream {
+    bool take(std::span<const Contact>) noexcept override { return false; }
+  } first;
+  if (exact_) exact_->begin_any(*rigid);
+  ContactStream& stream = exact_ ? static_cast<ContactStream&>(*exact_) : first;
+  ContactSink sink(window_, stream);
+  static_cast<void>(search(pose, sink, Hurry::kFirst));
+  if (exact_) return exact_->count() > 0 ? Touch::kYes : Touch::kNo;
+  return sink.count() > 0 ? Touch::kPossible : Touch::kNo;
+}
+
+Search& CollisionQuery::alone() noexcept {
+  auto* shared = std::get_if<SharedSearch>(&search_);
+  return shared != nullptr ? shared->alone() : *std::get_if<Search>(&search_);
 }
 
 std::size_t CollisionQuery::bytes() const noexcept {

@@ -9,6 +9,8 @@
 #include <variant>
 
 #include "ist/query/contact.h"
+#include "ist/query/exact/triangle_pairs.h"
+#include "ist/query/root_test.h"
 #include "ist/query/search.h"
 #include "ist/query/shared_search.h"
 #include "ist/tree/sphere_tree.h"
@@ -31,6 +33,9 @@ struct CollisionOptions {
   /// With two workers: how soon after a query begins the next one is expected; 0 when they follow
   /// one another at once.
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);
+  /// Where both trees have triangles: pairs of them that are told apart at a time, 24 bytes each.
+  /// Where more are near each other, all leaves are searched again for each part of them.
+  std::size_t triangle_pairs = 1 << 18;
 };
 
 /// Where two bodies touch, fast: the breadth-first search down both trees, in batches of spheres.
@@ -61,6 +66,42 @@ class CollisionQuery {
   /// bounds, 20 to 40 ns a pair of nodes.
   [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out) noexcept;
 
+  /// Likewise, but all of them go to `stream`, in the same order, until it wants no more: for what
+  /// needs every contact and has no room for them.
+  [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, ContactStream& stream) noexcept;
+
+  /// Likewise, until the budget is spent: then what is known by then. `gap` is always given.
+  [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out,
+                                    const Budget& budget) noexcept;
+
+  /// The distance between the surfaces, until the interval is no wider than `tolerance`, mesh
+  /// units, or without triangles until the leaves are reached. With triangles it is that of two
+  /// triangles, to within 2^-24 of it and of the longest edge.
+  ///
+  /// Cost: 5 to 20 µs, and then a search that finds what is nearer than the nearest pair found in
+  /// those, less the tolerance. Bodies so far apart
+  /// that float cannot tell their leaves from each other have the interval of their roots.
+  [[nodiscard]] GapResult gap(const Eigen::Isometry3d& pose, double tolerance) noexcept;
+
+  /// Whether both trees have triangles.
+  [[nodiscard]] bool is_exact() const noexcept { return exact_.has_value(); }
+
+  /// All pairs of triangles that have a point in common, exactly (TrianglePairs). Precondition:
+  /// is_exact().
+  ///
+  /// @param out    takes the pairs, sorted by fixed and then by moving triangle; where it is too
+  ///               short, the first of them
+  /// @param leaves takes the leaves, as for collide()
+  ///
+  /// Cost: that of collide(), and some 40 ns a pair of triangles with a leaf pair in common.
+  [[nodiscard]] ExactResult collide_exact(const Eigen::Isometry3d& pose,
+                                          std::span<TrianglePair> out,
+                                          std::span<Contact> leaves = {}) noexcept;
+
+  /// Whether the bodies touch: ends at the first certain answer. Exact where is_exact(), and then
+  /// never kPossible.
+  [[nodiscard]] Touch touches(const Eigen::Isometry3d& pose) noexcept;
+
   /// Surfaces in a contact are no farther apart, mesh units: 2 (rA + rB) + pad, with rA and rB the
   /// largest leaf radii of the two trees.
   [[nodiscard]] double resolution(const QueryResult& result) const noexcept;
@@ -76,12 +117,29 @@ class CollisionQuery {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  // The two bodies as a query finds them.
+  struct Approach {
+    RelativePose relative;
+    RootTest roots;
+    double grow;  // what every reach is grown by, for triangles that are moved in double
+  };
+  [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose) const noexcept;
+  [[nodiscard]] SearchPose narrowed(const Approach& approach, double grow = 0) const noexcept;
+  [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
+  enum class Hurry : std::uint8_t { kAll, kFirst };  // what is wanted of the contacts
+  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink,
+                                   Hurry hurry = Hurry::kAll) noexcept;
+  [[nodiscard]] Search& alone() noexcept;
+
   const SphereTree& fixed_;
   const SphereTree& moving_;
   SpherePolicy policy_;
   const Kernels& kernels_;
   SearchPlan plan_;
   std::variant<std::monostate, Search, SharedSearch> search_;  // made after the plan it refers to
+  std::optional<TrianglePairs> exact_;
+  double largest_coordinate_ = 0;  // of a moving vertex
+  std::vector<Contact> window_;    // that streams look through
 };
 
 }  // namespace ist

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "ist/base/float_environment.h"
 #include "ist/query/query_rules.h"
@@ -17,6 +19,21 @@ double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
 // Whether a ball lies outside a slab; `centre` is the ball's, from that of the slab's own ball.
 bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noexcept {
   return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
+}
+
+// Keeps the order of those that are equal. By 11 bits at a time, the lower ones first.
+void sort_by_fixed(std::vector<Contact>& contacts, std::vector<Contact>& room) {
+  constexpr std::uint32_t kDigits = 1 << 11;
+  std::vector<std::uint32_t> begin(kDigits);
+  for (const int shift : {0, 11, 22}) {
+    const auto digit = [shift](const Contact& c) { return (c.fixed >> shift) % kDigits; };
+    std::fill(begin.begin(), begin.end(), 0);
+    for (const Contact& contact : contacts) ++begin[digit(contact)];
+    std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), 0U);
+    room.resize(contacts.size());
+    for (const Contact& contact : contacts) room[begin[digit(contact)]++] = contact;
+    std::swap(contacts, room);
+  }
 }
 
 }  // namespace
@@ -55,10 +72,8 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   // Decided by one coordinate where they are far apart, because the square of a distance overflows.
   if (touch(a, b) && farthest <= reach + slack_) descend(a, b);
 
-  // One number to compare, for a branch on each of two could not be foreseen.
-  const auto key = [](const Contact& c) { return std::uint64_t{c.fixed} << 32 | c.moving; };
-  std::sort(found_.begin(), found_.end(),
-            [key](const Contact& p, const Contact& q) { return key(p) < key(q); });
+  // Those of one fixed leaf were found in order: the way down opens moving nodes in order.
+  sort_by_fixed(found_, sorted_);
   std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
   result.contacts = found_.size();
   result.truncated = found_.size() > out.size();

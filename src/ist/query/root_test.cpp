@@ -1,5 +1,7 @@
 #include "ist/query/root_test.h"
 
+#include <algorithm>
+
 #include "ist/query/query_rules.h"
 
 namespace ist {
@@ -13,23 +15,26 @@ Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
 }  // namespace
 
 RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                    const RelativePose& pose) noexcept {
+                    const RelativePose& pose, double grow) noexcept {
   const Ball a = root_ball(fixed, policy), b = root_ball(moving, policy);
   const double reaches = fixed.reach() + moving.reach();
   const double farthest = pose.translation.cwiseAbs().maxCoeff();
   RootTest test{};
-  test.slack = slack_in_double(reaches, farthest);
-  // Decided by one coordinate where they are far apart, because the square of a distance overflows.
-  if (farthest > reaches + test.slack) return test;
-  double squared = 0;
+  test.slack = slack_in_double(reaches, farthest) + grow;
+  Eigen::Vector3d apart;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double moved = ((pose.rotation(i, 0) * b.centre[0] + pose.rotation(i, 1) * b.centre[1]) +
                           pose.rotation(i, 2) * b.centre[2]) +
                          pose.translation[i];
-    squared += (a.centre[i] - moved) * (a.centre[i] - moved);
+    apart[i] = a.centre[i] - moved;
   }
   const double reach = (a.radius + b.radius) + test.slack;
-  test.touch = !(squared > reach * reach);
+  const double squared = (apart[0] * apart[0] + apart[1] * apart[1]) + apart[2] * apart[2];
+  // Decided by one coordinate where they are far apart, because the square of a distance overflows.
+  test.touch = !(farthest > reaches + test.slack) && !(squared > reach * reach);
+  const double largest = apart.cwiseAbs().maxCoeff();
+  const double distance = largest > 0 ? largest * (apart / largest).norm() : 0;
+  test.gap = {std::max(0.0, distance - reach), distance + reach};
   return test;
 }
 

@@ -5,33 +5,6 @@
 
 namespace ist {
 
-void ContactSink::append(const Frontier& leaves, const Kernels& kernels,
-                         const SearchPlan& plan) noexcept {
-  const std::size_t begin = std::min<std::size_t>(count_, out_.size());
-  const std::size_t room = out_.size() - begin;
-  // Whole groups by vectors, which write past their end; what is left one by one.
-  Frontier fast = leaves;
-  while (fast.group_count > 0 && fast.groups[fast.group_count - 1].end + kContactSlack > room) {
-    --fast.group_count;
-  }
-  Contact* out = out_.data() + begin;
-  kernels.write_contacts(fast, out);
-  std::uint32_t i = fast.group_count > 0 ? fast.groups[fast.group_count - 1].end : 0;
-  for (std::size_t g = fast.group_count; g < leaves.group_count; ++g) {
-    const SearchGroup group = leaves.groups[g];
-    for (; i < group.end && i < room; ++i) out[i] = {group.fixed, leaves.moving[i]};
-  }
-  plan.resolve({out, std::min(room, leaves.moving_count)});
-  count_ += leaves.moving_count;
-}
-
-void ContactSink::append(std::span<const Contact> contacts) noexcept {
-  const std::size_t begin = std::min<std::size_t>(count_, out_.size());
-  const std::size_t fit = std::min(contacts.size(), out_.size() - begin);
-  std::copy_n(contacts.begin(), fit, out_.begin() + static_cast<std::ptrdiff_t>(begin));
-  count_ += contacts.size();
-}
-
 Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs)
     : plan_(plan), kernels_(kernels), scratch_(std::make_unique<SearchScratch>()) {
   const std::size_t steps = plan.steps().size();
@@ -40,6 +13,7 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
     const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
     const std::size_t capacity = std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
     Memory& memory = memory_.emplace_back();
+    memory.pairs = capacity;
     memory.groups.resize(capacity + kFrontierSlack);
     memory.moving.resize(capacity + kFrontierSlack);
     frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
@@ -49,6 +23,12 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   pose.ball_pad = pose.slab_pad = std::numeric_limits<float>::infinity();
   std::uint64_t tests = 0;
   static_cast<void>(widen(pose, 64, tests));
+}
+
+void Search::limit(std::size_t pairs) noexcept {
+  for (std::size_t i = 0; i < frontiers_.size(); ++i) {
+    frontiers_[i].capacity = std::min(pairs, memory_[i].pairs);
+  }
 }
 
 std::uint64_t Search::run(const SearchPose& pose, ContactSink& sink) noexcept {
@@ -90,7 +70,7 @@ std::uint64_t Search::descend(std::size_t step, const Frontier& in, std::size_t 
   Frontier& out = frontiers_[step + 1];
   SearchCursor cursor{first, 0};
   std::uint64_t tests = 0;
-  while (cursor.group < in.group_count) {
+  while (cursor.group < in.group_count && !sink.stopped()) {
     out.group_count = out.moving_count = 0;
     tests += kernels_.advance(plan_.steps()[step], pose, in, cursor, out, *scratch_);
     if (out.group_count > 0) tests += descend(step + 1, out, 0, pose, sink);

@@ -3,31 +3,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "ist/query/bound_lanes.h"
+#include "ist/query/budget.h"
+#include "ist/query/contact_sink.h"
+#include "ist/query/dive.h"
 #include "ist/query/search_plan.h"
 
 namespace ist {
-
-/// Where contacts go: the first of them into a span, all of them into the count.
-class ContactSink {
- public:
-  explicit ContactSink(std::span<Contact> out) noexcept : out_(out) {}
-
-  /// Appends the pairs of a frontier of leaves.
-  void append(const Frontier& leaves, const Kernels& kernels, const SearchPlan& plan) noexcept;
-  /// Appends contacts that another sink took.
-  void append(std::span<const Contact> contacts) noexcept;
-
-  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  [[nodiscard]] bool truncated() const noexcept { return count_ > out_.size(); }
-
- private:
-  std::span<Contact> out_;
-  std::uint64_t count_ = 0;
-};
 
 /// The memory of a search and the way through it: breadth first, one frontier a step. A frontier
 /// that is full is searched down to the leaves before it is filled again, so that memory is bounded
@@ -38,7 +22,12 @@ class Search {
   /// level, where there are more of those, or for every pair of nodes, where there are fewer.
   Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs);
 
-  /// Searches from the pair of the roots down to the leaves. Returns the number of pairs tested.
+  /// From now on a frontier is full with so many pairs already, or with the moving nodes that touch
+  /// one fixed node. A search that will be stopped soon comes to its first leaves sooner.
+  void limit(std::size_t pairs) noexcept;
+
+  /// Searches from the pair of the roots down to the leaves, or until the sink is stopped. Returns
+  /// the number of pairs tested.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
 
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
@@ -55,14 +44,36 @@ class Search {
   std::uint64_t descend(std::size_t step, const Frontier& in, std::size_t first,
                         const SearchPose& pose, ContactSink& sink) noexcept;
 
+  /// What a search within a budget found out.
+  struct Known {
+    std::uint64_t tests = 0;
+    Measure inner, leaves;  ///< of all steps but the last, and of that
+    std::size_t steps = 0;  ///< that were made whole
+  };
+  /// As run(), step by step from the roots on, or where a frontier is full from chunk to chunk, as
+  /// long as there is something left to spend; and measures all pairs that are tested. Where it
+  /// ends early the sink has the first contacts.
+  [[nodiscard]] Known run_within(const Budget& budget, const SearchPose& pose,
+                                 ContactSink& sink) noexcept;
+
+  /// Pairs of leaves that are near each other.
+  [[nodiscard]] Dive dive(const SearchPose& pose) noexcept {
+    return ist::dive(plan_, pose, *scratch_);
+  }
+
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
   struct Memory {
     std::vector<SearchGroup> groups;
     std::vector<std::uint32_t> moving;
+    std::size_t pairs;  // that there is room for
   };
   void set_roots() noexcept;
+  [[nodiscard]] bool descend_within(std::size_t step, const SearchPose& pose, ContactSink& sink,
+                                    Spending& spending, Known& known) noexcept;
+  [[nodiscard]] bool advance_within(std::size_t step, const SearchPose& pose, SearchCursor& cursor,
+                                    Spending& spending, Measure& measure) noexcept;
 
   const SearchPlan& plan_;
   const Kernels& kernels_;

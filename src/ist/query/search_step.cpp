@@ -18,6 +18,16 @@ std::size_t touch_row(const FixedRows& rows, std::size_t row, const MovingLanes&
   return count;
 }
 
+std::size_t measure_row(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
+                        std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out,
+                        Measure& measured) {
+  std::size_t count = 0;
+  for (std::size_t at = begin; at < end; ++at) {
+    if (measure(rows, row, moving, at, slabs, measured)) out[count++] = moving.name[at];
+  }
+  return count;
+}
+
 }  // namespace
 
 std::uint64_t advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
@@ -55,9 +65,10 @@ void write_contacts_scalar(const Frontier& leaves, Contact* out) {
   }
 }
 
-constinit const Kernels kScalarKernels{"scalar",
-                                       advance_scalar,
-                                       write_contacts_scalar,
-                                       {decode<MovingLanes::kSize>, turn_rows, touch_row}};
+constinit const Kernels kScalarKernels{
+    "scalar",
+    advance_scalar,
+    write_contacts_scalar,
+    {decode<MovingLanes::kSize>, turn_rows, touch_row, measure_row}};
 
 }  // namespace ist

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "ist/query/contact.h"
 #include "ist/tree/bound_blocks.h"
@@ -110,6 +111,14 @@ inline constexpr std::size_t kContactSlack = 8;
 /// Cost: 1 ns a contact.
 void write_contacts_scalar(const Frontier& leaves, Contact* out);
 
+/// What tests tell of the distance between two bodies, mesh units, pads included.
+struct Measure {
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  float pruned = kNone;    ///< least distance of two bounds that do not touch
+  float touching = kNone;  ///< of two that do: less than nothing
+  float farthest = kNone;  ///< least of the most that points of two balls can be apart
+};
+
 /// What a step is made of, each part for itself, to be tested and measured.
 struct StepParts {
   /// The nodes that stand for a frontier's `node`, into lanes from `at` on; see ist::decode.
@@ -121,6 +130,10 @@ struct StepParts {
   /// names of those that touch, with 16 more for room behind them, and returns how many there are.
   std::size_t (*touch_row)(const FixedRows& rows, std::size_t row, const BoundLanes<1024>& moving,
                            std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out);
+  /// The same, and measures all pairs; see ist::measure.
+  std::size_t (*measure_row)(const FixedRows& rows, std::size_t row, const BoundLanes<1024>& moving,
+                             std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out,
+                             Measure& measure);
 };
 
 /// The functions that a query is made of, for one instruction set.

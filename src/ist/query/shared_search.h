@@ -30,6 +30,9 @@ class SharedSearch {
   /// As Search::run.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
 
+  /// The caller's own search, for what is not to be shared.
+  [[nodiscard]] Search& alone() noexcept { return caller_; }
+
   /// What became of the queries since it was made.
   struct Sharing {
     std::uint64_t queries = 0;  ///< all

@@ -4,8 +4,10 @@
 #include <new>
 
 #include "ist/query/reference.h"
+#include "query/exact/exact_tree.h"
 #include "query/quiet/allocations.h"
 #include "query/search/scenes.h"
+#include "support/shapes.h"
 
 namespace ist::test {
 namespace {
@@ -71,6 +73,31 @@ TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
             }),
             0u);
   EXPECT_GE(query.sharing().chunks, 200u);
+}
+
+// Nor do certified answers: not for the distance, nor for triangles, whatever their memory.
+TEST(Allocations, CertifiedAnswersMakeNone) {
+  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  for (const std::size_t triangle_pairs : {1u << 12, 1u << 18}) {
+    CollisionOptions options;
+    options.triangle_pairs = triangle_pairs;
+    CollisionQuery query(tree, tree, options);
+    std::vector<Contact> contacts(1 << 17);
+    std::vector<TrianglePair> pairs(1 << 16);
+    std::uint64_t triangles = 0;
+    EXPECT_EQ(allocations_of([&] {
+                for (int i = 0; i < 100; ++i) {
+                  // The first lies on itself: whole numbers decide.
+                  const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
+                  triangles += query.collide_exact(pose, pairs, contacts).triangle_pairs;
+                  static_cast<void>(query.touches(pose));
+                  static_cast<void>(query.gap(pose, 0.01));
+                  static_cast<void>(query.collide(pose, contacts, {1000}));
+                }
+              }),
+              0u);
+    EXPECT_GT(triangles, 10'000u);
+  }
 }
 
 }  // namespace

@@ -96,9 +96,27 @@ class TouchRow : public StepParts {
         EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), made.data()));
         EXPECT_TRUE(made.intact());
         touching += wanted.size();
+        expect_same_measure(rows, row, moving, begin, begin + length, slabs, wanted);
       }
     }
     return touching;
+  }
+  // The same pairs, and the same bits of all that is measured.
+  void expect_same_measure(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
+                           std::size_t begin, std::size_t end, bool slabs,
+                           const std::vector<std::uint32_t>& touching) {
+    Measure wanted, measured;
+    std::vector<std::uint32_t> scalar(end - begin);
+    EXPECT_EQ(scalar_.measure_row(rows, row, moving, begin, end, slabs, scalar.data(), wanted),
+              touching.size());
+    Guarded<std::uint32_t> made(touching.size() + 16, 3);
+    EXPECT_EQ(vector_.measure_row(rows, row, moving, begin, end, slabs, made.data(), measured),
+              touching.size());
+    EXPECT_TRUE(std::equal(touching.begin(), touching.end(), made.data()));
+    EXPECT_TRUE(made.intact());
+    EXPECT_EQ(measured.pruned, wanted.pruned);
+    EXPECT_EQ(measured.touching, wanted.touching);
+    EXPECT_EQ(measured.farthest, wanted.farthest);
   }
   template <class Number>
   void fill(const Number& number) {

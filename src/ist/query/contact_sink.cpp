@@ -1,0 +1,75 @@
+#include "ist/query/contact_sink.h"
+
+#include <algorithm>
+
+namespace ist {
+namespace {
+
+// Writes a frontier's contacts into a span, from some place on: whole groups by vectors, which
+// write past their end, and what is left one by one.
+class Writer {
+ public:
+  Writer(const Frontier& leaves, const Kernels& kernels, const SearchPlan& plan)
+      : leaves_(leaves), kernels_(kernels), plan_(plan) {}
+
+  [[nodiscard]] bool done() const { return moving_ == leaves_.moving_count; }
+
+  // As many as fit. Returns how many those are.
+  std::size_t write(std::span<Contact> out) {
+    std::size_t written = moving_ == 0 ? write_groups(out) : 0;
+    while (!done() && written < out.size()) {
+      const SearchGroup group = leaves_.groups[group_];
+      while (moving_ < group.end && written < out.size()) {
+        out[written++] = {group.fixed, leaves_.moving[moving_++]};
+      }
+      if (moving_ == group.end) ++group_;
+    }
+    plan_.resolve(out.first(written));
+    return written;
+  }
+
+ private:
+  std::size_t write_groups(std::span<Contact> out) {
+    Frontier whole = leaves_;
+    const auto end = [&] {
+      return whole.group_count == 0 ? 0 : whole.groups[whole.group_count - 1].end;
+    };
+    while (whole.group_count > 0 && end() + kContactSlack > out.size()) --whole.group_count;
+    kernels_.write_contacts(whole, out.data());
+    group_ = whole.group_count;
+    moving_ = end();
+    return moving_;
+  }
+
+  const Frontier& leaves_;
+  const Kernels& kernels_;
+  const SearchPlan& plan_;
+  std::size_t group_ = 0;
+  std::uint32_t moving_ = 0;
+};
+
+}  // namespace
+
+void ContactSink::append(const Frontier& leaves, const Kernels& kernels,
+                         const SearchPlan& plan) noexcept {
+  Writer writer(leaves, kernels, plan);
+  if (stream_ == nullptr) {
+    writer.write(out_.subspan(std::min<std::size_t>(count_, out_.size())));
+  } else {
+    while (!writer.done() && !stopped_) hand_over(out_.first(writer.write(out_)));
+  }
+  count_ += leaves.moving_count;
+}
+
+void ContactSink::append(std::span<const Contact> contacts) noexcept {
+  if (stream_ == nullptr) {
+    const std::size_t begin = std::min<std::size_t>(count_, out_.size());
+    const std::size_t fit = std::min(contacts.size(), out_.size() - begin);
+    std::copy_n(contacts.begin(), fit, out_.begin() + static_cast<std::ptrdiff_t>(begin));
+  } else {
+    hand_over(contacts);
+  }
+  count_ += contacts.size();
+}
+
+}  // namespace ist

@@ -1,0 +1,80 @@
+#include "ist/query/exact/orientation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ist/query/exact/whole_number.h"
+
+namespace ist {
+namespace {
+
+constexpr double kRounding = 0x1p-53;
+// Shewchuk's bounds are (7 + 56ε)ε and (3 + 16ε)ε of the sum of the products' sizes. Where that sum
+// is above kSmall, what is lost below the least double is a smaller part of it than is added here.
+constexpr double kBound3 = 8 * kRounding, kBound2 = 4 * kRounding, kSmall = 0x1p-600;
+
+int sign_of(double x) { return x > 0 ? 1 : -1; }
+
+// A double is 53 digits at one of 2046 exponents; those below 2^340 take 1415 bits: 23 limbs.
+constexpr std::size_t kLimbs = 23;
+using Coordinate = WholeNumber<kLimbs>;
+
+template <int kDimension, std::size_t kPoints>
+int last_digit_of(const Eigen::Matrix<double, kDimension, 1>* const (&points)[kPoints]) {
+  int last = 2000;
+  for (const auto* point : points) {
+    for (Eigen::Index i = 0; i < kDimension; ++i) last = std::min(last, last_digit((*point)[i]));
+  }
+  return last;
+}
+
+int exact_orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                      const Eigen::Vector3d& d) noexcept {
+  const Eigen::Vector3d* const points[] = {&a, &b, &c, &d};
+  const int last = last_digit_of<3>(points);
+  const auto from_d = [&](const Eigen::Vector3d& p, Eigen::Index axis) {
+    return Coordinate(p[axis], last) - Coordinate(d[axis], last);
+  };
+  const auto ax = from_d(a, 0), ay = from_d(a, 1), az = from_d(a, 2);
+  const auto bx = from_d(b, 0), by = from_d(b, 1), bz = from_d(b, 2);
+  const auto cx = from_d(c, 0), cy = from_d(c, 1), cz = from_d(c, 2);
+  const auto of_a = az * (bx * cy - cx * by), of_b = bz * (cx * ay - ax * cy),
+             of_c = cz * (ax * by - bx * ay);
+  return (of_a + of_b + of_c).sign();
+}
+
+int exact_orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                      const Eigen::Vector2d& c) noexcept {
+  const Eigen::Vector2d* const points[] = {&a, &b, &c};
+  const int last = last_digit_of<2>(points);
+  const auto from_c = [&](const Eigen::Vector2d& p, Eigen::Index axis) {
+    return Coordinate(p[axis], last) - Coordinate(c[axis], last);
+  };
+  return (from_c(a, 0) * from_c(b, 1) - from_c(a, 1) * from_c(b, 0)).sign();
+}
+
+}  // namespace
+
+int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                const Eigen::Vector3d& d) noexcept {
+  const double ax = a[0] - d[0], ay = a[1] - d[1], az = a[2] - d[2];
+  const double bx = b[0] - d[0], by = b[1] - d[1], bz = b[2] - d[2];
+  const double cx = c[0] - d[0], cy = c[1] - d[1], cz = c[2] - d[2];
+  const double bc = bx * cy, cb = cx * by, ca = cx * ay, ac = ax * cy, ab = ax * by, ba = bx * ay;
+  const double determinant = (az * (bc - cb) + bz * (ca - ac)) + cz * (ab - ba);
+  const double sizes = ((std::abs(bc) + std::abs(cb)) * std::abs(az) +
+                        (std::abs(ca) + std::abs(ac)) * std::abs(bz)) +
+                       (std::abs(ab) + std::abs(ba)) * std::abs(cz);
+  if (std::abs(determinant) > kBound3 * sizes && sizes > kSmall) return sign_of(determinant);
+  return exact_orientation(a, b, c, d);
+}
+
+int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                const Eigen::Vector2d& c) noexcept {
+  const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
+  const double determinant = left - right, sizes = std::abs(left) + std::abs(right);
+  if (std::abs(determinant) > kBound2 * sizes && sizes > kSmall) return sign_of(determinant);
+  return exact_orientation(a, b, c);
+}
+
+}  // namespace ist

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace ist {
+
+/// On which side of the plane through a, b and c the point d lies: the sign, -1, 0 or 1, of
+/// det(a - d, b - d, c - d), which is positive where a, b, c turn counter clockwise seen from the
+/// other side than d's. Exact for all finite doubles below 2^340: doubles decide where their error
+/// cannot, else whole numbers do.
+///
+/// Cost: 5 ns; 0.2 µs where doubles do not decide, more for exponents far apart. Allocates nothing.
+/// Source of the error bound: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast
+/// robust geometric predicates, Discrete & Computational Geometry 18, 1997.
+[[nodiscard]] int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                              const Eigen::Vector3d& c, const Eigen::Vector3d& d) noexcept;
+
+/// On which side of the line from a to b the point c lies, 1 for the left one. Likewise.
+[[nodiscard]] int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                              const Eigen::Vector2d& c) noexcept;
+
+}  // namespace ist

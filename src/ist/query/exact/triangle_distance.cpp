@@ -1,0 +1,79 @@
+#include "ist/query/exact/triangle_distance.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace ist {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+double dot(const Vector& a, const Vector& b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+double squared(const Vector& a) { return dot(a, a); }
+
+// Edges that are more nearly parallel than this count as such: of two edges an end is then as near
+// as anything between the ends, and of a triangle an edge as its face, to within that part of an
+// edge.
+constexpr double kParallel = 0x1p-26;
+
+double to_segment(const Vector& p, const Vector& a, const Vector& b) {
+  const Vector ab = b - a, ap = p - a;
+  const double length = squared(ab);
+  const double t = length > 0 ? std::clamp(dot(ap, ab) / length, 0.0, 1.0) : 0;
+  return squared(ap - t * ab);
+}
+
+// Where the common perpendicular of two edges' lines meets both between their ends; else infinity:
+// then an end of one is nearest.
+double between_edges(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+  const Vector u = b - a, v = d - c, w = c - a;
+  const Vector n = u.cross(v);
+  const double nn = squared(n);
+  if (!(nn > kParallel * kParallel * squared(u) * squared(v))) return HUGE_VAL;
+  const double s = dot(w.cross(v), n), t = dot(w.cross(u), n);
+  if (s < 0 || s > nn || t < 0 || t > nn) return HUGE_VAL;
+  const double height = dot(w, n);
+  return height * height / nn;
+}
+
+// Where a corner's perpendicular on the other's plane ends inside it; else infinity.
+double to_face(const Vector& p, const TriangleCorners& t) {
+  const Vector u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
+  const double nn = squared(n);
+  if (!(nn > kParallel * kParallel * squared(u) * squared(v))) return HUGE_VAL;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector &a = t[i], &b = t[(i + 1) % 3];
+    if (dot((b - a).cross(p - a), n) < 0) return HUGE_VAL;
+  }
+  const double height = dot(p - t[0], n);
+  return height * height / nn;
+}
+
+}  // namespace
+
+double distance_squared(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < 3; ++i) {
+    least = std::min({least, to_face(a[i], b), to_face(b[i], a)});
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vector &p = a[i], &q = a[(i + 1) % 3], &r = b[j], &s = b[(j + 1) % 3];
+      least =
+          std::min({least, between_edges(p, q, r, s), to_segment(p, r, s), to_segment(r, p, q)});
+    }
+  }
+  return least;
+}
+
+double box_distance_squared(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  double sum = 0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto [a_low, a_high] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
+    const auto [b_low, b_high] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
+    const double apart = std::max({0.0, b_low - a_high, a_low - b_high});
+    sum += apart * apart;
+  }
+  return sum;
+}
+
+}  // namespace ist

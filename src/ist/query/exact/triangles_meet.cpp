@@ -1,0 +1,129 @@
+#include "ist/query/exact/triangles_meet.h"
+
+#include <algorithm>
+#include <span>
+
+#include "ist/query/exact/orientation.h"
+
+namespace ist {
+namespace {
+
+using Points2 = std::span<const Eigen::Vector2d>;
+
+// Whether the line through u and v, an edge of one polygon, leaves that and the other on different
+// sides, and the other not on the line.
+bool edge_separates(const Eigen::Vector2d& u, const Eigen::Vector2d& v, Points2 own,
+                    Points2 other) {
+  const int side = orientation(u, v, other[0]);
+  if (side == 0) return false;
+  return std::all_of(other.begin() + 1, other.end(),
+                     [&](const auto& p) { return orientation(u, v, p) == side; }) &&
+         std::all_of(own.begin(), own.end(),
+                     [&](const auto& p) { return orientation(u, v, p) != side; });
+}
+
+bool an_edge_separates(Points2 a, Points2 b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d &u = a[i], &v = a[(i + 1) % a.size()];
+    if (u != v && edge_separates(u, v, a, b)) return true;
+  }
+  return false;
+}
+
+// Whether two points, segments or triangles of the plane, given by up to three corners, are apart.
+// A line along an axis separates collinear segments and points; else one along an edge does.
+bool apart(Points2 a, Points2 b) {
+  for (const Eigen::Index axis : {0, 1}) {
+    const auto less = [axis](const auto& p, const auto& q) { return p[axis] < q[axis]; };
+    const auto [a_low, a_high] = std::minmax_element(a.begin(), a.end(), less);
+    const auto [b_low, b_high] = std::minmax_element(b.begin(), b.end(), less);
+    if (less(*a_high, *b_low) || less(*b_high, *a_low)) return true;
+  }
+  return an_edge_separates(a, b) || an_edge_separates(b, a);
+}
+
+// Whether convex hulls of up to three points that lie in one plane meet: they do if all their
+// shadows along the axes meet, for at least one of these loses nothing.
+bool meet_in_a_plane(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::Index u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::array<Eigen::Vector2d, 3> shadow_a, shadow_b;
+    for (std::size_t i = 0; i < a.size(); ++i) shadow_a[i] = {a[i][u], a[i][v]};
+    for (std::size_t i = 0; i < b.size(); ++i) shadow_b[i] = {b[i][u], b[i][v]};
+    if (apart({shadow_a.data(), a.size()}, {shadow_b.data(), b.size()})) return false;
+  }
+  return true;
+}
+
+bool has_area(const TriangleCorners& t) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::Index u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto shadow = [&](std::size_t i) { return Eigen::Vector2d(t[i][u], t[i][v]); };
+    if (orientation(shadow(0), shadow(1), shadow(2)) != 0) return true;
+  }
+  return false;
+}
+
+using Sides = std::array<int, 3>;
+
+Sides sides_of(const TriangleCorners& points, const TriangleCorners& plane) {
+  Sides sides;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sides[i] = orientation(plane[0], plane[1], plane[2], points[i]);
+  }
+  return sides;
+}
+
+bool on_one_side(const Sides& sides) {
+  return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
+}
+
+// Whether an edge of `a` meets `b`, which has area. `sides`: of a's corners and b's plane.
+bool an_edge_meets(const TriangleCorners& a, const TriangleCorners& b, const Sides& sides) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (sides[i] * sides[j] > 0) continue;
+    if (sides[i] == 0 && sides[j] == 0) {
+      const Eigen::Vector3d edge[] = {a[i], a[j]};
+      if (meet_in_a_plane(edge, b)) return true;
+      continue;
+    }
+    // The line pierces the plane: inside where it passes all edges on one side.
+    const int first = orientation(a[i], a[j], b[0], b[1]);
+    const int second = orientation(a[i], a[j], b[1], b[2]);
+    if (first * second < 0) continue;
+    const int third = orientation(a[i], a[j], b[2], b[0]);
+    if (first * third >= 0 && second * third >= 0) return true;
+  }
+  return false;
+}
+
+// Triangles without area are their edges.
+bool edges_meet(const TriangleCorners& a, const TriangleCorners& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d of_a[] = {a[i], a[(i + 1) % 3]};
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Eigen::Vector3d of_b[] = {b[j], b[(j + 1) % 3]};
+      if (orientation(of_a[0], of_a[1], of_b[0], of_b[1]) == 0 && meet_in_a_plane(of_a, of_b)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  const Sides of_b = sides_of(b, a);
+  if (on_one_side(of_b)) return false;
+  const Sides of_a = sides_of(a, b);
+  if (on_one_side(of_a)) return false;
+  // Where they meet an edge of one meets the other. A plane that leaves a point aside is one.
+  constexpr Sides kNone = {0, 0, 0};
+  const bool a_has_area = of_b != kNone || has_area(a), b_has_area = of_a != kNone || has_area(b);
+  if (!a_has_area && !b_has_area) return edges_meet(a, b);
+  return (b_has_area && an_edge_meets(a, b, of_a)) || (a_has_area && an_edge_meets(b, a, of_b));
+}
+
+}  // namespace ist

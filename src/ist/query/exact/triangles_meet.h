@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace ist {
+
+using TriangleCorners = std::array<Eigen::Vector3d, 3>;
+
+/// Whether two closed triangles have a point in common, exactly: touching counts, and a triangle
+/// without area is the segment or the point that is left of it. Coordinates as for orientation.
+///
+/// Cost: 20 ns where a plane separates them, 50 to 200 ns else, some µs where they lie in one
+/// plane. Allocates nothing.
+[[nodiscard]] bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+
+}  // namespace ist

@@ -1,0 +1,86 @@
+#include <algorithm>
+
+#include "ist/query/search.h"
+
+namespace ist {
+namespace {
+
+// Moving nodes that are decoded at a time: no more lanes than tests that may be made unwatched.
+constexpr std::uint32_t kPiece = 56;
+static_assert(8 * kPiece <= Spending::kUnwatched);
+
+}  // namespace
+
+Search::Known Search::run_within(const Budget& budget, const SearchPose& pose,
+                                 ContactSink& sink) noexcept {
+  Spending spending(budget);
+  Known known;
+  known.steps = plan_.steps().size();
+  set_roots();
+  static_cast<void>(descend_within(0, pose, sink, spending, known));
+  known.tests = spending.tests();
+  return known;
+}
+
+// False where it ends early; then the first step that is not whole is kept.
+bool Search::descend_within(std::size_t step, const SearchPose& pose, ContactSink& sink,
+                            Spending& spending, Known& known) noexcept {
+  const Frontier& in = frontiers_[step];
+  if (step == plan_.steps().size()) {
+    sink.append(in, kernels_, plan_);
+    return true;
+  }
+  Frontier& out = frontiers_[step + 1];
+  Measure& measure = step + 1 == plan_.steps().size() ? known.leaves : known.inner;
+  SearchCursor cursor;
+  while (cursor.group < in.group_count && !sink.stopped()) {
+    out.group_count = out.moving_count = 0;
+    const bool enough = advance_within(step, pose, cursor, spending, measure);
+    if (enough && (out.group_count == 0 || descend_within(step + 1, pose, sink, spending, known))) {
+      continue;
+    }
+    if (!enough || cursor.group < in.group_count) known.steps = step;
+    return false;
+  }
+  return true;
+}
+
+// Until all is done or `out` is full; false where the budget does not allow it.
+bool Search::advance_within(std::size_t step, const SearchPose& pose, SearchCursor& cursor,
+                            Spending& spending, Measure& measure) noexcept {
+  const SearchStep& by = plan_.steps()[step];
+  const StepParts& parts = kernels_.parts;
+  const bool slabs = by.fixed.slabs != nullptr;
+  const Frontier& in = frontiers_[step];
+  Frontier& out = frontiers_[step + 1];
+  FixedRows& rows = scratch_->rows[0];
+  MovingLanes& lanes = scratch_->moving;
+  for (; cursor.group < in.group_count; ++cursor.group, cursor.row = 0) {
+    const SearchGroup group = in.groups[cursor.group];
+    const std::uint32_t begin = cursor.group == 0 ? 0 : in.groups[cursor.group - 1].end;
+    const std::size_t most = std::size_t{group.end - begin} * (by.moving.opens ? 8 : 1);
+    const std::uint32_t row_count = decode(by.fixed, group.fixed, scratch_->fixed, 0);
+    parts.turn(pose, slabs, scratch_->fixed, rows);
+    std::size_t end = 0;  // of the lanes
+    for (; cursor.row < row_count; ++cursor.row) {
+      if (!has_room(out, 1, most)) return true;
+      const std::size_t before = out.moving_count;
+      for (std::uint32_t i = begin; i < group.end; i += kPiece) {
+        const std::uint32_t piece_end = std::min(i + kPiece, group.end);
+        if (end == 0 || group.end - begin > kPiece) {  // else they are there from the row before
+          end = 0;
+          for (std::uint32_t k = i; k < piece_end; ++k) {
+            end += parts.decode(by.moving, in.moving[k], lanes, end);
+          }
+        }
+        if (!spending.spend(end)) return false;
+        out.moving_count += parts.measure_row(rows, cursor.row, lanes, 0, end, slabs,
+                                              out.moving + out.moving_count, measure);
+      }
+      end_row(out, scratch_->fixed.name[cursor.row], before);
+    }
+  }
+  return true;
+}
+
+}  // namespace ist

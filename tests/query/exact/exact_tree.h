@@ -1,0 +1,19 @@
+#pragma once
+
+#include "ist/mesh/triangle_mesh.h"
+#include "ist/tree/tree_builder.h"
+#include "query/query_cases.h"
+
+namespace ist::test {
+
+/// A tree with its triangles, of about `cells` voxels along the mesh's largest extent.
+[[nodiscard]] inline SphereTree exact_tree(const TriangleMesh& mesh, double cells) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
+  BuildOptions options;
+  options.voxel_size = box.sizes().maxCoeff() / cells;
+  options.keep_triangles = true;
+  return build_tree(mesh, options);
+}
+
+}  // namespace ist::test

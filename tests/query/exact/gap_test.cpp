@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ist/base/pose.h"
+#include "ist/query/collision_query.h"
+#include "ist/query/exact/triangle_distance.h"
+#include "ist/query/inside.h"
+#include "query/exact/exact_tree.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+double brute_distance(const SphereTree& fixed, const SphereTree& moving,
+                      const Eigen::Isometry3d& pose) {
+  const TriangleMesh &a = fixed.triangles()->mesh, &b = moving.triangles()->mesh;
+  double least = HUGE_VAL;
+  for (const Triangle& s : a.triangles) {
+    for (const Triangle& t : b.triangles) {
+      TriangleCorners p, q;
+      for (std::size_t i = 0; i < 3; ++i) {
+        p[i] = a.vertices[s[i]];
+        q[i] = pose * b.vertices[t[i]];
+      }
+      if (triangles_meet(p, q)) return 0;
+      least = std::min(least, std::sqrt(distance_squared(p, q)));
+    }
+  }
+  return least;
+}
+
+// Doubles that are moved in another order.
+constexpr double kRounding = 1e-6;
+
+TEST(Gap, HoldsTheDistance) {
+  int touching = 0, apart = 0;
+  for (std::uint64_t seed = 0; seed < 40 && !::testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const TriangleMesh a = random_mesh(random), b = random_mesh(random);
+    const double cells_a = random.uniform(1, 12), cells_b = random.uniform(1, 12);
+    const SphereTree fixed = exact_tree(a, cells_a), moving = exact_tree(b, cells_b);
+    const SphereTree plain_fixed = tree_of(a, cells_a), plain_moving = tree_of(b, cells_b);
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Matrix3d rotation = random.rotation();
+      const Eigen::Vector3d to = a.vertices[random.below(a.vertices.size())] -
+                                 rotation * b.vertices[random.below(b.vertices.size())];
+      const Eigen::Isometry3d pose =
+          pose_of(rotation, to + random.uniform(0, 1.5) * random.direction());
+      const double distance = brute_distance(fixed, moving, pose);
+      (distance > 0 ? apart : touching) += 1;
+      for (const SpherePolicy policy : kSpherePolicies) {
+        CollisionOptions options;
+        options.policy = policy;
+        CollisionQuery exact(fixed, moving, options), plain(plain_fixed, plain_moving, options);
+        for (const double tolerance : {0.0, 1e-3, 0.1, 10.0}) {
+          const GapResult of_exact = exact.gap(pose, tolerance);
+          EXPECT_EQ(of_exact.status, QueryStatus::kDone);
+          EXPECT_LE(of_exact.gap.lower, distance + kRounding);
+          EXPECT_GE(of_exact.gap.upper, distance - kRounding);
+          EXPECT_LE(of_exact.gap.upper - of_exact.gap.lower, tolerance + kRounding);
+          const GapResult of_plain = plain.gap(pose, tolerance);
+          EXPECT_LE(of_plain.gap.lower, distance + kRounding);
+          EXPECT_GE(of_plain.gap.upper, distance - kRounding);
+          EXPECT_LE(of_plain.gap.upper - of_plain.gap.lower,
+                    std::max(tolerance, 2 * plain.resolution(plain.collide(pose, {}))));
+        }
+      }
+    }
+  }
+  EXPECT_GT(touching, 15);
+  EXPECT_GT(apart, 30);
+}
+
+class GapOfBalls : public ::testing::Test {
+ protected:
+  const SphereTree tree_ = exact_tree(icosphere(3, 1), 20);
+  CollisionQuery query_{tree_, tree_};
+};
+
+TEST_F(GapOfBalls, FarAway) {
+  const double near = query_.gap(shift({3, 0, 0}), 0).gap.upper;
+  for (const double away : {1e2, 1e4}) {
+    const GapInterval gap = query_.gap(shift({away, 0, 0}), 0).gap;
+    EXPECT_LE(gap.lower, near + away - 3);
+    EXPECT_GE(gap.upper, near + away - 3);
+    EXPECT_LE(gap.upper - gap.lower, 1e-6 * away);
+  }
+  for (const double away : {1e6, 1e12, 1e30, 1e200}) {  // that of the roots
+    const GapInterval gap = query_.gap(shift({away, 0, 0}), 0).gap;
+    EXPECT_LE(gap.lower, near + away - 3);
+    EXPECT_GE(gap.upper, near + away - 3);
+    EXPECT_LE(gap.upper - gap.lower, 8 + 1e-6 * away);
+  }
+}
+
+TEST_F(GapOfBalls, OfATouchIsNothing) {
+  const GapInterval gap = query_.gap(shift({1.9, 0.1, 0}), 0).gap;
+  EXPECT_EQ(gap.lower, 0);
+  EXPECT_EQ(gap.upper, 0);
+}
+
+TEST_F(GapOfBalls, WithAToleranceThatIsNoneIsThatOfZero) {
+  const Eigen::Isometry3d pose = shift({2.5, 0.3, 0.1});
+  const GapInterval wanted = query_.gap(pose, 0).gap;
+  for (const double tolerance : {-1.0, -0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const GapInterval gap = query_.gap(pose, tolerance).gap;
+    EXPECT_EQ(gap.lower, wanted.lower);
+    EXPECT_EQ(gap.upper, wanted.upper);
+  }
+}
+
+TEST_F(GapOfBalls, OfAnInvalidPoseIsAStatus) {
+  Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
+  bad.matrix()(1, 1) = -1;
+  EXPECT_EQ(query_.gap(bad, 0).status, QueryStatus::kInvalidPose);
+}
+
+TEST(InsideTest, TellsWhoIsInWhom) {
+  const TriangleMesh large = icosphere(2, 3), small = box({-1, -1, -1}, {1, 1, 1});
+  const TriangleMesh two = joined(small, moved(small, {10, 0, 0}));
+  const Eigen::Isometry3d here = shift({0.1, 0.2, 0.3}), there = shift({7, 0, 0});
+  EXPECT_EQ(InsideTest(large, small).at(here), Inside::kMoving);
+  EXPECT_EQ(InsideTest(small, large).at(here), Inside::kFixed);
+  EXPECT_EQ(InsideTest(inside_out(large), small).at(here), Inside::kMoving);
+  EXPECT_EQ(InsideTest(large, small).at(there), Inside::kNone);
+  EXPECT_EQ(InsideTest(large, two).at(here), Inside::kNone);  // one of two
+  EXPECT_EQ(InsideTest(joined(large, icosphere(2, 2)), small).at(here), Inside::kMoving);
+  EXPECT_STREQ(to_string(Inside::kMoving), "moving");
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,117 @@
+#include "ist/query/exact/orientation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "query/query_cases.h"
+#include "support/exact.h"
+
+namespace ist::test {
+namespace {
+
+int exact_sign(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+               const Eigen::Vector3d& d) {
+  const ExactPoint from_d = exact(d);
+  return sgn(dot(exact(a) - from_d, cross(exact(b) - from_d, exact(c) - from_d)));
+}
+
+int exact_sign(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  const auto from_c = [&](const Eigen::Vector2d& p, Eigen::Index i) {
+    return mpq_class(mpq_class(p[i]) - mpq_class(c[i]));
+  };
+  return sgn(mpq_class(from_c(a, 0) * from_c(b, 1) - from_c(a, 1) * from_c(b, 0)));
+}
+
+// How often each sign came, for points that `coordinate` makes.
+struct Signs {
+  int negative = 0, zero = 0, positive = 0;
+  void add(int sign) { ++(sign < 0 ? negative : sign > 0 ? positive : zero); }
+};
+
+template <class Coordinate>
+Signs expect_exact(int times, const Coordinate& coordinate) {
+  Signs signs;
+  for (int i = 0; i < times; ++i) {
+    Eigen::Vector3d p[4];
+    for (Eigen::Vector3d& x : p) x = {coordinate(), coordinate(), coordinate()};
+    const int sign = orientation(p[0], p[1], p[2], p[3]);
+    EXPECT_EQ(sign, exact_sign(p[0], p[1], p[2], p[3])) << p[0] << p[1] << p[2] << p[3];
+    signs.add(sign);
+    const Eigen::Vector2d q[] = {p[0].head<2>(), p[1].head<2>(), p[2].head<2>()};
+    EXPECT_EQ(orientation(q[0], q[1], q[2]), exact_sign(q[0], q[1], q[2]));
+  }
+  return signs;
+}
+
+TEST(Orientation, TurnsAsItIsSaid) {
+  const Eigen::Vector3d o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  EXPECT_EQ(orientation(o, x, y, z), -1);  // counter clockwise seen from z
+  EXPECT_EQ(orientation(o, x, y, Eigen::Vector3d(0.5, 0.5, -1e-300)), 1);
+  EXPECT_EQ(orientation(o, x, y, Eigen::Vector3d(7, -3, 0)), 0);
+  EXPECT_EQ(orientation(o.head<2>(), x.head<2>(), y.head<2>()), 1);
+}
+
+TEST(Orientation, OfAnyPoints) {
+  Random random(1);
+  const Signs signs = expect_exact(20'000, [&] { return random.uniform(-1, 1); });
+  EXPECT_EQ(signs.zero, 0);
+}
+
+TEST(Orientation, OfPointsOnAGrid) {
+  Random random(2);
+  const Signs signs =
+      expect_exact(20'000, [&] { return 0.1 * static_cast<double>(random.below(3)); });
+  EXPECT_GT(signs.zero, 4'000);
+  EXPECT_GT(signs.negative, 2'000);
+  EXPECT_GT(signs.positive, 2'000);
+}
+
+// A fourth point in the plane of three, as well as doubles can, and some last bits off.
+TEST(Orientation, OfPointsNearlyInAPlane) {
+  Random random(3);
+  Signs signs;
+  for (int i = 0; i < 20'000; ++i) {
+    Eigen::Vector3d p[4];
+    for (Eigen::Vector3d& x : p) {
+      x = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    }
+    const double u = random.uniform(-2, 2), v = random.uniform(-2, 2);
+    p[3] = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
+    const auto axis = static_cast<Eigen::Index>(random.below(3));
+    for (std::size_t k = random.below(4); k > 0; --k) p[3][axis] = std::nextafter(p[3][axis], 9);
+    const int sign = orientation(p[0], p[1], p[2], p[3]);
+    ASSERT_EQ(sign, exact_sign(p[0], p[1], p[2], p[3]));
+    signs.add(sign);
+  }
+  EXPECT_GT(signs.negative, 5'000);
+  EXPECT_GT(signs.positive, 5'000);
+}
+
+TEST(Orientation, OfNumbersOfAnySize) {
+  Random random(4);
+  for (const int range : {60, 200, 339}) {
+    expect_exact(3'000, [&] {
+      const int exponent = static_cast<int>(random.below(2 * static_cast<std::size_t>(range)));
+      return std::ldexp(random.uniform(-1, 1), exponent - range);
+    });
+  }
+}
+
+// Products that are less than the least double, and points that are themselves hardly more.
+TEST(Orientation, OfTheLeastNumbers) {
+  Random random(5);
+  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+  const Signs signs =
+      expect_exact(5'000, [&] { return kLeast * (static_cast<double>(random.below(5)) - 2); });
+  EXPECT_GT(signs.negative, 1'000);
+  EXPECT_GT(signs.positive, 1'000);
+  expect_exact(5'000, [&] {
+    return random.below(2) == 0 ? kLeast * static_cast<double>(random.below(9))
+                                : std::ldexp(1.0, static_cast<int>(random.below(30)));
+  });
+}
+
+}  // namespace
+}  // namespace ist::test

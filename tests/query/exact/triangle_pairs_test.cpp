@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ist/base/pose.h"
+#include "ist/query/collision_query.h"
+#include "query/exact/exact_tree.h"
+#include "query/search/guarded.h"
+#include "support/exact_polygon.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+// All pairs of triangles, each by rational numbers, of what is promised to be the moved vertices.
+std::vector<TrianglePair> pairs_of(const SphereTree& fixed, const SphereTree& moving,
+                                   const Eigen::Isometry3d& pose) {
+  const auto m = project_to_rigid(pose)->matrix();
+  const TriangleMesh& a = fixed.triangles()->mesh;
+  TriangleMesh b = moving.triangles()->mesh;
+  for (Eigen::Vector3d& v : b.vertices) {
+    const Eigen::Vector3d x = v;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      v[i] = ((m(i, 0) * x[0] + m(i, 1) * x[1]) + m(i, 2) * x[2]) + m(i, 3);
+    }
+  }
+  const auto box_of = [](const TriangleMesh& mesh, std::uint32_t triangle) {
+    Eigen::AlignedBox3d box;
+    for (const std::uint32_t v : mesh.triangles[triangle]) box.extend(mesh.vertices[v]);
+    return box;
+  };
+  std::vector<TrianglePair> pairs;
+  for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
+    for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
+      if (!box_of(a, i).intersects(box_of(b, j))) continue;
+      if (polygons_meet(exact_triangle(a, i), exact_triangle(b, j))) pairs.push_back({i, j});
+    }
+  }
+  return pairs;
+}
+
+std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry3d& pose) {
+  std::vector<TrianglePair> pairs(1 << 16);
+  std::vector<Contact> leaves(1 << 17);
+  const ExactResult result = query.collide_exact(pose, pairs, leaves);
+  EXPECT_FALSE(result.truncated);
+  const Answer answer = ask(query, pose);
+  EXPECT_EQ(result.leaves.contacts, answer.result.contacts);
+  EXPECT_EQ(result.leaves.sphere_tests, answer.result.sphere_tests);
+  leaves.resize(result.leaves.contacts);
+  EXPECT_EQ(leaves, answer.contacts);
+  pairs.resize(result.triangle_pairs);
+  return pairs;
+}
+
+void expect_exact(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& pose,
+                  std::size_t& touching) {
+  const std::vector<TrianglePair> wanted = pairs_of(fixed, moving, pose);
+  for (const SpherePolicy policy : kSpherePolicies) {
+    CollisionOptions options;
+    options.policy = policy;
+    CollisionQuery query(fixed, moving, options);
+    EXPECT_EQ(ask_exact(query, pose), wanted) << to_string(policy);
+    EXPECT_EQ(query.touches(pose), wanted.empty() ? Touch::kNo : Touch::kYes) << to_string(policy);
+  }
+  touching += wanted.empty() ? 0U : 1U;
+}
+
+TEST(TrianglePairs, OfRandomBodies) {
+  std::size_t touching = 0;
+  for (std::uint64_t seed = 0; seed < 40 && !::testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const TriangleMesh a = random_mesh(random), b = random_mesh(random);
+    const SphereTree fixed = exact_tree(a, random.uniform(1, 12)),
+                     moving = exact_tree(b, random.uniform(1, 12));
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Matrix3d rotation = random.rotation();
+      const Eigen::Vector3d to = a.vertices[random.below(a.vertices.size())] -
+                                 rotation * b.vertices[random.below(b.vertices.size())];
+      expect_exact(fixed, moving,
+                   pose_of(rotation, to + random.uniform(0, 0.2) * random.direction()), touching);
+    }
+  }
+  EXPECT_GT(touching, 30u);
+  EXPECT_LT(touching, 119u);
+}
+
+// Faces on faces, edges on edges, corners on corners.
+TEST(TrianglePairs, OfBoxesOnOneLattice) {
+  const TriangleMesh a = box({0, 0, 0}, {3, 3, 3}), b = box({0, 0, 0}, {2, 3, 1});
+  const SphereTree fixed = exact_tree(a, 3), moving = exact_tree(b, 6);
+  std::size_t touching = 0, asked = 0;
+  for (const Eigen::Matrix3d& rotation : quarter_turns()) {
+    for (const double x : {-3.0, 0.0, 1.0, 3.0, 4.0}) {
+      expect_exact(fixed, moving, pose_of(rotation, {x, 1, -x}), touching);
+      ++asked;
+    }
+  }
+  EXPECT_GT(touching, asked / 4);
+  EXPECT_LT(touching, asked);
+}
+
+TEST(TrianglePairs, OfABodyOnItself) {
+  const SphereTree tree = exact_tree(icosphere(1, 1), 9);
+  std::size_t touching = 0;
+  expect_exact(tree, tree, Eigen::Isometry3d::Identity(), touching);
+  expect_exact(tree, tree, shift({0, 0, 0x1p-40}), touching);
+  EXPECT_EQ(touching, 2u);
+}
+
+// Far from where the meshes' numbers begin a moved vertex is rounded by more than leaves err.
+TEST(TrianglePairs, FarFromTheOrigin) {
+  Random random(7);
+  std::size_t touching = 0;
+  for (const double place : {1e3, 1e6, 1e9}) {
+    const Eigen::Vector3d away = place * Eigen::Vector3d(1, -0.7, 0.3);
+    const TriangleMesh a = moved(icosphere(1, 1), away), b = box({-0.5, -0.4, -1}, {0.5, 0.4, 1});
+    const SphereTree fixed = exact_tree(a, 8), moving = exact_tree(b, 11);
+    for (int i = 0; i < 6; ++i) {
+      expect_exact(fixed, moving,
+                   pose_of(random.rotation(), away + random.uniform(0, 2) * random.direction()),
+                   touching);
+    }
+  }
+  EXPECT_GT(touching, 5u);
+}
+
+// Two bodies that touch in many triangles.
+class ManyPairs : public ::testing::Test {
+ protected:
+  CollisionQuery query_with(std::size_t triangle_pairs, int workers = 1) const {
+    CollisionOptions options;
+    options.triangle_pairs = triangle_pairs;
+    options.workers = workers;
+    options.period = std::chrono::nanoseconds(0);
+    return CollisionQuery(tree_, tree_, options);
+  }
+  const SphereTree tree_ = exact_tree(icosphere(2, 1), 20);
+  const Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  const std::vector<TrianglePair> wanted_ = pairs_of(tree_, tree_, pose_);
+};
+
+TEST_F(ManyPairs, WithMemoryOfAnySize) {
+  ASSERT_GT(wanted_.size(), 500u);
+  for (const std::size_t memory : {1u, 6000u, 1u << 20}) {
+    for (const int workers : {1, 2}) {
+      CollisionQuery query = query_with(memory, workers);
+      EXPECT_EQ(ask_exact(query, pose_), wanted_) << memory;
+      EXPECT_EQ(query.touches(pose_), Touch::kYes);
+      EXPECT_EQ(query.touches(shift({3, 0, 0})), Touch::kNo);
+    }
+  }
+}
+
+TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
+  CollisionQuery query = query_with(1 << 16);
+  for (const std::size_t leaves : {0u, 100u, 1u << 17}) {
+    std::vector<Contact> contacts(leaves);
+    for (std::size_t length = 0; length < wanted_.size() + 40; length += length < 20 ? 1 : 37) {
+      Guarded<TrianglePair> out(length, length % 8);
+      const ExactResult result = query.collide_exact(pose_, out.span(), contacts);
+      ASSERT_EQ(result.triangle_pairs, wanted_.size());
+      ASSERT_EQ(result.truncated, length < wanted_.size());
+      const auto count = static_cast<std::ptrdiff_t>(std::min(length, wanted_.size()));
+      ASSERT_TRUE(std::equal(wanted_.begin(), wanted_.begin() + count, out.data()));
+      ASSERT_TRUE(out.intact());
+    }
+  }
+}
+
+TEST(Touches, WithoutTrianglesIsAtMostPossible) {
+  const SphereTree tree = tree_of(icosphere(1, 1), 9), exact = exact_tree(icosphere(1, 1), 9);
+  CollisionQuery query(tree, exact);
+  EXPECT_FALSE(query.is_exact());
+  EXPECT_EQ(query.touches(shift({0.1, 0, 0})), Touch::kPossible);
+  EXPECT_EQ(query.touches(shift({3, 0, 0})), Touch::kNo);
+  Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
+  bad.matrix()(0, 0) = 2;
+  EXPECT_EQ(query.touches(bad), Touch::kInvalidPose);
+  EXPECT_EQ(CollisionQuery(exact, exact).touches(bad), Touch::kInvalidPose);
+}
+
+}  // namespace
+}  // namespace ist::test
