@@ -21,8 +21,8 @@ struct Scene {
 /// Two jaws that are closed.
 [[nodiscard]] const Scene& jaws();
 
-/// A ball and a block of like voxels; a fine ball and a coarse block, and the other way round, where
-/// leaves come at different depths.
+/// A ball and a block of like voxels; a fine ball and a coarse block, and the other way round,
+/// where leaves come at different depths.
 [[nodiscard]] std::span<const Scene> solids();
 
 /// A ball almost on itself: little to make, and more pairs than are needed to share the work.

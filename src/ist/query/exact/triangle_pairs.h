@@ -26,9 +26,8 @@ namespace ist {
 /// them is looked at in each of several passes over the leaves.
 class TrianglePairs final : public ContactStream {
  public:
-  /// Both trees must have triangles. Memory: 28 bytes a moving vertex, 8 a moving
-  /// triangle, and 20 to 36 for each of
-  /// `candidates`, the pairs that can be told apart in one pass.
+  /// Both trees must have triangles. Memory: 28 bytes a moving vertex, 8 a moving triangle, and 20
+  /// to 36 for each of `candidates`, the pairs that can be told apart in one pass.
   TrianglePairs(const SphereTree& fixed, const SphereTree& moving, std::size_t candidates);
 
   /// Begins a query. `pose` is rigid. Pairs go into `out`, the first of them where it is too short.
