@@ -23,6 +23,7 @@ int exit_code(ErrorCode code) {
     case ErrorCode::kVoxelSizeTooSmall:
     case ErrorCode::kMemoryLimit:
     case ErrorCode::kPolicyMissing:
+    case ErrorCode::kTrianglesMissing:
     case ErrorCode::kTargetMissing:
       return kUsage;
     default:

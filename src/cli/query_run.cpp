@@ -109,7 +109,7 @@ void require_triangles(const Bodies& bodies) {
   for (const auto& [tree, name] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
     if (tree->triangles()) continue;
     throw Error(
-        ErrorCode::kPolicyMissing,
+        ErrorCode::kTrianglesMissing,
         fmt::format("{}: the tree has no triangles: build it with --exact, or name the mesh",
                     name));
   }

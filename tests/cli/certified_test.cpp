@@ -55,6 +55,7 @@ TEST_F(Certified, ExactNeedsTriangles) {
   const CommandResult result = ist({"collide", plain, plain, "--poses", list_, "--exact"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_TRUE(says(result.err, "--exact"));
+  EXPECT_TRUE(says(result.err, "FIXED"));
   ist_well({"build", ball_, "-o", exact, "--voxel-size", "0.5", "--exact"});
   EXPECT_GT(ask(exact, exact, {"--exact"})[1]["triangle_pairs"], 0);
 }

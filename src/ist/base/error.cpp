@@ -38,6 +38,8 @@ const char* to_string(ErrorCode code) noexcept {
       return "tree-corrupt";
     case ErrorCode::kPolicyMissing:
       return "policy-missing";
+    case ErrorCode::kTrianglesMissing:
+      return "triangles-missing";
     case ErrorCode::kTargetMissing:
       return "target-missing";
     case ErrorCode::kPoseInvalid:

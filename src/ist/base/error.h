@@ -24,6 +24,7 @@ enum class ErrorCode {
   kTreeTruncated,      ///< a tree file that ends too early or too late
   kTreeCorrupt,        ///< a tree file whose checksum or content does not hold
   kPolicyMissing,      ///< the tree was built without the spheres that are asked for
+  kTrianglesMissing,   ///< the tree was built without the triangles that are asked for
   kTargetMissing,      ///< this processor lacks the instruction set that is asked for
   kPoseInvalid,        ///< not a rigid motion
   kInputInvalid,       ///< another input file whose content does not hold

@@ -1,8 +1,6 @@
 #include "ist/query/collision_query.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
@@ -21,9 +19,6 @@ constexpr std::size_t kWindow = 1 << 12;
 // How far the search for the nearest pair looks first, in parts of what is known to be far enough,
 // and then each time.
 constexpr double kFirstLook = 0.125, kLookFarther = 1.25;
-
-// Pairs in a frontier where the first contact will do.
-constexpr std::size_t kFewPairs = 1 << 10;
 
 QueryResult invalid_pose() {
   QueryResult result;
@@ -109,10 +104,7 @@ QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& s
   // What was added to a reach, and what the test may err by on top.
   result.pad = 2 * pad_of(from);
   if (hurry == Hurry::kFirst) {
-    Search& first = alone();
-    first.limit(kFewPairs);
-    result.sphere_tests += first.run(from, sink);
-    first.limit(std::numeric_limits<std::size_t>::max());
+    result.sphere_tests += alone().run_hurried(from, sink);
   } else if (auto* shared = std::get_if<SharedSearch>(&search_)) {
     result.sphere_tests += shared->run(from, sink);
   } else {
@@ -163,8 +155,9 @@ GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) n
   const double pad = pad_of(plain);
   Search& search = alone();
   GapResult result{QueryStatus::kDone, bodies->roots.gap, 1};
-  if (pad > fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_))
+  if (pad > fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_)) {
     return result;
+  }
   const Dive near = search.dive(plain);
   result.sphere_tests += near.tests;
   double& lower = result.gap.lower;
@@ -184,9 +177,7 @@ GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) n
     const SearchPose grown = narrowed(*bodies, within);  // finds all that is nearer
     if (exact_) {
       ContactSink sink(window_, *exact_);
-      search.limit(kFewPairs);  // a pair that meets ends it soon
-      result.sphere_tests += search.run(grown, sink);
-      search.limit(std::numeric_limits<std::size_t>::max());
+      result.sphere_tests += search.run_hurried(grown, sink);  // a pair that meets ends it
       const double distance = exact_->distance(), error = exact_->distance_error();
       upper = distance + error;
       lower = distance > 0 ? std::max(lower, std::min(within, distance - error)) : 0;
@@ -253,7 +244,8 @@ Search& CollisionQuery::alone() noexcept {
 
 std::size_t CollisionQuery::bytes() const noexcept {
   const auto* alone = std::get_if<Search>(&search_);
-  return alone != nullptr ? alone->bytes() : std::get_if<SharedSearch>(&search_)->bytes();
+  return (alone != nullptr ? alone->bytes() : std::get_if<SharedSearch>(&search_)->bytes()) +
+         (exact_ ? exact_->bytes() : 0) + window_.size() * sizeof(Contact);
 }
 
 SharedSearch::Sharing CollisionQuery::sharing() const noexcept {

@@ -22,13 +22,12 @@ class Search {
   /// level, where there are more of those, or for every pair of nodes, where there are fewer.
   Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs);
 
-  /// From now on a frontier is full with so many pairs already, or with the moving nodes that touch
-  /// one fixed node. A search that will be stopped soon comes to its first leaves sooner.
-  void limit(std::size_t pairs) noexcept;
-
   /// Searches from the pair of the roots down to the leaves, or until the sink is stopped. Returns
   /// the number of pairs tested.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
+  /// The same, for a sink that may stop it soon: comes to its first leaves sooner, and to all of
+  /// them later.
+  std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink) noexcept;
 
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
   /// those of the leaves, or more than there is room for. Returns how many steps were made;
@@ -70,6 +69,8 @@ class Search {
     std::size_t pairs;  // that there is room for
   };
   void set_roots() noexcept;
+  // A frontier is full with so many pairs already, or with those of one fixed node.
+  void limit(std::size_t pairs) noexcept;
   [[nodiscard]] bool descend_within(std::size_t step, const SearchPose& pose, ContactSink& sink,
                                     Spending& spending, Known& known) noexcept;
   [[nodiscard]] bool advance_within(std::size_t step, const SearchPose& pose, SearchCursor& cursor,

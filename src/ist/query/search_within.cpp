@@ -40,6 +40,7 @@ bool Search::descend_within(std::size_t step, const SearchPose& pose, ContactSin
       continue;
     }
     if (!enough || cursor.group < in.group_count) known.steps = step;
+    if (!enough && step + 1 == plan_.steps().size()) sink.append(out, kernels_, plan_);
     return false;
   }
   return true;
@@ -73,7 +74,10 @@ bool Search::advance_within(std::size_t step, const SearchPose& pose, SearchCurs
             end += parts.decode(by.moving, in.moving[k], lanes, end);
           }
         }
-        if (!spending.spend(end)) return false;
+        if (!spending.spend(end)) {
+          end_row(out, scratch_->fixed.name[cursor.row], before);
+          return false;
+        }
         out.moving_count += parts.measure_row(rows, cursor.row, lanes, 0, end, slabs,
                                               out.moving + out.moving_count, measure);
       }

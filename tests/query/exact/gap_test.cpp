@@ -3,33 +3,14 @@
 #include <cmath>
 #include <limits>
 
-#include "ist/base/pose.h"
 #include "ist/query/collision_query.h"
-#include "ist/query/exact/triangle_distance.h"
 #include "ist/query/inside.h"
 #include "query/exact/exact_tree.h"
+#include "query/exact/mesh_distance.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-double brute_distance(const SphereTree& fixed, const SphereTree& moving,
-                      const Eigen::Isometry3d& pose) {
-  const TriangleMesh &a = fixed.triangles()->mesh, &b = moving.triangles()->mesh;
-  double least = HUGE_VAL;
-  for (const Triangle& s : a.triangles) {
-    for (const Triangle& t : b.triangles) {
-      TriangleCorners p, q;
-      for (std::size_t i = 0; i < 3; ++i) {
-        p[i] = a.vertices[s[i]];
-        q[i] = pose * b.vertices[t[i]];
-      }
-      if (triangles_meet(p, q)) return 0;
-      least = std::min(least, std::sqrt(distance_squared(p, q)));
-    }
-  }
-  return least;
-}
 
 // Doubles that are moved in another order.
 constexpr double kRounding = 1e-6;
@@ -49,7 +30,8 @@ TEST(Gap, HoldsTheDistance) {
                                  rotation * b.vertices[random.below(b.vertices.size())];
       const Eigen::Isometry3d pose =
           pose_of(rotation, to + random.uniform(0, 1.5) * random.direction());
-      const double distance = brute_distance(fixed, moving, pose);
+      const double distance =
+          mesh_distance(fixed.triangles()->mesh, moving.triangles()->mesh, pose);
       (distance > 0 ? apart : touching) += 1;
       for (const SpherePolicy policy : kSpherePolicies) {
         CollisionOptions options;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "ist/base/error.h"
@@ -145,6 +147,45 @@ TEST(CollisionQuery, TakesTheTightestPolicyThatBothTreesHave) {
   EXPECT_EQ(
       error_name([&] { CollisionQuery(slab, slab, options_of(SpherePolicy::kSlab, "abacus")); }),
       to_string(ErrorCode::kTargetMissing));
+}
+
+// Takes what it is given until it has enough.
+struct Taken final : ContactStream {
+  explicit Taken(std::size_t wanted) : enough(wanted) {}
+  bool take(std::span<const Contact> some) noexcept override {
+    EXPECT_LT(contacts.size(), enough);  // never asked again
+    contacts.insert(contacts.end(), some.begin(), some.end());
+    return contacts.size() < enough;
+  }
+  std::size_t enough;
+  std::vector<Contact> contacts;
+};
+
+TEST_P(CollisionQueryTest, AStreamGetsAllContactsInOrderUntilItHasEnough) {
+  for (const Scene& scene : {std::cref(scene_), std::cref(shells())}) {
+    for (const int workers : {1, 2}) {
+      for (const std::size_t pairs : {65536u, 100u}) {
+        CollisionOptions options = options_of(SpherePolicy::kSlab, GetParam(), workers);
+        options.frontier_pairs = pairs;
+        CollisionQuery query(scene.fixed, scene.moving, options);
+        const Answer all = ask(query, scene.pose);
+        Taken everything(all.contacts.size() + 1);
+        const QueryResult result = query.collide(scene.pose, everything);
+        EXPECT_EQ(everything.contacts, all.contacts);
+        EXPECT_EQ(result.contacts, all.contacts.size());
+        EXPECT_EQ(result.sphere_tests, all.result.sphere_tests);
+        EXPECT_FALSE(result.truncated);
+        Taken some(10);
+        static_cast<void>(query.collide(scene.pose, some));
+        ASSERT_GE(some.contacts.size(), 10u);
+        // One frontier of leaves holds all of them, or a part.
+        if (pairs == 100) {
+          EXPECT_LT(some.contacts.size(), all.contacts.size());
+        }
+        EXPECT_TRUE(std::equal(some.contacts.begin(), some.contacts.end(), all.contacts.begin()));
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -184,8 +184,9 @@ void TrianglePairs::add(TrianglePair pair) noexcept {
 }
 
 void TrianglePairs::measure(const TriangleCorners& a, const TriangleCorners& b) noexcept {
-  if (box_distance_squared(a, b) >= nearest_ * nearest_) return;
-  if (!boxes_apart(a, b) && triangles_meet(a, b)) {
+  const double boxes = box_distance_squared(a, b);
+  if (boxes >= nearest_ * nearest_) return;
+  if (boxes == 0 && triangles_meet(a, b)) {
     nearest_ = 0;
     return;
   }
@@ -202,7 +203,8 @@ void TrianglePairs::finish() noexcept {
 }
 
 std::size_t TrianglePairs::bytes() const noexcept {
-  return seen_.bytes() + moved_.size() * (sizeof(Eigen::Vector3d) + sizeof(std::uint32_t));
+  return seen_.bytes() + moved_.size() * (sizeof(Eigen::Vector3d) + sizeof(std::uint32_t)) +
+         (near_.size() + near_leaf_.size()) * sizeof(std::uint32_t);
 }
 
 }  // namespace ist
