@@ -11,14 +11,33 @@
 namespace ist::bench {
 namespace {
 
+bool has_real_pair() { return std::filesystem::exists(data_file("human_maxilla.stl")); }
+
+using Trees = std::pair<SphereTree, SphereTree>;
+
+// Those of a voxel size, made by whoever asks first.
+const Trees& trees_of(std::map<double, std::unique_ptr<Trees>>& made, BuildOptions options) {
+  auto& pair = made[options.voxel_size];
+  if (pair == nullptr) {
+    pair =
+        std::make_unique<Trees>(build_tree(upper_jaw(), options), build_tree(lower_jaw(), options));
+  }
+  return *pair;
+}
+
+BuildOptions options_of(double voxel_size, SpherePolicy spheres) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.spheres = spheres;
+  return options;
+}
+
+}  // namespace
+
 std::filesystem::path data_file(const char* name) {
   const char* named = std::getenv("IST_DATA_DIR");
   return std::filesystem::path(named != nullptr ? named : IST_SOURCE_DIR "/../shared/data") / name;
 }
-
-bool has_real_pair() { return std::filesystem::exists(data_file("human_maxilla.stl")); }
-
-}  // namespace
 
 const char* pair_name() { return has_real_pair() ? "human" : "built-in"; }
 
@@ -35,21 +54,19 @@ const TriangleMesh& lower_jaw() {
 }
 
 SphereTree build(const TriangleMesh& mesh, double voxel_size, SpherePolicy spheres) {
-  BuildOptions options;
-  options.voxel_size = voxel_size;
-  options.spheres = spheres;
-  return build_tree(mesh, options);
+  return build_tree(mesh, options_of(voxel_size, spheres));
 }
 
-const std::pair<SphereTree, SphereTree>& trees(double voxel_size) {
-  static std::map<double, std::unique_ptr<std::pair<SphereTree, SphereTree>>> made;
-  auto& pair = made[voxel_size];
-  if (pair == nullptr) {
-    pair = std::make_unique<std::pair<SphereTree, SphereTree>>(
-        build(upper_jaw(), voxel_size, SpherePolicy::kSlab),
-        build(lower_jaw(), voxel_size, SpherePolicy::kSlab));
-  }
-  return *pair;
+const Trees& trees(double voxel_size) {
+  static std::map<double, std::unique_ptr<Trees>> made;
+  return trees_of(made, options_of(voxel_size, SpherePolicy::kSlab));
+}
+
+const Trees& exact_trees(double voxel_size) {
+  static std::map<double, std::unique_ptr<Trees>> made;
+  BuildOptions options = options_of(voxel_size, SpherePolicy::kSlab);
+  options.keep_triangles = true;
+  return trees_of(made, options);
 }
 
 Eigen::Isometry3d closing(double dz) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <filesystem>
 #include <utility>
 
 #include "ist/mesh/triangle_mesh.h"
@@ -8,9 +9,12 @@
 
 namespace ist::bench {
 
-/// The upper and the lower jaw that is measured: the real pair of IST_DATA_DIR (by default
-/// ../shared/data beside the project's root), or the built-in one where that is not there. Read
-/// once.
+/// A file of IST_DATA_DIR, by default ../shared/data beside the project's root; whether it is there
+/// or not.
+[[nodiscard]] std::filesystem::path data_file(const char* name);
+
+/// The upper and the lower jaw that is measured: the real pair of data_file(), or the built-in one
+/// where that is not there. Read once.
 [[nodiscard]] const TriangleMesh& upper_jaw();
 [[nodiscard]] const TriangleMesh& lower_jaw();
 /// "human" or "built-in".
@@ -20,6 +24,8 @@ namespace ist::bench {
 
 /// Both trees of a voxel size, which answer every policy; made once.
 [[nodiscard]] const std::pair<SphereTree, SphereTree>& trees(double voxel_size);
+/// Likewise, with their triangles.
+[[nodiscard]] const std::pair<SphereTree, SphereTree>& exact_trees(double voxel_size);
 
 /// The closing: the lower jaw turned by 0.0003 rad about z, so that no face of one body is parallel
 /// to one of the other, and moved by `dz` along z.

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "ist/mesh/triangle_mesh.h"
+#include "peers/peer.h"
+
+namespace ist::bench {
+
+/// Embree: rtcCollide over two scenes of one user geometry each, in one thread; candidates are told
+/// apart by their boxes and triangles_meet(), in double, so that all pairs are IST's. Embree cannot
+/// be asked for a pose, so the moving mesh is moved and its hierarchy refitted. Three contestants:
+///  - `embree`: moves, refits, collides, tests triangles;
+///  - `embree_no_refit`: the same, but moved and refitted before its time begins;
+///  - `embree_boxes`: rtcCollide alone, which counts candidates and tests none.
+/// It cannot stop early and knows no distance between meshes.
+[[nodiscard]] Peers make_embree_peers(const TriangleMesh& fixed, const TriangleMesh& moving);
+
+}  // namespace ist::bench

@@ -1,0 +1,92 @@
+#include "peers/fcl_peer.h"
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/detail/traversal/collision_node.h>
+#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace ist::bench {
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
+
+std::shared_ptr<const Model> model_of(const TriangleMesh& mesh) {
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) triangles.emplace_back(a, b, c);
+  const auto model = std::make_shared<Model>();
+  model->beginModel();
+  model->addSubModel(mesh.vertices, triangles);
+  model->endModel();
+  return model;
+}
+
+class FclPeer : public Peer {
+ public:
+  FclPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
+      : Peer("fcl"), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
+
+  [[nodiscard]] bool answers(Question question) const override {
+    return question != Question::kCandidates;
+  }
+  bool meets(const Eigen::Isometry3d& pose) override { return collide(pose, 1) > 0; }
+  std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
+    return collide(pose, std::numeric_limits<std::size_t>::max());
+  }
+  GapInterval distance(const Eigen::Isometry3d& pose) override {
+    fcl::DistanceResult<double> result;
+    fcl::distance<double>(fixed_.get(), fcl::Transform3d::Identity(), moving_.get(), pose,
+                          fcl::DistanceRequest<double>(), result);
+    const double found = std::max(result.min_distance, 0.0);
+    return {found, found};
+  }
+
+ private:
+  std::size_t collide(const Eigen::Isometry3d& pose, std::size_t most) {
+    found_.clear();  // keeps its memory
+    return fcl::collide<double>(fixed_.get(), fcl::Transform3d::Identity(), moving_.get(), pose,
+                                fcl::CollisionRequest<double>(most, false), found_);
+  }
+
+  std::shared_ptr<const Model> fixed_, moving_;
+  fcl::CollisionResult<double> found_;
+};
+
+class FclWithinPeer final : public Peer {
+ public:
+  FclWithinPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
+      : Peer("fcl_within"), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
+
+  [[nodiscard]] bool answers(Question question) const override {
+    return question == Question::kDistance;
+  }
+  GapInterval distance(const Eigen::Isometry3d& pose) override {
+    fcl::DistanceResult<double> result;
+    fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> node;
+    fcl::detail::initialize(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,
+                            fcl::DistanceRequest<double>(), result);
+    node.abs_err = kTolerance;
+    fcl::detail::distance<double>(&node);
+    const double found = std::max(result.min_distance, 0.0);
+    return {std::max(found - kTolerance, 0.0), found};
+  }
+
+ private:
+  std::shared_ptr<const Model> fixed_, moving_;
+};
+
+}  // namespace
+
+Peers make_fcl_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+  const auto a = model_of(fixed), b = model_of(moving);
+  Peers peers;
+  peers.push_back(std::make_unique<FclPeer>(a, b));
+  peers.push_back(std::make_unique<FclWithinPeer>(a, b));
+  return peers;
+}
+
+}  // namespace ist::bench

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ist/mesh/triangle_mesh.h"
+#include "peers/peer.h"
+
+namespace ist::bench {
+
+/// FCL: BVHModel<OBBRSS<double>>, its tightest hierarchy that answers both questions, through its
+/// public calls. Two contestants:
+///  - `fcl`: collide() with one contact; collide() with all of them and enable_contact off, which
+///    still lists both triangles of each and leaves out only their points and normals, so is the
+///    fastest complete answer; distance() without nearest points, which is exact: more than the
+///    interval of 0.05 mm that is asked for.
+///  - `fcl_within`: distance alone, as far as asked for. DistanceRequest's abs_err is never passed
+///    on to a mesh in 0.7 (the traversal copies it before it knows the request), so it is set where
+///    it acts, in the traversal, and the answer is the interval from what is found down to 0.05 mm
+///    less.
+/// What differs: its predicates are in double and not exact, so nothing is promised where triangles
+/// only touch or lie in one plane. Debian's library is built for any x86-64, without FCL's own SSE
+/// code, and with assertions.
+[[nodiscard]] Peers make_fcl_peers(const TriangleMesh& fixed, const TriangleMesh& moving);
+
+}  // namespace ist::bench
