@@ -49,6 +49,9 @@ class Search {
     Measure inner, leaves;  ///< of all steps but the last, and of that
     std::size_t steps = 0;  ///< that were made whole
   };
+  /// Within a budget the sink takes so many contacts at a time, or those of one fixed leaf: some µs
+  /// in which nobody looks at the clock.
+  static constexpr std::size_t kLeavesAtOnce = 1 << 12;
   /// As run(), step by step from the roots on, or where a frontier is full from chunk to chunk, as
   /// long as there is something left to spend; and measures all pairs that are tested. Where it
   /// ends early the sink has the first contacts.

@@ -17,7 +17,10 @@ Search::Known Search::run_within(const Budget& budget, const SearchPose& pose,
   Known known;
   known.steps = plan_.steps().size();
   set_roots();
+  std::size_t& room = frontiers_.back().capacity;
+  room = std::min(kLeavesAtOnce, room);
   static_cast<void>(descend_within(0, pose, sink, spending, known));
+  room = memory_.back().pairs;
   known.tests = spending.tests();
   return known;
 }

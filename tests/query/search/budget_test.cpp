@@ -3,6 +3,10 @@
 #include <cmath>
 #include <vector>
 
+#include "ist/query/kernels.h"
+#include "ist/query/relative_pose.h"
+#include "ist/query/search.h"
+#include "ist/query/search_pose.h"
 #include "query/exact/mesh_distance.h"
 #include "query/search/scenes.h"
 #include "query/search/targets.h"
@@ -114,6 +118,30 @@ TEST(WithinABudget, ContactsAreTheFirst) {
     some += answer.contacts.empty() ? 0U : 1U;
   }
   EXPECT_GT(some, 20u);
+}
+
+// Else many of them would be handed over after the time is over: 30 µs for 60,000.
+TEST(WithinABudget, ContactsAreHandedOverFewAtATime) {
+  const Scene& scene = shells();
+  struct Taken final : ContactStream {
+    bool take(std::span<const Contact> contacts) noexcept override {
+      most = std::max(most, contacts.size());
+      return true;
+    }
+    std::size_t most = 0;
+  } taken;
+  const SearchPlan plan(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  Search search(plan, find_kernels(""), 1 << 16);
+  const auto relative = relative_pose(scene.pose, scene.fixed.lattice(), scene.moving.lattice());
+  const SearchPose pose = narrow(*relative, scene.fixed.reach() + scene.moving.reach(), 0);
+  std::vector<Contact> window(1 << 17);
+  ContactSink sink(window, taken), all(window, taken);
+  const Search::Known known = search.run_within(kNoEnd, pose, sink);
+  EXPECT_GT(sink.count(), 4 * Search::kLeavesAtOnce);
+  EXPECT_LE(taken.most, Search::kLeavesAtOnce);
+  EXPECT_EQ(search.run(pose, all), known.tests);  // what follows is as it was
+  EXPECT_EQ(all.count(), sink.count());
+  EXPECT_GT(taken.most, Search::kLeavesAtOnce);
 }
 
 TEST(WithinADeadline, ThatIsPastTheRootsAreKnown) {
