@@ -5,6 +5,35 @@
 #include <utility>
 
 namespace ist::test {
+namespace {
+
+// Corners of a circle at height z, from the x axis on; returns the first one. By Pythagorean
+// triples rather than by a sine.
+std::uint32_t add_ring(TriangleMesh& mesh, int quarter, double radius, double z) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector2d& x : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1),
+                                   Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1)}) {
+    const Eigen::Vector2d y(-x.y(), x.x());
+    for (int i = 0; i < quarter; ++i) {
+      const double t = static_cast<double>(i) / quarter;
+      const Eigen::Vector2d at = radius / (1 + t * t) * ((1 - t * t) * x + 2 * t * y);
+      mesh.vertices.emplace_back(at.x(), at.y(), z);
+    }
+  }
+  return first;
+}
+
+// Between two rings, seen from where the first one goes to the right and the second is above.
+void add_band(TriangleMesh& mesh, int quarter, std::uint32_t below, std::uint32_t above) {
+  const auto sides = static_cast<std::uint32_t>(4 * quarter);
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t j = (i + 1) % sides;
+    mesh.triangles.push_back({below + i, below + j, above + j});
+    mesh.triangles.push_back({below + i, above + j, above + i});
+  }
+}
+
+}  // namespace
 
 TriangleMesh box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
   TriangleMesh mesh;
@@ -55,6 +84,31 @@ TriangleMesh icosphere(int level, double radius) {
     mesh.triangles = std::move(finer);
   }
   for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= radius;
+  return mesh;
+}
+
+TriangleMesh cylinder(int quarter, double radius, double height) {
+  TriangleMesh mesh;
+  const std::uint32_t bottom = add_ring(mesh, quarter, radius, 0);
+  const std::uint32_t top = add_ring(mesh, quarter, radius, height);
+  add_band(mesh, quarter, bottom, top);
+  const std::uint32_t middle = top + top - bottom;
+  mesh.vertices.emplace_back(0, 0, 0);
+  mesh.vertices.emplace_back(0, 0, height);
+  for (std::uint32_t i = 0; i < top; ++i) {
+    const std::uint32_t j = (i + 1) % top;
+    mesh.triangles.push_back({middle, bottom + j, bottom + i});
+    mesh.triangles.push_back({middle + 1, top + i, top + j});
+  }
+  return mesh;
+}
+
+TriangleMesh pipe(int quarter, double inner, double outer, double height) {
+  TriangleMesh mesh;
+  const std::uint32_t rings[] = {
+      add_ring(mesh, quarter, inner, 0), add_ring(mesh, quarter, outer, 0),
+      add_ring(mesh, quarter, outer, height), add_ring(mesh, quarter, inner, height)};
+  for (std::size_t i = 0; i < 4; ++i) add_band(mesh, quarter, rings[i], rings[(i + 1) % 4]);
   return mesh;
 }
 

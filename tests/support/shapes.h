@@ -18,6 +18,13 @@ namespace ist::test {
 /// so that it is the same bits everywhere.
 [[nodiscard]] TriangleMesh icosphere(int level, double radius);
 
+/// A closed cylinder round the z axis, from z = 0 up, of 4 * `quarter` sides, its corners on the
+/// circle; normals outward. Like the sphere the same bits everywhere.
+[[nodiscard]] TriangleMesh cylinder(int quarter, double radius, double height);
+
+/// Likewise, with a hole along its axis: a thick pipe.
+[[nodiscard]] TriangleMesh pipe(int quarter, double inner, double outer, double height);
+
 /// A flat strip of `squares` unit squares along x, of two triangles each, normals along +z.
 [[nodiscard]] TriangleMesh open_strip(int squares);
 

@@ -1,0 +1,189 @@
+// Queries where there is more to find than there is time for: what conformal bodies cost without a
+// budget, and by how much a query with 100 µs runs over them, in the processor's time of its own
+// thread, so that waiting for a core does not count. Interrupts do: beside each query stands a loop
+// that does nothing but look at the clock until its own 100 µs are over. Small bodies are asked
+// within 1 ms as well, in which they come to many contacts.
+//
+//   IST_DEADLINE_QUERIES   queries and loops a scene within 100 µs, and a tenth of them within
+//                          1 ms; by default 100000
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ist/query/collision_query.h"
+#include "support/bodies.h"
+#include "support/conformal.h"
+#include "support/latencies.h"
+
+namespace ist::bench {
+namespace {
+
+using Clock = Budget::Clock;
+constexpr double kVoxelSize = 0.2;
+// Facets of 0.7 mm: bodies as large as a jaw, and ones whose leaves are reached in time.
+constexpr double kLarge = 40, kSmall = 5;
+constexpr int kLargeLevel = 7, kSmallLevel = 4;
+constexpr std::size_t kContacts = 1 << 20;
+
+double thread_microseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e6 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_nsec);
+}
+
+struct Scene {
+  std::string name;
+  std::pair<SphereTree, SphereTree> trees;
+  std::vector<Eigen::Isometry3d> poses;  // asked in turn
+};
+
+// The pair's own place, and some a hundredth of a voxel beside it.
+std::vector<Eigen::Isometry3d> places() {
+  std::vector<Eigen::Isometry3d> poses(4, Eigen::Isometry3d::Identity());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].translation().x() = 0.01 * kVoxelSize * static_cast<double>(i);
+  }
+  return poses;
+}
+
+Scene conformal(const test::ConformalPair& pair, const std::string& name) {
+  return {name,
+          {build(pair.fixed, kVoxelSize, SpherePolicy::kSlab),
+           build(pair.moving, kVoxelSize, SpherePolicy::kSlab)},
+          places()};
+}
+
+Scene jaws() {
+  Scene scene{"jaws", trees(kVoxelSize), {}};
+  for (const double dz : kClosing) scene.poses.push_back(closing(dz));
+  return scene;
+}
+
+// A scene is there as long as it is measured.
+using Make = std::function<Scene()>;
+const Scene& made(const std::string& name, const Make& make) {
+  static std::unique_ptr<Scene> last;
+  if (last == nullptr || last->name != name) {
+    last.reset();
+    last = std::make_unique<Scene>(make());
+  }
+  return *last;
+}
+
+CollisionOptions slabs() {
+  CollisionOptions options;
+  options.policy = SpherePolicy::kSlab;
+  return options;
+}
+
+void unbudgeted(benchmark::State& state, const std::string& name, const Make& make) {
+  const Scene& scene = made(name, make);
+  CollisionQuery query(scene.trees.first, scene.trees.second, slabs());
+  std::vector<Contact> contacts(kContacts);
+  Latencies latencies;
+  QueryResult result;
+  std::size_t turn = 0;
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    result = query.collide(scene.poses[turn++ % scene.poses.size()], contacts);
+    const std::chrono::duration<double> time = Clock::now() - begin;
+    latencies.add(1e6 * time.count());
+    state.SetIterationTime(time.count());
+  }
+  latencies.report(state);
+  result = query.collide(scene.poses[0], contacts);
+  state.counters["leaves"] = static_cast<double>(scene.trees.first.octree().leaf_count());
+  state.counters["tests"] = static_cast<double>(result.sphere_tests);
+  state.counters["pairs"] = static_cast<double>(result.contacts);
+}
+
+// Thread time of something that is to end at a deadline, over what it was given.
+template <class Run>
+double overrun(std::chrono::microseconds given, const Run& run) {
+  const double begin = thread_microseconds();
+  run(Clock::now() + given);
+  return std::max(0.0, thread_microseconds() - begin - static_cast<double>(given.count()));
+}
+
+void report(benchmark::State& state, Latencies& overruns, const std::string& prefix) {
+  overruns.report(state, prefix);
+  state.counters[prefix + "p99.99_us"] = overruns.quantile(0.9999);
+}
+
+void within(benchmark::State& state, std::chrono::microseconds given, const std::string& name,
+            const Make& make) {
+  const Scene& scene = made(name, make);
+  CollisionQuery query(scene.trees.first, scene.trees.second, slabs());
+  std::vector<Contact> contacts(kContacts);
+  Latencies of_query, of_loop;
+  std::size_t turn = 0, complete = 0;
+  double tests = 0, most_pairs = 0;
+  for (auto _ : state) {
+    const Eigen::Isometry3d& pose = scene.poses[turn++ % scene.poses.size()];
+    QueryResult result;
+    of_query.add(overrun(given, [&](Clock::time_point deadline) {
+      result = query.collide(pose, contacts, {.deadline = deadline});
+    }));
+    of_loop.add(overrun(given, [](Clock::time_point deadline) {
+      while (Clock::now() < deadline) {
+      }
+    }));
+    complete += result.complete ? 1 : 0;
+    tests += static_cast<double>(result.sphere_tests);
+    most_pairs = std::max(most_pairs, static_cast<double>(result.contacts));
+  }
+  report(state, of_query, "over_");
+  report(state, of_loop, "loop_");
+  const auto queries = static_cast<double>(state.iterations());
+  state.counters["complete"] = static_cast<double>(complete) / queries;
+  state.counters["tests"] = tests / queries;
+  state.counters["most_pairs"] = most_pairs;
+}
+
+std::int64_t queries() {
+  const char* named = std::getenv("IST_DEADLINE_QUERIES");
+  return named != nullptr ? std::atoll(named) : 100'000;
+}
+
+void add(const std::string& name, const Make& make) {
+  benchmark::RegisterBenchmark(("unbudgeted/" + name).c_str(),
+                               [=](benchmark::State& state) { unbudgeted(state, name, make); })
+      ->Iterations(20)
+      ->Unit(benchmark::kMicrosecond)
+      ->UseManualTime();
+  const auto add_within = [&](std::chrono::microseconds given, std::int64_t count) {
+    benchmark::RegisterBenchmark(("within_" + std::to_string(given.count()) + "us/" + name).c_str(),
+                                 [=](benchmark::State& state) { within(state, given, name, make); })
+        ->Iterations(count)
+        ->Unit(benchmark::kMicrosecond);
+  };
+  add_within(std::chrono::microseconds(100), queries());
+  if (name.starts_with("small")) add_within(std::chrono::microseconds(1000), queries() / 10);
+}
+
+const int kRegistered = [] {
+  const auto add_pair = [](const std::string& name,
+                           const std::function<test::ConformalPair()>& of) {
+    add(name, [=] { return conformal(of(), name); });
+  };
+  add("jaws", jaws);
+  add_pair("shells/0.5", [] { return test::shell_in_shell(kLargeLevel, kLarge, 0.5); });
+  add_pair("shells/0.05", [] { return test::shell_in_shell(kLargeLevel, kLarge, 0.05); });
+  add_pair("peg/0.05", [] { return test::peg_in_hole(1 << kLargeLevel, kLarge, 0.05); });
+  add_pair("plates/0.05", [] { return test::plates(2 * kLarge, 0.05); });
+  add_pair("inside", [] { return test::one_inside(kLargeLevel, kLarge); });
+  add_pair("small_shells/0.05", [] { return test::shell_in_shell(kSmallLevel, kSmall, 0.05); });
+  add_pair("small_peg/0.05", [] { return test::peg_in_hole(1 << kSmallLevel, kSmall, 0.05); });
+  add_pair("small_plates/0.05", [] { return test::plates(2 * kSmall, 0.05); });
+  return 0;
+}();
+
+}  // namespace
+}  // namespace ist::bench

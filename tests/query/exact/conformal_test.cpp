@@ -1,0 +1,47 @@
+#include "support/conformal.h"
+
+#include <gtest/gtest.h>
+
+#include "ist/query/collision_query.h"
+#include "ist/query/inside.h"
+#include "ist/tree/tree_builder.h"
+
+namespace ist::test {
+namespace {
+
+constexpr double kVoxelSize = 0.25;
+
+SphereTree exact_tree_of(const TriangleMesh& mesh) {
+  BuildOptions options;
+  options.voxel_size = kVoxelSize;
+  options.keep_triangles = true;
+  BuildReport report;
+  SphereTree tree = build_tree(mesh, options, &report);
+  EXPECT_EQ(report.turned_components, 0u);
+  return tree;
+}
+
+// Where surfaces lie along each other there is most to find, and the answer is as certain.
+TEST(Conformal, TheGapIsKnownAtAnyTime) {
+  for (const ConformalPair& pair : conformal_pairs(3, 4, 0.3)) {
+    SCOPED_TRACE(pair.name);
+    const SphereTree fixed = exact_tree_of(pair.fixed), moving = exact_tree_of(pair.moving);
+    CollisionQuery query(fixed, moving);
+    const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    const GapResult gap = query.gap(pose, 0);
+    EXPECT_NEAR(gap.gap.lower, pair.gap, 0.01 * pair.gap);
+    EXPECT_NEAR(gap.gap.upper, pair.gap, 0.01 * pair.gap);
+    EXPECT_EQ(query.touches(pose), Touch::kNo);
+    EXPECT_EQ(InsideTest(pair.fixed, pair.moving).at(pose),
+              pair.name == "shells" || pair.name == "inside" ? Inside::kMoving : Inside::kNone);
+    std::vector<Contact> contacts(1 << 20);
+    for (const std::uint64_t tests : {1u, 100u, 10'000u, 100'000'000u}) {
+      const QueryResult result = query.collide(pose, contacts, {.sphere_tests = tests});
+      EXPECT_LE(result.gap->lower, 1.01 * pair.gap);
+      EXPECT_GE(result.gap->upper, 0.99 * pair.gap);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ist::test
