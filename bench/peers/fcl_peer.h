@@ -5,8 +5,8 @@
 
 namespace ist::bench {
 
-/// FCL: BVHModel<OBBRSS<double>>, which collides by oriented boxes and measures by swept rectangles.
-/// Two contestants:
+/// FCL: BVHModel<OBBRSS<double>>, which collides by oriented boxes and measures by swept
+/// rectangles. Two contestants:
 ///  - `fcl`: collide() with one contact; collide() with all of them and enable_contact off, which
 ///    still lists both triangles of each and leaves out only their points and normals, so is the
 ///    fastest complete answer; distance() without nearest points, which is exact: more than the
