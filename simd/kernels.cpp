@@ -7,6 +7,7 @@
 
 #include "ist/query/bound_lanes.h"
 #include "simd/bounds-inl.h"
+#include "simd/near-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
@@ -216,14 +217,14 @@ struct Compiled {
 };
 
 // One target's functions, or null where this compiler does not make them.
-#define IST_KERNELS(NAME, TARGET)                                                  \
-  Compiled {                                                                       \
-    HWY_##TARGET, {                                                                \
-      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts), {    \
-        HWY_CHOOSE_##TARGET(DecodePart), HWY_CHOOSE_##TARGET(TurnPart),            \
-            HWY_CHOOSE_##TARGET(TouchRowPart), HWY_CHOOSE_##TARGET(MeasureRowPart) \
-      }                                                                            \
-    }                                                                              \
+#define IST_KERNELS(NAME, TARGET)                                                   \
+  Compiled {                                                                        \
+    HWY_##TARGET, {                                                                 \
+      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteContacts),       \
+          {HWY_CHOOSE_##TARGET(DecodePart), HWY_CHOOSE_##TARGET(TurnPart),          \
+           HWY_CHOOSE_##TARGET(TouchRowPart), HWY_CHOOSE_##TARGET(MeasureRowPart)}, \
+          HWY_CHOOSE_##TARGET(FindNear)                                             \
+    }                                                                               \
   }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),

@@ -6,16 +6,16 @@
 namespace ist::bench {
 namespace {
 
-constexpr std::size_t kLeaves = 1 << 20, kPairs = 1 << 16;
+constexpr std::size_t kPairs = 1 << 16;
 
 class IstPeer final : public Peer {
  public:
-  IstPeer() : Peer("ist"), leaves_(kLeaves), pairs_(kPairs) {}
+  IstPeer() : Peer("ist"), pairs_(kPairs) {}
 
   [[nodiscard]] bool answers(Question) const override { return true; }
   bool meets(const Eigen::Isometry3d& pose) override { return query_.touches(pose) == Touch::kYes; }
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
-    return query_.collide_exact(pose, pairs_, leaves_).triangle_pairs;
+    return query_.collide_exact(pose, pairs_).triangle_pairs;
   }
   std::uint64_t candidates(const Eigen::Isometry3d& pose) override { return pairs(pose); }
   GapInterval distance(const Eigen::Isometry3d& pose) override {
@@ -30,7 +30,6 @@ class IstPeer final : public Peer {
   }
 
   CollisionQuery query_{exact_trees(0.2).first, exact_trees(0.2).second, options()};
-  std::vector<Contact> leaves_;
   std::vector<TrianglePair> pairs_;
 };
 

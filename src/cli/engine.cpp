@@ -59,27 +59,25 @@ class Simd final : public EngineOf<CollisionQuery> {
   [[nodiscard]] int workers() const override { return query_.workers(); }
 
  private:
-  ExactResult collide(const Eigen::Isometry3d& pose) {
-    if (options_.exact) return query_.collide_exact(pose, pairs_, contacts_);
-    ExactResult result;
-    result.leaves = options_.max_tests ? query_.collide(pose, contacts_, {*options_.max_tests})
-                                       : query_.collide(pose, contacts_);
-    return result;
+  QueryResult collide(const Eigen::Isometry3d& pose) {
+    return options_.max_tests ? query_.collide(pose, contacts_, {*options_.max_tests})
+                              : query_.collide(pose, contacts_);
   }
 
   Answer timed(const Eigen::Isometry3d& pose) {
     while (true) {
       const auto begin = std::chrono::steady_clock::now();
-      const ExactResult result = collide(pose);
+      const QueryResult leaves = collide(pose);
+      const ExactResult exact = options_.exact ? query_.collide_exact(pose, pairs_) : ExactResult();
       const std::chrono::duration<double, std::micro> time =
           std::chrono::steady_clock::now() - begin;
-      count_ = result.leaves.contacts;
-      if (result.leaves.truncated) contacts_.resize(2 * count_);
-      if (result.truncated) pairs_.resize(2 * result.triangle_pairs);
-      if (result.leaves.truncated || result.truncated) continue;
-      Answer answer{result.leaves, time.count(), std::nullopt, std::nullopt};
-      if (options_.max_tests) answer.gap = result.leaves.gap;
-      if (options_.exact) answer.triangle_pairs = result.triangle_pairs;
+      count_ = leaves.contacts;
+      if (leaves.truncated) contacts_.resize(2 * count_);
+      if (exact.truncated) pairs_.resize(2 * exact.triangle_pairs);
+      if (leaves.truncated || exact.truncated) continue;
+      Answer answer{leaves, time.count(), std::nullopt, std::nullopt};
+      if (options_.max_tests) answer.gap = leaves.gap;
+      if (options_.exact) answer.triangle_pairs = exact.triangle_pairs;
       return answer;
     }
   }

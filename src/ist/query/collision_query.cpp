@@ -16,9 +16,8 @@ namespace {
 
 // A stream looks at so many contacts at a time.
 constexpr std::size_t kWindow = 1 << 12;
-// How far the search for the nearest pair looks first, in parts of what is known to be far enough,
-// and then each time.
-constexpr double kFirstLook = 0.125, kLookFarther = 1.25;
+// Pairs in a frontier where the first contact will do.
+constexpr std::size_t kFewPairs = 1 << 10;
 
 QueryResult invalid_pose() {
   QueryResult result;
@@ -53,7 +52,7 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
   }
   window_.resize(kWindow + kContactSlack);
   if (fixed.triangles() && moving.triangles()) {
-    exact_.emplace(fixed, moving, options.triangle_pairs);
+    exact_.emplace(fixed, moving, policy_, kernels_, options.triangle_pairs);
     for (const Eigen::Vector3d& v : moving.triangles()->mesh.vertices) {
       largest_coordinate_ = std::max(largest_coordinate_, v.cwiseAbs().maxCoeff());
     }
@@ -93,8 +92,7 @@ double CollisionQuery::pad_of(const SearchPose& pose) const noexcept {
   return policy_ == SpherePolicy::kSlab ? pose.slab_pad : pose.ball_pad;
 }
 
-QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& sink,
-                                   Hurry hurry) noexcept {
+QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& sink) noexcept {
   const std::optional<Approach> bodies = approach(pose);
   if (!bodies) return invalid_pose();
   QueryResult result = of_roots(bodies->roots);
@@ -103,9 +101,7 @@ QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& s
   const SearchPose from = narrowed(*bodies);
   // What was added to a reach, and what the test may err by on top.
   result.pad = 2 * pad_of(from);
-  if (hurry == Hurry::kFirst) {
-    result.sphere_tests += alone().run_hurried(from, sink);
-  } else if (auto* shared = std::get_if<SharedSearch>(&search_)) {
+  if (auto* shared = std::get_if<SharedSearch>(&search_)) {
     result.sphere_tests += shared->run(from, sink);
   } else {
     result.sphere_tests += alone().run(from, sink);
@@ -147,93 +143,36 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   return result;
 }
 
-GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) noexcept {
-  const ScopedFloatEnvironment environment;
-  const std::optional<Approach> bodies = approach(pose);
-  if (!bodies) return {QueryStatus::kInvalidPose, {}, 0};
-  const SearchPose plain = narrowed(*bodies);
-  const double pad = pad_of(plain);
-  Search& search = alone();
-  GapResult result{QueryStatus::kDone, bodies->roots.gap, 1};
-  if (pad > fixed_.largest_leaf_radius(policy_) + moving_.largest_leaf_radius(policy_)) {
-    return result;
-  }
-  const Dive near = search.dive(plain);
-  result.sphere_tests += near.tests;
-  double& lower = result.gap.lower;
-  double& upper = result.gap.upper;
-  upper = std::min(upper, near.farthest + pad);
-  if (exact_) {
-    exact_->begin_nearest(*project_to_rigid(pose), upper);
-    static_cast<void>(exact_->take({near.leaves, near.count}));
-    upper = exact_->distance() + exact_->distance_error();
-    if (upper == 0) lower = 0;
-  }
-  const auto far_enough = [&] { return tolerance > 0 ? upper - tolerance : upper; };
-  // Looks ever farther: one search as far as the nearest pair so far could find far too much.
-  for (double within = std::max(lower, kFirstLook * upper); lower < far_enough();
-       within *= kLookFarther) {
-    within = std::min(within, far_enough());
-    const SearchPose grown = narrowed(*bodies, within);  // finds all that is nearer
-    if (exact_) {
-      ContactSink sink(window_, *exact_);
-      result.sphere_tests += search.run_hurried(grown, sink);  // a pair that meets ends it
-      const double distance = exact_->distance(), error = exact_->distance_error();
-      upper = distance + error;
-      lower = distance > 0 ? std::max(lower, std::min(within, distance - error)) : 0;
-      if (distance <= within || within >= far_enough()) break;
-      continue;
-    }
-    ContactSink sink(std::span<Contact>{});
-    const Search::Known known = search.run_within({}, grown, sink);
-    result.sphere_tests += known.tests;
-    upper = std::min(upper, std::min(known.inner.farthest, known.leaves.farthest) - within + pad);
-    if (sink.count() > 0) {  // the nearest leaves are among them
-      lower = std::max(lower, within + known.leaves.touching - pad);
-      break;
-    }
-    lower = std::max(lower, within);
-  }
-  return result;
-}
-
 ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,
-                                          std::span<TrianglePair> out,
-                                          std::span<Contact> leaves) noexcept {
+                                          std::span<TrianglePair> out) noexcept {
   IST_ASSERT(is_exact());
   const ScopedFloatEnvironment environment;
+  const std::optional<Approach> bodies = approach(pose);
   ExactResult result;
-  ContactSink sink(leaves);
-  result.leaves = search(pose, sink);
-  const auto rigid = project_to_rigid(pose);
-  if (!rigid) return result;
-  exact_->begin(*rigid, out);
-  do {
-    if (result.leaves.truncated) {
-      ContactSink all(window_, *exact_);
-      static_cast<void>(search(pose, all));
-    } else {
-      static_cast<void>(exact_->take(leaves.first(result.leaves.contacts)));
-    }
-  } while (exact_->next_pass());
-  exact_->finish();
-  result.triangle_pairs = exact_->count();
+  if (!bodies) {
+    result.status = QueryStatus::kInvalidPose;
+    return result;
+  }
+  result.sphere_tests = 1;
+  if (!bodies->roots.touch) return result;
+  result.triangle_pairs = exact_->pairs(*project_to_rigid(pose), narrowed(*bodies), out);
+  result.sphere_tests += exact_->tests();
   result.truncated = result.triangle_pairs > out.size();
   return result;
 }
 
 Touch CollisionQuery::touches(const Eigen::Isometry3d& pose) noexcept {
   const ScopedFloatEnvironment environment;
-  const auto rigid = project_to_rigid(pose);
-  if (!rigid) return Touch::kInvalidPose;
+  const std::optional<Approach> bodies = approach(pose);
+  if (!bodies) return Touch::kInvalidPose;
+  if (!bodies->roots.touch) return Touch::kNo;
+  const SearchPose from = narrowed(*bodies);
+  if (exact_) return exact_->any(*project_to_rigid(pose), from) ? Touch::kYes : Touch::kNo;
   struct First final : ContactStream {
     bool take(std::span<const Contact>) noexcept override { return false; }
   } first;
-  if (exact_) exact_->begin_any(*rigid);
-  ContactStream& stream = exact_ ? static_cast<ContactStream&>(*exact_) : first;
-  ContactSink sink(window_, stream);
-  static_cast<void>(search(pose, sink, Hurry::kFirst));
-  if (exact_) return exact_->count() > 0 ? Touch::kYes : Touch::kNo;
+  ContactSink sink(window_, first);
+  static_cast<void>(alone().run_hurried(from, sink, kFewPairs));
   return sink.count() > 0 ? Touch::kPossible : Touch::kNo;
 }
 

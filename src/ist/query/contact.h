@@ -47,11 +47,12 @@ struct TrianglePair {
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// What an exact query found, beside the leaves.
+/// What an exact query found.
 struct ExactResult {
-  QueryResult leaves;
-  std::uint64_t triangle_pairs = 0;  ///< all that there are, in the span or not
+  QueryStatus status = QueryStatus::kDone;
   bool truncated = false;            ///< the span was too short: it holds the first pairs
+  std::uint64_t triangle_pairs = 0;  ///< all that there are, in the span or not
+  std::uint64_t sphere_tests = 0;
 };
 
 /// What a query for the distance found.

@@ -1,5 +1,7 @@
 #include "ist/query/dive.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -8,17 +10,17 @@ namespace {
 
 struct Near {
   std::uint32_t fixed, moving;
-  float farthest;
+  float apart;
 };
 
 // The nearest pairs seen, in order.
 class Nearest {
  public:
   void add(const Near& pair) {
-    if (count_ == Dive::kWidth && !(pair.farthest < pairs_[count_ - 1].farthest)) return;
+    if (count_ == Dive::kWidth && !(pair.apart < pairs_[count_ - 1].apart)) return;
     count_ += count_ < Dive::kWidth ? 1U : 0U;
     std::size_t at = count_ - 1;
-    for (; at > 0 && pair.farthest < pairs_[at - 1].farthest; --at) pairs_[at] = pairs_[at - 1];
+    for (; at > 0 && pair.apart < pairs_[at - 1].apart; --at) pairs_[at] = pairs_[at - 1];
     pairs_[at] = pair;
   }
   [[nodiscard]] std::span<const Near> pairs() const { return {pairs_, count_}; }
@@ -28,26 +30,52 @@ class Nearest {
   std::size_t count_ = 0;
 };
 
+using Eight = Eigen::Array<float, 8, 1>;
+
+// How far a row and each of eight moving nodes are apart, or how deep in each other, as measure()
+// says, and how far their points are at most.
+struct Distances {
+  Eight apart, farthest;
+};
+Distances measure_eight(const FixedRows& f, std::size_t row, const MovingLanes& m, bool slabs) {
+  const auto lane = [&](Lane number) { return Eigen::Map<const Eight>(m.lane[number]); };
+  const Eight dx = lane(kX) - f.x[row], dy = lane(kY) - f.y[row], dz = lane(kZ) - f.z[row];
+  const Eight distance = ((dx * dx + dy * dy) + dz * dz).sqrt();
+  const Eight reach = lane(kRadius) + f.radius[row];
+  Distances distances{distance - reach, distance + reach};
+  if (!slabs) return distances;
+  const Eight above_fixed =
+      ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
+  const Eight above_moving =
+      ((dx * lane(kNormalX) + dy * lane(kNormalY)) + dz * lane(kNormalZ)) + lane(kOffset);
+  const Eight high = above_fixed.abs() - (lane(kRadius) + f.half[row]);
+  const Eight over = (above_moving.abs() - (lane(kHalf) + f.scaled_radius[row])) * (1 / kSlabScale);
+  distances.apart = distances.apart.max(high).max(over);
+  return distances;
+}
+
 }  // namespace
 
-Dive dive(const SearchPlan& plan, const SearchPose& pose, SearchScratch& scratch) noexcept {
+Dive dive(const SearchPlan& plan, const Kernels& kernels, const SearchPose& pose,
+          SearchScratch& scratch) noexcept {
   Dive found;
   Nearest nearest;
-  nearest.add({0, 0, std::numeric_limits<float>::infinity()});
-  FixedLanes& a = scratch.fixed;
-  MovingLanes& b = scratch.moving;
+  nearest.add({0, 0, 0});
+  float farthest = std::numeric_limits<float>::infinity();
   FixedRows& rows = scratch.rows[0];
   for (const SearchStep& step : plan.steps()) {
+    const bool slabs = step.fixed.slabs != nullptr;
     const Nearest opened = std::exchange(nearest, {});
     for (const Near& pair : opened.pairs()) {
-      const std::uint32_t of_a = decode(step.fixed, pair.fixed, a, 0);
-      const std::uint32_t of_b = decode(step.moving, pair.moving, b, 0);
+      const std::uint32_t of_a = decode(step.fixed, pair.fixed, scratch.fixed, 0);
+      const std::uint32_t of_b = kernels.parts.decode(step.moving, pair.moving, scratch.moving, 0);
+      kernels.parts.turn(pose, slabs, scratch.fixed, rows);
       for (std::uint32_t i = 0; i < of_a; ++i) {
-        turn(pose, false, a, i, rows);
+        const Distances distances = measure_eight(rows, i, scratch.moving, slabs);
         for (std::uint32_t j = 0; j < of_b; ++j) {
-          Measure measured;
-          static_cast<void>(measure(rows, i, b, j, false, measured));
-          nearest.add({a.name[i], b.name[j], measured.farthest});
+          const auto at = static_cast<Eigen::Index>(j);
+          farthest = std::min(farthest, distances.farthest[at]);
+          nearest.add({scratch.fixed.name[i], scratch.moving.name[j], distances.apart[at]});
         }
       }
       found.tests += of_a * of_b;
@@ -57,7 +85,7 @@ Dive dive(const SearchPlan& plan, const SearchPose& pose, SearchScratch& scratch
     found.leaves[found.count++] = {pair.fixed, pair.moving};
   }
   plan.resolve({found.leaves, found.count});
-  found.farthest = nearest.pairs().front().farthest;
+  found.farthest = farthest;
   return found;
 }
 

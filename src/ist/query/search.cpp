@@ -36,9 +36,9 @@ std::uint64_t Search::run(const SearchPose& pose, ContactSink& sink) noexcept {
   return descend(0, frontiers_[0], 0, pose, sink);
 }
 
-std::uint64_t Search::run_hurried(const SearchPose& pose, ContactSink& sink) noexcept {
-  constexpr std::size_t kFewPairs = 1 << 10;
-  limit(kFewPairs);
+std::uint64_t Search::run_hurried(const SearchPose& pose, ContactSink& sink,
+                                  std::size_t pairs) noexcept {
+  limit(pairs);
   const std::uint64_t tests = run(pose, sink);
   limit(std::numeric_limits<std::size_t>::max());
   return tests;

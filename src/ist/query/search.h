@@ -25,9 +25,10 @@ class Search {
   /// Searches from the pair of the roots down to the leaves, or until the sink is stopped. Returns
   /// the number of pairs tested.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
-  /// The same, for a sink that may stop it soon: comes to its first leaves sooner, and to all of
-  /// them later.
-  std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink) noexcept;
+  /// The same, with no more than so many pairs alive at a level (or those of one fixed node): comes
+  /// to its first leaves sooner, and to all of them later. `pose` may change while the sink takes
+  /// contacts, and is read anew then: with smaller pads what is farther is left out from there on.
+  std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink, std::size_t pairs) noexcept;
 
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
   /// those of the leaves, or more than there is room for. Returns how many steps were made;
@@ -60,7 +61,7 @@ class Search {
 
   /// Pairs of leaves that are near each other.
   [[nodiscard]] Dive dive(const SearchPose& pose) noexcept {
-    return ist::dive(plan_, pose, *scratch_);
+    return ist::dive(plan_, kernels_, pose, *scratch_);
   }
 
   [[nodiscard]] std::size_t bytes() const noexcept;

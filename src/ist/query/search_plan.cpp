@@ -47,15 +47,18 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level)
 
 }  // namespace
 
-SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy) {
+SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                       SearchLevels last) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
   require_addresses(fixed, "fixed");
   require_addresses(moving, "moving");
   int a = fixed.depth(), b = moving.depth();
-  while (a > 0 || b > 0 || steps_.empty()) {  // two leaves alone are a step too
+  while (a > last.fixed || b > last.moving || steps_.empty()) {  // two leaves alone are a step too
     const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
-    const bool open_a = opens(a, edge_a, b, edge_b), open_b = opens(b, edge_b, a, edge_a);
+    const int left_a = a - last.fixed, left_b = b - last.moving;
+    const bool open_a = opens(left_a, edge_a, left_b, edge_b),
+               open_b = opens(left_b, edge_b, left_a, edge_a);
     const std::size_t before =
         std::size_t{fixed.octree().node_count(a)} * moving.octree().node_count(b);
     a -= open_a ? 1 : 0;
@@ -63,8 +66,8 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b)};
     step.fixed.opens = open_a;
     step.moving.opens = open_b;
-    step.fixed.names_addresses = a == 0 && b > 0;
-    step.moving.names_addresses = b == 0 && a > 0;
+    step.fixed.names_addresses = a == last.fixed && b > last.moving;
+    step.moving.names_addresses = b == last.moving && a > last.fixed;
     steps_.push_back(step);
     sizes_.push_back({moving.octree().node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
   }

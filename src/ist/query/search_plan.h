@@ -9,16 +9,22 @@
 
 namespace ist {
 
-/// The steps of a search, from the two roots down to the leaves. Holds references to both trees,
-/// which must outlive it.
+/// The levels at which a search ends: 0 for the leaves.
+struct SearchLevels {
+  int fixed = 0, moving = 0;
+};
+
+/// The steps of a search, from the two roots down to the leaves, or to the nodes of other levels,
+/// which are called leaves here too. Holds references to both trees, which must outlive it.
 ///
 /// Of two levels the one with the larger cubes is opened, and both where neither cube has over √2
 /// times the other's edge. So one tree may be opened alone at first, with the other's root, and one
 /// at last, with the other's leaves; in between both always are.
 class SearchPlan {
  public:
-  /// Both trees must have `policy` (SphereTree::require).
-  SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy);
+  /// Both trees must have `policy` (SphereTree::require), and the levels.
+  SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+             SearchLevels last = {});
 
   [[nodiscard]] const std::vector<SearchStep>& steps() const noexcept { return steps_; }
 

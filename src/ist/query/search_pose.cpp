@@ -43,4 +43,11 @@ SearchPose narrow(const RelativePose& pose, double reaches, double grow) noexcep
   return narrow;
 }
 
+SearchPose grown(const SearchPose& pose, double by) noexcept {
+  SearchPose grown = pose;
+  grown.ball_pad = round_up(pose.ball_pad + by);
+  grown.slab_pad = round_up(pose.slab_pad + by);
+  return grown;
+}
+
 }  // namespace ist

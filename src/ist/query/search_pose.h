@@ -12,4 +12,7 @@ namespace ist {
 /// @param grow    added to the pads, mesh units
 [[nodiscard]] SearchPose narrow(const RelativePose& pose, double reaches, double grow = 0) noexcept;
 
+/// The same motion with larger pads: bounds touch that are no farther apart than `by`, mesh units.
+[[nodiscard]] SearchPose grown(const SearchPose& pose, double by) noexcept;
+
 }  // namespace ist

@@ -69,6 +69,7 @@ constinit const Kernels kScalarKernels{
     "scalar",
     advance_scalar,
     write_contacts_scalar,
-    {decode<MovingLanes::kSize>, turn_rows, touch_row, measure_row}};
+    {decode<MovingLanes::kSize>, turn_rows, touch_row, measure_row},
+    find_near_scalar};
 
 }  // namespace ist

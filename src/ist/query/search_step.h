@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ist/query/contact.h"
+#include "ist/query/exact/triangle_bounds.h"
 #include "ist/tree/bound_blocks.h"
 #include "ist/tree/linear_octree.h"
 
@@ -142,6 +143,7 @@ struct Kernels {
   AdvanceFunction advance;
   WriteContactsFunction write_contacts;
   StepParts parts;
+  FindNearFunction find_near;
 };
 
 /// The plain form of all, which every processor runs.

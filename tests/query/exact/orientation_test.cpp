@@ -24,6 +24,13 @@ int exact_sign(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
   return sgn(mpq_class(from_c(a, 0) * from_c(b, 1) - from_c(a, 1) * from_c(b, 0)));
 }
 
+int expect_exact(const Eigen::Vector3d (&p)[4]) {
+  const int sign = exact_sign(p[0], p[1], p[2], p[3]);
+  EXPECT_EQ(orientation(p[0], p[1], p[2], p[3]), sign) << p[0] << p[1] << p[2] << p[3];
+  EXPECT_EQ(OrientedPlane(p[0], p[1], p[2]).side_of(p[3]), sign) << p[0] << p[1] << p[2] << p[3];
+  return sign;
+}
+
 // How often each sign came, for points that `coordinate` makes.
 struct Signs {
   int negative = 0, zero = 0, positive = 0;
@@ -36,8 +43,7 @@ Signs expect_exact(int times, const Coordinate& coordinate) {
   for (int i = 0; i < times; ++i) {
     Eigen::Vector3d p[4];
     for (Eigen::Vector3d& x : p) x = {coordinate(), coordinate(), coordinate()};
-    const int sign = orientation(p[0], p[1], p[2], p[3]);
-    EXPECT_EQ(sign, exact_sign(p[0], p[1], p[2], p[3])) << p[0] << p[1] << p[2] << p[3];
+    const int sign = expect_exact(p);
     signs.add(sign);
     const Eigen::Vector2d q[] = {p[0].head<2>(), p[1].head<2>(), p[2].head<2>()};
     EXPECT_EQ(orientation(q[0], q[1], q[2]), exact_sign(q[0], q[1], q[2]));
@@ -81,9 +87,7 @@ TEST(Orientation, OfPointsNearlyInAPlane) {
     p[3] = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
     const auto axis = static_cast<Eigen::Index>(random.below(3));
     for (std::size_t k = random.below(4); k > 0; --k) p[3][axis] = std::nextafter(p[3][axis], 9);
-    const int sign = orientation(p[0], p[1], p[2], p[3]);
-    ASSERT_EQ(sign, exact_sign(p[0], p[1], p[2], p[3]));
-    signs.add(sign);
+    signs.add(expect_exact(p));
   }
   EXPECT_GT(signs.negative, 5'000);
   EXPECT_GT(signs.positive, 5'000);

@@ -38,7 +38,7 @@ double exact_distance(const TriangleCorners& a, const TriangleCorners& b) {
 
 template <class Number>
 int expect_near(int times, const Number& number) {
-  int apart = 0;
+  int apart = 0, farther = 0;
   for (int i = 0; i < times && !::testing::Test::HasFailure(); ++i) {
     TriangleCorners a, b;
     double longest = 0;
@@ -54,7 +54,10 @@ int expect_near(int times, const Number& number) {
     EXPECT_NEAR(made, wanted, kTriangleDistanceError * std::max(longest, wanted));
     EXPECT_EQ(made, std::sqrt(ist::distance_squared(b, a)));
     EXPECT_LE(std::sqrt(box_distance_squared(a, b)), wanted * (1 + 1e-15));
+    EXPECT_FALSE(surely_farther(a, b, wanted * (1 + 1e-15)));
+    farther += surely_farther(a, b, 0.9 * wanted) ? 1 : 0;
   }
+  EXPECT_GT(farther, apart / 8);
   return apart;
 }
 

@@ -7,6 +7,7 @@
 #include "ist/query/collision_query.h"
 #include "query/exact/exact_tree.h"
 #include "query/search/guarded.h"
+#include "query/search/targets.h"
 #include "support/exact_polygon.h"
 #include "support/shapes.h"
 
@@ -42,14 +43,10 @@ std::vector<TrianglePair> pairs_of(const SphereTree& fixed, const SphereTree& mo
 
 std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry3d& pose) {
   std::vector<TrianglePair> pairs(1 << 16);
-  std::vector<Contact> leaves(1 << 17);
-  const ExactResult result = query.collide_exact(pose, pairs, leaves);
+  const ExactResult result = query.collide_exact(pose, pairs);
+  EXPECT_EQ(result.status, QueryStatus::kDone);
   EXPECT_FALSE(result.truncated);
-  const Answer answer = ask(query, pose);
-  EXPECT_EQ(result.leaves.contacts, answer.result.contacts);
-  EXPECT_EQ(result.leaves.sphere_tests, answer.result.sphere_tests);
-  leaves.resize(result.leaves.contacts);
-  EXPECT_EQ(leaves, answer.contacts);
+  EXPECT_GE(result.sphere_tests, 1u);
   pairs.resize(result.triangle_pairs);
   return pairs;
 }
@@ -57,12 +54,20 @@ std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry
 void expect_exact(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& pose,
                   std::size_t& touching) {
   const std::vector<TrianglePair> wanted = pairs_of(fixed, moving, pose);
-  for (const SpherePolicy policy : kSpherePolicies) {
-    CollisionOptions options;
-    options.policy = policy;
+  const auto expect = [&](const CollisionOptions& options) {
     CollisionQuery query(fixed, moving, options);
-    EXPECT_EQ(ask_exact(query, pose), wanted) << to_string(policy);
-    EXPECT_EQ(query.touches(pose), wanted.empty() ? Touch::kNo : Touch::kYes) << to_string(policy);
+    EXPECT_EQ(ask_exact(query, pose), wanted) << query.target();
+    EXPECT_EQ(query.touches(pose), wanted.empty() ? Touch::kNo : Touch::kYes) << query.target();
+  };
+  CollisionOptions options;
+  for (const SpherePolicy policy : kSpherePolicies) {
+    SCOPED_TRACE(to_string(policy));
+    options.policy = policy;
+    expect(options);
+  }
+  for (const std::string& target : all_targets()) {
+    options.target = target;
+    expect(options);
   }
   touching += wanted.empty() ? 0U : 1U;
 }
@@ -155,12 +160,11 @@ TEST_F(ManyPairs, WithMemoryOfAnySize) {
 }
 
 TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
-  CollisionQuery query = query_with(1 << 16);
-  for (const std::size_t leaves : {0u, 100u, 1u << 17}) {
-    std::vector<Contact> contacts(leaves);
+  for (const std::size_t memory : {1u, 1u << 16}) {
+    CollisionQuery query = query_with(memory);
     for (std::size_t length = 0; length < wanted_.size() + 40; length += length < 20 ? 1 : 37) {
       Guarded<TrianglePair> out(length, length % 8);
-      const ExactResult result = query.collide_exact(pose_, out.span(), contacts);
+      const ExactResult result = query.collide_exact(pose_, out.span());
       ASSERT_EQ(result.triangle_pairs, wanted_.size());
       ASSERT_EQ(result.truncated, length < wanted_.size());
       const auto count = static_cast<std::ptrdiff_t>(std::min(length, wanted_.size()));
@@ -168,6 +172,19 @@ TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
       ASSERT_TRUE(out.intact());
     }
   }
+}
+
+// A pose that is none has no pairs; nor do bodies whose roots are apart, in one test.
+TEST_F(ManyPairs, OfWhatDoesNotTouchAreNone) {
+  CollisionQuery query = query_with(1 << 16);
+  std::vector<TrianglePair> pairs(10);
+  Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
+  bad.matrix()(0, 0) = 2;
+  EXPECT_EQ(query.collide_exact(bad, pairs).status, QueryStatus::kInvalidPose);
+  const ExactResult far = query.collide_exact(shift({1e9, 0, 0}), pairs);
+  EXPECT_EQ(far.status, QueryStatus::kDone);
+  EXPECT_EQ(far.triangle_pairs, 0u);
+  EXPECT_EQ(far.sphere_tests, 1u);
 }
 
 TEST(Touches, WithoutTrianglesIsAtMostPossible) {

@@ -89,7 +89,7 @@ TEST(Allocations, CertifiedAnswersMakeNone) {
                 for (int i = 0; i < 100; ++i) {
                   // The first lies on itself: whole numbers decide.
                   const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
-                  triangles += query.collide_exact(pose, pairs, contacts).triangle_pairs;
+                  triangles += query.collide_exact(pose, pairs).triangle_pairs;
                   static_cast<void>(query.touches(pose));
                   static_cast<void>(query.gap(pose, 0.01));
                   static_cast<void>(query.collide(pose, contacts, {1000}));

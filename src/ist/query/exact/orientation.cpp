@@ -69,6 +69,28 @@ int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen:
   return exact_orientation(a, b, c, d);
 }
 
+// The same determinant by its last row, -(d - a) · ((b - a) × (c - a)), so that the products of the
+// first two are made once. Shewchuk's bound holds for it too: it has the same form.
+OrientedPlane::OrientedPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             const Eigen::Vector3d& c) noexcept
+    : a_(a), b_(b), c_(c) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index j = (i + 1) % 3, k = (i + 2) % 3;
+    const double left = (b[j] - a[j]) * (c[k] - a[k]), right = (b[k] - a[k]) * (c[j] - a[j]);
+    normal_[i] = left - right;
+    sizes_[i] = std::abs(left) + std::abs(right);
+  }
+}
+
+int OrientedPlane::side_of(const Eigen::Vector3d& d) const noexcept {
+  const double x = a_[0] - d[0], y = a_[1] - d[1], z = a_[2] - d[2];
+  const double determinant = (x * normal_[0] + y * normal_[1]) + z * normal_[2];
+  const double sizes =
+      (std::abs(x) * sizes_[0] + std::abs(y) * sizes_[1]) + std::abs(z) * sizes_[2];
+  if (std::abs(determinant) > kBound3 * sizes && sizes > kSmall) return sign_of(determinant);
+  return exact_orientation(a_, b_, c_, d);
+}
+
 int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                 const Eigen::Vector2d& c) noexcept {
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);

@@ -19,4 +19,19 @@ namespace ist {
 [[nodiscard]] int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                               const Eigen::Vector2d& c) noexcept;
 
+/// The plane through three points, to be asked on which side others lie.
+class OrientedPlane {
+ public:
+  /// Holds references to them.
+  OrientedPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                const Eigen::Vector3d& c) noexcept;
+
+  /// orientation(a, b, c, d). Cost: 2 ns where doubles decide.
+  [[nodiscard]] int side_of(const Eigen::Vector3d& d) const noexcept;
+
+ private:
+  const Eigen::Vector3d &a_, &b_, &c_;
+  double normal_[3], sizes_[3];  // the normal's coordinates, and the sizes of the products in them
+};
+
 }  // namespace ist

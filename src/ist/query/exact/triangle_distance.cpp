@@ -76,4 +76,26 @@ double box_distance_squared(const TriangleCorners& a, const TriangleCorners& b) 
   return sum;
 }
 
+bool surely_farther(const TriangleCorners& a, const TriangleCorners& b, double distance) noexcept {
+  constexpr int kLooks = 4;
+  constexpr double kRounding = 1 + 0x1p-40;
+  // Of the points of one triangle less those of the other, one, and the farthest against it.
+  const auto farthest_against = [](const TriangleCorners& t, const Vector& v) {
+    const double x = dot(t[0], v), y = dot(t[1], v), z = dot(t[2], v);
+    return x <= y ? (x <= z ? t[0] : t[2]) : (y <= z ? t[1] : t[2]);
+  };
+  Vector v = ((a[0] + a[1]) + a[2]) / 3 - ((b[0] + b[1]) + b[2]) / 3;
+  for (int look = 0; look < kLooks; ++look) {
+    const Vector w = farthest_against(a, v) - farthest_against(b, -v);
+    const double along = dot(v, w), length = squared(v);
+    // All differences are at least as far along v as w is: so is the nearest to the origin.
+    if (along > 0 && along * along > distance * distance * length * kRounding) return true;
+    const Vector step = w - v;
+    const double t = squared(step);
+    if (!(t > 0)) return false;
+    v += std::clamp(-dot(v, step) / t, 0.0, 1.0) * step;
+  }
+  return false;
+}
+
 }  // namespace ist

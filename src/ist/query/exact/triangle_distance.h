@@ -16,4 +16,12 @@ inline constexpr double kTriangleDistanceError = 0x1p-24;
 [[nodiscard]] double box_distance_squared(const TriangleCorners& a,
                                           const TriangleCorners& b) noexcept;
 
+/// Whether it is certain, after a few looks, that two triangles are farther apart than `distance`:
+/// each look is along the vector between the two points that are nearest so far. False decides
+/// nothing. Cost: 20 ns a look.
+/// Source: E. G. Gilbert, An iterative procedure for computing the minimum of a quadratic form on a
+/// convex set, SIAM Journal on Control 4, 1966.
+[[nodiscard]] bool surely_farther(const TriangleCorners& a, const TriangleCorners& b,
+                                  double distance) noexcept;
+
 }  // namespace ist

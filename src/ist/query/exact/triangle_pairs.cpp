@@ -3,21 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/base/assert.h"
 #include "ist/query/exact/triangle_distance.h"
 
 namespace ist {
 namespace {
-
-// The corners' bounding boxes; closed, and no rounding in it.
-bool boxes_apart(const TriangleCorners& a, const TriangleCorners& b) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto [a_low, a_high] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
-    const auto [b_low, b_high] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
-    if (a_high < b_low || b_high < a_low) return true;
-  }
-  return false;
-}
 
 // Fewer would only make for more passes.
 constexpr std::size_t kFewest = 1 << 12;
@@ -28,41 +17,50 @@ std::uint64_t part_of(std::uint32_t fixed, std::uint32_t moving) {
   return mixed >> 32;
 }
 
-// A number that is none of the stamps.
-void next(std::uint32_t& stamp, std::vector<std::uint32_t>& stamps) {
-  if (++stamp != 0) return;
-  std::fill(stamps.begin(), stamps.end(), 0);
-  stamp = 1;
-}
-
-double longest_edge(const TriangleMesh& mesh) {
+double longest_edge(const NodeTriangles& triangles) {
   double squared = 0;
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      squared =
-          std::max(squared, (mesh.vertices[t[i]] - mesh.vertices[t[(i + 1) % 3]]).squaredNorm());
+  for (std::uint32_t i = 0; i < triangles.count(); ++i) {
+    const TriangleCorners& t = triangles.corners(i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      squared = std::max(squared, (t[k] - t[(k + 1) % 3]).squaredNorm());
     }
   }
   return std::sqrt(squared);
 }
 
-const LeafTriangles& triangles_of(const SphereTree& tree) {
-  IST_ASSERT(tree.triangles().has_value());
-  return *tree.triangles();
+// How far two boxes are apart along the axis on which they are most.
+float apart(const FloatBox& a, const FloatBox& b) {
+  float most = a.low[0] - b.high[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    most = std::max({most, a.low[i] - b.high[i], b.low[i] - a.high[i]});
+  }
+  return most;
 }
+
+// So many moving triangles are held against the lanes at a time.
+constexpr std::size_t kAtATime = 64;
 
 }  // namespace
 
 TrianglePairs::TrianglePairs(const SphereTree& fixed, const SphereTree& moving,
-                             std::size_t candidates)
-    : fixed_(triangles_of(fixed)),
-      moving_(triangles_of(moving)),
+                             FindNearFunction find_near, std::size_t candidates)
+    : fixed_(fixed),
+      moving_(moving),
+      find_near_(find_near),
+      origin_(fixed.lattice().origin()),
       seen_(std::max(candidates, kFewest)),
-      moved_(moving_.mesh.vertices.size()),
-      moved_in_(moving_.mesh.vertices.size(), 0),
-      near_(moving_.mesh.triangles.size() + 1),
-      near_leaf_(moving_.mesh.triangles.size(), 0),
-      longest_edge_(std::max(longest_edge(fixed_.mesh), longest_edge(moving_.mesh))) {}
+      moved_corners_(moving_.count()),
+      moved_bounds_(moving_.count()),
+      moved_(moving_.count()),
+      last_seen_(moving_.count()),
+      near_(moving_.count()),
+      found_(kAtATime * TriangleLanes::kSize + kNearSlack),
+      longest_edge_(std::max(longest_edge(fixed_), longest_edge(moving_))) {
+  fixed_bounds_.reserve(fixed_.count());
+  for (std::uint32_t i = 0; i < fixed_.count(); ++i) {
+    fixed_bounds_.push_back(bounds_of(fixed_.corners(i), origin_));
+  }
+}
 
 void TrianglePairs::begin(const Eigen::Isometry3d& pose) noexcept {
   pose_ = pose;
@@ -72,7 +70,8 @@ void TrianglePairs::begin(const Eigen::Isometry3d& pose) noexcept {
   passes_ = 1;
   pass_ = 0;
   seen_.clear();
-  next(query_, moved_in_);
+  moved_count_ = 0;
+  first_turn_ = turn_ + 1;
 }
 
 void TrianglePairs::begin(const Eigen::Isometry3d& pose, std::span<TrianglePair> out) noexcept {
@@ -107,65 +106,118 @@ bool TrianglePairs::next_pass() noexcept {
 
 bool TrianglePairs::take(std::span<const Contact> contacts) noexcept {
   for (std::size_t i = 0; i < contacts.size();) {
-    const std::uint32_t leaf = contacts[i].fixed;
-    next(leaf_, near_leaf_);
-    std::size_t count = 0;
-    for (; i < contacts.size() && contacts[i].fixed == leaf; ++i) {
-      for (const std::uint32_t moving : moving_.lists[contacts[i].moving]) {
-        near_[count] = moving;
-        count += near_leaf_[moving] != leaf_ ? 1U : 0U;
-        near_leaf_[moving] = leaf_;
-      }
+    const std::uint32_t node = contacts[i].fixed;
+    const FloatBox cube = fixed_.cube(node);
+    const float distance = reach();
+    next_turn();
+    for (; i < contacts.size() && contacts[i].fixed == node; ++i) {
+      take_moving(contacts[i].moving, cube, distance);
     }
-    for (const std::uint32_t fixed : fixed_.lists[leaf]) {
-      for (std::size_t k = 0; k < count; ++k) {
-        if (!try_pair(fixed, near_[k])) return false;
-      }
+    std::span<const std::uint32_t> fixed = fixed_[node];
+    while (near_count_ > 0 && !fixed.empty()) {
+      const std::size_t count = std::min(fixed.size(), TriangleLanes::kSize);
+      if (!try_lanes(fixed.first(count), cube)) return false;
+      fixed = fixed.subspan(count);
     }
   }
   return true;
 }
 
-// Whether more pairs are wanted.
-bool TrianglePairs::try_pair(std::uint32_t fixed, std::uint32_t moving) noexcept {
-  if (passes_ > 1 && (part_of(fixed, moving) & (passes_ - 1)) != pass_) return true;
-  switch (seen_.insert(fixed, moving)) {
-    case PairSet::Insertion::kKnown:
-      return true;
-    case PairSet::Insertion::kFull:
-      if (wanted_ == Wanted::kAll) {
-        full_ = true;
-        return false;
-      }
-      seen_.clear();  // tested twice at worst
-      break;
-    case PairSet::Insertion::kNew:
-      break;
+// A turn that no triangle was looked at in; within a query, one after the other.
+void TrianglePairs::next_turn() noexcept {
+  near_count_ = 0;
+  if (++turn_ != 0) return;
+  std::fill(last_seen_.begin(), last_seen_.end(), Seen());
+  turn_ = first_turn_ = 1;
+  moved_count_ = 0;
+}
+
+// How far apart triangles may be that are looked for: rounded up, and by as much as differences of
+// floats err.
+float TrianglePairs::reach() const noexcept {
+  return wanted_ == Wanted::kNearest ? static_cast<float>(nearest_ * (1 + 0x1p-20)) : 0;
+}
+
+void TrianglePairs::take_moving(std::uint32_t node, const FloatBox& cube, float distance) noexcept {
+  for (const std::uint32_t triangle : moving_[node]) {
+    Seen& seen = last_seen_[triangle];
+    if (seen.turn == turn_) continue;
+    if (seen.turn < first_turn_) {
+      seen.place = moved_count_++;
+      moved_[seen.place] = triangle;
+      moved_corners_[seen.place] = moved(moving_.corners(triangle));
+      moved_bounds_[seen.place] = bounds_of(moved_corners_[seen.place], origin_);
+    }
+    seen.turn = turn_;
+    near_[near_count_] = seen.place;
+    near_count_ += apart(moved_bounds_[seen.place].box, cube) > distance ? 0U : 1U;
   }
-  const TriangleMesh &a = fixed_.mesh, &b = moving_.mesh;
-  const Triangle &in_a = a.triangles[fixed], &in_b = b.triangles[moving];
-  const TriangleCorners corners_a = {a.vertices[in_a[0]], a.vertices[in_a[1]], a.vertices[in_a[2]]};
-  const TriangleCorners corners_b = {moved(in_b[0]), moved(in_b[1]), moved(in_b[2])};
+}
+
+// All that is near against some triangles of a fixed node. Where triangles meet they do so in one
+// of the cubes of the fixed one, and so only what is in this cube is looked at. Whether more pairs
+// are wanted.
+bool TrianglePairs::try_lanes(std::span<const std::uint32_t> fixed, const FloatBox& cube) noexcept {
+  lanes_.count = 0;
+  for (const std::uint32_t triangle : fixed) {
+    TriangleBounds bounds = fixed_bounds_[triangle];
+    for (std::size_t i = 0; i < 3; ++i) {
+      bounds.box.low[i] = std::max(bounds.box.low[i], cube.low[i]);
+      bounds.box.high[i] = std::min(bounds.box.high[i], cube.high[i]);
+    }
+    lanes_.add(bounds);
+  }
+  for (std::size_t begin = 0; begin < near_count_; begin += kAtATime) {
+    const std::size_t found =
+        find_near_(lanes_, moved_bounds_.data(), near_.data() + begin,
+                   std::min(kAtATime, near_count_ - begin), reach(), found_.data());
+    for (std::size_t k = 0; k < found; ++k) {
+      if (!try_pair(fixed[found_[k].lane], found_[k].triangle)) return false;
+    }
+  }
+  return true;
+}
+
+// Of a fixed triangle, and a moving one in its place. Whether more pairs are wanted.
+bool TrianglePairs::try_pair(std::uint32_t fixed, std::uint32_t place) noexcept {
+  const std::uint32_t moving = moved_[place];
+  if (passes_ > 1 && (part_of(fixed, moving) & (passes_ - 1)) != pass_) return true;
+  if (!remember(fixed, moving)) return !full_;
+  const TriangleCorners &a = fixed_.corners(fixed), &b = moved_corners_[place];
   if (wanted_ == Wanted::kNearest) {
-    measure(corners_a, corners_b);
+    measure(a, b);
     return nearest_ > 0;
   }
-  if (boxes_apart(corners_a, corners_b) || !triangles_meet(corners_a, corners_b)) return true;
-  add({fixed, moving});
+  if (!triangles_meet(a, b)) return true;
+  add({fixed_.index(fixed), moving_.index(moving)});
   return wanted_ == Wanted::kAll;
 }
 
-const Eigen::Vector3d& TrianglePairs::moved(std::uint32_t vertex) noexcept {
-  Eigen::Vector3d& x = moved_[vertex];
-  if (moved_in_[vertex] != query_) {
-    moved_in_[vertex] = query_;
-    const Eigen::Vector3d& v = moving_.mesh.vertices[vertex];
-    const auto& m = pose_.matrix();
+// Whether a pair is new, as far as is known, and to be looked at.
+bool TrianglePairs::remember(std::uint32_t fixed, std::uint32_t moving) noexcept {
+  switch (seen_.insert(fixed, moving)) {
+    case PairSet::Insertion::kNew:
+      return true;
+    case PairSet::Insertion::kKnown:
+      return false;
+    case PairSet::Insertion::kFull:
+      break;
+  }
+  full_ = wanted_ == Wanted::kAll;
+  if (!full_) seen_.clear();  // looked at twice at worst
+  return !full_;
+}
+
+TriangleCorners TrianglePairs::moved(const TriangleCorners& corners) const noexcept {
+  const auto& m = pose_.matrix();
+  TriangleCorners moved;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d& v = corners[k];
     for (Eigen::Index i = 0; i < 3; ++i) {
-      x[i] = ((m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2]) + m(i, 3);
+      moved[k][i] = ((m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2]) + m(i, 3);
     }
   }
-  return x;
+  return moved;
 }
 
 // Where the span is full it is a heap of the first pairs seen so far, the last of them on top.
@@ -185,7 +237,7 @@ void TrianglePairs::add(TrianglePair pair) noexcept {
 
 void TrianglePairs::measure(const TriangleCorners& a, const TriangleCorners& b) noexcept {
   const double boxes = box_distance_squared(a, b);
-  if (boxes >= nearest_ * nearest_) return;
+  if (boxes >= nearest_ * nearest_ || surely_farther(a, b, nearest_)) return;
   if (boxes == 0 && triangles_meet(a, b)) {
     nearest_ = 0;
     return;
@@ -203,8 +255,10 @@ void TrianglePairs::finish() noexcept {
 }
 
 std::size_t TrianglePairs::bytes() const noexcept {
-  return seen_.bytes() + moved_.size() * (sizeof(Eigen::Vector3d) + sizeof(std::uint32_t)) +
-         (near_.size() + near_leaf_.size()) * sizeof(std::uint32_t);
+  return fixed_.bytes() + moving_.bytes() + seen_.bytes() +
+         (fixed_bounds_.size() + moved_bounds_.size()) * sizeof(TriangleBounds) +
+         moved_corners_.size() * sizeof(TriangleCorners) + last_seen_.size() * sizeof(Seen) +
+         (moved_.size() + near_.size()) * sizeof(std::uint32_t) + found_.size() * sizeof(NearPair);
 }
 
 }  // namespace ist

@@ -7,28 +7,35 @@
 
 #include "ist/query/contact.h"
 #include "ist/query/contact_sink.h"
+#include "ist/query/exact/node_triangles.h"
 #include "ist/query/exact/pair_set.h"
+#include "ist/query/exact/triangle_bounds.h"
 #include "ist/query/exact/triangles_meet.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
 
-/// From pairs of leaves to the pairs of triangles in them that meet, or to the nearest. Each pair
-/// of triangles is tested once, however many leaves it is in; a pair that meets has a point in
-/// common, which lies in a leaf of either tree, and these two leaves' geometry meets: so none is
-/// missed.
+/// From pairs of nodes, each tree's of the level of its NodeTriangles, to the pairs of triangles in
+/// them that meet, or to the nearest. Each pair is tested once, however many nodes it is in; a pair
+/// that meets has a point in common, which lies in a node of either tree, and these
+/// two nodes' geometry meets: so none is missed.
 ///
 /// A moving vertex v is where the pose, projected to a rigid motion, puts it: in double,
 /// ((r₀₀ v₀ + r₀₁ v₁) + r₀₂ v₂) + t₀ and so on, with no product fused to a sum. The test is exact
 /// for these doubles.
 ///
-/// Memory is bounded: where more pairs of triangles are near each other than it holds, a part of
-/// them is looked at in each of several passes over the leaves.
+/// Memory is bounded: where more pairs are near each other than it holds, a part of them is looked
+/// at in each of several passes over the nodes.
 class TrianglePairs final : public ContactStream {
  public:
-  /// Both trees must have triangles. Memory: 28 bytes a moving vertex, 8 a moving triangle, and 20
+  /// Both trees must have triangles. Memory: 200 bytes a fixed triangle, 300 a moving one, and 20
   /// to 36 for each of `candidates`, the pairs that can be told apart in one pass.
-  TrianglePairs(const SphereTree& fixed, const SphereTree& moving, std::size_t candidates);
+  TrianglePairs(const SphereTree& fixed, const SphereTree& moving, FindNearFunction find_near,
+                std::size_t candidates);
+
+  /// The levels of the nodes that are taken.
+  [[nodiscard]] int fixed_level() const noexcept { return fixed_.level(); }
+  [[nodiscard]] int moving_level() const noexcept { return moving_.level(); }
 
   /// Begins a query. `pose` is rigid. Pairs go into `out`, the first of them where it is too short.
   void begin(const Eigen::Isometry3d& pose, std::span<TrianglePair> out) noexcept;
@@ -38,7 +45,7 @@ class TrianglePairs final : public ContactStream {
   /// meets. One pass is enough.
   void begin_nearest(const Eigen::Isometry3d& pose, double limit) noexcept;
 
-  /// Whether another pass over all pairs of leaves is to be made; the next one begins.
+  /// Whether another pass over all pairs of nodes is to be made; the next one begins.
   [[nodiscard]] bool next_pass() noexcept;
   bool take(std::span<const Contact> contacts) noexcept override;
 
@@ -54,20 +61,39 @@ class TrianglePairs final : public ContactStream {
 
  private:
   void begin(const Eigen::Isometry3d& pose) noexcept;
-  [[nodiscard]] bool try_pair(std::uint32_t fixed, std::uint32_t moving) noexcept;
-  [[nodiscard]] const Eigen::Vector3d& moved(std::uint32_t vertex) noexcept;
+  [[nodiscard]] bool try_pair(std::uint32_t fixed, std::uint32_t place) noexcept;
+  [[nodiscard]] TriangleCorners moved(const TriangleCorners& corners) const noexcept;
+  [[nodiscard]] bool remember(std::uint32_t fixed, std::uint32_t moving) noexcept;
   void add(TrianglePair pair) noexcept;
   void measure(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 
-  const LeafTriangles& fixed_;
-  const LeafTriangles& moving_;
+  void next_turn() noexcept;
+  void take_moving(std::uint32_t node, const FloatBox& cube, float distance) noexcept;
+  [[nodiscard]] bool try_lanes(std::span<const std::uint32_t> fixed, const FloatBox& cube) noexcept;
+  [[nodiscard]] float reach() const noexcept;
+
+  NodeTriangles fixed_, moving_;
+  FindNearFunction find_near_;
+  Eigen::Vector3d origin_;                    // of bounds, fixed mesh coordinates
+  std::vector<TriangleBounds> fixed_bounds_;  // of its triangles
   PairSet seen_;
-  std::vector<Eigen::Vector3d> moved_;   // moving vertices, those that this query has asked for
-  std::vector<std::uint32_t> moved_in_;  // the query that asked last
-  std::uint32_t query_ = 0;
-  std::vector<std::uint32_t> near_;       // moving triangles in the leaves that touch a fixed leaf
-  std::vector<std::uint32_t> near_leaf_;  // the fixed leaf that a moving triangle was last near to
-  std::uint32_t leaf_ = 0;
+  // Moving triangles in the order in which the query asked for them, where the pose puts them.
+  std::vector<TriangleCorners> moved_corners_;
+  std::vector<TriangleBounds> moved_bounds_;
+  std::vector<std::uint32_t> moved_;  // which those are
+  std::uint32_t moved_count_ = 0;
+  // For each moving triangle the turn, of one fixed node, at which it was last looked at, and its
+  // place in the above if that was in this query.
+  struct Seen {
+    std::uint32_t turn = 0, place = 0;
+  };
+  std::vector<Seen> last_seen_;
+  std::uint32_t turn_ = 0, first_turn_ = 0;
+  // Of triangles in the moving nodes that touch a fixed node, those that reach into its cube.
+  std::vector<std::uint32_t> near_;
+  std::size_t near_count_ = 0;
+  TriangleLanes lanes_;
+  std::vector<NearPair> found_;
 
   Eigen::Isometry3d pose_;
   std::span<TrianglePair> out_;

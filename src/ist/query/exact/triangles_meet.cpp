@@ -66,12 +66,9 @@ bool has_area(const TriangleCorners& t) {
 
 using Sides = std::array<int, 3>;
 
-Sides sides_of(const TriangleCorners& points, const TriangleCorners& plane) {
-  Sides sides;
-  for (std::size_t i = 0; i < 3; ++i) {
-    sides[i] = orientation(plane[0], plane[1], plane[2], points[i]);
-  }
-  return sides;
+Sides sides_of(const TriangleCorners& points, const TriangleCorners& of) {
+  const OrientedPlane plane(of[0], of[1], of[2]);
+  return {plane.side_of(points[0]), plane.side_of(points[1]), plane.side_of(points[2])};
 }
 
 bool on_one_side(const Sides& sides) {

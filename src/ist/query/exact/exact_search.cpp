@@ -1,0 +1,100 @@
+#include "ist/query/exact/exact_search.h"
+
+#include <algorithm>
+
+#include "ist/query/search_pose.h"
+
+namespace ist {
+namespace {
+
+// So many pairs of nodes are looked at at a time, and are alive at one level.
+constexpr std::size_t kPairs = 1 << 12;
+// Fewer where what is found soon makes the rest of the search smaller.
+constexpr std::size_t kFewPairs = 512;
+
+// Passes pairs of nodes on, and narrows the search down to what can be nearer than what was found.
+class Nearer final : public ContactStream {
+ public:
+  Nearer(TrianglePairs& triangles, const SearchPose& plain, double tolerance)
+      : triangles_(triangles),
+        plain_(plain),
+        tolerance_(tolerance > 0 ? tolerance : 0),
+        pose_(grown(plain, within())) {}
+
+  /// Nothing that is nearer is left out.
+  [[nodiscard]] double within() const {
+    return std::max(0.0, triangles_.distance() + 2 * triangles_.distance_error() - tolerance_);
+  }
+  [[nodiscard]] const SearchPose& pose() const { return pose_; }
+
+  bool take(std::span<const Contact> nodes) noexcept override {
+    const bool more = triangles_.take(nodes);
+    pose_ = grown(plain_, within());
+    return more;
+  }
+
+ private:
+  TrianglePairs& triangles_;
+  const SearchPose& plain_;
+  double tolerance_;
+  SearchPose pose_;
+};
+
+}  // namespace
+
+ExactSearch::ExactSearch(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                         const Kernels& kernels, std::size_t triangle_pairs)
+    : triangles_(fixed, moving, kernels.find_near, triangle_pairs),
+      plan_(fixed, moving, policy, {triangles_.fixed_level(), triangles_.moving_level()}),
+      search_(plan_, kernels, kPairs),
+      window_(kPairs + kContactSlack) {}
+
+std::uint64_t ExactSearch::pairs(const Eigen::Isometry3d& rigid, const SearchPose& from,
+                                 std::span<TrianglePair> out) noexcept {
+  triangles_.begin(rigid, out);
+  tests_ = 0;
+  do {
+    ContactSink sink(window_, triangles_);
+    tests_ += search_.run(from, sink);
+  } while (triangles_.next_pass());
+  triangles_.finish();
+  return triangles_.count();
+}
+
+bool ExactSearch::any(const Eigen::Isometry3d& rigid, const SearchPose& from) noexcept {
+  triangles_.begin_any(rigid);
+  const Dive near = search_.dive(from);  // where bodies meet, they mostly do here
+  tests_ = near.tests;
+  if (take_near(near)) {
+    ContactSink sink(window_, triangles_);
+    tests_ += search_.run_hurried(from, sink, kPairs);
+  }
+  return triangles_.count() > 0;
+}
+
+GapInterval ExactSearch::nearest(const Eigen::Isometry3d& rigid, const SearchPose& from, double pad,
+                                 double limit, double tolerance) noexcept {
+  const Dive near = search_.dive(from);
+  tests_ = near.tests;
+  triangles_.begin_nearest(rigid, std::min(limit, near.farthest + pad));
+  const bool more = take_near(near);
+  Nearer nearer(triangles_, from, tolerance);
+  if (more) {
+    ContactSink sink(window_, nearer);
+    tests_ += search_.run_hurried(nearer.pose(), sink, kFewPairs);
+  }
+  const double distance = triangles_.distance(), error = triangles_.distance_error();
+  return {distance > 0 ? std::max(0.0, std::min(nearer.within(), distance) - error) : 0,
+          distance + error};
+}
+
+// Some pairs of nodes in any order.
+bool ExactSearch::take_near(const Dive& near) noexcept {
+  return triangles_.take({near.leaves, near.count});
+}
+
+std::size_t ExactSearch::bytes() const noexcept {
+  return triangles_.bytes() + search_.bytes() + window_.size() * sizeof(Contact);
+}
+
+}  // namespace ist
