@@ -56,6 +56,33 @@ TEST(Gap, HoldsTheDistance) {
   EXPECT_GT(apart, 30);
 }
 
+// Two rough spheres, one in the other, which are nearly as near to each other in many places: so
+// that the nearest is found late, and far from where the search began.
+TEST(Gap, OfShellsThatAreNearInManyPlaces) {
+  Random random(11);
+  const auto rough = [&](double radius) {
+    TriangleMesh mesh = icosphere(3, radius);
+    for (Eigen::Vector3d& v : mesh.vertices) v *= 1 + random.uniform(-0.02, 0.02);
+    return mesh;
+  };
+  for (int i = 0; i < 4; ++i) {
+    const SphereTree fixed = exact_tree(rough(1.06), 60), moving = exact_tree(rough(0.95), 60);
+    CollisionQuery query(fixed, moving);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Isometry3d pose = pose_of(random.rotation(), {0, 0, 0});
+      const double distance =
+          mesh_distance(fixed.triangles()->mesh, moving.triangles()->mesh, pose);
+      ASSERT_GT(distance, 0);
+      for (const double tolerance : {0.0, 0.3 * distance}) {
+        const GapInterval gap = query.gap(pose, tolerance).gap;
+        EXPECT_LE(gap.lower, distance + kRounding);
+        EXPECT_GE(gap.upper, distance - kRounding);
+        EXPECT_LE(gap.upper - gap.lower, tolerance + kRounding);
+      }
+    }
+  }
+}
+
 class GapOfBalls : public ::testing::Test {
  protected:
   const SphereTree tree_ = exact_tree(icosphere(3, 1), 20);
