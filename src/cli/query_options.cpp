@@ -140,7 +140,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->capture_default_str();
   command.add_option("--contacts", options.contacts,
                      "write the first engine's contacts here, one JSON object each, in fixed "
-                     "coordinates");
+                     "coordinates: of each pose all leaf pairs, and then the contact points they "
+                     "come to, at most 32");
   command.add_flag(
       "--verify", options.verify,
       "ask each engine each pose once more and check those answers against what is promised, some "

@@ -9,14 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/contact_writer.h"
 #include "cli/engine.h"
 #include "cli/progress_bar.h"
 #include "cli/verify.h"
 #include "ist/base/error.h"
-#include "ist/base/output_file.h"
 #include "ist/base/pose.h"
 #include "ist/query/inside.h"
-#include "ist/tree/saved_spheres.h"
 
 namespace ist::cli {
 namespace {
@@ -138,43 +137,6 @@ void print_table(const Engines& engines, const Bodies& bodies,
   }
 }
 
-// Centres of the touching spheres, in fixed coordinates.
-class ContactWriter {
- public:
-  ContactWriter(const std::filesystem::path& file, const Bodies& bodies)
-      : file_(file),
-        bodies_(bodies),
-        fixed_(level_spheres(bodies.fixed, bodies.policy, 0)),
-        moving_(level_spheres(bodies.moving, bodies.policy, 0)) {}
-
-  void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const Contact> contacts) {
-    // As the query does: the pose that is answered for is the rigid one nearest to what was given.
-    const Eigen::Isometry3d rigid = *project_to_rigid(pose);
-    std::string lines;
-    for (const Contact& contact : contacts) {
-      const Eigen::Vector3d fixed = bodies_.fixed.lattice().origin() + fixed_[contact.fixed].centre;
-      const Eigen::Vector3d moving =
-          rigid * (bodies_.moving.lattice().origin() + moving_[contact.moving].centre);
-      const nlohmann::ordered_json line{{"index", index},
-                                        {"fixed_centre", {fixed[0], fixed[1], fixed[2]}},
-                                        {"moving_centre", {moving[0], moving[1], moving[2]}}};
-      lines += line.dump() + '\n';
-      if (lines.size() > (1 << 20)) flush(lines);
-    }
-    flush(lines);
-  }
-  void commit() { file_.commit(); }
-
- private:
-  void flush(std::string& lines) {
-    file_.write(lines.data(), lines.size());
-    lines.clear();
-  }
-  OutputFile file_;
-  const Bodies& bodies_;
-  std::vector<Ball> fixed_, moving_;
-};
-
 }  // namespace
 
 void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
@@ -190,8 +152,8 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   for (const std::string& name : options.engines) {
     engines.push_back(make_engine(name, bodies.fixed, bodies.moving, with));
   }
-  std::unique_ptr<ContactWriter> writer;
-  if (!options.contacts.empty()) writer = std::make_unique<ContactWriter>(options.contacts, bodies);
+  std::optional<ContactWriter> writer;
+  if (!options.contacts.empty()) writer.emplace(options.contacts, bodies);
 
   std::vector<std::vector<Answer>> answers(poses.size(), std::vector<Answer>(engines.size()));
   Progress progress;
@@ -206,8 +168,8 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
         if (inside && round == 0 && answer.last.triangle_pairs == 0U) {
           answer.inside = inside->at(*project_to_rigid(poses[i]));
         }
-        if (writer != nullptr && round == 0 && e == 0) {
-          writer->write(i, poses[i], engines[e]->contacts());
+        if (writer && round == 0 && e == 0) {
+          writer->write(i, poses[i], engines[e]->contacts(), answer.last.result.complete);
         }
       }
       progress.add(1);
@@ -215,7 +177,7 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
   }
   bar.reset();
   if (options.verify) verify(engines, bodies, poses);
-  if (writer != nullptr) writer->commit();
+  if (writer) writer->commit();
   if (!options.json) {
     print_table(engines, bodies, answers);
     return;

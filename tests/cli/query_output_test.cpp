@@ -13,6 +13,23 @@ using nlohmann::json;
 
 class QueryOutput : public CliTest {
  protected:
+  // A contact point of two balls of radius 2, of voxels of 0.5 and 0.4, the second moved along x.
+  static void check_point(const json& point, double shift) {
+    EXPECT_EQ(point.size(), 5u) << point;
+    const auto p = point["position"].get<std::vector<double>>(),
+               n = point["normal"].get<std::vector<double>>();
+    ASSERT_TRUE(p.size() == 3 && n.size() == 3);
+    EXPECT_NEAR(std::hypot(n[0], n[1], n[2]), 1, 1e-12);
+    EXPECT_GT(point["weight"], 0);
+    EXPECT_GE(point["depth"], -0.9);
+    EXPECT_LE(point["depth"], 0.45);
+    // Where both surfaces are, or between such places that are joined.
+    EXPECT_NEAR(std::hypot(p[0], p[1], p[2]), 2, 1);
+    EXPECT_NEAR(std::hypot(p[0] - shift, p[1], p[2]), 2, 1);
+    // From the first ball to the second: along x, where it is between them.
+    EXPECT_GT(n[0], 0);
+  }
+
   // Every key of a line, and no other, with its type.
   static void check_line(const json& line) {
     using Type = json::value_t;
@@ -153,12 +170,18 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
                   spheres, "--engine", "reference", "--engine", "simd"});
     const auto lines = json_lines(result.out);
     std::map<std::size_t, std::size_t> count;
+    std::map<std::size_t, std::vector<json>> points;
     std::size_t last = 0;
     for (const json& contact : json_lines(file_content(path("contacts.jsonl")))) {
-      EXPECT_EQ(contact.size(), 3u);
       const auto index = contact["index"].get<std::size_t>();
       EXPECT_GE(index, last);
       last = index;
+      if (contact.contains("position")) {
+        points[index].push_back(contact);
+        continue;
+      }
+      EXPECT_EQ(contact.size(), 3u);
+      EXPECT_EQ(points.count(index), 0u);  // they come after all leaf pairs of a pose
       ++count[index];
       const auto fixed = contact["fixed_centre"].get<std::vector<double>>();
       const auto moving = contact["moving_centre"].get<std::vector<double>>();
@@ -171,9 +194,28 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
       EXPECT_NEAR(std::hypot(fixed[0], fixed[1], fixed[2]), 2, 0.5);
       EXPECT_NEAR(std::hypot(moving[0] - shift, moving[1], moving[2]), 2, 0.5);
     }
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(lines[2 * i]["contacts"], count[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(lines[2 * i]["contacts"], count[i]);
+      EXPECT_EQ(points[i].empty(), count[i] == 0);
+      for (const json& point : points[i]) check_point(point, i == 0 ? 3.5 : 1);
+    }
     EXPECT_GT(count[0], 0u);
   }
+}
+
+// Forces are not made of a part: an answer that was stopped has no points.
+TEST_F(QueryOutput, ContactPointsAreThoseOfAWholeAnswer) {
+  const std::string tree = ball_tree("ball.ist", "slab"), file = path("contacts.jsonl");
+  const auto points = [&](const std::string& tests) {
+    ist_well(
+        {"collide", tree, tree, "--poses", poses({3.5}), "--contacts", file, "--max-tests", tests});
+    std::size_t count = 0;
+    for (const json& line : json_lines(file_content(file))) count += line.contains("position");
+    return count;
+  };
+  EXPECT_GT(points("1000000"), 1u);
+  EXPECT_LE(points("1000000"), 32u);
+  EXPECT_EQ(points("100"), 0u);
 }
 
 TEST_F(QueryOutput, ContactsAreThereWholeOrNotAtAll) {

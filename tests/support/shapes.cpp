@@ -112,6 +112,63 @@ TriangleMesh pipe(int quarter, double inner, double outer, double height) {
   return mesh;
 }
 
+TriangleMesh revolved(const std::vector<Eigen::Vector2d>& outline, int around) {
+  constexpr double kTurn = 6.283185307179586;
+  TriangleMesh mesh;
+  std::vector<std::vector<std::uint32_t>> rings;  // the vertices of each point of the outline
+  for (const Eigen::Vector2d& point : outline) {
+    auto& ring = rings.emplace_back();
+    for (int i = 0; i < around; ++i) {
+      if (point[0] == 0 && i > 0) {
+        ring.push_back(ring[0]);
+        continue;
+      }
+      const double angle = kTurn * i / around;
+      ring.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.emplace_back(point[0] * std::cos(angle), point[0] * std::sin(angle), point[1]);
+    }
+  }
+  const auto add = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
+  };
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    const auto &from = rings[k], &to = rings[(k + 1) % rings.size()];
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const std::size_t next = (i + 1) % from.size();
+      add(from[i], from[next], to[next]);
+      add(from[i], to[next], to[i]);
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh torus(double ring, double tube, int around, int across) {
+  constexpr double kTurn = 6.283185307179586;
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i < across; ++i) {
+    const double angle = kTurn * i / across;
+    outline.emplace_back(ring + tube * std::cos(angle), tube * std::sin(angle));
+  }
+  return revolved(outline, around);
+}
+
+TriangleMesh tube(double inner, double outer, double half, double edge) {
+  constexpr double kTurn = 6.283185307179586;
+  const std::vector<Eigen::Vector2d> corners = {
+      {inner, -half}, {outer, -half}, {outer, half}, {inner, half}};
+  std::vector<Eigen::Vector2d> outline;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Eigen::Vector2d &a = corners[k], b = corners[(k + 1) % corners.size()];
+    if (a[0] == 0 && b[0] == 0) {  // the axis
+      outline.push_back(a);
+      continue;
+    }
+    const int parts = static_cast<int>(std::ceil((b - a).norm() / edge));
+    for (int i = 0; i < parts; ++i) outline.push_back(a + (b - a) * i / parts);
+  }
+  return revolved(outline, static_cast<int>(std::ceil(kTurn * outer / edge)));
+}
+
 TriangleMesh open_strip(int squares) {
   TriangleMesh mesh;
   for (int i = 0; i <= squares; ++i) {
@@ -137,6 +194,11 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
 
 TriangleMesh inside_out(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+TriangleMesh turned(TriangleMesh mesh, const Eigen::Matrix3d& by) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = by * vertex;
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "ist/mesh/triangle_mesh.h"
 
@@ -24,6 +25,17 @@ namespace ist::test {
 
 /// Likewise, with a hole along its axis: a thick pipe.
 [[nodiscard]] TriangleMesh pipe(int quarter, double inner, double outer, double height);
+/// What an outline sweeps about z, in `around` parts, its vertices on the surface. The outline is
+/// of (radius, z), closed and counterclockwise; points at radius 0 become one vertex each.
+[[nodiscard]] TriangleMesh revolved(const std::vector<Eigen::Vector2d>& outline, int around);
+
+/// A torus about z, normals outward, its vertices on the surface: `around` times `across` squares
+/// of two triangles.
+[[nodiscard]] TriangleMesh torus(double ring, double tube, int around, int across);
+
+/// The tube between two cylinders about z of radius `inner` and `outer`, |z| <= `half`; with
+/// `inner` 0 a cylinder. Its squares are about `edge` wide.
+[[nodiscard]] TriangleMesh tube(double inner, double outer, double half, double edge);
 
 /// A flat strip of `squares` unit squares along x, of two triangles each, normals along +z.
 [[nodiscard]] TriangleMesh open_strip(int squares);
@@ -33,6 +45,9 @@ namespace ist::test {
 
 /// The mesh with every triangle turned over.
 [[nodiscard]] TriangleMesh inside_out(TriangleMesh mesh);
+
+/// The mesh turned about the origin.
+[[nodiscard]] TriangleMesh turned(TriangleMesh mesh, const Eigen::Matrix3d& by);
 
 /// The mesh moved.
 [[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by);

@@ -73,6 +73,15 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, ContactStream
   return search(pose, sink);
 }
 
+QueryResult CollisionQuery::contact_points(const Eigen::Isometry3d& pose,
+                                           ContactPoints& points) noexcept {
+  IST_ASSERT(points.is_between(fixed_, moving_) && points.policy() == policy_);
+  if (!points.begin(pose)) return invalid_pose();
+  const QueryResult result = collide(pose, points);
+  points.finish();
+  return result;
+}
+
 std::optional<CollisionQuery::Approach> CollisionQuery::approach(
     const Eigen::Isometry3d& pose) const noexcept {
   const auto relative = relative_pose(pose, fixed_.lattice(), moving_.lattice());

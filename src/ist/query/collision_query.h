@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "ist/query/contact.h"
+#include "ist/query/contacts/contact_points.h"
 #include "ist/query/exact/exact_search.h"
 #include "ist/query/root_test.h"
 #include "ist/query/search.h"
@@ -73,6 +74,12 @@ class CollisionQuery {
   /// Likewise, until the budget is spent: then what is known by then. `gap` is always given.
   [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out,
                                     const Budget& budget) noexcept;
+
+  /// Likewise, and reduces them all to contact points and to the sums that forces are made of; none
+  /// of it is kept where the pose is no rigid motion. `points` is of the same trees and policy.
+  /// Cost: that of collide(), and 40 to 100 ns a contact.
+  [[nodiscard]] QueryResult contact_points(const Eigen::Isometry3d& pose,
+                                           ContactPoints& points) noexcept;
 
   /// The distance between the surfaces, until the interval is no wider than `tolerance`, mesh
   /// units, or without triangles until the leaves are reached. With triangles it is that of two

@@ -75,6 +75,28 @@ TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
   EXPECT_GE(query.sharing().chunks, 200u);
 }
 
+// Nor do contact points, whether there is room for all that is touched or it is merged.
+TEST(Allocations, ContactPointsMakeNone) {
+  const Scene& scene = solids()[0];
+  for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
+    for (const std::size_t room : {std::size_t{10}, std::size_t{1} << 15}) {
+      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
+      ContactPoints points(scene.fixed, scene.moving, policy, {32, room});
+      std::size_t found = 0;
+      EXPECT_EQ(allocations_of([&] {
+                  for (int i = 0; i < 100; ++i) {
+                    Eigen::Isometry3d pose = scene.pose;
+                    pose.translation()[2] += 0.01 * i;
+                    static_cast<void>(query.contact_points(pose, points));
+                    found += points.points().size();
+                  }
+                }),
+                0u);
+      EXPECT_GT(found, 500u);
+    }
+  }
+}
+
 // Nor do certified answers: not for the distance, nor for triangles, whatever their memory.
 TEST(Allocations, CertifiedAnswersMakeNone) {
   const SphereTree tree = exact_tree(icosphere(3, 1), 20);

@@ -67,6 +67,23 @@ TEST_F(SystemCalls, AQueryMakesNone) {
   }
 }
 
+TEST_F(SystemCalls, ContactPointsMakeNone) {
+  EXPECT_EXIT(
+      {
+        const Scene& scene = jaws();
+        CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+        ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab, {32, 100});
+        forbid_system_calls();
+        for (int i = 0; i < 100; ++i) {
+          Eigen::Isometry3d pose = scene.pose;
+          pose.translation()[2] += 0.01 * i;
+          static_cast<void>(query.contact_points(pose, points));
+        }
+        end_process(points.points().size() > 8 ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
 TEST_F(SystemCalls, ACallerWithASecondWorkerMakesNone) {
   EXPECT_EXIT(query_in_silence(jaws(), SpherePolicy::kTight, 2), ::testing::ExitedWithCode(0), "");
 }

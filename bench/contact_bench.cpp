@@ -1,0 +1,61 @@
+// Contact points of a closing: what reducing every leaf pair costs, beside finding them.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "ist/query/collision_query.h"
+#include "support/bodies.h"
+
+namespace ist::bench {
+namespace {
+
+void reduce(benchmark::State& state, double voxel_size, SpherePolicy policy, std::size_t most,
+            double dz) {
+  const auto& [fixed, moving] = trees(voxel_size);
+  CollisionOptions options;
+  options.policy = policy;
+  CollisionQuery query(fixed, moving, options);
+  ContactPoints points(fixed, moving, policy, {most, ContactPointOptions{}.touched_leaves});
+  const Eigen::Isometry3d pose = closing(dz);
+  std::vector<Contact> contacts(1 << 20);
+  const std::uint64_t count = query.collide(pose, contacts).contacts;
+  if (count > contacts.size()) {
+    state.SkipWithError("there are more contacts than there is room for");
+    return;
+  }
+  contacts.resize(count);
+  for (auto _ : state) {
+    static_cast<void>(points.begin(pose));
+    points.take(contacts);
+    points.finish();
+  }
+  const auto pairs = static_cast<double>(count);
+  state.counters["pairs"] = pairs;
+  state.counters["points"] = static_cast<double>(points.points().size());
+  state.counters["MB"] = static_cast<double>(points.bytes()) / 1e6;
+  state.counters["per_pair"] = benchmark::Counter(
+      pairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.SetLabel(pair_name());
+}
+
+const int kRegistered = [] {
+  for (const double size : {0.8, 0.2}) {
+    for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
+      for (const std::size_t most : {std::size_t{0}, ContactPointOptions{}.points}) {
+        for (const double dz : kClosing) {
+          const std::string name = "contact_points/" + std::to_string(size).substr(0, 3) + "/" +
+                                   std::string(to_string(policy)) + "/" + std::to_string(most) +
+                                   "/" + std::to_string(dz).substr(0, 4);
+          benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+            reduce(state, size, policy, most, dz);
+          })->Unit(benchmark::kMicrosecond);
+        }
+      }
+    }
+  }
+  return 0;
+}();
+
+}  // namespace
+}  // namespace ist::bench

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ist/query/contacts/contact_pair.h"
+#include "ist/query/contacts/node_parents.h"
+
+namespace ist {
+
+/// The part of a leaf pair's weight that its ancestors leave it, 0 … 1.
+///
+/// Bounds are not nested: two leaves whose own bounds overlap are no contact where those of two of
+/// their ancestors come apart. A weight that knew the leaves alone would jump there. So the least
+/// overlap of all pairs of ancestors that the search tests, in parts of the width over which a
+/// weight fades, is a factor of it.
+///
+/// Contacts come in the order of the fixed tree, so that the same ancestors are asked for again and
+/// again: the last answers are kept, and the last bounds, a few of each step of the search. Cost: 3
+/// ns for a pair that is known, 20 ns for one that is not.
+class AncestorShare {
+ public:
+  AncestorShare(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                const NodeParents& fixed_parents, const NodeParents& moving_parents,
+                const ContactScale& scale);
+
+  /// Begins a query; `pose` must last as long.
+  void begin(const RelativePose& pose) noexcept;
+
+  /// Of two leaves.
+  [[nodiscard]] double of(std::uint32_t fixed, std::uint32_t moving) noexcept {
+    if (steps_.empty()) return 1;
+    const Step& first = steps_[0];
+    const std::uint32_t a = first.fixed_level > 0 ? fixed_parents_.of(0, fixed) : fixed;
+    const std::uint32_t b = first.moving_level > 0 ? moving_parents_.of(0, moving) : moving;
+    const Known& known = first.known[b & (kKnown - 1)];
+    return is(known, a, b) ? known.share : find(0, a, b);
+  }
+
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Known {
+    std::uint32_t query = 0;
+    std::uint32_t fixed, moving;
+    double share;
+  };
+  struct MovedBound {
+    std::uint32_t query = 0;
+    std::uint32_t node;
+    NodeBound bound;
+  };
+  static constexpr std::size_t kKnown = 256;  // a step; a power of two
+  struct Step {
+    int fixed_level, moving_level;
+    std::uint32_t bound_of;  // a fixed node, whose bound is here
+    NodeBound bound;
+    std::array<MovedBound, kKnown> moved;  // moving nodes, by their last bits
+    std::array<Known, kKnown> known;       // pairs, by the last bits of the moving node
+  };
+
+  [[nodiscard]] bool is(const Known& known, std::uint32_t fixed,
+                        std::uint32_t moving) const noexcept {
+    return known.query == query_ && known.fixed == fixed && known.moving == moving;
+  }
+  // Of a pair of nodes of a step and of all pairs above it.
+  [[nodiscard]] double find(std::size_t step, std::uint32_t fixed, std::uint32_t moving) noexcept;
+  [[nodiscard]] double own(Step& step, std::uint32_t fixed, std::uint32_t moving) noexcept;
+  [[nodiscard]] const NodeBound& moved(Step& step, std::uint32_t moving) noexcept;
+
+  const SphereTree& fixed_;
+  const SphereTree& moving_;
+  SpherePolicy policy_;
+  const NodeParents& fixed_parents_;
+  const NodeParents& moving_parents_;
+  double width_;
+  const RelativePose* pose_ = nullptr;
+  std::uint32_t query_ = 0;
+  std::vector<Step> steps_;  // the search's, from the last but one to the roots
+};
+
+}  // namespace ist

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "ist/query/contacts/contact_pair.h"
+
+namespace ist {
+
+/// How fast one leaf pair's part of ContactSums can change, at most, while the moving body moves:
+/// each a constant by the way that is moved, |change| <= rate · motion. So a sum changes by at most
+/// rate · motion · (pairs with a weight before + pairs with a weight after).
+///
+/// The motion from one pose to another, mesh units, is |how far the origin of the moving tree's
+/// frame goes| + lever · |angle in radians|.
+///
+/// With w = A u b |e|, A the area, u the share of the balls, b the least share of the slabs and of
+/// all ancestors' balls and slabs, and e the mean normal, for a motion m:
+///  - no bound's centre, and no height over a slab, changes by over m, and e by over m / (2 lever);
+///  - u = (ρ² - d²) / reach² changes by 2 ρ m / reach², ρ <= 1.02 reach; b by m / width; both are
+///  at
+///    most 1: so A u b changes by g m, g = A (2.04 / reach + 1 / width);
+///  - w, and w times the direction, which is A u b e: by (g + A / (2 lever)) m;
+///  - with x = d + 2s, |e| x is the clamped e · (pf - pm) plus 2 s |e|: it changes by m + (P/2 + s)
+///    m / lever, P <= 2.8 s the most that the surface points are apart, and the direction times it
+///    by 3/2 s m / lever more; it is at most 3 s. So w x n changes by (3 s g + A (1 + 3.9 s /
+///    lever)) m;
+///  - a position by m / 2, and it is no farther than `far` from the fixed frame's origin: a torque
+///    by far times its force's rate and half the greatest force.
+struct ContactRates {
+  double lever;  ///< mesh units; the radius, round the moving frame's origin, of all that counts
+  double weight, pressure_force, pressure_torque, spring_force, spring_torque;
+
+  ContactRates(const SphereTree& fixed, const SphereTree& moving,
+               const ContactScale& scale) noexcept {
+    const double s = scale.size;
+    // A fixed ancestor's centre is no farther from a leaf of it than its own radius and the leaf's.
+    lever = (fixed.reach() + moving.reach()) + 4 * s;
+    const double far = fixed.reach() + 2.5 * s;
+    const double share = scale.area * (2.04 / scale.reach + 1 / scale.width);
+    weight = share + 0.5 * scale.area / lever;
+    pressure_force = weight;
+    pressure_torque = far * pressure_force + 0.5 * scale.area;
+    spring_force = 3 * s * share + scale.area * (1 + 3.9 * s / lever);
+    spring_torque = far * spring_force + 1.5 * s * scale.area;
+  }
+};
+
+}  // namespace ist

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "ist/query/collision_query.h"
+#include "query/query_cases.h"
+
+namespace ist::test {
+
+/// What one query found, kept.
+struct Touched {
+  ContactSums sums;
+  std::vector<ContactPoint> points;
+  QueryResult result;
+};
+
+[[nodiscard]] inline Touched touched(CollisionQuery& query, ContactPoints& points,
+                                     const Eigen::Isometry3d& pose) {
+  const QueryResult result = query.contact_points(pose, points);
+  return {points.sums(), {points.points().begin(), points.points().end()}, result};
+}
+
+/// Everything of one pose, at most so many points.
+[[nodiscard]] inline Touched touched(const SphereTree& fixed, const SphereTree& moving,
+                                     SpherePolicy policy, const Eigen::Isometry3d& pose,
+                                     std::size_t most = 1 << 14) {
+  CollisionOptions options;
+  options.policy = policy;
+  CollisionQuery query(fixed, moving, options);
+  ContactPoints points(fixed, moving, policy, {most, std::size_t{1} << 20});
+  return touched(query, points, pose);
+}
+
+/// Whether they are the same, bit by bit.
+[[nodiscard]] inline bool same(const Wrench& a, const Wrench& b) {
+  return a.force == b.force && a.torque == b.torque;
+}
+[[nodiscard]] inline bool same(const ContactSums& a, const ContactSums& b) {
+  return a.weight == b.weight && a.pairs == b.pairs && a.about == b.about &&
+         same(a.pressure, b.pressure) && same(a.spring, b.spring);
+}
+[[nodiscard]] inline bool same(const ContactPoint& a, const ContactPoint& b) {
+  return a.position == b.position && a.normal == b.normal && a.depth == b.depth &&
+         a.weight == b.weight;
+}
+[[nodiscard]] inline bool same(const Touched& a, const Touched& b) {
+  return same(a.sums, b.sums) &&
+         std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                    [](const ContactPoint& p, const ContactPoint& q) { return same(p, q); });
+}
+
+}  // namespace ist::test

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "ist/mesh/mesh_io.h"
+#include "ist/tree/tree_builder.h"
+#include "query/contacts/closed_forms.h"
+#include "query/contacts/contact_cases.h"
+#include "query/search/scenes.h"
+#include "support/data_dir.h"
+#include "support/skip.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+// A wrench on the moving body as one on the fixed body, in the moving body's coordinates about
+// `about`, from about `before`.
+Wrench mirrored(const Wrench& wrench, const Isometry3d& pose, const Vector3d& before,
+                const Vector3d& about) {
+  const Wrench moved = wrench.about(pose * about - before);
+  const Eigen::Matrix3d back = pose.linear().transpose();
+  return {-(back * moved.force), -(back * moved.torque)};
+}
+
+void expect_near(const Wrench& a, const Wrench& b, double part, double lever) {
+  EXPECT_LE((a.force - b.force).norm(), part * b.force.norm());
+  EXPECT_LE((a.torque - b.torque).norm(), part * (b.torque.norm() + lever * b.force.norm()));
+}
+
+// Leaf pairs are those of the other query the other way round, but for a few in the pad, and the
+// wrenches are opposite.
+void expect_mirrored(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                     const Isometry3d& pose) {
+  CollisionOptions options;
+  options.policy = policy;
+  CollisionQuery there(fixed, moving, options), back(moving, fixed, options);
+  std::vector<Contact> pairs = ask(there, pose).contacts,
+                       others = ask(back, pose.inverse()).contacts;
+  for (Contact& contact : others) std::swap(contact.fixed, contact.moving);
+  const auto before = [](const Contact& a, const Contact& b) {
+    return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+  };
+  std::sort(others.begin(), others.end(), before);
+  std::vector<Contact> differ;
+  std::set_symmetric_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
+                                std::back_inserter(differ), before);
+  EXPECT_LE(differ.size(), 2 + pairs.size() / 200);
+
+  ContactPoints points(fixed, moving, policy), swapped(moving, fixed, policy);
+  const ContactSums a = touched(there, points, pose).sums,
+                    b = touched(back, swapped, pose.inverse()).sums;
+  if (!differ.empty()) {  // those that only one of them has are as good as none
+    ASSERT_TRUE(points.begin(pose));
+    std::vector<Contact> of_first;
+    std::set_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
+                        std::back_inserter(of_first), before);
+    points.take(of_first);
+    EXPECT_LE(points.sums().weight, 1e-5 * a.weight);
+  }
+  // Far less than the 2 % that are promised: a pair is the same seen from either side.
+  constexpr double kPart = 1e-6;
+  EXPECT_NEAR(a.weight, b.weight, kPart * b.weight);
+  const double lever = moving.reach();
+  expect_near(mirrored(a.pressure, pose, a.about, b.about), b.pressure, kPart, lever);
+  expect_near(mirrored(a.spring, pose, a.about, b.about), b.spring, kPart, lever);
+}
+
+TEST(SwappedBodies, FeelTheOpposite) {
+  for (const Scene& scene : {solids()[0], solids()[1], solids()[2], jaws()}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
+      expect_mirrored(scene.fixed, scene.moving, policy, scene.pose);
+    }
+  }
+}
+
+// What a pose's inverse is rounded to moves a pair in or out of the pad.
+TEST(SwappedBodies, FeelTheOppositeWhereSurfacesAreKnown) {
+  for (const ClosedForm& form : closed_forms()) {
+    const auto tree = [](const Solid& solid) {
+      BuildOptions options;
+      options.voxel_size = 0.3;
+      return build_tree(solid.mesh(0.3), options);
+    };
+    const SphereTree fixed = tree(form.fixed), moving = tree(form.moving);
+    for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
+      SCOPED_TRACE(form.name + ", " + std::string(to_string(policy)));
+      expect_mirrored(fixed, moving, policy, form.pose(0.15));
+    }
+  }
+}
+
+TEST(SwappedBodies, FeelTheOppositeInAHumanJaw) {
+  const auto poses = data_dir() / "truth_human.json";
+  if (!std::filesystem::exists(poses)) IST_SKIP(poses << " is not there");
+  BuildOptions options;
+  options.voxel_size = 0.8;
+  const SphereTree fixed = build_tree(read_mesh(data_dir() / "human_maxilla.stl"), options);
+  const SphereTree moving = build_tree(read_mesh(data_dir() / "human_mandible.stl"), options);
+  std::size_t touching = 0;
+  for (const nlohmann::json& item : nlohmann::json::parse(std::ifstream(poses))) {
+    const auto numbers = item["pose"].get<std::vector<double>>();
+    Isometry3d pose;
+    std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+    for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
+      SCOPED_TRACE(item["label"].get<std::string>() + ", " + std::string(to_string(policy)));
+      const Touched found = touched(fixed, moving, policy, pose, 32);
+      if (found.sums.pairs == 0) continue;
+      ++touching;
+      expect_mirrored(fixed, moving, policy, pose);
+      EXPECT_LE(found.points.size(), 32u);
+      for (const ContactPoint& p : found.points) {
+        EXPECT_NEAR(p.normal.norm(), 1, 1e-12);
+        EXPECT_GE(p.depth, -1.6 - 1e-9);
+        EXPECT_LE(p.depth, 0.8 + 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(touching, 8u);
+}
+
+}  // namespace
+}  // namespace ist::test
