@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -40,7 +41,9 @@ struct Distances {
 Distances measure_eight(const FixedRows& f, std::size_t row, const MovingLanes& m, bool slabs) {
   const auto lane = [&](Lane number) { return Eigen::Map<const Eight>(m.lane[number]); };
   const Eight dx = lane(kX) - f.x[row], dy = lane(kY) - f.y[row], dz = lane(kZ) - f.z[row];
-  const Eight distance = ((dx * dx + dy * dy) + dz * dz).sqrt();
+  // One by one: Eigen's root of several is by an estimate, whose bits depend on the processor.
+  const Eight distance =
+      ((dx * dx + dy * dy) + dz * dz).unaryExpr([](float x) { return std::sqrt(x); });
   const Eight reach = lane(kRadius) + f.radius[row];
   Distances distances{distance - reach, distance + reach};
   if (!slabs) return distances;
