@@ -16,8 +16,8 @@ namespace {
 
 // A stream looks at so many contacts at a time.
 constexpr std::size_t kWindow = 1 << 12;
-// Pairs in a frontier where the first contact will do.
-constexpr std::size_t kFewPairs = 1 << 10;
+// Fixed nodes that are searched at a time where the first contact will do.
+constexpr std::size_t kFewGroups = 16;
 
 QueryResult invalid_pose() {
   QueryResult result;
@@ -181,7 +181,7 @@ Touch CollisionQuery::touches(const Eigen::Isometry3d& pose) noexcept {
     bool take(std::span<const Contact>) noexcept override { return false; }
   } first;
   ContactSink sink(window_, first);
-  static_cast<void>(alone().run_hurried(from, sink, kFewPairs));
+  static_cast<void>(alone().run_hurried(from, sink, kFewGroups));
   return sink.count() > 0 ? Touch::kPossible : Touch::kNo;
 }
 

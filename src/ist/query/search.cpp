@@ -13,7 +13,6 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
     const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
     const std::size_t capacity = std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
     Memory& memory = memory_.emplace_back();
-    memory.pairs = capacity;
     memory.groups.resize(capacity + kFrontierSlack);
     memory.moving.resize(capacity + kFrontierSlack);
     frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
@@ -25,22 +24,16 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   static_cast<void>(widen(pose, 64, tests));
 }
 
-void Search::limit(std::size_t pairs) noexcept {
-  for (std::size_t i = 0; i < frontiers_.size(); ++i) {
-    frontiers_[i].capacity = std::min(pairs, memory_[i].pairs);
-  }
-}
-
 std::uint64_t Search::run(const SearchPose& pose, ContactSink& sink) noexcept {
   set_roots();
   return descend(0, frontiers_[0], 0, pose, sink);
 }
 
 std::uint64_t Search::run_hurried(const SearchPose& pose, ContactSink& sink,
-                                  std::size_t pairs) noexcept {
-  limit(pairs);
+                                  std::size_t groups) noexcept {
+  groups_at_once_ = groups;
   const std::uint64_t tests = run(pose, sink);
-  limit(std::numeric_limits<std::size_t>::max());
+  groups_at_once_ = kAllGroups;
   return tests;
 }
 
@@ -80,7 +73,9 @@ std::uint64_t Search::descend(std::size_t step, const Frontier& in, std::size_t 
   std::uint64_t tests = 0;
   while (cursor.group < in.group_count && !sink.stopped()) {
     out.group_count = out.moving_count = 0;
-    tests += kernels_.advance(plan_.steps()[step], pose, in, cursor, out, *scratch_);
+    Frontier some = in;
+    some.group_count = cursor.group + std::min(groups_at_once_, in.group_count - cursor.group);
+    tests += kernels_.advance(plan_.steps()[step], pose, some, cursor, out, *scratch_);
     if (out.group_count > 0) tests += descend(step + 1, out, 0, pose, sink);
   }
   return tests;

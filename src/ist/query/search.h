@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -25,10 +26,10 @@ class Search {
   /// Searches from the pair of the roots down to the leaves, or until the sink is stopped. Returns
   /// the number of pairs tested.
   std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
-  /// The same, with no more than so many pairs alive at a level (or those of one fixed node): comes
-  /// to its first leaves sooner, and to all of them later. `pose` may change while the sink takes
-  /// contacts, and is read anew then: with smaller pads what is farther is left out from there on.
-  std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink, std::size_t pairs) noexcept;
+  /// The same, with so many fixed nodes at a time at each level: comes to its first leaves sooner,
+  /// and to all of them later. `pose` may change while the sink takes contacts, and is read anew
+  /// then: with smaller pads what is farther is left out from there on.
+  std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink, std::size_t groups) noexcept;
 
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
   /// those of the leaves, or more than there is room for. Returns how many steps were made;
@@ -70,11 +71,8 @@ class Search {
   struct Memory {
     std::vector<SearchGroup> groups;
     std::vector<std::uint32_t> moving;
-    std::size_t pairs;  // that there is room for
   };
   void set_roots() noexcept;
-  // A frontier is full with so many pairs already, or with those of one fixed node.
-  void limit(std::size_t pairs) noexcept;
   [[nodiscard]] bool descend_within(std::size_t step, const SearchPose& pose, ContactSink& sink,
                                     Spending& spending, Known& known) noexcept;
   [[nodiscard]] bool advance_within(std::size_t step, const SearchPose& pose, SearchCursor& cursor,
@@ -85,6 +83,8 @@ class Search {
   std::vector<Memory> memory_;
   std::vector<Frontier> frontiers_;  // before each step, and the leaves
   std::unique_ptr<SearchScratch> scratch_;
+  static constexpr std::size_t kAllGroups = std::numeric_limits<std::size_t>::max();
+  std::size_t groups_at_once_ = kAllGroups;
 };
 
 }  // namespace ist

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "ist/query/search.h"
 
@@ -18,9 +19,9 @@ Search::Known Search::run_within(const Budget& budget, const SearchPose& pose,
   known.steps = plan_.steps().size();
   set_roots();
   std::size_t& room = frontiers_.back().capacity;
-  room = std::min(kLeavesAtOnce, room);
+  const std::size_t all_room = std::exchange(room, std::min(kLeavesAtOnce, room));
   static_cast<void>(descend_within(0, pose, sink, spending, known));
-  room = memory_.back().pairs;
+  room = all_room;
   known.tests = spending.tests();
   return known;
 }

@@ -8,35 +8,28 @@ namespace ist {
 namespace {
 
 // So many pairs of nodes are looked at at a time, and are alive at one level.
-constexpr std::size_t kPairs = 1 << 12;
-// Fewer where what is found soon makes the rest of the search smaller.
-constexpr std::size_t kFewPairs = 512;
+constexpr std::size_t kPairs = 1 << 14;
+// So many fixed nodes are searched at a time where a pair that meets ends the search, and where
+// what is found soon makes the rest of it smaller.
+constexpr std::size_t kGroups = 64, kFewGroups = 16;
 
 // Passes pairs of nodes on, and narrows the search down to what can be nearer than what was found.
 class Nearer final : public ContactStream {
  public:
-  Nearer(TrianglePairs& triangles, const SearchPose& plain, double tolerance)
-      : triangles_(triangles),
-        plain_(plain),
-        tolerance_(tolerance > 0 ? tolerance : 0),
-        pose_(grown(plain, within())) {}
+  Nearer(TrianglePairs& triangles, const SearchPose& plain)
+      : triangles_(triangles), plain_(plain), pose_(grown(plain, triangles.within())) {}
 
-  /// Nothing that is nearer is left out.
-  [[nodiscard]] double within() const {
-    return std::max(0.0, triangles_.distance() + 2 * triangles_.distance_error() - tolerance_);
-  }
   [[nodiscard]] const SearchPose& pose() const { return pose_; }
 
   bool take(std::span<const Contact> nodes) noexcept override {
     const bool more = triangles_.take(nodes);
-    pose_ = grown(plain_, within());
+    pose_ = grown(plain_, triangles_.within());
     return more;
   }
 
  private:
   TrianglePairs& triangles_;
   const SearchPose& plain_;
-  double tolerance_;
   SearchPose pose_;
 };
 
@@ -67,7 +60,7 @@ bool ExactSearch::any(const Eigen::Isometry3d& rigid, const SearchPose& from) no
   tests_ = near.tests;
   if (take_near(near)) {
     ContactSink sink(window_, triangles_);
-    tests_ += search_.run_hurried(from, sink, kPairs);
+    tests_ += search_.run_hurried(from, sink, kGroups);
   }
   return triangles_.count() > 0;
 }
@@ -76,15 +69,15 @@ GapInterval ExactSearch::nearest(const Eigen::Isometry3d& rigid, const SearchPos
                                  double limit, double tolerance) noexcept {
   const Dive near = search_.dive(from);
   tests_ = near.tests;
-  triangles_.begin_nearest(rigid, std::min(limit, near.farthest + pad));
+  triangles_.begin_nearest(rigid, std::min(limit, near.farthest + pad), tolerance);
   const bool more = take_near(near);
-  Nearer nearer(triangles_, from, tolerance);
+  Nearer nearer(triangles_, from);
   if (more) {
     ContactSink sink(window_, nearer);
-    tests_ += search_.run_hurried(nearer.pose(), sink, kFewPairs);
+    tests_ += search_.run_hurried(nearer.pose(), sink, kFewGroups);
   }
   const double distance = triangles_.distance(), error = triangles_.distance_error();
-  return {distance > 0 ? std::max(0.0, std::min(nearer.within(), distance) - error) : 0,
+  return {distance > 0 ? std::max(0.0, std::min(triangles_.within(), distance) - error) : 0,
           distance + error};
 }
 

@@ -85,10 +85,12 @@ void TrianglePairs::begin_any(const Eigen::Isometry3d& pose) noexcept {
   wanted_ = Wanted::kAny;
 }
 
-void TrianglePairs::begin_nearest(const Eigen::Isometry3d& pose, double limit) noexcept {
+void TrianglePairs::begin_nearest(const Eigen::Isometry3d& pose, double limit,
+                                  double tolerance) noexcept {
   begin(pose);
   wanted_ = Wanted::kNearest;
   nearest_ = limit;
+  tolerance_ = tolerance > 0 ? tolerance : 0;  // nor what is no number
 }
 
 bool TrianglePairs::next_pass() noexcept {
@@ -135,7 +137,7 @@ void TrianglePairs::next_turn() noexcept {
 // How far apart triangles may be that are looked for: rounded up, and by as much as differences of
 // floats err.
 float TrianglePairs::reach() const noexcept {
-  return wanted_ == Wanted::kNearest ? static_cast<float>(nearest_ * (1 + 0x1p-20)) : 0;
+  return wanted_ == Wanted::kNearest ? static_cast<float>(within() * (1 + 0x1p-20)) : 0;
 }
 
 void TrianglePairs::take_moving(std::uint32_t node, const FloatBox& cube, float distance) noexcept {
@@ -237,12 +239,17 @@ void TrianglePairs::add(TrianglePair pair) noexcept {
 
 void TrianglePairs::measure(const TriangleCorners& a, const TriangleCorners& b) noexcept {
   const double boxes = box_distance_squared(a, b);
-  if (boxes >= nearest_ * nearest_ || surely_farther(a, b, nearest_)) return;
+  const double enough = within();
+  if (boxes > enough * enough || surely_farther(a, b, enough)) return;
   if (boxes == 0 && triangles_meet(a, b)) {
     nearest_ = 0;
     return;
   }
   nearest_ = std::min(nearest_, std::sqrt(distance_squared(a, b)));
+}
+
+double TrianglePairs::within() const noexcept {
+  return std::max(0.0, nearest_ + 2 * distance_error() - tolerance_);
 }
 
 double TrianglePairs::distance_error() const noexcept {

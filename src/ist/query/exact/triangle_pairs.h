@@ -41,9 +41,9 @@ class TrianglePairs final : public ContactStream {
   void begin(const Eigen::Isometry3d& pose, std::span<TrianglePair> out) noexcept;
   /// Begins a query that ends with the first pair.
   void begin_any(const Eigen::Isometry3d& pose) noexcept;
-  /// Begins one for the nearest pair, of those that are less than `limit` apart; ends where one
-  /// meets. One pass is enough.
-  void begin_nearest(const Eigen::Isometry3d& pose, double limit) noexcept;
+  /// Begins one for the nearest pair, or another that is farther by no more than `tolerance`, of
+  /// those that are less than `limit` apart; ends where one meets. One pass is enough.
+  void begin_nearest(const Eigen::Isometry3d& pose, double limit, double tolerance) noexcept;
 
   /// Whether another pass over all pairs of nodes is to be made; the next one begins.
   [[nodiscard]] bool next_pass() noexcept;
@@ -56,6 +56,8 @@ class TrianglePairs final : public ContactStream {
   /// How far the nearest pair is apart, or the limit; it may err by `distance_error()`.
   [[nodiscard]] double distance() const noexcept { return nearest_; }
   [[nodiscard]] double distance_error() const noexcept;
+  /// A pair that is no nearer than that need not be looked at.
+  [[nodiscard]] double within() const noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -99,7 +101,7 @@ class TrianglePairs final : public ContactStream {
   std::span<TrianglePair> out_;
   std::uint64_t count_ = 0;
   enum class Wanted : std::uint8_t { kAll, kAny, kNearest } wanted_ = Wanted::kAll;
-  double nearest_ = 0;
+  double nearest_ = 0, tolerance_ = 0;
   double longest_edge_;
   bool full_ = false;
   std::uint64_t passes_ = 1, pass_ = 0;  // a power of two
