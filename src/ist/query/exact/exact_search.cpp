@@ -9,9 +9,9 @@ namespace {
 
 // So many pairs of nodes are looked at at a time, and are alive at one level.
 constexpr std::size_t kPairs = 1 << 14;
-// So many fixed nodes are searched at a time where a pair that meets ends the search, and where
-// what is found soon makes the rest of it smaller.
-constexpr std::size_t kGroups = 64, kFewGroups = 16;
+// So many fixed nodes are searched at a time where what is found soon ends the search, or makes the
+// rest of it smaller.
+constexpr std::size_t kGroups = 8;
 
 // Passes pairs of nodes on, and narrows the search down to what can be nearer than what was found.
 class Nearer final : public ContactStream {
@@ -56,12 +56,8 @@ std::uint64_t ExactSearch::pairs(const Eigen::Isometry3d& rigid, const SearchPos
 
 bool ExactSearch::any(const Eigen::Isometry3d& rigid, const SearchPose& from) noexcept {
   triangles_.begin_any(rigid);
-  const Dive near = search_.dive(from);  // where bodies meet, they mostly do here
-  tests_ = near.tests;
-  if (take_near(near)) {
-    ContactSink sink(window_, triangles_);
-    tests_ += search_.run_hurried(from, sink, kGroups);
-  }
+  ContactSink sink(window_, triangles_);
+  tests_ = search_.run_hurried(from, sink, kGroups);
   return triangles_.count() > 0;
 }
 
@@ -70,20 +66,15 @@ GapInterval ExactSearch::nearest(const Eigen::Isometry3d& rigid, const SearchPos
   const Dive near = search_.dive(from);
   tests_ = near.tests;
   triangles_.begin_nearest(rigid, std::min(limit, near.farthest + pad), tolerance);
-  const bool more = take_near(near);
+  const bool more = triangles_.take({near.leaves, near.count});
   Nearer nearer(triangles_, from);
   if (more) {
     ContactSink sink(window_, nearer);
-    tests_ += search_.run_hurried(nearer.pose(), sink, kFewGroups);
+    tests_ += search_.run_hurried(nearer.pose(), sink, kGroups);
   }
   const double distance = triangles_.distance(), error = triangles_.distance_error();
   return {distance > 0 ? std::max(0.0, std::min(triangles_.within(), distance) - error) : 0,
           distance + error};
-}
-
-// Some pairs of nodes in any order.
-bool ExactSearch::take_near(const Dive& near) noexcept {
-  return triangles_.take({near.leaves, near.count});
 }
 
 std::size_t ExactSearch::bytes() const noexcept {

@@ -38,8 +38,6 @@ class ExactSearch {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  [[nodiscard]] bool take_near(const Dive& near) noexcept;
-
   TrianglePairs triangles_;
   SearchPlan plan_;
   Search search_;
