@@ -25,6 +25,15 @@ void reduce(benchmark::State& state, double voxel_size, SpherePolicy policy, std
     return;
   }
   contacts.resize(count);
+  static_cast<void>(query.contact_points(pose, points));
+  const ContactSums wanted = points.sums();
+  static_cast<void>(points.begin(pose));
+  points.take(contacts);
+  points.finish();
+  if (points.sums().weight != wanted.weight || (wanted.weight > 0) != (wanted.pairs > 0)) {
+    state.SkipWithError("the list and the stream give different sums");
+    return;
+  }
   for (auto _ : state) {
     static_cast<void>(points.begin(pose));
     points.take(contacts);
@@ -34,8 +43,10 @@ void reduce(benchmark::State& state, double voxel_size, SpherePolicy policy, std
   state.counters["pairs"] = pairs;
   state.counters["points"] = static_cast<double>(points.points().size());
   state.counters["MB"] = static_cast<double>(points.bytes()) / 1e6;
-  state.counters["per_pair"] = benchmark::Counter(
-      pairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  if (count > 0) {
+    state.counters["per_pair"] = benchmark::Counter(
+        pairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  }
   state.SetLabel(pair_name());
 }
 

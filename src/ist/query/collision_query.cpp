@@ -117,6 +117,7 @@ QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& s
   }
   result.contacts = sink.count();
   result.truncated = sink.truncated();
+  result.complete = !sink.stopped();
   return result;
 }
 
@@ -154,10 +155,13 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
 
 ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,
                                           std::span<TrianglePair> out) noexcept {
-  IST_ASSERT(is_exact());
   const ScopedFloatEnvironment environment;
   const std::optional<Approach> bodies = approach(pose);
   ExactResult result;
+  if (!is_exact()) {
+    result.status = QueryStatus::kNoTriangles;
+    return result;
+  }
   if (!bodies) {
     result.status = QueryStatus::kInvalidPose;
     return result;

@@ -23,12 +23,13 @@ struct GapInterval {
 enum class QueryStatus : std::uint8_t {
   kDone,
   kInvalidPose,  ///< not a rigid motion (project_to_rigid); nothing was searched
+  kNoTriangles,  ///< triangles were asked for, and a tree was built without; nothing was searched
 };
 
 /// What a query found.
 struct QueryResult {
   QueryStatus status = QueryStatus::kDone;
-  bool complete = true;        ///< searched down to the leaves
+  bool complete = true;        ///< searched down to the leaves, to the end
   bool truncated = false;      ///< the span was too short: it holds the first contacts
   int level = 0;               ///< down to which it searched: steps that are left, 0 at the leaves
   std::uint64_t contacts = 0;  ///< all that there are, in the span or not

@@ -55,10 +55,10 @@ void ContactSink::append(const Frontier& leaves, const Kernels& kernels,
   Writer writer(leaves, kernels, plan);
   if (stream_ == nullptr) {
     writer.write(out_.subspan(std::min<std::size_t>(count_, out_.size())));
+    count_ += leaves.moving_count;
   } else {
     while (!writer.done() && !stopped_) hand_over(out_.first(writer.write(out_)));
   }
-  count_ += leaves.moving_count;
 }
 
 void ContactSink::append(std::span<const Contact> contacts) noexcept {
@@ -66,10 +66,10 @@ void ContactSink::append(std::span<const Contact> contacts) noexcept {
     const std::size_t begin = std::min<std::size_t>(count_, out_.size());
     const std::size_t fit = std::min(contacts.size(), out_.size() - begin);
     std::copy_n(contacts.begin(), fit, out_.begin() + static_cast<std::ptrdiff_t>(begin));
+    count_ += contacts.size();
   } else {
     hand_over(contacts);
   }
-  count_ += contacts.size();
 }
 
 }  // namespace ist

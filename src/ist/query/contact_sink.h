@@ -30,7 +30,7 @@ class ContactSink {
   /// Appends contacts that another sink took.
   void append(std::span<const Contact> contacts) noexcept;
 
-  /// Contacts seen, in the span or not.
+  /// Contacts seen, in the span or not; of a stream those that it was given.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   /// Whether the span is too short for them.
   [[nodiscard]] bool truncated() const noexcept {
@@ -41,7 +41,9 @@ class ContactSink {
 
  private:
   void hand_over(std::span<const Contact> contacts) noexcept {
-    if (!stopped_) stopped_ = !stream_->take(contacts);
+    if (stopped_) return;
+    count_ += contacts.size();
+    stopped_ = !stream_->take(contacts);
   }
 
   std::span<Contact> out_;

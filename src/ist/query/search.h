@@ -51,8 +51,8 @@ class Search {
     Measure inner, leaves;  ///< of all steps but the last, and of that
     std::size_t steps = 0;  ///< that were made whole
   };
-  /// Within a budget the sink takes so many contacts at a time, or those of one fixed leaf: some µs
-  /// in which nobody looks at the clock.
+  /// Within a budget the sink takes so many contacts at a time: some µs in which nobody looks at
+  /// the clock.
   static constexpr std::size_t kLeavesAtOnce = 1 << 12;
   /// As run(), step by step from the roots on, or where a frontier is full from chunk to chunk, as
   /// long as there is something left to spend; and measures all pairs that are tested. Where it

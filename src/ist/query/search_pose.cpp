@@ -20,6 +20,10 @@ constexpr double kBallRounding = 12.5 * 0x1p-24;
 // the root, and |A| at least 2.21 of them, so rA < 0.8|A|: 2.6u|A| + 8u|a| + 16u rA < 17u|A|.
 constexpr double kSlabRounding = 17 * 0x1p-24;
 
+// A reach that is grown lets bounds touch that are so much farther apart, and a test errs by up to
+// 16u of that too: more is added than is asked for.
+constexpr double kOfGrowth = 1 + 32 * 0x1p-24;
+
 float round_up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), HUGE_VALF);
 }
@@ -38,15 +42,15 @@ SearchPose narrow(const RelativePose& pose, double reaches, double grow) noexcep
   }
   const Eigen::Vector3d& t = pose.translation;
   const double lengths = reaches + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
-  narrow.ball_pad = round_up(kBallRounding * lengths + grow);
-  narrow.slab_pad = round_up(kSlabRounding * lengths + grow);
+  narrow.ball_pad = round_up(kBallRounding * lengths + kOfGrowth * grow);
+  narrow.slab_pad = round_up(kSlabRounding * lengths + kOfGrowth * grow);
   return narrow;
 }
 
 SearchPose grown(const SearchPose& pose, double by) noexcept {
   SearchPose grown = pose;
-  grown.ball_pad = round_up(pose.ball_pad + by);
-  grown.slab_pad = round_up(pose.slab_pad + by);
+  grown.ball_pad = round_up(pose.ball_pad + kOfGrowth * by);
+  grown.slab_pad = round_up(pose.slab_pad + kOfGrowth * by);
   return grown;
 }
 

@@ -79,10 +79,12 @@ inline void end_row(Frontier& frontier, std::uint32_t fixed, std::size_t before)
   frontier.group_count += frontier.moving_count != before ? 1 : 0;
 }
 
-/// Where in a frontier a step goes on: at a child of a group's fixed node.
+/// Where in a frontier a step goes on: at a child of a group's fixed node, and where rows may be
+/// cut at one of its moving nodes.
 struct SearchCursor {
   std::size_t group = 0;
   std::uint32_t row = 0;
+  std::uint32_t moving = 0;  ///< counted from the group's first
 };
 
 template <std::size_t N>

@@ -8,7 +8,8 @@ namespace {
 
 // Moving nodes that are decoded at a time: no more lanes than tests that may be made unwatched.
 constexpr std::uint32_t kPiece = 56;
-static_assert(8 * kPiece <= Spending::kUnwatched);
+constexpr std::size_t kPieceLanes = 8 * kPiece;
+static_assert(kPieceLanes <= Spending::kUnwatched);
 
 }  // namespace
 
@@ -60,6 +61,8 @@ bool Search::advance_within(std::size_t step, const SearchPose& pose, SearchCurs
   Frontier& out = frontiers_[step + 1];
   FixedRows& rows = scratch_->rows[0];
   MovingLanes& lanes = scratch_->moving;
+  // The last frontier takes a row in parts, for there is no time to hand over a long one.
+  const bool in_parts = step + 1 == plan_.steps().size();
   for (; cursor.group < in.group_count; ++cursor.group, cursor.row = 0) {
     const SearchGroup group = in.groups[cursor.group];
     const std::uint32_t begin = cursor.group == 0 ? 0 : in.groups[cursor.group - 1].end;
@@ -67,10 +70,15 @@ bool Search::advance_within(std::size_t step, const SearchPose& pose, SearchCurs
     const std::uint32_t row_count = decode(by.fixed, group.fixed, scratch_->fixed, 0);
     parts.turn(pose, slabs, scratch_->fixed, rows);
     std::size_t end = 0;  // of the lanes
-    for (; cursor.row < row_count; ++cursor.row) {
-      if (!has_room(out, 1, most)) return true;
+    for (; cursor.row < row_count; ++cursor.row, cursor.moving = 0) {
+      if (!has_room(out, 1, in_parts ? std::min(most, kPieceLanes) : most)) return true;
       const std::size_t before = out.moving_count;
-      for (std::uint32_t i = begin; i < group.end; i += kPiece) {
+      for (std::uint32_t i = begin + cursor.moving; i < group.end; i += kPiece) {
+        if (in_parts && !has_room(out, 1, kPieceLanes)) {
+          end_row(out, scratch_->fixed.name[cursor.row], before);
+          cursor.moving = i - begin;
+          return true;
+        }
         const std::uint32_t piece_end = std::min(i + kPiece, group.end);
         if (end == 0 || group.end - begin > kPiece) {  // else they are there from the row before
           end = 0;

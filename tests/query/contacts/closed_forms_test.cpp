@@ -50,6 +50,8 @@ Errors errors_of(const ClosedForm& form, const SphereTree& fixed, const SphereTr
   Errors errors;
   for (const ContactPoint& p : touched(fixed, moving, policy, pose, most).points) {
     ++errors.points;
+    EXPECT_TRUE(p.position.allFinite() && p.normal.allFinite());
+    EXPECT_TRUE(std::isfinite(p.depth) && std::isfinite(p.weight));
     errors.deepest = std::max(errors.deepest, p.depth / s);
     if (!form.fixed.smooth(p.position, 10 * s) ||
         !form.moving.smooth(pose.inverse() * p.position, 10 * s)) {
@@ -87,6 +89,7 @@ TEST_P(ClosedForms, AreMetWithinAVoxelAndAHalfAndTenDegrees) {
         // Tight roots may touch where surfaces do, and not before.
         if (depth > 0) {
           EXPECT_GT(errors.points, 0u);
+          EXPECT_TRUE(!is_smooth_ || depth > 0.5 || errors.smooth > 0);
         }
         if (errors.points == 0) continue;
         if (depth >= 0) {

@@ -187,6 +187,22 @@ TEST_F(ManyPairs, OfWhatDoesNotTouchAreNone) {
   EXPECT_EQ(far.sphere_tests, 1u);
 }
 
+// One large triangle near many small ones, either way round.
+TEST(TrianglePairs, OfAFewThatAreNearMany) {
+  const TriangleMesh few = box({-2, -2, -1}, {2, 2, -0.999}), many = icosphere(4, 1);
+  std::size_t touching = 0;
+  expect_exact(exact_tree(few, 20), exact_tree(many, 20), shift({0.01, 0, 0}), touching);
+  expect_exact(exact_tree(many, 20), exact_tree(few, 20), shift({0.01, 0, 0}), touching);
+  EXPECT_EQ(touching, 2u);
+}
+
+TEST(TrianglePairs, WithoutTrianglesAreAStatus) {
+  const SphereTree tree = tree_of(icosphere(1, 1), 9), exact = exact_tree(icosphere(1, 1), 9);
+  std::vector<TrianglePair> pairs(10);
+  EXPECT_EQ(CollisionQuery(tree, exact).collide_exact(shift({0, 0, 0}), pairs).status,
+            QueryStatus::kNoTriangles);
+}
+
 TEST(Touches, WithoutTrianglesIsAtMostPossible) {
   const SphereTree tree = tree_of(icosphere(1, 1), 9), exact = exact_tree(icosphere(1, 1), 9);
   CollisionQuery query(tree, exact);

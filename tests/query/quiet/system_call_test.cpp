@@ -3,7 +3,9 @@
 #include <chrono>
 #include <csignal>
 
+#include "query/exact/exact_tree.h"
 #include "query/search/scenes.h"
+#include "support/shapes.h"
 #include "support/skip.h"
 #include "support/system_calls.h"
 
@@ -80,6 +82,29 @@ TEST_F(SystemCalls, ContactPointsMakeNone) {
           static_cast<void>(query.contact_points(pose, points));
         }
         end_process(points.points().size() > 8 ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST_F(SystemCalls, CertifiedAnswersMakeNone) {
+  EXPECT_EXIT(
+      {
+        const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+        CollisionQuery query(tree, tree);
+        std::vector<Contact> contacts(1 << 16);
+        std::vector<TrianglePair> pairs(1 << 16);
+        std::uint64_t triangles = 0;
+        forbid_system_calls();
+        for (int i = 0; i < 100; ++i) {
+          const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
+          triangles += query.collide_exact(pose, pairs).triangle_pairs;
+          triangles += query.touches(pose) == Touch::kYes ? 1U : 0U;
+          static_cast<void>(query.gap(pose, 0.01));
+          static_cast<void>(query.collide(pose, contacts, {.sphere_tests = 1000}));
+          const auto deadline = Budget::Clock::now() + std::chrono::microseconds(20);
+          static_cast<void>(query.collide(pose, contacts, {.deadline = deadline}));
+        }
+        end_process(triangles > 1000 ? 0 : 1);
       },
       ::testing::ExitedWithCode(0), "");
 }

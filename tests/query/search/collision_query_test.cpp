@@ -175,8 +175,11 @@ TEST_P(CollisionQueryTest, AStreamGetsAllContactsInOrderUntilItHasEnough) {
         EXPECT_EQ(result.contacts, all.contacts.size());
         EXPECT_EQ(result.sphere_tests, all.result.sphere_tests);
         EXPECT_FALSE(result.truncated);
+        EXPECT_TRUE(result.complete);
         Taken some(10);
-        static_cast<void>(query.collide(scene.pose, some));
+        const QueryResult part = query.collide(scene.pose, some);
+        EXPECT_FALSE(part.complete);
+        EXPECT_EQ(part.contacts, some.contacts.size());
         ASSERT_GE(some.contacts.size(), 10u);
         // One frontier of leaves holds all of them, or a part.
         if (pairs == 100) {

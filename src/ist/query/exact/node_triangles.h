@@ -16,17 +16,15 @@ namespace ist {
 ///
 /// Triangles are numbered anew, in the order of the nodes that they are in first: so those that are
 /// near each other are so in memory too.
+///
+/// Where voxels are much larger than triangles a node has many, and each is held against each: a
+/// tree that is asked about its triangles should have voxels of about their size, or smaller.
 class NodeTriangles {
  public:
   /// The tree must have triangles. Memory: some 120 bytes a triangle.
   explicit NodeTriangles(const SphereTree& tree);
 
   [[nodiscard]] int level() const noexcept { return level_; }
-  /// The centre of a node's cube in the tree's frame, and half its edge grown by what the tree's
-  /// build may have taken for inside: the node's triangles are in it, where they are the node's.
-  [[nodiscard]] const float (&cube_centre(std::uint32_t node) const noexcept)[3] {
-    return nodes_[node].centre;
-  }
   /// The cube of a node, in the tree's frame. A point of a triangle is in one of the cubes of the
   /// nodes that have the triangle.
   [[nodiscard]] FloatBox cube(std::uint32_t node) const noexcept;

@@ -7,7 +7,8 @@
 namespace ist {
 
 /// A set of pairs, of bounded size, that is emptied in the time of what is in it. Pairs with one
-/// first number lie close together, so that it is fast where they are asked for together.
+/// first number and second ones near each other lie close together, so that it is fast where they
+/// are asked for together.
 class PairSet {
  public:
   /// @param most pairs; 20 to 36 bytes are reserved for each
@@ -17,7 +18,7 @@ class PairSet {
   /// Not both numbers are 2^32 - 1.
   Insertion insert(std::uint32_t first, std::uint32_t second) noexcept {
     const std::uint64_t key = std::uint64_t{first} << 32 | second;
-    std::size_t slot = (hash(first) >> shift_) + (hash(second) >> (64 - kNearBits));
+    std::size_t slot = (hash(key >> kNearBits) >> shift_) + (key & kNear);
     for (;; ++slot) {
       slot &= slots_.size() - 1;
       if (slots_[slot] == key) return Insertion::kKnown;
@@ -36,7 +37,9 @@ class PairSet {
 
  private:
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  static constexpr int kNearBits = 5;  // four cache lines for a first number
+  // Runs of so many second numbers lie in four cache lines; and runs far from each other.
+  static constexpr int kNearBits = 5;
+  static constexpr std::uint64_t kNear = (1 << kNearBits) - 1;
   [[nodiscard]] static std::uint64_t hash(std::uint64_t number) noexcept {
     return number * 0x9E3779B97F4A7C15;
   }

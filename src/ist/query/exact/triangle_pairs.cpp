@@ -63,7 +63,8 @@ TrianglePairs::TrianglePairs(const SphereTree& fixed, const SphereTree& moving,
 }
 
 void TrianglePairs::begin(const Eigen::Isometry3d& pose) noexcept {
-  pose_ = pose;
+  rotation_ = pose.linear();
+  translation_ = pose.translation();
   out_ = {};
   count_ = 0;
   full_ = false;
@@ -211,12 +212,12 @@ bool TrianglePairs::remember(std::uint32_t fixed, std::uint32_t moving) noexcept
 }
 
 TriangleCorners TrianglePairs::moved(const TriangleCorners& corners) const noexcept {
-  const auto& m = pose_.matrix();
+  const Eigen::Matrix3d& r = rotation_;
   TriangleCorners moved;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d& v = corners[k];
     for (Eigen::Index i = 0; i < 3; ++i) {
-      moved[k][i] = ((m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2]) + m(i, 3);
+      moved[k][i] = ((r(i, 0) * v[0] + r(i, 1) * v[1]) + r(i, 2) * v[2]) + translation_[i];
     }
   }
   return moved;

@@ -97,7 +97,9 @@ class TrianglePairs final : public ContactStream {
   TriangleLanes lanes_;
   std::vector<NearPair> found_;
 
-  Eigen::Isometry3d pose_;
+  // Not an Isometry3d, whose place in memory depends on the instruction set.
+  Eigen::Matrix3d rotation_;
+  Eigen::Vector3d translation_;
   std::span<TrianglePair> out_;
   std::uint64_t count_ = 0;
   enum class Wanted : std::uint8_t { kAll, kAny, kNearest } wanted_ = Wanted::kAll;

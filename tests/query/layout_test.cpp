@@ -1,0 +1,12 @@
+#include "query/layout.h"
+
+#include <gtest/gtest.h>
+
+namespace ist::test {
+namespace {
+
+// A consumer may be compiled for another instruction set than the library.
+TEST(Layout, IsTheSameForEveryInstructionSet) { EXPECT_EQ(kWideLayout, public_layout()); }
+
+}  // namespace
+}  // namespace ist::test
