@@ -17,7 +17,7 @@ struct Dive {
   float farthest;  ///< two points of the surfaces are no farther apart, pads included
 };
 
-/// Cost: some 300 tests a level, 20 µs in all.
+/// Cost: some 130 tests a level, 16 µs in all.
 [[nodiscard]] Dive dive(const SearchPlan& plan, const Kernels& kernels, const SearchPose& pose,
                         SearchScratch& scratch) noexcept;
 

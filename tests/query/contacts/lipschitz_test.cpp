@@ -102,7 +102,11 @@ std::vector<Bodies> all_bodies() {
   return bodies;
 }
 
-class Lipschitz : public ::testing::TestWithParam<SpherePolicy> {};
+class Lipschitz : public ::testing::TestWithParam<SpherePolicy> {
+ protected:
+  Lipschitz() { options_.policy = GetParam(); }
+  CollisionOptions options_;
+};
 
 INSTANTIATE_TEST_SUITE_P(Policies, Lipschitz, ::testing::ValuesIn(kSpherePolicies),
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
@@ -111,11 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, Lipschitz, ::testing::ValuesIn(kSpherePolicie
 TEST_P(Lipschitz, SumsChangeNoFasterThanTheirRates) {
   Steepness steepest;
   for (const Bodies& b : all_bodies()) {
-    CollisionQuery query(b.fixed, b.moving, [] {
-      CollisionOptions options;
-      options.policy = GetParam();
-      return options;
-    }());
+    CollisionQuery query(b.fixed, b.moving, options_);
     ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0});
     for (const Way& way : b.ways) {
       SCOPED_TRACE(std::string(b.name) + ", " + way.name);
@@ -148,11 +148,7 @@ TEST_P(Lipschitz, EveryPairFadesInAndOut) {
   Steepness steepest;
   std::size_t faded = 0;
   for (const Bodies& b : all_bodies()) {
-    CollisionQuery query(b.fixed, b.moving, [] {
-      CollisionOptions options;
-      options.policy = GetParam();
-      return options;
-    }());
+    CollisionQuery query(b.fixed, b.moving, options_);
     ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0});
     const auto pairs_at = [&](const Isometry3d& pose) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSums> sums;

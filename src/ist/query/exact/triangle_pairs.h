@@ -17,8 +17,8 @@ namespace ist {
 
 /// From pairs of nodes, each tree's of the level of its NodeTriangles, to the pairs of triangles in
 /// them that meet, or to the nearest. Each pair is tested once, however many nodes it is in; a pair
-/// that meets has a point in common, which lies in a node of either tree, and these
-/// two nodes' geometry meets: so none is missed.
+/// that meets has a point in common, which lies in a node of either tree, and these two nodes'
+/// geometry meets: so none is missed.
 ///
 /// A moving vertex v is where the pose, projected to a rigid motion, puts it: in double,
 /// ((r₀₀ v₀ + r₀₁ v₁) + r₀₂ v₂) + t₀ and so on, with no product fused to a sum. The test is exact
