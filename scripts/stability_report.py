@@ -86,7 +86,6 @@ def main():
         if chosen:
             lines += [f"## {title}", "", *table(chosen), ""]
     (folder / "STABILITY.md").write_text("\n".join(lines))
-    (folder / "results").mkdir(exist_ok=True)
     if broken:
         sys.exit(f"stability_report: {len(broken)} cases break their promise")
 

@@ -32,7 +32,10 @@ run 1 fuzz_test '*'
 run 1 cli_test 'Faults*'
 wait $!
 
-machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 /usr/bin/python3 scripts/stability_report.py "$cases" "$folder" \
-  "$machine, $(nproc) cores; $(g++ --version | head -n 1); commit $(git describe --always --dirty)"
+  "$model, $(nproc) cores; $(g++ --version | head -n 1); commit $(git describe --always --dirty)"
+results=$folder/results/$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(nproc)
+mkdir -p "$results"
+cp "$cases" "$results/stability.jsonl"
 echo "$folder/STABILITY.md" >&2
