@@ -85,7 +85,12 @@ class CollisionQuery {
 
   /// The distance between the surfaces, until the interval is no wider than `tolerance`, mesh
   /// units, or without triangles until the leaves are reached. With triangles it is that of two
-  /// triangles, to within 2^-24 of it and of the longest edge.
+  /// triangles where TrianglePairs puts them, to within 2^-24 of it and of the longest edge.
+  ///
+  /// The distance is Lipschitz in the pose: it changes by no more than a point of the moving body
+  /// moves, at most |how far the origin of the moving tree's frame goes| + SphereTree::reach() of
+  /// it · |angle in radians|. So intervals of two poses are no farther apart than that, and those
+  /// of one pose, whatever they were made from, have a point in common.
   ///
   /// Bodies so far apart that float cannot tell their leaves from each other have the interval of
   /// their roots. The distance of two triangles errs by 2^-24 of it and of the longest edge, and no

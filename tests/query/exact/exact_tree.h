@@ -16,4 +16,10 @@ namespace ist::test {
   return build_tree(mesh, options);
 }
 
+/// The same tree without its triangles: as it would have been built.
+[[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
+  return SphereTree({tree.lattice(), tree.octree(), tree.orientation(), tree.normals(),
+                     tree.bounds(), std::nullopt, std::nullopt});
+}
+
 }  // namespace ist::test

@@ -63,7 +63,9 @@ NodeTriangles::NodeTriangles(const SphereTree& tree) {
   nodes_ =
       tree.octree().nodes(std::max(level_, 1));  // a root that is a leaf has its parent's centre
   voxel_size_ = lattice.voxel_size;
-  half_edge_ = 0.5 * lattice.edge(level_) + 4 * lattice.pad() * lattice.voxel_size;
+  // A box of doubles is seen from the rounded origin: half a last bit of it from where cubes are.
+  const double rounding = 0x1p-52 * lattice.origin().cwiseAbs().maxCoeff();
+  half_edge_ = 0.5 * lattice.edge(level_) + 4 * lattice.pad() * lattice.voxel_size + rounding;
 }
 
 FloatBox NodeTriangles::cube(std::uint32_t node) const noexcept {
