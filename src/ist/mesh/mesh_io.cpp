@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "ist/base/float_environment.h"
 #include "ist/base/input_file.h"
 #include "ist/mesh/format/mesh_format.h"
 #include "ist/mesh/format/text_reader.h"
@@ -107,6 +108,7 @@ void check_extent(const TriangleMesh& mesh, const std::string& file) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;  // numbers in text are rounded too
   TriangleMesh mesh = parse(check_content(InputFile(file).read_rest(), file), file.string());
   check_extent(mesh, file.string());
   return mesh;

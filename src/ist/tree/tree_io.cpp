@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/float_environment.h"
 #include "ist/tree/tree_stream.h"
 
 namespace ist {
@@ -158,6 +159,7 @@ void verify_triangles(const TreeReader& reader, const LeafTriangles& leaves) {
 }  // namespace
 
 std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
   const Lattice& lattice = tree.lattice();
   TreeWriter writer(file);
   writer.value(lattice.corner);
@@ -197,6 +199,7 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
 }
 
 SphereTree read_tree(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
   TreeReader reader(file);
   Lattice lattice;
   lattice.corner = reader.value<std::array<double, 3>>();
