@@ -8,7 +8,9 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "ist/base/float_environment.h"
@@ -83,6 +85,9 @@ TriangleMesh parse(const CheckedContent& content, const std::string& file) {
   importer.SetIOHandler(new NoFiles);  // the importer deletes it
   const aiScene* scene =
       importer.ReadFileFromMemory(content.bytes.data(), content.bytes.size(), 0, content.format);
+  // It catches whatever is thrown, and keeps the text.
+  if (scene == nullptr && importer.GetErrorString() == std::string_view(std::bad_alloc().what()))
+    throw std::bad_alloc();
   if (scene == nullptr)
     fail_mesh(
         ErrorCode::kNotAMesh, file, "",

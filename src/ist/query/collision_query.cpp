@@ -57,8 +57,12 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
   window_.resize(kWindow + kContactSlack);
   if (fixed.triangles() && moving.triangles()) {
     exact_.emplace(fixed, moving, policy_, kernels_, options.triangle_pairs);
-    for (const Eigen::Vector3d& v : moving.triangles()->mesh.vertices) {
-      largest_coordinate_ = std::max(largest_coordinate_, v.cwiseAbs().maxCoeff());
+    // Of vertices that triangles name: others may lie anywhere.
+    const TriangleMesh& mesh = moving.triangles()->mesh;
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t v : triangle) {
+        largest_coordinate_ = std::max(largest_coordinate_, mesh.vertices[v].cwiseAbs().maxCoeff());
+      }
     }
   }
   static_cast<void>(collide(Eigen::Isometry3d::Identity(), std::span<Contact>()));

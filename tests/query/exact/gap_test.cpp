@@ -56,6 +56,24 @@ TEST(Gap, HoldsTheDistance) {
   EXPECT_GT(apart, 30);
 }
 
+// Errors grow with the farthest vertex, of those that are there.
+TEST(Gap, KnowsNothingOfAVertexThatNoTriangleNames) {
+  TriangleMesh block = box({0, 0, 0}, {1, 1, 1});
+  BuildOptions options;
+  options.voxel_size = 0.25;
+  options.keep_triangles = true;
+  const SphereTree plain = build_tree(block, options);
+  block.vertices.emplace_back(1e300, -1e300, 1e300);
+  const SphereTree odd = build_tree(block, options);
+  CollisionQuery query(plain, plain), beside(odd, odd);
+  for (const double x : {0.5, 1.0, 1.25}) {
+    const Eigen::Isometry3d pose = shift({x, 0, 0});
+    EXPECT_EQ(beside.collide(pose, {}).pad, query.collide(pose, {}).pad);
+    EXPECT_EQ(beside.gap(pose, 0).gap.lower, query.gap(pose, 0).gap.lower);
+    EXPECT_EQ(beside.gap(pose, 0).gap.upper, query.gap(pose, 0).gap.upper);
+  }
+}
+
 // Two rough spheres, one in the other, which are nearly as near to each other in many places: so
 // that the nearest is found late, and far from where the search began.
 TEST(Gap, OfShellsThatAreNearInManyPlaces) {
