@@ -35,7 +35,7 @@ run() {  # preset, targets to build, then arguments for ctest
 }
 
 run thread "base_test tree_test search_test workers_test" -R 'Thread|Parallel'
-run sanitize "mesh_test tree_test search_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
+run sanitize "mesh_test tree_test search_test fuzz_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
 $long || exit 0
 

@@ -181,15 +181,15 @@ void HardPair::check_contact_points(Asked& asked, const Eigen::Isometry3d& pose,
 
 void HardPair::check_gap(CollisionQuery& query, double distance, const Eigen::Isometry3d& pose,
                          StabilityCase& gap) {
+  const double place = largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff();
   // Of the distance that it is held against, and of the one that a query with triangles measures;
   // and as far as either's moved vertices are rounded.
-  const double error = kTriangleDistanceError * (longest_edge_ + distance) +
-                       0x1p-50 * (largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff());
+  const double error = kTriangleDistanceError * (longest_edge_ + distance) + 0x1p-50 * place;
   for (const double tolerance : {0.0, 0.05 * fixed_.lattice().voxel_size}) {
     const GapInterval found = query.gap(pose, tolerance).gap;
     gap.sample(outside(found, distance), error);
-    const double wide =
-        query.is_exact() ? tolerance + 2 * error : std::max(tolerance, 2 * query.resolution({}));
+    const double wide = query.is_exact() ? tolerance + 2 * error + 0x1p-47 * place
+                                         : std::max(tolerance, 2 * query.resolution({}));
     gap.sample(std::max(0.0, found.upper - found.lower - wide), error, "width");
   }
   for (const std::uint64_t tests : {1u, 40u, 1000u}) {
