@@ -13,7 +13,7 @@ from mutants import MUTANTS
 ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
-SECONDS = 600  # for the tests of one mutant: one that hangs is found out too
+SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 
 def fail(text):
@@ -21,24 +21,27 @@ def fail(text):
     sys.exit(1)
 
 
+def sources():
+    for folder in ["src", "simd", "tests", "bench", "scripts"]:
+        yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
+    yield ROOT / "CMakeLists.txt"
+
+
 def copy_sources():
-    """The files that git knows, as they are now; those that are the same keep their time."""
-    names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True)
-    for name in names.stdout.split():
-        source, copy = ROOT / name, COPY / name
-        if not source.is_file():
-            continue
+    """What is built, as it is now; files that are the same keep their time."""
+    for source in sources():
+        copy = COPY / source.relative_to(ROOT)
         if copy.is_file() and copy.read_bytes() == source.read_bytes():
             continue
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, copy)
 
 
-def edited(edits):
+def edited(edits, root=COPY):
     """The texts that a mutant's files get. Each passage must be there once, and once only."""
     texts = {}
     for file, old, new in edits:
-        path = COPY / file
+        path = root / file
         text = texts.get(path) or path.read_text()
         if text.count(old) != 1:
             fail(f"{file} has {text.count(old)} times, and should have once:\n{old}")
@@ -49,7 +52,7 @@ def edited(edits):
 def configure():
     subprocess.run(
         ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON", "-DIST_CLI=OFF"],
+         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON"],
         check=True, stdout=subprocess.DEVNULL)
 
 
@@ -119,6 +122,7 @@ def main():
     words = sys.argv[1:]
     if words == ["--list"]:
         for mutant in MUTANTS:
+            edited(mutant.edits, ROOT)  # it still applies
             print(f"{mutant.name:34} {mutant.breaks}")
         return
     chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)]
@@ -126,7 +130,7 @@ def main():
         fail(f"no mutant is named like {' or '.join(words)}; --list names them")
     copy_sources()
     for mutant in chosen:
-        edited(mutant.edits)  # all of them apply, before an hour is spent
+        edited(mutant.edits)  # all of them still apply, before an hour is spent
     configure()
     programs = programs_of(chosen)
     print(f"building {', '.join(programs)}", flush=True)

@@ -11,8 +11,8 @@ set -euo pipefail
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libcli11-dev nlohmann-json3-dev
-  libgtest-dev libgmp-dev)
-bench=(libbenchmark-dev python3 python3-matplotlib)
+  libgtest-dev libgmp-dev python3)
+bench=(libbenchmark-dev python3-matplotlib)
 for argument in "$@"; do
   case $argument in
     --bench) packages+=("${bench[@]}") ;;

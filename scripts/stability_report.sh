@@ -21,16 +21,20 @@ cmake --build --preset test --target "${programs[@]}" | tail -n 1 >&2
 cases=$PWD/build/stability.jsonl
 rm -f "$cases"
 export IST_STABILITY=$cases IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data}
+failed=0
 run() {  # effort, program, filter
   echo "== $2 $3, $1 times the samples" >&2
   IST_EFFORT=$1 build/test/tests/"$2" --gtest_brief=1 --gtest_filter="$3" >&2
 }
-run "$load_effort" load_test 'Pairs/Load.*' &
-run "$effort" stability_test '*'
-run "$effort" search_test 'SharedTreeThread.*'
-run 1 fuzz_test '*'
-run 1 cli_test 'Faults*'
-wait $!
+trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
+run "$load_effort" load_test '*' &
+load=$!
+# What breaks its promise is shown too.
+run "$effort" stability_test '*' || failed=1
+run "$effort" search_test 'SharedTreeThread.*' || failed=1
+run "$effort" fuzz_test '*' || failed=1
+run 1 cli_test 'Faults*:CutFiles*:Interruption*' || failed=1
+wait $load || failed=1
 
 model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 /usr/bin/python3 scripts/stability_report.py "$cases" "$folder" \
@@ -39,3 +43,4 @@ results=$folder/results/$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(n
 mkdir -p "$results"
 cp "$cases" "$results/stability.jsonl"
 echo "$folder/STABILITY.md" >&2
+exit $failed

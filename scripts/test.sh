@@ -45,7 +45,9 @@ more() {  # preset, times the samples, program, filter
   IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4"
 }
 more thread 100 search_test 'SharedTreeThread.*'
+trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
 more test 1000 load_test '*' &
+load=$!
 more test 20 stability_test '*'
-wait $!
+wait $load
 scripts/fuzz.sh --seconds 60

@@ -11,7 +11,7 @@
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/query_checks.h"
-#include "ist/tree/tree_builder.h"
+#include "query/exact/exact_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -33,17 +33,10 @@ class Bytes {
   std::string_view left_;
 };
 
-SphereTree exact_tree(const TriangleMesh& mesh, double voxel_size) {
-  BuildOptions options;
-  options.voxel_size = voxel_size;
-  options.keep_triangles = true;
-  return build_tree(mesh, options);
-}
-
 struct Pair {
   Pair(const TriangleMesh& a, double size_a, const TriangleMesh& b, double size_b)
-      : fixed(exact_tree(a, size_a)),
-        moving(exact_tree(b, size_b)),
+      : fixed(tree_with_triangles(a, size_a)),
+        moving(tree_with_triangles(b, size_b)),
         checks(fixed, moving, QueryChecks::Trees::kBuilt) {}
   SphereTree fixed, moving;
   QueryChecks checks;

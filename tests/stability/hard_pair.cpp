@@ -18,13 +18,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-SphereTree tree_of_voxels(const TriangleMesh& mesh, double voxel_size) {
-  BuildOptions options;
-  options.voxel_size = voxel_size;
-  options.keep_triangles = true;
-  return build_tree(mesh, options);
-}
-
 // By how much the search's own test of two leaves finds them apart, in double; 0 where they are
 // not.
 double leaves_apart(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
@@ -105,8 +98,8 @@ HardPair::Asked::Asked(const SphereTree& fixed, const SphereTree& moving, Sphere
 
 HardPair::HardPair(const TriangleMesh& fixed, double fixed_voxel, const TriangleMesh& moving,
                    double moving_voxel)
-    : fixed_(tree_of_voxels(fixed, fixed_voxel)),
-      moving_(tree_of_voxels(moving, moving_voxel)),
+    : fixed_(tree_with_triangles(fixed, fixed_voxel)),
+      moving_(tree_with_triangles(moving, moving_voxel)),
       plain_fixed_(without_triangles(fixed_)),
       plain_moving_(without_triangles(moving_)),
       exact_fixed_(fixed, fixed_),

@@ -7,7 +7,6 @@
 
 #include "ist/mesh/mesh_io.h"
 #include "ist/query/collision_query.h"
-#include "ist/tree/tree_builder.h"
 #include "query/exact/exact_tree.h"
 #include "query/query_cases.h"
 #include "query/quiet/allocations.h"
@@ -74,11 +73,8 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
   const LoadPair& pair = GetParam();
   const auto path = [](const char* file) { return data_dir() / file; };
   if (!std::filesystem::exists(path(pair.fixed))) IST_SKIP(path(pair.fixed) << " is not there");
-  BuildOptions build;
-  build.voxel_size = 0.8;
-  build.keep_triangles = true;
-  const SphereTree fixed = build_tree(read_mesh(path(pair.fixed)), build),
-                   moving = build_tree(read_mesh(path(pair.moving)), build);
+  const SphereTree fixed = tree_with_triangles(read_mesh(path(pair.fixed)), 0.8),
+                   moving = tree_with_triangles(read_mesh(path(pair.moving)), 0.8);
   CollisionQuery query(fixed, moving);
   ContactPoints points(fixed, moving, query.policy());
   std::vector<Contact> contacts(1 << 17);

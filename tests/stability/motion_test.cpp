@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_builder.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/mesh_distance.h"
 #include "query/query_cases.h"
@@ -26,13 +25,7 @@ constexpr double kStep = 1e-4;  // mm
 // A body with its triangles and without.
 struct Body {
   Body(const TriangleMesh& mesh, double voxel_size)
-      : exact([&] {
-          BuildOptions options;
-          options.voxel_size = voxel_size;
-          options.keep_triangles = true;
-          return build_tree(mesh, options);
-        }()),
-        plain(without_triangles(exact)) {}
+      : exact(tree_with_triangles(mesh, voxel_size)), plain(without_triangles(exact)) {}
   SphereTree exact, plain;
 };
 
@@ -68,7 +61,7 @@ std::size_t sweep_all(const Body& fixed, const Body& moving, SpherePolicy policy
   for (const Vector3d& axis :
        {direction, Vector3d(direction.cross(Vector3d(1, 2, 3)).normalized())})
     for (const double t : {last.leaves, last.triangles, 0.0})
-      sweep.along(turn(at(t), axis, centre, sweep.lever(), kStep, steps / 2));
+      sweep.along(turn(at(t), axis, centre, sweep.lever(), moving.plain.reach(), kStep, steps / 2));
   return sweep.changes();
 }
 
@@ -98,8 +91,8 @@ TEST_P(Motion, OfFacesOnLatticePlanesChangesNoFasterThanItsRates) {
   sweep.along(line(shift({0.5 - 50 * kStep, 0, 2}), x, kStep, 100));
   sweep.along(
       line(shift({0.5 - 50 * kStep, 0.5, 2.5}), Vector3d(1, 1, -1) / std::sqrt(3.0), kStep, 100));
-  sweep.along(
-      turn(shift({0.5, 0, 2}), x, cube.plain.lattice().origin(), sweep.lever(), kStep, 100));
+  sweep.along(turn(shift({0.5, 0, 2}), x, cube.plain.lattice().origin(), sweep.lever(),
+                   cube.plain.reach(), kStep, 100));
   EXPECT_GT(sweep.changes(), 10u);
 }
 
@@ -144,7 +137,7 @@ class TwoSizes {
       }
     }
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      common_.sample(std::max(0.0, common[i].lower - common[i].upper), 2 * poses[i].error);
+      common_.sample(std::max(0.0, common[i].lower - common[i].upper), 0);
     }
   }
 

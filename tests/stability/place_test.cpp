@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ist/base/pose.h"
-#include "ist/tree/tree_builder.h"
+#include "query/exact/exact_tree.h"
 #include "stability/all_engines.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
@@ -13,13 +13,6 @@
 
 namespace ist::test {
 namespace {
-
-SphereTree tree_with_triangles(const TriangleMesh& mesh, double voxel_size) {
-  BuildOptions options;
-  options.voxel_size = voxel_size;
-  options.keep_triangles = true;
-  return build_tree(mesh, options);
-}
 
 // The pose that does with two bodies at the origin what `pose` does where they are moved away; its
 // translation is rounded once.
@@ -108,6 +101,7 @@ TEST_P(Place, OfTheSceneCostsNothing) {
                                const Eigen::Isometry3d& pose, const Eigen::Isometry3d& same_pose) {
         const Answer there = bodies.check(engines, pose, wrong);
         const Answer here = near.check(at_origin, same_pose, wrong);
+        // Twice a float that is rounded up: of translations that differ in their last bits.
         pads.sample(std::abs(there.result.pad / here.result.pad - 1), 0x1p-22);
         if (i % 3 == 0) {
           EXPECT_EQ(there.contacts, here.contacts);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "ist/query/reference.h"
-#include "ist/tree/tree_builder.h"
+#include "query/exact/exact_tree.h"
 #include "query/search/scenes.h"
 #include "support/shapes.h"
 #include "support/stability.h"
@@ -86,10 +86,7 @@ class Scaled {
  private:
   [[nodiscard]] SphereTree tree(TriangleMesh mesh) const {
     for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= unit_;
-    BuildOptions options;
-    options.voxel_size = 0.19 * unit_;
-    options.keep_triangles = true;
-    return build_tree(std::move(mesh), options);
+    return tree_with_triangles(mesh, 0.19 * unit_);
   }
 
   template <class Query>

@@ -37,16 +37,16 @@ CollisionOptions with(SpherePolicy policy) {
 
 Path line(const Isometry3d& from, const Vector3d& direction, double step, int steps) {
   return {[=](int k) -> Isometry3d { return shift(step * k * direction) * from; }, steps,
-          kRounded* step, true};
+          kRounded* step, kRounded* step, true};
 }
 
 Path turn(const Isometry3d& from, const Vector3d& axis, const Vector3d& centre, double lever,
-          double step, int steps) {
+          double reach, double step, int steps) {
   return {[=](int k) -> Isometry3d {
             return from * Eigen::Translation3d(centre) * Eigen::AngleAxisd(step * k / lever, axis) *
                    Eigen::Translation3d(-centre);
           },
-          steps, kRounded* step, false};
+          steps, kRounded* step, kRounded* step* reach / lever, false};
 }
 
 MotionCases::MotionCases(const std::string& what, SpherePolicy policy)
@@ -76,7 +76,7 @@ void Sweep::along(const Path& path) {
     Step now = look(path.at(k));
     compare_pairs(before, now);
     if (path.straight) find_returns(path, k, now);
-    compare_gap(before, now, path.motion);
+    compare_gap(before, now, path.way);
     compare_sums(before, now, path.motion);
     compare_depths(before, now, path.motion);
     before = std::move(now);
@@ -152,18 +152,18 @@ void Sweep::find_returns(const Path& path, int step, const Step& now) {
   cases_.once.samples_of(std::max<std::size_t>(now.pairs.size(), 1), worst, now.pad);
 }
 
-void Sweep::compare_gap(const Step& before, const Step& now, double motion) {
+void Sweep::compare_gap(const Step& before, const Step& now, double way) {
   const auto middle = [](const GapInterval& gap) { return 0.5 * (gap.lower + gap.upper); };
   const auto half = [](const GapInterval& gap) { return 0.5 * (gap.upper - gap.lower); };
   cases_.gap.sample(std::abs(middle(now.exact) - middle(before.exact)),
-                    motion + half(now.exact) + half(before.exact));
+                    way + half(now.exact) + half(before.exact));
   // Those without triangles are wide: no farther apart, then.
   cases_.gap.sample(
       std::max({0.0, now.plain.lower - before.plain.upper, before.plain.lower - now.plain.upper}),
-      motion, "without triangles");
+      way, "without triangles");
   cases_.gap.sample(
-      std::max({0.0, now.plain.lower - now.exact.upper, now.exact.lower - now.plain.upper}),
-      half(now.exact), "between both");
+      std::max({0.0, now.plain.lower - now.exact.upper, now.exact.lower - now.plain.upper}), 0,
+      "between both");
 }
 
 void Sweep::compare_sums(const Step& before, const Step& now, double motion) {

@@ -17,16 +17,19 @@ namespace ist::test {
 struct Path {
   std::function<Eigen::Isometry3d(int step)> at;
   int steps;
-  double motion;  ///< no point of the moving body goes farther in a step, as ContactRates counts
+  double motion;  ///< of a step, as ContactRates counts it
+  double way;     ///< no point of the moving body goes farther in a step
   bool straight;  ///< it does not turn: so each pair's bounds meet in one interval of it
 };
 
 /// Moved by `step` times the step's number along `direction`, a unit vector.
 [[nodiscard]] Path line(const Eigen::Isometry3d& from, const Eigen::Vector3d& direction,
                         double step, int steps);
-/// Turned about `centre`, moving mesh coordinates, so that a point `lever` from it goes `step`.
+/// Turned about `centre`, moving mesh coordinates, so that a point `lever` from it goes `step`, and
+/// none of the body, within `reach` of it, goes farther than its part of that.
 [[nodiscard]] Path turn(const Eigen::Isometry3d& from, const Eigen::Vector3d& axis,
-                        const Eigen::Vector3d& centre, double lever, double step, int steps);
+                        const Eigen::Vector3d& centre, double lever, double reach, double step,
+                        int steps);
 
 /// What is found out about motion with one policy: a line each in perf/STABILITY.md.
 struct MotionCases {
@@ -56,7 +59,7 @@ class Sweep {
 
   /// Pairs that entered or left in all paths.
   [[nodiscard]] std::size_t changes() const { return changes_; }
-  /// How far a point of the moving body is from its frame's origin, at most.
+  /// By which ContactRates counts turns.
   [[nodiscard]] double lever() const { return points_.rates().lever; }
 
  private:
@@ -72,7 +75,7 @@ class Sweep {
   [[nodiscard]] double overlap(const Contact& pair, const Eigen::Isometry3d& pose) const;
   void compare_pairs(const Step& before, const Step& now);
   void find_returns(const Path& path, int step, const Step& now);
-  void compare_gap(const Step& before, const Step& now, double motion);
+  void compare_gap(const Step& before, const Step& now, double way);
   void compare_sums(const Step& before, const Step& now, double motion);
   void compare_depths(const Step& before, const Step& now, double motion);
 

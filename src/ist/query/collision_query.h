@@ -91,13 +91,14 @@ class CollisionQuery {
   /// The distance is Lipschitz in the pose: it changes by no more than a point of the moving body
   /// moves, at most |how far the origin of the moving tree's frame goes| + SphereTree::reach() of
   /// it · |angle in radians|. So intervals of two poses are no farther apart than that, and those
-  /// of one pose, whatever they were made from, have a point in common.
+  /// of one pose, whatever they were made from, have a point in common. Without triangles none is
+  /// wider than `tolerance` or twice resolution(), whichever is more.
   ///
   /// Bodies so far apart that float cannot tell their leaves from each other have the interval of
   /// their roots. The distance of two triangles errs by 2^-24 of it and of the longest edge, and by
-  /// 2^-48 of how far the scene is from the origin, and no interval is narrower than twice that. It
-  /// is 0 where triangles meet as collide_exact() finds them. Cost: 0.2 to 0.7 ms for jaws that are
-  /// apart, 0.02 to 0.3 ms where they meet.
+  /// 2^-48 of how far the scene is from the origin, and no interval is narrower than twice that;
+  /// except that it is 0 where triangles meet as collide_exact() finds them. Cost: 0.2 to 0.7 ms
+  /// for jaws that are apart, 0.02 to 0.3 ms where they meet.
   [[nodiscard]] GapResult gap(const Eigen::Isometry3d& pose, double tolerance) noexcept;
 
   /// Whether both trees have triangles.
@@ -107,8 +108,10 @@ class CollisionQuery {
   /// thread alone. Where not is_exact() that is the status.
   ///
   /// @param out takes the pairs, sorted by fixed and then by moving triangle; where it is too
-  /// short,
-  ///            the first of them
+  ///            short, the first of them
+  ///
+  /// Where bodies are less than 5e-9 of how far they are from the origin, a moved vertex is rounded
+  /// by more than leaves are, and triangles may meet so where collide() finds no leaves that do.
   ///
   /// Cost: some 1.2 µs a pair that meets, of jaws that are closed, with voxels no larger than
   /// triangles; much more with larger ones (NodeTriangles).

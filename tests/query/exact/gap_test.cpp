@@ -59,12 +59,9 @@ TEST(Gap, HoldsTheDistance) {
 // Errors grow with the farthest vertex, of those that are there.
 TEST(Gap, KnowsNothingOfAVertexThatNoTriangleNames) {
   TriangleMesh block = box({0, 0, 0}, {1, 1, 1});
-  BuildOptions options;
-  options.voxel_size = 0.25;
-  options.keep_triangles = true;
-  const SphereTree plain = build_tree(block, options);
+  const SphereTree plain = tree_with_triangles(block, 0.25);
   block.vertices.emplace_back(1e300, -1e300, 1e300);
-  const SphereTree odd = build_tree(block, options);
+  const SphereTree odd = tree_with_triangles(block, 0.25);
   CollisionQuery query(plain, plain), beside(odd, odd);
   for (const double x : {0.5, 1.0, 1.25}) {
     const Eigen::Isometry3d pose = shift({x, 0, 0});
