@@ -1,5 +1,6 @@
 """Runs the mutants of mutants.py; see mutate.sh."""
 
+import json
 import os
 import re
 import shutil
@@ -13,6 +14,7 @@ from mutants import MUTANTS
 ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
+RESULTS = ROOT / "perf/results/mutants.json"
 SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 
@@ -52,7 +54,7 @@ def edited(edits, root=COPY):
 def configure():
     subprocess.run(
         ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON"],
+         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON", "-DIST_CLI=ON"],
         check=True, stdout=subprocess.DEVNULL)
 
 
@@ -92,7 +94,7 @@ def killer_of(mutant):
         refused = build(programs_of([mutant]))
         if refused:
             if "static assertion failed" in refused:
-                return "a `static_assert`"
+                return "a proof at compile time"
             fail(f"{mutant.name} does not compile:\n{refused[-3000:]}")
         return first_failure(mutant.tests)
     finally:
@@ -104,17 +106,21 @@ def programs_of(mutants):
     return sorted({test.split()[0] for mutant in mutants for test in mutant.tests})
 
 
-def write_table(killers):
+def write_table(found):
+    """Renews the rows of those that ran; a mutant that never ran stands there as such."""
+    known = {**(json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}), **found}
+    RESULTS.write_text(json.dumps(known, indent=1) + "\n")
     lines = ["# Mutants", "",
              "Ways in which the code was broken on purpose, one at a time, and the first test that noticed. Made by",
              "`scripts/mutate.sh`; the mutants are in `scripts/mutants.py`.", "",
              "| mutant | what it breaks | in | killed by |", "|---|---|---|---|"]
-    for mutant, killer in killers:
+    killed = 0
+    for mutant in MUTANTS:
+        killer = known.get(mutant.name, "not run")
+        killed += killer not in (None, "not run")
         files = ", ".join(sorted({f"`{Path(file).name}`" for file, _, _ in mutant.edits}))
-        by = f"`{killer}`" if killer and "`" not in killer else killer
-        lines.append(f"| {mutant.name} | {mutant.breaks} | {files} | {by or '**survives**'} |")
-    killed = sum(killer is not None for _, killer in killers)
-    lines += ["", f"{killed} of {len(killers)} killed."]
+        lines.append(f"| {mutant.name} | {mutant.breaks} | {files} | {killer or '**survives**'} |")
+    lines += ["", f"{killed} of {len(MUTANTS)} killed."]
     (ROOT / "perf/MUTANTS.md").write_text("\n".join(lines) + "\n")
 
 
@@ -138,19 +144,18 @@ def main():
         fail(f"the code as it is does not compile:\n{refused[-3000:]}")
     if broken := first_failure(sorted({test for m in chosen for test in m.tests})):
         fail(f"{broken} fails with the code as it is")
-    killers = []
+    found = {}
     for number, mutant in enumerate(chosen, 1):
         start = time.monotonic()
         killer = killer_of(mutant)
-        killers.append((mutant, killer))
+        found[mutant.name] = killer
         print(f"{number:2}/{len(chosen)} {mutant.name:34} {killer or 'SURVIVES'} "
               f"({time.monotonic() - start:.0f} s)", flush=True)
-    if not words:
-        write_table(killers)
-    survivors = [mutant.name for mutant, killer in killers if killer is None]
+    write_table(found)
+    survivors = [name for name, killer in found.items() if killer is None]
     if survivors:
         fail(f"no test notices: {', '.join(survivors)}")
-    print(f"all {len(killers)} mutants are killed")
+    print(f"all {len(found)} mutants are killed")
 
 
 main()
