@@ -5,18 +5,20 @@
 #   scripts/setup.sh           what the library, the command and the tests need
 #   scripts/setup.sh --bench   also what the benchmarks and the plots need
 #   scripts/setup.sh --peers   also the libraries that bench/peers compares with
+#   scripts/setup.sh --fuzz    also what the fuzzers need
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libcli11-dev nlohmann-json3-dev
-  libgtest-dev libgmp-dev)
-bench=(libbenchmark-dev python3 python3-matplotlib)
+  libgtest-dev libgmp-dev python3)
+bench=(libbenchmark-dev python3-matplotlib)
 for argument in "$@"; do
   case $argument in
     --bench) packages+=("${bench[@]}") ;;
     --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev) ;;
-    -h | --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
+    -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

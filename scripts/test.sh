@@ -3,10 +3,21 @@
 # ThreadSanitizer, then what reads files and what runs in vectors under AddressSanitizer and
 # UndefinedBehaviorSanitizer.
 #
+#   scripts/test.sh          every test, some 20 minutes from nothing built on two cores
+#   scripts/test.sh --long   then hard cases with 20 times the samples, ten million queries of real
+#                            jaws, threads for longer, and each fuzzer for a minute; 30 minutes more
+#
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails
 set -euo pipefail
 cd "$(dirname "$0")/.."
+long=false
+case ${1:-} in
+  "") ;;
+  --long) long=true ;;
+  -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
+esac
 scripts/setup.sh
 jobs=$(nproc)
 
@@ -24,5 +35,19 @@ run() {  # preset, targets to build, then arguments for ctest
 }
 
 run thread "base_test tree_test search_test workers_test" -R 'Thread|Parallel'
-run sanitize "mesh_test tree_test search_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
+run sanitize "mesh_test tree_test search_test fuzz_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
+$long || exit 0
+
+export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
+more() {  # preset, times the samples, program, filter
+  echo "== $3 $4, preset $1, $2 times the samples"
+  IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4"
+}
+more thread 100 search_test 'SharedTreeThread.*'
+trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
+more test 1000 load_test '*' &
+load=$!
+more test 20 stability_test '*'
+wait $load
+scripts/fuzz.sh --seconds 60

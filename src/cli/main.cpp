@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/interruption.h"
 #include "cli/verify.h"
 #include "ist/base/error.h"
 
@@ -32,6 +35,7 @@ int exit_code(ErrorCode code) {
 }
 
 int run(int argc, char** argv) {
+  leave_nothing_half_done();
   CLI::App app(
       "Finds where two rigid triangle meshes touch. Try 'ist demo' first: it needs no files.\n"
       "Lengths are in the unit of the mesh files, millimetres by habit.",
@@ -63,6 +67,11 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+// All that the standard library and TBB say of it is in the text.
+bool is_lack_of_threads(const std::exception& error) {
+  return std::strstr(error.what(), std::strerror(EAGAIN)) != nullptr;
+}
+
 }  // namespace
 }  // namespace ist::cli
 
@@ -81,6 +90,10 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
   return ist::cli::kFailed;
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "ist: %s\n", error.what());
+  std::fprintf(
+      stderr, "ist: %s%s\n", error.what(),
+      ist::cli::is_lack_of_threads(error)
+          ? ": no memory for a thread, or too many of them: raise the limit (ulimit -v, -u)"
+          : "");
   return ist::cli::kFailed;
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace ist::cli {
 namespace {
@@ -14,13 +15,25 @@ constexpr std::chrono::seconds kPatience{2};
 constexpr std::chrono::milliseconds kPeriod{100};
 constexpr std::size_t kWidth = 30;
 
+// The terminal's last line, which there is one of.
+std::mutex line_mutex;
+bool line_is_drawn = false;
+
 void draw(const Progress& progress) {
   const double fraction = progress.fraction();
   const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(kWidth));
   const std::string line =
       fmt::format("\r\033[K[{}{}] {:3.0f} %  {}", std::string(filled, '#'),
                   std::string(kWidth - filled, '.'), 100 * fraction, progress.stage());
+  const std::lock_guard lock(line_mutex);
+  line_is_drawn = true;
   std::fputs(line.c_str(), stderr);
+  std::fflush(stderr);
+}
+
+void clear_line() {
+  if (!std::exchange(line_is_drawn, false)) return;
+  std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
 }
 
@@ -46,8 +59,13 @@ void ProgressBar::show() {
   do {
     draw(progress_);
   } while (!ended_.wait_for(lock, kPeriod, [this] { return end_; }));
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+  const std::lock_guard line(line_mutex);
+  clear_line();
+}
+
+void abandon_progress_bar() noexcept {
+  line_mutex.lock();  // and never unlocked: nothing is to follow
+  clear_line();
 }
 
 }  // namespace ist::cli

@@ -26,4 +26,8 @@ class ProgressBar {
   std::thread thread_;
 };
 
+/// Clears the line of a bar that is shown, for a process that ends by a signal: a thread that draws
+/// waits from then on for ever. Not for signal handlers: it takes a lock.
+void abandon_progress_bar() noexcept;
+
 }  // namespace ist::cli

@@ -32,6 +32,19 @@ TEST(InputFile, ReadsFromFrontToBackAndShortOnlyAtTheEnd) {
   EXPECT_EQ(file.read(data, 7), 0u);
 }
 
+TEST(InputFile, IsReadAsItIsWhereItChangesAfterItWasOpened) {
+  const test::TempDir folder;
+  const auto path = folder.write("in", "abcdefg");
+  InputFile cut(path);
+  std::filesystem::resize_file(path, 3);
+  EXPECT_EQ(cut.size(), 7u);
+  EXPECT_EQ(cut.read_rest(), "abc");
+  EXPECT_EQ(cut.read_rest(), "");
+  InputFile grown(path);
+  folder.write("in", "abcdefghijklmnopq");
+  EXPECT_EQ(grown.read_rest(), "abcdefghijklmnopq");
+}
+
 TEST(InputFile, AnEmptyFileIsAFile) {
   const test::TempDir folder;
   InputFile file(folder.write("empty", ""));

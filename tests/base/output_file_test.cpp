@@ -1,6 +1,7 @@
 #include "ist/base/output_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -114,6 +115,40 @@ TEST(OutputFile, AFullDiskIsReported) {
   EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
   EXPECT_NE(std::string(error->what()).find("/dev/full"), std::string::npos);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+// As a process does that ends by a signal.
+TEST(OutputFile, IsNotThereWhereItIsAbandoned) {
+  const test::TempDir folder;
+  const auto target = folder.write("out", "old"), done = folder.path() / "done";
+  const auto abandon = [&] {
+    OutputFile committed(done), first(target), second(target), third(folder.path() / "third");
+    write(committed, "whole");
+    write(first, "half");
+    committed.commit();
+    abandon_output_files();
+    ::_exit(7);
+  };
+  EXPECT_EXIT(abandon(), ::testing::ExitedWithCode(7), "");
+  EXPECT_EQ(file_content(target), "old");
+  EXPECT_EQ(file_content(done), "whole");
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
+// What another process left behind is not taken for one's own.
+TEST(OutputFile, LeavesAForeignTemporaryFileAlone) {
+  const test::TempDir folder;
+  const std::string foreign = "out." + std::to_string(::getpid()) + "-0.tmp";
+  folder.write(foreign, "foreign");
+  {
+    OutputFile file(folder.path() / "out");
+    write(file, "mine");
+    file.commit();
+    OutputFile given_up(folder.path() / "out");
+  }
+  EXPECT_EQ(file_content(folder.path() / foreign), "foreign");
+  EXPECT_EQ(file_content(folder.path() / "out"), "mine");
+  EXPECT_EQ(folder.entries(), 2u);
 }
 
 }  // namespace

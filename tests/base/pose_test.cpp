@@ -126,5 +126,53 @@ TEST(ProjectToRigid, RefusesALastRowThatIsNot0001) {
   }
 }
 
+// The product in rational numbers, and how far the composed pose is from it.
+TEST(ComposeRigid, IsRightToTheDriftThatIsStated) {
+  constexpr double kUnit = 0x1p-53;
+  test::Seeded seeded(4);
+  for (int i = 0; i < 300; ++i) {
+    const auto motion = [&seeded] {
+      const Eigen::Matrix3d rotation = random_rotation(seeded);
+      return project_to_rigid(pose_of(rotation, seeded.point(-100, 100))).value();
+    };
+    const Eigen::Isometry3d first = motion(), second = motion();
+    const auto composed = compose_rigid(second, first);
+    ASSERT_TRUE(composed);
+    EXPECT_LE(distance_from_orthonormal(composed->linear()), 1e-15);
+    const auto row = [&second](int k) {
+      return test::exact(Eigen::Vector3d(second.linear().row(k).transpose()));
+    };
+    Eigen::Vector3d shifted;
+    Eigen::Matrix3d turned;  // what is off, seen from the product: antisymmetric where it turns
+    for (int k = 0; k < 3; ++k) {
+      const mpq_class place =
+          dot(row(k), test::exact(first.translation())) + mpq_class(second.translation()[k]);
+      shifted[k] = mpq_class(composed->translation()[k] - place).get_d();
+      for (int j = 0; j < 3; ++j) {
+        turned(k, j) =
+            mpq_class(composed->linear()(k, j) - dot(row(k), test::exact(first.linear().col(j))))
+                .get_d();
+      }
+    }
+    const Eigen::Matrix3d turn = composed->linear().transpose() * turned;
+    EXPECT_LE((turn - turn.transpose()).norm() / std::sqrt(8.0), 20 * kUnit);
+    EXPECT_LE(shifted.norm(),
+              8 * kUnit * (first.translation().norm() + second.translation().norm()));
+  }
+}
+
+TEST(ComposeRigid, RefusesWhatIsNoRigidMotion) {
+  const Eigen::Isometry3d rigid = Eigen::Isometry3d::Identity();
+  EXPECT_TRUE(compose_rigid(rigid, rigid));
+  Eigen::Isometry3d stretched = rigid, projective = rigid, endless = rigid;
+  stretched(0, 0) = 1.001;
+  projective(3, 1) = 0.5;
+  endless(2, 3) = std::numeric_limits<double>::infinity();
+  for (const Eigen::Isometry3d& bad : {stretched, projective, endless}) {
+    EXPECT_FALSE(compose_rigid(rigid, bad));
+    EXPECT_FALSE(compose_rigid(bad, rigid));
+  }
+}
+
 }  // namespace
 }  // namespace ist

@@ -47,6 +47,24 @@ TEST(ReadMesh, TellsTheFormatByTheContent) {
   }
 }
 
+// Whatever the file says of a facet's normal, its corners go round as they do.
+TEST(ReadMesh, DoesNotBelieveTheNormalsOfAnStl) {
+  const std::string plain = test::as_binary_stl(kBox);
+  constexpr std::size_t kFirstFacet = 84, kFacet = 50;
+  for (const float sign : {1.0F, -1.0F}) {
+    std::string bytes = plain;
+    for (std::size_t i = 0; i < kBox.triangles.size(); ++i) {
+      const Triangle& t = kBox.triangles[i];
+      const Eigen::Vector3d a = kBox.vertices[t[0]];
+      const Eigen::Vector3f normal =
+          sign *
+          (kBox.vertices[t[1]] - a).cross(kBox.vertices[t[2]] - a).normalized().cast<float>();
+      std::memcpy(bytes.data() + kFirstFacet + i * kFacet, normal.data(), sizeof normal);
+    }
+    EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(kBox)));
+  }
+}
+
 TEST(ReadMesh, NumbersVerticesByFirstAppearance) {
   for (const auto& [name, bytes] : all_formats(kBox)) {
     std::uint32_t next = 0;

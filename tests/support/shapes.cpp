@@ -1,5 +1,6 @@
 #include "support/shapes.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -48,6 +49,12 @@ TriangleMesh box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
 TriangleMesh triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
   return {{a, b, c}, {{0, 1, 2}}};
+}
+
+TriangleMesh coincident(std::size_t triangles) {
+  TriangleMesh mesh = triangle({-1, -1, 0}, {1, -0.8, 0.1}, {0, 1, 0.4});
+  mesh.triangles.assign(triangles, {0, 1, 2});
+  return mesh;
 }
 
 TriangleMesh icosphere(int level, double radius) {
@@ -167,6 +174,44 @@ TriangleMesh tube(double inner, double outer, double half, double edge) {
     for (int i = 0; i < parts; ++i) outline.push_back(a + (b - a) * i / parts);
   }
   return revolved(outline, static_cast<int>(std::ceil(kTurn * outer / edge)));
+}
+
+TriangleMesh plate_with_holes(int holes) {
+  int across = 1;
+  while (across * across < holes) ++across;
+  const int along = (holes + across - 1) / across;
+  const auto is_solid = [&](int x, int y) {
+    if (x < 0 || y < 0 || x > 2 * across || y > 2 * along) return false;
+    return x % 2 == 0 || y % 2 == 0 || (y / 2) * across + x / 2 >= holes;
+  };
+  TriangleMesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> places;
+  const auto vertex = [&](int x, int y, int z) {
+    const auto [found, is_new] =
+        places.try_emplace({x, y, z}, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.emplace_back(x, y, z);
+    return found->second;
+  };
+  const auto square = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  // The wall over an edge of the floor that has the plate on its left.
+  const auto wall = [&](int x0, int y0, int x1, int y1) {
+    square(vertex(x0, y0, 0), vertex(x1, y1, 0), vertex(x1, y1, 1), vertex(x0, y0, 1));
+  };
+  for (int x = 0; x <= 2 * across; ++x) {
+    for (int y = 0; y <= 2 * along; ++y) {
+      if (!is_solid(x, y)) continue;
+      square(vertex(x, y, 1), vertex(x + 1, y, 1), vertex(x + 1, y + 1, 1), vertex(x, y + 1, 1));
+      square(vertex(x, y, 0), vertex(x, y + 1, 0), vertex(x + 1, y + 1, 0), vertex(x + 1, y, 0));
+      if (!is_solid(x, y - 1)) wall(x, y, x + 1, y);
+      if (!is_solid(x + 1, y)) wall(x + 1, y, x + 1, y + 1);
+      if (!is_solid(x, y + 1)) wall(x + 1, y + 1, x, y + 1);
+      if (!is_solid(x - 1, y)) wall(x, y + 1, x, y);
+    }
+  }
+  return mesh;
 }
 
 TriangleMesh open_strip(int squares) {

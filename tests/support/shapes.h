@@ -14,6 +14,9 @@ namespace ist::test {
 [[nodiscard]] TriangleMesh triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& c);
 
+/// One triangle, so many times: its corners are about 1 from the origin.
+[[nodiscard]] TriangleMesh coincident(std::size_t triangles);
+
 /// An icosahedron whose triangles are cut in four `level` times, its vertices on the sphere round
 /// the origin: 20 * 4^level triangles, normals outward. Made with + - * / and square roots only,
 /// so that it is the same bits everywhere.
@@ -36,6 +39,10 @@ namespace ist::test {
 /// The tube between two cylinders about z of radius `inner` and `outer`, |z| <= `half`; with
 /// `inner` 0 a cylinder. Its squares are about `edge` wide.
 [[nodiscard]] TriangleMesh tube(double inner, double outer, double half, double edge);
+
+/// A closed plate of unit cubes, one thick, with so many square holes through it: of that genus.
+/// Its corner is the origin, its faces are in planes of whole numbers, normals outward.
+[[nodiscard]] TriangleMesh plate_with_holes(int holes);
 
 /// A flat strip of `squares` unit squares along x, of two triangles each, normals along +z.
 [[nodiscard]] TriangleMesh open_strip(int squares);

@@ -1,12 +1,11 @@
 #include "support/tree_file.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <stdexcept>
 
 #include "ist/tree/tree_io.h"
+#include "support/memory_file.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -35,9 +34,14 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   if (end != bytes.size()) throw std::logic_error("the file is not as its format is described");
 }
 
-void TreeFile::seal() {
-  put<std::uint64_t>(kBytes, bytes.size());
-  put<std::uint64_t>(kChecksum, XXH3_64bits(bytes.data() + kBody, bytes.size() - kBody));
+void TreeFile::seal() { test::seal(bytes); }
+
+void seal(std::string& tree_file) {
+  const std::uint64_t size = tree_file.size();
+  const std::uint64_t checksum =
+      XXH3_64bits(tree_file.data() + TreeFile::kBody, tree_file.size() - TreeFile::kBody);
+  std::memcpy(tree_file.data() + TreeFile::kBytes, &size, sizeof size);
+  std::memcpy(tree_file.data() + TreeFile::kChecksum, &checksum, sizeof checksum);
 }
 
 std::string file_of(const SphereTree& tree) {
@@ -49,14 +53,9 @@ std::string file_of(const SphereTree& tree) {
 
 // A file in memory: thousands of files on a disk would be waited for.
 SphereTree tree_of_bytes(const std::string& bytes) {
-  struct Descriptor {
-    int number = ::memfd_create("tree", MFD_CLOEXEC);
-    ~Descriptor() { ::close(number); }
-  } const file;
-  if (::write(file.number, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
-    throw std::runtime_error("cannot write a file in memory");
-  }
-  return read_tree("/proc/self/fd/" + std::to_string(file.number));
+  const MemoryFile file;
+  file.write(bytes);
+  return read_tree(file.path());
 }
 
 }  // namespace ist::test

@@ -42,6 +42,9 @@ class TreeFile {
   void seal();
 };
 
+/// Makes size and checksum of a file right that has at least kBody bytes.
+void seal(std::string& tree_file);
+
 /// What write_tree writes.
 [[nodiscard]] std::string file_of(const SphereTree& tree);
 

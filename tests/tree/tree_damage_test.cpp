@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <ostream>
@@ -11,9 +12,11 @@
 #include <vector>
 
 #include "ist/tree/tree_builder.h"
+#include "ist/tree/tree_stream.h"
 #include "support/errors.h"
 #include "support/largest_allocation.h"
 #include "support/shapes.h"
+#include "support/temp_dir.h"
 #include "support/tree_file.h"
 
 namespace ist {
@@ -138,6 +141,9 @@ const std::vector<Damage>& damages() {
       put("ListCountHuge", &F::counts, 16, std::uint64_t{1} << 62, "tree-truncated"),
       put("VertexNaN", &F::vertices, 8, kNaN),
       put("VertexInfinite", &F::triangles, static_cast<std::size_t>(-8), kInfinity),
+      put("VertexBeforeTheGrid", &F::vertices, 0, -std::numeric_limits<double>::denorm_min()),
+      put("VertexBehindTheGrid", &F::vertices, 16, 2.2),
+      put("VertexBeyondAllMeasure", &F::vertices, 0, 1e300),
       put("TriangleNamesAVertexThatIsNotThere", &F::triangles, 4, 8u),
       put("ListsDoNotBeginAtZero", &F::list_begins, 0, 1u),
       put("ListsDecrease", &F::list_begins, 8, 0u),
@@ -206,8 +212,8 @@ TEST(DamagedTree, OfAGridThatNoMeshHasSaysWhy) {
   };
   says(with(1e-30), "the grid is smaller than any mesh may be: build it again");
   says(with(1e20), "the grid is larger than any mesh may be: build it again");
-  // Of three voxels an axis.
-  EXPECT_EQ(with(1e-12 / 3), "none");
+  // Of three voxels an axis, which are too small for the triangles.
+  says(with(1e-12 / 3), "a triangle leaves the grid: build it again");
   EXPECT_EQ(with(1e15 / 3), "none");
 }
 
@@ -261,6 +267,21 @@ TEST(DamagedTree, NoCountMakesItAllocateMoreThanTheFileIsLong) {
     file.seal();
     const std::size_t largest = test::largest_allocation([&] { (void)error_of_bytes(file.bytes); });
     EXPECT_LE(largest, file.bytes.size() + 4096) << damage.name;
+  }
+}
+
+// Its size is looked at when it is opened, and what is in it believed only as far as it is read.
+TEST(DamagedTree, CutWhileItIsReadIsAnError) {
+  const test::TempDir folder;
+  for (const std::size_t left : {TreeFile::kBody, TreeFile::kBody + 3}) {
+    const auto path = folder.write("tree.ist", small_file().bytes);
+    TreeReader reader(path);
+    std::filesystem::resize_file(path, left);
+    const auto error = test::error_of([&] { (void)reader.value<double>(); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kTreeTruncated);
+    EXPECT_EQ(error->what(),
+              path.string() + ": it ends before its content does: copy or build it again");
   }
 }
 

@@ -5,8 +5,9 @@
 namespace ist {
 
 /// Arithmetic as IEEE 754 has it (round to nearest, no flush to zero, no denormals are zero) while
-/// this object lives; the caller's setting comes back after. Building and querying hold one in each
-/// thread, so that a host that changed MXCSR gets the same bits as one that did not.
+/// this object lives; the caller's setting comes back after, with its flags. What reads, builds or
+/// asks holds one in each thread, constructors too, so that a host that changed MXCSR gets the same
+/// bits as one that did not.
 class ScopedFloatEnvironment {
  public:
   ScopedFloatEnvironment() noexcept : saved_(_mm_getcsr()) { _mm_setcsr(kDefault); }

@@ -6,12 +6,30 @@
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "ist/base/error.h"
 
 namespace ist {
+namespace {
+
+// The temporary files that there are. Each comes and goes on disk while its owner holds the lock,
+// so that whoever holds it knows them all.
+struct Temporaries {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+
+  // Never destroyed: a thread may still write while the process ends.
+  static Temporaries& all() {
+    static auto& temporaries = *new Temporaries;
+    return temporaries;
+  }
+};
+
+}  // namespace
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
   std::error_code ignored;
@@ -23,11 +41,19 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     // Writing to a link must not replace the link.
     const auto real = std::filesystem::canonical(target_, ignored);
     if (!ignored) target_ = real;
+    auto& [mutex, paths] = Temporaries::all();
+    const std::lock_guard lock(mutex);
     for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
       temporary_ = target_;
       temporary_ += fmt::format(".{}-{}.tmp", ::getpid(), attempt);
+      const auto [listed, is_new] = paths.insert(temporary_);
+      if (!is_new) continue;
       descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && errno != EEXIST) break;
+      if (descriptor_ >= 0) break;
+      const int cause = errno;
+      paths.erase(listed);
+      errno = cause;
+      if (cause != EEXIST) break;
     }
   }
   if (descriptor_ < 0) {
@@ -38,7 +64,11 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  auto& [mutex, paths] = Temporaries::all();
+  const std::lock_guard lock(mutex);
+  ::unlink(temporary_.c_str());
+  paths.erase(temporary_);
 }
 
 void OutputFile::write(const void* data, std::size_t bytes) {
@@ -71,7 +101,10 @@ void OutputFile::commit() {
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0) fail("close");
   if (temporary_.empty()) return;
+  auto& [mutex, paths] = Temporaries::all();
+  const std::lock_guard lock(mutex);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename");
+  paths.erase(temporary_);
   temporary_.clear();
 }
 
@@ -80,6 +113,12 @@ void OutputFile::fail(const char* doing) const {
               fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
                           "space on the disk",
                           target_.string(), doing, std::strerror(errno)));
+}
+
+void abandon_output_files() noexcept {
+  auto& [mutex, paths] = Temporaries::all();
+  mutex.lock();  // and never unlocked: nothing is to follow
+  for (const std::filesystem::path& path : paths) ::unlink(path.c_str());
 }
 
 }  // namespace ist

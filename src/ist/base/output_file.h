@@ -10,7 +10,8 @@ namespace ist {
 /// the same name stays as it was. A target that is no regular file, such as /dev/stdout, is written
 /// directly.
 ///
-/// Every function throws kFileUnwritable, naming the file and the cause.
+/// Every function throws kFileUnwritable, naming the file and the cause. One file belongs to one
+/// thread at a time.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path target);
@@ -29,5 +30,10 @@ class OutputFile {
   std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
   int descriptor_ = -1;
 };
+
+/// Removes the temporary files of all OutputFiles, for a process that ends without their
+/// destructors, by a signal: a thread that tries to make, commit or destroy one waits from then on
+/// for ever. Not for signal handlers: it takes a lock.
+void abandon_output_files() noexcept;
 
 }  // namespace ist

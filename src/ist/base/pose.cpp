@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "ist/base/float_environment.h"
+
 namespace ist {
 namespace {
 
@@ -60,6 +62,20 @@ std::optional<Eigen::Isometry3d> project_to_rigid(const Eigen::Isometry3d& pose)
   Eigen::Isometry3d rigid = pose;
   rigid.matrix().block<3, 3>(0, 0) = rotation;
   return rigid;
+}
+
+std::optional<Eigen::Isometry3d> compose_rigid(const Eigen::Isometry3d& second,
+                                               const Eigen::Isometry3d& first) noexcept {
+  const ScopedFloatEnvironment environment;
+  const Eigen::Matrix4d &a = second.matrix(), &b = first.matrix();
+  Eigen::Isometry3d product;
+  for (int i = 0; i < 4; ++i) {  // all four rows: one that is not 0 0 0 1 is refused
+    for (int j = 0; j < 4; ++j) {
+      product.matrix()(i, j) =
+          ((a(i, 0) * b(0, j) + a(i, 1) * b(1, j)) + a(i, 2) * b(2, j)) + a(i, 3) * b(3, j);
+    }
+  }
+  return project_to_rigid(product);
 }
 
 }  // namespace ist

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "ist/base/float_environment.h"
 #include "ist/mesh/edges.h"
 
 namespace ist {
@@ -76,6 +77,7 @@ double signed_volume(const TriangleMesh& mesh) {
 }  // namespace
 
 MeshReport check_mesh(const TriangleMesh& mesh) {
+  const ScopedFloatEnvironment environment;
   MeshReport report;
   report.vertices = mesh.vertices.size();
   report.triangles = mesh.triangles.size();

@@ -8,9 +8,12 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <span>
+#include <string_view>
 #include <utility>
 
+#include "ist/base/float_environment.h"
 #include "ist/base/input_file.h"
 #include "ist/mesh/format/mesh_format.h"
 #include "ist/mesh/format/text_reader.h"
@@ -82,6 +85,9 @@ TriangleMesh parse(const CheckedContent& content, const std::string& file) {
   importer.SetIOHandler(new NoFiles);  // the importer deletes it
   const aiScene* scene =
       importer.ReadFileFromMemory(content.bytes.data(), content.bytes.size(), 0, content.format);
+  // It catches whatever is thrown, and keeps the text.
+  if (scene == nullptr && importer.GetErrorString() == std::string_view(std::bad_alloc().what()))
+    throw std::bad_alloc();
   if (scene == nullptr)
     fail_mesh(
         ErrorCode::kNotAMesh, file, "",
@@ -107,6 +113,7 @@ void check_extent(const TriangleMesh& mesh, const std::string& file) {
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;  // numbers in text are rounded too
   TriangleMesh mesh = parse(check_content(InputFile(file).read_rest(), file), file.string());
   check_extent(mesh, file.string());
   return mesh;

@@ -8,8 +8,8 @@ namespace ist {
 
 /// Reads STL (binary or text), PLY (binary or text) or OBJ. The content decides which; the name
 /// helps only for an OBJ. Several solids or groups become one mesh, polygons become triangles, and
-/// vertices in the same place become one. Vertices are floats, in the order in which the triangles
-/// name them first; those that no triangle names are left out, as are the file's normals, colours
+/// vertices in the same place become one. Vertices are floats, in the order in which the faces
+/// name them first; those that no face names are left out, as are the file's normals, colours
 /// and materials. The file is read once.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, some eight times the file.

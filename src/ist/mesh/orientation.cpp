@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/float_environment.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
 
@@ -61,6 +62,7 @@ bool is_outermost(const TriangleMesh& mesh, std::span<const Component> component
 }  // namespace
 
 OrientationResult orient_outward(TriangleMesh& mesh) {
+  const ScopedFloatEnvironment environment;
   const std::vector<Component> components = components_of(mesh);
   OrientationResult result;
   result.orientation = components.empty() ? Orientation::kAssumed : Orientation::kOutward;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ist/base/assert.h"
+#include "ist/base/float_environment.h"
 #include "ist/base/output_file.h"
 #include "ist/mesh/format/binary_content.h"
 #include "ist/mesh/format/text_reader.h"
@@ -35,6 +36,7 @@ std::array<float, 3> unit_normal(const Eigen::Vector3d& a, const Eigen::Vector3d
 }  // namespace
 
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max())
     fail_mesh(ErrorCode::kFileUnwritable, file.string(), "",
               "an STL holds no more than 2^32 - 1 triangles; write the mesh in parts");

@@ -82,6 +82,13 @@ inline constexpr std::array<float, 256> kMaskRadii = [] {
   }
   return radii;
 }();
+static_assert([] {  // six times a float, and that squared, are exact in double
+  for (std::size_t mask = 0; mask < 256; ++mask) {
+    const double sixths = 6.0 * kMaskRadii[mask];
+    if (sixths * sixths < kLookupTable[mask].radius_squared) return false;
+  }
+  return true;
+}());
 
 /// The sphere of the child in a parent's slot, by the parent's occupancy mask and its own.
 template <std::size_t N>

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
 #include "ist/query/collision_query.h"
 
@@ -20,7 +19,7 @@ double far_enough(const GapInterval& gap, double tolerance) {
 
 GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) noexcept {
   const ScopedFloatEnvironment environment;
-  const std::optional<Approach> bodies = approach(pose);
+  const std::optional<Approach> bodies = approach(pose, triangle_error(pose));
   if (!bodies) return {QueryStatus::kInvalidPose, {}, 0};
   GapResult result{QueryStatus::kDone, bodies->roots.gap, 1};
   if (pad_of(narrowed(*bodies)) >
@@ -31,7 +30,9 @@ GapResult CollisionQuery::gap(const Eigen::Isometry3d& pose, double tolerance) n
     const SearchPose from = narrowed(*bodies);
     const GapInterval nearest =
         exact_->nearest(*project_to_rigid(pose), from, pad_of(from), result.gap.upper, tolerance);
-    result.gap = {std::max(result.gap.lower, nearest.lower), nearest.upper};
+    // Far from the origin a vertex moved in double can be off by more than a distance is.
+    const double off = nearest.upper > 0 ? bodies->grow : 0;
+    result.gap = {std::max(result.gap.lower, nearest.lower - off), nearest.upper + off};
     result.sphere_tests += exact_->tests();
   } else {
     nearest_leaves(*bodies, tolerance, result);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "ist/base/assert.h"
-#include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
 #include "ist/query/kernels.h"
 #include "ist/query/query_rules.h"
@@ -37,8 +36,13 @@ QueryResult of_roots(const RootTest& roots) {
 
 }  // namespace
 
+// What is made once and read by every query must not hang on the caller's arithmetic either.
 CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving,
                                const CollisionOptions& options)
+    : CollisionQuery(fixed, moving, options, ScopedFloatEnvironment()) {}
+
+CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving,
+                               const CollisionOptions& options, const ScopedFloatEnvironment&)
     : fixed_(fixed),
       moving_(moving),
       policy_(options.policy.value_or(std::min(fixed.tightest(), moving.tightest()))),
@@ -53,8 +57,12 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
   window_.resize(kWindow + kContactSlack);
   if (fixed.triangles() && moving.triangles()) {
     exact_.emplace(fixed, moving, policy_, kernels_, options.triangle_pairs);
-    for (const Eigen::Vector3d& v : moving.triangles()->mesh.vertices) {
-      largest_coordinate_ = std::max(largest_coordinate_, v.cwiseAbs().maxCoeff());
+    // Of vertices that triangles name: others may lie anywhere.
+    const TriangleMesh& mesh = moving.triangles()->mesh;
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t v : triangle) {
+        largest_coordinate_ = std::max(largest_coordinate_, mesh.vertices[v].cwiseAbs().maxCoeff());
+      }
     }
   }
   static_cast<void>(collide(Eigen::Isometry3d::Identity(), std::span<Contact>()));
@@ -82,14 +90,16 @@ QueryResult CollisionQuery::contact_points(const Eigen::Isometry3d& pose,
   return result;
 }
 
-std::optional<CollisionQuery::Approach> CollisionQuery::approach(
-    const Eigen::Isometry3d& pose) const noexcept {
+double CollisionQuery::triangle_error(const Eigen::Isometry3d& pose) const noexcept {
+  // A moved vertex errs by 2⁻⁵¹ of its place, an axis: a pair of triangles that meet so is looked
+  // for even where they do not. Leaves are placed better than that, wherever the scene lies.
+  return exact_ ? 0x1p-48 * (largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff()) : 0;
+}
+
+std::optional<CollisionQuery::Approach> CollisionQuery::approach(const Eigen::Isometry3d& pose,
+                                                                 double grow) const noexcept {
   const auto relative = relative_pose(pose, fixed_.lattice(), moving_.lattice());
   if (!relative) return std::nullopt;
-  // A moved vertex errs by 2⁻⁵¹ of its place, an axis: a pair of triangles that meet so is looked
-  // for even where they do not.
-  const double grow =
-      exact_ ? 0x1p-48 * (largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff()) : 0;
   return Approach{*relative, test_roots(fixed_, moving_, policy_, *relative, grow), grow};
 }
 
@@ -156,7 +166,7 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
 ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,
                                           std::span<TrianglePair> out) noexcept {
   const ScopedFloatEnvironment environment;
-  const std::optional<Approach> bodies = approach(pose);
+  const std::optional<Approach> bodies = approach(pose, triangle_error(pose));
   ExactResult result;
   if (!is_exact()) {
     result.status = QueryStatus::kNoTriangles;
@@ -176,7 +186,7 @@ ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,
 
 Touch CollisionQuery::touches(const Eigen::Isometry3d& pose) noexcept {
   const ScopedFloatEnvironment environment;
-  const std::optional<Approach> bodies = approach(pose);
+  const std::optional<Approach> bodies = approach(pose, triangle_error(pose));
   if (!bodies) return Touch::kInvalidPose;
   if (!bodies->roots.touch) return Touch::kNo;
   const SearchPose from = narrowed(*bodies);
@@ -206,6 +216,7 @@ SharedSearch::Sharing CollisionQuery::sharing() const noexcept {
 }
 
 double CollisionQuery::resolution(const QueryResult& result) const noexcept {
+  const ScopedFloatEnvironment environment;
   return resolution_of(result, fixed_, moving_, policy_);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "ist/base/float_environment.h"
 #include "ist/query/contact.h"
 #include "ist/query/contacts/contact_points.h"
 #include "ist/query/exact/exact_search.h"
@@ -85,12 +86,19 @@ class CollisionQuery {
 
   /// The distance between the surfaces, until the interval is no wider than `tolerance`, mesh
   /// units, or without triangles until the leaves are reached. With triangles it is that of two
-  /// triangles, to within 2^-24 of it and of the longest edge.
+  /// triangles where TrianglePairs puts them, to within 2^-24 of it and of the longest edge.
+  ///
+  /// The distance is Lipschitz in the pose: it changes by no more than a point of the moving body
+  /// moves, at most |how far the origin of the moving tree's frame goes| + SphereTree::reach() of
+  /// it · |angle in radians|. So intervals of two poses are no farther apart than that, and those
+  /// of one pose, whatever they were made from, have a point in common. Without triangles none is
+  /// wider than `tolerance` or twice resolution(), whichever is more.
   ///
   /// Bodies so far apart that float cannot tell their leaves from each other have the interval of
-  /// their roots. The distance of two triangles errs by 2^-24 of it and of the longest edge, and no
-  /// interval is narrower than twice that. Cost: 0.2 to 0.7 ms for jaws that are apart, 0.02 to
-  /// 0.3 ms where they meet.
+  /// their roots. The distance of two triangles errs by 2^-24 of it and of the longest edge, and by
+  /// 2^-48 of how far the scene is from the origin, and no interval is narrower than twice that;
+  /// except that it is 0 where triangles meet as collide_exact() finds them. Cost: 0.2 to 0.7 ms
+  /// for jaws that are apart, 0.02 to 0.3 ms where they meet.
   [[nodiscard]] GapResult gap(const Eigen::Isometry3d& pose, double tolerance) noexcept;
 
   /// Whether both trees have triangles.
@@ -100,8 +108,10 @@ class CollisionQuery {
   /// thread alone. Where not is_exact() that is the status.
   ///
   /// @param out takes the pairs, sorted by fixed and then by moving triangle; where it is too
-  /// short,
-  ///            the first of them
+  ///            short, the first of them
+  ///
+  /// Where bodies are less than 5e-9 of how far they are from the origin, a moved vertex is rounded
+  /// by more than leaves are, and triangles may meet so where collide() finds no leaves that do.
   ///
   /// Cost: some 1.2 µs a pair that meets, of jaws that are closed, with voxels no larger than
   /// triangles; much more with larger ones (NodeTriangles).
@@ -131,9 +141,14 @@ class CollisionQuery {
   struct Approach {
     RelativePose relative;
     RootTest roots;
-    double grow;  // what every reach is grown by, for triangles that are moved in double
+    double grow;  // what every reach is grown by
   };
-  [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose) const noexcept;
+  CollisionQuery(const SphereTree& fixed, const SphereTree& moving, const CollisionOptions& options,
+                 const ScopedFloatEnvironment& environment);
+  [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
+                                                 double grow = 0) const noexcept;
+  // What a triangle may be off that is moved in double, where both trees have any.
+  [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
   [[nodiscard]] SearchPose narrowed(const Approach& approach, double grow = 0) const noexcept;
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink) noexcept;

@@ -15,7 +15,8 @@ struct Contact {
 };
 static_assert(sizeof(Contact) == 8);
 
-/// The distance between two surfaces is in [lower, upper], mesh units.
+/// The distance between two surfaces is in [lower, upper], mesh units. Both ends are finite: a
+/// distance that no double holds counts as the largest one.
 struct GapInterval {
   double lower, upper;
 };

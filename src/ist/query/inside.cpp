@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ist/base/float_environment.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
 
@@ -44,6 +45,7 @@ bool InsideTest::holds(const Body& outer, const Body& inner,
 }
 
 Inside InsideTest::at(const Eigen::Isometry3d& pose) const noexcept {
+  const ScopedFloatEnvironment environment;
   if (holds(fixed_, moving_, pose)) return Inside::kMoving;
   return holds(moving_, fixed_, pose.inverse()) ? Inside::kFixed : Inside::kNone;
 }

@@ -43,6 +43,7 @@ ReferenceQuery::ReferenceQuery(const SphereTree& fixed, const SphereTree& moving
     : fixed_(fixed), moving_(moving), policy_(policy) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
+  const ScopedFloatEnvironment environment;
   if (source == SphereSource::kSaved) {
     saved_fixed_ = save_spheres(fixed, policy);
     saved_moving_ = save_spheres(moving, policy);
@@ -83,6 +84,7 @@ QueryResult ReferenceQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
 }
 
 double ReferenceQuery::resolution(const QueryResult& result) const noexcept {
+  const ScopedFloatEnvironment environment;
   return resolution_of(result, fixed_, moving_, policy_);
 }
 

@@ -1,6 +1,7 @@
 #include "ist/query/root_test.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "ist/query/query_rules.h"
 
@@ -34,7 +35,8 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   test.touch = !(farthest > reaches + test.slack) && !(squared > reach * reach);
   const double largest = apart.cwiseAbs().maxCoeff();
   const double distance = largest > 0 ? largest * (apart / largest).norm() : 0;
-  test.gap = {std::max(0.0, distance - reach), distance + reach};
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  test.gap = {std::clamp(distance - reach, 0.0, kLargest), std::min(distance + reach, kLargest)};
   return test;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/float_environment.h"
 #include "ist/tree/tree_stream.h"
 
 namespace ist {
@@ -130,7 +131,14 @@ std::vector<std::vector<Block>> verified(const TreeReader& reader, const LinearO
   return blocks;
 }
 
-void verify_triangles(const TreeReader& reader, const LeafTriangles& leaves) {
+// The grid holds its mesh exactly, as make_lattice has it: what is rounded in both is so alike.
+bool is_in_grid(const Lattice& lattice, const Eigen::Vector3d& vertex) {
+  const Eigen::Vector3d place = lattice.to_lattice(vertex);
+  return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;
+}
+
+void verify_triangles(const TreeReader& reader, const Lattice& lattice,
+                      const LeafTriangles& leaves) {
   const auto& [mesh, lists] = leaves;
   reader.require(
       mesh.vertices.empty() || all_finite(mesh.vertices.front().data(), 3 * mesh.vertices.size()),
@@ -138,6 +146,7 @@ void verify_triangles(const TreeReader& reader, const LeafTriangles& leaves) {
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
       reader.require(vertex < mesh.vertices.size(), "a triangle names a vertex that is not there");
+      reader.require(is_in_grid(lattice, mesh.vertices[vertex]), "a triangle leaves the grid");
     }
   }
   reader.require(lists.first.front() == 0 && lists.first.back() == lists.ids.size(),
@@ -158,6 +167,7 @@ void verify_triangles(const TreeReader& reader, const LeafTriangles& leaves) {
 }  // namespace
 
 std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
   const Lattice& lattice = tree.lattice();
   TreeWriter writer(file);
   writer.value(lattice.corner);
@@ -197,6 +207,7 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
 }
 
 SphereTree read_tree(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
   TreeReader reader(file);
   Lattice lattice;
   lattice.corner = reader.value<std::array<double, 3>>();
@@ -235,7 +246,7 @@ SphereTree read_tree(const std::filesystem::path& file) {
   reader.require(orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is not known");
   verify_lattice(reader, lattice);
-  if (triangles) verify_triangles(reader, *triangles);
+  if (triangles) verify_triangles(reader, lattice, *triangles);
   SphereTree::Parts parts{lattice,
                           verified(reader, std::move(stored)),
                           static_cast<Orientation>(orientation),

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "ist/base/float_environment.h"
 #include "ist/tree/saved_spheres.h"
 
 namespace ist {
@@ -26,6 +27,7 @@ double unit_ball_volume(double voxel_size) noexcept {
 }
 
 std::vector<LevelStatistics> level_statistics(const SphereTree& tree) {
+  const ScopedFloatEnvironment environment;
   std::vector<LevelStatistics> levels;
   for (int level = 0; level <= tree.depth(); ++level) {
     LevelStatistics& statistics = levels.emplace_back(

@@ -6,14 +6,25 @@
 
 namespace ist::test {
 
-/// A tree with its triangles, of about `cells` voxels along the mesh's largest extent.
+/// A tree with its triangles.
+[[nodiscard]] inline SphereTree tree_with_triangles(const TriangleMesh& mesh, double voxel_size) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.keep_triangles = true;
+  return build_tree(mesh, options);
+}
+
+/// Likewise, of about `cells` voxels along the mesh's largest extent.
 [[nodiscard]] inline SphereTree exact_tree(const TriangleMesh& mesh, double cells) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);
-  BuildOptions options;
-  options.voxel_size = box.sizes().maxCoeff() / cells;
-  options.keep_triangles = true;
-  return build_tree(mesh, options);
+  return tree_with_triangles(mesh, box.sizes().maxCoeff() / cells);
+}
+
+/// The same tree without its triangles: as it would have been built.
+[[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
+  return SphereTree({tree.lattice(), tree.octree(), tree.orientation(), tree.normals(),
+                     tree.bounds(), std::nullopt, std::nullopt});
 }
 
 }  // namespace ist::test

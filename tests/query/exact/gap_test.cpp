@@ -56,6 +56,21 @@ TEST(Gap, HoldsTheDistance) {
   EXPECT_GT(apart, 30);
 }
 
+// Errors grow with the farthest vertex, of those that are there.
+TEST(Gap, KnowsNothingOfAVertexThatNoTriangleNames) {
+  TriangleMesh block = box({0, 0, 0}, {1, 1, 1});
+  const SphereTree plain = tree_with_triangles(block, 0.25);
+  block.vertices.emplace_back(1e300, -1e300, 1e300);
+  const SphereTree odd = tree_with_triangles(block, 0.25);
+  CollisionQuery query(plain, plain), beside(odd, odd);
+  for (const double x : {0.5, 1.0, 1.25}) {
+    const Eigen::Isometry3d pose = shift({x, 0, 0});
+    EXPECT_EQ(beside.collide(pose, {}).pad, query.collide(pose, {}).pad);
+    EXPECT_EQ(beside.gap(pose, 0).gap.lower, query.gap(pose, 0).gap.lower);
+    EXPECT_EQ(beside.gap(pose, 0).gap.upper, query.gap(pose, 0).gap.upper);
+  }
+}
+
 // Two rough spheres, one in the other, which are nearly as near to each other in many places: so
 // that the nearest is found late, and far from where the search began.
 TEST(Gap, OfShellsThatAreNearInManyPlaces) {
@@ -78,6 +93,34 @@ TEST(Gap, OfShellsThatAreNearInManyPlaces) {
         EXPECT_LE(gap.lower, distance + kRounding);
         EXPECT_GE(gap.upper, distance - kRounding);
         EXPECT_LE(gap.upper - gap.lower, tolerance + kRounding);
+      }
+    }
+  }
+}
+
+// Where nearest points are corners of cubes on one line through their centres, the spheres round
+// the cubes are as far apart as they are: nothing is left but the pad.
+TEST(Gap, OfCornersIsNoneTheLess) {
+  const TriangleMesh mesh = joined(triangle({0, 0, 0}, {1, 0, 0.5}, {0, 0.5, 1}),
+                                   triangle({1, 1, 1}, {0, 1, 0.5}, {1, 0.5, 0}));
+  Random random(5);
+  for (const double cells : {1.0, 4.0, 16.0}) {
+    const SphereTree tree = tree_of(mesh, cells);
+    for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
+      CollisionOptions options;
+      options.policy = policy;
+      CollisionQuery query(tree, tree, options);
+      for (int i = 0; i < 50; ++i) {
+        const double away = 1 + random.uniform(0, 1);  // exactly: a multiple of 2^-32
+        const double distance = std::sqrt(3.0) * (away - 1);
+        const Eigen::Isometry3d pose = shift({away, away, away});
+        const GapInterval gap = query.gap(pose, 0).gap;
+        EXPECT_LE(gap.lower, distance * (1 + 0x1p-52)) << away;
+        EXPECT_GE(gap.lower, distance - 1e-4);
+        for (const std::uint64_t tests : {2u, 20u, 10'000u}) {
+          EXPECT_LE(query.collide(pose, {}, {.sphere_tests = tests}).gap->lower,
+                    distance * (1 + 0x1p-52));
+        }
       }
     }
   }

@@ -3,43 +3,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "ist/base/pose.h"
 #include "ist/query/collision_query.h"
 #include "query/exact/exact_tree.h"
+#include "query/exact/meeting_pairs.h"
 #include "query/search/guarded.h"
 #include "query/search/targets.h"
-#include "support/exact_polygon.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-// All pairs of triangles, each by rational numbers, of what is promised to be the moved vertices.
-std::vector<TrianglePair> pairs_of(const SphereTree& fixed, const SphereTree& moving,
-                                   const Eigen::Isometry3d& pose) {
-  const auto m = project_to_rigid(pose)->matrix();
-  const TriangleMesh& a = fixed.triangles()->mesh;
-  TriangleMesh b = moving.triangles()->mesh;
-  for (Eigen::Vector3d& v : b.vertices) {
-    const Eigen::Vector3d x = v;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      v[i] = ((m(i, 0) * x[0] + m(i, 1) * x[1]) + m(i, 2) * x[2]) + m(i, 3);
-    }
-  }
-  const auto box_of = [](const TriangleMesh& mesh, std::uint32_t triangle) {
-    Eigen::AlignedBox3d box;
-    for (const std::uint32_t v : mesh.triangles[triangle]) box.extend(mesh.vertices[v]);
-    return box;
-  };
-  std::vector<TrianglePair> pairs;
-  for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
-    for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
-      if (!box_of(a, i).intersects(box_of(b, j))) continue;
-      if (polygons_meet(exact_triangle(a, i), exact_triangle(b, j))) pairs.push_back({i, j});
-    }
-  }
-  return pairs;
-}
 
 std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry3d& pose) {
   std::vector<TrianglePair> pairs(1 << 16);
@@ -53,7 +25,7 @@ std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry
 
 void expect_exact(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& pose,
                   std::size_t& touching) {
-  const std::vector<TrianglePair> wanted = pairs_of(fixed, moving, pose);
+  const std::vector<TrianglePair> wanted = meeting_pairs(fixed, moving, pose);
   const auto expect = [&](const CollisionOptions& options) {
     CollisionQuery query(fixed, moving, options);
     EXPECT_EQ(ask_exact(query, pose), wanted) << query.target();
@@ -144,7 +116,7 @@ class ManyPairs : public ::testing::Test {
   }
   const SphereTree tree_ = exact_tree(icosphere(2, 1), 20);
   const Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
-  const std::vector<TrianglePair> wanted_ = pairs_of(tree_, tree_, pose_);
+  const std::vector<TrianglePair> wanted_ = meeting_pairs(tree_, tree_, pose_);
 };
 
 TEST_F(ManyPairs, WithMemoryOfAnySize) {
@@ -162,7 +134,7 @@ TEST_F(ManyPairs, WithMemoryOfAnySize) {
 TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
   for (const std::size_t memory : {1u, 1u << 16}) {
     CollisionQuery query = query_with(memory);
-    for (std::size_t length = 0; length < wanted_.size() + 40; length += length < 20 ? 1 : 37) {
+    for (std::size_t length = 0; length < wanted_.size() + 40; length += length < 20 ? 1 : 211) {
       Guarded<TrianglePair> out(length, length % 8);
       const ExactResult result = query.collide_exact(pose_, out.span());
       ASSERT_EQ(result.triangle_pairs, wanted_.size());

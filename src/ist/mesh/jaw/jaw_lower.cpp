@@ -10,7 +10,6 @@ namespace {
 // A section's controls run over the crown from tongue to cheek, down the cheek's side, and up
 // again.
 constexpr std::size_t kFlank = 4;  // controls on each side between the crown and the lower border
-constexpr std::size_t kControls = kCrownControls + 2 * (kFlank + 1);
 
 using Profile = std::array<double, 16>;  // every kProfileStep from the midline to the condyle
 

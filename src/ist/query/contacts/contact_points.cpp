@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "ist/base/float_environment.h"
 #include "ist/query/contacts/contact_clusters.h"
 
 namespace ist {
@@ -21,6 +20,10 @@ const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* 
 
 ContactPoints::ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                              const ContactPointOptions& options)
+    : ContactPoints(fixed, moving, policy, options, ScopedFloatEnvironment()) {}
+
+ContactPoints::ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                             const ContactPointOptions& options, const ScopedFloatEnvironment&)
     : fixed_(with(fixed, policy, "fixed")),
       moving_(with(moving, policy, "moving")),
       policy_(policy),

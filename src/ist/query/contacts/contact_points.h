@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/float_environment.h"
 #include "ist/query/contact_sink.h"
 #include "ist/query/contacts/ancestor_share.h"
 #include "ist/query/contacts/contact_point.h"
@@ -74,6 +75,8 @@ class ContactPoints final : public ContactStream {
     std::uint32_t leaf;
     ContactLeaf at;
   };
+  ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                const ContactPointOptions& options, const ScopedFloatEnvironment& environment);
   void take(const Contact& contact) noexcept;
   [[nodiscard]] double share_of(const Contact& contact, const NodeBound& moving) noexcept;
   void add(const PairTerms& pair) noexcept;

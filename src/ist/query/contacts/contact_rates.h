@@ -21,7 +21,8 @@ namespace ist {
 ///  - with x = d + 2s, |e| x is the clamped e · (pf - pm) plus 2 s |e|: it changes by m + (P/2 + s)
 ///    m / lever, P <= 2.8 s the most that the surface points are apart, and the direction times it
 ///    by 3/2 s m / lever more; it is at most 3 s. So w x n changes by (3 s g + A (1 + 3.9 s /
-///    lever)) m;
+///    lever)) m, and w x by no more: with it the sum of w x over contact points, whose depths are
+///    means by weight;
 ///  - a position by m / 2, and it is no farther than `far` from the fixed frame's origin: a torque
 ///    by far times its force's rate and half the greatest force.
 struct ContactRates {
@@ -42,5 +43,17 @@ struct ContactRates {
     spring_torque = far * spring_force + 1.5 * s * scale.area;
   }
 };
+
+/// How fast the depth of one leaf pair can change, at most, by the way moved: |change| <= rate ·
+/// motion, where `mean_normal` is the least length |e| of the mean of the two normals on the way.
+///
+/// A body that does not turn changes it by no more than it moves. A turn by the angle α changes e
+/// by α / 2, so its direction by α / (2 |e|), across at most 2.8 s between the surface points.
+/// There is no rate for a contact point's depth alone, a mean over pairs that come and go; that of
+/// w x bounds it by what the point weighs.
+[[nodiscard]] inline double depth_rate(const ContactScale& scale, double lever,
+                                       double mean_normal) noexcept {
+  return 1 + 1.4 * scale.size / (lever * mean_normal);
+}
 
 }  // namespace ist

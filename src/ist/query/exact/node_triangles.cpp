@@ -63,7 +63,9 @@ NodeTriangles::NodeTriangles(const SphereTree& tree) {
   nodes_ =
       tree.octree().nodes(std::max(level_, 1));  // a root that is a leaf has its parent's centre
   voxel_size_ = lattice.voxel_size;
-  half_edge_ = 0.5 * lattice.edge(level_) + 4 * lattice.pad() * lattice.voxel_size;
+  // origin() is rounded, by up to half its last bit, and the triangles' boxes are seen from it.
+  const double rounding = 0x1p-52 * lattice.origin().cwiseAbs().maxCoeff();
+  half_edge_ = 0.5 * lattice.edge(level_) + 4 * lattice.pad() * lattice.voxel_size + rounding;
 }
 
 FloatBox NodeTriangles::cube(std::uint32_t node) const noexcept {

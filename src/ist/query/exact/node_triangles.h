@@ -25,8 +25,8 @@ class NodeTriangles {
   explicit NodeTriangles(const SphereTree& tree);
 
   [[nodiscard]] int level() const noexcept { return level_; }
-  /// The cube of a node, in the tree's frame. A point of a triangle is in one of the cubes of the
-  /// nodes that have the triangle.
+  /// The cube of a node, from the lattice's origin() as it is rounded to double: a point of a
+  /// triangle is in one of the cubes of the nodes that have the triangle.
   [[nodiscard]] FloatBox cube(std::uint32_t node) const noexcept;
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t node) const noexcept {
     return lists_[node];
@@ -55,7 +55,7 @@ class NodeTriangles {
   std::vector<std::uint32_t> indices_;
   std::vector<TriangleCorners> corners_;
   std::span<const OctreeNode> nodes_;
-  double voxel_size_, half_edge_;  // of a cube, grown by the pad of the build
+  double voxel_size_, half_edge_;  // of a cube, grown by the pad of the build and by rounding
 };
 
 }  // namespace ist

@@ -1,0 +1,161 @@
+"""Runs the mutants of mutants.py; see mutate.sh."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from mutants import MUTANTS
+
+ROOT = Path(__file__).resolve().parent.parent
+COPY = ROOT / "build/mutants/source"
+BUILD = ROOT / "build/mutants/build"
+RESULTS = ROOT / "perf/results/mutants.json"
+SECONDS = 600  # for one program: a mutant that hangs is found out too
+
+
+def fail(text):
+    print(f"mutate: {text}", file=sys.stderr)
+    sys.exit(1)
+
+
+def sources():
+    for folder in ["src", "simd", "tests", "bench", "scripts"]:
+        yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
+    yield ROOT / "CMakeLists.txt"
+
+
+def copy_sources():
+    """What is built, as it is now; files that are the same keep their time."""
+    for source in sources():
+        copy = COPY / source.relative_to(ROOT)
+        if copy.is_file() and copy.read_bytes() == source.read_bytes():
+            continue
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, copy)
+
+
+def edited(edits, root=COPY):
+    """The texts that a mutant's files get. Each passage must be there once, and once only."""
+    texts = {}
+    for file, old, new in edits:
+        path = root / file
+        text = texts.get(path) or path.read_text()
+        if text.count(old) != 1:
+            fail(f"{file} has {text.count(old)} times, and should have once:\n{old}")
+        texts[path] = text.replace(old, new)
+    return texts
+
+
+def configure():
+    subprocess.run(
+        ["cmake", "-S", COPY, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+         "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DIST_ASSERTS=ON", "-DIST_CLI=ON"],
+        check=True, stdout=subprocess.DEVNULL)
+
+
+def build(programs):
+    """None, or what the compiler says."""
+    done = subprocess.run(["cmake", "--build", BUILD, "--target", *programs, "--", f"-j{os.cpu_count()}"],
+                          capture_output=True, text=True)
+    return None if done.returncode == 0 else done.stdout + done.stderr
+
+
+def first_failure(tests):
+    """The first test that fails, or None. A test is a program, or a program and a filter."""
+    environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), **os.environ}
+    for test in tests:
+        program, _, pattern = test.partition(" ")
+        command = [BUILD / "tests" / program, "--gtest_fail_fast", "--gtest_brief=1"]
+        if pattern:
+            command.append(f"--gtest_filter={pattern}")
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS,
+                                  env=environment, errors="replace")
+        except subprocess.TimeoutExpired:
+            return f"{program} (does not end)"
+        if done.returncode != 0:
+            failed = re.search(r"\[  FAILED  \] ([\w/.]+)", done.stdout)
+            return failed.group(1) if failed else f"{program} (ends with {done.returncode})"
+    return None
+
+
+def killer_of(mutant):
+    """Who kills a mutant: a test, a proof at compile time, or None."""
+    texts = edited(mutant.edits)
+    before = {path: path.read_text() for path in texts}
+    try:
+        for path, text in texts.items():
+            path.write_text(text)
+        refused = build(programs_of([mutant]))
+        if refused:
+            if "static assertion failed" in refused:
+                return "a proof at compile time"
+            fail(f"{mutant.name} does not compile:\n{refused[-3000:]}")
+        return first_failure(mutant.tests)
+    finally:
+        for path, text in before.items():
+            path.write_text(text)
+
+
+def programs_of(mutants):
+    return sorted({test.split()[0] for mutant in mutants for test in mutant.tests})
+
+
+def write_table(found):
+    """Renews the rows of those that ran; a mutant that never ran stands there as such."""
+    known = {**(json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}), **found}
+    RESULTS.write_text(json.dumps(known, indent=1) + "\n")
+    lines = ["# Mutants", "",
+             "Ways in which the code was broken on purpose, one at a time, and the first test that noticed. Made by",
+             "`scripts/mutate.sh`; the mutants are in `scripts/mutants.py`.", "",
+             "| mutant | what it breaks | in | killed by |", "|---|---|---|---|"]
+    killed = 0
+    for mutant in MUTANTS:
+        killer = known.get(mutant.name, "not run")
+        killed += killer not in (None, "not run")
+        files = ", ".join(sorted({f"`{Path(file).name}`" for file, _, _ in mutant.edits}))
+        lines.append(f"| {mutant.name} | {mutant.breaks} | {files} | {killer or '**survives**'} |")
+    lines += ["", f"{killed} of {len(MUTANTS)} killed."]
+    (ROOT / "perf/MUTANTS.md").write_text("\n".join(lines) + "\n")
+
+
+def main():
+    words = sys.argv[1:]
+    if words == ["--list"]:
+        for mutant in MUTANTS:
+            edited(mutant.edits, ROOT)  # it still applies
+            print(f"{mutant.name:34} {mutant.breaks}")
+        return
+    chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)]
+    if not chosen:
+        fail(f"no mutant is named like {' or '.join(words)}; --list names them")
+    copy_sources()
+    for mutant in chosen:
+        edited(mutant.edits)  # all of them still apply, before an hour is spent
+    configure()
+    programs = programs_of(chosen)
+    print(f"building {', '.join(programs)}", flush=True)
+    if refused := build(programs):
+        fail(f"the code as it is does not compile:\n{refused[-3000:]}")
+    if broken := first_failure(sorted({test for m in chosen for test in m.tests})):
+        fail(f"{broken} fails with the code as it is")
+    found = {}
+    for number, mutant in enumerate(chosen, 1):
+        start = time.monotonic()
+        killer = killer_of(mutant)
+        found[mutant.name] = killer
+        print(f"{number:2}/{len(chosen)} {mutant.name:34} {killer or 'SURVIVES'} "
+              f"({time.monotonic() - start:.0f} s)", flush=True)
+    write_table(found)
+    survivors = [name for name, killer in found.items() if killer is None]
+    if survivors:
+        fail(f"no test notices: {', '.join(survivors)}")
+    print(f"all {len(found)} mutants are killed")
+
+
+main()

@@ -1,0 +1,98 @@
+"""Makes STABILITY.md and its plot; see stability_report.sh.
+
+    stability_report.py CASES.jsonl FOLDER MACHINE
+"""
+import json
+import math
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+FLOOR, CEILING = 1e-6, 10  # of the plot: what is less or more is drawn there, as a triangle
+GROUPS = {
+    "tangency": "Where bodies only just touch",
+    "scale": "Of any size",
+    "place": "At any place",
+    "arithmetic": "Whatever the caller's arithmetic",
+    "long runs": "After millions of motions",
+    "shapes": "Shapes that meshes should not have",
+    "motion": "In small steps",
+    "faults": "When something fails",
+    "load": "Under load",
+}
+
+
+def ratio(case):
+    """Of the worst error and its bound; nothing where the case is right or wrong."""
+    if not case["bound"]:
+        return None
+    return math.inf if case["worst"] is None else case["worst"] / case["bound"]
+
+
+def number(value):
+    return "no number" if value is None else f"{value:.3g}"
+
+
+def table(cases):
+    lines = ["| case | samples | error | worst | promised | part of it |", "|---|--:|---|--:|--:|--:|"]
+    for case in cases:
+        part = ratio(case)
+        lines.append(
+            f"| {case['name']} | {case['samples']:,} | {case['error']} | {number(case['worst'])} | "
+            f"{number(case['bound'])} | {'' if part is None else number(part)} |")
+    return lines
+
+
+def plot(cases, file):
+    shown = [case for case in cases if ratio(case) is not None]
+    figure, axes = plt.subplots(figsize=(9, 1.2 + 0.2 * len(shown)))
+    colours = dict(zip(GROUPS, plt.get_cmap("tab10").colors))
+    for row, case in enumerate(shown):
+        part = ratio(case)
+        mark = "<" if part <= FLOOR else ">" if part > CEILING else "o"
+        axes.plot(min(max(part, FLOOR), CEILING), row, mark, color=colours[case["group"]], markersize=5)
+    axes.axvline(1, color="black", linewidth=1)
+    axes.text(1, -0.8, " promised", va="bottom", ha="right", fontsize=8)
+    axes.set_yticks(range(len(shown)), [f"{c['group']}: {c['name']}" for c in shown], fontsize=7)
+    axes.set_ylim(len(shown) - 0.5, -1.5)
+    axes.set_xscale("log")
+    axes.set_xlim(FLOOR / 2, 2 * CEILING)
+    axes.grid(axis="x", alpha=0.3)
+    axes.set_xlabel(f"worst error seen / bound promised (a triangle: less than {FLOOR:g})")
+    samples = sum(case["samples"] for case in shown)
+    axes.set_title(f"How much of each promise is used: {len(shown)} cases, n = {samples:,} samples", fontsize=9)
+    figure.tight_layout()
+    plt.rcParams["svg.hashsalt"] = "ist"
+    figure.savefig(file, metadata={"Date": None})
+
+
+def main():
+    source, folder, machine = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+    cases = [json.loads(line) for line in open(source)]
+    order = list(GROUPS)
+    cases.sort(key=lambda case: order.index(case["group"]))  # stable: as they were tried
+    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    plot(cases, folder / "pictures/stability.svg")
+    broken = [case for case in cases if case["broken"]]
+    lines = [
+        "# Stability", "",
+        "Each hard case: how often it was tried, the worst error seen, and what is promised. Made by",
+        "`scripts/stability_report.sh`; every row is a test, and a run of all tests tries it too, with fewer samples.",
+        "A case that is right or wrong counts what was wrong, and promises 0.", "",
+        f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, "
+        f"{len(broken)} broken.", "",
+        "![The worst error of each case over its bound](pictures/stability.svg)", ""]
+    for group, title in GROUPS.items():
+        chosen = [case for case in cases if case["group"] == group]
+        if chosen:
+            lines += [f"## {title}", "", *table(chosen), ""]
+    (folder / "STABILITY.md").write_text("\n".join(lines))
+    if broken:
+        print(f"stability_report: {len(broken)} cases break their promise", file=sys.stderr)
+
+
+main()

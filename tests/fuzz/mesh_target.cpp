@@ -1,0 +1,96 @@
+// A mesh file: the first byte says what its name ends with (s: .stl, o: .obj, else nothing), and
+// whether a tree is built of it (t); the rest is its content.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "fuzz/fuzz_target.h"
+#include "fuzz/query_checks.h"
+#include "ist/base/error.h"
+#include "ist/mesh/mesh_io.h"
+#include "ist/tree/tree_builder.h"
+#include "support/memory_file.h"
+#include "support/mesh_files.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+namespace {
+
+// One file, by each of its names.
+class NamedFile {
+ public:
+  NamedFile() {
+    for (const char* name : {"mesh", "mesh.stl", "mesh.obj"}) {
+      std::filesystem::create_symlink(file_.path(), folder_.path() / name);
+    }
+  }
+  [[nodiscard]] std::filesystem::path write(const char* name, std::string_view bytes) const {
+    file_.write(bytes);
+    return folder_.path() / name;
+  }
+
+ private:
+  MemoryFile file_;
+  TempDir folder_;
+};
+
+double extent_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return box.sizes().maxCoeff();
+}
+
+void check_mesh(const TriangleMesh& mesh) {
+  std::set<std::array<double, 3>> places;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    require(std::all_of(v.begin(), v.end(),
+                        [](double x) {
+                          return std::isfinite(x) &&
+                                 x == static_cast<double>(static_cast<float>(x));
+                        }),
+            "a vertex is no float");
+    require(places.insert({v.x(), v.y(), v.z()}).second, "two vertices are in one place");
+  }
+  std::set<std::uint32_t> named;
+  for (const Triangle& triangle : mesh.triangles) named.insert(triangle.begin(), triangle.end());
+  require(!named.empty() && *named.rbegin() < mesh.vertices.size(),
+          "a triangle names a vertex that is not there");
+  require(named.size() == mesh.vertices.size(), "a vertex is in no triangle");
+  const double extent = extent_of(mesh);
+  require(extent >= 1e-12 && extent <= 1e15, "the extent is out of range");
+}
+
+void check_tree(const TriangleMesh& mesh) {
+  BuildOptions options;
+  options.voxel_size = extent_of(mesh) / 5;
+  options.keep_triangles = options.proximity = true;
+  const SphereTree tree = build_tree(mesh, options);
+  QueryChecks checks(tree, tree, QueryChecks::Trees::kBuilt);
+  require(checks.at(Eigen::Isometry3d::Identity()) == true, "a body does not touch itself");
+}
+
+}  // namespace
+
+std::string fuzz_mesh(std::string_view bytes) {
+  if (bytes.empty()) return "nothing";
+  static const NamedFile file;
+  const char* name = bytes[0] == 's' ? "mesh.stl" : bytes[0] == 'o' ? "mesh.obj" : "mesh";
+  TriangleMesh mesh;
+  try {
+    mesh = read_mesh(file.write(name, bytes.substr(1)));
+  } catch (const Error& error) {
+    const std::string_view text = error.what();
+    require(text.find(name) != std::string_view::npos, "an error does not name the file");
+    return to_string(error.code());
+  }
+  check_mesh(mesh);
+  const TriangleMesh again = read_mesh(file.write("mesh", as_binary_stl(mesh)));
+  require(corners(again) == corners(mesh), "a mesh does not come back from STL as it was");
+  constexpr std::size_t kFew = 16;  // triangles, of which a tree is soon built
+  if (bytes[0] == 't' && mesh.triangles.size() <= kFew) check_tree(mesh);
+  return "fine";
+}
+
+}  // namespace ist::test

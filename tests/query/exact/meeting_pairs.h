@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "ist/base/pose.h"
+#include "ist/query/contact.h"
+#include "ist/tree/sphere_tree.h"
+#include "support/exact_polygon.h"
+
+namespace ist::test {
+
+/// All pairs of triangles that meet, sorted, each decided in rational numbers of what is promised
+/// to be the moved vertices. Both trees must have triangles.
+[[nodiscard]] inline std::vector<TrianglePair> meeting_pairs(const SphereTree& fixed,
+                                                             const SphereTree& moving,
+                                                             const Eigen::Isometry3d& pose) {
+  const auto m = project_to_rigid(pose)->matrix();
+  const TriangleMesh& a = fixed.triangles()->mesh;
+  TriangleMesh b = moving.triangles()->mesh;
+  for (Eigen::Vector3d& v : b.vertices) {
+    const Eigen::Vector3d x = v;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      v[i] = ((m(i, 0) * x[0] + m(i, 1) * x[1]) + m(i, 2) * x[2]) + m(i, 3);
+    }
+  }
+  const auto boxes_of = [](const TriangleMesh& mesh) {
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (const Triangle& t : mesh.triangles) {
+      auto& box = boxes.emplace_back();
+      for (const std::uint32_t v : t) box.extend(mesh.vertices[v]);
+    }
+    return boxes;
+  };
+  const auto boxes_a = boxes_of(a), boxes_b = boxes_of(b);
+  std::vector<TrianglePair> pairs;
+  for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
+    for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
+      if (!boxes_a[i].intersects(boxes_b[j])) continue;
+      if (polygons_meet(exact_triangle(a, i), exact_triangle(b, j))) pairs.push_back({i, j});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace ist::test

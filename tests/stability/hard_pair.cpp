@@ -1,0 +1,194 @@
+#include "stability/hard_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ist/query/contacts/node_bound.h"
+#include "ist/query/kernels.h"
+#include "ist/query/promise/read_bounds.h"
+#include "query/contacts/contact_cases.h"
+#include "query/exact/exact_tree.h"
+#include "query/exact/meeting_pairs.h"
+#include "query/exact/mesh_distance.h"
+#include "query/search/scenes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// By how much the search's own test of two leaves finds them apart, in double; 0 where they are
+// not.
+double leaves_apart(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                    const RelativePose& pose, const Contact& pair) {
+  const NodeBound a =
+      read_bound(fixed, policy, 0, pair.fixed, parent_of(fixed.octree(), 0, pair.fixed));
+  const NodeBound b =
+      read_bound(moving, policy, 0, pair.moving, parent_of(moving.octree(), 0, pair.moving))
+          .in(pose);
+  double overlap = a.radius + b.radius - (a.centre - b.centre).norm();
+  if (policy == SpherePolicy::kSlab) overlap = std::min(overlap, slab_overlap(a, b));
+  return std::max(0.0, -overlap);
+}
+
+bool is_sound(const ContactPoint& p, double size) {
+  return p.position.allFinite() && p.normal.allFinite() && std::abs(p.normal.norm() - 1) < 1e-9 &&
+         p.depth >= -2 * size * (1 + 1e-9) && p.depth <= size * (1 + 1e-9) && p.weight > 0 &&
+         std::isfinite(p.weight);
+}
+
+bool is_sound(const ContactSums& sums) {
+  const auto finite = [](const Wrench& w) { return w.force.allFinite() && w.torque.allFinite(); };
+  return std::isfinite(sums.weight) && finite(sums.pressure) && finite(sums.spring);
+}
+
+double outside(const GapInterval& gap, double distance) {
+  return std::max({0.0, gap.lower - distance, distance - gap.upper});
+}
+
+}  // namespace
+
+ShapeCases::ShapeCases(const std::string& shape)
+    : voxels("shapes", shape + ": voxels", "pads between a triangle and a voxel that lists it"),
+      leaf_pairs("shapes", shape + ": leaf pairs", "units that bounds in an answer are apart"),
+      gap("shapes", shape + ": gap", "units that the distance is outside its interval"),
+      answers("shapes", shape + ": all else", "wrong answers") {}
+
+void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
+  constexpr int kParts = 16;  // of a pad, to which it is measured
+  const Lattice& lattice = tree.lattice();
+  const std::vector<std::uint64_t> codes = tree.octree().codes(0);
+  const auto& [mesh, lists] = *tree.triangles();
+  std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
+  for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
+    for (const std::uint32_t t : lists[voxel]) found[t].push_back(codes[voxel]);
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const ExactPolygon triangle = exact_triangle(mesh, t);
+    const std::vector<std::uint64_t> met = cells_met(triangle, lattice, 0);
+    const bool whole = std::includes(found[t].begin(), found[t].end(), met.begin(), met.end());
+    double most = whole ? 0 : kInfinity;
+    for (const std::uint64_t code : found[t]) {
+      if (std::binary_search(met.begin(), met.end(), code)) continue;
+      int parts = 1;
+      while (parts <= 2 * kParts &&
+             clip(triangle,
+                  grown(node_cube(lattice, 0, code), mpq_class(parts, kParts) * exact_pad(lattice)))
+                 .empty()) {
+        ++parts;
+      }
+      most = std::max(most, static_cast<double>(parts) / kParts);
+    }
+    voxels.samples_of(found[t].size(), most, 1, "triangle " + std::to_string(t));
+  }
+}
+
+HardPair::Asked::Asked(const SphereTree& fixed, const SphereTree& moving, SpherePolicy by)
+    : policy(by), reference(fixed, moving, by), points(fixed, moving, by, {32, 1 << 12}) {
+  const auto add = [&](const std::string& target, int workers) {
+    CollisionOptions options = options_of(by, target, workers);
+    options.frontier_pairs = 1 << 10;
+    options.triangle_pairs = 1 << 12;
+    engines.push_back(std::make_unique<CollisionQuery>(fixed, moving, options));
+  };
+  for (const Kernels& kernels : all_kernels()) add(kernels.target, 1);
+  add("", 2);
+}
+
+HardPair::HardPair(const TriangleMesh& fixed, double fixed_voxel, const TriangleMesh& moving,
+                   double moving_voxel)
+    : fixed_(tree_with_triangles(fixed, fixed_voxel)),
+      moving_(tree_with_triangles(moving, moving_voxel)),
+      plain_fixed_(without_triangles(fixed_)),
+      plain_moving_(without_triangles(moving_)),
+      exact_fixed_(fixed, fixed_),
+      exact_moving_(moving, moving_),
+      longest_edge_(std::max(longest_edge(fixed), longest_edge(moving))) {
+  for (const Eigen::Vector3d& v : moving.vertices) {
+    largest_coordinate_ = std::max(largest_coordinate_, v.cwiseAbs().maxCoeff());
+  }
+  for (const SpherePolicy policy : kSpherePolicies) {
+    asked_.push_back(std::make_unique<Asked>(fixed_, moving_, policy));
+  }
+}
+
+bool HardPair::check(const Eigen::Isometry3d& pose, ShapeCases& cases) {
+  const ExactPair exact(exact_fixed_, exact_moving_, pose);
+  const std::vector<TrianglePair> meeting = meeting_pairs(fixed_, moving_, pose);
+  const double distance =
+      meeting.empty() ? mesh_distance(fixed_.triangles()->mesh, moving_.triangles()->mesh, pose)
+                      : 0;
+  std::vector<TrianglePair> pairs(meeting.size() + 1);
+  for (const auto& asked : asked_) {
+    SCOPED_TRACE(to_string(asked->policy));
+    check_leaf_pairs(*asked, exact, pose, cases);
+    check_contact_points(*asked, pose, cases.answers);
+    for (const auto& engine : asked->engines) {
+      const ExactResult found = engine->collide_exact(pose, pairs);
+      const bool right = found.triangle_pairs == meeting.size() &&
+                         std::equal(meeting.begin(), meeting.end(), pairs.begin()) &&
+                         engine->touches(pose) == (meeting.empty() ? Touch::kNo : Touch::kYes);
+      cases.answers.sample(right ? 0 : 1, 0, "triangle pairs");
+      check_gap(*engine, distance, pose, cases.gap);
+    }
+    CollisionQuery plain(plain_fixed_, plain_moving_, options_of(asked->policy));
+    check_gap(plain, distance, pose, cases.gap);
+  }
+  return !meeting.empty();
+}
+
+void HardPair::check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eigen::Isometry3d& pose,
+                                ShapeCases& cases) {
+  const Answer answer = ask(*asked.engines.front(), pose);
+  for (const auto& engine : asked.engines) {
+    cases.answers.sample(same(ask(*engine, pose), answer) ? 0 : 1, 0, engine->target());
+  }
+  const double pad = answer.result.pad;
+  const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
+  double apart = 0;
+  for (const Contact& pair : answer.contacts) {
+    apart = std::max(apart, leaves_apart(fixed_, moving_, asked.policy, relative, pair));
+  }
+  const auto kept = keeps_promise(exact, asked.policy, answer.contacts, pad);
+  cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.contacts.size(), 1),
+                              kept ? apart : kInfinity, pad, kept.message());
+  const Answer reference = ask(asked.reference, pose);
+  const auto promised =
+      keeps_promise(exact, asked.policy, reference.contacts, reference.result.pad);
+  cases.answers.sample(promised ? 0 : 1, 0, promised.message());
+}
+
+void HardPair::check_contact_points(Asked& asked, const Eigen::Isometry3d& pose,
+                                    StabilityCase& answers) {
+  const double size = 0.5 * (fixed_.lattice().voxel_size + moving_.lattice().voxel_size);
+  const Touched first = touched(*asked.engines.front(), asked.points, pose);
+  bool sound = is_sound(first.sums);
+  for (const ContactPoint& p : first.points) sound = sound && is_sound(p, size);
+  answers.sample(sound ? 0 : 1, 0, "contact points");
+  for (const auto& engine : asked.engines) {
+    answers.sample(same(touched(*engine, asked.points, pose), first) ? 0 : 1, 0,
+                   "contact points of another engine");
+  }
+}
+
+void HardPair::check_gap(CollisionQuery& query, double distance, const Eigen::Isometry3d& pose,
+                         StabilityCase& gap) {
+  const double place = largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff();
+  // Of the distance that it is held against, and of the one that a query with triangles measures;
+  // and as far as either's moved vertices are rounded.
+  const double error = kTriangleDistanceError * (longest_edge_ + distance) + 0x1p-50 * place;
+  for (const double tolerance : {0.0, 0.05 * fixed_.lattice().voxel_size}) {
+    const GapInterval found = query.gap(pose, tolerance).gap;
+    gap.sample(outside(found, distance), error);
+    const double wide = query.is_exact() ? tolerance + 2 * error + 0x1p-47 * place
+                                         : std::max(tolerance, 2 * query.resolution({}));
+    gap.sample(std::max(0.0, found.upper - found.lower - wide), error, "width");
+  }
+  for (const std::uint64_t tests : {1u, 40u, 1000u}) {
+    const QueryResult found = query.collide(pose, {}, {.sphere_tests = tests});
+    gap.sample(outside(*found.gap, distance), error, "stopped early");
+  }
+}
+
+}  // namespace ist::test

@@ -1,0 +1,204 @@
+#include "stability/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ist/query/contacts/contact_pair.h"
+#include "ist/query/contacts/node_bound.h"
+#include "ist/query/promise/read_bounds.h"
+#include "ist/query/query_rules.h"
+#include "query/query_cases.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+// What angles and lengths of a step are rounded by, in parts of it.
+constexpr double kRounded = 1 + 1e-6;
+
+std::string title(const std::string& what, SpherePolicy policy) {
+  return what + ", " + std::string(to_string(policy));
+}
+
+bool precedes(const Contact& a, const Contact& b) {
+  return a.fixed != b.fixed ? a.fixed < b.fixed : a.moving < b.moving;
+}
+
+CollisionOptions with(SpherePolicy policy) {
+  CollisionOptions options;
+  options.policy = policy;
+  options.triangle_pairs = 1 << 12;
+  return options;
+}
+
+}  // namespace
+
+Path line(const Isometry3d& from, const Vector3d& direction, double step, int steps) {
+  return {[=](int k) -> Isometry3d { return shift(step * k * direction) * from; }, steps,
+          kRounded* step, kRounded* step, true};
+}
+
+Path turn(const Isometry3d& from, const Vector3d& axis, const Vector3d& centre, double lever,
+          double reach, double step, int steps) {
+  return {[=](int k) -> Isometry3d {
+            return from * Eigen::Translation3d(centre) * Eigen::AngleAxisd(step * k / lever, axis) *
+                   Eigen::Translation3d(-centre);
+          },
+          steps, kRounded* step, kRounded* step* reach / lever, false};
+}
+
+MotionCases::MotionCases(const std::string& what, SpherePolicy policy)
+    : edges("motion", title(what, policy) + ": where pairs come and go",
+            "mm that bounds are apart, or overlap"),
+      once("motion", title(what, policy) + ": each pair once",
+           "mm that bounds overlap where the pair is missing"),
+      gap("motion", title(what, policy) + ": gap", "mm of change"),
+      sums("motion", title(what, policy) + ": sums", "change over rate and motion"),
+      depth("motion", title(what, policy) + ": depth", "mm of change") {}
+
+Sweep::Sweep(const SphereTree& fixed, const SphereTree& moving, const SphereTree& plain_fixed,
+             const SphereTree& plain_moving, SpherePolicy policy, MotionCases& cases)
+    : fixed_(plain_fixed),
+      moving_(plain_moving),
+      policy_(policy),
+      cases_(cases),
+      exact_(fixed, moving, with(policy)),
+      plain_(plain_fixed, plain_moving, with(policy)),
+      points_(plain_fixed, plain_moving, policy) {}
+
+void Sweep::along(const Path& path) {
+  last_seen_.clear();
+  Step before = look(path.at(0));
+  for (const Contact& c : before.pairs) last_seen_[std::uint64_t{c.fixed} << 32 | c.moving] = 0;
+  for (int k = 1; k <= path.steps; ++k) {
+    Step now = look(path.at(k));
+    compare_pairs(before, now);
+    if (path.straight) find_returns(path, k, now);
+    compare_gap(before, now, path.way);
+    compare_sums(before, now, path.motion);
+    compare_depths(before, now, path.motion);
+    before = std::move(now);
+  }
+}
+
+Sweep::Step Sweep::look(const Isometry3d& pose) {
+  Answer answer = ask(plain_, pose);
+  static_cast<void>(plain_.contact_points(pose, points_));
+  const double s = ContactScale(fixed_, moving_).size;
+  double stretched = 0;
+  for (const ContactPoint& p : points_.points()) stretched += p.weight * (p.depth + 2 * s);
+  return {pose,      answer.result.pad,       std::move(answer.contacts), points_.sums(),
+          stretched, exact_.gap(pose, 0).gap, plain_.gap(pose, 0).gap};
+}
+
+// The least overlap of all pairs of nodes that the search tests on its way to two leaves, theirs
+// included; below 0 where some are apart. In double, without a pad.
+double Sweep::overlap(const Contact& pair, const Isometry3d& pose) const {
+  const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
+  const auto line_of = [this](const SphereTree& tree, std::uint32_t node) {
+    std::vector<NodeBound> bounds;
+    for (int level = 0; level <= tree.depth(); ++level) {
+      const std::uint32_t parent = parent_of(tree.octree(), level, node);
+      bounds.push_back(read_bound(tree, policy_, level, node, parent));
+      node = parent;
+    }
+    return bounds;
+  };
+  const std::vector<NodeBound> a = line_of(fixed_, pair.fixed), b = line_of(moving_, pair.moving);
+  double least = HUGE_VAL;
+  for (int i = fixed_.depth(), j = moving_.depth();;) {
+    const NodeBound& x = a[static_cast<std::size_t>(i)];
+    const NodeBound y = b[static_cast<std::size_t>(j)].in(relative);
+    least = std::min(least, x.radius + y.radius - (x.centre - y.centre).norm());
+    if (policy_ == SpherePolicy::kSlab) least = std::min(least, slab_overlap(x, y));
+    if (i == 0 && j == 0) return least;
+    const double edge_a = fixed_.lattice().edge(i), edge_b = moving_.lattice().edge(j);
+    const bool open_a = opens(i, edge_a, j, edge_b), open_b = opens(j, edge_b, i, edge_a);
+    i -= open_a ? 1 : 0;
+    j -= open_b ? 1 : 0;
+  }
+}
+
+// A pair is in an answer only if nothing over it is farther apart than the pad, and is out of one
+// only if something is apart.
+void Sweep::compare_pairs(const Step& before, const Step& now) {
+  const double doubles =
+      slack_in_double(fixed_.reach() + moving_.reach(), fixed_.reach() + moving_.reach());
+  for (const bool left : {true, false}) {
+    const Step &in = left ? before : now, &out = left ? now : before;
+    std::vector<Contact> changed;
+    std::set_difference(in.pairs.begin(), in.pairs.end(), out.pairs.begin(), out.pairs.end(),
+                        std::back_inserter(changed), precedes);
+    for (const Contact& pair : changed) {
+      cases_.edges.sample(std::max(0.0, -overlap(pair, in.pose)), in.pad, "in");
+      cases_.edges.sample(std::max(0.0, overlap(pair, out.pose)), doubles, "out");
+    }
+    changes_ += changed.size();
+  }
+}
+
+void Sweep::find_returns(const Path& path, int step, const Step& now) {
+  double worst = 0;
+  for (const Contact& pair : now.pairs) {
+    const auto [seen, is_new] =
+        last_seen_.try_emplace(std::uint64_t{pair.fixed} << 32 | pair.moving, step);
+    for (int missing = seen->second + 1; missing < step; ++missing) {
+      worst = std::max(worst, std::abs(overlap(pair, path.at(missing))));
+    }
+    seen->second = step;
+  }
+  cases_.once.samples_of(std::max<std::size_t>(now.pairs.size(), 1), worst, now.pad);
+}
+
+void Sweep::compare_gap(const Step& before, const Step& now, double way) {
+  const auto middle = [](const GapInterval& gap) { return 0.5 * (gap.lower + gap.upper); };
+  const auto half = [](const GapInterval& gap) { return 0.5 * (gap.upper - gap.lower); };
+  cases_.gap.sample(std::abs(middle(now.exact) - middle(before.exact)),
+                    way + half(now.exact) + half(before.exact));
+  // Those without triangles are wide: no farther apart, then.
+  cases_.gap.sample(
+      std::max({0.0, now.plain.lower - before.plain.upper, before.plain.lower - now.plain.upper}),
+      way, "without triangles");
+  cases_.gap.sample(
+      std::max({0.0, now.plain.lower - now.exact.upper, now.exact.lower - now.plain.upper}), 0,
+      "between both");
+}
+
+void Sweep::compare_sums(const Step& before, const Step& now, double motion) {
+  const ContactSums &a = before.sums, &b = now.sums;
+  const auto pairs = static_cast<double>(a.pairs + b.pairs);
+  if (a.pairs + b.pairs == 0) return;
+  const ContactRates& rates = points_.rates();
+  const auto sample = [&](double change, double rate, const char* what) {
+    cases_.sums.sample(change / (rate * motion * pairs), 1, what);
+  };
+  sample(std::abs(b.weight - a.weight), rates.weight, "weight");
+  sample((b.pressure.force - a.pressure.force).norm(), rates.pressure_force, "pressure");
+  sample((b.pressure.torque - a.pressure.torque).norm(), rates.pressure_torque, "its torque");
+  sample((b.spring.force - a.spring.force).norm(), rates.spring_force, "spring");
+  sample((b.spring.torque - a.spring.torque).norm(), rates.spring_torque, "its torque");
+  sample(std::abs(now.stretched - before.stretched), rates.spring_force, "depth by weight");
+}
+
+void Sweep::compare_depths(const Step& before, const Step& now, double motion) {
+  const ContactScale scale(fixed_, moving_);
+  const auto terms = [&](const Contact& pair, const Isometry3d& pose) {
+    const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
+    return pair_terms(
+        read_leaf(fixed_, policy_, pair.fixed, parent_of(fixed_.octree(), 0, pair.fixed)),
+        read_leaf(moving_, policy_, pair.moving, parent_of(moving_.octree(), 0, pair.moving))
+            .in(relative),
+        1, scale);
+  };
+  for (std::size_t i = 0; i < now.pairs.size(); i += 1 + now.pairs.size() / 8) {
+    const PairTerms a = terms(now.pairs[i], before.pose), b = terms(now.pairs[i], now.pose);
+    const double mean_normal = std::min(a.weight, b.weight) / scale.area;
+    if (!(mean_normal > 0)) continue;  // no direction, no weight, no depth
+    cases_.depth.sample(std::abs(b.depth - a.depth),
+                        motion * depth_rate(scale, points_.rates().lever, mean_normal));
+  }
+}
+
+}  // namespace ist::test
