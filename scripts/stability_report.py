@@ -66,7 +66,7 @@ def plot(cases, file):
     samples = sum(case["samples"] for case in shown)
     axes.set_title(f"How much of each promise is used: {len(shown)} cases, n = {samples:,} samples", fontsize=9)
     figure.tight_layout()
-    plt.rcParams["svg.hashsalt"] = "ist"
+    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
     figure.savefig(file, metadata={"Date": None})
 
 
