@@ -96,10 +96,7 @@ TEST_P(ReferenceInvariance, SwappedBodiesGiveThePairsMirrored) {
     const Answer answer = ask(query_, pose);
     Answer mirrored = ask(swapped, pose.inverse());
     for (Contact& contact : mirrored.contacts) std::swap(contact.fixed, contact.moving);
-    std::sort(mirrored.contacts.begin(), mirrored.contacts.end(),
-              [](const Contact& p, const Contact& q) {
-                return p.fixed != q.fixed ? p.fixed < q.fixed : p.moving < q.moving;
-              });
+    std::sort(mirrored.contacts.begin(), mirrored.contacts.end());
     EXPECT_EQ(mirrored.contacts, answer.contacts) << "seed " << seed;
     EXPECT_EQ(mirrored.result.sphere_tests, answer.result.sphere_tests);
     contacts += answer.contacts.size();

@@ -30,15 +30,9 @@ std::string name_of(const Engine& engine) {
 // Every policy, from both sources, against the oracle.
 class ReferenceOracle : public ::testing::TestWithParam<Engine> {
  protected:
-  // Two bodies with their oracles.
-  struct Bodies {
+  struct Bodies : ExactBodies {
     Bodies(const TriangleMesh& a, double cells_a, const TriangleMesh& b, double cells_b)
-        : fixed(tree_of(a, cells_a)),
-          moving(tree_of(b, cells_b)),
-          exact_fixed(a, fixed),
-          exact_moving(b, moving) {}
-    SphereTree fixed, moving;
-    ExactBody exact_fixed, exact_moving;
+        : ExactBodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b)) {}
   };
 
   [[nodiscard]] static ReferenceQuery query(const Bodies& bodies) {
@@ -50,8 +44,8 @@ class ReferenceOracle : public ::testing::TestWithParam<Engine> {
     EXPECT_EQ(answer.result.status, QueryStatus::kDone);
     EXPECT_TRUE(answer.result.complete);
     EXPECT_EQ(answer.result.level, 0);
-    EXPECT_TRUE(keeps_promise({bodies.exact_fixed, bodies.exact_moving, pose}, GetParam().policy,
-                              answer.contacts, answer.result.pad))
+    EXPECT_TRUE(
+        keeps_promise(bodies.at(pose), GetParam().policy, answer.contacts, answer.result.pad))
         << "pose\n"
         << pose.matrix();
     return answer.contacts.size();

@@ -7,14 +7,17 @@
 #include <optional>
 #include <sstream>
 
+#include "ist/base/pose.h"
 #include "ist/mesh/mesh_check.h"
 #include "ist/mesh/mesh_io.h"
 #include "ist/mesh/orientation.h"
 #include "ist/query/inside.h"
 #include "ist/query/reference.h"
+#include "ist/tree/bound_builder.h"
 #include "ist/tree/tree_builder.h"
 #include "ist/tree/tree_io.h"
 #include "ist/tree/tree_statistics.h"
+#include "ist/voxel/voxelizer.h"
 #include "query/search/scenes.h"
 #include "support/shapes.h"
 #include "support/stability.h"
@@ -140,6 +143,23 @@ std::string all_of_it(const Meshes& meshes, double unit, const std::filesystem::
   for (const LevelStatistics& level : host.keeps([&] { return level_statistics(fixed); })) {
     for (const LevelSpheres& spheres : level.spheres) record.add(spheres.volume);
   }
+
+  // The parts of a build, each for itself.
+  VoxelizerOptions options;
+  options.voxel_size = 0.1 * unit;
+  options.keep_triangles = true;
+  const VoxelSet voxels = host.keeps([&] { return voxelize(meshes.a, options); });
+  const LinearOctree octree(voxels.codes, voxels.lattice.depth);
+  const BoundBlocks bounds =
+      host.keeps([&] { return build_bounds(SpherePolicy::kTight, meshes.a, voxels, octree); });
+  for (const std::uint64_t code : voxels.codes) record.add(code);
+  for (const BallBlock& block : bounds.balls.front()) {
+    for (const std::uint16_t radius : block.r) record.add(radius);
+  }
+  Eigen::Isometry3d bent = Eigen::Isometry3d::Identity();
+  bent.matrix()(0, 1) = 0x1.23456789abcdep-20;
+  const Eigen::Isometry3d projected = host.keeps([&] { return project_to_rigid(bent); }).value();
+  for (Eigen::Index i = 0; i < 3; ++i) record.add(Eigen::Vector3d(projected.linear().col(i)));
 
   // Numbers of few bits that the caller's arithmetic cannot change.
   Eigen::Matrix3d rotation;

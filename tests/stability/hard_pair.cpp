@@ -12,40 +12,12 @@
 #include "query/exact/meeting_pairs.h"
 #include "query/exact/mesh_distance.h"
 #include "query/search/scenes.h"
+#include "stability/search_overlap.h"
 
 namespace ist::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// By how much the search's own test of two leaves finds them apart, in double; 0 where they are
-// not.
-double leaves_apart(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                    const RelativePose& pose, const Contact& pair) {
-  const NodeBound a =
-      read_bound(fixed, policy, 0, pair.fixed, parent_of(fixed.octree(), 0, pair.fixed));
-  const NodeBound b =
-      read_bound(moving, policy, 0, pair.moving, parent_of(moving.octree(), 0, pair.moving))
-          .in(pose);
-  double overlap = a.radius + b.radius - (a.centre - b.centre).norm();
-  if (policy == SpherePolicy::kSlab) overlap = std::min(overlap, slab_overlap(a, b));
-  return std::max(0.0, -overlap);
-}
-
-bool is_sound(const ContactPoint& p, double size) {
-  return p.position.allFinite() && p.normal.allFinite() && std::abs(p.normal.norm() - 1) < 1e-9 &&
-         p.depth >= -2 * size * (1 + 1e-9) && p.depth <= size * (1 + 1e-9) && p.weight > 0 &&
-         std::isfinite(p.weight);
-}
-
-bool is_sound(const ContactSums& sums) {
-  const auto finite = [](const Wrench& w) { return w.force.allFinite() && w.torque.allFinite(); };
-  return std::isfinite(sums.weight) && finite(sums.pressure) && finite(sums.spring);
-}
-
-double outside(const GapInterval& gap, double distance) {
-  return std::max({0.0, gap.lower - distance, distance - gap.upper});
-}
 
 }  // namespace
 
@@ -148,7 +120,7 @@ void HardPair::check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eige
   const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
   double apart = 0;
   for (const Contact& pair : answer.contacts) {
-    apart = std::max(apart, leaves_apart(fixed_, moving_, asked.policy, relative, pair));
+    apart = std::max(apart, -leaf_overlap(fixed_, moving_, asked.policy, relative, pair));
   }
   const auto kept = keeps_promise(exact, asked.policy, answer.contacts, pad);
   cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.contacts.size(), 1),
@@ -163,9 +135,7 @@ void HardPair::check_contact_points(Asked& asked, const Eigen::Isometry3d& pose,
                                     StabilityCase& answers) {
   const double size = 0.5 * (fixed_.lattice().voxel_size + moving_.lattice().voxel_size);
   const Touched first = touched(*asked.engines.front(), asked.points, pose);
-  bool sound = is_sound(first.sums);
-  for (const ContactPoint& p : first.points) sound = sound && is_sound(p, size);
-  answers.sample(sound ? 0 : 1, 0, "contact points");
+  answers.sample(is_sound(first, size) ? 0 : 1, 0, "contact points");
   for (const auto& engine : asked.engines) {
     answers.sample(same(touched(*engine, asked.points, pose), first) ? 0 : 1, 0,
                    "contact points of another engine");

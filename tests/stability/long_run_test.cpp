@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "ist/base/pose.h"
-#include "ist/query/promise/read_bounds.h"
-#include "ist/query/query_rules.h"
 #include "query/search/scenes.h"
+#include "stability/search_overlap.h"
 #include "support/stability.h"
 
 namespace ist::test {
@@ -80,30 +79,6 @@ Eigen::Isometry3d screw(double tangent, const Eigen::Vector3d& step) {
   return project_to_rigid(pose_of(q.toRotationMatrix(), step)).value();
 }
 
-// A pair of leaves is in an answer where all pairs of nodes over it that are tested touch. How far
-// that is from changing at `pose`: the least overlap of all of them, or how far they are apart.
-double from_changing(const Scene& scene, SpherePolicy policy, const Eigen::Isometry3d& pose,
-                     const Contact& pair) {
-  const SphereTree &fixed = scene.fixed, &moving = scene.moving;
-  const RelativePose relative = relative_pose(pose, fixed.lattice(), moving.lattice()).value();
-  double least = HUGE_VAL;
-  int a = 0, b = 0;
-  std::vector<std::uint32_t> over_a{pair.fixed}, over_b{pair.moving};
-  for (; a < fixed.depth(); ++a) over_a.push_back(parent_of(fixed.octree(), a, over_a.back()));
-  for (; b < moving.depth(); ++b) over_b.push_back(parent_of(moving.octree(), b, over_b.back()));
-  while (true) {
-    least = std::min(
-        least, overlap(policy, read_bounds(fixed, policy, a, over_a[static_cast<std::size_t>(a)]),
-                       moved(relative,
-                             read_bounds(moving, policy, b, over_b[static_cast<std::size_t>(b)]))));
-    if (a == 0 && b == 0) return std::abs(least);
-    const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
-    const bool open_a = opens(a, edge_a, b, edge_b), open_b = opens(b, edge_b, a, edge_a);
-    a -= open_a ? 1 : 0;
-    b -= open_b ? 1 : 0;
-  }
-}
-
 // Where the last contact ends at one of two poses that should be one: the pairs in which their
 // answers differ are no farther from changing than the pad and what the poses may be apart.
 void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d& direct,
@@ -127,14 +102,13 @@ void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d&
         ASSERT_EQ(a.result.status, QueryStatus::kDone);
         const double band = std::max(a.result.pad, b.result.pad) + turn * reach + shift_by;
         std::vector<Contact> differ;
-        std::set_symmetric_difference(
-            a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(),
-            std::back_inserter(differ), [](const Contact& p, const Contact& q) {
-              return std::pair(p.fixed, p.moving) < std::pair(q.fixed, q.moving);
-            });
+        std::set_symmetric_difference(a.contacts.begin(), a.contacts.end(), b.contacts.begin(),
+                                      b.contacts.end(), std::back_inserter(differ));
         differing += differ.size();
         for (const Contact& pair : differ) {
-          pairs.sample(from_changing(scene, policy, place(direct, x), pair), band);
+          const double overlap =
+              search_overlap(scene.fixed, scene.moving, policy, place(direct, x), pair);
+          pairs.sample(std::abs(overlap), band);
         }
       }
     }

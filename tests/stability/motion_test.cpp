@@ -120,7 +120,7 @@ class TwoSizes {
           found.push_back(*query.collide(pose, {}, {.sphere_tests = tests}).gap);
         }
         for (const GapInterval& gap : found) {
-          truth_.sample(std::max({0.0, gap.lower - distance, distance - gap.upper}), error);
+          truth_.sample(outside(gap, distance), error);
           common[i] = {std::max(common[i].lower, gap.lower), std::min(common[i].upper, gap.upper)};
         }
       }

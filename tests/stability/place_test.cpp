@@ -41,23 +41,18 @@ TriangleMesh rounded(TriangleMesh mesh, double scale, double step) {
   return mesh;
 }
 
-// Two bodies with their triangles, and what is true of them.
-struct Bodies {
+// Two bodies with their triangles.
+struct Bodies : ExactBodies {
   Bodies(const TriangleMesh& a, double size_a, const TriangleMesh& b, double size_b)
-      : fixed(tree_with_triangles(a, size_a)),
-        moving(tree_with_triangles(b, size_b)),
-        exact_fixed(a, fixed),
-        exact_moving(b, moving) {}
-  // The answer of all engines, held against the promise; how many contacts.
+      : ExactBodies(a, tree_with_triangles(a, size_a), b, tree_with_triangles(b, size_b)) {}
+  // The answer of all engines, held against the promise.
   Answer check(AllEngines& engines, const Eigen::Isometry3d& pose, StabilityCase& wrong) const {
     const Answer answer = engines(pose);
-    const auto kept = keeps_promise({exact_fixed, exact_moving, pose}, engines.first().policy(),
-                                    answer.contacts, answer.result.pad);
+    const auto kept =
+        keeps_promise(at(pose), engines.first().policy(), answer.contacts, answer.result.pad);
     wrong.sample(kept ? 0 : 1, 0, kept.message());
     return answer;
   }
-  SphereTree fixed, moving;
-  ExactBody exact_fixed, exact_moving;
 };
 
 class Place : public ::testing::TestWithParam<SpherePolicy> {

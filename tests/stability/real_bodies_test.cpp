@@ -37,16 +37,6 @@ INSTANTIATE_TEST_SUITE_P(Files, RealBodies,
                            return name.substr(name.find('/') + 1);
                          });
 
-bool is_finite(const Touched& touched) {
-  const ContactSums& sums = touched.sums;
-  return std::isfinite(sums.weight) && sums.pressure.torque.allFinite() &&
-         sums.spring.torque.allFinite() &&
-         std::all_of(touched.points.begin(), touched.points.end(), [](const ContactPoint& p) {
-           return p.position.allFinite() && p.normal.allFinite() && std::isfinite(p.depth) &&
-                  p.weight > 0;
-         });
-}
-
 // Two bodies at some poses: the promise, by the library's own check if asked; the same bits from
 // all targets; contact points that are numbers.
 void check_answers(const SphereTree& fixed, const SphereTree& moving,
@@ -74,7 +64,7 @@ void check_answers(const SphereTree& fixed, const SphereTree& moving,
                                           GivenAnswer{plain.result, plain.contacts}});
         answers.sample(breach ? 1 : 0, 0, breach ? breach->what : "");
       }
-      answers.sample(is_finite(first) ? 0 : 1, 0, "contact points");
+      answers.sample(is_sound(first, fixed.lattice().voxel_size) ? 0 : 1, 0, "contact points");
       for (const auto& engine : engines) {
         answers.sample(same(ask(*engine, pose), answer) ? 0 : 1, 0, engine->target());
       }
@@ -115,12 +105,12 @@ void check_distance(const SphereTree& body, const SphereTree& ball, double reach
                      0, "triangle pairs");
       for (const double tolerance : {0.0, 0.3 * size}) {
         const GapInterval interval = query->gap(pose, tolerance).gap;
-        gap.sample(std::max({0.0, interval.lower - distance, distance - interval.upper}), error);
+        gap.sample(outside(interval, distance), error);
         const double wide = tolerance + 2 * error;
         gap.sample(std::max(0.0, interval.upper - interval.lower - wide), error, "width");
       }
       const GapInterval early = *query->collide(pose, {}, {.sphere_tests = 300}).gap;
-      gap.sample(std::max({0.0, early.lower - distance, distance - early.upper}), error, "early");
+      gap.sample(outside(early, distance), error, "early");
     }
   }
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "ist/query/contacts/contact_pair.h"
-#include "ist/query/contacts/node_bound.h"
 #include "ist/query/promise/read_bounds.h"
 #include "ist/query/query_rules.h"
 #include "query/query_cases.h"
+#include "stability/search_overlap.h"
 
 namespace ist::test {
 namespace {
@@ -20,10 +20,6 @@ constexpr double kRounded = 1 + 1e-6;
 
 std::string title(const std::string& what, SpherePolicy policy) {
   return what + ", " + std::string(to_string(policy));
-}
-
-bool precedes(const Contact& a, const Contact& b) {
-  return a.fixed != b.fixed ? a.fixed < b.fixed : a.moving < b.moving;
 }
 
 CollisionOptions with(SpherePolicy policy) {
@@ -93,32 +89,8 @@ Sweep::Step Sweep::look(const Isometry3d& pose) {
           stretched, exact_.gap(pose, 0).gap, plain_.gap(pose, 0).gap};
 }
 
-// The least overlap of all pairs of nodes that the search tests on its way to two leaves, theirs
-// included; below 0 where some are apart. In double, without a pad.
 double Sweep::overlap(const Contact& pair, const Isometry3d& pose) const {
-  const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
-  const auto line_of = [this](const SphereTree& tree, std::uint32_t node) {
-    std::vector<NodeBound> bounds;
-    for (int level = 0; level <= tree.depth(); ++level) {
-      const std::uint32_t parent = parent_of(tree.octree(), level, node);
-      bounds.push_back(read_bound(tree, policy_, level, node, parent));
-      node = parent;
-    }
-    return bounds;
-  };
-  const std::vector<NodeBound> a = line_of(fixed_, pair.fixed), b = line_of(moving_, pair.moving);
-  double least = HUGE_VAL;
-  for (int i = fixed_.depth(), j = moving_.depth();;) {
-    const NodeBound& x = a[static_cast<std::size_t>(i)];
-    const NodeBound y = b[static_cast<std::size_t>(j)].in(relative);
-    least = std::min(least, x.radius + y.radius - (x.centre - y.centre).norm());
-    if (policy_ == SpherePolicy::kSlab) least = std::min(least, slab_overlap(x, y));
-    if (i == 0 && j == 0) return least;
-    const double edge_a = fixed_.lattice().edge(i), edge_b = moving_.lattice().edge(j);
-    const bool open_a = opens(i, edge_a, j, edge_b), open_b = opens(j, edge_b, i, edge_a);
-    i -= open_a ? 1 : 0;
-    j -= open_b ? 1 : 0;
-  }
+  return search_overlap(fixed_, moving_, policy_, pose, pair);
 }
 
 // A pair is in an answer only if nothing over it is farther apart than the pad, and is out of one
@@ -130,7 +102,7 @@ void Sweep::compare_pairs(const Step& before, const Step& now) {
     const Step &in = left ? before : now, &out = left ? now : before;
     std::vector<Contact> changed;
     std::set_difference(in.pairs.begin(), in.pairs.end(), out.pairs.begin(), out.pairs.end(),
-                        std::back_inserter(changed), precedes);
+                        std::back_inserter(changed));
     for (const Contact& pair : changed) {
       cases_.edges.sample(std::max(0.0, -overlap(pair, in.pose)), in.pad, "in");
       cases_.edges.sample(std::max(0.0, overlap(pair, out.pose)), doubles, "out");

@@ -12,20 +12,6 @@
 namespace ist::test {
 namespace {
 
-// Two small bodies and what is true of them.
-struct Bodies {
-  Bodies(const TriangleMesh& a, double cells_a, const TriangleMesh& b, double cells_b)
-      : fixed(tree_of(a, cells_a)),
-        moving(tree_of(b, cells_b)),
-        exact_fixed(a, fixed),
-        exact_moving(b, moving) {}
-  [[nodiscard]] ExactPair at(const Eigen::Isometry3d& pose) const {
-    return {exact_fixed, exact_moving, pose};
-  }
-  SphereTree fixed, moving;
-  ExactBody exact_fixed, exact_moving;
-};
-
 // A straight way on which bodies touch at `from` and are apart at `to`.
 struct Way {
   Eigen::Matrix3d rotation;
@@ -96,7 +82,7 @@ struct Cases {
 class Tangency : public ::testing::TestWithParam<SpherePolicy> {
  protected:
   // All engines at each of these places, against the promise.
-  void check(Cases& cases, const Bodies& bodies, AllEngines& engines, const Way& way,
+  void check(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const Way& way,
              const std::vector<double>& places) {
     for (const double x : places) {
       const Answer answer = engines(way.at(x));
@@ -110,7 +96,8 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
   }
 
   // Where the last contact ends.
-  void check_last_contact(Cases& cases, const Bodies& bodies, AllEngines& engines, const Way& way) {
+  void check_last_contact(Cases& cases, const ExactBodies& bodies, AllEngines& engines,
+                          const Way& way) {
     const double last = last_touching(way.from, way.to, [&](double x) {
       return ask(engines.first(), way.at(x)).result.contacts > 0;
     });
@@ -120,7 +107,7 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
 
   // Where the geometry of one pair ends to meet, which is in the answer until then, and where its
   // bounds part by more than the pad, from where on it is not. True where there is such a pair.
-  bool check_one_pair(Cases& cases, const Bodies& bodies, AllEngines& engines, const Way& way,
+  bool check_one_pair(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const Way& way,
                       Random& random) {
     const SpherePolicy policy = GetParam();
     std::vector<Contact> meeting = engines(way.at(way.from)).contacts;
@@ -169,8 +156,9 @@ TEST_P(Tangency, IsDecidedToTheLastFloat) {
     };
     const TriangleMesh a = kind == 0 ? block() : random_mesh(random);
     const TriangleMesh b = kind == 0 ? block() : random_mesh(random);
-    const Bodies bodies(a, kind == 0 ? 4 : kCells[random.below(6)], b,
-                        kind == 0 ? 4 : kCells[random.below(6)]);
+    const double cells_a = kind == 0 ? 4 : kCells[random.below(6)];
+    const double cells_b = kind == 0 ? 4 : kCells[random.below(6)];
+    const ExactBodies bodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b));
     const Eigen::Matrix3d rotation =
         kind < 2 ? turns[random.below(turns.size())] : random.rotation();
     AllEngines engines(bodies.fixed, bodies.moving, GetParam());
@@ -185,7 +173,7 @@ TEST_P(Tangency, IsDecidedToTheLastFloat) {
 TEST_P(Tangency, IsDecidedAmidManyOthers) {
   Cases cases("amid many others", GetParam());
   const TriangleMesh ball = icosphere(2, 1);
-  const Bodies bodies(ball, 14, ball, 14);
+  const ExactBodies bodies(ball, tree_of(ball, 14), ball, tree_of(ball, 14));
   AllEngines engines(bodies.fixed, bodies.moving, GetParam(), 1 << 16);
   Random random(1);
   const Way way{Eigen::Matrix3d::Identity(), {0, 0.02, 0.005}, {1, 0, 0}, 0.01, 4};

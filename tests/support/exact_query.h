@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ist/mesh/triangle_mesh.h"
@@ -103,6 +104,25 @@ class ExactPair {
   double margin_;  // no double of the filter is farther from the truth
   std::vector<Eigen::Vector3d> moved_centres_;
   std::vector<std::vector<std::vector<Eigen::Vector3d>>> moved_polygons_;  // by leaf and polygon
+};
+
+/// Two bodies by their trees and in rational numbers.
+struct ExactBodies {
+  ExactBodies(const TriangleMesh& a, SphereTree tree_of_a, const TriangleMesh& b,
+              SphereTree tree_of_b)
+      : fixed(std::move(tree_of_a)),
+        moving(std::move(tree_of_b)),
+        exact_fixed(a, fixed),
+        exact_moving(b, moving) {}
+  ExactBodies(const ExactBodies&) = delete;
+  ExactBodies& operator=(const ExactBodies&) = delete;
+
+  [[nodiscard]] ExactPair at(const Eigen::Isometry3d& pose) const {
+    return {exact_fixed, exact_moving, pose};
+  }
+
+  SphereTree fixed, moving;
+  ExactBody exact_fixed, exact_moving;
 };
 
 /// Whether an answer is what the design promises:

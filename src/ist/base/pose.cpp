@@ -38,6 +38,7 @@ double determinant(const Eigen::Matrix3d& m) noexcept {
 }  // namespace
 
 std::optional<Eigen::Isometry3d> project_to_rigid(const Eigen::Isometry3d& pose) noexcept {
+  const ScopedFloatEnvironment environment;
   const Eigen::Matrix4d& m = pose.matrix();
   for (int i = 0; i < 16; ++i) {
     if (!std::isfinite(m.data()[i])) return std::nullopt;

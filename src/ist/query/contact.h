@@ -11,7 +11,7 @@ namespace ist {
 struct Contact {
   std::uint32_t fixed, moving;
 
-  friend bool operator==(const Contact&, const Contact&) = default;
+  friend auto operator<=>(const Contact&, const Contact&) = default;
 };
 static_assert(sizeof(Contact) == 8);
 

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "ist/base/assert.h"
+#include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
 #include "ist/tree/node_bounds.h"
 #include "ist/voxel/nearest_point.h"
@@ -124,6 +125,7 @@ TriangleLists merge_lists(const TriangleLists& children, const LinearOctree& oct
 
 BoundBlocks build_bounds(SpherePolicy policy, const TriangleMesh& mesh, const VoxelSet& voxels,
                          const LinearOctree& octree, Progress* progress) {
+  const ScopedFloatEnvironment environment;
   IST_ASSERT(!is_implicit(policy));
   Progress unseen;
   Progress& shown = progress != nullptr ? *progress : unseen;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "ist/base/error.h"
+#include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
@@ -300,6 +301,7 @@ class BlockWriter {
 }  // namespace
 
 VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
+  const ScopedFloatEnvironment environment;
   Progress unseen;
   Progress& shown = progress != nullptr ? *progress : unseen;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

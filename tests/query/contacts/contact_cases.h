@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "ist/query/collision_query.h"
@@ -29,6 +31,19 @@ struct Touched {
   CollisionQuery query(fixed, moving, options);
   ContactPoints points(fixed, moving, policy, {most, std::size_t{1} << 20});
   return touched(query, points, pose);
+}
+
+/// Whether all of it is numbers, and within what ContactPoint states; `size` is s.
+[[nodiscard]] inline bool is_sound(const Touched& touched, double size) {
+  constexpr double kRounded = 1 + 1e-9;
+  const auto finite = [](const Wrench& w) { return w.force.allFinite() && w.torque.allFinite(); };
+  const ContactSums& sums = touched.sums;
+  return std::isfinite(sums.weight) && finite(sums.pressure) && finite(sums.spring) &&
+         std::all_of(touched.points.begin(), touched.points.end(), [&](const ContactPoint& p) {
+           return p.position.allFinite() && std::abs(p.normal.norm() - 1) < 1e-9 &&
+                  p.depth >= -2 * size * kRounded && p.depth <= size * kRounded && p.weight > 0 &&
+                  std::isfinite(p.weight);
+         });
 }
 
 /// Whether they are the same, bit by bit.

@@ -199,9 +199,6 @@ TEST_P(Lipschitz, NothingIsLeftOfAPairThatLeaves) {
     ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0});
     const double lever = points.rates().lever;
     const Vector3d centre = b.moving.lattice().origin();
-    const auto less = [](const Contact& x, const Contact& y) {
-      return std::pair(x.fixed, x.moving) < std::pair(y.fixed, y.moving);
-    };
     for (const Way& way : b.ways) {
       SCOPED_TRACE(std::string(b.name) + ", " + way.name);
       std::vector<Contact> before, changed;
@@ -211,8 +208,7 @@ TEST_P(Lipschitz, NothingIsLeftOfAPairThatLeaves) {
         for (const int side : {0, 1}) {  // what left, and what came
           const auto &a = side == 0 ? before : now, &c = side == 0 ? now : before;
           changed.clear();
-          std::set_difference(a.begin(), a.end(), c.begin(), c.end(), std::back_inserter(changed),
-                              less);
+          std::set_difference(a.begin(), a.end(), c.begin(), c.end(), std::back_inserter(changed));
           if (step == 0 || changed.empty()) continue;
           for (const Contact& contact : changed) {
             ASSERT_TRUE(points.begin(way.at(side == 0 ? step - 1 : step, lever, centre)));

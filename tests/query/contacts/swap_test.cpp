@@ -43,13 +43,10 @@ void expect_mirrored(const SphereTree& fixed, const SphereTree& moving, SpherePo
   std::vector<Contact> pairs = ask(there, pose).contacts,
                        others = ask(back, pose.inverse()).contacts;
   for (Contact& contact : others) std::swap(contact.fixed, contact.moving);
-  const auto before = [](const Contact& a, const Contact& b) {
-    return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
-  };
-  std::sort(others.begin(), others.end(), before);
+  std::sort(others.begin(), others.end());
   std::vector<Contact> differ;
   std::set_symmetric_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
-                                std::back_inserter(differ), before);
+                                std::back_inserter(differ));
   EXPECT_LE(differ.size(), 2 + pairs.size() / 200);
 
   ContactPoints points(fixed, moving, policy), swapped(moving, fixed, policy);
@@ -59,7 +56,7 @@ void expect_mirrored(const SphereTree& fixed, const SphereTree& moving, SpherePo
     ASSERT_TRUE(points.begin(pose));
     std::vector<Contact> of_first;
     std::set_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
-                        std::back_inserter(of_first), before);
+                        std::back_inserter(of_first));
     points.take(of_first);
     EXPECT_LE(points.sums().weight, 1e-5 * a.weight);
   }

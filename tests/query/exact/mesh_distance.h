@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ist/mesh/triangle_mesh.h"
+#include "ist/query/contact.h"
 #include "ist/query/exact/triangle_distance.h"
 
 namespace ist::test {
@@ -39,6 +40,11 @@ namespace ist::test {
     }
   }
   return least;
+}
+
+/// How far a distance is outside an interval that should hold it; 0 where it is not.
+[[nodiscard]] inline double outside(const GapInterval& gap, double distance) {
+  return std::max({0.0, gap.lower - distance, distance - gap.upper});
 }
 
 }  // namespace ist::test

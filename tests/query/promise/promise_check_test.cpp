@@ -88,11 +88,8 @@ TEST_P(Promise, WhatDoesNotBelongIsFound) {
   for (int i = 0; i < 500; ++i) {
     const Contact pair{static_cast<std::uint32_t>(random_.below(fixed_.octree().leaf_count())),
                        static_cast<std::uint32_t>(random_.below(moving_.octree().leaf_count()))};
-    const auto precedes = [](const Contact& p, const Contact& q) {
-      return p.fixed != q.fixed ? p.fixed < q.fixed : p.moving < q.moving;
-    };
     Answer more = right;
-    const auto at = std::lower_bound(more.contacts.begin(), more.contacts.end(), pair, precedes);
+    const auto at = std::lower_bound(more.contacts.begin(), more.contacts.end(), pair);
     if (at != more.contacts.end() && *at == pair) continue;
     more.contacts.insert(at, pair);
     ++more.result.contacts;

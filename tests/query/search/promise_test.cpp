@@ -19,14 +19,11 @@ class Judged {
   Judged(const TriangleMesh& a, double cells_a, const TriangleMesh& b, double cells_b,
          SpherePolicy policy)
       : policy_(policy),
-        fixed_(tree_of(a, cells_a)),
-        moving_(tree_of(b, cells_b)),
-        exact_fixed_(a, fixed_),
-        exact_moving_(b, moving_),
-        reference_(fixed_, moving_, policy) {
+        bodies_(a, tree_of(a, cells_a), b, tree_of(b, cells_b)),
+        reference_(fixed(), moving(), policy) {
     for (const std::string& target : all_targets()) {
       engines_.push_back(
-          std::make_unique<CollisionQuery>(fixed_, moving_, options_of(policy, target)));
+          std::make_unique<CollisionQuery>(fixed(), moving(), options_of(policy, target)));
     }
   }
 
@@ -45,29 +42,23 @@ class Judged {
                                                                                    << pose.matrix();
     std::vector<Contact> differing;
     const std::vector<Contact> reference = ask(reference_, pose).contacts;
-    std::set_symmetric_difference(
-        reference.begin(), reference.end(), answer.contacts.begin(), answer.contacts.end(),
-        std::back_inserter(differing), [](const Contact& a, const Contact& b) {
-          return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
-        });
+    std::set_symmetric_difference(reference.begin(), reference.end(), answer.contacts.begin(),
+                                  answer.contacts.end(), std::back_inserter(differing));
     for (const Contact& contact : differing) {
       EXPECT_FALSE(exact.geometry_meets(policy_, contact.fixed, contact.moving));
     }
     return answer.contacts.size();
   }
 
-  [[nodiscard]] const SphereTree& fixed() const { return fixed_; }
-  [[nodiscard]] const SphereTree& moving() const { return moving_; }
+  [[nodiscard]] const SphereTree& fixed() const { return bodies_.fixed; }
+  [[nodiscard]] const SphereTree& moving() const { return bodies_.moving; }
   [[nodiscard]] CollisionQuery& query() { return *engines_.front(); }
   [[nodiscard]] ReferenceQuery& reference() { return reference_; }
-  [[nodiscard]] ExactPair exact(const Eigen::Isometry3d& pose) const {
-    return {exact_fixed_, exact_moving_, pose};
-  }
+  [[nodiscard]] ExactPair exact(const Eigen::Isometry3d& pose) const { return bodies_.at(pose); }
 
  private:
   SpherePolicy policy_;
-  SphereTree fixed_, moving_;
-  ExactBody exact_fixed_, exact_moving_;
+  ExactBodies bodies_;
   ReferenceQuery reference_;
   std::vector<std::unique_ptr<CollisionQuery>> engines_;
 };
