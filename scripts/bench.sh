@@ -16,7 +16,7 @@ scripts/setup.sh $needs >&2
 cmake --preset bench | grep '^-- Peers' >&2 || true
 cmake --build --preset bench | tail -n 1 >&2
 if [ ${#programs[@]} -eq 0 ]; then
-  programs=(build_bench contact_bench deadline_bench kernel_bench load_bench query_bench reference_bench)
+  programs=(build_bench contact_bench deadline_bench haptics_bench kernel_bench load_bench query_bench reference_bench)
   if cmake --build --preset bench --target help | grep '^peers_bench:' >/dev/null; then
     programs+=(peers_bench)
   fi

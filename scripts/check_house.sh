@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 failed=0
 breach() { echo "$*" >&2; failed=1; }
 
-layers=(base mesh voxel tree query)
+layers=(base mesh voxel tree query haptics scene)
 for i in "${!layers[@]}"; do
   for later in "${layers[@]:i+1}"; do
     found=$(grep -rnE "#include \"ist/$later/" "src/ist/${layers[i]}" || true)
@@ -28,7 +28,8 @@ only() {  # what, pattern, the one file (a pattern), where to look
 only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' "src simd"
 only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/tbb_ranges\.cpp' "src simd"
 only "Highway" '#include [<"]hwy/' 'simd/[a-z_]+(\.cpp|-inl\.h)' "src simd tests bench"
-only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/cli/main\.cpp' src
+only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd tests bench"
+only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main|ist/scene/scene_trees)\.cpp' src
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 only "a root of several numbers at once, whose bits depend on the processor (Eigen's is an estimate)" '\.r?sqrt\(\)' 'none' "src simd"
 # Sizes rounded up to a vector's can hide it, so a test of sizes alone does not.

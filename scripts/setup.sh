@@ -10,9 +10,10 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
+  libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmp-dev python3)
-bench=(libbenchmark-dev python3-matplotlib)
+bench=(libbenchmark-dev python3-matplotlib valgrind)
 for argument in "$@"; do
   case $argument in
     --bench) packages+=("${bench[@]}") ;;

@@ -5,7 +5,8 @@
 #
 #   scripts/test.sh          every test, some 20 minutes from nothing built on two cores
 #   scripts/test.sh --long   then hard cases with 20 times the samples, ten million queries of real
-#                            jaws, threads for longer, and each fuzzer for a minute; 30 minutes more
+#                            jaws, an hour of simulated pressing, threads for longer, and each fuzzer
+#                            for a minute; 45 minutes more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails
@@ -15,7 +16,7 @@ long=false
 case ${1:-} in
   "") ;;
   --long) long=true ;;
-  -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
 scripts/setup.sh
@@ -34,7 +35,7 @@ run() {  # preset, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
-run thread "base_test tree_test search_test workers_test" -R 'Thread|Parallel'
+run thread "base_test loop_test tree_test search_test workers_test" -R 'Thread|Parallel'
 run sanitize "mesh_test tree_test search_test fuzz_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
 $long || exit 0
@@ -49,5 +50,6 @@ trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
 more test 1000 load_test '*' &
 load=$!
 more test 20 stability_test '*'
+more test 600 haptics_test 'LongPressing.*'
 wait $load
 scripts/fuzz.sh --seconds 60

@@ -13,7 +13,7 @@
 namespace ist::cli {
 namespace {
 
-struct Options {
+struct BuildArguments {
   std::filesystem::path mesh, output;
   BuildOptions build;
   std::string spheres{to_string(BuildOptions{}.spheres)};
@@ -21,7 +21,7 @@ struct Options {
   bool json = false;
 };
 
-void run(Options options) {
+void run(BuildArguments options) {
   options.build.spheres = *sphere_policy(options.spheres);
   const auto names = [&](const char* name) {
     return std::find(options.classes.begin(), options.classes.end(), name) != options.classes.end();
@@ -72,7 +72,7 @@ void run(Options options) {
 
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BuildArguments>();
   command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();

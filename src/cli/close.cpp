@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kMostSteps = 1e6;
 
-struct Options {
+struct CloseArguments {
   QueryOptions query;
   std::string axis;
   double from = 0, to = 0, step = 0;
 };
 
-std::vector<Eigen::Isometry3d> straight_path(const Options& options) {
+std::vector<Eigen::Isometry3d> straight_path(const CloseArguments& options) {
   const double length = std::abs(options.to - options.from);
   if (!std::isfinite(options.from) || !std::isfinite(options.to)) {
     throw CLI::ValidationError("--from, --to", "give finite numbers");
@@ -44,7 +44,7 @@ std::vector<Eigen::Isometry3d> straight_path(const Options& options) {
 void add_close(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("close", "Find where two bodies touch, along a straight path");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CloseArguments>();
   add_query_options(*command, options->query);
   command->add_option("--axis", options->axis, "the axis along which the moving body goes")
       ->required()

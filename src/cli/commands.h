@@ -13,5 +13,6 @@ void add_info(CLI::App& app);
 void add_export(CLI::App& app);
 void add_collide(CLI::App& app);
 void add_close(CLI::App& app);
+void add_run(CLI::App& app);
 
 }  // namespace ist::cli

@@ -19,7 +19,7 @@
 namespace ist::cli {
 namespace {
 
-struct Options {
+struct DemoArguments {
   std::vector<double> voxel_sizes{0.8, 0.4, 0.2};
   std::uint64_t seed = 1;
   std::filesystem::path keep;
@@ -119,7 +119,7 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, bool json) {
   }
 }
 
-void run(const Options& options) {
+void run(const DemoArguments& options) {
   for (const double size : options.voxel_sizes) {
     if (!(size > 0 && std::isfinite(size))) {
       throw CLI::ValidationError("--voxel-size", "give positive numbers of millimetres");
@@ -166,7 +166,7 @@ void run(const Options& options) {
 void add_demo(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("demo", "Make two jaws, close them, and show how fast each answer comes");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DemoArguments>();
   command->add_option("--voxel-size", options->voxel_sizes, "edges of the voxels, mm")
       ->delimiter(',')
       ->capture_default_str();

@@ -17,7 +17,7 @@
 namespace ist::cli {
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::filesystem::path tree, output;
   std::string what, spheres;
   int level = 0;
@@ -46,7 +46,8 @@ class PlyFile {
   std::string bytes_;
 };
 
-std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy, const Options& options) {
+std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy,
+                          const ExportArguments& options) {
   const std::vector<Ball> spheres = level_spheres(tree, policy, options.level);
   PlyFile ply;
   ply.begin(
@@ -64,7 +65,7 @@ std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy, const Opt
 }
 
 // The faces of the cubes that no neighbour hides.
-std::size_t write_voxels(const SphereTree& tree, const Options& options) {
+std::size_t write_voxels(const SphereTree& tree, const ExportArguments& options) {
   struct Face {
     std::uint32_t first;
     int axis, side;
@@ -116,7 +117,7 @@ std::size_t write_voxels(const SphereTree& tree, const Options& options) {
   return codes.size();
 }
 
-void run(const Options& options) {
+void run(const ExportArguments& options) {
   if (options.what == "voxels" && !options.spheres.empty()) {
     throw CLI::ValidationError("--spheres", "goes with --what spheres");
   }
@@ -146,7 +147,7 @@ void run(const Options& options) {
 void add_export(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "export", "Write a level of a tree as PLY, for ParaView, MeshLab or Blender");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportArguments>();
   command->add_option("TREE", options->tree, "tree file")->required();
   command->add_option("--what", options->what, "cubes, or points with a property 'radius'")
       ->required()

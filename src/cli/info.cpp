@@ -17,12 +17,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct InfoArguments {
   std::filesystem::path file;
   bool json = false;
 };
 
-void show_mesh(const Options& options) {
+void show_mesh(const InfoArguments& options) {
   const TriangleMesh mesh = read_mesh(options.file);
   const MeshReport report = check_mesh(mesh);
   const Eigen::Vector3d low = report.box_min, high = report.box_max;
@@ -50,7 +50,7 @@ void show_mesh(const Options& options) {
   print_warnings(warnings(report));
 }
 
-void show_tree(const Options& options) {
+void show_tree(const InfoArguments& options) {
   const SphereTree tree = read_tree(options.file);
   const std::vector<LevelStatistics> levels = level_statistics(tree);
   const char* orientation = tree.orientation() == Orientation::kOutward ? "outward" : "assumed";
@@ -107,7 +107,7 @@ void show_tree(const Options& options) {
 void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show what a mesh or a tree holds, level by level");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoArguments>();
   command->add_option("FILE", options->file, "STL, OBJ or PLY mesh, or tree")->required();
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(*command, "Example: ist info jaw.ist");

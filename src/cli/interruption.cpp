@@ -22,6 +22,9 @@ sigset_t ending_signals() {
   return signals;
 }
 
+// Whether the next signal asks to stop, and whether one has.
+std::atomic<bool> stops{false}, asked_to_stop{false};
+
 }  // namespace
 
 void leave_nothing_half_done() {
@@ -32,12 +35,25 @@ void leave_nothing_half_done() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals] {
     int signal = 0;
-    if (sigwait(&signals, &signal) != 0) return;
+    do {
+      if (sigwait(&signals, &signal) != 0) return;
+    } while (stops.exchange(false) && !asked_to_stop.exchange(true));
     abandon_progress_bar();
     abandon_output_files();
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     raise(signal);
   }).detach();
 }
+
+StopOnInterruption::StopOnInterruption() noexcept {
+  asked_to_stop = false;
+  stops = true;
+}
+
+StopOnInterruption::~StopOnInterruption() { stops = false; }
+
+void StopOnInterruption::ask() noexcept { asked_to_stop = true; }
+
+const std::atomic<bool>& StopOnInterruption::asked() const noexcept { return asked_to_stop; }
 
 }  // namespace ist::cli

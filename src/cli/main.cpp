@@ -10,13 +10,14 @@
 
 #include "cli/commands.h"
 #include "cli/interruption.h"
+#include "cli/run.h"
 #include "cli/verify.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
 namespace {
 
-constexpr int kFailed = 1, kUsage = 2, kBadInput = 3, kPromiseBroken = 5;
+constexpr int kFailed = 1, kUsage = 2, kBadInput = 3, kDeadlinesMissed = 4, kPromiseBroken = 5;
 
 int exit_code(ErrorCode code) {
   switch (code) {
@@ -44,8 +45,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", IST_VERSION);
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
-      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 5 a result breaks a promise "
-      "(--verify).\n"
+      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n5 a "
+      "result breaks a promise (--verify).\n"
       "Research software, not a medical device.");
   add_demo(app);
   add_build(app);
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
   add_export(app);
   add_collide(app);
   add_close(app);
+  add_run(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {  // or the version: asked for, and printed by whose it is
@@ -86,6 +88,9 @@ int main(int argc, char** argv) try {
 } catch (const ist::cli::PromiseBroken& broken) {
   std::fprintf(stderr, "ist: %s\n", broken.what());
   return ist::cli::kPromiseBroken;
+} catch (const ist::cli::DeadlinesMissed& missed) {
+  std::fprintf(stderr, "ist: %s\n", missed.what());
+  return ist::cli::kDeadlinesMissed;
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
   return ist::cli::kFailed;

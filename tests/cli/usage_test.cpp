@@ -24,9 +24,9 @@ class Usage : public CliTest {
 TEST_F(Usage, HelpTeaches) {
   const CommandResult help = ist_well({"--help"});
   EXPECT_TRUE(says(help.out, "ist demo"));
-  EXPECT_TRUE(
-      says(help.out,
-           "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 5 a result breaks a promise"));
+  EXPECT_TRUE(says(help.out,
+                   "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed "
+                   "(run),\n5 a result breaks a promise"));
   EXPECT_EQ(help.err, "");
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
@@ -39,7 +39,10 @@ TEST_F(Usage, HelpTeaches) {
        {"FIXED", "MOVING", "--poses", "column-major", "--voxel-size", "--spheres", "--engine",
         "--workers", "--target", "IST_TARGET", "--repeat", "--verify", "--contacts", "--json",
         "Example: ist collide"}},
-      {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}}};
+      {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}},
+      {"run",
+       {"SCENE", "--check", "--explain", "--rate", "--seconds", "--allow-missed", "--record",
+        "--replay", "--unpaced", "--cpu", "--json", "Example: ist run"}}};
   for (const auto& [command, parts] : taught) {
     EXPECT_TRUE(says(help.out, "\n  " + command));
     const CommandResult result = ist_well({command, "--help"});

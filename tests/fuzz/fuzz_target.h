@@ -14,6 +14,7 @@ namespace ist::test {
 [[nodiscard]] std::string fuzz_mesh(std::string_view bytes);
 [[nodiscard]] std::string fuzz_poses(std::string_view bytes);
 [[nodiscard]] std::string fuzz_query(std::string_view bytes);
+[[nodiscard]] std::string fuzz_scene(std::string_view bytes);
 [[nodiscard]] std::string fuzz_tree(std::string_view bytes);
 
 /// A promise that does not hold.

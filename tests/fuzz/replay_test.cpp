@@ -32,6 +32,7 @@ const std::vector<Target>& targets() {
         "mesh-not-finite", "mesh-extent"}},
       {"poses", fuzz_poses, {"fine", "input-invalid", "pose-invalid"}},
       {"query", fuzz_query, {"touching", "apart", "invalid"}},
+      {"scene", fuzz_scene, {"fine", "input-invalid"}},
       {"tree", fuzz_tree, {"fine", "not-a-tree", "tree-version", "tree-truncated", "tree-corrupt"}},
   };
   return all;

@@ -24,7 +24,7 @@ using test::all_formats;
 using test::replaced;
 using test::TempDir;
 
-const TriangleMesh kBox = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
+const TriangleMesh kSoundBox = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
 
 std::string code_of(const std::filesystem::path& file) {
   try {
@@ -55,7 +55,7 @@ std::string ply(const std::string& elements_and_body) {
 
 const std::string kFaces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-const std::string kFacet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex ";
+const std::string kOpenFacet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex ";
 
 TEST(ReadMesh, RefusesWhatIsNoMesh) {
   const std::vector<Refused> cases = {
@@ -77,9 +77,9 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
       {"not-a-mesh", "just a letter\n"},
       {"not-a-mesh", std::string("\x89PNG\r\n\x1A\n", 8) + std::string(500, '\xFF')},
       {"not-a-mesh", "solid\nthis is not an stl\nendsolid\n"},
-      {"not-a-mesh", "solid\n" + kFacet + "0 1 0 vertex 1 1 1 endloop endfacet\nendsolid\n"},
-      {"not-a-mesh", "solid\n" + kFacet + "0 1,5 0 endloop endfacet\nendsolid\n"},
-      {"not-a-mesh", test::as_text_stl(kBox) + "and more\n"},
+      {"not-a-mesh", "solid\n" + kOpenFacet + "0 1 0 vertex 1 1 1 endloop endfacet\nendsolid\n"},
+      {"not-a-mesh", "solid\n" + kOpenFacet + "0 1,5 0 endloop endfacet\nendsolid\n"},
+      {"not-a-mesh", test::as_text_stl(kSoundBox) + "and more\n"},
       {"not-a-mesh", kThree + "f 1 2\nf 1 2 3\n"},
       {"not-a-mesh", kThree + "f 1 2 c\nf 1 2 3\n"},
       {"not-a-mesh", "v 0 0\n" + kThree + "f 1 2 3\n"},
@@ -115,7 +115,7 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
       {"mesh-not-finite", "v 0 -inf 0\n" + kThree + "f 1 2 3\n"},
       {"mesh-not-finite", "v 0 1e39 0\n" + kThree + "f 1 2 3\n"},
       {"mesh-not-finite", "v 0 0 1e999\n" + kThree + "f 1 2 3\n"},
-      {"mesh-not-finite", "solid\n" + kFacet + "NaN 0 0 endloop endfacet\nendsolid\n"},
+      {"mesh-not-finite", "solid\n" + kOpenFacet + "NaN 0 0 endloop endfacet\nendsolid\n"},
       {"mesh-not-finite", ply(kFaces + "0 0 0\n1 0 0\n0 1 infinity\n3 0 1 2\n")},
   };
   for (const auto& [code, bytes, name] : cases)
@@ -125,7 +125,7 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
 TEST(ReadMesh, RefusesBytesThatAreNotFinite) {
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
-    TriangleMesh mesh = kBox;
+    TriangleMesh mesh = kSoundBox;
     mesh.vertices[3].y() = static_cast<double>(bad);
     EXPECT_EQ(code_of_bytes(test::as_binary_stl(mesh)), "mesh-not-finite");
     EXPECT_EQ(code_of_bytes(test::as_binary_ply(mesh, false)), "mesh-not-finite");
@@ -146,25 +146,26 @@ TEST(ReadMesh, RefusesSizesThatCannotBeMeant) {
 }
 
 TEST(ReadMesh, AcceptsPaddingButNothingElseAfterTheLastElement) {
-  for (const auto& bytes : {test::as_binary_stl(kBox), test::as_binary_ply(kBox, false)}) {
+  for (const auto& bytes :
+       {test::as_binary_stl(kSoundBox), test::as_binary_ply(kSoundBox, false)}) {
     EXPECT_EQ(code_of_bytes(bytes + std::string(300, '\0')), "fine");
     EXPECT_EQ(code_of_bytes(bytes + "\r\n"), "fine");
     EXPECT_EQ(code_of_bytes(bytes + "more"), "not-a-mesh");
   }
-  std::string fewer = test::as_binary_stl(kBox);
+  std::string fewer = test::as_binary_stl(kSoundBox);
   fewer[80] = 11;  // of twelve
   EXPECT_EQ(code_of_bytes(fewer), "not-a-mesh");
   EXPECT_EQ(code_of_bytes(fewer, "a.stl"), "not-a-mesh");
 }
 
 TEST(ReadMesh, BelievesNoCountThatTheFileDoesNotHold) {
-  std::string stl = test::as_binary_stl(kBox);
+  std::string stl = test::as_binary_stl(kSoundBox);
   std::memset(stl.data() + 80, 0xFF, 4);
   EXPECT_EQ(code_of_bytes(stl), "mesh-truncated");
   EXPECT_EQ(code_of_bytes(stl, "a.stl"), "mesh-truncated");
   for (const char* many : {"4294967295", "9223372036854775807"}) {
     const std::string element = std::string("element vertex ") + many;
-    for (const auto& text : {test::as_text_ply(kBox), test::as_binary_ply(kBox, false)}) {
+    for (const auto& text : {test::as_text_ply(kSoundBox), test::as_binary_ply(kSoundBox, false)}) {
       const std::string code = code_of_bytes(replaced(text, "element vertex 8", element));
       EXPECT_TRUE(code == "mesh-truncated" || code == "not-a-mesh") << code;
       EXPECT_EQ(code_of_bytes(replaced(text, "face 12", std::string("face ") + many)),
@@ -260,7 +261,7 @@ class NoPrivileges {
 
 TEST(ReadMesh, RefusesFilesWithoutPermission) {
   const TempDir folder;
-  const std::filesystem::path file = folder.write("a.stl", test::as_binary_stl(kBox));
+  const std::filesystem::path file = folder.write("a.stl", test::as_binary_stl(kSoundBox));
   std::filesystem::permissions(folder.path(), std::filesystem::perms::others_exec,
                                std::filesystem::perm_options::add);
   std::filesystem::permissions(file, std::filesystem::perms::none);

@@ -162,11 +162,11 @@ void Sweep::compare_depths(const Step& before, const Step& now, double motion) {
         read_leaf(fixed_, policy_, pair.fixed, parent_of(fixed_.octree(), 0, pair.fixed)),
         read_leaf(moving_, policy_, pair.moving, parent_of(moving_.octree(), 0, pair.moving))
             .in(relative),
-        1, scale);
+        scale);
   };
   for (std::size_t i = 0; i < now.pairs.size(); i += 1 + now.pairs.size() / 8) {
     const PairTerms a = terms(now.pairs[i], before.pose), b = terms(now.pairs[i], now.pose);
-    const double mean_normal = std::min(a.weight, b.weight) / scale.area;
+    const double mean_normal = std::min(a.weight, b.weight);
     if (!(mean_normal > 0)) continue;  // no direction, no weight, no depth
     cases_.depth.sample(std::abs(b.depth - a.depth),
                         motion * depth_rate(scale, points_.rates().lever, mean_normal));

@@ -25,6 +25,12 @@ QueryResult invalid_pose() {
   return result;
 }
 
+// What is left when the roots are tested.
+Budget without_roots(Budget budget) {
+  budget.sphere_tests -= budget.sphere_tests > 0 ? 1U : 0U;
+  return budget;
+}
+
 // What is known when the roots are tested. Where they do not touch, that is all.
 QueryResult of_roots(const RootTest& roots) {
   QueryResult result;
@@ -72,20 +78,22 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose,
                                     std::span<Contact> out) noexcept {
   const ScopedFloatEnvironment environment;
   ContactSink sink(out);
-  return search(pose, sink);
+  return search(pose, sink, 0);
 }
 
 QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, ContactStream& stream) noexcept {
   const ScopedFloatEnvironment environment;
   ContactSink sink(window_, stream);
-  return search(pose, sink);
+  return search(pose, sink, 0);
 }
 
 QueryResult CollisionQuery::contact_points(const Eigen::Isometry3d& pose,
                                            ContactPoints& points) noexcept {
   IST_ASSERT(points.is_between(fixed_, moving_) && points.policy() == policy_);
+  const ScopedFloatEnvironment environment;
   if (!points.begin(pose)) return invalid_pose();
-  const QueryResult result = collide(pose, points);
+  ContactSink sink(window_, points);
+  const QueryResult result = search(pose, sink, points.scale().grow);
   points.finish();
   return result;
 }
@@ -111,15 +119,16 @@ double CollisionQuery::pad_of(const SearchPose& pose) const noexcept {
   return policy_ == SpherePolicy::kSlab ? pose.slab_pad : pose.ball_pad;
 }
 
-QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& sink) noexcept {
-  const std::optional<Approach> bodies = approach(pose);
+QueryResult CollisionQuery::search(const Eigen::Isometry3d& pose, ContactSink& sink,
+                                   double grow) noexcept {
+  const std::optional<Approach> bodies = approach(pose, grow);
   if (!bodies) return invalid_pose();
   QueryResult result = of_roots(bodies->roots);
   if (!bodies->roots.touch) return result;
 
   const SearchPose from = narrowed(*bodies);
   // What was added to a reach, and what the test may err by on top.
-  result.pad = 2 * pad_of(from);
+  result.pad = 2 * pad_of(from) - grow;
   if (auto* shared = std::get_if<SharedSearch>(&search_)) {
     result.sphere_tests += shared->run(from, sink);
   } else {
@@ -143,13 +152,9 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   const SearchPose from = narrowed(*bodies);
   const double pad = pad_of(from);
   result.pad = 2 * pad;
-  Budget left = budget;
-  left.sphere_tests -= left.sphere_tests > 0 ? 1U : 0U;
   ContactSink sink(out);
-  const Search::Known known = alone().run_within(left, from, sink);
-  const std::size_t steps_left = plan_.steps().size() - known.steps;
-  result.complete = steps_left == 0;
-  result.level = static_cast<int>(steps_left);
+  const Search::Known known = alone().run_within(without_roots(budget), from, sink);
+  set_steps(known.steps, result);
   result.sphere_tests += known.tests;
   result.contacts = sink.count();
   result.truncated = sink.truncated();
@@ -161,6 +166,39 @@ QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose, std::span<Con
   result.gap->lower = std::max(result.gap->lower, apart - pad);
   result.gap->upper = std::min(result.gap->upper, farthest + pad);
   return result;
+}
+
+QueryResult CollisionQuery::contact_points(const Eigen::Isometry3d& pose, ContactPoints& points,
+                                           const Budget& budget) noexcept {
+  IST_ASSERT(points.is_between(fixed_, moving_) && points.policy() == policy_);
+  const ScopedFloatEnvironment environment;
+  if (!points.begin(pose)) return invalid_pose();
+  const double grow = points.scale().grow;
+  const std::optional<Approach> bodies = approach(pose, grow);
+  if (!bodies) return invalid_pose();
+  QueryResult result = of_roots(bodies->roots);
+  result.gap = bodies->roots.gap;
+  if (bodies->roots.touch) {
+    const SearchPose from = narrowed(*bodies);
+    result.pad = 2 * pad_of(from) - grow;
+    ContactSink sink(window_, points);
+    const Search::Stopped stopped = alone().run_until(without_roots(budget), from, sink);
+    set_steps(stopped.steps, result);
+    result.sphere_tests += stopped.tests;
+    result.contacts = sink.count();
+    if (result.contacts > 0) {
+      const double within = resolution_of(result, fixed_, moving_, policy_);
+      result.gap->upper = std::min(result.gap->upper, within);
+    }
+  }
+  points.finish();
+  return result;
+}
+
+void CollisionQuery::set_steps(std::size_t made, QueryResult& result) const noexcept {
+  const std::size_t left = plan_.steps().size() - made;
+  result.complete = left == 0;
+  result.level = static_cast<int>(left);
 }
 
 ExactResult CollisionQuery::collide_exact(const Eigen::Isometry3d& pose,

@@ -84,6 +84,16 @@ class CollisionQuery {
   [[nodiscard]] QueryResult contact_points(const Eigen::Isometry3d& pose,
                                            ContactPoints& points) noexcept;
 
+  /// Likewise, until the budget is spent, by the calling thread alone. Where the result is not
+  /// complete neither are the points, and no force should come of them. `gap` is that of the roots,
+  /// and where there are contacts no more than the resolution.
+  ///
+  /// It may make some 1,000 tests or 512 contacts, or one long row of them, more than the budget
+  /// allows; where the clock stopped it, a budget of as many tests as it made stops it at the same
+  /// place.
+  [[nodiscard]] QueryResult contact_points(const Eigen::Isometry3d& pose, ContactPoints& points,
+                                           const Budget& budget) noexcept;
+
   /// The distance between the surfaces, until the interval is no wider than `tolerance`, mesh
   /// units, or without triangles until the leaves are reached. With triangles it is that of two
   /// triangles where TrianglePairs puts them, to within 2^-24 of it and of the longest edge.
@@ -151,7 +161,10 @@ class CollisionQuery {
   [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
   [[nodiscard]] SearchPose narrowed(const Approach& approach, double grow = 0) const noexcept;
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
-  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink) noexcept;
+  // Bounds touch that are no farther apart than `grow`.
+  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink,
+                                   double grow) noexcept;
+  void set_steps(std::size_t made, QueryResult& result) const noexcept;
   void nearest_leaves(const Approach& approach, double tolerance, GapResult& result) noexcept;
   [[nodiscard]] Search& alone() noexcept;
 

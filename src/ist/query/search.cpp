@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace ist {
+namespace {
+
+// Between two looks at the clock.
+constexpr std::size_t kPartGroups = 64, kPartContacts = 512;
+
+}  // namespace
 
 Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs)
     : plan_(plan), kernels_(kernels), scratch_(std::make_unique<SearchScratch>()) {
@@ -35,6 +42,20 @@ std::uint64_t Search::run_hurried(const SearchPose& pose, ContactSink& sink,
   const std::uint64_t tests = run(pose, sink);
   groups_at_once_ = kAllGroups;
   return tests;
+}
+
+Search::Stopped Search::run_until(const Budget& budget, const SearchPose& pose,
+                                  ContactSink& sink) noexcept {
+  stopping_ = {budget};
+  groups_at_once_ = kPartGroups;
+  std::size_t& room = frontiers_.back().capacity;
+  const std::size_t all_room = std::exchange(room, std::min(kPartContacts, room));
+  const std::uint64_t tests = run(pose, sink);
+  room = all_room;
+  groups_at_once_ = kAllGroups;
+  const std::size_t steps = std::min(stopping_.steps, plan_.steps().size());
+  stopping_ = {};
+  return {tests, steps};
 }
 
 void Search::set_roots() noexcept {
@@ -71,11 +92,14 @@ std::uint64_t Search::descend(std::size_t step, const Frontier& in, std::size_t 
   Frontier& out = frontiers_[step + 1];
   SearchCursor cursor{first, 0};
   std::uint64_t tests = 0;
-  while (cursor.group < in.group_count && !sink.stopped()) {
+  while (cursor.group < in.group_count && !sink.stopped() && !stopping_.now(step)) {
     out.group_count = out.moving_count = 0;
     Frontier some = in;
     some.group_count = cursor.group + std::min(groups_at_once_, in.group_count - cursor.group);
-    tests += kernels_.advance(plan_.steps()[step], pose, some, cursor, out, *scratch_);
+    const std::uint64_t made =
+        kernels_.advance(plan_.steps()[step], pose, some, cursor, out, *scratch_);
+    tests += made;
+    stopping_.tests += made;
     if (out.group_count > 0) tests += descend(step + 1, out, 0, pose, sink);
   }
   return tests;

@@ -31,6 +31,17 @@ class Search {
   /// then: with smaller pads what is farther is left out from there on.
   std::uint64_t run_hurried(const SearchPose& pose, ContactSink& sink, std::size_t groups) noexcept;
 
+  /// What a search that may end early came to.
+  struct Stopped {
+    std::uint64_t tests;
+    std::size_t steps;  ///< that were made whole: all of them, or it ended early
+  };
+  /// As run(), until so many tests are made or the deadline is past, or a little more: it looks
+  /// between parts of some 1,000 tests or 512 contacts, which are the same every time. So where it
+  /// was stopped by the clock after some tests, a budget of as many stops it there again.
+  [[nodiscard]] Stopped run_until(const Budget& budget, const SearchPose& pose,
+                                  ContactSink& sink) noexcept;
+
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
   /// those of the leaves, or more than there is room for. Returns how many steps were made;
   /// `tests` is added to.
@@ -51,8 +62,8 @@ class Search {
     Measure inner, leaves;  ///< of all steps but the last, and of that
     std::size_t steps = 0;  ///< that were made whole
   };
-  /// Within a budget the sink takes so many contacts at a time: some µs in which nobody looks at
-  /// the clock.
+  /// Within a budget the sink takes so many contacts at a time: some µs in which nobody
+  /// looks at the clock.
   static constexpr std::size_t kLeavesAtOnce = 1 << 12;
   /// As run(), step by step from the roots on, or where a frontier is full from chunk to chunk, as
   /// long as there is something left to spend; and measures all pairs that are tested. Where it
@@ -72,6 +83,21 @@ class Search {
     std::vector<SearchGroup> groups;
     std::vector<std::uint32_t> moving;
   };
+  // What ends a search before its end, besides the sink.
+  struct Stopping {
+    Budget budget;
+    std::uint64_t tests = 0;
+    std::size_t steps = std::numeric_limits<std::size_t>::max();  // that are whole
+
+    // Whether to stop, with something left to do in this step.
+    [[nodiscard]] bool now(std::size_t step) noexcept {
+      const bool over =
+          tests >= budget.sphere_tests || (budget.deadline != Budget::Clock::time_point::max() &&
+                                           Budget::Clock::now() >= budget.deadline);
+      if (over) steps = std::min(steps, step);
+      return over;
+    }
+  };
   void set_roots() noexcept;
   [[nodiscard]] bool descend_within(std::size_t step, const SearchPose& pose, ContactSink& sink,
                                     Spending& spending, Known& known) noexcept;
@@ -85,6 +111,7 @@ class Search {
   std::unique_ptr<SearchScratch> scratch_;
   static constexpr std::size_t kAllGroups = std::numeric_limits<std::size_t>::max();
   std::size_t groups_at_once_ = kAllGroups;
+  Stopping stopping_;
 };
 
 }  // namespace ist

@@ -1,6 +1,5 @@
 #include "ist/query/workers.h"
 
-#include <sys/prctl.h>
 #include <time.h>
 #include <xmmintrin.h>
 
@@ -8,6 +7,7 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/base/tbb_ranges.h"
+#include "ist/base/timer_slack.h"
 #include "ist/query/worker_schedule.h"
 
 namespace ist {
@@ -43,20 +43,7 @@ Clock::time_point time_of(std::int64_t ns) {
 
 std::int64_t count(Clock::time_point time) { return Nanoseconds(time.time_since_epoch()).count(); }
 
-// Timers of the thread wake it as late as the machine makes them, and not 50 µs later still, which
-// is how far Linux otherwise lets them slip to join others.
-class ScopedTimerSlack {
- public:
-  ScopedTimerSlack() noexcept : saved_(prctl(PR_GET_TIMERSLACK)) { prctl(PR_SET_TIMERSLACK, 1ul); }
-  ~ScopedTimerSlack() {
-    if (saved_ > 0) prctl(PR_SET_TIMERSLACK, static_cast<unsigned long>(saved_));
-  }
-  ScopedTimerSlack(const ScopedTimerSlack&) = delete;
-  ScopedTimerSlack& operator=(const ScopedTimerSlack&) = delete;
-
- private:
-  int saved_;
-};
+}  // namespace
 
 // Adds to what usage() tells, from the time it is made.
 class Meter {
@@ -79,8 +66,6 @@ class Meter {
   Clock::time_point wall_ = Clock::now();
   std::int64_t cpu_ = thread_cpu();
 };
-
-}  // namespace
 
 // The worker's side.
 class WorkerLoop {

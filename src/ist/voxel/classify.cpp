@@ -19,8 +19,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRange = 2;  // voxel edges
-constexpr std::size_t kBlockCells = 1u << 3 * TriangleBins::kLevel;
-constexpr std::size_t kBlocksARange = 16;
 
 // The angle whose cosine this is, to 7e-5, without libm, whose bits depend on the processor.
 // Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 4.4.45.
@@ -102,8 +100,8 @@ class BlockClassifier {
     for (const std::uint32_t t : triangles) {
       if (!normals_.is_degenerate(t)) take_in(t, morton_decode(code));
     }
-    for (std::size_t i = 0; i < kBlockCells; ++i) {
-      const std::uint64_t cell_code = code * kBlockCells + i;
+    for (std::size_t i = 0; i < TriangleBins::kBlockCells; ++i) {
+      const std::uint64_t cell_code = code * TriangleBins::kBlockCells + i;
       if (nearest_[i].outside && nearest_[i].distance2 <= kRange * kRange &&
           !is_surface(morton_decode(cell_code))) {
         found.push_back(cell_code);
@@ -138,7 +136,7 @@ class BlockClassifier {
           const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
           const NearestPoint nearest = nearest_on_triangle(corners, centre);
           const Vector3d away = centre - nearest.point;
-          Nearest& known = nearest_[morton_encode({x, y, z}) % kBlockCells];
+          Nearest& known = nearest_[morton_encode({x, y, z}) % TriangleBins::kBlockCells];
           if (away.squaredNorm() >= known.distance2) continue;
           known = {away.squaredNorm(), away.dot(normals_.at(t, nearest.feature)) > 0};
         }
@@ -158,7 +156,7 @@ class BlockClassifier {
   const LatticeMesh& mesh_;
   const PseudoNormals& normals_;
   const VoxelSet& surface_;
-  std::array<Nearest, kBlockCells> nearest_;
+  std::array<Nearest, TriangleBins::kBlockCells> nearest_;
 };
 
 }  // namespace
@@ -176,11 +174,13 @@ std::vector<std::uint64_t> proximity_voxels(const TriangleMesh& mesh, const Voxe
   const PseudoNormals normals(mesh);
   const TriangleBins bins = bin_triangles(lattice_mesh, cells, kRange);
   const std::size_t blocks = bins.codes.size();
-  std::vector<std::vector<std::uint64_t>> parts((blocks + kBlocksARange - 1) / kBlocksARange);
-  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<std::uint64_t>> parts((blocks + TriangleBins::kBlocksARange - 1) /
+                                                TriangleBins::kBlocksARange);
+  parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
     BlockClassifier classifier(lattice_mesh, normals, surface);
     for (std::size_t b = begin; b < end; ++b) {
-      classifier.classify(bins.codes[b], bins.triangles[b], parts[begin / kBlocksARange]);
+      classifier.classify(bins.codes[b], bins.triangles[b],
+                          parts[begin / TriangleBins::kBlocksARange]);
     }
   });
   std::vector<std::uint64_t> codes;

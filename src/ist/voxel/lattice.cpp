@@ -22,6 +22,14 @@ double number(std::string_view text) {
   return value;
 }
 
+double extent_of(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) {
+  return std::max({box_max[0] - box_min[0], box_max[1] - box_min[1], box_max[2] - box_min[2]});
+}
+
+double cells_of(double extent, double voxel_size) {
+  return std::max(1.0, std::ceil(extent / voxel_size));
+}
+
 }  // namespace
 
 double round_up_for_people(double size) {
@@ -32,38 +40,44 @@ double round_up_for_people(double size) {
   return number(fmt::format("{:.2e}", rounded + number(last_digit)));
 }
 
-Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
-                     double voxel_size) {
+std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
+                                  double voxel_size) {
   if (!(voxel_size > 0) || !std::isfinite(voxel_size)) {
-    throw Error(ErrorCode::kVoxelSizeInvalid,
-                fmt::format("voxel size {}: give a positive number of mesh units", voxel_size));
+    return Error(ErrorCode::kVoxelSizeInvalid,
+                 fmt::format("voxel size {}: give a positive number of mesh units", voxel_size));
   }
-  const double extent =
-      std::max({box_max[0] - box_min[0], box_max[1] - box_min[1], box_max[2] - box_min[2]});
+  const double extent = extent_of(box_min, box_max);
   if (!(extent >= 1e-12 && extent <= 1e15)) {
-    throw Error(ErrorCode::kMeshExtent,
-                fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
-                            extent));
+    return Error(
+        ErrorCode::kMeshExtent,
+        fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",
+                    extent));
   }
   if (voxel_size > Lattice::kMaxRelativeSize * extent) {
-    throw Error(
+    return Error(
         ErrorCode::kVoxelSizeInvalid,
         fmt::format("voxel size {} is more than {} times the largest extent of {} units: use a "
                     "smaller one",
                     voxel_size, Lattice::kMaxRelativeSize, extent));
   }
-  const double cells = std::max(1.0, std::ceil(extent / voxel_size));
+  const double cells = cells_of(extent, voxel_size);
   if (!(cells <= Lattice::kMaxCells)) {
-    throw Error(ErrorCode::kVoxelSizeTooSmall,
-                fmt::format("voxel size {} needs {:.0f} voxels along the largest extent of {} "
-                            "units, and {} is the most: the smallest size for this mesh is {}",
-                            voxel_size, cells, extent, Lattice::kMaxCells,
-                            round_up_for_people(extent / Lattice::kMaxCells)));
+    return Error(ErrorCode::kVoxelSizeTooSmall,
+                 fmt::format("voxel size {} needs {:.0f} voxels along the largest extent of {} "
+                             "units, and {} is the most: the smallest size for this mesh is {}",
+                             voxel_size, cells, extent, Lattice::kMaxCells,
+                             round_up_for_people(extent / Lattice::kMaxCells)));
   }
+  return std::nullopt;
+}
+
+Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
+                     double voxel_size) {
+  if (const std::optional<Error> flaw = lattice_flaw(box_min, box_max, voxel_size)) throw *flaw;
   Lattice lattice;
   lattice.corner = {box_min[0], box_min[1], box_min[2]};
   lattice.voxel_size = voxel_size;
-  lattice.cells = static_cast<std::uint32_t>(cells);
+  lattice.cells = static_cast<std::uint32_t>(cells_of(extent_of(box_min, box_max), voxel_size));
   lattice.depth = static_cast<int>(std::bit_width(lattice.cells - 1));
   return lattice;
 }

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "ist/base/error.h"
 #include "ist/voxel/morton.h"
 
 namespace ist {
@@ -62,6 +64,10 @@ struct Lattice {
 /// when it would need more than 2^16 voxels an axis, with the smallest size that would do.
 [[nodiscard]] Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
                                    double voxel_size);
+
+/// What make_lattice would throw; nothing where it would not.
+[[nodiscard]] std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min,
+                                                const Eigen::Vector3d& box_max, double voxel_size);
 
 /// `size` rounded up to three significant digits, to be named in a remedy.
 [[nodiscard]] double round_up_for_people(double size);

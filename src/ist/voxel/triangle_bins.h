@@ -35,6 +35,8 @@ class LatticeMesh {
 struct TriangleBins {
   static constexpr int kLevel = 4;
   static constexpr std::uint32_t kEdge = 1u << kLevel;
+  static constexpr std::size_t kBlockCells = 1u << 3 * kLevel;
+  static constexpr std::size_t kBlocksARange = 16;  ///< that one worker takes at a time
 
   std::vector<std::uint64_t> codes;  ///< Morton codes of the blocks that hold something, ascending
   TriangleLists triangles;           ///< one list a block

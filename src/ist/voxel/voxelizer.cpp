@@ -19,8 +19,6 @@
 namespace ist {
 namespace {
 
-constexpr std::size_t kBlockCells = 1u << 3 * TriangleBins::kLevel;
-constexpr std::size_t kBlocksARange = 16;
 constexpr double kMaxCount = 4294967294.0;  // of voxels and of pairs: indices have 32 bits
 
 // A voxel in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11. Ascending, they run along x.
@@ -72,7 +70,8 @@ void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattic
 
 // One block: which of its voxels are occupied, and by which of its triangles.
 struct BlockSurvey {
-  std::array<std::uint64_t, kBlockCells / 64> occupied{};  // by the last bits of the Morton code
+  std::array<std::uint64_t, TriangleBins::kBlockCells / 64>
+      occupied{};  // by the last bits of the Morton code
   std::vector<BlockCell>
       cells;  // of the first triangle, the second …: pairs, before they have a place
   std::vector<std::uint16_t> cells_of;  // how many each triangle has
@@ -104,7 +103,7 @@ std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, do
   result.blocks.resize(blocks);
   result.first_voxel.resize(blocks + 1);
   result.first_pair.resize(blocks + 1);
-  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+  parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
     std::vector<BlockCell> cells;
     for (std::size_t b = begin; b < end; ++b) {
       BlockSurvey& block = result.blocks[b];
@@ -211,7 +210,7 @@ class BlockWriter {
       for (std::uint64_t bits = block.occupied[word]; bits != 0; bits &= bits - 1) {
         const std::size_t in_block = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
         rank_[in_block] = voxels;
-        set_.codes[survey_.first_voxel[b] + voxels++] = code * kBlockCells + in_block;
+        set_.codes[survey_.first_voxel[b] + voxels++] = code * TriangleBins::kBlockCells + in_block;
       }
     }
     sums_.assign(voxels, {});
@@ -293,25 +292,48 @@ class BlockWriter {
   const LatticeMesh& mesh_;
   const Survey& survey_;
   VoxelSet& set_;
-  std::array<std::uint16_t, kBlockCells> rank_{};  // of a voxel among those of its block
-  std::vector<std::uint16_t> ranks_;               // of each pair of the block
+  std::array<std::uint16_t, TriangleBins::kBlockCells>
+      rank_{};                        // of a voxel among those of its block
+  std::vector<std::uint16_t> ranks_;  // of each pair of the block
   std::vector<Sum> sums_;
 };
 
+struct Box {
+  Eigen::Vector3d low, high;
+};
+
+// Of the vertices that triangles name.
+Box box_of(const TriangleMesh& mesh) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box{Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      box.low = box.low.cwiseMin(mesh.vertices[vertex]);
+      box.high = box.high.cwiseMax(mesh.vertices[vertex]);
+    }
+  }
+  return box;
+}
+
 }  // namespace
+
+Lattice lattice_of(const TriangleMesh& mesh, double voxel_size) {
+  const ScopedFloatEnvironment environment;
+  const auto [low, high] = box_of(mesh);
+  return make_lattice(low, high, voxel_size);
+}
+
+std::optional<Error> lattice_flaw(const TriangleMesh& mesh, double voxel_size) {
+  const ScopedFloatEnvironment environment;
+  const auto [low, high] = box_of(mesh);
+  return lattice_flaw(low, high, voxel_size);
+}
 
 VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
   const ScopedFloatEnvironment environment;
   Progress unseen;
   Progress& shown = progress != nullptr ? *progress : unseen;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = -low;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle) {
-      low = low.cwiseMin(mesh.vertices[vertex]);
-      high = high.cwiseMax(mesh.vertices[vertex]);
-    }
-  }
+  const auto [low, high] = box_of(mesh);
   if (mesh.triangles.size() > kMaxTriangles) {
     throw Error(ErrorCode::kMemoryLimit,
                 fmt::format("the mesh has {} triangles, and {} is the most: simplify it",
@@ -332,7 +354,7 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
     set.triangles.first.back() = static_cast<std::uint32_t>(found->pairs());
     set.triangles.ids.resize(found->pairs());
   }
-  parallel_for(blocks, kBlocksARange, [&](std::size_t begin, std::size_t end) {
+  parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
     const auto writer = std::make_unique<BlockWriter>(lattice_mesh, *found, set);
     for (std::size_t b = begin; b < end; ++b) writer->write(b);
     shown.add(end - begin);

@@ -30,4 +30,9 @@ struct VoxelizerOptions {
 [[nodiscard]] VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options,
                                 Progress* progress = nullptr);
 
+/// The lattice that voxelize() puts over a mesh. Throws what make_lattice does.
+[[nodiscard]] Lattice lattice_of(const TriangleMesh& mesh, double voxel_size);
+/// What it would throw; nothing where it would not.
+[[nodiscard]] std::optional<Error> lattice_flaw(const TriangleMesh& mesh, double voxel_size);
+
 }  // namespace ist

@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "query/exact/exact_tree.h"
+#include "query/exact/float_box.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-bool holds(const FloatBox& box, const Eigen::Vector3d& p) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double x = p[static_cast<Eigen::Index>(i)];
-    if (x < double{box.low[i]} || x > double{box.high[i]}) return false;
-  }
-  return true;
-}
 
 // Every triangle once, under its own corners; each of its points in the cube of a node that has it.
 void expect_whole(const SphereTree& tree) {

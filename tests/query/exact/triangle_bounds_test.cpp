@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ist/query/exact/triangle_distance.h"
+#include "query/exact/float_box.h"
 #include "query/query_cases.h"
 #include "query/search/guarded.h"
 #include "query/search/targets.h"
@@ -22,14 +23,6 @@ TriangleCorners random_triangle(Random& random, const Eigen::Vector3d& place, do
   }
   if (random.below(8) == 0) corners[2] = corners[random.below(2)];  // no area
   return corners;
-}
-
-bool holds(const FloatBox& box, const Eigen::Vector3d& p) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double x = p[static_cast<Eigen::Index>(i)];
-    if (x < double{box.low[i]} || x > double{box.high[i]}) return false;
-  }
-  return true;
 }
 
 // Some lanes, some triangles to be held against them, and all as doubles.
@@ -97,9 +90,10 @@ TEST(FindNear, LeavesOutOnlyWhatIsFarther) {
           for (std::size_t i = 0; i < found.size(); ++i) {
             const TriangleCorners &a = some.fixed[i / 40], &b = some.moving[i % 40];
             const bool meet = triangles_meet(a, b);
-            const bool is_near = meet || std::sqrt(distance_squared(a, b)) <= distance * (1 - 1e-7);
+            const bool is_near =
+                meet || std::sqrt(ist::distance_squared(a, b)) <= distance * (1 - 1e-7);
             ASSERT_TRUE(!is_near || found[i] != 0);
-            farther += !meet && std::sqrt(distance_squared(a, b)) > distance ? 1U : 0U;
+            farther += !meet && std::sqrt(ist::distance_squared(a, b)) > distance ? 1U : 0U;
             left_out += found[i] == 0 ? 1U : 0U;
           }
         }

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-ClippedTriangle polygon(std::initializer_list<Vector3d> corners) {
+ClippedTriangle corners_in_order(std::initializer_list<Vector3d> corners) {
   ClippedTriangle result;
   for (const Vector3d& p : corners) {
     result.corners[static_cast<std::size_t>(result.count++)] = p;
@@ -65,10 +65,10 @@ TEST(CubeAxes, MeetUpToTheirEdgesAndCorners) {
 }
 
 TEST(SurelyCross, ThroughTouchingAndApart) {
-  const ClippedTriangle face = polygon({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+  const ClippedTriangle face = corners_in_order({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
   const auto cross = [&face](std::initializer_list<Vector3d> corners) {
-    const bool one = surely_cross(face, polygon(corners), 1e-12);
-    EXPECT_EQ(surely_cross(polygon(corners), face, 1e-12), one);
+    const bool one = surely_cross(face, corners_in_order(corners), 1e-12);
+    EXPECT_EQ(surely_cross(corners_in_order(corners), face, 1e-12), one);
     return one;
   };
   EXPECT_TRUE(cross({{1, 2, -1}, {1, 2, 1}, {2, 3, 1}}));
@@ -84,7 +84,7 @@ TEST(SurelyCross, ThroughTouchingAndApart) {
   EXPECT_TRUE(cross({{0, 1, -1}, {0, 1, 1}, {4, 1, 1}, {4, 1, -1}}));  // from edge to edge
   EXPECT_FALSE(surely_cross(face, ClippedTriangle{}, 1e-12));
   // What would be apart, had each corner moved by as much as is doubted.
-  EXPECT_FALSE(surely_cross(face, polygon({{1, 2, -1e-4}, {1, 2, 1}, {2, 3, 1}}), 1e-3));
+  EXPECT_FALSE(surely_cross(face, corners_in_order({{1, 2, -1e-4}, {1, 2, 1}, {2, 3, 1}}), 1e-3));
 }
 
 TEST(LeafPolygons, LieInTheirCubesAndCoverTheMesh) {

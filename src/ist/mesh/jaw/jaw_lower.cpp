@@ -11,20 +11,21 @@ namespace {
 // again.
 constexpr std::size_t kFlank = 4;  // controls on each side between the crown and the lower border
 
-using Profile = std::array<double, 16>;  // every kProfileStep from the midline to the condyle
+using LowerProfile = std::array<double, 16>;  // every kProfileStep from the midline to the condyle
 
 // The crest's coronoid process, notch and condyle, and the lower border with the jaw's angle.
-constexpr Profile kTop{40, 40, 40, 40, 40, 40, 40, 40, 42, 52, 68, 80, 60, 56, 86, 84};
-constexpr Profile kBottom{7, 7, 8.5, 11, 13, 14.5, 15.5, 16, 16, 16.5, 17.5, 18, 22, 36, 53, 72};
+constexpr LowerProfile kTop{40, 40, 40, 40, 40, 40, 40, 40, 42, 52, 68, 80, 60, 56, 86, 84};
+constexpr LowerProfile kBottom{7,  7,    8.5,  11, 13, 14.5, 15.5, 16,
+                               16, 16.5, 17.5, 18, 22, 36,   53,   72};
 // Half thicknesses, and the outward shift of the middle line, at the crest, half way and below.
-constexpr std::array<Profile, 3> kThickness{
-    Profile{4.6, 4.6, 4.8, 5, 5.4, 6, 6.6, 6.6, 5.5, 4, 2.4, 1.7, 1.6, 1.0, 11.5, 10},
-    Profile{4.6, 4.6, 5, 5.4, 5.8, 6.4, 6.8, 6.8, 5.6, 4.4, 3.4, 2.9, 2.7, 2.6, 3.4, 3.6},
-    Profile{5.8, 5.6, 5.2, 5, 4.8, 4.8, 4.8, 4.6, 4.2, 3.8, 3.6, 3.6, 3.4, 3, 2.8, 2.8}};
-constexpr std::array<Profile, 3> kShift{
-    Profile{0, 0, 0, 0, .2, .4, .5, 1, 3, 4.5, 4, 2.5, 1, 0, -1, -1},
-    Profile{-.6, -.6, -.4, 0, .8, 1.6, 2.2, 2.8, 3.6, 4, 3.4, 2, 1, .5, 0, 0},
-    Profile{2.2, 2, 1.4, 1.2, 1.4, 1.6, 1.6, 2, 3, 4, 4.2, 4, 3.2, 2, 1, 0}};
+constexpr std::array<LowerProfile, 3> kThickness{
+    LowerProfile{4.6, 4.6, 4.8, 5, 5.4, 6, 6.6, 6.6, 5.5, 4, 2.4, 1.7, 1.6, 1.0, 11.5, 10},
+    LowerProfile{4.6, 4.6, 5, 5.4, 5.8, 6.4, 6.8, 6.8, 5.6, 4.4, 3.4, 2.9, 2.7, 2.6, 3.4, 3.6},
+    LowerProfile{5.8, 5.6, 5.2, 5, 4.8, 4.8, 4.8, 4.6, 4.2, 3.8, 3.6, 3.6, 3.4, 3, 2.8, 2.8}};
+constexpr std::array<LowerProfile, 3> kShift{
+    LowerProfile{0, 0, 0, 0, .2, .4, .5, 1, 3, 4.5, 4, 2.5, 1, 0, -1, -1},
+    LowerProfile{-.6, -.6, -.4, 0, .8, 1.6, 2.2, 2.8, 3.6, 4, 3.4, 2, 1, .5, 0, 0},
+    LowerProfile{2.2, 2, 1.4, 1.2, 1.4, 1.6, 1.6, 2, 3, 4, 4.2, 4, 3.2, 2, 1, 0}};
 
 // How far down each control lies: along the teeth from the gum, behind them from the crest.
 constexpr std::array<double, kFlank + 1> kDentalDepth{0.03, 0.24, 0.52, 0.82, 1};
@@ -33,7 +34,7 @@ constexpr std::array<double, kCrownControls> kCrestDepth{.36, .27, .18, .09, .02
                                                          .02, .09, .18, .27, .36};
 constexpr std::array<double, kCrownControls> kCrestSide{-1, -1, -1, -.95, -.6, 0, .6, .95, 1, 1, 1};
 
-double at_depth(const std::array<Profile, 3>& profiles, double depth, double position) {
+double at_depth(const std::array<LowerProfile, 3>& profiles, double depth, double position) {
   const double top = spline(profiles[0], position), middle = spline(profiles[1], position),
                bottom = spline(profiles[2], position);
   const double up = bump(depth / 0.6), down = bump((1 - depth) / 0.6);

@@ -7,18 +7,19 @@
 namespace ist {
 namespace {
 
-using Profile = std::array<double, 10>;  // every kProfileStep from the midline to the tuberosity
+using UpperProfile =
+    std::array<double, 10>;  // every kProfileStep from the midline to the tuberosity
 
 // Sections meet the midline at even steps from behind the incisors to the palate's end.
 constexpr double kMiddleFront = -36, kMiddleStep = 0.66;
 // Heights of the palate and of the nose's floor there.
-constexpr Profile kPalate{60.5, 61.2, 63, 65, 66.5, 67.2, 67.5, 67.5, 67.5, 67.5};
-constexpr Profile kFloor{68, 68.5, 70, 71.5, 72.5, 73, 73, 73, 73, 73};
+constexpr UpperProfile kPalate{60.5, 61.2, 63, 65, 66.5, 67.2, 67.5, 67.5, 67.5, 67.5};
+constexpr UpperProfile kFloor{68, 68.5, 70, 71.5, 72.5, 73, 73, 73, 73, 73};
 // The rim of the nose and the cheek bone, and how far it leans in; the gum's half thickness.
-constexpr Profile kRim{69, 71, 84, 93, 92, 88, 86, 85, 82, 78};
-constexpr Profile kLean{-1.5, -1.5, -2.5, -3.5, -4.5, -5, -5, -5, -5, -5};
-constexpr Profile kGum{4.8, 4.8, 5, 5.2, 5.5, 6, 6.5, 6.6, 6.2, 6};
-constexpr Profile kMiddleLine{1.6, 1.6, 1.7, 1.8, 1.9, 2, 2, 1.8, 0.5, -1};
+constexpr UpperProfile kRim{69, 71, 84, 93, 92, 88, 86, 85, 82, 78};
+constexpr UpperProfile kLean{-1.5, -1.5, -2.5, -3.5, -4.5, -5, -5, -5, -5, -5};
+constexpr UpperProfile kGum{4.8, 4.8, 5, 5.2, 5.5, 6, 6.5, 6.6, 6.2, 6};
+constexpr UpperProfile kMiddleLine{1.6, 1.6, 1.7, 1.8, 1.9, 2, 2, 1.8, 0.5, -1};
 
 constexpr double kGumLine = 57;
 constexpr std::array<double, 4> kPalateAcross{0.10, 0.38, 0.66, 0.90};

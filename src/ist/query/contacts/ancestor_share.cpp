@@ -9,7 +9,7 @@
 namespace ist {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoBound = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -21,13 +21,14 @@ AncestorShare::AncestorShare(const SphereTree& fixed, const SphereTree& moving, 
       policy_(policy),
       fixed_parents_(fixed_parents),
       moving_parents_(moving_parents),
-      width_(scale.width) {
+      width_(scale.width),
+      grow_(scale.grow) {
   int a = fixed.depth(), b = moving.depth();
   while (a > 0 || b > 0) {
     Step& step = steps_.emplace_back();
     step.fixed_level = a;
     step.moving_level = b;
-    step.bound_of = kNone;
+    step.bound_of = kNoBound;
     const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
     const bool open_a = opens(a, edge_a, b, edge_b), open_b = opens(b, edge_b, a, edge_a);
     a -= open_a ? 1 : 0;
@@ -67,7 +68,8 @@ double AncestorShare::own(Step& step, std::uint32_t fixed, std::uint32_t moving)
   if (step.bound_of != fixed) {
     step.bound_of = fixed;
     step.bound = read_bound(fixed_, policy_, step.fixed_level, fixed,
-                            fixed_parents_.of(step.fixed_level, fixed));
+                            fixed_parents_.of(step.fixed_level, fixed))
+                     .grown(grow_);
   }
   const NodeBound &a = step.bound, &b = moved(step, moving);
   const Eigen::Vector3d between = difference(b.centre, a.centre);
@@ -86,6 +88,7 @@ const NodeBound& AncestorShare::moved(Step& step, std::uint32_t moving) noexcept
     moved.node = moving;
     moved.bound = read_bound(moving_, policy_, step.moving_level, moving,
                              moving_parents_.of(step.moving_level, moving))
+                      .grown(grow_)
                       .in(*pose_);
   }
   return moved.bound;

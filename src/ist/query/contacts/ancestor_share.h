@@ -74,7 +74,7 @@ class AncestorShare {
   SpherePolicy policy_;
   const NodeParents& fixed_parents_;
   const NodeParents& moving_parents_;
-  double width_;
+  double width_, grow_;
   const RelativePose* pose_ = nullptr;
   std::uint32_t query_ = 0;
   std::vector<Step> steps_;  // the search's, from the last but one to the roots

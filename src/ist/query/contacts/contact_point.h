@@ -39,7 +39,8 @@ struct Wrench {
 struct ContactSums {
   double weight = 0;        ///< sum of w, mesh units squared
   Wrench pressure;          ///< sum of w n, and of p × w n
-  Wrench spring;            ///< sum of w (d + 2s) n, and of p × w (d + 2s) n
+  Wrench spring;            ///< sum of w (d + 2s) n, and of p × w (d + 2s) n, or of what d is over
+                            ///< another least depth
   std::uint64_t pairs = 0;  ///< of leaves with a weight above 0
   /// Torques are about this point, fixed mesh coordinates: the origin of the fixed tree's frame.
   Eigen::Vector3d about = Eigen::Vector3d::Zero();

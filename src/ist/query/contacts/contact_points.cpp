@@ -3,17 +3,25 @@
 #include <algorithm>
 #include <limits>
 
+#include "ist/base/assert.h"
 #include "ist/query/contacts/contact_clusters.h"
 
 namespace ist {
 namespace {
 
 constexpr std::size_t kMovedLeaves = 1 << 11;  // a power of two
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoLeaf = std::numeric_limits<std::uint32_t>::max();
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {
   tree.require(policy, body);
   return tree;
+}
+
+ContactScale scale_of(const SphereTree& fixed, const SphereTree& moving,
+                      const ContactPointOptions& options) {
+  IST_ASSERT(options.least_depth >= -2 && options.least_depth < 1);
+  IST_ASSERT(options.growth >= 0 && options.growth <= 1);
+  return ContactScale(fixed, moving, options.least_depth, options.growth);
 }
 
 }  // namespace
@@ -27,7 +35,7 @@ ContactPoints::ContactPoints(const SphereTree& fixed, const SphereTree& moving, 
     : fixed_(with(fixed, policy, "fixed")),
       moving_(with(moving, policy, "moving")),
       policy_(policy),
-      scale_(fixed, moving),
+      scale_(scale_of(fixed, moving, options)),
       rates_(fixed, moving, scale_),
       fixed_parents_(fixed.octree()),
       moving_parents_(moving.octree()),
@@ -46,7 +54,7 @@ bool ContactPoints::begin(const Eigen::Isometry3d& pose) noexcept {
   const Eigen::Vector3d about = sums_.about;
   sums_ = {};
   sums_.about = about;
-  fixed_leaf_ = kNone;
+  fixed_leaf_ = kNoLeaf;
   const auto relative = relative_pose(pose, fixed_.lattice(), moving_.lattice());
   begun_ = relative.has_value();
   if (!begun_) return false;
@@ -59,6 +67,13 @@ bool ContactPoints::begin(const Eigen::Isometry3d& pose) noexcept {
   return true;
 }
 
+ContactLeaf ContactPoints::leaf_of(const SphereTree& tree, std::uint32_t leaf,
+                                   const NodeParents& parents) const noexcept {
+  ContactLeaf at = read_leaf(tree, policy_, leaf, parents.of(0, leaf));
+  at.bound = at.bound.grown(scale_.grow);
+  return at;
+}
+
 inline const ContactLeaf& ContactPoints::moved(std::uint32_t leaf) noexcept {
   MovedLeaf& moved = moved_[leaf & (kMovedLeaves - 1)];
   if (moved.query != query_ || moved.leaf != leaf) move(leaf, moved);
@@ -68,7 +83,7 @@ inline const ContactLeaf& ContactPoints::moved(std::uint32_t leaf) noexcept {
 void ContactPoints::move(std::uint32_t leaf, MovedLeaf& to) const noexcept {
   to.query = query_;
   to.leaf = leaf;
-  to.at = read_leaf(moving_, policy_, leaf, moving_parents_.of(0, leaf)).in(pose_);
+  to.at = leaf_of(moving_, leaf, moving_parents_).in(pose_);
 }
 
 // Of the most that a pair could weigh.
@@ -86,7 +101,7 @@ inline double ContactPoints::share_of(const Contact& contact, const NodeBound& m
 inline void ContactPoints::add(const PairTerms& pair) noexcept {
   const Eigen::Vector3d force = scaled(pair.weight, pair.normal);
   const Eigen::Vector3d torque = cross_in_order(pair.position, force);
-  const double stretched = pair.depth - scale_.least_depth();
+  const double stretched = pair.depth - scale_.least_depth;
   ++sums_.pairs;
   sums_.weight += pair.weight;
   add_to(sums_.pressure.force, force);
@@ -98,12 +113,12 @@ inline void ContactPoints::add(const PairTerms& pair) noexcept {
 inline void ContactPoints::take(const Contact& contact) noexcept {
   if (contact.fixed != fixed_leaf_) {
     fixed_leaf_ = contact.fixed;
-    fixed_at_ = read_leaf(fixed_, policy_, fixed_leaf_, fixed_parents_.of(0, fixed_leaf_));
+    fixed_at_ = leaf_of(fixed_, fixed_leaf_, fixed_parents_);
   }
   const ContactLeaf& moving = moved(contact.moving);
-  const double share = share_of(contact, moving.bound);
-  if (!(share > 0)) return;
-  const PairTerms pair = pair_terms(fixed_at_, moving, share, scale_);
+  PairTerms pair = pair_terms(fixed_at_, moving, scale_);
+  if (!(pair.weight > 0)) return;
+  pair.weight *= scale_.area * share_of(contact, moving.bound);
   if (!(pair.weight > 0)) return;
   add(pair);
   if (!points_.empty()) touched_.add(contact.moving, pair);

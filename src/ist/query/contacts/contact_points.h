@@ -18,6 +18,14 @@ struct ContactPointOptions {
   /// Touched moving leaves that are told apart, 104 bytes each. Where there are more, they are told
   /// apart by their parents in the octree, or whatever ancestors there is room for.
   std::size_t touched_leaves = 1 << 15;
+  /// Pairs less deep weigh nothing, and springs begin there: in parts of the mean voxel size, from
+  /// -2, where all leaf pairs count, up to 1. What bears a load begins where surfaces meet; pairs
+  /// that are merely near take a third of the time then.
+  double least_depth = -2;
+  /// Leaf pairs count whose bounds are no farther apart than this, in parts of the mean voxel size,
+  /// at most 1. Bounds are tight, so without it pairs come and go with surfaces that cross; what
+  /// bears a load keeps all that is as deep, or as high, as this.
+  double growth = 0;
 };
 
 /// Contacts that a hand can use: every leaf pair of an answer, one after the other, reduced to sums
@@ -27,7 +35,8 @@ struct ContactPointOptions {
 /// two balls overlap (ball_share), b the least overlap of both slabs and of all ancestors' bounds,
 /// and e is the mean of the two normals, each as long as it is coherent (pair_terms). Each factor
 /// falls to 0, with a bounded slope, where the pair leaves the answer. Where normals cancel a
-/// weight is 0.
+/// weight is 0. With another least depth than -2, so is that of a pair that is no deeper, and it
+/// grows over a quarter of a voxel.
 ///
 /// CollisionQuery::contact_points does all of it. A list of contacts that is at hand is reduced by
 /// begin(), take() and finish(); it must be whole, and in order.
@@ -60,6 +69,7 @@ class ContactPoints final : public ContactStream {
   [[nodiscard]] const ContactSums& sums() const noexcept { return sums_; }
   /// How fast the sums can change.
   [[nodiscard]] const ContactRates& rates() const noexcept { return rates_; }
+  [[nodiscard]] const ContactScale& scale() const noexcept { return scale_; }
 
   [[nodiscard]] SpherePolicy policy() const noexcept { return policy_; }
   [[nodiscard]] bool is_between(const SphereTree& fixed, const SphereTree& moving) const noexcept {
@@ -78,6 +88,8 @@ class ContactPoints final : public ContactStream {
   ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                 const ContactPointOptions& options, const ScopedFloatEnvironment& environment);
   void take(const Contact& contact) noexcept;
+  [[nodiscard]] ContactLeaf leaf_of(const SphereTree& tree, std::uint32_t leaf,
+                                    const NodeParents& parents) const noexcept;
   [[nodiscard]] double share_of(const Contact& contact, const NodeBound& moving) noexcept;
   void add(const PairTerms& pair) noexcept;
   [[nodiscard]] const ContactLeaf& moved(std::uint32_t leaf) noexcept;

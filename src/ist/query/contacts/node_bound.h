@@ -22,6 +22,10 @@ struct NodeBound {
   [[nodiscard]] NodeBound in(const RelativePose& pose) const noexcept {
     return {moved(pose, centre), radius, turned(pose, normal), offset, half};
   }
+  /// Two bounds that are both grown by the same overlap by so much more.
+  [[nodiscard]] NodeBound grown(double by) const noexcept {
+    return {centre, radius + 0.5 * by, normal, offset, half + 0.5 * by};
+  }
 };
 
 /// Of the node at `level` that is a child of `parent` at level + 1; slabs are read for kSlab alone.

@@ -1,0 +1,125 @@
+#include "support/ball_on_box.h"
+
+#include <cmath>
+#include <utility>
+
+#include "ist/base/float_environment.h"
+#include "ist/haptics/effects/contact_effect.h"
+#include "ist/haptics/effects/damping_effect.h"
+#include "ist/haptics/effects/friction_effect.h"
+#include "ist/haptics/effects/gravity_effect.h"
+#include "ist/haptics/effects/proximity_effect.h"
+#include "ist/haptics/effects/snap_effect.h"
+#include "ist/haptics/surface_radius.h"
+#include "ist/mesh/orientation.h"
+#include "ist/mesh/shape_model.h"
+#include "ist/tree/proximity_body.h"
+#include "ist/tree/tree_builder.h"
+#include "ist/voxel/voxelizer.h"
+
+namespace ist::bench {
+namespace {
+
+constexpr double kUnit = 1e-3;
+constexpr double kBallVoxel = 0.5, kBoxVoxel = 1;
+constexpr double kMargin = 0.25;
+constexpr double kNear = 2;
+
+TriangleMesh outward(TriangleMesh mesh) {
+  static_cast<void>(orient_outward(mesh));
+  return mesh;
+}
+
+std::unique_ptr<const SphereTree> tree_of(const TriangleMesh& mesh, const BuildOptions& options) {
+  return std::make_unique<const SphereTree>(build_tree(mesh, options));
+}
+
+std::vector<Waypoint> plan_from(const Placement& start) {
+  const auto waypoint = [&](double time, const Eigen::Vector3d& move) {
+    return Waypoint{time, {start.rotation, start.translation + kUnit * move}};
+  };
+  return {waypoint(0, {0, 0, 0}), waypoint(0.1, {0, 0, -3}), waypoint(2, {6, 0, -3})};
+}
+
+std::vector<std::unique_ptr<Effect>> effects_of(const std::set<std::string>& names,
+                                                const Placement& start) {
+  std::vector<std::unique_ptr<Effect>> effects;
+  if (names.contains("contact")) {
+    auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
+    const ContactEffect& load = *contact;
+    effects.push_back(std::move(contact));
+    if (names.contains("friction")) {
+      effects.push_back(std::make_unique<FrictionEffect>(FrictionSettings{0.4, 0.2, 1000}, load));
+    }
+    if (names.contains("damping")) {
+      effects.push_back(std::make_unique<DampingEffect>(DampingSettings{1}));
+    }
+  }
+  if (names.contains("proximity")) {
+    effects.push_back(std::make_unique<ProximityEffect>(ProximitySettings{kUnit * kNear, 2}));
+  }
+  if (names.contains("gravity")) {
+    effects.push_back(std::make_unique<GravityEffect>(
+        GravitySettings{0.05, Eigen::Vector3d::Zero(), {0, 0, -9.81}}));
+  }
+  if (names.contains("snap")) {
+    const Placement pose{start.rotation, start.translation + kUnit * Eigen::Vector3d(2, 0, -2)};
+    effects.push_back(std::make_unique<SnapEffect>(SnapSettings{pose, 200, 0.2, kUnit * 4, 0.2}));
+  }
+  return effects;
+}
+
+}  // namespace
+
+BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
+  const ScopedFloatEnvironment environment;
+  const Eigen::Vector3d size(40, 40, 10), move(0, 0, 11);
+  const TriangleMesh box = outward(make_box(-0.5 * size, 0.5 * size));
+  const TriangleMesh ball = outward(make_icosphere(5, 5));
+  const Eigen::Vector3d origin = lattice_of(ball, kBallVoxel).origin();
+  const BodyFrames frames{kUnit, {}, origin};
+  const Placement start{Eigen::Matrix3d::Identity(), kUnit * (origin + move)};
+
+  BallOnBox made;
+  Simulation::Parts parts{nullptr,
+                          nullptr,
+                          effects_of(effects, start),
+                          {1000, 0.5, 1, 5e-4, 5, 0.2},
+                          {8, 0.3, 500, 20, 0.5},
+                          Tool(0, Tool::kNoLimit),
+                          start,
+                          1e-3};
+  if (effects.contains("contact")) {
+    made.box = tree_of(box, {.voxel_size = kBoxVoxel, .spheres = SpherePolicy::kSlab});
+    made.ball = tree_of(ball, {.voxel_size = kBallVoxel, .spheres = SpherePolicy::kSlab});
+    parts.contacts = std::make_unique<TouchQuery>(
+        *made.box, *made.ball, frames,
+        TouchOptions{.policy = SpherePolicy::kSlab, .least_depth = -kMargin});
+    parts.tool = Tool(kUnit * surface_radius(*made.ball), kUnit * kBallVoxel);
+  }
+  if (effects.contains("proximity")) {
+    const double voxel = 0.5 * kNear;
+    const auto around =
+        tree_of(box, {.voxel_size = voxel, .spheres = SpherePolicy::kTable, .proximity = true});
+    made.near_box = std::make_unique<const SphereTree>(proximity_body(*around));
+    made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
+    parts.proximity = std::make_unique<TouchQuery>(
+        *made.near_box, *made.near_ball, frames,
+        TouchOptions{
+            .policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0, .measure_gap = false});
+  }
+  made.device = std::make_unique<HandDevice>(HandSettings{.mechanics = {2, 2e-3, 0},
+                                                          .mass = 0.2,
+                                                          .inertia = 2e-4,
+                                                          .arm_stiffness = 500,
+                                                          .arm_damping = 10,
+                                                          .arm_angular_stiffness = 1,
+                                                          .arm_angular_damping = 0.02,
+                                                          .resolution = 0,
+                                                          .angular_resolution = 0,
+                                                          .plan = plan_from(start)});
+  made.simulation = std::make_unique<Simulation>(std::move(parts));
+  return made;
+}
+
+}  // namespace ist::bench

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Draws what a hand feels where it closes two jaws: the force and the gap over time.
+
+    scripts/draw_closing.py PATH/TO/ist OUTPUT.svg [SCENE.toml]
+
+All that is drawn comes from a recording by the command, run unpaced, so that it is the same on every machine. Without a
+scene it is the one that the README shows. Needs Debian's python3-matplotlib, so run it with the system's python3.
+"""
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+README = pathlib.Path(__file__).resolve().parent.parent / "README.md"
+METRES = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "inch": 0.0254}  # as base/units has them
+EVERY = 5  # ticks a point of the picture
+FORCE, BAND, STRETCH = "#b03a2e", "#aed6f1", "#1f618d"
+
+
+def readme_scene():
+    found = re.search(r"^```toml\n(.*?)^```$", README.read_text(), re.DOTALL | re.MULTILINE)
+    if not found:
+        sys.exit(f"draw_closing: no ```toml block in {README}: name a scene")
+    return found[1]
+
+
+def record(ist, scene, folder):
+    """The ticks of an unpaced run, the seconds of a tick, and the scene's unit."""
+    ticks = folder / "ticks.jsonl"
+    run = subprocess.run([ist, "run", scene, "--unpaced", "--record", ticks, "--json"], check=True, stdout=subprocess.PIPE)
+    period = 1 / json.loads(run.stdout)["rate"]
+    unit = re.search(r'^unit\s*=\s*"(\w+)"', scene.read_text(), re.MULTILINE)[1]
+    return [json.loads(line) for line in ticks.open()], period, unit
+
+
+def draw(ticks, period, unit, output):
+    times = [period * tick["tick"] for tick in ticks]
+    touching = [tick["leaf_pairs"] > 0 for tick in ticks]
+    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none", "font.size": 9})
+    figure, (felt, gap) = plt.subplots(2, 1, sharex=True, figsize=(8, 4.6))
+
+    felt.plot(times, [math.hypot(*tick["wrench"][:3]) for tick in ticks], color=FORCE, linewidth=1.4)
+    felt.set_ylabel("force felt, N")
+    known = [(time, tick["gap_lower"], tick["gap_upper"]) for time, tick in zip(times, ticks) if tick["gap_upper"] is not None]
+    gap.fill_between(*zip(*known), color=BAND, linewidth=0, label="the gap is in this band")
+    ahead = [math.dist(tick["device"][:3], tick["tool"][:3]) / METRES[unit] for tick in ticks]
+    gap.plot(times, ahead, color=STRETCH, linewidth=1.4, label="the hand is so far beyond the tool")
+    gap.set_ylabel(unit)
+    gap.set_xlabel("s")
+    gap.legend(frameon=False, loc="upper center")
+    for axes in (felt, gap):
+        axes.set_ylim(bottom=0)
+        axes.margins(x=0)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.fill_between(times, 0, 1, where=touching, transform=axes.get_xaxis_transform(), color="0.94", linewidth=0, zorder=0)
+    felt.text(times[touching.index(True)], 0.97, " the jaws touch", transform=felt.get_xaxis_transform(), va="top", color="0.4")
+    figure.tight_layout()
+    output.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(output, metadata={"Date": None})
+
+
+def main(ist, output, scene=None):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if scene is None:
+            scene = folder / "closing.toml"
+            scene.write_text(readme_scene())
+        ticks, period, unit = record(pathlib.Path(ist).resolve(), pathlib.Path(scene), folder)
+    if not any(tick["leaf_pairs"] > 0 for tick in ticks):
+        sys.exit("draw_closing: nothing touches in this scene: let the plan go farther")
+    draw(ticks[::EVERY], period, unit, pathlib.Path(output))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

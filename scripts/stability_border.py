@@ -1,0 +1,109 @@
+"""Makes HAPTIC_STABILITY.md and its plot; see stability_border.sh.
+
+    stability_border.py PRESSES.jsonl FOLDER MACHINE
+"""
+import collections
+import json
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.colors import SymLogNorm
+
+USED = 0.8  # of the computed border: what clamp_coupling() leaves
+HIGHEST = 4  # times the computed border: where measured_border() ends its search
+UNITS = {"push": ("N/m", "N s/m"), "turn": ("N m/rad", "N m s/rad")}
+
+
+def grouped(lines):
+    """Presses and borders by wall, delay and rate, in the order of the sweep."""
+    groups = collections.defaultdict(lambda: ([], []))
+    for line in lines:
+        groups[line["wall"], line["delay"], line["rate"]]["measured" in line].append(line)
+    return groups
+
+
+def panel(axes, key, presses, borders, norm):
+    wall, delay, rate = key
+    stiffness, damping = UNITS[wall]
+    drawn = axes.scatter(
+        [p["damping"] for p in presses], [p["stiffness"] for p in presses], s=26, cmap="RdBu_r", norm=norm,
+        c=[1e6 * p["returned"] for p in presses], edgecolors="0.5", linewidths=0.3)
+    dampings = [b["damping"] for b in borders]
+    axes.plot(dampings, [b["computed"] for b in borders], "k-", linewidth=1, label="computed border")
+    axes.plot(dampings, [USED * b["computed"] for b in borders], "k--", linewidth=1, label="80 %, used")
+    axes.plot(dampings, [b["measured"] for b in borders], "x", color="tab:green", markersize=7,
+              markeredgewidth=1.6, label="measured border")
+    axes.set_yscale("log")
+    axes.set_title(f"{wall}, {rate:g} Hz, delay {1e3 * delay:g} ms", fontsize=8)
+    axes.set_xlabel(f"device damping, {damping}", fontsize=7)
+    axes.set_ylabel(f"coupling stiffness, {stiffness}", fontsize=7)
+    axes.tick_params(labelsize=7)
+    return drawn
+
+
+def plot(groups, file):
+    rates = sorted({key[2] for key in groups})
+    rows = list(dict.fromkeys(key[:2] for key in groups))
+    figure, axes = plt.subplots(len(rows), len(rates), figsize=(10, 2.6 * len(rows)), squeeze=False,
+                                layout="constrained")
+    norm = SymLogNorm(linthresh=10, vmin=-1e4, vmax=1e4)
+    for key, (presses, borders) in groups.items():
+        drawn = panel(axes[rows.index(key[:2])][rates.index(key[2])], key, presses, borders, norm)
+    axes[0][0].legend(fontsize=6, loc="lower right")
+    figure.colorbar(drawn, ax=axes, shrink=0.5, label="energy returned by a press, µJ: above 0 the wall is active")
+    plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
+    figure.savefig(file, metadata={"Date": None})
+
+
+def table(groups):
+    """A line a group, and how many presses within the part used broke their allowance."""
+    lines = ["| wall | rate, Hz | delay, ms | presses | within 80 %: worst returned / allowance, µJ | "
+             "grows from | measured / computed |", "|---|--:|--:|--:|--:|--:|--:|"]
+    broken = 0
+    for (wall, delay, rate), (presses, borders) in groups.items():
+        inside = [p for p in presses if p["stiffness"] <= (USED + 1e-9) * p["computed"]]
+        broken += sum(p["returned"] > p["allowance"] for p in inside)
+        worst = max(inside, key=lambda p: p["returned"] - p["allowance"])
+        growing = min(p["stiffness"] / p["computed"] for p in presses if p["growth"] > 1)
+        ratios = [b["measured"] / b["computed"] for b in borders]
+        most = "none found" if max(ratios) >= 0.99 * HIGHEST else f"{max(ratios):.2f}"
+        lines.append(f"| {wall} | {rate:g} | {1e3 * delay:g} | {len(presses)} | "
+                     f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f} | {growing:.2f} | "
+                     f"{min(ratios):.2f} to {most} |")
+    return lines, broken
+
+
+def main():
+    source, folder, machine = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+    groups = grouped(json.loads(line) for line in open(source))
+    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    plot(groups, folder / "pictures/stability_border.svg")
+    rows, broken = table(groups)
+    lines = [
+        "# Stability of the haptic loop", "",
+        "A hand presses a wall and lets go, with couplings within and beyond the border that the loop computes,",
+        "b > K (T/2 + t_d) + |B|, with B = 0 and nothing clamped. Made by `scripts/stability_border.sh`; no clock is",
+        "involved, so it is the same on every machine. The tests `Passivity.*` hold parts of it.", "",
+        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses, {broken} broken.", "",
+        "- *push*: a block on a slab, along the normal. *turn*: two balls on two slabs that stop a turn.",
+        "- *returned*: what the wrench gave the hand while bodies touched, less what the device's own damping took.",
+        "  The hand's arm is a spring without damping, so nothing else pays for it.",
+        "- *allowance*: what encoders of 2 µm and 20 µrad, and the tick in which bodies meet, may give at most:",
+        "  (K/2 + |B|/T) q times the way gone in contact, and (K T + |B|) T v² for the tick. The hand itself is",
+        "  integrated without error.",
+        "- *grows from*: the least part of the computed border at which motion in the hold grows.",
+        "- *measured*: the least stiffness at which more is returned than is allowed, by bisection between a half and",
+        f"  {HIGHEST} times the computed border. Above 1 where the contact yields beside the coupling: a wall is no",
+        "  stiffer than both in a row, and a contact is foreseen steeper than it is, which damps.", "",
+        "![Energy returned by a press over device damping and stiffness](pictures/stability_border.svg)", "",
+        *rows, ""]
+    (folder / "HAPTIC_STABILITY.md").write_text("\n".join(lines))
+    if broken:
+        sys.exit(f"stability_border: {broken} presses within the part used returned more than is allowed")
+
+
+main()

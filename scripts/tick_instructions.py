@@ -1,0 +1,104 @@
+"""Counts the instructions of ticks, scene by scene: see tick_instructions.sh, which runs this."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+BODIES = """unit = "mm"
+[fixed]
+shape = "box"
+size = [40, 40, 10]
+voxel_size = 1
+[held]
+shape = "sphere"
+radius = 5
+voxel_size = 0.5
+translation = [0, 0, 11]
+[device]
+kind = "hand"
+plan = [
+  { time = 0, move = [0, 0, 0] },
+  { time = 0.1, move = [0, 0, -3] },
+  { time = 2, move = [6, 0, -3] },
+]
+"""
+EFFECTS = {
+    "contact": "[effects.contact]\nstiffness = 2000\n",
+    "friction": "[effects.friction]\nstatic = 0.4\n",
+    "damping": "[effects.damping]\ndamping = 1\n",
+    "proximity": "[effects.proximity]\ndistance = 2\n",
+    "gravity": "[effects.gravity]\nmass = 0.05\n",
+    "snap": "[effects.snap]\nmove = [2, 0, -2]\nradius = 4\n",
+}
+ALL = BODIES + "".join(EFFECTS.values())
+
+
+def taken_out(text, effect):
+    """The scene without the table, as who edits the file makes it."""
+    return re.sub(rf"\[effects\.{effect}\]\n(?:[^\[\n].*\n)*", "", text)
+
+
+class Counter:
+    def __init__(self, program, ticks, folder):
+        self.program, self.ticks, self.folder = program, ticks, folder
+
+    def count(self, *what):
+        """Instructions of the ticks alone, what they came to, and how many effects there were."""
+        out = self.folder / "callgrind.out"
+        run = subprocess.run(
+            ["valgrind", "--tool=callgrind", "--collect-atstart=no",
+             "--toggle-collect=count_tick", f"--callgrind-out-file={out}",
+             self.program, *what, str(self.ticks)],
+            capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            sys.exit(f"tick_instructions: {run.stderr}")
+        digest, effects = run.stdout.split()
+        found = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
+        instructions = int(found.group(1)) if found else 0
+        if instructions < 100 * self.ticks:
+            sys.exit(f"tick_instructions: {instructions} instructions: nothing was counted")
+        return instructions, digest, int(effects)
+
+    def of_file(self, scene):
+        file = self.folder / "scene.toml"
+        file.write_text(scene)
+        return self.count(file)
+
+    def by_hand(self, effects):
+        return self.count("--by-hand", ",".join(effects) or "none")
+
+
+def main():
+    program, ticks, result, *context = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        counter = Counter(program, int(ticks), pathlib.Path(folder))
+        lines, failed, before = [], False, None
+        left, text = list(EFFECTS), ALL
+        # Those that act at contacts go before the contact.
+        for effect in [None, "snap", "gravity", "proximity", "damping", "friction", "contact"]:
+            if effect is not None:
+                left.remove(effect)
+                text = taken_out(text, effect)
+            removed, by_hand = counter.of_file(text), counter.by_hand(left)
+            same = removed == by_hand and removed[2] == len(left)
+            fewer = before is None or removed[0] < before
+            before = removed[0]
+            failed |= not (same and fewer)
+            lines.append({"effects": left.copy(), "ticks": int(ticks),
+                          "instructions_taken_out": removed[0],
+                          "instructions_by_hand": by_hand[0],
+                          "instructions_a_tick": round(removed[0] / int(ticks), 1),
+                          "digest": removed[1], "same": same})
+            said = "same" if same else f"NOT THE SAME: {removed} {by_hand}"
+            print(f"{', '.join(left) or 'no effects':<58} {removed[0]:>12} {by_hand[0]:>12}  "
+                  f"{said if fewer else said + ', AND NOT FEWER'}", flush=True)
+    pathlib.Path(result).write_text(json.dumps(
+        {"context": dict(each.split("=", 1) for each in context), "scenes": lines}, indent=2) + "\n")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Counts the instructions of ticks with callgrind: of a scene that names all six effects, from which
+# one after the other is taken out, beside a program without a scene that makes by hand what the rest
+# needs. What is not named costs nothing, so both must come to the same count and to the same bits,
+# and each effect that goes must take instructions away; else this fails.
+#
+#   scripts/tick_instructions.sh [TICKS]    by default 300
+set -euo pipefail
+cd "$(dirname "$0")/.."
+ticks=300
+case ${1:-} in
+  "") ;;
+  -h | --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *[!0-9]*) echo "tick_instructions: '$1' is no number of ticks; see --help" >&2; exit 2 ;;
+  *) ticks=$1 ;;
+esac
+scripts/setup.sh --bench >&2
+cmake --preset bench >/dev/null
+cmake --build --preset bench --target tick_instructions | tail -n 1 >&2
+
+model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr -cs 'A-Za-z0-9' '-' | sed 's/-$//')
+results=perf/results/$model-$(nproc)
+mkdir -p "$results"
+/usr/bin/python3 scripts/tick_instructions.py build/bench/bench/tick_instructions "$ticks" \
+  "$results/tick_instructions.json" \
+  "commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)" \
+  "compiler=$(g++ --version | head -n 1)"

@@ -1,0 +1,12 @@
+#include "ist/haptics/effects/damping_effect.h"
+
+#include "ist/haptics/effects/braking.h"
+
+namespace ist {
+
+void DampingEffect::respond(const EffectInput& input, const Vector6& motion,
+                            Response& response) const noexcept {
+  brake(input.contacts, settings_.damping, input.dt, motion, response);
+}
+
+}  // namespace ist

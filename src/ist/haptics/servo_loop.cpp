@@ -1,0 +1,125 @@
+#include "ist/haptics/servo_loop.h"
+
+#include <time.h>
+
+#include <thread>
+
+#include "ist/haptics/tick_clock.h"
+
+namespace ist {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::nanoseconds;
+
+nanoseconds thread_time() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec);
+}
+
+class Loop {
+ public:
+  Loop(Simulation& simulation, Device& device, const ServoOptions& options,
+       const ServoOutputs& outputs)
+      : simulation_(simulation),
+        device_(device),
+        options_(options),
+        outputs_(outputs),
+        period_(static_cast<nanoseconds::rep>(1e9 * simulation.dt())),
+        clock_(period_) {}
+
+  ServoReport run(const std::atomic<bool>& stop) {
+    if (outputs_.progress != nullptr) {
+      outputs_.progress->begin_stage("running the servo loop", options_.ticks);
+    }
+    clock_.start();
+    Clock::time_point begin = Clock::now();
+    TickStart start{};
+    for (std::uint64_t tick = 0;
+         tick < options_.ticks && !stop.load(std::memory_order_relaxed) && !device_.done();) {
+      keep(turn(tick, begin, start));
+      if (options_.paced) {
+        start = clock_.wait_for_next();
+        report_.missed += start.missed;
+        tick = clock_.tick();
+      } else {
+        ++tick;
+      }
+      begin = Clock::now();
+    }
+    device_.write(Vector6::Zero(), simulation_.dt());
+    return std::move(report_);
+  }
+
+ private:
+  [[nodiscard]] TickBudget budget() noexcept {
+    TickBudget budget;
+    if (options_.paced) {
+      budget.contacts.deadline = budget.proximity.deadline =
+          clock_.release() + nanoseconds(static_cast<nanoseconds::rep>(
+                                 options_.query_share * static_cast<double>(period_.count())));
+    }
+    return budget;
+  }
+
+  [[nodiscard]] TickRecord turn(std::uint64_t number, Clock::time_point begin,
+                                const TickStart& start) noexcept {
+    const nanoseconds used = thread_time();
+    const std::optional<Placement> at = device_.read();
+    const Tick tick = simulation_.tick(at, budget());
+    device_.write(tick.wrench, simulation_.dt());
+    const Clock::time_point end = Clock::now();
+
+    TickRecord record = record_of(number, simulation_.dt(), tick, at.has_value());
+    record.late_ns = start.late.count();
+    record.execution_ns = nanoseconds(end - begin).count();
+    record.cpu_ns = (thread_time() - used).count();
+    if (options_.paced && end > clock_.deadline()) ++report_.missed;
+    return record;
+  }
+
+  void keep(const TickRecord& record) noexcept {
+    ++report_.ticks;
+    report_.held += record.held ? 1U : 0U;
+    report_.faults += record.fault ? 1U : 0U;
+    report_.late.record(nanoseconds(record.late_ns));
+    report_.execution.record(nanoseconds(record.execution_ns));
+    report_.cpu.record(nanoseconds(record.cpu_ns));
+    if (outputs_.records != nullptr) push(record);
+    if (outputs_.snapshot != nullptr) outputs_.snapshot->publish(record);
+    if (outputs_.progress != nullptr) outputs_.progress->add(1);
+  }
+
+  void push(const TickRecord& record) noexcept {
+    while (!outputs_.records->push(record)) {
+      if (options_.paced || outputs_.records->closed()) {
+        ++report_.lost_records;
+        return;
+      }
+      std::this_thread::yield();  // without a beat there is time
+    }
+  }
+
+  Simulation& simulation_;
+  Device& device_;
+  const ServoOptions& options_;
+  const ServoOutputs& outputs_;
+  nanoseconds period_;
+  TickClock clock_;
+  ServoReport report_;
+};
+
+}  // namespace
+
+ServoReport run_servo_loop(Simulation& simulation, Device& device, const ServoOptions& options,
+                           const ServoOutputs& outputs, const std::atomic<bool>& stop) {
+  // A loop that does not wait must not keep others from their processor.
+  std::optional<RealTimeThread> real_time;
+  if (options.paced) real_time.emplace(options.real_time);
+  ServoReport report = Loop(simulation, device, options, outputs).run(stop);
+  if (real_time) report.notes = real_time->notes();
+  return report;
+}
+
+}  // namespace ist

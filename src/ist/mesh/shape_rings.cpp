@@ -1,0 +1,28 @@
+#include "ist/mesh/shape_rings.h"
+
+namespace ist {
+
+std::uint32_t add_ring(TriangleMesh& mesh, int quarter, double radius, double z) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector2d& x : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1),
+                                   Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1)}) {
+    const Eigen::Vector2d y(-x.y(), x.x());
+    for (int i = 0; i < quarter; ++i) {
+      const double t = static_cast<double>(i) / quarter;
+      const Eigen::Vector2d at = radius / (1 + t * t) * ((1 - t * t) * x + 2 * t * y);
+      mesh.vertices.emplace_back(at.x(), at.y(), z);
+    }
+  }
+  return first;
+}
+
+void add_band(TriangleMesh& mesh, int quarter, std::uint32_t below, std::uint32_t above) {
+  const auto sides = static_cast<std::uint32_t>(4 * quarter);
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t j = (i + 1) % sides;
+    mesh.triangles.push_back({below + i, below + j, above + j});
+    mesh.triangles.push_back({below + i, above + j, above + i});
+  }
+}
+
+}  // namespace ist

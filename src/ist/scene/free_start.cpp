@@ -1,0 +1,34 @@
+#include "ist/scene/free_start.h"
+
+#include <algorithm>
+
+namespace ist {
+
+FreeStart::FreeStart(const SphereTree& fixed, const SphereTree& held,
+                     const TriangleMesh* fixed_mesh, const TriangleMesh* held_mesh)
+    : query_(fixed, held),
+      voxel_(std::min(fixed.lattice().voxel_size, held.lattice().voxel_size)),
+      farthest_(2 * (fixed.reach() + held.reach())) {
+  if (fixed_mesh != nullptr && held_mesh != nullptr) inside_.emplace(*fixed_mesh, *held_mesh);
+}
+
+FreeStart::State FreeStart::at(const Eigen::Isometry3d& pose) noexcept {
+  if (query_.touches(pose) != Touch::kNo) return State::kTouching;
+  if (inside_ && inside_->at(pose) != Inside::kNone) return State::kInside;
+  return State::kFree;
+}
+
+std::optional<double> FreeStart::opening(const Eigen::Isometry3d& pose,
+                                         const Eigen::Vector3d& axis) noexcept {
+  if (at(pose) == State::kFree) return 0;
+  Eigen::Isometry3d moved = pose;
+  for (double way = voxel_; way <= farthest_; way += voxel_) {
+    moved.translation() = pose.translation() + way * axis;
+    if (at(moved) != State::kFree) continue;
+    moved.translation() = pose.translation() + (way + voxel_) * axis;
+    if (at(moved) == State::kFree) return way + voxel_;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ist

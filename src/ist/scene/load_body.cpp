@@ -1,0 +1,61 @@
+#include "ist/scene/load_body.h"
+
+#include <fmt/format.h>
+
+#include "ist/base/error.h"
+#include "ist/mesh/mesh_check.h"
+#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/orientation.h"
+#include "ist/scene/scene_shapes.h"
+#include "ist/tree/tree_io.h"
+#include "ist/voxel/voxelizer.h"
+
+namespace ist {
+namespace {
+
+void take_tree(LoadedBody& body, const std::filesystem::path& file) {
+  body.tree = std::make_unique<const SphereTree>(read_tree(file));
+  body.outside_is_known = body.tree->orientation() == Orientation::kOutward;
+  body.origin = body.tree->lattice().origin();
+  if (body.tree->triangles()) {
+    body.mesh = std::make_unique<TriangleMesh>(body.tree->triangles()->mesh);
+  }
+}
+
+void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Scene& scene) {
+  if (const std::optional<Error> flaw = lattice_flaw(mesh, voxel_size)) {
+    scene.lines.fail(fmt::format("{}.voxel_size", body.table),
+                     fmt::format("{}: {}", body.name, flaw->what()));
+  }
+  body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
+  body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;
+  body.origin = lattice_of(*body.mesh, voxel_size).origin();
+}
+
+}  // namespace
+
+LoadedBody load_body(const Scene& scene, const SceneBody& body, const char* table,
+                     std::vector<std::string>& warnings) {
+  LoadedBody loaded{};
+  loaded.table = table;
+  if (const auto* shape = std::get_if<BuiltInShape>(&body.source)) {
+    loaded.name = fmt::format("the {} shape", table);
+    take_mesh(loaded, make_shape(*shape), *body.voxel_size, scene);
+  } else {
+    const auto& file = std::get<std::filesystem::path>(body.source);
+    loaded.name = file.string();
+    if (body.voxel_size) {
+      TriangleMesh mesh = read_mesh(file);
+      for (const std::string& warning : ist::warnings(check_mesh(mesh))) {
+        warnings.push_back(fmt::format("{}: {}", loaded.name, warning));
+      }
+      take_mesh(loaded, std::move(mesh), *body.voxel_size, scene);
+    } else {
+      take_tree(loaded, file);
+    }
+  }
+  loaded.outside_is_known |= body.trust_normals;
+  return loaded;
+}
+
+}  // namespace ist

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "ist/haptics/devices/hand_device.h"
+#include "ist/scene/table_reader.h"
+
+namespace ist {
+
+/// What is sensible in a scene: wide enough for any device there is, and narrow enough that a slip
+/// of a unit or of a sign is seen. Lengths are in the scene's unit, all else is SI.
+inline constexpr NumberRange kRate{1, 1e4, "Hz"};
+inline constexpr NumberRange kDuration{1e-3, 1e6, "s"};
+inline constexpr NumberRange kInstant{0, 1e6, "s"};
+inline constexpr NumberRange kLength{1e-12, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kResolution{0, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kPlace{-1e12, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kStiffness{0, 1e6, "N/m"};
+inline constexpr NumberRange kAngularStiffness{0, 1e6, "N m/rad"};
+inline constexpr NumberRange kDamping{0, 1e4, "N s/m"};
+inline constexpr NumberRange kAngularDamping{0, 1e4, "N m s/rad"};
+inline constexpr NumberRange kDelay{0, HandDevice::kLongestDelay, "s"};
+inline constexpr NumberRange kMass{1e-6, 1e3, "kg"};
+inline constexpr NumberRange kInertia{1e-9, 1e3, "kg m²"};
+inline constexpr NumberRange kAcceleration{-1e3, 1e3, "m/s²"};
+inline constexpr NumberRange kMargin{0, 0.5, "voxels"};
+inline constexpr NumberRange kFriction{0, 10, ""};
+inline constexpr NumberRange kAngle{1e-6, 3.14, "rad"};
+inline constexpr NumberRange kAngularResolution{0, 1, "rad"};
+inline constexpr NumberRange kForce{1e-6, 1e3, "N"};
+inline constexpr NumberRange kTorque{1e-9, 1e3, "N m"};
+inline constexpr NumberRange kForceSlew{1e-3, 1e9, "N/s"};
+inline constexpr NumberRange kTorqueSlew{1e-6, 1e9, "N m/s"};
+inline constexpr NumberRange kSoftStart{0, 60, "s"};
+
+}  // namespace ist

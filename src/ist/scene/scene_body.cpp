@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+#include "ist/base/units.h"
+#include "ist/scene/ranges.h"
+#include "ist/scene/scene_parts.h"
+#include "ist/tree/tree_io.h"
+
+namespace ist {
+namespace {
+
+using Kind = BuiltInShape::Kind;
+
+constexpr std::string_view kShapes = R"("upper jaw", "lower jaw", "box", "sphere" or "cylinder")";
+
+std::optional<Kind> shape_kind(std::string_view name) {
+  if (name == "upper jaw") return Kind::kUpperJaw;
+  if (name == "lower jaw") return Kind::kLowerJaw;
+  if (name == "box") return Kind::kBox;
+  if (name == "sphere") return Kind::kSphere;
+  if (name == "cylinder") return Kind::kCylinder;
+  return std::nullopt;
+}
+
+std::optional<Eigen::Vector3d> axis(std::string_view name) {
+  constexpr std::string_view kAxes = "xyz";
+  const bool turned = name.starts_with('-');
+  if (turned) name.remove_prefix(1);
+  if (name.size() != 1 || kAxes.find(name) == std::string_view::npos) return std::nullopt;
+  const auto index = static_cast<Eigen::Index>(kAxes.find(name));
+  return (turned ? -1.0 : 1.0) * Eigen::Vector3d::Unit(index);
+}
+
+BuiltInShape read_shape(TableReader& table, double unit) {
+  BuiltInShape shape{.kind = table.choice("shape", shape_kind, kShapes)};
+  switch (shape.kind) {
+    case Kind::kUpperJaw:
+    case Kind::kLowerJaw:
+      shape.seed = table.whole_number("seed", shape.seed);
+      if (unit != metres_in("mm")) {
+        table.fail("shape",
+                   "a built-in jaw is made in millimetres, and the scene's unit is another",
+                   R"(write unit = "mm")");
+      }
+      break;
+    case Kind::kBox:
+      shape.size = table.vector("size", kLength);
+      break;
+    case Kind::kCylinder:
+      shape.height = table.number("height", kLength);
+      [[fallthrough]];
+    case Kind::kSphere:
+      shape.radius = table.number("radius", kLength);
+      break;
+  }
+  return shape;
+}
+
+SceneBody read_body(TableReader table, double unit) {
+  SceneBody body;
+  if (table.has("file") && table.has("shape")) {
+    table.fail("shape", table.name() + " has both a 'file' and a 'shape'", "take out one of them");
+  }
+  bool is_tree = false;
+  if (table.has("file")) {
+    const std::filesystem::path file = read_path(table, "file");
+    is_tree = is_tree_file(file);
+    body.source = file;
+  } else if (table.has("shape")) {
+    body.source = read_shape(table, unit);
+  } else {
+    table.fail_missing("file", fmt::format("a mesh or a tree, or shape = {}", kShapes));
+  }
+  if (!is_tree) {
+    body.voxel_size = table.number("voxel_size", kLength);
+  } else if (table.has("voxel_size")) {
+    table.fail("voxel_size", "the file is a tree, which has its voxel size", "take it out");
+  }
+  if (table.has("spheres")) {
+    body.spheres =
+        table.choice("spheres", sphere_policy, R"("simple", "table", "tight" or "slab")");
+  }
+  body.trust_normals = table.flag("trust_normals", false);
+  body.rotation = table.rotation("quaternion");
+  body.translation = table.vector("translation", kPlace, Eigen::Vector3d::Zero());
+  return body;
+}
+
+}  // namespace
+
+std::filesystem::path read_path(TableReader& table, std::string_view key) {
+  constexpr std::string_view kVariable = "IST_DATA_DIR", kPrefix = "${IST_DATA_DIR}/";
+  const std::string text = table.text(key, "the name of a file");
+  std::filesystem::path file;
+  if (text.starts_with(kPrefix)) {
+    const char* folder = std::getenv(std::string(kVariable).c_str());
+    if (folder == nullptr || *folder == '\0') {
+      table.fail(key, fmt::format("'{}' needs {}, which is not set", key, kVariable),
+                 "set it in the environment to the folder of the meshes");
+    }
+    file = std::filesystem::path(folder) / text.substr(kPrefix.size());
+  } else if (text.find("${") != std::string::npos) {
+    table.fail(key, fmt::format("'{}' names a variable in \"{}\"", key, text),
+               fmt::format("{}… at the beginning is the only one that is known", kPrefix));
+  } else {
+    file = table.file().parent_path() / text;
+  }
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) {
+    table.fail(key, fmt::format("there is no file {}", file.string()),
+               fmt::format("check '{}'; what is not absolute is from the scene's folder", key));
+  }
+  return file;
+}
+
+void read_bodies(TableReader& scene, Scene& result) {
+  result.fixed = read_body(scene.table("fixed"), result.unit);
+  result.held = read_body(scene.table("held"), result.unit);
+  TableReader held = scene.table("held");
+  if (held.has("open")) {
+    result.open = held.choice("open", axis, R"("x", "-x", "y", "-y", "z" or "-z")");
+  }
+}
+
+}  // namespace ist

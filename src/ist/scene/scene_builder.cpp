@@ -1,0 +1,210 @@
+#include "ist/scene/scene_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ist/base/float_environment.h"
+#include "ist/haptics/devices/null_device.h"
+#include "ist/haptics/devices/script_device.h"
+#include "ist/haptics/stability_border.h"
+#include "ist/haptics/surface_radius.h"
+#include "ist/scene/free_start.h"
+#include "ist/scene/load_body.h"
+#include "ist/scene/make_effects.h"
+
+namespace ist {
+namespace {
+
+class Builder {
+ public:
+  Builder(const Scene& scene, Progress* progress, std::uint64_t max_memory)
+      : scene_(scene), progress_(progress), max_memory_(max_memory) {}
+
+  BuiltScene build() {
+    load();
+    name_effects();
+    built_.trees = build_scene_trees(scene_, fixed_, held_, needs_, max_memory_, notes_, progress_);
+    place();
+    build_simulation();
+    built_.notes = notes_.take();
+    return std::move(built_);
+  }
+
+ private:
+  void load();
+  void name_effects();
+  void warn_of_unknown_outside(const LoadedBody& body);
+  void place();
+  void build_simulation();
+  void warn_of(const BorderLimit& limit, const char* key, const char* unit);
+  [[nodiscard]] Placement plan_start() const;
+  [[nodiscard]] std::unique_ptr<Device> make_device() const;
+
+  const Scene& scene_;
+  Progress* progress_;
+  std::uint64_t max_memory_;
+  BuiltScene built_;
+  BuildNotes notes_;
+  LoadedBody fixed_{}, held_{};
+  BodyFrames frames_;
+  ToolHome home_;
+  Placement start_;
+  std::vector<std::unique_ptr<Effect>> effects_;
+  EffectNeeds needs_;
+};
+
+void Builder::load() {
+  fixed_ = load_body(scene_, scene_.fixed, "fixed", built_.warnings);
+  held_ = load_body(scene_, scene_.held, "held", built_.warnings);
+  frames_ = {
+      scene_.unit, {scene_.fixed.rotation, scene_.unit * scene_.fixed.translation}, held_.origin};
+  home_ = {{scene_.held.rotation,
+            scene_.unit * (scene_.held.rotation * held_.origin + scene_.held.translation)},
+           held_.origin};
+}
+
+void Builder::warn_of_unknown_outside(const LoadedBody& body) {
+  if (body.outside_is_known || !(scene_.contact || scene_.proximity)) return;
+  built_.warnings.push_back(
+      fmt::format("{}: not closed and consistent, so its outside is not known and it pushes "
+                  "nothing: mend it, or say trust_normals = true in [{}]",
+                  body.name, body.table));
+}
+
+void Builder::name_effects() {
+  warn_of_unknown_outside(fixed_);
+  warn_of_unknown_outside(held_);
+  effects_ = make_effects(scene_, home_, fixed_.outside_is_known && held_.outside_is_known);
+  needs_ = needs_of(effects_);
+}
+
+// Where the device begins.
+Placement Builder::plan_start() const {
+  if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
+    return home_.moved(script->plan.front().pose);
+  }
+  if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) {
+    return home_.moved(hand->plan.front().pose);
+  }
+  return home_.pose;
+}
+
+void Builder::place() {
+  start_ = plan_start();
+  if (!needs_.contacts()) {
+    notes_.skip("free start", "nothing is touched");
+    return;
+  }
+  FreeStart start(*built_.trees.fixed, *built_.trees.held, fixed_.mesh.get(), held_.mesh.get());
+  const Eigen::Isometry3d pose = frames_.query_pose(start_);
+  const FreeStart::State state = start.at(pose);
+  if (!fixed_.mesh || !held_.mesh) {
+    built_.warnings.push_back(
+        fmt::format("{}: a tree without triangles, so it is not known whether one body starts "
+                    "inside the other: build it with --exact to know",
+                    (fixed_.mesh ? held_ : fixed_).name));
+  }
+  if (state == FreeStart::State::kFree) return;
+  const char* how = state == FreeStart::State::kTouching ? "the bodies touch, or may touch,"
+                                                         : "one body is inside the other";
+  if (!scene_.open) {
+    scene_.lines.fail(
+        "held.open",
+        fmt::format("{} where the device starts: say in [held] along which axis they open, as "
+                    "open = \"-z\", or start elsewhere",
+                    how));
+  }
+  const std::optional<double> way =
+      start.opening(pose, scene_.fixed.rotation.transpose() * *scene_.open);
+  if (!way) {
+    scene_.lines.fail(
+        "held.open",
+        fmt::format("{} where the device starts, and all along the axis of held.open: name "
+                    "another, or start elsewhere",
+                    how));
+  }
+  start_.translation += (*way * scene_.unit) * *scene_.open;
+  built_.warnings.push_back(
+      fmt::format("{} where the device starts: the tool starts {:.4g} m away, along held.open", how,
+                  *way * scene_.unit));
+}
+
+std::unique_ptr<Device> Builder::make_device() const {
+  const auto at_home = [&](std::vector<Waypoint> plan) {
+    for (Waypoint& waypoint : plan) waypoint.pose = home_.moved(waypoint.pose);
+    return plan;
+  };
+  if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
+    return std::make_unique<ScriptDevice>(at_home(script->plan), script->mechanics);
+  }
+  if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) {
+    HandSettings settings = *hand;
+    settings.plan = at_home(settings.plan);
+    return std::make_unique<HandDevice>(settings);
+  }
+  return std::make_unique<NullDevice>(start_, std::get<NullSettings>(scene_.device).mechanics);
+}
+
+void Builder::warn_of(const BorderLimit& limit, const char* key, const char* unit) {
+  if (!limit.clamped()) return;
+  built_.warnings.push_back(
+      fmt::format("{} of {:.4g} {} is too near to what this device's damping, the rate and the "
+                  "delay allow, which is {:.4g}, or beyond it: {:.4g} is used",
+                  key, limit.asked, unit, limit.largest, limit.used));
+}
+
+void Builder::build_simulation() {
+  built_.device = make_device();
+  // As clocks count it.
+  const double period = 1e-9 * std::floor(1e9 / scene_.rate);
+  const ClampedCoupling coupling =
+      clamp_coupling(scene_.coupling, built_.device->mechanics(), period);
+  warn_of(coupling.damping, "coupling.damping", "N s/m");
+  warn_of(coupling.stiffness, "coupling.stiffness", "N/m");
+  warn_of(coupling.angular_damping, "coupling.angular_damping", "N m s/rad");
+  warn_of(coupling.angular_stiffness, "coupling.angular_stiffness", "N m/rad");
+
+  Simulation::Parts parts{nullptr,       nullptr,    {},     coupling.settings,
+                          scene_.safety, Tool(0, 0), start_, period};
+  // Where nothing is touched, nothing tunnels either.
+  built_.step_limit = Tool::kNoLimit;
+  double radius = 0;
+  const SceneTrees& trees = built_.trees;
+  if (trees.fixed) {
+    parts.contacts = notes_.make("contact points", "for effects that push", [&] {
+      const SpherePolicy policy = std::min(scene_.fixed.spheres.value_or(trees.fixed->tightest()),
+                                           scene_.held.spheres.value_or(trees.held->tightest()));
+      return std::make_unique<TouchQuery>(
+          *trees.fixed, *trees.held, frames_,
+          TouchOptions{.policy = policy, .least_depth = -scene_.contact->margin});
+    });
+    built_.step_limit =
+        scene_.unit * std::min(trees.fixed->lattice().voxel_size, trees.held->lattice().voxel_size);
+    radius = scene_.unit * surface_radius(*trees.held);
+  }
+  if (trees.near_fixed) {
+    parts.proximity = notes_.make("proximity query", "for effects.proximity", [&] {
+      // It brakes before anything is touched, and nobody asks it for the gap.
+      return std::make_unique<TouchQuery>(*trees.near_fixed, *trees.near_held, frames_,
+                                          TouchOptions{.policy = SpherePolicy::kTight,
+                                                       .least_depth = -2,
+                                                       .growth = 0,
+                                                       .measure_gap = false});
+    });
+  }
+  parts.tool = Tool(radius, built_.step_limit);
+  parts.effects = std::move(effects_);
+  built_.simulation = std::make_unique<Simulation>(std::move(parts));
+}
+
+}  // namespace
+
+BuiltScene build_scene(const Scene& scene, Progress* progress, std::uint64_t max_memory) {
+  const ScopedFloatEnvironment environment;
+  return Builder(scene, progress, max_memory).build();
+}
+
+}  // namespace ist

@@ -1,0 +1,87 @@
+#include "ist/scene/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ist/base/float_environment.h"
+#include "ist/base/units.h"
+#include "ist/scene/ranges.h"
+#include "ist/scene/scene_parts.h"
+
+namespace ist {
+namespace {
+
+// What is always on is read as if the file named it, so that each default stands in one place.
+void open_if_missing(TomlTable& document, std::string_view key) {
+  const bool is_there = std::any_of(document.entries.begin(), document.entries.end(),
+                                    [key](const TomlEntry& each) { return each.key == key; });
+  if (!is_there) document.entries.push_back({std::string(key), {document.line, TomlTable{}}});
+}
+
+SafetySettings read_safety(TableReader& scene) {
+  TableReader safety = scene.table("safety");
+  return {.max_force = safety.number("max_force", kForce, 8),
+          .max_torque = safety.number("max_torque", kTorque, 0.3),
+          .force_slew = safety.number("force_slew", kForceSlew, 500),
+          .torque_slew = safety.number("torque_slew", kTorqueSlew, 20),
+          .soft_start = safety.number("soft_start", kSoftStart, 0.5)};
+}
+
+// A spring that could ask for more than is let through would be a spring that is cut off.
+double read_limit(TableReader& coupling, std::string_view key, const NumberRange& range,
+                  double otherwise, double safe) {
+  const double limit = coupling.number(key, range, std::min(otherwise, safe));
+  if (limit > safe) {
+    coupling.fail(key,
+                  fmt::format("'{}' in [coupling] is {} {}, more than the {} that [safety] lets "
+                              "through",
+                              key, limit, range.unit, safe),
+                  fmt::format("lower it, or raise '{}' in [safety]", key));
+  }
+  return limit;
+}
+
+CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety) {
+  TableReader coupling = scene.table("coupling");
+  return {.stiffness = coupling.number("stiffness", kStiffness, 1000),
+          .damping = coupling.number("damping", kDamping, 0.5),
+          .angular_stiffness = coupling.number("angular_stiffness", kAngularStiffness, 1),
+          .angular_damping = coupling.number("angular_damping", kAngularDamping, 5e-4),
+          .max_force = read_limit(coupling, "max_force", kForce, 5, safety.max_force),
+          .max_torque = read_limit(coupling, "max_torque", kTorque, 0.2, safety.max_torque)};
+}
+
+// What acts at contacts has none where none are found.
+void check_contact_is_there(TableReader& scene, const Scene& result) {
+  if (result.contact || !(result.friction || result.damping)) return;
+  const char* effect = result.friction ? "friction" : "damping";
+  scene.table("effects").fail(effect, fmt::format("[effects.{}] acts at contacts", effect),
+                              "add the table [effects.contact], or take this one out");
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
+  TomlTable document = read_toml(file);
+  Scene scene{};
+  scene.file = file;
+  scene.lines = SceneLines(file, document);
+  open_if_missing(document, "safety");
+  open_if_missing(document, "coupling");
+  TableReader reader(file, document);
+  scene.unit = reader.choice("unit", metres_in, R"("m", "cm", "mm", "um" or "inch")");
+  scene.rate = reader.number("rate", kRate, scene.rate);
+  scene.seconds = reader.number("seconds", kDuration, scene.seconds);
+  read_bodies(reader, scene);
+  read_device(reader, scene);
+  scene.safety = read_safety(reader);
+  scene.coupling = read_coupling(reader, scene.safety);
+  read_effects(reader, scene);
+  reader.refuse_unknown();
+  check_contact_is_there(reader, scene);
+  return scene;
+}
+
+}  // namespace ist

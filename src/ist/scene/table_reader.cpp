@@ -1,0 +1,234 @@
+#include "ist/scene/table_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "ist/scene/spelling.h"
+
+namespace ist {
+namespace {
+
+std::string range_text(const NumberRange& range) {
+  return fmt::format("from {} to {}{}{}", range.least, range.most, range.unit.empty() ? "" : " ",
+                     range.unit);
+}
+
+// A value as people know it, for what is not as it should be.
+struct Shown {
+  std::string operator()(const TomlDate&) const { return "a date or a time"; }
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+  std::string operator()(double value) const { return fmt::format("{}", value); }
+  std::string operator()(const std::string& value) const {
+    constexpr std::size_t kMost = 80;
+    const bool plain = std::none_of(value.begin(), value.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < ' '; });
+    return plain && value.size() <= kMost ? fmt::format("\"{}\"", value)
+                                          : fmt::format("a text of {} bytes", value.size());
+  }
+  std::string operator()(const std::vector<TomlValue>& value) const {
+    return fmt::format("an array of {}", value.size());
+  }
+  std::string operator()(const TomlTable&) const { return "a table"; }
+};
+
+std::optional<double> as_number(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value.content)) {
+    return static_cast<double>(*integer);
+  }
+  if (const auto* real = std::get_if<double>(&value.content)) return *real;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string TableReader::name() const {
+  return path_.empty() ? "the file" : fmt::format("[{}]", path_);
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+TomlEntry* TableReader::entry(std::string_view key) const {
+  const auto found = std::find_if(table_.entries.begin(), table_.entries.end(),
+                                  [key](const TomlEntry& each) { return each.key == key; });
+  return found == table_.entries.end() ? nullptr : &*found;
+}
+
+bool TableReader::is_asked(std::string_view key) const {
+  return std::find(table_.asked.begin(), table_.asked.end(), key) != table_.asked.end();
+}
+
+TomlValue* TableReader::find(std::string_view key) {
+  if (!is_asked(key)) table_.asked.emplace_back(key);
+  TomlEntry* found = entry(key);
+  return found == nullptr ? nullptr : &found->value;
+}
+
+TomlValue& TableReader::required(std::string_view key, std::string_view what) {
+  TomlValue* value = find(key);
+  if (value == nullptr) fail_missing(key, what);
+  return *value;
+}
+
+bool TableReader::has(std::string_view key) { return find(key) != nullptr; }
+
+double TableReader::number_of(const TomlValue& value, std::string_view key,
+                              const NumberRange& range) const {
+  const std::optional<double> number = as_number(value);
+  if (!number || !(*number >= range.least && *number <= range.most)) {
+    fail_line(file_, value.line,
+              fmt::format("'{}' in {} is {}", key, name(), std::visit(Shown(), value.content)),
+              "give a number " + range_text(range));
+  }
+  return *number;
+}
+
+double TableReader::number(std::string_view key, const NumberRange& range) {
+  return number_of(required(key, "a number " + range_text(range)), key, range);
+}
+
+double TableReader::number(std::string_view key, const NumberRange& range, double otherwise) {
+  return has(key) ? number(key, range) : otherwise;
+}
+
+template <std::size_t kCount>
+std::array<double, kCount> TableReader::numbers(std::string_view key, const NumberRange& range,
+                                                std::string_view what) {
+  const auto* items = std::get_if<std::vector<TomlValue>>(&required(key, what).content);
+  if (items == nullptr || items->size() != kCount) fail_value(key, what);
+  std::array<double, kCount> values;
+  std::transform(items->begin(), items->end(), values.begin(),
+                 [&](const TomlValue& item) { return number_of(item, key, range); });
+  return values;
+}
+
+Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& range) {
+  const auto [x, y, z] = numbers<3>(key, range, "[x, y, z], three numbers " + range_text(range));
+  return {x, y, z};
+}
+
+Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& range,
+                                    const Eigen::Vector3d& otherwise) {
+  return has(key) ? vector(key, range) : otherwise;
+}
+
+Eigen::Matrix3d TableReader::rotation(std::string_view key) {
+  constexpr std::string_view kWhat = "[w, x, y, z], a quaternion: [1, 0, 0, 0] turns nothing";
+  constexpr double kLeastSquare = 1e-12;
+  if (!has(key)) return Eigen::Matrix3d::Identity();
+  const auto [w, x, y, z] = numbers<4>(key, {-1e3, 1e3, ""}, kWhat);
+  const double square = w * w + x * x + y * y + z * z;
+  if (square < kLeastSquare) fail_value(key, kWhat);
+  // Divided by the square rather than by the length, it is of any length.
+  const double s = 2 / square;
+  Eigen::Matrix3d turn;
+  turn << 1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x),      //
+      s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y);
+  return turn;
+}
+
+std::uint64_t TableReader::whole_number(std::string_view key, std::uint64_t otherwise) {
+  const TomlValue* value = find(key);
+  if (value == nullptr) return otherwise;
+  const auto* integer = std::get_if<std::int64_t>(&value->content);
+  if (integer == nullptr || *integer < 0) fail_value(key, "a whole number from 0 on");
+  return static_cast<std::uint64_t>(*integer);
+}
+
+bool TableReader::flag(std::string_view key, bool otherwise) {
+  const TomlValue* value = find(key);
+  if (value == nullptr) return otherwise;
+  const auto* truth = std::get_if<bool>(&value->content);
+  if (truth == nullptr) fail_value(key, "true or false");
+  return *truth;
+}
+
+std::string TableReader::text(std::string_view key, std::string_view what) {
+  const auto* text = std::get_if<std::string>(&required(key, what).content);
+  // Where a name is handed to the system it would end at a byte of 0.
+  if (text == nullptr || text->find('\0') != std::string::npos) fail_value(key, what);
+  return *text;
+}
+
+TableReader TableReader::table(std::string_view key) {
+  const std::string what = fmt::format("a table, [{}]", path_of(key));
+  auto* table = std::get_if<TomlTable>(&required(key, what).content);
+  if (table == nullptr) fail_value(key, what);
+  return {file_, *table, path_of(key)};
+}
+
+std::vector<TableReader> TableReader::tables(std::string_view key) {
+  constexpr std::string_view kWhat = "an array of tables, such as [ { … }, { … } ]";
+  auto* items = std::get_if<std::vector<TomlValue>>(&required(key, kWhat).content);
+  if (items == nullptr || items->empty()) fail_value(key, kWhat);
+  std::vector<TableReader> readers;
+  for (TomlValue& item : *items) {
+    auto* table = std::get_if<TomlTable>(&item.content);
+    if (table == nullptr) fail_value(key, kWhat);
+    readers.push_back({file_, *table, fmt::format("{}.{}", path_of(key), readers.size() + 1)});
+  }
+  return readers;
+}
+
+void TableReader::fail(std::string_view key, std::string_view wrong,
+                       std::string_view remedy) const {
+  const TomlEntry* found = entry(key);
+  fail_line(file_, found == nullptr ? table_.line : found->value.line, wrong, remedy);
+}
+
+void TableReader::fail_value(std::string_view key, std::string_view what) const {
+  fail(key,
+       fmt::format("'{}' in {} is {}", key, name(), std::visit(Shown(), entry(key)->value.content)),
+       fmt::format("give {}", what));
+}
+
+void TableReader::fail_missing(std::string_view key, std::string_view what) const {
+  for (const TomlEntry& each : table_.entries) {
+    if (is_asked(each.key)) continue;
+    for (const std::string& known : table_.asked) {
+      if (entry(known) == nullptr && looks_like(each.key, known)) fail_unknown(each);
+    }
+  }
+  fail(key, fmt::format("{} has no '{}'", name(), key), fmt::format("give {}", what));
+}
+
+void TableReader::fail_unknown(const TomlEntry& entry) const {
+  const auto nearest = std::min_element(table_.asked.begin(), table_.asked.end(),
+                                        [&](const std::string& a, const std::string& b) {
+                                          return edits(entry.key, a) < edits(entry.key, b);
+                                        });
+  std::string remedy;
+  if (nearest != table_.asked.end() && looks_like(entry.key, *nearest)) {
+    remedy = fmt::format("did you mean '{}'?", *nearest);
+  } else {
+    remedy = fmt::format("take it out; known here are {}", fmt::join(table_.asked, ", "));
+  }
+  fail_line(file_, entry.value.line, fmt::format("'{}' in {} is unknown", entry.key, name()),
+            remedy);
+}
+
+void TableReader::refuse_unknown() const {
+  const auto descend = [this](TomlValue& value, const std::string& path) {
+    if (auto* table = std::get_if<TomlTable>(&value.content)) {
+      TableReader(file_, *table, path).refuse_unknown();
+    }
+  };
+  for (TomlEntry& each : table_.entries) {
+    if (!is_asked(each.key)) fail_unknown(each);
+    descend(each.value, path_of(each.key));
+    if (auto* items = std::get_if<std::vector<TomlValue>>(&each.value.content)) {
+      for (std::size_t i = 0; i < items->size(); ++i) {
+        descend((*items)[i], fmt::format("{}.{}", path_of(each.key), i + 1));
+      }
+    }
+  }
+}
+
+}  // namespace ist

@@ -1,0 +1,55 @@
+#include "ist/tree/proximity_body.h"
+
+#include <numeric>
+
+#include "ist/base/assert.h"
+#include "ist/base/float_environment.h"
+#include "ist/tree/bound_builder.h"
+#include "ist/voxel/morton.h"
+
+namespace ist {
+namespace {
+
+// The lattice of the cells, whose first is kMargin below the surface's.
+Lattice lattice_of_cells(const SphereTree& tree) {
+  Lattice lattice = tree.lattice();
+  for (double& corner : lattice.corner) corner -= ProximityTree::kMargin * lattice.voxel_size;
+  lattice.cells += 2 * ProximityTree::kMargin;
+  lattice.depth = tree.proximity()->octree.depth();
+  return lattice;
+}
+
+// Each cell with its centre: a triangle whose corners are one.
+TriangleMesh centres_of(VoxelSet& voxels) {
+  TriangleMesh mesh;
+  const double size = voxels.lattice.voxel_size;
+  for (const std::uint64_t code : voxels.codes) {
+    const auto vertex = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Cell cell = morton_decode(code);
+    mesh.vertices.emplace_back(voxels.lattice.corner[0] + (cell[0] + 0.5) * size,
+                               voxels.lattice.corner[1] + (cell[1] + 0.5) * size,
+                               voxels.lattice.corner[2] + (cell[2] + 0.5) * size);
+    mesh.triangles.push_back({vertex, vertex, vertex});
+  }
+  voxels.triangles.first.resize(voxels.codes.size() + 1);
+  voxels.triangles.ids.resize(voxels.codes.size());
+  std::iota(voxels.triangles.first.begin(), voxels.triangles.first.end(), 0u);
+  std::iota(voxels.triangles.ids.begin(), voxels.triangles.ids.end(), 0u);
+  return mesh;
+}
+
+}  // namespace
+
+SphereTree proximity_body(const SphereTree& tree) {
+  const ScopedFloatEnvironment environment;
+  IST_ASSERT(tree.proximity().has_value());
+  const LinearOctree& octree = tree.proximity()->octree;
+  VoxelSet voxels{
+      lattice_of_cells(tree), octree.codes(0), std::vector<PackedNormal>(octree.leaf_count()), {}};
+  const TriangleMesh centres = centres_of(voxels);
+  BoundBlocks bounds = build_bounds(SpherePolicy::kTight, centres, voxels, octree);
+  return SphereTree({voxels.lattice, octree, tree.orientation(), std::move(voxels.normals),
+                     std::move(bounds), std::nullopt, std::nullopt});
+}
+
+}  // namespace ist

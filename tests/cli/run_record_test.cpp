@@ -1,0 +1,239 @@
+// Recordings of `ist run`: whole whatever ends the run, and made again to the same bytes.
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <set>
+
+#include "cli/run_case.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class RunRecord : public RunCase {};
+
+// Without the three times at its end, which differ from run to run.
+std::string without_times(const std::string& text) {
+  std::string result;
+  for (const std::string& line : lines_of(text)) {
+    const std::size_t at = line.find(",\"late_microseconds\":");
+    EXPECT_NE(at, std::string::npos) << line;
+    result += line.substr(0, at) + '\n';
+  }
+  return result;
+}
+
+TEST_F(RunRecord, RecordsEveryTickAsJsonLines) {
+  const std::string file = path("ticks.jsonl");
+  ist_well(run(all_effects(), {"--unpaced", "--record", file}));
+  const auto lines = json_lines(file_content(file));
+  ASSERT_GE(lines.size(), 600u);  // the plan's end ends it
+  ASSERT_LT(lines.size(), 605u);
+  const std::vector<std::string> keys{"tick",
+                                      "dt",
+                                      "device",
+                                      "tool",
+                                      "wrench",
+                                      "contacts",
+                                      "leaf_pairs",
+                                      "gap_lower",
+                                      "gap_upper",
+                                      "level",
+                                      "complete",
+                                      "sphere_tests",
+                                      "proximity_tests",
+                                      "held",
+                                      "fault",
+                                      "late_microseconds",
+                                      "microseconds",
+                                      "cpu_microseconds"};
+  double force = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].size(), keys.size());
+    for (const std::string& key : keys) ASSERT_TRUE(lines[i].contains(key)) << key;
+    EXPECT_EQ(lines[i]["tick"], i);
+    EXPECT_EQ(lines[i]["device"].size(), 12u);
+    EXPECT_EQ(lines[i]["wrench"].size(), 6u);
+    EXPECT_EQ(lines[i]["complete"], true);
+    force = std::max(force, std::abs(lines[i]["wrench"][2].get<double>()));
+  }
+  EXPECT_GT(force, 0.5);
+}
+
+TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
+  const std::string scene = shipped("press"), lines = path("a.jsonl"), csv = path("a.csv");
+  ist_well(run(scene, {"--unpaced", "--seconds", "1", "--record", lines}));
+  ist_well(run(scene, {"--unpaced", "--seconds", "1", "--record", csv}));
+  const auto objects = json_lines(file_content(lines));
+  const std::vector<std::string> rows = lines_of(file_content(csv));
+  ASSERT_EQ(rows.size(), objects.size() + 1);
+  const auto cells = [](const std::string& row) {
+    std::vector<std::string> parts;
+    std::istringstream stream(row + ",");
+    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+    return parts;
+  };
+  const std::vector<std::string> header = cells(rows[0]);
+  EXPECT_EQ(header.size(), 46u);
+  EXPECT_EQ(std::set<std::string>(header.begin(), header.end()).size(), header.size());
+  const auto column = [&](const char* name) {
+    const auto found = std::find(header.begin(), header.end(), name);
+    EXPECT_NE(found, header.end()) << name;
+    return static_cast<std::size_t>(found - header.begin());
+  };
+  const std::size_t z = column("tool_z"), force = column("force_z"), turn = column("device_zz"),
+                    tests = column("sphere_tests"), gap = column("gap_lower"),
+                    near = column("proximity_tests"), pairs = column("leaf_pairs");
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const std::vector<std::string> row = cells(rows[i + 1]);
+    ASSERT_EQ(row.size(), header.size());
+    EXPECT_EQ(row[0], std::to_string(i));
+    EXPECT_EQ(std::stod(row[z]), objects[i]["tool"][2].get<double>());
+    EXPECT_EQ(std::stod(row[force]), objects[i]["wrench"][2].get<double>());
+    EXPECT_EQ(std::stod(row[turn]), objects[i]["device"][11].get<double>());
+    EXPECT_EQ(std::stoull(row[tests]), objects[i]["sphere_tests"].get<std::uint64_t>());
+    EXPECT_EQ(std::stod(row[pairs]), objects[i]["leaf_pairs"].get<double>());
+    EXPECT_EQ(row[gap].empty(), objects[i]["gap_lower"].is_null());
+    EXPECT_TRUE(row[near].empty());  // nothing asks for it
+  }
+}
+
+TEST_F(RunRecord, ReplayGivesTheSameBytes) {
+  for (const std::string& scene : {shipped("slide"), all_effects()}) {
+    const std::string first = path("first.jsonl"), again = path("again.jsonl");
+    ist_well(run(scene, {"--unpaced", "--seconds", "0.6", "--record", first}));
+    const CommandResult result = ist_well(run(scene, {"--replay", first, "--record", again}));
+    EXPECT_TRUE(says(result.err, "replayed 600 ticks"));
+    EXPECT_TRUE(without_times(file_content(again)) == without_times(file_content(first)));
+  }
+}
+
+// Also of what the clock stopped now and then. Where it did is in the recording, as the sphere
+// tests that were made; here every fourth tick that presses is given half of what it needs.
+TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
+  const std::string scene = all_effects(), whole = path("whole.jsonl"), first = path("first.jsonl"),
+                    again = path("again.jsonl");
+  ist_well(run(scene, {"--unpaced", "--record", whole}));
+  std::string text;
+  for (const std::string& line : lines_of(file_content(whole))) {
+    const nlohmann::json tick = nlohmann::json::parse(line);
+    const auto tests = tick["sphere_tests"].get<std::uint64_t>();
+    const bool stopped = tick["tick"].get<int>() % 4 == 0 && tick["contacts"].get<int>() > 0;
+    const std::string key = "\"sphere_tests\":";
+    text += stopped ? replaced(line, key + std::to_string(tests), key + std::to_string(tests / 2))
+                    : line;
+    text += '\n';
+  }
+  const std::string stopped = write("stopped.jsonl", text);
+  ist_well(run(scene, {"--replay", stopped, "--record", first}));
+  ist_well(run(scene, {"--replay", first, "--record", again}));
+  const std::string recorded = file_content(first);
+  EXPECT_NE(recorded.find("\"complete\":false"), std::string::npos) << "no tick was stopped";
+  EXPECT_NE(recorded.find("\"held\":true"), std::string::npos) << "no tick was held";
+  EXPECT_NE(recorded.find("\"held\":false"), std::string::npos) << "every tick was";
+  EXPECT_TRUE(without_times(file_content(again)) == without_times(recorded));
+}
+
+TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
+  const std::string scene = boxes(), file = path("ticks.jsonl");
+  ist_well(run(scene, {"--unpaced", "--seconds", "0.05", "--record", file}));
+  const std::vector<std::string> lines = lines_of(file_content(file));
+  ASSERT_EQ(lines.size(), 50u);
+  const std::string& third = lines[2];
+  const auto with_third = [&](const std::string& line) {
+    return lines[0] + '\n' + lines[1] + '\n' + line + '\n' + lines[3] + '\n';
+  };
+  const std::size_t device = third.find("\"device\":["), end = third.find(']', device);
+  const std::vector<std::pair<std::string, std::string>> damaged{
+      {third.substr(0, 100), "no JSON object"},
+      {"", "no JSON object"},
+      {"[1, 2]", "no JSON object"},
+      {replaced(third, "\"tick\"", "\"tock\""), "no key 'tick'"},
+      {replaced(third, "\"tick\":2", "\"tick\":null"), "'tick' is null"},
+      {replaced(third, "\"tick\":2", "\"tick\":-2"), "'tick' is no whole number"},
+      {replaced(third, "\"sphere_tests\"", "\"tests\""), "no key 'sphere_tests'"},
+      {replaced(third, "\"device\":[", "\"device\":[1,"), "'device' is no 12 numbers"},
+      {replaced(third, "\"device\":[", "\"device\":[\"x\","), "'device' is no 12 numbers"},
+      {third.substr(0, device) + "\"device\":[0,0,0,2,0,0,0,2,0,0,0,2" + third.substr(end),
+       "'device' is no rigid motion"},
+      {replaced(third, "\"device\"", "\"hand\""), "no key 'device'"}};
+  for (const auto& [line, flaw] : damaged) {
+    const std::string bad = write("bad.jsonl", with_third(line)), out = path("out.jsonl");
+    const CommandResult result = ist(run(scene, {"--replay", bad, "--record", out}));
+    EXPECT_EQ(result.exit_code, 3) << line;
+    EXPECT_EQ(result.err, "ist: " + bad + ":3: " + flaw +
+                              ": give a file that --record wrote as JSON lines [input-invalid]\n");
+    EXPECT_FALSE(exists("out.jsonl"));
+  }
+  const CommandResult missing = ist(run(scene, {"--replay", path("none.jsonl")}));
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_TRUE(says(missing.err, "none.jsonl: "));
+  const CommandResult folder = ist(run(scene, {"--replay", std::string(dir_.path())}));
+  EXPECT_EQ(folder.exit_code, 3) << "a folder is no recording";
+}
+
+TEST_F(RunRecord, KeepsARecordingWholeWhereItIsInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string file = path("ticks.jsonl"), scene = boxes();
+    const std::size_t entries = dir_.entries();
+    Process process(IST_COMMAND, run(scene, {"--record", file, "--seconds", "4", "--json",
+                                             "--allow-missed", "1000000"}));
+    await_entries(entries + 1, process);
+    std::this_thread::sleep_for(200ms);
+    process.signal(signal);
+    const CommandResult result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto report = json_lines(result.out);
+    ASSERT_EQ(report.size(), 1u);
+    const auto lines = json_lines(file_content(file));
+    EXPECT_EQ(report[0]["ticks"], lines.size());
+    EXPECT_GT(lines.size(), 20u);
+    EXPECT_LT(lines.size(), 3000u);
+    std::filesystem::remove(file);
+  }
+}
+
+TEST_F(RunRecord, IsEndedByASecondSignal) {
+  // The disk does not answer: a pipe that nobody reads.
+  const std::string pipe = path("pipe.jsonl");
+  ASSERT_EQ(run_command("/usr/bin/mkfifo", {pipe}).exit_code, 0);
+  Process process(IST_COMMAND, run(boxes(), {"--unpaced", "--record", pipe}));
+  std::this_thread::sleep_for(300ms);
+  process.signal(SIGINT);
+  std::this_thread::sleep_for(100ms);
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
+}
+
+TEST_F(RunRecord, AFullDiskEndsTheRun) {
+  for (const auto& pace :
+       std::vector<std::vector<std::string>>{{"--unpaced"}, {"--allow-missed", "100000"}}) {
+    std::vector<std::string> arguments =
+        run(boxes(), {"--record", "/dev/full", "--seconds", "0.5"});
+    arguments.insert(arguments.end(), pace.begin(), pace.end());
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(says(result.err, "/dev/full: cannot write the file: No space left on device"));
+  }
+}
+
+TEST_F(RunRecord, DoesNotWriteOverWhatItReads) {
+  const std::string body = ball(), before = file_content(body);
+  const std::string scene =
+      write("own.toml", replaced(file_content(shipped("press")), "shape = \"sphere\"\nradius = 5",
+                                 "file = \"ball.stl\""));
+  for (const std::string& file : {scene, body}) {
+    const std::string content = file_content(file);
+    EXPECT_EQ(ist(run(scene, {"--unpaced", "--seconds", "0.01", "--record", file})).exit_code, 2)
+        << file;
+    EXPECT_EQ(file_content(file), content);
+  }
+  const std::string ticks = path("ticks.jsonl");
+  ist_well(run(scene, {"--unpaced", "--seconds", "0.01", "--record", ticks}));
+  EXPECT_EQ(ist(run(scene, {"--replay", ticks, "--record", ticks})).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Eigenvalues>
+
+#include "ist/haptics/effects/effect.h"
+#include "support/seeded.h"
+
+namespace ist::test {
+
+inline Vector6 six(const Eigen::Vector3d& translation, const Eigen::Vector3d& rotation) {
+  Vector6 motion;
+  motion << translation, rotation;
+  return motion;
+}
+
+/// What an effect is asked about; owns what its input refers to.
+struct EffectCase {
+  Placement tool;
+  TouchSet contacts, proximity;
+  double dt = 1e-3;
+
+  [[nodiscard]] EffectInput input() const { return {tool, contacts, proximity, dt}; }
+  /// A contact of one point for each leaf pair.
+  void touch(const TouchPoint& point) {
+    contacts.add(point);
+    contacts.spring +=
+        point.share * point.overlap * six(point.normal, point.arm.cross(point.normal));
+    contacts.count += point.share;
+  }
+};
+
+/// A few points about the tool, pressed by up to 0.1 mm.
+inline EffectCase random_case(Seeded& seeded, int points) {
+  EffectCase c;
+  c.tool = Placement{}.moved(six(seeded.point(-1, 1), seeded.point(-1, 1)));
+  for (int i = 0; i < points; ++i) {
+    const double overlap = seeded.between(2e-5, 1e-4), share = seeded.between(0.1, 1);
+    c.touch({seeded.point(-0.02, 0.02), seeded.direction(), overlap, share});
+    c.proximity.add({seeded.point(-0.02, 0.02), seeded.direction(), 0, share});
+  }
+  return c;
+}
+
+inline Response respond(const Effect& effect, const EffectCase& c,
+                        const Vector6& motion = Vector6::Zero()) {
+  Response response;
+  effect.respond(c.input(), motion, response);
+  return response;
+}
+
+/// -d wrench / d motion, by central differences.
+inline Matrix6 measured_stiffness(const Effect& effect, const EffectCase& c, const Vector6& motion,
+                                  double step) {
+  Matrix6 stiffness;
+  for (int i = 0; i < 6; ++i) {
+    Vector6 less = motion, more = motion;
+    less[i] -= step;
+    more[i] += step;
+    stiffness.col(i) =
+        (respond(effect, c, less).wrench - respond(effect, c, more).wrench) / (more[i] - less[i]);
+  }
+  return stiffness;
+}
+
+/// The largest difference of two stiffnesses, as a part of the first.
+inline double difference(const Matrix6& a, const Matrix6& b) {
+  return (a - b).cwiseAbs().maxCoeff() / a.cwiseAbs().maxCoeff();
+}
+
+inline bool is_symmetric_and_semidefinite(const Matrix6& stiffness) {
+  const double size = stiffness.cwiseAbs().maxCoeff();
+  if ((stiffness - stiffness.transpose()).cwiseAbs().maxCoeff() > 1e-14 * size) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(stiffness);
+  return solver.eigenvalues()[0] >= -1e-14 * size;
+}
+
+/// What an effect has asked for, in order: normals, depth, velocity, proximity, triangles.
+inline std::array<bool, 5> asked(const EffectNeeds& needs) {
+  return {needs.normals, needs.depth, needs.velocity, needs.proximity, needs.triangles};
+}
+
+}  // namespace ist::test

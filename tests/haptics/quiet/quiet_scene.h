@@ -1,0 +1,10 @@
+#pragma once
+
+#include "ist/scene/scene_builder.h"
+
+namespace ist::test {
+
+/// A ball that a hand puts on a box and pushes along, with all six effects. Millimetres, 1 kHz.
+[[nodiscard]] Scene scene_with_all_effects();
+
+}  // namespace ist::test

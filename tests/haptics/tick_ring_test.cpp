@@ -1,0 +1,108 @@
+#include "ist/haptics/tick_ring.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <iostream>
+#include <thread>
+#include <vector>
+
+#include "support/seeded.h"
+
+namespace ist::test {
+namespace {
+
+TEST(TickRing, RoundsItsRoomUpToAPowerOfTwo) {
+  for (const auto& [asked, given] :
+       {std::pair{0u, 1u}, {1u, 1u}, {2u, 2u}, {3u, 4u}, {1000u, 1024u}}) {
+    TickRing<int> ring(asked);
+    EXPECT_EQ(ring.capacity(), given);
+    for (unsigned i = 0; i < given; ++i) EXPECT_TRUE(ring.push(7)) << asked;
+    EXPECT_FALSE(ring.push(7)) << asked;
+  }
+}
+
+TEST(TickRing, GivesNothingWhenEmptyAndTakesNothingWhenFull) {
+  TickRing<int> ring(4);
+  std::array<int, 8> out{};
+  EXPECT_EQ(ring.pop(out), 0u);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
+  EXPECT_FALSE(ring.push(4));
+  EXPECT_EQ(ring.pop(std::span<int>()), 0u);
+  EXPECT_FALSE(ring.push(5));
+  EXPECT_EQ(ring.pop(std::span(out).first(1)), 1u);
+  EXPECT_EQ(out[0], 0);
+  EXPECT_TRUE(ring.push(6));
+  EXPECT_FALSE(ring.push(7));
+  ASSERT_EQ(ring.pop(out), 4u);
+  EXPECT_EQ(std::vector<int>(out.begin(), out.begin() + 4), (std::vector<int>{1, 2, 3, 6}));
+  EXPECT_EQ(ring.pop(out), 0u);
+}
+
+TEST(TickRing, KeepsTheOrderRoundAndRound) {
+  TickRing<std::uint64_t> ring(8);
+  std::deque<std::uint64_t> model;
+  Seeded seeded(3);
+  std::uint64_t next = 0;
+  for (int turn = 0; turn < 5000; ++turn) {
+    for (std::uint32_t n = seeded.below(12); n > 0; --n) {
+      ASSERT_EQ(ring.push(next), model.size() < 8);
+      if (model.size() < 8) model.push_back(next);
+      ++next;
+    }
+    std::vector<std::uint64_t> out(seeded.below(12));
+    const std::size_t count = ring.pop(out);
+    ASSERT_EQ(count, std::min(out.size(), model.size()));
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(out[i], model.front());
+      model.pop_front();
+    }
+  }
+}
+
+TEST(TickRingThreads, WhatIsPushedIsPoppedOnceInOrderAndWhole) {
+  struct Record {
+    std::uint64_t number, square, cube;
+  };
+  constexpr std::uint64_t kTicks = 400000;
+  TickRing<Record> ring(64);
+  std::uint64_t lost = 0;
+  std::thread producer([&] {
+    for (std::uint64_t i = 1; i <= kTicks; ++i) {
+      const Record record{i, i * i, i * i * i};
+      if (i % 2 == 0) {
+        if (!ring.push(record)) ++lost;  // as the loop does
+      } else {
+        while (!ring.push(record)) std::this_thread::yield();
+      }
+    }
+  });
+  std::uint64_t popped = 0, skipped = 0, last = 0, spoilt = 0, unordered = 0;
+  std::array<Record, 24> out;
+  while (last < kTicks - 1) {  // an odd one, which is not lost
+    const std::size_t count = ring.pop(out);
+    if (count == 0) std::this_thread::yield();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t n = out[i].number;
+      if (out[i].square != n * n || out[i].cube != n * n * n) ++spoilt;
+      if (n <= last) ++unordered;
+      skipped += n - last - 1;
+      last = n;
+    }
+    popped += count;
+  }
+  producer.join();
+  for (std::size_t count; (count = ring.pop(out)) > 0; popped += count)
+    last = out[count - 1].number;
+  skipped += kTicks - last;
+  EXPECT_EQ(spoilt, 0u);
+  EXPECT_EQ(unordered, 0u);
+  EXPECT_EQ(popped + lost, kTicks);
+  EXPECT_EQ(skipped, lost);
+  std::cout << "records popped: " << popped << ", lost: " << lost << '\n';
+}
+
+}  // namespace
+}  // namespace ist::test

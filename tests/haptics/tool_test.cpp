@@ -1,0 +1,102 @@
+#include "ist/haptics/tool.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ist/haptics/effects/contact_effect.h"
+
+namespace ist::test {
+namespace {
+
+constexpr CouplingSettings kSpring{1000, 0, 2, 0, 5, 0.2};
+constexpr double kDt = 1e-3, kContact = 3000;
+
+// A tool that touches one plane z = const, from above, so many metres deep.
+struct Bench {
+  Placement at;
+  TouchSet contacts, proximity;
+  VirtualCoupling coupling{kSpring};
+  VirtualCoupling::Stretch stretch{Vector6::Zero(), Vector6::Zero(), kDt};
+  std::vector<Tool::TimedEffect> effects;
+
+  explicit Bench(double overlap) {
+    contacts.add({Eigen::Vector3d(0, 0, -0.01), Eigen::Vector3d::UnitZ(), overlap, 1});
+    contacts.spring[2] = overlap;
+    contacts.count = 1;
+    effects.push_back({std::make_unique<ContactEffect>(ContactSettings{kContact, 0.5}), {}});
+  }
+  std::optional<Vector6> move(const Tool& tool, double part = 1) {
+    return tool.motion({at, contacts, proximity, kDt}, effects, coupling, stretch, part);
+  }
+};
+
+TEST(Tool, FollowsTheDeviceWhereNothingIsTouched) {
+  Bench bench(0);
+  bench.effects.clear();
+  bench.stretch.length << 1e-3, -2e-3, 3e-3, 0.01, 0.02, -0.03;
+  const auto motion = bench.move(Tool(0, Tool::kNoLimit));
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR((*motion - bench.stretch.length).norm(), 0, 1e-15);
+}
+
+// Two springs in a row: the tool stops where they are in balance, as the contact foresees itself.
+TEST(Tool, StopsWhereCouplingAndContactAreInBalance) {
+  Bench bench(1e-4);
+  bench.stretch.length[2] = -1e-3;
+  const auto motion = bench.move(Tool(0, Tool::kNoLimit));
+  ASSERT_TRUE(motion);
+  // 1000 (-1e-3 - z) + 3000 (1e-4 - lead z) = 0
+  EXPECT_NEAR((*motion)[2], (-1 + 0.3) / (1000 + ContactEffect::kLead * 3000), 1e-12);
+  EXPECT_NEAR(motion->head<2>().norm() + motion->tail<3>().norm(), 0, 1e-15);
+}
+
+// The contact's spring ends where the surfaces part: it does not hold the tool back.
+TEST(Tool, IsNotHeldBackWhereItLeaves) {
+  Bench bench(1e-4);
+  bench.stretch.length[2] = 5e-4;
+  const auto motion = bench.move(Tool(0, Tool::kNoLimit));
+  ASSERT_TRUE(motion);
+  EXPECT_NEAR((*motion)[2], 5e-4, 1e-12);
+}
+
+TEST(Tool, GoesNoFartherThanItsLongestStep) {
+  const Tool tool(0.05, 2e-4);
+  Bench bench(0);
+  for (const double far : {1e-3, 1.0, 1e9}) {
+    bench.stretch.length << far, far, -far, 0.1, 0, 0.2;
+    const auto motion = bench.move(tool);
+    ASSERT_TRUE(motion);
+    EXPECT_LE(tool.way(*motion), 2e-4 * (1 + 1e-12));
+    EXPECT_GE(tool.way(*motion), 2e-4 * (1 - 1e-12));
+    const auto half = bench.move(tool, 0.5);
+    ASSERT_TRUE(half);
+    EXPECT_LE(tool.way(*half), 1e-4 * (1 + 1e-12));
+  }
+}
+
+// No point of a body moves farther than the way says.
+TEST(Tool, KnowsHowFarItsSurfaceGoes) {
+  const Tool tool(0.05, 1);
+  Vector6 motion;
+  motion << 1e-4, -2e-4, 3e-4, 0.01, -0.02, 0.005;
+  const Placement after = Placement().moved(motion);
+  for (int i = 0; i < 1000; ++i) {
+    const double z = -1 + 2 * (i + 0.5) / 1000, r = std::sqrt(1 - z * z), a = 2.4 * i;
+    const Eigen::Vector3d point = 0.05 * Eigen::Vector3d(r * std::cos(a), r * std::sin(a), z);
+    const Eigen::Vector3d to = after.rotation * point + after.translation;
+    EXPECT_LE((to - point).norm(), tool.way(motion));
+  }
+}
+
+TEST(Tool, HasNoMotionWhereNumbersAreNone) {
+  const Tool tool(0.05, 2e-4);
+  for (const double none : {std::nan(""), HUGE_VAL}) {
+    Bench bench(1e-4);
+    bench.stretch.length[1] = none;
+    EXPECT_FALSE(bench.move(tool));
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,171 @@
+// Contact points under a budget: the same where it does not end, cut where it was said, and true.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "query/contacts/contact_cases.h"
+#include "query/search/scenes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr std::array kPolicies = {SpherePolicy::kTable, SpherePolicy::kSlab};
+
+Touched touched_within(CollisionQuery& query, ContactPoints& points, const Eigen::Isometry3d& pose,
+                       const Budget& budget) {
+  const QueryResult result = query.contact_points(pose, points, budget);
+  return {points.sums(), {points.points().begin(), points.points().end()}, result};
+}
+
+TEST(ContactsWithinABudget, WithoutEndAreThoseOfThePlainQuery) {
+  for (const Scene& scene : {solids()[0], solids()[1], solids()[2], shells()}) {
+    for (const SpherePolicy policy : kPolicies) {
+      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
+      ContactPoints points(scene.fixed, scene.moving, policy);
+      const Touched plain = touched(query, points, scene.pose);
+      ASSERT_GT(plain.points.size(), 8u) << scene.name;
+      {
+        SCOPED_TRACE(scene.name);
+        const Touched found = touched_within(query, points, scene.pose, {});
+        EXPECT_TRUE(same(found, plain));
+        EXPECT_TRUE(found.result.complete);
+        EXPECT_EQ(found.result.level, 0);
+        EXPECT_EQ(found.result.contacts, plain.result.contacts);
+        EXPECT_EQ(found.result.sphere_tests, plain.result.sphere_tests);
+        EXPECT_EQ(found.result.pad, plain.result.pad);
+      }
+    }
+  }
+}
+
+// What a stopped query spent stops the next one at the same place: so a recording is made again.
+TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
+  int stopped = 0, with_points = 0;
+  for (const Scene& scene : {solids()[0], solids()[2], shells()}) {
+    for (const SpherePolicy policy : kPolicies) {
+      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
+      CollisionQuery other(scene.fixed, scene.moving, options_of(policy));
+      ContactPoints points(scene.fixed, scene.moving, policy);
+      ContactPoints others(scene.fixed, scene.moving, policy);
+      const std::uint64_t all = query.contact_points(scene.pose, points).sphere_tests;
+      {
+        for (std::uint64_t tests = 1; tests < 2 * all; tests = tests * 7 / 4 + 1) {
+          SCOPED_TRACE(scene.name + ", " + std::to_string(tests) + " tests");
+          const Touched first = touched_within(query, points, scene.pose, {.sphere_tests = tests});
+          const Touched again = touched_within(other, others, scene.pose,
+                                               {.sphere_tests = first.result.sphere_tests});
+          EXPECT_TRUE(same(first, again));
+          EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
+          EXPECT_EQ(again.result.complete, first.result.complete);
+          EXPECT_EQ(again.result.level, first.result.level);
+          EXPECT_EQ(again.result.contacts, first.result.contacts);
+          EXPECT_EQ(again.result.gap->lower, first.result.gap->lower);
+          EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
+          EXPECT_LE(first.result.contacts, query.contact_points(scene.pose, points).contacts);
+          EXPECT_TRUE(first.result.complete || tests < all);
+          stopped += first.result.complete ? 0 : 1;
+          with_points += !first.result.complete && !first.points.empty() ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(stopped, 50);
+  EXPECT_GT(with_points, 10);
+}
+
+// A clock stops it wherever it will; the tests that it had made stop it there too.
+TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
+  const Scene& scene = jaws();
+  int stopped = 0;
+  CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  {
+    for (int i = 0; i < 40; ++i) {
+      const auto deadline = Budget::Clock::now() + std::chrono::microseconds(5 * i);
+      const Touched first = touched_within(query, points, scene.pose, {.deadline = deadline});
+      const Touched again =
+          touched_within(query, points, scene.pose, {.sphere_tests = first.result.sphere_tests});
+      EXPECT_TRUE(same(first, again)) << i;
+      EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
+      EXPECT_EQ(again.result.complete, first.result.complete);
+      EXPECT_EQ(again.result.level, first.result.level);
+      EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
+      stopped += first.result.complete ? 0 : 1;
+    }
+  }
+  EXPECT_GT(stopped, 5);
+}
+
+TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
+  {
+    const Scene& scene = solids()[0];
+    CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+    ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+    const Touched found =
+        touched_within(query, points, scene.pose, {.deadline = Budget::Clock::now()});
+    EXPECT_FALSE(found.result.complete);
+    EXPECT_EQ(found.result.sphere_tests, 1u);
+    EXPECT_EQ(found.result.contacts, 0u);
+    EXPECT_EQ(found.result.level, std::max(scene.fixed.depth(), scene.moving.depth()));
+    EXPECT_TRUE(found.points.empty());
+    EXPECT_EQ(found.sums.weight, 0);
+    // Roots that are apart need no time.
+    const Touched apart =
+        touched_within(query, points, shift({9, 0, 0}), {.deadline = Budget::Clock::now()});
+    EXPECT_TRUE(apart.result.complete);
+    EXPECT_GT(apart.result.gap->lower, 5);
+  }
+}
+
+// The ball of radius 1 beside the block's face at x = 0.9, so far apart along x: the gap holds it
+// whatever was spent, closer the more that was; and measured it is no wider than unmeasured.
+TEST(ContactsWithinABudget, TellATrueGap) {
+  const Scene& scene = solids()[0];
+  for (const SpherePolicy policy : kPolicies) {
+    CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
+    ContactPoints points(scene.fixed, scene.moving, policy);
+    for (const double distance : {1.0, 0.3, 0.05, 0.002}) {
+      const Eigen::Isometry3d pose = shift({1.9 + distance, 0, 0});
+      GapInterval before{0, HUGE_VAL};
+      for (const std::uint64_t tests : {0u, 1u, 30u, 400u, 3'000u, 50'000u, 10'000'000u}) {
+        SCOPED_TRACE(std::to_string(distance) + " apart, " + std::to_string(tests) + " tests");
+        const GapInterval wide = *query.contact_points(pose, points, {.sphere_tests = tests}).gap;
+        const QueryResult result =
+            query.collide(pose, std::span<Contact>(), {.sphere_tests = tests});
+        const GapInterval narrow = *result.gap;
+        for (const GapInterval& gap : {wide, narrow}) {
+          EXPECT_LE(gap.lower, distance + 1e-9);
+          EXPECT_GE(gap.upper, distance - 1e-9);
+        }
+        EXPECT_GE(narrow.lower, wide.lower);
+        EXPECT_LE(narrow.upper, wide.upper);
+        EXPECT_GE(narrow.lower, before.lower);
+        EXPECT_LE(narrow.upper, before.upper);
+        before = narrow;
+        EXPECT_TRUE(result.contacts == 0 || tests < 10'000'000 ||
+                    wide.upper <= query.resolution(result));
+      }
+    }
+  }
+}
+
+TEST(ContactsWithinABudget, OfNoRigidMotionAreNone) {
+  const Scene& scene = solids()[0];
+  CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  Eigen::Isometry3d bad = scene.pose;
+  bad.linear() *= 2;
+  {
+    EXPECT_TRUE(touched_within(query, points, scene.pose, {}).result.complete);
+    const Touched none = touched_within(query, points, bad, {});
+    EXPECT_EQ(none.result.status, QueryStatus::kInvalidPose);
+    EXPECT_FALSE(none.result.complete);
+    EXPECT_TRUE(none.points.empty());
+    EXPECT_EQ(none.sums.weight, 0);
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,180 @@
+// Only what a scene names is built, and what it says of its bodies is kept.
+
+#include "ist/scene/scene_builder.h"
+
+#include <array>
+#include <map>
+#include <set>
+
+#include "ist/scene/make_effects.h"
+#include "scene/scene_case.h"
+
+namespace ist::test {
+namespace {
+
+using Names = std::set<std::string>;
+
+constexpr std::string_view kContact = "[effects.contact]\nstiffness = 2000\n";
+const std::map<std::string, std::string> kTables{
+    {"contact", "[effects.contact]\n"},
+    {"friction", "[effects.friction]\n"},
+    {"damping", "[effects.damping]\n"},
+    {"proximity", "[effects.proximity]\ndistance = 2\n"},
+    {"gravity", "[effects.gravity]\nmass = 0.05\n"},
+    {"snap", "[effects.snap]\nmove = [0, 0, -2]\nradius = 3\n"}};
+const Names kAll{"contact", "friction", "damping", "proximity", "gravity", "snap"};
+
+class PayOnlyForWhatIsNamed : public SceneCase {
+ protected:
+  // The sound scene with these effects and none else, started above the box.
+  [[nodiscard]] static std::string text_of(const Names& effects) {
+    std::string text =
+        replaced(replaced(kSoundScene, kContact, ""), "move = [0, 0, 0]", "move = [0, 0, 12]");
+    for (const std::string& effect : effects) text += kTables.at(effect);
+    return text;
+  }
+  [[nodiscard]] BuiltScene with(const Names& effects) const { return built(text_of(effects)); }
+};
+
+Names effects_of(const BuiltScene& scene) {
+  Names names;
+  for (const auto& effect : scene.simulation->effects()) {
+    names.insert(std::string(effect.effect->name()));
+  }
+  return names;
+}
+
+Names built_of(const BuiltScene& scene) {
+  Names names;
+  for (const BuildNote& note : scene.notes) {
+    if (note.built) names.insert(note.what);
+  }
+  return names;
+}
+
+std::uint64_t bytes_of(const BuiltScene& scene) {
+  std::uint64_t bytes = scene.simulation->bytes();
+  for (const auto* tree :
+       {&scene.trees.fixed, &scene.trees.held, &scene.trees.near_fixed, &scene.trees.near_held}) {
+    if (*tree) bytes += (*tree)->bytes();
+  }
+  return bytes;
+}
+
+// What is built for contacts, and what for proximity.
+const Names kContactStages{"fixed tree", "held tree", "contact points"};
+const Names kProximityStages{"proximity voxels", "held tree, coarse", "proximity query"};
+
+void expect_built_for(const BuiltScene& scene, const Names& effects) {
+  const bool contacts = effects.contains("contact"), proximity = effects.contains("proximity");
+  EXPECT_EQ(effects_of(scene), effects);
+  EXPECT_EQ(scene.trees.fixed != nullptr, contacts);
+  EXPECT_EQ(scene.trees.held != nullptr, contacts);
+  EXPECT_EQ(scene.trees.near_fixed != nullptr, proximity);
+  EXPECT_EQ(scene.trees.near_held != nullptr, proximity);
+  Names stages;
+  if (contacts) stages.insert(kContactStages.begin(), kContactStages.end());
+  if (proximity) stages.insert(kProximityStages.begin(), kProximityStages.end());
+  EXPECT_EQ(built_of(scene), stages);
+  std::uint64_t noted = 0;
+  for (const BuildNote& note : scene.notes) {
+    EXPECT_FALSE(note.why.empty());
+    EXPECT_EQ(note.bytes > 0, note.built) << note.what;
+    if (!note.built) {
+      EXPECT_EQ(note.milliseconds, 0) << note.what;
+    }
+    noted += note.bytes;
+  }
+  EXPECT_EQ(noted, bytes_of(scene)) << "what is said is not what is there";
+}
+
+TEST_F(PayOnlyForWhatIsNamed, NothingIsBuiltForNoEffect) {
+  const BuiltScene scene = with({});
+  expect_built_for(scene, {});
+  EXPECT_EQ(bytes_of(scene), 0u);
+  EXPECT_EQ(scene.step_limit, Tool::kNoLimit);
+  for (const char* what : {"fixed tree", "held tree", "proximity voxels", "free start"}) {
+    EXPECT_FALSE(note_of(scene, what).built) << what;
+  }
+}
+
+TEST_F(PayOnlyForWhatIsNamed, EachEffectAloneHasWhatItNeeds) {
+  for (const auto& [effect, table] : kTables) {
+    SCOPED_TRACE(effect);
+    Names named{effect};
+    // These two act at contacts, and cannot be named without.
+    if (effect == "friction" || effect == "damping") named.insert("contact");
+    expect_built_for(with(named), named);
+  }
+}
+
+// Each of the six taken out: what it alone needed is gone, and all else is as it was.
+TEST_F(PayOnlyForWhatIsNamed, AnEffectThatIsTakenOutTakesItsMemoryAndStagesAway) {
+  const BuiltScene all = with(kAll);
+  expect_built_for(all, kAll);
+  for (const std::string& effect : kAll) {
+    SCOPED_TRACE(effect);
+    Names rest = kAll;
+    rest.erase(effect);
+    if (effect == "contact") rest.erase("friction"), rest.erase("damping");
+    const BuiltScene scene = with(rest);
+    expect_built_for(scene, rest);
+    std::uint64_t gone = 0;
+    if (effect == "contact" || effect == "proximity") {
+      for (const std::string& what : effect == "contact" ? kContactStages : kProximityStages) {
+        gone += note_of(all, what).bytes;
+      }
+      EXPECT_GT(gone, 100'000u);
+    }
+    EXPECT_EQ(bytes_of(scene) + gone, bytes_of(all));
+  }
+}
+
+TEST_F(PayOnlyForWhatIsNamed, ATickAsksOnlyWhatIsNeeded) {
+  for (const Names& effects :
+       {Names{}, Names{"contact"}, Names{"proximity"}, Names{"snap"}, kAll}) {
+    const BuiltScene scene = with(effects);
+    const Tick tick = scene.simulation->tick(scene.device->read(), {});
+    EXPECT_EQ(tick.contacts.has_value(), effects.contains("contact"));
+    EXPECT_EQ(tick.proximity.has_value(), effects.contains("proximity"));
+    EXPECT_FALSE(tick.fault || tick.held);
+  }
+}
+
+// What brakes takes no part where there is no time for it, and holds nothing where it is.
+TEST_F(PayOnlyForWhatIsNamed, WhatOnlyBrakesDoesNotHoldTheTool) {
+  const BuiltScene scene = with(kAll);
+  TickBudget budget;
+  budget.proximity.sphere_tests = 2;
+  const double start = scene.device->read()->translation.z();
+  double way = 0, pairs = 0;
+  int stopped = 0;
+  for (int i = 0; i < 900; ++i) {
+    const Tick tick = scene.simulation->tick(scene.device->read(), budget);
+    scene.device->write(tick.wrench, scene.simulation->dt());
+    EXPECT_FALSE(tick.held);
+    stopped += tick.proximity->complete ? 0 : 1;
+    way = tick.tool.translation.z() - start;
+    pairs = std::max(pairs, tick.leaf_pairs);
+  }
+  EXPECT_GT(stopped, 500);
+  EXPECT_LT(way, -1.5e-3);  // down to the box
+  EXPECT_GT(pairs, 5);      // and on it
+}
+
+// Built shapes, voxels and needs in one table: what the effects ask for is what they say.
+TEST_F(PayOnlyForWhatIsNamed, NeedsAreTheUnionOfAllEffects) {
+  const auto needs = [&](const Names& effects) {
+    const EffectNeeds of = needs_of(make_effects(scene_of(text_of(effects)), {}, true));
+    return std::array{of.contacts(), of.velocity, of.proximity, of.triangles};
+  };
+  EXPECT_EQ(needs({}), (std::array{false, false, false, false}));
+  EXPECT_EQ(needs({"gravity", "snap"}), (std::array{false, false, false, false}));
+  EXPECT_EQ(needs({"contact"}), (std::array{true, false, false, false}));
+  EXPECT_EQ(needs({"contact", "damping"}), (std::array{true, true, false, false}));
+  EXPECT_EQ(needs({"proximity"}), (std::array{false, true, true, false}));
+  EXPECT_EQ(needs(kAll), (std::array{true, true, true, false}));
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,148 @@
+// What touches the body of proximity voxels, against each of their cells.
+
+#include "ist/tree/proximity_body.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ist/query/collision_query.h"
+#include "ist/tree/tree_builder.h"
+#include "ist/voxel/morton.h"
+#include "query/query_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRadius = 1, kSize = 0.2, kProbe = 0.0625;
+
+SphereTree ball_with_proximity() {
+  BuildOptions options;
+  options.voxel_size = kSize;
+  options.spheres = SpherePolicy::kTable;
+  options.proximity = true;
+  return build_tree(moved(icosphere(3, kRadius), {5, -3, 2}), options);
+}
+
+// The centre of each proximity cell, from where the lattice says that cells are.
+std::vector<Vector3d> cells_of(const SphereTree& tree) {
+  std::vector<Vector3d> centres;
+  for (const std::uint64_t code : tree.proximity()->octree.codes(0)) {
+    const auto cell = morton_decode(code);
+    Vector3d centre;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      centre[static_cast<Eigen::Index>(axis)] =
+          tree.lattice().corner[axis] + (cell[axis] - double{ProximityTree::kMargin} + 0.5) * kSize;
+    }
+    centres.push_back(centre);
+  }
+  return centres;
+}
+
+TEST(ProximityBody, LiesOutsideNearTheSurface) {
+  const SphereTree tree = ball_with_proximity();
+  const std::vector<Vector3d> cells = cells_of(tree);
+  ASSERT_GT(cells.size(), 500u);
+  for (const Vector3d& centre : cells) {
+    // The facets lie a little inside the ball.
+    const double height = (centre - Vector3d(5, -3, 2)).norm() - kRadius;
+    EXPECT_GT(height, -0.01);
+    EXPECT_LE(height, 2 * kSize);
+  }
+}
+
+// A probe of one voxel touches the cells whose cubes its own meets, and none whose balls are apart
+// from its own.
+TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
+  const SphereTree tree = ball_with_proximity();
+  const SphereTree body = proximity_body(tree);
+  const std::vector<Vector3d> cells = cells_of(tree);
+  ASSERT_EQ(body.octree().leaf_count(), cells.size());
+  EXPECT_EQ(body.tightest(), SpherePolicy::kTight);
+  const SphereTree probe = tree_of(box(Vector3d::Zero(), Vector3d::Constant(kProbe)), 1);
+  ASSERT_EQ(probe.octree().leaf_count(), 1u);
+  const double balls = 0.5 * std::sqrt(3.0) * (kSize + kProbe);
+
+  Random random(5);
+  std::size_t touching = 0, free = 0;
+  for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
+    CollisionOptions options;
+    options.policy = policy;
+    CollisionQuery query(body, probe, options);
+    for (int i = 0; i < 400; ++i) {
+      const Vector3d at = Vector3d(5, -3, 2) + random.point(-1.7, 1.7);
+      const Answer answer = ask(query, shift(at - Vector3d::Constant(0.5 * kProbe)));
+      std::vector<bool> found(cells.size());
+      for (const Contact& contact : answer.contacts) found[contact.fixed] = true;
+      for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        const Vector3d apart = (cells[cell] - at).cwiseAbs();
+        if (apart.maxCoeff() <= 0.5 * (kSize + kProbe)) {
+          EXPECT_TRUE(found[cell]) << "a cell is missed";
+        } else if (apart.norm() > balls + 1e-5) {
+          EXPECT_FALSE(found[cell]) << "a cell is far off";
+        }
+      }
+      ++(answer.contacts.empty() ? free : touching);
+    }
+  }
+  EXPECT_GT(touching, 100u);
+  EXPECT_GT(free, 100u);
+}
+
+// By its tight bounds a cell is its centre.
+TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
+  const SphereTree tree = ball_with_proximity();
+  const SphereTree body = proximity_body(tree);
+  const std::vector<Vector3d> cells = cells_of(tree);
+  const SphereTree probe = tree_of(box(Vector3d::Zero(), Vector3d::Constant(kProbe)), 1);
+  CollisionOptions options;
+  options.policy = SpherePolicy::kTight;
+  CollisionQuery query(body, probe, options);
+  const double ball = 0.5 * std::sqrt(3.0) * kProbe;
+  // A tight ball is at most 1 % too large, and a point's is what packing rounds.
+  const double slop = 0.01 * ball + 3 * 0x1p-16 * 2 * (kSize + kProbe) * 4;
+  Random random(6);
+  std::size_t found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d at =
+        cells[static_cast<std::size_t>(i) % cells.size()] + random.point(-0.06, 0.06);
+    std::vector<bool> touched(cells.size());
+    for (const Contact& contact :
+         ask(query, shift(at - Vector3d::Constant(0.5 * kProbe))).contacts) {
+      touched[contact.fixed] = true;
+    }
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+      const double apart = (cells[cell] - at).norm();
+      if (apart <= ball) {
+        EXPECT_TRUE(touched[cell]) << "a centre is missed";
+      }
+      if (apart > ball + slop) {
+        EXPECT_FALSE(touched[cell]) << "a centre is far off";
+      }
+      found += touched[cell] ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(found, 500u);
+}
+
+// As the surface's own tree is in its mesh's coordinates, so is it, whatever both depths are.
+TEST(ProximityBody, KeepsTheMeshCoordinatesWhereItIsDeeper) {
+  BuildOptions options;
+  options.voxel_size = 0.25;
+  options.spheres = SpherePolicy::kTable;
+  options.proximity = true;
+  // Eight cells and a margin of two on each side: a level more.
+  const SphereTree tree = build_tree(box({0, 0, 0}, {2, 2, 2}), options);
+  const SphereTree body = proximity_body(tree);
+  EXPECT_EQ(tree.depth(), 3);
+  EXPECT_EQ(body.depth(), 4);
+  EXPECT_EQ(body.lattice().voxel_size, 0.25);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(body.lattice().corner[axis], -0.5);
+  EXPECT_EQ(body.lattice().cells, tree.lattice().cells + 4);
+}
+
+}  // namespace
+}  // namespace ist::test
