@@ -29,11 +29,12 @@ Scene pressed_jaws(double voxel_size, const Names& effects) {
   scene.held.source = BuiltInShape{.kind = BuiltInShape::Kind::kLowerJaw};
   scene.fixed.voxel_size = scene.held.voxel_size = voxel_size;
   scene.held.translation = {0, 0, -5};
-  scene.device = ScriptSettings{{.damping = 2, .angular_damping = 2e-3},
+  scene.device = ScriptSettings{{.damping = 2, .angular_damping = 2e-3, .delay = 0},
+                                {},
                                 {waypoint(0, 0), waypoint(0.3, 4.5), waypoint(1e6, 4.5)}};
   scene.coupling = {1000, 0.5, 1, 5e-4, 5, 0.2};
   scene.safety = {8, 0.3, 500, 20, 0.1};
-  if (effects.contains("contact")) scene.contact = ContactSettings{2000, 0.5};
+  if (effects.contains("contact")) scene.contact = ContactSettings{2000, 0.25};
   if (effects.contains("friction")) scene.friction = FrictionSettings{0.3, 0.2, 1000};
   if (effects.contains("damping")) scene.damping = DampingSettings{1};
   if (effects.contains("proximity")) scene.proximity = ProximitySettings{1e-3, 2};

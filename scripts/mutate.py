@@ -70,7 +70,7 @@ def first_failure(tests):
     environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), **os.environ}
     for test in tests:
         program, _, pattern = test.partition(" ")
-        command = [BUILD / "tests" / program, "--gtest_fail_fast", "--gtest_brief=1"]
+        command = [BUILD / "tests" / program, "--gtest_fail_fast"]
         if pattern:
             command.append(f"--gtest_filter={pattern}")
         try:
@@ -78,6 +78,8 @@ def first_failure(tests):
                                   env=environment, errors="replace")
         except subprocess.TimeoutExpired:
             return f"{program} (does not end)"
+        if "Running 0 tests" in done.stdout:
+            fail(f"no test is called {test}")
         if done.returncode != 0:
             failed = re.search(r"\[  FAILED  \] ([\w/.]+)", done.stdout)
             return failed.group(1) if failed else f"{program} (ends with {done.returncode})"

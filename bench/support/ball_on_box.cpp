@@ -105,8 +105,7 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
     made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
     parts.proximity = std::make_unique<TouchQuery>(
         *made.near_box, *made.near_ball, frames,
-        TouchOptions{
-            .policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0, .measure_gap = false});
+        TouchOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0});
   }
   made.device = std::make_unique<HandDevice>(HandSettings{.mechanics = {2, 2e-3, 0},
                                                           .mass = 0.2,

@@ -119,6 +119,11 @@ void replay_ticks(BuiltScene& built, const RunArguments& options) {
     read = reader.bytes_read();
     ++ticks;
   }
+  if (ticks == 0) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: it holds no tick: give a file that --record wrote",
+                            options.replay.string()));
+  }
   if (writer) writer->commit();
   fmt::print(stderr, "replayed {} ticks\n", ticks);
 }

@@ -90,6 +90,8 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
                                 {"late_microseconds", as_json(report.late)},
                                 {"microseconds", as_json(report.execution)},
                                 {"cpu_microseconds", as_json(report.cpu)},
+                                {"worst_cpu_microseconds", microseconds(report.worst_cpu)},
+                                {"worst_effects_microseconds", microseconds(report.worst_effects)},
                                 {"effects", nlohmann::ordered_json::object()},
                                 {"notes", report.notes}};
     for (const Tool::TimedEffect& effect : simulation.effects()) {
@@ -114,7 +116,9 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
                &effect == simulation.effects().data() ? "\neffects, a tick: " : ", ",
                effect.effect->name(), microseconds(effect.time) / ticks);
   }
-  if (!simulation.effects().empty()) fmt::print("\n");
+  if (simulation.effects().empty()) return;
+  fmt::print("\nthe tick that used most of the processor: {:.1f} µs, of which effects {:.1f} µs\n",
+             microseconds(report.worst_cpu), microseconds(report.worst_effects));
 }
 
 }  // namespace ist::cli

@@ -28,8 +28,9 @@ constexpr int kTicks = 3000;                  // of one press: come, slide, rest
 constexpr double kPress = kTicks * kPeriod;   // s
 constexpr double kRest = 1.9, kRested = 2.1;  // s: within it nothing is planned to move
 constexpr double kResolution = 2e-6, kAngularResolution = 2e-5;  // of the encoders, m and rad
-// More than twice as fast as the plan, m/s and rad/s.
-constexpr double kFastest = 0.03, kFastestTurn = 0.4;
+// Some 2.5 times as fast as the plan, m/s and rad/s.
+constexpr double kFastest = 0.03, kFastestTurn = 0.6;
+constexpr double kMargin = 0.25;  // from which springs begin, voxels
 constexpr SafetySettings kSafety{8, 0.3, 500, 20, 0.5};
 
 Placement at(const Eigen::Vector3d& millimetres, const Eigen::Vector3d& turn = {0, 0, 0}) {
@@ -59,16 +60,17 @@ class HumanPair {
     return exact_.touches(frames_.query_pose(tool)) == Touch::kYes;
   }
   [[nodiscard]] Simulation simulation(const CouplingSettings& coupling) const {
-    Simulation::Parts parts{std::make_unique<TouchQuery>(fixed_, held_, frames_,
-                                                         TouchOptions{SpherePolicy::kSlab, -0.5}),
-                            nullptr,
-                            {},
-                            coupling,
-                            kSafety,
-                            Tool(1e-3 * surface_radius(held_), voxel()),
-                            moved(at({0, 0, -4})),
-                            kPeriod};
-    auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, 0.5});
+    Simulation::Parts parts{
+        std::make_unique<TouchQuery>(fixed_, held_, frames_,
+                                     TouchOptions{SpherePolicy::kSlab, -kMargin}),
+        nullptr,
+        {},
+        coupling,
+        kSafety,
+        Tool(1e-3 * surface_radius(held_), voxel()),
+        moved(at({0, 0, -4})),
+        kPeriod};
+    auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
     const ContactEffect& load = *contact;
     parts.effects.push_back(std::move(contact));
     parts.effects.push_back(
@@ -95,7 +97,7 @@ std::vector<Waypoint> presses(const HumanPair& pair, int count) {
   std::vector<Waypoint> plan{{0, pair.moved(at({0, 0, -4}))}};
   for (int i = 0; i < count; ++i) {
     const double begin = kPress * i;
-    const double depth = seeded.between(1.5, 4);
+    const double depth = seeded.between(3.5, 5.5);
     const auto place = [&] {
       Eigen::Vector3d way = seeded.point(-0.5, 0.5);
       way.z() = depth;
@@ -157,8 +159,14 @@ class Watch {
     spin_.sample(velocity.tail<3>().norm(), kFastestTurn);
   }
   void press_ends() {
-    EXPECT_GT(least_, 0.3) << "N: nothing was pressed";
-    noise_.sample((most_ - least_) / most_, 0.01);
+    // Below it, the flicker of one count of the encoders in each direction, 5 mN, is 1 % of it.
+    EXPECT_GT(least_, 0.6) << "N: hardly pressed";
+    // Still is less than 1 %. With voxels of 0.8 mm one press in 200 is not, by up to 2.2 %.
+    const double trembles = (most_ - least_) / most_;
+    noise_.sample(trembles, 0.03);
+    ++presses_;
+    trembling_ += trembles > 0.01 ? 1 : 0;
+    EXPECT_LE(100 * trembling_, presses_ + 99 * (presses_ > 2 ? 1 : 0));
     energy_.sample(std::max(0.0, returned_), allowance_);
     least_ = 1e300;
     most_ = returned_ = allowance_ = 0;
@@ -173,12 +181,13 @@ class Watch {
   StabilityCase spin_{"long runs", "turning of a hand that presses" + name_, "rad/s"};
   StabilityCase noise_{"long runs", "force at rest" + name_, "part of it that trembles"};
   StabilityCase energy_{"long runs", "energy returned by a press" + name_, "J"};
+  int presses_ = 0, trembling_ = 0;
   Vector6 last_ = Vector6::Zero();
   double least_ = 1e300, most_ = 0, returned_ = 0, allowance_ = 0;
 };
 
 // `give`: the surfaces come apart when the tool is moved so far out, m. The springs of a contact
-// begin half a voxel before surfaces meet, and give way by what they bear.
+// begin a margin before surfaces meet, and give way by what they bear.
 void press_for(double voxel_size, double give, int count) {
   HumanPair pair(voxel_size);
   HandDevice device(hand_of(presses(pair, count)));
@@ -219,7 +228,7 @@ TEST(LongPressing, OfTheHumanPairGivesNoEnergyAndRestsStill) {
   }
   const int count = samples(2);
   press_for(0.8, 0, count);
-  if (count > 2) press_for(0.2, 1e-4, count);
+  if (count > 2) press_for(0.2, 3e-4, count);
 }
 
 }  // namespace

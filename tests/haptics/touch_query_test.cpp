@@ -179,12 +179,15 @@ TEST(TouchQuery, MeasuresTheGapByWhatIsLeft) {
   const Scenery scenery{Placement()};
   const Placement near = scenery.tool(pressed(-0.9));
   TouchSet touches;
-  TouchQuery never(block(), ball(), scenery.frames,
-                   {.policy = SpherePolicy::kSlab, .measure_gap = false});
-  const QueryResult plain = never.ask(near, {}, touches);
-  ASSERT_EQ(plain.contacts, 0u);
   TouchQuery query(block(), ball(), scenery.frames, {.policy = SpherePolicy::kSlab});
-  const QueryResult whole = query.ask(near, {}, touches);
+  const QueryResult plain = query.ask(near, {}, touches);
+  ASSERT_EQ(plain.contacts, 0u);
+  const auto ask = [&](const Budget& budget) {
+    QueryResult result = query.ask(near, budget, touches);
+    query.measure_gap(near, budget, result);
+    return result;
+  };
+  const QueryResult whole = ask({});
   EXPECT_LE(whole.gap->lower, 0.9 + 0.01);  // the facets lie inside the ball
   EXPECT_GE(whole.gap->upper, 0.9);
   EXPECT_LT(whole.gap->upper - whole.gap->lower, plain.gap->upper - plain.gap->lower);
@@ -192,13 +195,13 @@ TEST(TouchQuery, MeasuresTheGapByWhatIsLeft) {
   for (std::uint64_t tests = plain.sphere_tests; tests <= whole.sphere_tests; tests += 5) {
     Budget budget;
     budget.sphere_tests = tests;
-    const QueryResult result = query.ask(near, budget, touches);
+    const QueryResult result = ask(budget);
     ASSERT_TRUE(result.complete) << tests;
     EXPECT_LE(result.gap->lower, 0.9 + 0.01);
     EXPECT_GE(result.gap->upper, 0.9);
     // As many again stop it at the same place.
     budget.sphere_tests = result.sphere_tests;
-    const QueryResult again = query.ask(near, budget, touches);
+    const QueryResult again = ask(budget);
     EXPECT_EQ(again.sphere_tests, result.sphere_tests);
     EXPECT_EQ(again.gap->upper, result.gap->upper);
     EXPECT_EQ(again.gap->lower, result.gap->lower);

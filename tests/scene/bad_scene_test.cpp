@@ -60,6 +60,17 @@ TEST_F(BadSceneTest, IsSoundBeforeItIsSpoilt) {
       "none");
 }
 
+TEST_F(BadSceneTest, HasNoSuchNumberOfWorkers) {
+  for (const std::string workers : {"0", "3", "-1", "1.5", "\"two\"", "18446744073709551617"}) {
+    const std::string text = replaced(kSoundScene, "rate = 1000", "workers = " + workers);
+    const auto error =
+        error_of([&] { static_cast<void>(read_scene(folder_.write("scene.toml", text))); });
+    ASSERT_TRUE(error) << workers;
+    EXPECT_NE(std::string(error->what()).find("scene.toml:2: "), std::string::npos)
+        << error->what();
+  }
+}
+
 TEST_F(BadSceneTest, IsNoToml) {
   const std::string toml = "write it as TOML 1.0 has it";
   expect_refused({

@@ -47,12 +47,15 @@ std::optional<Placement> Placement::from(const Eigen::Isometry3d& pose) noexcept
   return Placement{rigid->linear(), rigid->translation()};
 }
 
+Placement Placement::nudged(const Vector6& motion) const noexcept {
+  return {turn_by(0.5 * motion.tail<3>()) * rotation, translation + motion.head<3>()};
+}
+
 Placement Placement::moved(const Vector6& motion) const noexcept {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = turn_by(0.5 * motion.tail<3>()) * rotation;
+  const Placement after = nudged(motion);
   // Products of many rotations drift apart; the factor is rigid, so this is always one.
-  const auto rigid = project_to_rigid(pose);
-  return {rigid ? Eigen::Matrix3d(rigid->linear()) : rotation, translation + motion.head<3>()};
+  const auto rigid = project_to_rigid(after.isometry());
+  return {rigid ? Eigen::Matrix3d(rigid->linear()) : rotation, after.translation};
 }
 
 Vector6 motion_between(const Placement& from, const Placement& to) noexcept {

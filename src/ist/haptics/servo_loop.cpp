@@ -12,6 +12,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
+nanoseconds effects_time(const Simulation& simulation) noexcept {
+  nanoseconds sum{};
+  for (const Tool::TimedEffect& effect : simulation.effects()) sum += effect.time;
+  return sum;
+}
+
 nanoseconds thread_time() noexcept {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -65,7 +71,7 @@ class Loop {
 
   [[nodiscard]] TickRecord turn(std::uint64_t number, Clock::time_point begin,
                                 const TickStart& start) noexcept {
-    const nanoseconds used = thread_time();
+    const nanoseconds used = thread_time(), effects = effects_time(simulation_);
     const std::optional<Placement> at = device_.read();
     const Tick tick = simulation_.tick(at, budget());
     device_.write(tick.wrench, simulation_.dt());
@@ -75,6 +81,10 @@ class Loop {
     record.late_ns = start.late.count();
     record.execution_ns = nanoseconds(end - begin).count();
     record.cpu_ns = (thread_time() - used).count();
+    if (record.cpu_ns > report_.worst_cpu.count()) {
+      report_.worst_cpu = nanoseconds(record.cpu_ns);
+      report_.worst_effects = effects_time(simulation_) - effects;
+    }
     if (options_.paced && end > clock_.deadline()) ++report_.missed;
     return record;
   }

@@ -41,9 +41,11 @@ struct ServoReport {
   LatencyHistogram late;  ///< release jitter: from when a tick should have begun to when it did
   LatencyHistogram execution;  ///< from then until the device was told
   LatencyHistogram cpu;        ///< what the loop's thread used of its processor
-  std::uint64_t ticks = 0;     ///< that were made
-  std::uint64_t missed = 0;    ///< ended after their period, or were left out for one that did
-  std::uint64_t held = 0;      ///< whose answer was not complete
+  /// The tick that used most of the processor: that, and what the effects took of it.
+  std::chrono::nanoseconds worst_cpu{}, worst_effects{};
+  std::uint64_t ticks = 0;   ///< that were made
+  std::uint64_t missed = 0;  ///< ended after their period, or were left out for one that did
+  std::uint64_t held = 0;    ///< whose answer was not complete
   std::uint64_t faults = 0;
   std::uint64_t lost_records = 0;
   std::vector<std::string> notes;  ///< what the system did not permit

@@ -43,6 +43,8 @@ bool Simulation::ask(const TickBudget& budget, Tick& tick) noexcept {
   if (!complete(tick.contacts)) return false;
   if (proximity_) tick.proximity = proximity_->ask(at_, budget.proximity, asked_.proximity);
   if (!complete(tick.proximity)) asked_.proximity = known_.proximity;
+  // Last, for nobody acts by it.
+  if (contacts_) contacts_->measure_gap(at_, budget.contacts, *tick.contacts);
   if (motion_) {
     const EffectInput input{known_.tool, known_.contacts, known_.proximity, dt_};
     for (Tool::TimedEffect& effect : effects_) effect.advance(input, *motion_);

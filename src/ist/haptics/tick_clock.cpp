@@ -1,6 +1,7 @@
 #include "ist/haptics/tick_clock.h"
 
 #include <time.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -16,6 +17,7 @@ using Clock = std::chrono::steady_clock;
 // On Linux its time is that of CLOCK_MONOTONIC, in nanoseconds since the same epoch.
 static_assert(std::is_same_v<Clock::period, std::nano>);
 
+// Times that are past end it at once.
 void sleep_until(TickClock::Time time) noexcept {
   const auto ns = time.time_since_epoch().count();
   const timespec end{.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
@@ -52,8 +54,11 @@ TickClock::TickClock(std::chrono::nanoseconds period) noexcept
 void TickClock::start() noexcept { schedule_ = TickSchedule(Clock::now(), period_); }
 
 TickStart TickClock::wait_for_next() noexcept {
-  sleep_until(schedule_.next(Clock::now()));
-  return schedule_.begin(Clock::now());
+  const Time next = schedule_.next(Clock::now());
+  sleep_until(next - std::min(kLead, period_ / 2));
+  Time now = Clock::now();
+  for (; now < next; now = Clock::now()) _mm_pause();
+  return schedule_.begin(now);
 }
 
 }  // namespace ist

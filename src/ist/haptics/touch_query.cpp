@@ -27,8 +27,11 @@ TouchQuery::TouchQuery(const SphereTree& fixed, const SphereTree& held, const Bo
                        const TouchOptions& options)
     : frames_(frames),
       area_(fixed.lattice().voxel_size * held.lattice().voxel_size),
-      measure_gap_(options.measure_gap),
-      query_(fixed, held, {.policy = options.policy, .target = {}, .workers = 1}),
+      query_(fixed, held,
+             {.policy = options.policy,
+              .target = {},
+              .workers = options.workers,
+              .period = options.period}),
       points_(fixed, held, options.policy,
               {.points = TouchSet::kMost,
                .least_depth = options.least_depth,
@@ -40,14 +43,17 @@ QueryResult TouchQuery::ask(const Placement& tool, const Budget& budget,
   QueryResult result = query_.contact_points(pose, points_, budget);
   if (result.status != QueryStatus::kDone || !result.complete) return result;
   reduce(tool, touches);
-  if (measure_gap_ && result.contacts == 0) {
-    Budget left = budget;
-    left.sphere_tests -= std::min(left.sphere_tests, result.sphere_tests);
-    const QueryResult measured = query_.collide(pose, std::span<Contact>(), left);
-    result.gap = measured.gap;
-    result.sphere_tests += measured.sphere_tests;
-  }
   return result;
+}
+
+void TouchQuery::measure_gap(const Placement& tool, const Budget& budget,
+                             QueryResult& answer) noexcept {
+  if (answer.contacts > 0) return;
+  Budget left = budget;
+  left.sphere_tests -= std::min(left.sphere_tests, answer.sphere_tests);
+  const QueryResult measured = query_.collide(frames_.query_pose(tool), std::span<Contact>(), left);
+  answer.gap = measured.gap;
+  answer.sphere_tests += measured.sphere_tests;
 }
 
 void TouchQuery::reduce(const Placement& tool, TouchSet& touches) const noexcept {

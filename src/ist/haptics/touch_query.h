@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+
 #include "ist/haptics/touch_set.h"
 #include "ist/query/collision_query.h"
 
@@ -22,7 +24,8 @@ struct TouchOptions {
   /// In voxel sizes: from which depth on bodies touch, and to what depth, or height, no leaf pair
   /// is missed; see ContactPointOptions.
   double least_depth = -0.25, growth = 0.375;
-  bool measure_gap = true;  ///< where there is time for it
+  int workers = 1;  ///< 2: the second one helps to look for contacts
+  std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one to the next
 };
 
 /// What touches the tool: a collision query and its contact points, in the scene's terms. Holds
@@ -33,10 +36,11 @@ class TouchQuery {
              const TouchOptions& options);
 
   /// Asks for the tool at this pose. Where the answer is not complete, `touches` is unchanged.
-  /// Where nothing is touched the gap is measured by what is left of the budget, and what that
-  /// takes counts among the tests.
   [[nodiscard]] QueryResult ask(const Placement& tool, const Budget& budget,
                                 TouchSet& touches) noexcept;
+  /// Where that answer says that nothing is touched: measures the gap by what is left of the
+  /// budget. What that takes counts among the tests.
+  void measure_gap(const Placement& tool, const Budget& budget, QueryResult& answer) noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + points_.bytes(); }
 
@@ -45,7 +49,6 @@ class TouchQuery {
 
   BodyFrames frames_;
   double area_;  // of a whole leaf pair, mesh units squared
-  bool measure_gap_;
   CollisionQuery query_;
   ContactPoints points_;
 };

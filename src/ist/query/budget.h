@@ -14,6 +14,13 @@ struct Budget {
 
   std::uint64_t sphere_tests = std::numeric_limits<std::uint64_t>::max();
   Clock::time_point deadline = Clock::time_point::max();
+
+  [[nodiscard]] bool has_tests() const noexcept {
+    return sphere_tests != std::numeric_limits<std::uint64_t>::max();
+  }
+  [[nodiscard]] bool has_deadline() const noexcept { return deadline != Clock::time_point::max(); }
+  /// Looks at the clock only where it must.
+  [[nodiscard]] bool is_past() const noexcept { return has_deadline() && Clock::now() >= deadline; }
 };
 
 /// Counts what is spent, and looks at the clock often enough.

@@ -27,7 +27,7 @@ QueryResult invalid_pose() {
 
 // What is left when the roots are tested.
 Budget without_roots(Budget budget) {
-  budget.sphere_tests -= budget.sphere_tests > 0 ? 1U : 0U;
+  budget.sphere_tests -= budget.has_tests() && budget.sphere_tests > 0 ? 1U : 0U;
   return budget;
 }
 
@@ -182,10 +182,13 @@ QueryResult CollisionQuery::contact_points(const Eigen::Isometry3d& pose, Contac
     const SearchPose from = narrowed(*bodies);
     result.pad = 2 * pad_of(from) - grow;
     ContactSink sink(window_, points);
-    const Search::Stopped stopped = alone().run_until(without_roots(budget), from, sink);
+    const Budget left = without_roots(budget);
+    auto* shared = std::get_if<SharedSearch>(&search_);
+    const Search::Stopped stopped =
+        shared ? shared->run_until(left, from, sink) : alone().run_until(left, from, sink);
     set_steps(stopped.steps, result);
     result.sphere_tests += stopped.tests;
-    result.contacts = sink.count();
+    result.contacts = stopped.contacts;
     if (result.contacts > 0) {
       const double within = resolution_of(result, fixed_, moving_, policy_);
       result.gap->upper = std::min(result.gap->upper, within);

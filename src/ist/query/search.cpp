@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace ist {
 namespace {
@@ -46,16 +45,26 @@ std::uint64_t Search::run_hurried(const SearchPose& pose, ContactSink& sink,
 
 Search::Stopped Search::run_until(const Budget& budget, const SearchPose& pose,
                                   ContactSink& sink) noexcept {
-  stopping_ = {budget};
-  groups_at_once_ = kPartGroups;
+  set_roots();
+  return descend_until(budget, 0, 0, frontiers_[0], 0, pose, sink);
+}
+
+Search::Stopped Search::descend_until(const Budget& budget, std::uint64_t tests, std::size_t step,
+                                      const Frontier& in, std::size_t first, const SearchPose& pose,
+                                      ContactSink& sink) noexcept {
+  stopping_ = {budget, tests};
   std::size_t& room = frontiers_.back().capacity;
-  const std::size_t all_room = std::exchange(room, std::min(kPartContacts, room));
-  const std::uint64_t tests = run(pose, sink);
+  const std::size_t all_room = room;
+  if (budget.has_tests() || budget.has_deadline()) {
+    groups_at_once_ = kPartGroups;
+    room = std::min(kPartContacts, room);
+  }
+  tests += descend(step, in, first, pose, sink);
   room = all_room;
   groups_at_once_ = kAllGroups;
   const std::size_t steps = std::min(stopping_.steps, plan_.steps().size());
   stopping_ = {};
-  return {tests, steps};
+  return {tests, steps, sink.count()};
 }
 
 void Search::set_roots() noexcept {

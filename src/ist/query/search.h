@@ -34,13 +34,18 @@ class Search {
   /// What a search that may end early came to.
   struct Stopped {
     std::uint64_t tests;
-    std::size_t steps;  ///< that were made whole: all of them, or it ended early
+    std::size_t steps;       ///< that were made whole: all of them, or the budget ended it
+    std::uint64_t contacts;  ///< that the sink was given
   };
   /// As run(), until so many tests are made or the deadline is past, or a little more: it looks
   /// between parts of some 1,000 tests or 512 contacts, which are the same every time. So where it
   /// was stopped by the clock after some tests, a budget of as many stops it there again.
   [[nodiscard]] Stopped run_until(const Budget& budget, const SearchPose& pose,
                                   ContactSink& sink) noexcept;
+  /// The rest of it, from group `first` of the pairs before `step` on, after so many tests.
+  [[nodiscard]] Stopped descend_until(const Budget& budget, std::uint64_t tests, std::size_t step,
+                                      const Frontier& in, std::size_t first, const SearchPose& pose,
+                                      ContactSink& sink) noexcept;
 
   /// Searches level by level from the roots, until there are at least `pairs` pairs, none, or
   /// those of the leaves, or more than there is room for. Returns how many steps were made;
@@ -91,9 +96,7 @@ class Search {
 
     // Whether to stop, with something left to do in this step.
     [[nodiscard]] bool now(std::size_t step) noexcept {
-      const bool over =
-          tests >= budget.sphere_tests || (budget.deadline != Budget::Clock::time_point::max() &&
-                                           Budget::Clock::now() >= budget.deadline);
+      const bool over = tests >= budget.sphere_tests || budget.is_past();
       if (over) steps = std::min(steps, step);
       return over;
     }

@@ -37,42 +37,61 @@ SharedSearch::~SharedSearch() {
   job_.wait_idle();
 }
 
-std::uint64_t SharedSearch::run(const SearchPose& pose, ContactSink& sink) noexcept {
+Search::Stopped SharedSearch::run_until(const Budget& budget, const SearchPose& pose,
+                                        ContactSink& sink) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
   ++sharing_.queries;
   std::uint64_t tests = 0;
   const std::size_t step = caller_.widen(pose, kFewestPairs, tests);
   const Frontier& pairs = caller_.frontier(step);
-  if (step == plan_.steps().size() || pairs.moving_count < kFewestPairs) {
-    return tests + caller_.descend(step, pairs, 0, pose, sink);
+  const bool worth = step < plan_.steps().size() && pairs.moving_count >= kFewestPairs;
+  sharing_.worth += worth ? 1U : 0U;
+  if (!worth || budget.has_tests() || job_.busy()) {
+    return caller_.descend_until(budget, tests, step, pairs, 0, pose, sink);
   }
-  ++sharing_.worth;
-  if (job_.busy()) return tests + caller_.descend(step, pairs, 0, pose, sink);
   share(pose, step, pairs);
+  const Search::Stopped stopped{tests, step, 0};
+  if (!do_chunks(budget, sink, tests)) return stopped;
+  return {tests, plan_.steps().size(), sink.count()};
+}
+
+bool SharedSearch::do_chunks(const Budget& budget, ContactSink& sink,
+                             std::uint64_t& tests) noexcept {
+  // Whether there was time for all of it.
   const auto search = [&](std::size_t index) {
     std::size_t first = 0;
     const Frontier part = chunk(index, first);
-    tests += caller_.descend(step, part, first, pose, sink);
+    const Search::Stopped made =
+        caller_.descend_until(budget, 0, shared_.step, part, first, shared_.pose, sink);
+    tests += made.tests;
+    return made.steps == plan_.steps().size();
   };
   // Where long queries follow one another the worker begins to poll in their midst, so it is asked
   // before each chunk.
-  bool taken = worker_.offer(job_);
-  while (const auto index = board_.claim_front()) {
-    search(*index);
+  bool taken = worker_.offer(job_), in_time = !budget.is_past();
+  std::size_t done = 0;
+  while (in_time) {
+    const auto index = board_.claim_front();
+    if (!index) break;
+    in_time = search(*index);
+    done += in_time ? 1U : 0U;
     if (!taken) taken = worker_.offer(job_);
   }
-  for (std::size_t index = board_.close(); index < chunk_count_; ++index) {
+  for (std::size_t index = board_.close(); index < chunk_count_ && in_time; ++index) {
     if (board_.take(index, kPatience) && parts_[index].whole) {
       sink.append({found_.data() + parts_[index].begin, parts_[index].count});
       tests += parts_[index].tests;
       ++sharing_.chunks;
+      ++done;
+      in_time = !budget.is_past();
     } else {
-      search(index);
       ++sharing_.dropped;
+      in_time = search(index);
+      done += in_time ? 1U : 0U;
     }
   }
   if (taken && !worker_.retract(job_)) ++sharing_.shared;
-  return tests;
+  return done == chunk_count_;
 }
 
 void SharedSearch::share(const SearchPose& pose, std::size_t step,

@@ -28,12 +28,21 @@ class SharedSearch {
   SharedSearch& operator=(const SharedSearch&) = delete;
 
   /// As Search::run.
-  std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept;
+  std::uint64_t run(const SearchPose& pose, ContactSink& sink) noexcept {
+    return run_until({}, pose, sink).tests;
+  }
+  /// As Search::run_until, but that the first levels are always searched, until there are 512
+  /// pairs, in some 3,000 tests, and that it may wait 20 µs for the worker. With a budget of tests
+  /// the caller is alone. Where the clock ends what is shared, the first levels are all that
+  /// counts, for who did what below is chance: so a budget of the tests that are told ends it there
+  /// again.
+  [[nodiscard]] Search::Stopped run_until(const Budget& budget, const SearchPose& pose,
+                                          ContactSink& sink) noexcept;
 
   /// The caller's own search, for what is not to be shared.
   [[nodiscard]] Search& alone() noexcept { return caller_; }
 
-  /// What became of the queries since it was made.
+  /// What became of the queries since it was made; chunks, of those that came to their end.
   struct Sharing {
     std::uint64_t queries = 0;  ///< all
     std::uint64_t worth = 0;    ///< with work enough to be shared
@@ -64,6 +73,9 @@ class SharedSearch {
 
   void share(const SearchPose& pose, std::size_t step, const Frontier& frontier) noexcept;
   [[nodiscard]] Frontier chunk(std::size_t index, std::size_t& first) const noexcept;
+  // Does all chunks with the worker, or as many as there is time for; then it is false.
+  [[nodiscard]] bool do_chunks(const Budget& budget, ContactSink& sink,
+                               std::uint64_t& tests) noexcept;
   void help() noexcept;
 
   const SearchPlan& plan_;

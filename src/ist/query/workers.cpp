@@ -45,28 +45,6 @@ std::int64_t count(Clock::time_point time) { return Nanoseconds(time.time_since_
 
 }  // namespace
 
-// Adds to what usage() tells, from the time it is made.
-class Meter {
- public:
-  void read(Clock::time_point now) noexcept {
-    const std::int64_t cpu = thread_cpu();
-    wall_used.fetch_add(Nanoseconds(now - wall_).count(), std::memory_order_relaxed);
-    cpu_used.fetch_add(cpu - cpu_, std::memory_order_relaxed);
-    wall_ = now;
-    cpu_ = cpu;
-  }
-  [[nodiscard]] Clock::time_point last_read() const noexcept { return wall_; }
-
- private:
-  static std::int64_t thread_cpu() noexcept {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return time.tv_sec * 1'000'000'000 + time.tv_nsec;
-  }
-  Clock::time_point wall_ = Clock::now();
-  std::int64_t cpu_ = thread_cpu();
-};
-
 // The worker's side.
 class WorkerLoop {
  public:
@@ -93,6 +71,28 @@ class WorkerLoop {
   }
 
  private:
+  // Adds to what usage() tells, from the time it is made.
+  class Meter {
+   public:
+    void read(Clock::time_point now) noexcept {
+      const std::int64_t cpu = thread_cpu();
+      wall_used.fetch_add(Nanoseconds(now - wall_).count(), std::memory_order_relaxed);
+      cpu_used.fetch_add(cpu - cpu_, std::memory_order_relaxed);
+      wall_ = now;
+      cpu_ = cpu;
+    }
+    [[nodiscard]] Clock::time_point last_read() const noexcept { return wall_; }
+
+   private:
+    static std::int64_t thread_cpu() noexcept {
+      timespec time{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+      return time.tv_sec * 1'000'000'000 + time.tv_nsec;
+    }
+    Clock::time_point wall_ = Clock::now();
+    std::int64_t cpu_ = thread_cpu();
+  };
+
   // Looks for about a microsecond.
   void poll() noexcept {
     // Relaxed, here and below, where only the word itself is handed on: owners learn from it

@@ -66,6 +66,7 @@ struct Scene {
   double unit;          ///< metres in the unit of lengths
   double rate = 1000;   ///< ticks a second
   double seconds = 10;  ///< how long it runs
+  int workers = 1;      ///< threads that look for contacts, 1 or 2
   SceneBody fixed, held;
   /// The axis, of unit length, along which the held body is moved until it is free.
   std::optional<Eigen::Vector3d> open;

@@ -179,21 +179,26 @@ void Builder::build_simulation() {
                                            scene_.held.spheres.value_or(trees.held->tightest()));
       return std::make_unique<TouchQuery>(
           *trees.fixed, *trees.held, frames_,
-          TouchOptions{.policy = policy, .least_depth = -scene_.contact->margin});
+          TouchOptions{
+              .policy = policy,
+              .least_depth = -scene_.contact->margin,
+              .workers = scene_.workers,
+              .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * period))});
     });
     built_.step_limit =
         scene_.unit * std::min(trees.fixed->lattice().voxel_size, trees.held->lattice().voxel_size);
     radius = scene_.unit * surface_radius(*trees.held);
+  } else {
+    notes_.skip("contact points", "there are no trees to look in");
   }
   if (trees.near_fixed) {
     parts.proximity = notes_.make("proximity query", "for effects.proximity", [&] {
-      // It brakes before anything is touched, and nobody asks it for the gap.
-      return std::make_unique<TouchQuery>(*trees.near_fixed, *trees.near_held, frames_,
-                                          TouchOptions{.policy = SpherePolicy::kTight,
-                                                       .least_depth = -2,
-                                                       .growth = 0,
-                                                       .measure_gap = false});
+      return std::make_unique<TouchQuery>(
+          *trees.near_fixed, *trees.near_held, frames_,
+          TouchOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0});
     });
+  } else {
+    notes_.skip("proximity query", "there are no trees to look in");
   }
   parts.tool = Tool(radius, built_.step_limit);
   parts.effects = std::move(effects_);

@@ -19,6 +19,16 @@ void open_if_missing(TomlTable& document, std::string_view key) {
   if (!is_there) document.entries.push_back({std::string(key), {document.line, TomlTable{}}});
 }
 
+int read_workers(TableReader& scene, int otherwise) {
+  const std::uint64_t workers =
+      scene.whole_number("workers", static_cast<std::uint64_t>(otherwise));
+  if (workers != 1 && workers != 2) {
+    scene.fail("workers", fmt::format("'workers' is {}", workers),
+               "give 1, or 2 for a second thread that helps to look for contacts");
+  }
+  return static_cast<int>(workers);
+}
+
 SafetySettings read_safety(TableReader& scene) {
   TableReader safety = scene.table("safety");
   return {.max_force = safety.number("max_force", kForce, 8),
@@ -74,6 +84,7 @@ Scene read_scene(const std::filesystem::path& file) {
   scene.unit = reader.choice("unit", metres_in, R"("m", "cm", "mm", "um" or "inch")");
   scene.rate = reader.number("rate", kRate, scene.rate);
   scene.seconds = reader.number("seconds", kDuration, scene.seconds);
+  scene.workers = read_workers(reader, scene.workers);
   read_bodies(reader, scene);
   read_device(reader, scene);
   scene.safety = read_safety(reader);

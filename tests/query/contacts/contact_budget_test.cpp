@@ -98,6 +98,44 @@ TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
   EXPECT_GT(stopped, 5);
 }
 
+// Two workers share what has a deadline; what the clock ends early is told as what no worker can
+// change, and is the same with a budget of so many tests.
+TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
+  const Scene& scene = jaws();
+  CollisionOptions options = options_of(SpherePolicy::kSlab);
+  CollisionQuery one(scene.fixed, scene.moving, options);
+  options.workers = 2;
+  options.period = std::chrono::nanoseconds(0);
+  CollisionQuery two(scene.fixed, scene.moving, options);
+  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  const Touched whole = touched_within(one, points, scene.pose, {});
+  ASSERT_GT(whole.result.contacts, 1000u);
+  int stopped = 0;
+  const auto give_up = Budget::Clock::now() + std::chrono::minutes(5);
+  for (int i = 0; i < 400 || (two.sharing().chunks < 20 && Budget::Clock::now() < give_up); ++i) {
+    const auto deadline =
+        Budget::Clock::now() + std::chrono::microseconds(i < 200 ? 2 * i : 10'000'000);
+    const Touched first = touched_within(two, points, scene.pose, {.deadline = deadline});
+    if (first.result.complete) {
+      EXPECT_TRUE(same(first, whole)) << i;
+      EXPECT_EQ(first.result.contacts, whole.result.contacts);
+      EXPECT_EQ(first.result.sphere_tests, whole.result.sphere_tests);
+    }
+    const Touched again =
+        touched_within(two, points, scene.pose, {.sphere_tests = first.result.sphere_tests});
+    EXPECT_EQ(again.result.complete, first.result.complete) << i;
+    EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
+    EXPECT_EQ(again.result.contacts, first.result.contacts);
+    EXPECT_EQ(again.result.level, first.result.level);
+    EXPECT_EQ(again.result.gap->lower, first.result.gap->lower);
+    EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
+    stopped += first.result.complete ? 0 : 1;
+  }
+  EXPECT_GT(stopped, 5);
+  EXPECT_LE(stopped, 200);
+  EXPECT_GE(two.sharing().chunks, 20u);
+}
+
 TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
   {
     const Scene& scene = solids()[0];

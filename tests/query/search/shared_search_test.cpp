@@ -119,6 +119,23 @@ TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
   EXPECT_GT(helped, 30u);
 }
 
+TEST_F(SharedSearchThread, WhatADeadlineCutsShortSpoilsNothing) {
+  CollisionQuery query(scene_.fixed, scene_.moving, shared_);
+  ContactPoints points(scene_.fixed, scene_.moving, SpherePolicy::kSlab);
+  int turn = 0, cut = 0;
+  std::uint64_t helped = 0;  // where there was a deadline
+  EXPECT_TRUE(ask_until(query, [&] {
+    const std::uint64_t before = query.sharing().chunks;
+    // Every other one has time enough, however slow the machine is.
+    const auto time = turn % 2 == 0 ? Clock::duration((turn % 40) * 20us) : Clock::duration(60s);
+    const Budget budget{.deadline = Clock::now() + time};
+    cut += query.contact_points(scene_.pose, points, budget).complete ? 0 : 1;
+    helped += query.sharing().chunks - before;
+    return ++turn >= 100 && helped > 20;
+  }));
+  EXPECT_GT(cut, 0);
+}
+
 // In turn with poses that have nothing to share, and none at all.
 TEST_F(SharedSearchThread, PosesOfAnySizeFollowEachOther) {
   CollisionQuery query(scene_.fixed, scene_.moving, shared_);

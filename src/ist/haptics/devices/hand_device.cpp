@@ -107,6 +107,7 @@ void HandDevice::write(const Vector6& wrench, double dt) noexcept {
     }
     time_ = until;
   }
+  pose_ = pose_.moved(Vector6::Zero());
   planned_ = plan_.at(time_).pose;
 }
 
@@ -127,7 +128,7 @@ void HandDevice::step(double h) noexcept {
       turning.midpoint(velocity_.tail<3>(), error.tail<3>(), plan.velocity.tail<3>(),
                        felt_.tail<3>(), h);
   const Vector6 motion = h * middle;
-  pose_ = pose_.moved(motion);
+  pose_ = pose_.nudged(motion);
   velocity_ = 2 * middle - velocity_;
   work_ += felt_.dot(motion);
   damped_ += h * (settings_.mechanics.damping * middle.head<3>().squaredNorm() +
