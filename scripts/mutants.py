@@ -222,8 +222,6 @@ MUTANTS = [
            [(CONTACTS + "contact_points.cpp", "at.bound = at.bound.grown(scale_.grow);",
              "at.bound = at.bound.grown(0 * scale_.grow);")], ["contacts_test", "scene_test ShippedScene*"]),
     # What a hand feels.
-    Mutant("pairs-come-when-they-press", "leaf pairs are found when their bounds touch, which presses already",
-           [(HAPTICS + "touch_query.h", "growth = 0.375;", "growth = 0;")], ["scene_test ShippedScene*"]),
     Mutant("held-where-it-is", "where an answer is not complete the tool stays where nothing is known",
            [(SIMULATION, "    at_ = known_.tool;\n    motion_.reset();", "    motion_.reset();")],
            ["haptics_test Pressing*:HeldTicks*"]),
