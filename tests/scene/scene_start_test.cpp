@@ -85,6 +85,16 @@ TEST_F(SceneStart, ThatIsFreeIsNotOpened) {
   EXPECT_LT((start_of(scene) - scene.device->read()->translation).norm(), 1e-15);
 }
 
+// The ball hangs 5 above the box. The roots alone leave 49 in doubt, what a tick has time for 36.
+TEST_F(SceneStart, ThatIsFreeHasAGapThatTicksTell) {
+  const BuiltScene scene = built(starting("[0, 0, 15]"));
+  const Tick tick = scene.simulation->tick(scene.device->read(), {});
+  ASSERT_TRUE(tick.contacts && tick.contacts->gap);
+  EXPECT_LE(tick.contacts->gap->lower, 5.01);  // the ball's facets lie inside it
+  EXPECT_GE(tick.contacts->gap->upper, 5);
+  EXPECT_LT(tick.contacts->gap->upper - tick.contacts->gap->lower, 40);
+}
+
 // A turned fixed body does not turn the axis, which is the scene's.
 TEST_F(SceneStart, OpensAlongTheScenesAxis) {
   const BuiltScene scene =
