@@ -20,6 +20,7 @@ BINS = "src/ist/voxel/triangle_bins.cpp"
 BOX = "src/ist/voxel/triangle_box.h"
 EXACT = "src/ist/query/exact/"
 CONTACTS = "src/ist/query/contacts/"
+ADVICE = "src/ist/query/advice/"
 HAPTICS = "src/ist/haptics/"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
@@ -293,4 +294,15 @@ MUTANTS = [
              "((std::uint64_t{bucket} - (octave << kSubBits) + 1) << octave) - 1",
              "((std::uint64_t{bucket} - (octave << kSubBits)) << octave)")],
            ["haptics_test LatencyHistogram*"]),
+
+    # What voxel sizes are recommended by.
+    Mutant("advice-breaks-its-goal", "a size is recommended that is a tenth beyond what was asked for",
+           [(ADVICE + "voxel_advice.h", "return value(measure) <= limit;", "return value(measure) <= 1.1 * limit;")],
+           ["advice_test"]),
+    Mutant("advice-far-from-best", "it stops as soon as some size holds",
+           [(ADVICE + "voxel_advice.cpp", "if (holds_ && holds_->excess >= kGoodEnough) return std::nullopt;",
+             "if (holds_) return std::nullopt;")], ["advice_test"]),
+    Mutant("first-contact-only", "the error of a closing is that next to the touch, whatever comes before",
+           [(ADVICE + "contact_error.cpp", "      error = std::max(error, gap.upper);\n      last = place;\n", "      break;\n")],
+           ["advice_test"]),
 ]

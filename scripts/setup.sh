@@ -12,12 +12,13 @@ packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev
-  libgtest-dev libgmp-dev python3)
-bench=(libbenchmark-dev python3-matplotlib valgrind)
+  libgtest-dev libgmp-dev python3 valgrind)
+bench=(libbenchmark-dev python3-matplotlib)
 for argument in "$@"; do
   case $argument in
     --bench) packages+=("${bench[@]}") ;;
-    --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev) ;;
+    --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
+      libbullet-dev libcgal-dev libopenvdb-dev) ;;
     --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
     -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;

@@ -15,11 +15,10 @@ scripts/setup.sh --bench >&2
 cmake --preset bench >/dev/null
 cmake --build --preset bench --target stability_border | tail -n 1 >&2
 
-model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
-results=perf/results/$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(nproc)
+source scripts/machine.sh
 mkdir -p "$results"
 build/bench/bench/stability_border >build/stability_border.jsonl
 mv build/stability_border.jsonl "$results/stability_border.jsonl"
 /usr/bin/python3 scripts/stability_border.py "$results/stability_border.jsonl" perf \
-  "$model; $(g++ --version | head -n 1); commit $(git describe --always --dirty)"
+  "$model; $compiler; commit $commit"
 echo perf/HAPTIC_STABILITY.md >&2

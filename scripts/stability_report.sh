@@ -36,10 +36,10 @@ run "$effort" fuzz_test '*' || failed=1
 run 1 cli_test 'Faults*:CutFiles*:Interruption*' || failed=1
 wait $load || failed=1
 
-model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+source scripts/machine.sh
 /usr/bin/python3 scripts/stability_report.py "$cases" "$folder" \
-  "$model, $(nproc) cores; $(g++ --version | head -n 1); commit $(git describe --always --dirty)"
-results=$folder/results/$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(nproc)
+  "$model, $(nproc) cores; $compiler; commit $commit"
+results=$folder/results/$machine
 mkdir -p "$results"
 cp "$cases" "$results/stability.jsonl"
 echo "$folder/STABILITY.md" >&2

@@ -18,10 +18,7 @@ scripts/setup.sh --bench >&2
 cmake --preset bench >/dev/null
 cmake --build --preset bench --target tick_instructions | tail -n 1 >&2
 
-model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr -cs 'A-Za-z0-9' '-' | sed 's/-$//')
-results=perf/results/$model-$(nproc)
+source scripts/machine.sh
 mkdir -p "$results"
 /usr/bin/python3 scripts/tick_instructions.py build/bench/bench/tick_instructions "$ticks" \
-  "$results/tick_instructions.json" \
-  "commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)" \
-  "compiler=$(g++ --version | head -n 1)"
+  "$results/tick_instructions.json" "${context[@]}"

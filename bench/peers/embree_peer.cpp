@@ -107,14 +107,19 @@ bool boxes_apart(const TriangleCorners& a, const TriangleCorners& b) {
 enum class Part : std::uint8_t { kAll, kWithoutRefit, kBoxes };
 constexpr const char* kNames[] = {"embree", "embree_no_refit", "embree_boxes"};
 
+// Each contestant moves the moving one before it asks.
+struct Bodies {
+  Bodies(const TriangleMesh& a, const TriangleMesh& b) : fixed(a), moving(b) {}
+  Body fixed, moving;
+};
+
 class EmbreePeer final : public Peer {
  public:
-  EmbreePeer(const TriangleMesh& fixed, const TriangleMesh& moving, Part part)
-      : Peer(kNames[static_cast<std::size_t>(part)]),
+  EmbreePeer(const TriangleMesh& moving, std::shared_ptr<Bodies> bodies, Part part)
+      : Peer(kNames[static_cast<std::size_t>(part)], Promise::kExact),
         part_(part),
         from_(moving.vertices),
-        fixed_(fixed),
-        moving_(moving) {
+        bodies_(std::move(bodies)) {
     rtcCollide(fixed_.scene(), moving_.scene(), find_thread, this);
   }
 
@@ -122,10 +127,11 @@ class EmbreePeer final : public Peer {
     return question == (part_ == Part::kBoxes ? Question::kCandidates : Question::kPairs);
   }
   void prepare(const Eigen::Isometry3d& pose) override {
-    if (part_ != Part::kAll) moving_.move(from_, pose);
+    if (prepared()) moving_.move(from_, pose);
   }
+  [[nodiscard]] bool prepared() const override { return part_ != Part::kAll; }
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
-    if (part_ == Part::kAll) moving_.move(from_, pose);
+    if (!prepared()) moving_.move(from_, pose);
     pairs_.clear();
     rtcCollide(fixed_.scene(), moving_.scene(), test, this);
     return pairs_.size();
@@ -159,19 +165,23 @@ class EmbreePeer final : public Peer {
   const Part part_;
   const std::thread::id thread_ = std::this_thread::get_id();
   const std::vector<Eigen::Vector3d>& from_;
-  Body fixed_, moving_;
+  const std::shared_ptr<Bodies> bodies_;
+  Body &fixed_ = bodies_->fixed, &moving_ = bodies_->moving;
   std::vector<TrianglePair> pairs_;
   std::uint64_t candidates_ = 0;
 };
 
-}  // namespace
-
-Peers make_embree_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+  const auto bodies = std::make_shared<Bodies>(fixed, moving);
   Peers peers;
   for (const Part part : {Part::kAll, Part::kWithoutRefit, Part::kBoxes}) {
-    peers.push_back(std::make_unique<EmbreePeer>(fixed, moving, part));
+    peers.push_back(std::make_unique<EmbreePeer>(moving, bodies, part));
   }
   return peers;
 }
+
+}  // namespace
+
+Library embree_library() { return {"embree", RTC_VERSION_STRING, make_peers}; }
 
 }  // namespace ist::bench

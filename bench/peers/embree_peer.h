@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ist/mesh/triangle_mesh.h"
 #include "peers/peer.h"
 
 namespace ist::bench {
@@ -10,8 +9,9 @@ namespace ist::bench {
 /// be asked for a pose, so the moving mesh is moved and its hierarchy refitted. Three contestants:
 ///  - `embree`: moves, refits, collides, tests triangles;
 ///  - `embree_no_refit`: the same, but moved and refitted before its time begins;
-///  - `embree_boxes`: rtcCollide alone, which counts candidates and tests none.
+///  - `embree_boxes`: rtcCollide alone, which counts candidates and tests none; moved and refitted
+///  before.
 /// It cannot stop early and knows no distance between meshes.
-[[nodiscard]] Peers make_embree_peers(const TriangleMesh& fixed, const TriangleMesh& moving);
+[[nodiscard]] Library embree_library();
 
 }  // namespace ist::bench

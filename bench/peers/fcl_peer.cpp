@@ -1,5 +1,6 @@
 #include "peers/fcl_peer.h"
 
+#include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
@@ -28,7 +29,7 @@ std::shared_ptr<const Model> model_of(const TriangleMesh& mesh) {
 class FclPeer : public Peer {
  public:
   FclPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
-      : Peer("fcl"), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
+      : Peer("fcl", Promise::kRounded), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question != Question::kCandidates;
@@ -59,7 +60,9 @@ class FclPeer : public Peer {
 class FclWithinPeer final : public Peer {
  public:
   FclWithinPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
-      : Peer("fcl_within"), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
+      : Peer("fcl_within", Promise::kRounded),
+        fixed_(std::move(fixed)),
+        moving_(std::move(moving)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question == Question::kDistance;
@@ -79,14 +82,16 @@ class FclWithinPeer final : public Peer {
   std::shared_ptr<const Model> fixed_, moving_;
 };
 
-}  // namespace
-
-Peers make_fcl_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
   const auto a = model_of(fixed), b = model_of(moving);
   Peers peers;
   peers.push_back(std::make_unique<FclPeer>(a, b));
   peers.push_back(std::make_unique<FclWithinPeer>(a, b));
   return peers;
 }
+
+}  // namespace
+
+Library fcl_library() { return {"fcl", FCL_VERSION, make_peers}; }
 
 }  // namespace ist::bench

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ist/mesh/triangle_mesh.h"
 #include "peers/peer.h"
 
 namespace ist::bench {
@@ -18,6 +17,6 @@ namespace ist::bench {
 /// What differs: its predicates are in double and not exact, so nothing is promised where triangles
 /// only touch or lie in one plane. Debian's library is built for any x86-64, without FCL's own SSE
 /// code, and with assertions.
-[[nodiscard]] Peers make_fcl_peers(const TriangleMesh& fixed, const TriangleMesh& moving);
+[[nodiscard]] Library fcl_library();
 
 }  // namespace ist::bench

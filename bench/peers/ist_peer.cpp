@@ -1,7 +1,7 @@
 #include "peers/ist_peer.h"
 
 #include "ist/query/collision_query.h"
-#include "support/bodies.h"
+#include "ist/tree/tree_builder.h"
 
 namespace ist::bench {
 namespace {
@@ -10,7 +10,8 @@ constexpr std::size_t kPairs = 1 << 16;
 
 class IstPeer final : public Peer {
  public:
-  IstPeer() : Peer("ist"), pairs_(kPairs) {}
+  IstPeer(const TriangleMesh& fixed, const TriangleMesh& moving)
+      : Peer("ist", Promise::kExact), fixed_(tree(fixed)), moving_(tree(moving)) {}
 
   [[nodiscard]] bool answers(Question) const override { return true; }
   bool meets(const Eigen::Isometry3d& pose) override { return query_.touches(pose) == Touch::kYes; }
@@ -23,18 +24,32 @@ class IstPeer final : public Peer {
   }
 
  private:
+  static SphereTree tree(const TriangleMesh& mesh) {
+    BuildOptions options;
+    options.voxel_size = voxel_size();
+    options.spheres = SpherePolicy::kSlab;
+    options.keep_triangles = true;
+    return build_tree(mesh, options);
+  }
   static CollisionOptions options() {
     CollisionOptions options;
     options.policy = SpherePolicy::kSlab;
     return options;
   }
 
-  CollisionQuery query_{exact_trees(0.2).first, exact_trees(0.2).second, options()};
-  std::vector<TrianglePair> pairs_;
+  const SphereTree fixed_, moving_;
+  CollisionQuery query_{fixed_, moving_, options()};
+  std::vector<TrianglePair> pairs_ = std::vector<TrianglePair>(kPairs);
 };
+
+Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+  Peers peers;
+  peers.push_back(std::make_unique<IstPeer>(fixed, moving));
+  return peers;
+}
 
 }  // namespace
 
-std::unique_ptr<Peer> make_ist_peer() { return std::make_unique<IstPeer>(); }
+Library ist_library() { return {"ist", IST_VERSION, make_peers}; }
 
 }  // namespace ist::bench

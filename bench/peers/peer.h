@@ -2,11 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "ist/mesh/triangle_mesh.h"
 #include "ist/query/contact.h"
+#include "support/effort.h"
 
 namespace ist::bench {
 
@@ -23,21 +26,35 @@ inline constexpr Question kQuestions[] = {Question::kMeets, Question::kPairs, Qu
 
 /// Mesh units.
 inline constexpr double kTolerance = 0.05;
+/// Of all that has voxels, mesh units: 0.2, and coarser where it is quick().
+[[nodiscard]] inline double voxel_size() { return quick() ? 0.8 : 0.2; }
+
+/// How true a contestant's answers are.
+enum class Promise : std::uint8_t {
+  kExact,    ///< decided exactly: who differs from another such is wrong
+  kRounded,  ///< decided in float or double
+  kSampled,  ///< of some points of the surface, at voxel_size(): may be off by it, and miss contact
+};
+[[nodiscard]] const char* to_string(Promise promise);
 
 /// Somebody who is asked, in one thread: a library and a way to use it.
 class Peer {
  public:
-  explicit Peer(std::string name) : name_(std::move(name)) {}
+  Peer(std::string name, Promise promise) : name_(std::move(name)), promise_(promise) {}
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
   virtual ~Peer() = default;
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] Promise promise() const { return promise_; }
   [[nodiscard]] virtual bool answers(Question question) const = 0;
 
   /// What is not to be counted: called before each question, outside of the time that is taken.
   virtual void prepare(const Eigen::Isometry3d&) {}
+  /// Whether prepare() already does some of what another must do in its time.
+  [[nodiscard]] virtual bool prepared() const { return false; }
   /// Called only where answers() says so. pairs() lists them, and returns how many there are.
+  /// distance() may end at infinity, where all that is known is what it exceeds.
   virtual bool meets(const Eigen::Isometry3d&) { return false; }
   virtual std::uint64_t pairs(const Eigen::Isometry3d&) { return 0; }
   virtual std::uint64_t candidates(const Eigen::Isometry3d&) { return 0; }
@@ -45,8 +62,16 @@ class Peer {
 
  private:
   std::string name_;
+  Promise promise_;
 };
 
 using Peers = std::vector<std::unique_ptr<Peer>>;
+
+/// A library, and its contestants of a fixed and a moving mesh, which share what is built of these
+/// and may refer to them.
+struct Library {
+  std::string name, version;
+  std::function<Peers(const TriangleMesh& fixed, const TriangleMesh& moving)> make;
+};
 
 }  // namespace ist::bench

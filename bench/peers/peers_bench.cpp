@@ -1,189 +1,111 @@
-// This library beside others that answer the same questions, in one run: on the closing and on the
-// poses whose truth is known, at 0.2 mm, one worker. Each round asks everybody who answers a
-// question all poses; times are medians over the rounds, and `ratio` how much longer the peer
-// takes.
+// This library beside others that answer the same questions, in one run, on the closing and on the
+// poses whose truth is known; at 0.2 mm where there are voxels, and all in one thread.
 //
-//   IST_PEERS_SECONDS   for how long each question is asked, at least 5 rounds; by default 30
+//   peers/build/LIBRARY                what its structures of both meshes take
+//   peers/QUESTION/CONTESTANT/POSE     what an answer takes, over n rounds, and what it says
+//
+//   IST_PEERS_SECONDS   for how long each question is asked, at least 5 rounds; by default 55
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 
-#include "peers/ist_peer.h"
-#include "peers/poses.h"
-#ifdef IST_PEER_FCL
-#include "peers/fcl_peer.h"
-#endif
-#ifdef IST_PEER_EMBREE
-#include "peers/embree_peer.h"
-#endif
+#include "ist/base/parallel.h"
+#include "peers/build_cost.h"
+#include "peers/contest.h"
+#include "peers/libraries.h"
 #include "support/bodies.h"
-#include "support/latencies.h"
+#include "support/effort.h"
 
 namespace ist::bench {
-
-const char* to_string(Question question) {
-  constexpr const char* kNames[] = {"meets", "pairs", "candidates", "distance"};
-  return kNames[static_cast<std::size_t>(question)];
-}
-
 namespace {
 
-using Clock = std::chrono::steady_clock;
-constexpr int kFewestRounds = 5, kMostRounds = 501;
-
-// The first one is this library.
-Peers peers() {
-  Peers all;
-  all.push_back(make_ist_peer());
-  const auto add = [&](Peers some) {
-    std::move(some.begin(), some.end(), std::back_inserter(all));
-  };
-#ifdef IST_PEER_FCL
-  add(make_fcl_peers(upper_jaw(), lower_jaw()));
-#endif
-#ifdef IST_PEER_EMBREE
-  add(make_embree_peers(upper_jaw(), lower_jaw()));
-#endif
-  return all;
+double seconds_a_question() {
+  const char* seconds = std::getenv("IST_PEERS_SECONDS");
+  if (seconds != nullptr) return std::atof(seconds);
+  return quick() ? 1 : 55;
 }
 
-// What anybody said; the pairs are candidates where these were asked for.
-struct Answer {
-  bool meets = false;
-  std::uint64_t pairs = 0;
-  GapInterval gap{};
-};
+void report_build(benchmark::State& state, BuildCost& cost, const std::string& version) {
+  for (auto _ : state) state.SetIterationTime(1e-6 * cost.times.quantile(0.5));
+  state.counters["p50_us"] = cost.times.quantile(0.5);
+  state.counters["max_us"] = cost.times.quantile(1);
+  state.counters["n"] = cost.rounds;
+  state.counters["held_mb"] = cost.held_mb;
+  state.counters["grown_mb"] = cost.grown_mb;
+  state.counters["peak_mb"] = cost.peak_mb;
+  state.SetLabel(version);
+}
 
-Answer ask(Peer& peer, Question question, const Eigen::Isometry3d& pose) {
-  Answer answer;
+// What anybody said, beside what IST did.
+void report_answer(benchmark::State& state, Question question, const Answer& ist,
+                   const Answer& answer) {
   switch (question) {
     case Question::kMeets:
-      answer.meets = peer.meets(pose);
+      state.counters["meets"] = answer.meets ? 1 : 0;
+      state.counters["missed"] = ist.meets && !answer.meets ? 1 : 0;
+      state.counters["false_touch"] = answer.meets && !ist.meets ? 1 : 0;
       break;
     case Question::kPairs:
-      answer.pairs = peer.pairs(pose);
-      break;
     case Question::kCandidates:
-      answer.pairs = peer.candidates(pose);
+      state.counters["pairs"] = static_cast<double>(answer.pairs);
       break;
     case Question::kDistance:
-      answer.gap = peer.distance(pose);
+      state.counters["lower"] = answer.gap.lower;
+      // Where it is not there, the answer is "farther than `lower`".
+      if (std::isfinite(answer.gap.upper)) state.counters["upper"] = answer.gap.upper;
       break;
   }
-  return answer;
 }
 
-bool agree(Question question, const Answer& ist, const Answer& peer) {
-  constexpr double kRounding = 1e-5;  // what two ways to compute a distance may differ by, mm
-  if (question == Question::kCandidates) return peer.pairs >= ist.pairs;
-  return ist.meets == peer.meets && ist.pairs == peer.pairs &&
-         ist.gap.lower <= peer.gap.upper + kRounding && peer.gap.lower <= ist.gap.upper + kRounding;
+void report(benchmark::State& state, Contest& contest, std::size_t index, std::size_t at) {
+  contest.hold(seconds_a_question(), quick() ? 1 : 5);
+  Contest::Player& player = contest.players()[index];
+  const NamedPose& pose = contest.poses()[at];
+  const Question question = contest.question();
+  const Answer &ist = contest.players()[0].answers[at], &answer = player.answers[at];
+  const Promise promise = player.peer.promise();
+  const bool agrees = agree(question, ist, answer, promise);
+  if (const auto wrong = untrue(question, ist, pose)) {
+    state.SkipWithError(wrong->c_str());
+    return;
+  }
+  if (!agrees && promise == Promise::kExact) {
+    state.SkipWithError("differs from IST, though both are exact");
+    return;
+  }
+  if (!agrees) {
+    std::cerr << player.peer.name() << " differs in " << to_string(question) << " at " << pose.label
+              << '\n';
+  }
+  Latencies& latencies = player.latencies[at];
+  for (auto _ : state) state.SetIterationTime(1e-6 * latencies.quantile(0.5));
+  latencies.report(state);
+  state.counters["n"] = player.rounds;
+  state.counters["agree"] = agrees ? 1 : 0;
+  state.counters["promise"] = static_cast<double>(promise);
+  state.counters["prepared"] = player.peer.prepared() ? 1 : 0;
+  if (pose.truth) state.counters["true_distance"] = pose.truth->distance;
+  report_answer(state, question, ist, answer);
+  state.SetLabel(pose.label);
 }
 
-// A question, and all who answer it: measured when the first time of it is to be reported.
-class Contest {
- public:
-  Contest(Question question, const Peers& all, const std::vector<NamedPose>& poses)
-      : question_(question), poses_(poses) {
-    for (const auto& peer : all) {
-      if (peer->answers(question)) players_.push_back({*peer, {}, {}});
-    }
-  }
+template <typename Body>
+void add_benchmark(const std::string& name, Body body) {
+  benchmark::RegisterBenchmark(name.c_str(), body)
+      ->Unit(benchmark::kMicrosecond)
+      ->UseManualTime()
+      ->Iterations(1);
+}
 
-  [[nodiscard]] Question question() const { return question_; }
-  [[nodiscard]] std::size_t size() const { return players_.size(); }
-  [[nodiscard]] const std::string& name(std::size_t player) const {
-    return players_[player].peer.name();
-  }
-
-  void report(benchmark::State& state, std::size_t player, std::size_t pose) {
-    for (auto _ : state) {
-      if (rounds_ == 0) measure();
-      state.SetIterationTime(1e-6 * players_[player].latencies[pose].quantile(0.5));
-    }
-    const double of_ist = players_[0].latencies[pose].quantile(0.5);
-    const double of_peer = players_[player].latencies[pose].quantile(0.5);
-    const Answer &ist = players_[0].answers[pose], &peer = players_[player].answers[pose];
-    state.counters["ist_us"] = of_ist;
-    state.counters["peer_us"] = of_peer;
-    state.counters["ratio"] = of_peer / of_ist;
-    state.counters["rounds"] = rounds_;
-    state.counters["agree"] = agree(question_, ist, peer) ? 1 : 0;
-    if (question_ == Question::kDistance) {
-      state.counters["ist_lower"] = ist.gap.lower;
-      state.counters["ist_upper"] = ist.gap.upper;
-      state.counters["peer_lower"] = peer.gap.lower;
-      state.counters["peer_upper"] = peer.gap.upper;
-    } else if (question_ == Question::kMeets) {
-      state.counters["ist_meets"] = ist.meets ? 1 : 0;
-      state.counters["peer_meets"] = peer.meets ? 1 : 0;
-    } else {
-      state.counters["ist_pairs"] = static_cast<double>(ist.pairs);
-      state.counters["peer_pairs"] = static_cast<double>(peer.pairs);
-    }
-    state.SetLabel(poses_[pose].label);
-  }
-
- private:
-  struct Player {
-    Peer& peer;
-    std::vector<Answer> answers;
-    std::vector<Latencies> latencies;
-  };
-
-  // Those who differ are named, and their answers reported; they are measured all the same.
-  void check() {
-    for (Player& player : players_) {
-      for (std::size_t i = 0; i < poses_.size(); ++i) {
-        player.peer.prepare(poses_[i].pose);
-        player.answers.push_back(ask(player.peer, question_, poses_[i].pose));
-        if (agree(question_, players_[0].answers[i], player.answers[i])) continue;
-        std::cerr << player.peer.name() << " differs in " << to_string(question_) << " at "
-                  << poses_[i].label << '\n';
-      }
-      player.latencies.resize(poses_.size());
-    }
-  }
-
-  void measure() {
-    check();
-    const char* seconds = std::getenv("IST_PEERS_SECONDS");
-    const auto end =
-        Clock::now() + std::chrono::seconds(seconds != nullptr ? std::atoi(seconds) : 30);
-    for (; rounds_ < kMostRounds && (rounds_ < kFewestRounds || Clock::now() < end); ++rounds_) {
-      for (Player& player : players_) {
-        player.peer.prepare(poses_.back().pose);  // so that nobody begins where another has been
-        static_cast<void>(ask(player.peer, question_, poses_.back().pose));
-        for (std::size_t i = 0; i < poses_.size(); ++i) {
-          player.peer.prepare(poses_[i].pose);
-          const auto begin = Clock::now();
-          benchmark::DoNotOptimize(ask(player.peer, question_, poses_[i].pose));
-          player.latencies[i].add(
-              std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
-        }
-      }
-    }
-  }
-
-  Question question_;
-  const std::vector<NamedPose>& poses_;
-  std::vector<Player> players_;
-  int rounds_ = 0;
-};
-
-void add(const std::shared_ptr<Contest>& contest, const std::vector<NamedPose>& poses) {
-  for (std::size_t player = 1; player < contest->size(); ++player) {
-    for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-      const std::string name = std::string("peers/") + to_string(contest->question()) + "/" +
-                               contest->name(player) + "/" + poses[pose].name;
-      benchmark::RegisterBenchmark(
-          name.c_str(), [=](benchmark::State& state) { contest->report(state, player, pose); })
-          ->Unit(benchmark::kMicrosecond)
-          ->UseManualTime()
-          ->Iterations(1);
+void add_contest(const std::shared_ptr<Contest>& contest) {
+  const std::string question = std::string("peers/") + to_string(contest->question());
+  for (std::size_t player = 0; player < contest->players().size(); ++player) {
+    const std::string name = question + "/" + contest->players()[player].peer.name() + "/";
+    for (std::size_t pose = 0; pose < contest->poses().size(); ++pose) {
+      add_benchmark(name + contest->poses()[pose].name,
+                    [=](benchmark::State& state) { report(state, *contest, player, pose); });
     }
   }
 }
@@ -193,12 +115,25 @@ void add(const std::shared_ptr<Contest>& contest, const std::vector<NamedPose>& 
 
 int main(int argc, char** argv) {
   using namespace ist::bench;
+  benchmark::AddCustomContext("missing_peers", missing_libraries());
+  benchmark::AddCustomContext("voxel_size", std::to_string(voxel_size()));
+  benchmark::AddCustomContext("pair", pair_name());
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  const Peers all = peers();
+  const ist::ScopedThreadLimit one(1);
+  Peers all;
+  for (const Library& library : libraries()) {
+    Peers built;
+    auto cost = std::make_shared<BuildCost>(measure_build(library, quick() ? 1 : 3, built));
+    std::move(built.begin(), built.end(), std::back_inserter(all));
+    add_benchmark("peers/build/" + library.name,
+                  [cost, version = library.version](benchmark::State& state) {
+                    report_build(state, *cost, version);
+                  });
+  }
   const std::vector<NamedPose> poses = peer_poses();
   for (const Question question : kQuestions) {
-    add(std::make_shared<Contest>(question, all, poses), poses);
+    add_contest(std::make_shared<Contest>(question, all, poses));
   }
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

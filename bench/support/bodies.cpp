@@ -39,6 +39,10 @@ std::filesystem::path data_file(const char* name) {
   return std::filesystem::path(named != nullptr ? named : IST_SOURCE_DIR "/../shared/data") / name;
 }
 
+std::filesystem::path scene_file(const char* name) {
+  return std::filesystem::path(IST_SOURCE_DIR "/tests/data/scenes") / name;
+}
+
 const char* pair_name() { return has_real_pair() ? "human" : "built-in"; }
 
 const TriangleMesh& upper_jaw() {

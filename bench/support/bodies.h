@@ -13,6 +13,9 @@ namespace ist::bench {
 /// or not.
 [[nodiscard]] std::filesystem::path data_file(const char* name);
 
+/// A file of tests/data/scenes.
+[[nodiscard]] std::filesystem::path scene_file(const char* name);
+
 /// The upper and the lower jaw that is measured: the real pair of data_file(), or the built-in one
 /// where that is not there. Read once.
 [[nodiscard]] const TriangleMesh& upper_jaw();

@@ -14,6 +14,8 @@ class Latencies {
  public:
   void add(double microseconds) { times_.push_back(microseconds); }
 
+  [[nodiscard]] std::size_t size() const { return times_.size(); }
+
   /// The time that a part of all queries did not exceed. Precondition: there is one.
   [[nodiscard]] double quantile(double part) {
     std::sort(times_.begin(), times_.end());

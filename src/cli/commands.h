@@ -14,5 +14,6 @@ void add_export(CLI::App& app);
 void add_collide(CLI::App& app);
 void add_close(CLI::App& app);
 void add_run(CLI::App& app);
+void add_advise(CLI::App& app);
 
 }  // namespace ist::cli

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   add_collide(app);
   add_close(app);
   add_run(app);
+  add_advise(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {  // or the version: asked for, and printed by whose it is

@@ -42,7 +42,10 @@ TEST_F(Usage, HelpTeaches) {
       {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}},
       {"run",
        {"SCENE", "--check", "--explain", "--rate", "--seconds", "--allow-missed", "--record",
-        "--replay", "--unpaced", "--cpu", "--json", "Example: ist run"}}};
+        "--replay", "--unpaced", "--cpu", "--json", "Example: ist run"}},
+      {"advise",
+       {"FIXED", "MOVING", "--budget-us", "--error", "--poses", "--axis", "--workers", "--target",
+        "--max-memory", "--json", "Example: ist advise"}}};
   for (const auto& [command, parts] : taught) {
     EXPECT_TRUE(says(help.out, "\n  " + command));
     const CommandResult result = ist_well({command, "--help"});
@@ -62,7 +65,7 @@ TEST_F(Usage, SubcommandsAndFlagsThatAreNotThere) {
   refuses({}, "subcommand is required");
   refuses({"nonsense"}, "nonsense: no such subcommand");
   refuses({"--nonsense"}, "--nonsense: no such");
-  for (const char* command : {"demo", "build", "info", "export", "collide", "close"}) {
+  for (const char* command : {"demo", "build", "info", "export", "collide", "close", "advise"}) {
     const CommandResult result = ist({command, "--nonsense", "1"});
     EXPECT_EQ(result.exit_code, 2) << command;
     EXPECT_EQ(result.out, "");

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "ist/base/float_environment.h"
+#include "ist/query/contact_order.h"
 #include "ist/query/query_rules.h"
 
 namespace ist {
@@ -19,21 +18,6 @@ double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
 // Whether a ball lies outside a slab; `centre` is the ball's, from that of the slab's own ball.
 bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noexcept {
   return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
-}
-
-// Keeps the order of those that are equal. By 11 bits at a time, the lower ones first.
-void sort_by_fixed(std::vector<Contact>& contacts, std::vector<Contact>& room) {
-  constexpr std::uint32_t kDigits = 1 << 11;
-  std::vector<std::uint32_t> begin(kDigits);
-  for (const int shift : {0, 11, 22}) {
-    const auto digit = [shift](const Contact& c) { return (c.fixed >> shift) % kDigits; };
-    std::fill(begin.begin(), begin.end(), 0);
-    for (const Contact& contact : contacts) ++begin[digit(contact)];
-    std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), 0U);
-    room.resize(contacts.size());
-    for (const Contact& contact : contacts) room[begin[digit(contact)]++] = contact;
-    std::swap(contacts, room);
-  }
 }
 
 }  // namespace

@@ -25,6 +25,23 @@ constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock));
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
 
+VoxelizerOptions voxelizer_options(const BuildOptions& options) {
+  const bool saved = !is_implicit(options.spheres);
+  VoxelizerOptions voxelizer{options.voxel_size, saved || options.keep_triangles,
+                             options.max_memory, kOctreeBytes, 0};
+  if (saved) {
+    voxelizer.bytes_per_voxel += kBallBytes;
+    if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
+    // The lists of two levels and the parts of one, while they are merged.
+    voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
+  }
+  if (options.proximity) {
+    voxelizer.bytes_per_voxel += kProximityBytes;
+    voxelizer.bytes_per_triangle += kPseudoNormalBytes;
+  }
+  return voxelizer;
+}
+
 // Nothing where there are no such voxels: a mesh without area has no outside.
 std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
                                                  const VoxelSet& surface) {
@@ -61,20 +78,7 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   if (report != nullptr) report->turned_components = oriented.turned_components;
   times.end("orientation");
 
-  const bool saved = !is_implicit(options.spheres);
-  VoxelizerOptions voxelizer{options.voxel_size, saved || options.keep_triangles,
-                             options.max_memory, kOctreeBytes, 0};
-  if (saved) {
-    voxelizer.bytes_per_voxel += kBallBytes;
-    if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
-    // The lists of two levels and the parts of one, while they are merged.
-    voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
-  }
-  if (options.proximity) {
-    voxelizer.bytes_per_voxel += kProximityBytes;
-    voxelizer.bytes_per_triangle += kPseudoNormalBytes;
-  }
-  VoxelSet voxels = voxelize(mesh, voxelizer, progress);
+  VoxelSet voxels = voxelize(mesh, voxelizer_options(options), progress);
   times.end("voxels");
 
   if (progress != nullptr) progress->begin_stage("folding the octree", 0);
@@ -87,7 +91,7 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                           std::nullopt};
   times.end("octree");
 
-  if (saved) {
+  if (!is_implicit(options.spheres)) {
     parts.bounds = build_bounds(options.spheres, mesh, voxels, parts.octree, progress);
     times.end("bounds");
   }
@@ -100,6 +104,10 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
     parts.triangles = LeafTriangles{std::move(mesh), std::move(voxels.triangles)};
   }
   return SphereTree(std::move(parts));
+}
+
+bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options, Progress* progress) {
+  return can_voxelize(mesh, voxelizer_options(options), progress);
 }
 
 }  // namespace ist

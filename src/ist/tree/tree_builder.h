@@ -38,4 +38,9 @@ struct BuildReport {
 [[nodiscard]] SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
                                     BuildReport* report = nullptr, Progress* progress = nullptr);
 
+/// Whether build_tree() would give a tree: the voxel size is one for this mesh, and what it makes
+/// fits the memory that is allowed. Cost: a tenth of the build.
+[[nodiscard]] bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
+                                  Progress* progress = nullptr);
+
 }  // namespace ist

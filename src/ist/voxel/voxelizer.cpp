@@ -362,4 +362,15 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
   return set;
 }
 
+bool can_voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
+  const ScopedFloatEnvironment environment;
+  Progress unseen;
+  const auto [low, high] = box_of(mesh);
+  if (mesh.triangles.size() > kMaxTriangles) return false;
+  if (lattice_flaw(low, high, options.voxel_size)) return false;
+  return fitting_survey(mesh, make_lattice(low, high, options.voxel_size), options,
+                        progress != nullptr ? *progress : unseen)
+      .has_value();
+}
+
 }  // namespace ist

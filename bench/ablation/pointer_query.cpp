@@ -1,0 +1,125 @@
+#include "ablation/pointer_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ist/base/float_environment.h"
+#include "ist/query/contact_order.h"
+#include "ist/query/query_rules.h"
+
+namespace ist::bench {
+namespace {
+
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noexcept {
+  return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
+}
+
+}  // namespace
+
+QueryResult PointerQuery::collide(const Eigen::Isometry3d& pose, std::span<Contact> out) {
+  const ScopedFloatEnvironment environment;
+  QueryResult result;
+  const std::optional<RelativePose> relative =
+      relative_pose(pose, fixed_.tree.lattice(), moving_.tree.lattice());
+  if (!relative) {
+    result.status = QueryStatus::kInvalidPose;
+    result.complete = false;
+    return result;
+  }
+  pose_ = *relative;
+  const double reach = fixed_.tree.reach() + moving_.tree.reach();
+  const double farthest = pose_.translation.cwiseAbs().maxCoeff();
+  slack_ = slack_in_double(reach, farthest);
+  tests_ = 0;
+  found_.clear();
+
+  const Visit a = visit(fixed_.tree, fixed_.pointers.root(), 0, 0);
+  Visit b = visit(moving_.tree, moving_.pointers.root(), 0, 0);
+  to_fixed_frame(b);
+  if (touch(a, b) && farthest <= reach + slack_) descend(a, b);
+
+  sort_by_fixed(found_, sorted_);
+  std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
+  result.contacts = found_.size();
+  result.truncated = found_.size() > out.size();
+  result.sphere_tests = tests_;
+  result.pad = 2 * slack_;
+  return result;
+}
+
+PointerQuery::Visit PointerQuery::visit(const SphereTree& tree, const PointerNode& node,
+                                        std::uint32_t parent, int slot) const {
+  Visit visit;
+  visit.node = &node;
+  visit.ball = is_implicit(policy_)
+                   ? implicit_ball(policy_, tree.lattice(), node.level, node.cube_centre, node.mask)
+                   : tree.saved_ball(node.level, parent, slot);
+  if (policy_ == SpherePolicy::kSlab) visit.slab = tree.saved_slab(node.level, parent, slot);
+  return visit;
+}
+
+void PointerQuery::open(const SphereTree& tree, const PointerNode& node, Children& children) const {
+  children.count = 0;
+  for (const auto& child : node.children) {
+    if (child == nullptr) continue;
+    children.visits[children.count] = visit(tree, *child, node.index, children.count);
+    ++children.count;
+  }
+}
+
+void PointerQuery::to_fixed_frame(Visit& visit) const noexcept {
+  const Eigen::Matrix3d& r = pose_.rotation;
+  const auto turned = [&r](const Eigen::Vector3d& v) {
+    return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
+                           (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
+                           (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
+  };
+  visit.ball.centre = turned(visit.ball.centre) + pose_.translation;
+  if (policy_ == SpherePolicy::kSlab) visit.slab.normal = turned(visit.slab.normal);
+}
+
+bool PointerQuery::touch(const Visit& a, const Visit& b) noexcept {
+  ++tests_;
+  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+  const double reach = (a.ball.radius + b.ball.radius) + slack_;
+  if (dot(apart, apart) > reach * reach) return false;
+  return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + slack_) ||
+                                             beyond(b.slab, -apart, a.ball.radius + slack_));
+}
+
+void PointerQuery::descend(const Visit& a, const Visit& b) {
+  if (a.node->level == 0 && b.node->level == 0) {
+    found_.push_back({a.node->index, b.node->index});
+    return;
+  }
+  const double edge_a = fixed_.tree.lattice().edge(a.node->level);
+  const double edge_b = moving_.tree.lattice().edge(b.node->level);
+  const bool open_a = opens(a.node->level, edge_a, b.node->level, edge_b);
+  const bool open_b = opens(b.node->level, edge_b, a.node->level, edge_a);
+  Children of_a, of_b;
+  if (open_a) {
+    open(fixed_.tree, *a.node, of_a);
+  } else {
+    of_a.count = 1;
+    of_a.visits[0] = a;
+  }
+  if (open_b) {
+    open(moving_.tree, *b.node, of_b);
+    for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.visits[j]);
+  } else {
+    of_b.count = 1;
+    of_b.visits[0] = b;
+  }
+  for (int i = 0; i < of_a.count; ++i) {
+    for (int j = 0; j < of_b.count; ++j) {
+      if (touch(of_a.visits[i], of_b.visits[j])) descend(of_a.visits[i], of_b.visits[j]);
+    }
+  }
+}
+
+}  // namespace ist::bench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "ablation/pointer_tree.h"
+#include "ist/query/contact.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist::bench {
+
+/// Both bodies of a scene, with all that any variant reads.
+struct Bodies {
+  const SphereTree& fixed;
+  const SphereTree& moving;
+  PointerTree fixed_pointers, moving_pointers;
+};
+
+/// What a query is made of.
+struct Parts {
+  enum class Search {
+    kPointers,  ///< depth first, node by node, by pointers: PointerQuery
+    kLinear,    ///< likewise on the linear octree: ReferenceQuery
+    kBatches,   ///< breadth first, in batches of spheres: CollisionQuery
+  };
+  Search search;
+  SpherePolicy policy;
+  std::string target = "scalar";  ///< of kBatches; the others have none
+  int workers = 1;                ///< likewise
+
+  friend bool operator==(const Parts&, const Parts&) = default;
+};
+
+/// A query made of these parts. Refers to the bodies.
+class Variant {
+ public:
+  Variant(const Bodies& bodies, const Parts& parts);
+
+  [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out) {
+    QueryResult result = collide_(pose, out);
+    most_contacts_ = std::max<std::size_t>(most_contacts_, result.contacts);
+    return result;
+  }
+
+  /// Of what it reads of both trees, and of its own memory by now.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  std::function<QueryResult(const Eigen::Isometry3d&, std::span<Contact>)> collide_;
+  std::size_t tree_bytes_ = 0;
+  std::size_t reserved_ = 0;             // of a query that reserves its memory
+  std::size_t most_contacts_ = 0;        // of any answer
+  std::size_t bytes_for_a_contact_ = 0;  // of one that does not
+};
+
+}  // namespace ist::bench

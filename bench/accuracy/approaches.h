@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+namespace ist::bench {
+
+/// A straight way on which the lower jaw, turned a little, comes up to the upper one and into it.
+struct Approach {
+  Eigen::Isometry3d turned;   ///< the moving jaw's pose at the way's begin, t = 0
+  Eigen::Vector3d direction;  ///< of unit length
+  double contact;             ///< where triangles meet first, to within 1e-6 mm
+
+  [[nodiscard]] Eigen::Isometry3d pose(double t) const {
+    Eigen::Isometry3d at = turned;
+    at.translation() += t * direction;
+    return at;
+  }
+};
+
+/// Where on a way from `from` on something touches first: looked for in steps of `step`, then
+/// halved down to `within`. Negative where it never does before `to`.
+template <class Touches>
+[[nodiscard]] double first_touch(double from, double to, double step, double within,
+                                 const Touches& touches) {
+  double free = from;
+  while (!touches(free + step)) {
+    free += step;
+    if (free > to) return -1;
+  }
+  double touching = free + step;
+  while (touching - free > within) {
+    const double middle = free + (touching - free) / 2;
+    (touches(middle) ? touching : free) = middle;
+  }
+  return touching;
+}
+
+/// So many of them, always the same: turned by up to 3 degrees about each axis, going up to 20
+/// degrees beside the closing, from where triangles are at least 6 mm of the way from each other.
+/// The exact contact is found by triangles.
+[[nodiscard]] std::span<const Approach> approaches();
+
+/// How far apart the surfaces are, by triangles, to within 2e-6 mm.
+[[nodiscard]] double exact_gap(const Eigen::Isometry3d& pose);
+/// Whether triangles meet.
+[[nodiscard]] bool exact_touch(const Eigen::Isometry3d& pose);
+
+/// Where on a way the jaws would be closed but for the turn, mm.
+inline constexpr double kWayBegin = 12;
+
+}  // namespace ist::bench

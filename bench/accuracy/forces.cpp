@@ -1,0 +1,84 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "accuracy/approaches.h"
+#include "accuracy/sections.h"
+#include "ist/haptics/touch_query.h"
+#include "support/latencies.h"
+
+namespace ist::bench {
+namespace {
+
+// mm, beyond the first contact: less than the finest voxel, for no depth is told beyond one.
+constexpr double kDepths[] = {0.02, 0.05, 0.08};
+
+// N for a stiffness of 1 N/mm, as a scene has it before anything is shared or clamped.
+std::vector<Eigen::Vector3d> forces(double voxel_size, SpherePolicy policy) {
+  const auto& [fixed, held] = trees(voxel_size);
+  TouchOptions options;
+  options.policy = policy;
+  TouchQuery query(fixed, held, {1, {}, Eigen::Vector3d::Zero()}, options);
+  std::vector<Eigen::Vector3d> found;
+  TouchSet touches;
+  for (const Approach& way : approaches()) {
+    for (const double depth : kDepths) {
+      const Placement tool = *Placement::from(way.pose(way.contact + depth));
+      static_cast<void>(query.ask(tool, {}, touches));
+      found.push_back(touches.spring.head<3>());
+    }
+  }
+  return found;
+}
+
+// Those of the finest voxels, by the tightest bounds.
+const std::vector<Eigen::Vector3d>& finest_forces() {
+  static const std::vector<Eigen::Vector3d> found =
+      forces(accuracy_sizes().back(), SpherePolicy::kSlab);
+  return found;
+}
+
+void force(benchmark::State& state, double voxel_size, SpherePolicy policy) {
+  constexpr double kDegrees = 57.29577951308232;
+  Latencies lengths, angles;
+  double none = 0;
+  for (auto _ : state) {
+    const std::vector<Eigen::Vector3d> found = forces(voxel_size, policy);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Eigen::Vector3d &f = found[i], &truth = finest_forces()[i];
+      if (truth.norm() == 0) {
+        state.SkipWithError("the finest voxels give no force");
+        return;
+      }
+      lengths.add(std::abs(f.norm() / truth.norm() - 1));
+      if (f.norm() == 0) {
+        ++none;
+      } else {
+        angles.add(kDegrees * std::atan2(f.cross(truth).norm(), f.dot(truth)));
+      }
+    }
+  }
+  state.counters["length_p50"] = lengths.quantile(0.5);
+  state.counters["length_max"] = lengths.quantile(1);
+  state.counters["angle_p50"] = angles.quantile(0.5);
+  state.counters["angle_max"] = angles.quantile(1);
+  state.counters["none"] = none;
+  state.counters["n"] = static_cast<double>(lengths.size());
+  state.SetLabel(pair_name());
+}
+
+}  // namespace
+
+void add_forces() {
+  for (const double size : accuracy_sizes()) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      benchmark::RegisterBenchmark(fmt::format("force/{:g}/{}", size, to_string(policy)).c_str(),
+                                   [=](benchmark::State& state) { force(state, size, policy); })
+          ->Unit(benchmark::kMillisecond)
+          ->Iterations(1);
+    }
+  }
+}
+
+}  // namespace ist::bench

@@ -1,0 +1,179 @@
+// How late the ticks of the 1 kHz loop begin and how long they take, idle and beside a noisy
+// neighbour, and how late this machine wakes a thread that has nothing else to do: the loop's own
+// clock and a plain sleep. The whole distribution: quantiles, and how many times were no longer
+// than each of a row of times.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ist/haptics/servo_loop.h"
+#include "ist/haptics/tick_clock.h"
+#include "ist/scene/scene_builder.h"
+#include "ist/scene/scene_file.h"
+#include "support/bodies.h"
+#include "support/effort.h"
+#include "support/noisy_neighbour.h"
+
+namespace ist::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::nanoseconds;
+constexpr nanoseconds kPeriod = std::chrono::milliseconds(1);
+
+double seconds() { return quick() ? 0.5 : 9; }
+std::uint64_t ticks() { return static_cast<std::uint64_t>(1000 * seconds()); }
+
+double microseconds(nanoseconds time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
+
+// As `late_p99_us`, and for each of the times, six a decade, `late_upto_150us`.
+void tell(benchmark::State& state, const std::string& what, const LatencyHistogram& times) {
+  for (const double percent : {50.0, 90.0, 99.0, 99.9, 99.99}) {
+    state.counters[fmt::format("{}_p{}_us", what, percent)] =
+        microseconds(times.quantile(percent / 100));
+  }
+  state.counters[what + "_max_us"] = microseconds(times.max());
+  for (const std::int64_t decade : {100, 1000, 10'000, 100'000, 1'000'000, 10'000'000}) {
+    for (const std::int64_t tenths : {10, 15, 20, 30, 50, 70}) {
+      const nanoseconds upto(decade * tenths / 10);
+      state.counters[fmt::format("{}_upto_{}us", what, microseconds(upto))] =
+          static_cast<double>(times.count_upto(upto));
+    }
+  }
+  state.counters[what + "_count"] = static_cast<double>(times.count());
+}
+
+std::string joined(const std::vector<std::string>& notes) {
+  return fmt::format("{}{}", pair_name(), notes.empty() ? "" : "; " + notes.front());
+}
+
+// The jaws of the scene that the README shows; or, where their files are missing, those that need
+// none.
+Scene scene_of_jaws() {
+  const bool real = std::string(pair_name()) == "human";
+  if (real) setenv("IST_DATA_DIR", data_file("").parent_path().c_str(), 0);
+  return read_scene(scene_file(real ? "human_pair.toml" : "jaws.toml"));
+}
+
+// They close in the first third, and are held closed for the rest.
+Scene closing_scene(int workers) {
+  Scene scene = scene_of_jaws();
+  scene.seconds = seconds();
+  scene.workers = workers;
+  scene.fixed.voxel_size = scene.held.voxel_size = quick() ? 0.8 : 0.2;
+  scene.proximity.reset();
+  scene.gravity.reset();
+  scene.snap.reset();
+  std::vector<Waypoint>& plan = std::get<HandSettings>(scene.device).plan;
+  plan.resize(2);
+  plan[1].time = seconds() / 3;
+  plan.push_back({1e6, plan[1].pose});
+  return scene;
+}
+
+void loop(benchmark::State& state, int workers, bool noisy) {
+  const Scene scene = closing_scene(workers);
+  const BuiltScene built = build_scene(scene);
+  ServoOptions options{};
+  options.ticks = ticks();
+  Snapshot<TickRecord> last;
+  ServoOutputs outputs;
+  outputs.snapshot = &last;
+  const std::atomic<bool> stop{false};
+  ServoReport report;
+  for (auto _ : state) {
+    const NoisyNeighbour neighbour(noisy);
+    report = run_servo_loop(*built.simulation, *built.device, options, outputs, stop);
+  }
+  const TickRecord end = last.read();
+  if (!end.contacts || end.contacts->contacts == 0 || report.faults > 0) {
+    state.SkipWithError("the jaws are not closed at the end, or the loop had a fault");
+    return;
+  }
+  tell(state, "late", report.late);
+  tell(state, "execution", report.execution);
+  tell(state, "cpu", report.cpu);
+  state.counters["ticks"] = static_cast<double>(report.ticks);
+  state.counters["missed"] = static_cast<double>(report.missed);
+  state.counters["held"] = static_cast<double>(report.held);
+  state.counters["contacts"] = static_cast<double>(end.contacts->contacts);
+  state.counters["voxel_size"] = *scene.fixed.voxel_size;
+  state.counters["denied"] = static_cast<double>(report.notes.size());
+  state.SetLabel(joined(report.notes));
+}
+
+// A loop that does nothing: `wait` ends a tick and tells how the next began.
+void bare(benchmark::State& state, bool real_time, bool noisy,
+          const std::function<TickStart()>& wait) {
+  LatencyHistogram late;
+  std::uint64_t missed = 0;
+  std::vector<std::string> notes;
+  for (auto _ : state) {
+    const NoisyNeighbour neighbour(noisy);
+    std::optional<RealTimeThread> thread;
+    if (real_time) thread.emplace(RealTimeOptions{});
+    for (std::uint64_t tick = 0; tick < ticks(); ++tick) {
+      const TickStart start = wait();
+      late.record(start.late);
+      missed += start.missed;
+      tick += start.missed;
+    }
+    if (thread) notes = thread->notes();
+  }
+  tell(state, "late", late);
+  state.counters["ticks"] = static_cast<double>(late.count());
+  state.counters["missed"] = static_cast<double>(missed);
+  state.counters["denied"] = static_cast<double>(notes.size());
+  state.SetLabel(joined(notes));
+}
+
+// The loop's clock, by which it rises early and waits awake.
+void bare_clock(benchmark::State& state, bool noisy) {
+  TickClock clock(kPeriod);
+  bool begun = false;
+  bare(state, true, noisy, [&] {
+    if (!begun) clock.start();
+    begun = true;
+    return clock.wait_for_next();
+  });
+}
+
+// The same schedule, slept through to its very end: how late the machine wakes.
+void bare_sleep(benchmark::State& state, bool real_time, bool noisy) {
+  std::optional<TickSchedule> schedule;
+  bare(state, real_time, noisy, [&] {
+    if (!schedule) schedule.emplace(Clock::now(), kPeriod);
+    std::this_thread::sleep_until(schedule->next(Clock::now()));
+    return schedule->begin(Clock::now());
+  });
+}
+
+void add(const char* name, bool noisy, const std::function<void(benchmark::State&, bool)>& run) {
+  benchmark::RegisterBenchmark(fmt::format("{}/{}", name, noisy ? "noisy" : "idle").c_str(),
+                               [=](benchmark::State& state) { run(state, noisy); })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->Iterations(1);
+}
+
+const int kRegistered = [] {
+  using State = benchmark::State;
+  for (const bool noisy : {false, true}) {
+    add("loop/1", noisy, [](State& state, bool beside) { loop(state, 1, beside); });
+    add("loop/2", noisy, [](State& state, bool beside) { loop(state, 2, beside); });
+    add("bare/clock", noisy, bare_clock);
+    add("bare/timer", noisy, [](State& state, bool beside) { bare_sleep(state, true, beside); });
+    add("bare/plain", noisy, [](State& state, bool beside) { bare_sleep(state, false, beside); });
+  }
+  return 0;
+}();
+
+}  // namespace
+}  // namespace ist::bench

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "peers/peer.h"
+#include "peers/poses.h"
+#include "support/latencies.h"
+
+namespace ist::bench {
+
+/// What anybody said; the pairs are candidates where these were asked for.
+struct Answer {
+  bool meets = false;
+  std::uint64_t pairs = 0;
+  GapInterval gap{};
+};
+
+/// Whether a contestant's answer is as IST's: no fewer candidates; distances that may be the same;
+/// for one who samples, distances within a voxel.
+[[nodiscard]] bool agree(Question question, const Answer& ist, const Answer& peer, Promise promise);
+
+/// What is wrong with IST's answer where the truth is known, if anything.
+[[nodiscard]] std::optional<std::string> untrue(Question question, const Answer& ist,
+                                                const NamedPose& pose);
+
+/// A question, and all who answer it. Who has used the least time so far is asked all poses next,
+/// so that everybody gets as much of it, and who is quick is measured oftener.
+class Contest {
+ public:
+  struct Player {
+    Peer& peer;
+    std::vector<Answer> answers;       ///< one a pose
+    std::vector<Latencies> latencies;  ///< likewise
+    int rounds = 0;
+    double spent = 0;  ///< s, with what is not counted
+  };
+
+  Contest(Question question, const Peers& all, const std::vector<NamedPose>& poses);
+
+  [[nodiscard]] Question question() const { return question_; }
+  [[nodiscard]] const std::vector<NamedPose>& poses() const { return poses_; }
+  [[nodiscard]] std::vector<Player>& players() { return players_; }
+
+  /// Asks everybody `fewest` times or more, until `seconds` have passed. Does nothing when it has
+  /// been called before.
+  void hold(double seconds, int fewest);
+
+ private:
+  void take_turn(Player& player);
+
+  Question question_;
+  const std::vector<NamedPose>& poses_;
+  std::vector<Player> players_;
+};
+
+}  // namespace ist::bench

@@ -1,0 +1,44 @@
+#include "peers/libraries.h"
+
+#include "peers/ist_peer.h"
+#ifdef IST_PEER_BULLET
+#include "peers/bullet_peer.h"
+#endif
+#ifdef IST_PEER_CGAL
+#include "peers/cgal_peer.h"
+#endif
+#ifdef IST_PEER_EMBREE
+#include "peers/embree_peer.h"
+#endif
+#ifdef IST_PEER_FCL
+#include "peers/fcl_peer.h"
+#endif
+#ifdef IST_PEER_OPENVDB
+#include "peers/openvdb_peer.h"
+#endif
+
+namespace ist::bench {
+
+std::vector<Library> libraries() {
+  std::vector<Library> all{ist_library()};
+#ifdef IST_PEER_FCL
+  all.push_back(fcl_library());
+#endif
+#ifdef IST_PEER_EMBREE
+  all.push_back(embree_library());
+#endif
+#ifdef IST_PEER_BULLET
+  all.push_back(bullet_library());
+#endif
+#ifdef IST_PEER_CGAL
+  all.push_back(cgal_library());
+#endif
+#ifdef IST_PEER_OPENVDB
+  all.push_back(openvdb_library());
+#endif
+  return all;
+}
+
+std::string missing_libraries() { return IST_PEERS_MISSING; }
+
+}  // namespace ist::bench

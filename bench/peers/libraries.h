@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "peers/peer.h"
+
+namespace ist::bench {
+
+/// All that this program was built with. The first one is IST.
+[[nodiscard]] std::vector<Library> libraries();
+
+/// Names of those that it was built without, with a comma between them.
+[[nodiscard]] std::string missing_libraries();
+
+}  // namespace ist::bench

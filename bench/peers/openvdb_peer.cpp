@@ -1,0 +1,97 @@
+#include "peers/openvdb_peer.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/MeshToVolume.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+
+#include "ist/mesh/mesh_check.h"
+#include "peers/surface_points.h"
+
+namespace ist::bench {
+namespace {
+
+using openvdb::FloatGrid;
+constexpr float kBandVoxels = 3;
+// From anywhere in a voxel to its centre, in voxels: by so much may a distance differ from the one
+// there.
+constexpr double kHalfDiagonal = 0.8660254037844387;
+
+FloatGrid::Ptr grid_of(const TriangleMesh& mesh) {
+  if (!check_mesh(mesh).closed) {
+    std::cerr << "openvdb: the fixed mesh is open, and a level set has an inside\n";
+    std::exit(1);
+  }
+  openvdb::initialize();
+  std::vector<openvdb::Vec3s> points;
+  points.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3d& v : mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  std::vector<openvdb::Vec3I> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) triangles.emplace_back(a, b, c);
+  return openvdb::tools::meshToLevelSet<FloatGrid>(
+      *openvdb::math::Transform::createLinearTransform(voxel_size()), points, triangles,
+      kBandVoxels);
+}
+
+class OpenvdbPeer final : public Peer {
+ public:
+  OpenvdbPeer(const char* name, FloatGrid::Ptr grid, std::vector<Eigen::Vector3d> points)
+      : Peer(name, Promise::kSampled), grid_(std::move(grid)), points_(std::move(points)) {}
+
+  [[nodiscard]] bool answers(Question question) const override {
+    return question == Question::kMeets || question == Question::kDistance;
+  }
+  bool meets(const Eigen::Isometry3d& pose) override { return least(pose, 0, 0) <= 0; }
+  GapInterval distance(const Eigen::Isometry3d& pose) override {
+    const double found = least(pose, -band_, band_);
+    if (found >= band_) return {band_ - half_diagonal_, std::numeric_limits<double>::infinity()};
+    return {std::max(found, 0.0), std::max(found, 0.0)};
+  }
+
+ private:
+  // The least signed distance at any point, if it is at most `most`, or else something greater;
+  // the first that is at most `enough`.
+  [[nodiscard]] double least(const Eigen::Isometry3d& pose, double enough, double most) const {
+    const Eigen::Matrix3d rotation = pose.linear() / voxel_size();
+    const Eigen::Vector3d translation = pose.translation() / voxel_size();
+    const auto values = grid_->getConstAccessor();
+    double best = most == 0 ? std::numeric_limits<double>::min() : most;
+    for (const Eigen::Vector3d& point : points_) {
+      const Eigen::Vector3d at = rotation * point + translation;
+      const openvdb::Vec3R index(at.x(), at.y(), at.z());
+      const openvdb::Coord voxel = openvdb::Coord::round(index);
+      if (!box_.isInside(voxel)) continue;
+      const float near = values.getValue(voxel);
+      if (near >= grid_->background() || near - half_diagonal_ >= best) continue;
+      const double value = openvdb::tools::BoxSampler::sample(values, index);
+      if (value >= best) continue;
+      best = value;
+      if (best <= enough) break;
+    }
+    return best;
+  }
+
+  const FloatGrid::Ptr grid_;
+  const std::vector<Eigen::Vector3d> points_;
+  const openvdb::CoordBBox box_ = grid_->evalActiveVoxelBoundingBox();
+  const double band_ = kBandVoxels * voxel_size(), half_diagonal_ = kHalfDiagonal * voxel_size();
+};
+
+Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
+  const FloatGrid::Ptr grid = grid_of(fixed);
+  Peers peers;
+  peers.push_back(
+      std::make_unique<OpenvdbPeer>("openvdb", grid, surface_points(moving, voxel_size())));
+  peers.push_back(std::make_unique<OpenvdbPeer>("openvdb_vertices", grid, moving.vertices));
+  return peers;
+}
+
+}  // namespace
+
+Library openvdb_library() { return {"openvdb", OPENVDB_LIBRARY_VERSION_STRING, make_peers}; }
+
+}  // namespace ist::bench

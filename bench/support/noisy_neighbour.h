@@ -1,0 +1,26 @@
+#pragma once
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace ist::bench {
+
+/// While it lives, as many threads as the machine has cores stream through memory that no cache
+/// holds and compute on it, at the priority of ordinary threads. Made before a thread asks for a
+/// higher one, which they would begin with.
+class NoisyNeighbour {
+ public:
+  /// @param there whether there is one at all
+  explicit NoisyNeighbour(bool there);
+  ~NoisyNeighbour();
+  NoisyNeighbour(const NoisyNeighbour&) = delete;
+  NoisyNeighbour& operator=(const NoisyNeighbour&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<unsigned> at_work_{0};
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace ist::bench

@@ -1,0 +1,13 @@
+# Sourced from the project's root: which machine this is, and what results on it are made with.
+#   $model     the processor, $machine likewise as the name of a folder, with its cores
+#   $compiler  and $commit, which ends in + where files are changed
+#   $results   where raw results go
+#   $context   of the benchmarks: each as name=value
+model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+machine=$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(nproc)
+compiler=$(g++ --version | head -n 1)
+commit=$(git describe --always --dirty=+ 2>/dev/null || echo none)
+results=perf/results/$machine
+flags=$(grep -m 1 'search_step.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
+  tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | tr '\n' ' ' || true)
+context=("processor=$model" "compiler=$compiler" "flags=${flags% }" "commit=$commit")

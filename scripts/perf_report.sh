@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Makes perf/REPORT.md, with its plots, from raw results in perf/results/<machine>/: what accuracy
+# costs in time, the article's own measurements again, what each part gives, and other libraries
+# side by side. Runs the benchmarks whose results are missing, so that after an interruption it goes
+# on where it was. Some 35 minutes on two cores that have nothing else to do, and 5 to build.
+#
+#   scripts/perf_report.sh            runs what is missing
+#   scripts/perf_report.sh --fresh    runs all again
+#   scripts/perf_report.sh --quick    shows that all of it runs, in 3 minutes once built: few rounds,
+#                                     large voxels; everything goes to build/report instead
+#
+#   IST_DATA_DIR=FOLDER    where the real jaws are, by default ../shared/data; else the built-in ones
+set -euo pipefail
+cd "$(dirname "$0")/.."
+options=()
+for argument in "$@"; do
+  case $argument in
+    --quick | --fresh) options+=("$argument") ;;
+    -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "perf_report: unknown option $argument; see --help" >&2; exit 2 ;;
+  esac
+done
+scripts/setup.sh --peers >&2
+cmake --preset bench | grep '^-- Peers' >&2 || true
+echo "perf_report: building" >&2
+cmake --build --preset bench | tail -n 1 >&2
+source scripts/machine.sh
+PYTHONPATH=scripts exec /usr/bin/python3 -m report "${options[@]}" "$results" "${context[@]}"

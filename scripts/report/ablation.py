@@ -1,0 +1,261 @@
+"""Chapter: what each part of the fast query gives, added one by one and left out one by one."""
+
+from report.text import number, table
+
+PROGRAMS = ["ablation_bench"]
+
+SIZES = ("0.2", "0.8")
+POSES = ("0.0", "-1.5")
+PLACE = {"0.0": "full occlusion (dz = 0)", "-1.5": "near contact (dz = -1.5)"}
+LOOKS = {"0.0": {"color": "#1f4e79", "marker": "o"}, "-1.5": {"color": "#e6851e", "marker": "D", "linestyle": "--"}}
+HATCHES = {"0.0": "", "-1.5": "///"}
+
+# What a step of the ladder adds; one that is not here adds an instruction set.
+ADDED = {
+    "pointers_simple": "published: pointers, circumspheres",
+    "pointers_table": "+ lookup table",
+    "linear_table": "+ linear layout",
+    "batches": "+ breadth-first batches",
+    "tight": "+ tight balls",
+    "slab": "+ slabs",
+    "second_worker": "+ second worker",
+}
+INSTRUCTIONS = {"ssse3": "SSSE3", "sse4": "SSE4", "avx2": "AVX2", "avx3": "AVX-512"}
+LEFT_OUT = {
+    "second_worker": "second worker",
+    "simd": "SIMD",
+    "simd_and_worker": "SIMD and second worker",
+    "slab": "slabs",
+    "tight": "tight balls, slabs (so: table)",
+    "table": "tight balls, slabs, table (so: circumspheres)",
+    "batches": "batches, SIMD, second worker",
+    "layout": "linear layout, batches, SIMD, second worker",
+}
+
+
+class Variants:
+    """The variants of one kind and voxel size, in the order measured: runs by name and dz."""
+
+    def __init__(self, results, kind, size):
+        self.runs = {}
+        for run in results.runs("ablation_bench", "ablation", kind):
+            _, _, step, at, dz = run.parts
+            if at == size:
+                self.runs.setdefault(step.split("-", 1)[1], {})[dz] = run
+
+    def names(self):
+        return list(self.runs)
+
+    def of(self, name, counter, dz):
+        return self.runs[name][dz][counter]
+
+    def times(self, slow, fast, dz):
+        """How many times faster `fast` is than `slow`."""
+        return self.of(slow, "p50_us", dz) / self.of(fast, "p50_us", dz)
+
+    def samples(self):
+        """Of how many queries a median is, as a text."""
+        counts = [int(run["n"]) for poses in self.runs.values() for run in poses.values()]
+        return f"{min(counts):,} to {max(counts):,}"
+
+
+def is_loss(value):
+    """Whether a factor, as it is written, is below 1."""
+    return float(f"{value:.2f}") < 1
+
+
+def factor(value):
+    """A factor, in bold where it is a loss."""
+    text = number(value, 3) if value >= 10 else f"{value:.2f}"
+    return f"**{text}**" if is_loss(value) else text
+
+
+def listing(words):
+    words = list(words)
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
+
+
+def added(name):
+    return ADDED[name] if name in ADDED else f"+ SIMD: {INSTRUCTIONS.get(name, name)}"
+
+
+def main_line(variants):
+    """The steps of which each adds to the one before it; linear_simple stands beside them."""
+    return [name for name in variants.names() if name != "linear_simple"]
+
+
+def ladder_table(variants):
+    head = ["step", "MB"]
+    for dz in POSES:
+        head += [f"µs, dz = {dz}", "tests", "times the step before", "times published"]
+    rows, line = [], main_line(variants)
+    for before, name in zip([None] + line, line):
+        row = [added(name), variants.of(name, "bytes", "0.0") / 1e6]
+        for dz in POSES:
+            row += [variants.of(name, "p50_us", dz), int(variants.of(name, "tests", dz))]
+            row += [factor(variants.times(before, name, dz)) if before else ""]
+            row += [factor(variants.times(line[0], name, dz))]
+        rows.append(row)
+    return table(head, rows)
+
+
+def without_table(variants):
+    head = ["without", "MB"]
+    for dz in POSES:
+        head += [f"µs, dz = {dz}", "tests", "times as long"]
+    rows = []
+    for name in variants.names():
+        row = ["nothing" if name == "full" else LEFT_OUT[name], variants.of(name, "bytes", "0.0") / 1e6]
+        for dz in POSES:
+            row += [variants.of(name, "p50_us", dz), int(variants.of(name, "tests", dz))]
+            row += ["" if name == "full" else factor(variants.times(name, "full", dz))]
+        rows.append(row)
+    return table(head, rows)
+
+
+def steps_by_factor(variants, dz):
+    """(factor, step) of each step but the first, the largest factor first."""
+    line = main_line(variants)
+    return sorted(((variants.times(before, name, dz), name) for before, name in zip(line, line[1:])), reverse=True)
+
+
+def verdict(variants, dz):
+    """What pays at a pose and what does not, in sentences."""
+    steps, line = steps_by_factor(variants, dz), main_line(variants)
+    named = lambda chosen: listing(f"{added(name)[2:]} ({factor(value)})" for value, name in chosen)
+    losses = [step for step in steps if is_loss(step[0])]
+    return (
+        f"At {PLACE[dz]} all steps together make the query {number(variants.times(line[0], line[-1], dz))} times as "
+        f"fast. Most give {named(steps[:3])}. " + (f"These lose: {named(losses)}." if losses else "No step loses."))
+
+
+def without_verdict(variants, size):
+    """Which parts the whole would be faster without."""
+    found = []
+    for dz in POSES:
+        for name in variants.names():
+            value = variants.times(name, "full", dz)
+            if is_loss(value):
+                found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long)")
+    if not found:
+        return f"At {size} mm no part is better left out."
+    return f"At {size} mm the query is faster without {listing(found)}."
+
+
+def label_down(axes, labels, unit):
+    """A logarithmic scale to the right, and a label a row, from the top down."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter("{x:,.0f}")
+    axes.set_xlabel(unit)
+    axes.set_yticks(range(len(labels)))
+    axes.set_yticklabels(labels)
+    axes.set_ylim(len(labels) - 0.5, -0.5)
+
+
+def ladder_plot(variants, pictures, size):
+    line = main_line(variants)
+    figure, (times, tests) = pictures.figure(columns=2, width=10)
+    for axes, counter in ((times, "p50_us"), (tests, "tests")):
+        for dz in POSES:
+            values = [variants.of(name, counter, dz) for name in line]
+            axes.plot(values, range(len(line)), label=PLACE[dz], **LOOKS[dz])
+    label_down(times, [added(name) for name in line], "median time of a query, µs")
+    label_down(tests, [""] * len(line), "pairs of bounds tested in a query")
+    times.set_title("Time: each step with all above it")
+    tests.set_title("Tests")
+    times.set_ylabel("step")
+    times.legend(loc="lower right")
+    return pictures.save(figure, "ablation_ladder", "Time and tests of a query, part by part",
+                         f"Jaws at {size} mm, n = {variants.samples()} queries a dot")
+
+
+def without_plot(variants, pictures, size):
+    names = [name for name in variants.names() if name != "full"]
+    figure, axes = pictures.figure(width=7.5)
+    for i, dz in enumerate(POSES):
+        places = [row + 0.36 * (i - 0.5) for row in range(len(names))]
+        beyond = [variants.times(name, "full", dz) - 1 for name in names]
+        axes.barh(places, beyond, 0.36, left=1, color=LOOKS[dz]["color"], hatch=HATCHES[dz], edgecolor="white",
+                  label=PLACE[dz])
+    axes.axvline(1, color="black", linewidth=0.8)
+    label_down(axes, [LEFT_OUT[name] for name in names], "times as long as the whole query")
+    axes.set_ylabel("left out")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=2)
+    return pictures.save(figure, "ablation_without", "How much longer a query takes without each part",
+                         f"Jaws at {size} mm, n = {variants.samples()} queries a bar")
+
+
+def layout_text(variants):
+    """What the layout gives by itself, and what it takes in memory."""
+    gain = lambda name, base: listing(f"{factor(variants.times(base, name, dz))} at dz = {dz}" for dz in POSES)
+    ratio = variants.of("pointers_table", "bytes", "0.0") / variants.of("linear_table", "bytes", "0.0")
+    return (
+        f"The linear layout gives a factor of {gain('linear_table', 'pointers_table')} with the table, and of "
+        f"{gain('linear_simple', 'pointers_simple')} with circumspheres. It takes {number(ratio)} times less memory. "
+        "The nodes with pointers lie on a fresh heap in the order of a depth-first search, so they are as near each "
+        "other as pointers can have them. The layout is also what batches and saved bounds are built on.")
+
+
+def spheres_text(results):
+    runs = results.runs("ablation_bench", "ablation", "spheres")
+    cost = {run.parts[2].split("-", 1)[1]: run["ns_a_sphere"] for run in runs}
+    ratio = cost["enclosing_ball"] / cost["lookup"]
+    return (
+        f"A sphere looked up by its mask takes {number(cost['lookup'], 2)} ns. Computed at run time, with the same "
+        f"result, it takes {number(cost['enclosing_ball'], 2)} ns by the smallest enclosing ball of the children's "
+        f"corners, {number(ratio, 2)} times as long, and {number(cost['search'], 2)} ns by the search with which the "
+        "compiler makes the table.")
+
+
+def contacts_text(variants):
+    found = listing(f"{int(variants.of(step, 'contacts', '0.0')):,} with {name}" for step, name in (
+        ("pointers_simple", "circumspheres"), ("pointers_table", "the table"), ("batches", "the table in batches"),
+        ("tight", "tight balls"), ("slab", "slabs")))
+    return (
+        "Steps that change the bounds change the answer too, within what is promised: they drop pairs of leaves "
+        f"whose surfaces do not meet. Contacts at dz = 0: {found}. What comes after keeps each of them, and their "
+        "order.")
+
+
+def chapter(results, pictures):
+    """One table and plot a voxel size for what is added, and for what is left out."""
+    ladders = {size: Variants(results, "ladder", size) for size in SIZES}
+    withouts = {size: Variants(results, "without", size) for size in SIZES}
+    first = results.runs("ablation_bench", "ablation", "ladder")[0]
+    finest = SIZES[0]
+    lines = [
+        "## What each part gives", "",
+        "Between the published query and the fast one lie some parts. Here they are added one by one, and then left "
+        f"out one by one. All variants ask the same trees of the {first['label']} jaws at the same poses in one "
+        "process, in turns, so that whatever else the machine does meets them all. Each answer is checked: variants "
+        "that search alike with the same bounds give the same contacts and make as many tests, and the two ways to "
+        "search differ only in pairs that the promise leaves open. Times are from pose in to sorted contacts out, "
+        f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, fewest of "
+        "those that take longest. A test is a test of two nodes' bounds. Losses, that is factors below 1, are in "
+        "bold.", "",
+        "The search of the published query and of the linear layout is depth first, in double, with spheres made on "
+        "the fly; from the batches on it is breadth first, in float. Each SIMD step stands beside the narrower "
+        "instruction set before it. Queries follow back to back, which suits the second worker best. MB is what the "
+        "query reads of both trees, and its own memory.", "",
+    ]
+    for size in SIZES:
+        lines += [f"### Added one by one, at {size} mm", ""] + ladder_table(ladders[size]) + [""]
+        if size == finest:
+            lines += [ladder_plot(ladders[size], pictures, size), ""]
+        for dz in POSES:
+            lines += [verdict(ladders[size], dz), ""]
+    lines += [layout_text(ladders[finest]), "", contacts_text(ladders[finest]), "", spheres_text(results), ""]
+    for size in SIZES:
+        lines += [f"### Left out one by one, at {size} mm", ""] + without_table(withouts[size]) + [""]
+        lines += [without_verdict(withouts[size], size), ""]
+        if size == finest:
+            lines += [without_plot(withouts[size], pictures, size), ""]
+    lines += [
+        "A part that others build on takes them with it: slabs need the tight balls, and no vectors or second worker "
+        "are there without batches, nor batches without the linear layout. So the last two rows are depth-first "
+        "searches with slabs, by one worker, and the last is not comparable with the whole but with the row above it: "
+        + listing(f"{factor(withouts[finest].times('layout', 'batches', dz))} times as long at dz = {dz}"
+                  for dz in POSES)
+        + f" at {finest} mm is what the pointers alone cost.", "",
+    ]
+    return lines

@@ -1,0 +1,218 @@
+"""Chapter: what accuracy costs in time. Errors are measured, never assumed."""
+
+from report.curves import between, exponent
+from report.draw import style
+from report.text import number, table
+
+PROGRAMS = ["accuracy_bench", "advise_bench"]
+POLICIES = ("simple", "table", "tight", "slab")
+BUDGET = 300  # µs, of the question that the first plot answers
+NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
+WANTED = 0.1  # mm, of the second
+
+
+class FirstContacts:
+    """By policy, from the coarsest voxels to the finest: error, time and all else of first/…"""
+
+    def __init__(self, results):
+        self.runs = results.runs("accuracy_bench", "first")
+        self.by_policy = {}
+        for run in self.runs:
+            self.by_policy.setdefault(run.parts[2], []).append(run)
+        self.n, self.rounds = self.runs[0]["n"], self.runs[0]["rounds"]
+
+    def curve(self, policy, x, y):
+        return sorted((run[x], run[y]) for run in self.by_policy[policy])
+
+    def sizes(self, policy, x):
+        """Voxel size over any other number of the policy's runs."""
+        return sorted((run[x], float(run.parts[1])) for run in self.by_policy[policy])
+
+
+def chapter(results, pictures):
+    first = FirstContacts(results)
+    return ["## The cost of accuracy", "", *_meaning(first), *_budget(first, pictures), *_wanted(first, pictures),
+            *_table(first), *_advice(results, first), *_verdicts(results), *_gaps(results, pictures), *_deadlines(results, pictures),
+            *_points(results), *_forces(results)]
+
+
+def _meaning(first):
+    return [
+        f"Two jaws come up to each other on {first.n:.0f} straight ways, turned by up to 3 degrees and inclined by up to 20. The "
+        "**error** is how far the surfaces are still apart, by exact triangles, when voxels first say that they touch: "
+        "the largest of all ways. A contact is never said too late: the program that measures stops with a failure where one is, "
+        f"and none was. The **time** is that of the worst tick: the slowest median ({first.rounds:.0f} rounds) of five poses of the closing "
+        "and of those where the ways first touch, one worker, all contacts written.", ""]
+
+
+def _budget(first, pictures):
+    figure, axes = pictures.figure(width=6.4, height=4.2)
+    floor = 0.7 * min(run["error_max"] for run in first.runs if run["error_max"] > 0)
+    for policy in POLICIES:
+        runs = first.by_policy[policy]
+        axes.plot([r["worst_us"] for r in runs], [r["error_max"] for r in runs], **style(policy))
+        for r in runs if policy in ("slab", "table") else ():
+            axes.annotate(r.parts[1], (r["worst_us"], r["error_max"]), xytext=(4, 3), textcoords="offset points", fontsize=7)
+    exact, touches = (min(first.by_policy[name], key=lambda run: run["worst_us"]) for name in ("exact", "touches"))
+    axes.plot([exact["worst_us"]], [floor], linestyle="", **style("exact", label="all pairs of triangles: error 0"))
+    axes.plot([touches["worst_us"]], [floor], linestyle="", **style("touches", label="whether triangles meet: error 0"))
+    axes.axvline(BUDGET, color="black", linestyle=":", linewidth=1)
+    axes.annotate(f"{BUDGET} µs", (BUDGET, axes.get_ylim()[1]), xytext=(3, -9), textcoords="offset points", fontsize=8)
+    axes.set(xscale="log", yscale="log", xlabel="worst tick, µs (median, one worker)",
+             ylabel="largest error at first contact, mm", title="I have 300 µs: what accuracy can I have?")
+    axes.legend(title="bounds; numbers are voxel sizes, mm", fontsize=8, title_fontsize=8)
+    picture = pictures.save(figure, "accuracy_for_time", "Largest error at first contact over time of the worst tick, by policy",
+                            f"n = {first.n:.0f} ways of approach, {first.rounds:.0f} rounds")
+    said = []
+    for policy in POLICIES:
+        error = between(first.curve(policy, "worst_us", "error_max"), BUDGET)
+        if error is None:
+            points = first.curve(policy, "worst_us", "error_max")
+            if points[0][0] > BUDGET:
+                said.append((float("inf"), f"`{policy}` is too slow at every size measured"))
+            else:
+                said.append((points[-1][1], f"`{policy}` {number(points[-1][1])} mm or better, the finest measured"))
+        else:
+            size = between(first.sizes(policy, "worst_us"), BUDGET)
+            said.append((error, f"`{policy}` {number(error)} mm, with voxels of {number(size, 2)} mm"))
+    said.sort()
+    return [f"### I have {BUDGET} µs: what accuracy can I have?", "", picture, "",
+            "Read between the points: " + "; ".join(text for _, text in said) + ". All pairs of "
+            f"triangles that meet, without any error, take {number(exact['worst_us'])} µs at their best voxel size of {exact.parts[1]} mm; whether any meet, "
+            f"which is a yes or a no and nothing that a force could be made of, {number(touches['worst_us'])} µs at {touches.parts[1]} mm.", ""]
+
+
+def _wanted(first, pictures):
+    figure, (times, memory) = pictures.figure(2, height=3.8)
+    for policy in POLICIES:
+        runs = first.by_policy[policy]
+        errors = [r["error_max"] for r in runs]
+        times.plot(errors, [r["worst_us"] for r in runs], **style(policy))
+        memory.plot(errors, [r["MB"] for r in runs], **style(policy))
+    for axes, label in ((times, "worst tick, µs"), (memory, "both trees in memory, MB")):
+        axes.axvline(WANTED, color="black", linestyle=":", linewidth=1)
+        axes.set(xscale="log", yscale="log", xlabel="largest error at first contact, mm", ylabel=label)
+    times.legend(fontsize=8)
+    figure.suptitle("I need 0.1 mm: what does it take?")
+    picture = pictures.save(figure, "time_for_accuracy", "Time and memory over the error at first contact, by policy",
+                            f"n = {first.n:.0f} ways of approach, {first.rounds:.0f} rounds")
+    rows = []
+    for policy in POLICIES:
+        size = between(first.sizes(policy, "error_max"), WANTED)
+        if size is None:
+            best = first.curve(policy, "error_max", "worst_us")[0][0]
+            rows.append([f"`{policy}`", f"not reached: {number(best)} mm with the finest", "", "", "", ""])
+            continue
+        at = {key: between(first.curve(policy, "error_max", key), WANTED) for key in ("worst_us", "MB", "build_ms")}
+        rows.append([f"`{policy}`", number(size, 2), at["worst_us"], 1e6 / at["worst_us"], at["MB"], at["build_ms"] / 1e3])
+    return [f"### I need {WANTED} mm: what does it take?", "", picture, "",
+            *table(["bounds", "voxel size, mm", "worst tick, µs", "rate, Hz", "both trees, MB", "to build both, s"], rows), ""]
+
+
+def _table(first):
+    rows = []
+    for run in sorted(first.runs, key=lambda r: (-r["error_max"], r["worst_us"])):
+        size, policy = run.parts[1:3]
+        rows.append([NAMES.get(policy, f"`{policy}`"), size, run["error_p50"], run["error_max"],
+                     run["resolution"], run["build_ms"] / 1e3, run["MB"], run["worst_us"], 1e6 / run["worst_us"]])
+    slab = [(float(run.parts[1]), run["error_max"]) for run in first.by_policy["slab"]]
+    worst = max(run["error_max"] / run["resolution"] for run in first.runs if run["resolution"] > 0)
+    return ["### Every accuracy", "",
+            *table(["bounds", "voxel size, mm", "error, median, mm", "error, largest, mm", "certain bound, mm", "to build both, s",
+                    "both trees, MB", "worst tick, µs", "rate, Hz"], rows), "",
+            f"With `slab` the error grows as size^{exponent(slab):.2f}. The certain bound is `resolution`, which every answer states; what was "
+            f"measured comes to at most {100 * worst:.0f} % of it. Triangles are told apart in voxels of the size that is named.", ""]
+
+
+def _advice(results, first):
+    rows = []
+    error, time = (sorted((float(r.parts[1]), r[key]) for r in first.by_policy["slab"]) for key in ("error_max", "worst_us"))
+    for run in results.runs("advise_bench", "advise"):
+        asked, limit, size = run.parts[1], run.parts[2], run["voxel_size"]
+        beyond = "beyond it"
+        rows.append([f"{limit} µs" if asked == "budget" else f"{limit} mm", f"{size:g}", run["error"], between(error, size) or beyond,
+                     run["worst_us"], between(time, size) or beyond, f"{run['sizes']:.0f}", run["seconds"]])
+    return ["### Advice, held against this curve", "",
+            "`ist advise` measures a few voxel sizes on the user's own meshes, at twelve poses of one straight closing, and recommends one "
+            "that was measured to hold. Beside what it measured stands the curve of `slab` above, read between its points: of other "
+            "poses, of which there are more.", "",
+            *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its worst tick, µs", "curve, µs", "sizes tried", "seconds"],
+                   rows), ""]
+
+
+def _verdicts(results):
+    runs = results.runs("accuracy_bench", "verdict")
+    rows = [[f"`{run.parts[2]}`", run.parts[1], f"{run['missed']:.0f}", f"{run['false']:.0f}", run["leaf_pairs"],
+             100 * (1 - run["crossing"] / run["leaf_pairs"])] for run in runs]
+    some = runs[0]
+    missed = sum(run["missed"] for run in runs)
+    return ["### Missed and false contacts", "",
+            f"Asked at {some['n']:.0f} poses within 1.5 mm before first contact and 0.5 mm behind it, of which triangles meet at "
+            f"{some['touching']:.0f}: missed are poses at which triangles meet and no voxels do, false those at which voxels do and no triangles. "
+            "False leaf pairs are those of the closed pose whose own triangles, clipped to the voxels, do not cross. Missing "
+            f"leaf pairs would stop the program. **Missed in all: {missed:.0f}.**", "",
+            *table(["bounds", "voxel size, mm", "missed", "false", "leaf pairs, closed", "of which false, %"], rows), ""]
+
+
+def _gaps(results, pictures):
+    runs = results.runs("accuracy_bench", "gap")
+    distances = sorted({run.parts[3] for run in runs}, key=float)
+    figure, axes = pictures.figure(len(distances), width=11, height=3.4)
+    for plot, distance in zip(axes, distances):
+        for policy in POLICIES:
+            of = [run for run in runs if run.parts[2] == policy and run.parts[3] == distance]
+            plot.plot([r["p50_us"] for r in of], [r["width_p50"] for r in of], **style(policy))
+        of = [run for run in runs if run.parts[2].startswith("exact") and run.parts[3] == distance]
+        plot.plot([r["p50_us"] for r in of], [r["width_p50"] for r in of], **style("exact", label="with triangles"))
+        plot.set(xscale="log", yscale="log", xlabel="time, µs (median)", title=f"{distance} mm apart")
+    axes[0].set_ylabel("width of the interval, mm (median)")
+    axes[0].legend(fontsize=7)
+    picture = pictures.save(figure, "gap_width", "Width of the gap's interval over time, by distance",
+                            f"n = {runs[0]['n']:.0f} queries a point")
+    coarse = max(runs, key=lambda r: r["width_max"])
+    return ["### The gap", "", picture, "",
+            "The distance between the surfaces as an interval that holds it, from voxels alone (a point for each voxel size, "
+            "coarse ones above) and with triangles, to tolerances of "
+            + ", ".join(dict.fromkeys(r.parts[2].split("-")[1] for r in runs if "-" in r.parts[2])) + " mm. Every interval was held against exact "
+            f"triangles, and held the distance. The widest of all is {number(coarse['width_max'])} mm (`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
+
+
+def _deadlines(results, pictures):
+    runs = results.runs("accuracy_bench", "deadline")
+    figure, axes = pictures.figure(width=6, height=3.8)
+    for distance, mark in zip(sorted({run.parts[2] for run in runs}, key=float), "osD^"):
+        of = [run for run in runs if run.parts[2] == distance]
+        axes.plot([float(r.parts[1]) for r in of], [r["width_p50"] for r in of], marker=mark, label=f"{distance} mm apart")
+    axes.set(xscale="log", yscale="log", xlabel="budget, µs", ylabel="width of the interval, mm (median)",
+             title="What is known of the gap at a deadline")
+    axes.legend(fontsize=8)
+    picture = pictures.save(figure, "gap_by_budget", "Width of the gap's interval by the query's budget",
+                            f"n = {runs[0]['n']:.0f} queries a point, slab, voxels of {runs[0]['voxel_size']:g} mm")
+    late = max((run["p50_us"] - float(run.parts[1]) for run in runs if run["p50_us"] > float(run.parts[1])), default=0)
+    return ["### Deadlines", "", picture, "",
+            "A contact query that is stopped says what it knows by then, and the interval always holds the distance. Where surfaces are far "
+            "apart it is done before its budget is, and the interval stays as wide as where it pruned: for a narrow one "
+            f"ask for the gap itself. In the median no query ended more than {number(late, 2)} µs after its budget.", ""]
+
+
+def _points(results):
+    runs = results.runs("accuracy_bench", "form")
+    rows = [[f"`{run.parts[2]}`", run.parts[1], run["depth_mean"], run["depth_max"], run["depth_max"] / float(run.parts[1]),
+             run["normal_mean"], run["normal_max"], run["n"]] for run in runs]
+    return ["### Depths and normals", "",
+            f"On {runs[0]['forms']:.0f} pairs of bodies whose surfaces are known (spheres, planes, a bore, boxes, tori; a few mm large), where "
+            "radii of curvature are over ten voxels, from a voxel apart to a voxel deep. n is the number of contact points.", "",
+            *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels", "normal error, mean, °", "largest, °", "n"],
+                   rows), ""]
+
+
+def _forces(results):
+    runs = results.runs("accuracy_bench", "force")
+    finest = min(runs, key=lambda r: float(r.parts[1])).parts[1]
+    rows = [[f"`{run.parts[2]}`", run.parts[1], run["angle_p50"], run["angle_max"], 100 * run["length_p50"], 100 * run["length_max"]]
+            for run in runs]
+    return ["### Forces", "",
+            f"The contact force at {runs[0]['n']:.0f} poses, 0.02 to 0.08 mm behind first contact, against that of voxels of {finest} mm with "
+            "`slab`. Its direction is what a hand tells apart. Its length differs at one and the same pose, for a surface "
+            "begins to push a quarter of a voxel before contact: coarse voxels push earlier, and a hand comes to rest farther out.", "",
+            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %"], rows)]

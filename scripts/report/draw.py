@@ -1,0 +1,66 @@
+"""How every plot of the report looks, and where it goes."""
+
+import math
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402  after the backend is chosen
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+
+# Told apart without colours too: each policy and engine has one colour and one mark in all plots.
+STYLE = {
+    "simple": ("#888888", "s"),
+    "table": ("#d95f02", "o"),
+    "tight": ("#7570b3", "^"),
+    "slab": ("#1b9e77", "D"),
+    "exact": ("#e7298a", "*"),
+    "touches": ("#e6ab02", "P"),
+}
+
+
+def plain_ticks(axes):
+    """Numbers as people write them, on axes in logarithms: at each decade, and at 2 and 5 where there are few."""
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if axis.get_scale() != "log":
+            continue
+        decades = abs(math.log10(high / low))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < 3 else (1,), numticks=20))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}" if 1e-4 < value < 1e6 else f"{value:.0e}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+class Pictures:
+    """Makes plots and keeps them, each with what it takes to read it on paper."""
+
+    def __init__(self, folder, machine):
+        self.folder, self.machine = pathlib.Path(folder), machine
+        self.folder.mkdir(parents=True, exist_ok=True)
+        plt.rcParams.update({
+            "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3,
+            "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "lines.markersize": 4.5,
+            "lines.linewidth": 1.3, "figure.constrained_layout.use": True,
+        })
+
+    def figure(self, columns=1, width=None, height=3.6):
+        """A figure and its axes, side by side; one axes alone where there is one column."""
+        return plt.subplots(1, columns, figsize=(width or 4.6 * columns + 1, height))
+
+    def save(self, figure, name, alt, n):
+        """Writes NAME.svg, under it `n` (what was measured how often) and the machine; gives the markdown."""
+        for axes in figure.axes:
+            plain_ticks(axes)
+        figure.supxlabel(f"{n}. {self.machine}", fontsize=6.5, color="#555555", x=0.01, ha="left")
+        file = self.folder / f"{name}.svg"
+        figure.savefig(file, metadata={"Date": None})
+        plt.close(figure)
+        ElementTree.parse(file)
+        return f"![{alt}](pictures/{self.folder.name}/{name}.svg)"
+
+
+def style(name, **more):
+    """Colour and mark of a policy or engine, for plot()."""
+    colour, mark = STYLE[name]
+    return {"color": colour, "marker": mark, "label": name} | more

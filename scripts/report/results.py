@@ -1,0 +1,40 @@
+"""Raw results of the benchmark programs, as Google Benchmark writes them: one JSON file a program."""
+
+import json
+import pathlib
+
+
+class Run(dict):
+    """One benchmark: its counters by name, with `parts`, its name cut at each '/'."""
+
+    def __init__(self, raw):
+        super().__init__(raw)
+        self.parts = raw["name"].split("/iterations:")[0].split("/")
+
+
+class Results:
+    """All results of one machine. What a chapter asks for and is not there is an error."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        self._read = {}
+
+    def _file(self, program):
+        if program not in self._read:
+            self._read[program] = json.loads((self.folder / f"{program}.json").read_text())
+        return self._read[program]
+
+    def context(self, program):
+        """Of a program's run: processor, compiler, flags, commit, load_avg, date."""
+        return self._file(program)["context"]
+
+    def runs(self, program, *first):
+        """The runs whose names begin with these parts, in the order they were made in."""
+        found = [Run(raw) for raw in self._file(program)["benchmarks"] if raw.get("run_type") != "aggregate"]
+        found = [run for run in found if tuple(run.parts[: len(first)]) == first]
+        failed = [run for run in found if run.get("error_occurred")]
+        if failed:
+            raise SystemExit(f"report: {program}: {failed[0]['name']}: {failed[0]['error_message']}")
+        if not found:
+            raise SystemExit(f"report: {self.folder / program}.json has no {'/'.join(first)}: remove it, and run again")
+        return found

@@ -1,0 +1,70 @@
+"""Runs benchmark programs, and keeps what they give as raw results."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import time
+
+from report.stamp import stamp
+
+PROGRAMS = pathlib.Path("build/bench/bench")
+
+
+class Runner:
+    def __init__(self, results, context, quick):
+        self.results, self.context = results, context
+        self.environment = dict(os.environ, IST_QUICK="1") if quick else dict(os.environ)
+        # Those that Google Benchmark repeats by itself are repeated for so long.
+        self.least = ["--benchmark_min_time=0.02"] if quick else []
+        results.mkdir(parents=True, exist_ok=True)
+
+    def run(self, programs, again):
+        """Runs those that have no results yet, or all."""
+        missing = [p for p in programs if again or not (self.results / f"{p}.json").exists()]
+        for program in programs:
+            if program not in missing:
+                print(f"perf_report: {program}: results are there", file=sys.stderr)
+        for place, program in enumerate(missing, 1):
+            self._run(program, f"[{place}/{len(missing)}] {program}")
+
+    def _run(self, program, title):
+        command = [str(PROGRAMS / program), *self.least]
+        listed = subprocess.run([*command, "--benchmark_list_tests"], env=self.environment, capture_output=True, text=True)
+        if listed.returncode != 0:
+            sys.exit(f"perf_report: {program}: {listed.stderr}")
+        count = len(listed.stdout.splitlines())
+        part, begin = self.results / f"{program}.part", time.monotonic()
+        with subprocess.Popen([*command, f"--benchmark_out={part}", "--benchmark_out_format=json"], env=self.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
+            said = []
+            listener = threading.Thread(target=lambda: said.extend(run.stderr))
+            listener.start()
+            done = 0
+            for line in run.stdout:
+                done += line.split("/")[0].isidentifier() and "/" in line
+                show(title, done, count, begin)
+            listener.join()
+        end_line(title, begin)
+        if run.returncode != 0:
+            part.unlink(missing_ok=True)
+            sys.exit(f"perf_report: {program} failed: {''.join(said[-5:])}")
+        # Whole or not there: an interrupted run is run again.
+        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}"])
+        part.rename(self.results / f"{program}.json")
+
+
+def show(title, done, count, begin):
+    """A bar on a terminal."""
+    if not sys.stderr.isatty():
+        return
+    width = 30
+    filled = width * done // max(count, 1)
+    print(f"\r{title:<24} [{'#' * filled}{'.' * (width - filled)}] {done}/{count} {time.monotonic() - begin:4.0f} s ",
+          end="", file=sys.stderr, flush=True)
+
+
+def end_line(title, begin):
+    print(f"\r\033[K{title} {time.monotonic() - begin:.0f} s" if sys.stderr.isatty() else
+          f"{title} {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)

@@ -1,0 +1,112 @@
+// Asks ten fixed queries of the built-in jaws, one worker on AVX2, for callgrind to count: see
+// scripts/query_instructions.sh, which runs this. Prints compiler and flags, then a line a query:
+// its name, what it found and how many pairs of spheres it tested. Exits with 77 where the
+// processor has no AVX2.
+//
+// Callgrind counts only between START and STOP, and all else runs several times as fast. Each query
+// is asked once before, so that neither the linker's work nor a first allocation counts.
+#include <fmt/format.h>
+#include <valgrind/callgrind.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ist/mesh/jaw_model.h"
+#include "ist/query/collision_query.h"
+#include "ist/query/kernels.h"
+#include "ist/tree/tree_builder.h"
+
+namespace {
+
+constexpr double kVoxelSize = 0.8;  // mm
+constexpr const char* kTarget = "avx2";
+constexpr int kSkipped = 77;
+
+struct Answer {
+  std::uint64_t found, sphere_tests;
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+void count(const std::string& name, const std::function<Answer()>& query) {
+  const Answer before = query();
+  CALLGRIND_START_INSTRUMENTATION;
+  const Answer answer = query();
+  CALLGRIND_STOP_INSTRUMENTATION;
+  CALLGRIND_DUMP_STATS_AT(name.c_str());
+  if (answer != before) throw std::runtime_error(name + " was asked twice, and answers differ");
+  fmt::print("{} {} {}\n", name, answer.found, answer.sphere_tests);
+}
+
+ist::SphereTree jaw(ist::Jaw which) {
+  ist::BuildOptions options;
+  options.voxel_size = kVoxelSize;
+  options.keep_triangles = true;
+  return ist::build_tree(ist::make_jaw(which, 1), options);
+}
+
+// As the benchmarks close them: slightly turned, so that no faces are parallel. `dz` in mm.
+Eigen::Isometry3d closing(double dz) {
+  constexpr double kTurn = 0.0003;  // small enough for two terms of the series
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.matrix()(0, 0) = pose.matrix()(1, 1) = 1 - kTurn * kTurn / 2;
+  pose.matrix()(1, 0) = kTurn - kTurn * kTurn * kTurn / 6;
+  pose.matrix()(0, 1) = -pose.matrix()(1, 0);
+  pose.translation()[2] = dz;
+  return pose;
+}
+
+Answer answer_of(const ist::QueryResult& result) { return {result.contacts, result.sphere_tests}; }
+
+void count_all() {
+  const ist::SphereTree fixed = jaw(ist::Jaw::kUpper), moving = jaw(ist::Jaw::kLower);
+  const Eigen::Isometry3d closed = closing(0), near = closing(-1.5), apart = closing(-2.5);
+  std::vector<ist::Contact> contacts(1 << 18);
+  std::vector<ist::TrianglePair> pairs(1 << 16);
+  ist::CollisionOptions options;
+  options.target = kTarget;
+  for (const ist::SpherePolicy policy : ist::kSpherePolicies) {
+    options.policy = policy;
+    ist::CollisionQuery query(fixed, moving, options);
+    count("collide/" + std::string(to_string(policy)) + "/closed",
+          [&] { return answer_of(query.collide(closed, contacts)); });
+  }
+  options.policy = ist::SpherePolicy::kSlab;
+  ist::CollisionQuery query(fixed, moving, options);
+  ist::ContactPoints points(fixed, moving, query.policy());
+  count("collide/slab/near", [&] { return answer_of(query.collide(near, contacts)); });
+  count("collide/slab/within_20000_tests",
+        [&] { return answer_of(query.collide(closed, contacts, {.sphere_tests = 20'000})); });
+  count("contact_points/closed", [&] { return answer_of(query.contact_points(closed, points)); });
+  count("gap/apart", [&] {
+    const ist::GapResult result = query.gap(apart, 0.01);
+    return Answer{result.gap.lower > 0 ? 1U : 0U, result.sphere_tests};
+  });
+  count("touches/near", [&] {  // where leaves touch and triangles do not; it tells no tests
+    return Answer{query.touches(near) == ist::Touch::kYes ? 1U : 0U, 0};
+  });
+  count("collide_exact/closed", [&] {
+    const ist::ExactResult result = query.collide_exact(closed, pairs);
+    return Answer{result.triangle_pairs, result.sphere_tests};
+  });
+}
+
+}  // namespace
+
+int main() try {
+  if (std::ranges::none_of(ist::all_kernels(), [](const ist::Kernels& kernels) {
+        return std::string(kernels.target) == kTarget;
+      })) {
+    fmt::print(stderr, "this processor, as valgrind shows it, has no AVX2\n");
+    return kSkipped;
+  }
+  fmt::print("compiler: {}\nflags: {}\n", IST_COMPILER, IST_FLAGS);
+  count_all();
+} catch (const std::exception& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 1;
+}

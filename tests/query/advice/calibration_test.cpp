@@ -1,0 +1,148 @@
+#include "ist/query/advice/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ist/query/advice/contact_error.h"
+#include "query/exact/exact_tree.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+// A sphere of radius 2 above the middle of a box, its lowest vertex at z = 0.5 over the top: how
+// far the surfaces are apart is told by where it is alone.
+class SphereOnBox : public ::testing::Test {
+ protected:
+  static constexpr double kHeight = 0.5;
+
+  [[nodiscard]] static TriangleMesh sphere() {
+    TriangleMesh mesh = icosphere(4, 2);
+    const double lowest = std::min_element(mesh.vertices.begin(), mesh.vertices.end(),
+                                           [](const auto& a, const auto& b) { return a[2] < b[2]; })
+                              ->z();
+    return moved(std::move(mesh), {0.0123, -0.0171, kHeight - lowest});
+  }
+
+  [[nodiscard]] ClosingPath path() {
+    const auto found = find_closing_path(bodies_, {2, +1});
+    EXPECT_TRUE(found);
+    EXPECT_NEAR(found->touch, -kHeight, found->accuracy);
+    return *found;
+  }
+
+  // The largest distance at which voxels touch, in small steps from far away. By the scalar form of
+  // the engine that is measured: the published query differs in pairs that do not meet.
+  [[nodiscard]] static double swept_error(double voxel_size) {
+    const SphereTree fixed = tree_with_triangles(block(), voxel_size);
+    const SphereTree moving = tree_with_triangles(sphere(), voxel_size);
+    CollisionOptions options;
+    options.target = "scalar";
+    CollisionQuery query(fixed, moving, options);
+    for (double distance = 4 * voxel_size; distance > 0; distance -= step(voxel_size)) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.translation()[2] = distance - kHeight;
+      if (query.collide(pose, std::span<Contact>{}).contacts > 0) return distance;
+    }
+    return 0;
+  }
+  [[nodiscard]] static double step(double voxel_size) { return voxel_size / 300; }
+
+  [[nodiscard]] static TriangleMesh block() { return box({-3, -3, -1.1}, {3, 3, 0}); }
+
+  const SphereTree fixed_ = exact_tree(block(), 20), moving_ = exact_tree(sphere(), 20);
+  ExactBodies bodies_{fixed_, moving_};
+  // Times are nobody's matter here.
+  const CalibrationOptions options_{1, "", std::uint64_t{4} << 30, 5, std::chrono::milliseconds(1)};
+};
+
+TEST_F(SphereOnBox, MeasuresTheErrorOfAClosing) {
+  Calibration calibration(bodies_, path(), options_);
+  EXPECT_EQ(calibration.poses().size(), Calibration::kPoses);
+  for (const double voxel_size : {0.4, 0.17, 0.1}) {
+    SCOPED_TRACE(voxel_size);
+    const std::optional<SizeMeasure> measured = calibration.measure(voxel_size);
+    ASSERT_TRUE(measured);
+    EXPECT_NEAR(measured->error, swept_error(voxel_size), 2 * step(voxel_size));
+    EXPECT_GT(measured->error, 0);
+    EXPECT_LE(measured->error, measured->resolution);
+    EXPECT_EQ(measured->voxel_size, voxel_size);
+    EXPECT_GT(measured->worst_tick, 0);
+    EXPECT_GT(measured->bytes, 0u);
+  }
+}
+
+TEST_F(SphereOnBox, RecommendsTheLargestVoxelsThatKeepAnError) {
+  Calibration calibration(bodies_, path(), options_);
+  for (const double error : {0.05, 0.12}) {
+    SCOPED_TRACE(error);
+    const VoxelAdvice advice =
+        advise_voxel_size({AdviceGoal::Of::kError, error}, {1e-3, 0.5, 2},
+                          [&](double voxel_size) { return calibration.measure(voxel_size); });
+    ASSERT_TRUE(advice.recommended);
+    const double size = advice.measured[*advice.recommended].voxel_size;
+    EXPECT_LE(swept_error(size), error + 2 * step(size));
+    EXPECT_GT(swept_error(2 * size), error);
+    EXPECT_LE(advice.measured.size(), 8u);
+  }
+}
+
+TEST_F(SphereOnBox, MeasuresTheErrorAtPoses) {
+  const auto at = [&](double distance) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation()[2] = distance - kHeight;
+    return pose;
+  };
+  const auto error = [&](const std::vector<Eigen::Isometry3d>& poses) {
+    Calibration calibration(bodies_, poses, options_);
+    return calibration.measure(0.4)->error;
+  };
+  const double first = swept_error(0.4);
+  ASSERT_GT(first, 0.05);
+  EXPECT_NEAR(error({at(0.5 * first)}), 0.5 * first, 1e-6);
+  EXPECT_EQ(error({at(4)}), 0);
+  EXPECT_EQ(error({at(-0.1)}), 0);
+  // Between neighbours, either way round.
+  EXPECT_NEAR(error({at(4), at(-0.1)}), first, 2 * step(0.4));
+  EXPECT_NEAR(error({at(-0.1), at(4)}), first, 2 * step(0.4));
+  // But not where one is turned: the way between is not known.
+  Eigen::Isometry3d turned = at(4);
+  turned.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_EQ(error({turned, at(-0.1)}), 0);
+}
+
+// Nothing is measured exactly where no tree can be built.
+TEST_F(SphereOnBox, SizesThatCannotBeBuilt) {
+  CalibrationOptions options = options_;
+  options.max_memory = 1 << 20;
+  Calibration calibration(bodies_, path(), options);
+  bool fits = false, does_not = false;
+  for (const double voxel_size : {0.4, 0.2, 0.1, 0.05, 0.02, 1e-3, 1e-9, -1.0, 0.0}) {
+    SCOPED_TRACE(voxel_size);
+    BuildOptions build;
+    build.voxel_size = voxel_size;
+    build.max_memory = options.max_memory;
+    bool builds = true;
+    for (const TriangleMesh& mesh : {block(), sphere()}) {
+      const bool can = can_build_tree(mesh, build);
+      EXPECT_EQ(can, !error_of([&] { static_cast<void>(build_tree(mesh, build)); }));
+      builds = builds && can;
+    }
+    EXPECT_EQ(calibration.measure(voxel_size).has_value(), builds);
+    (builds ? fits : does_not) = true;
+  }
+  EXPECT_TRUE(fits && does_not);
+}
+
+TEST_F(SphereOnBox, TargetsThatAreNotThere) {
+  CalibrationOptions options = options_;
+  options.target = "none";
+  Calibration calibration(bodies_, path(), options);
+  EXPECT_EQ(error_name([&] { static_cast<void>(calibration.measure(0.4)); }), "target-missing");
+}
+
+}  // namespace
+}  // namespace ist::test
