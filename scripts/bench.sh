@@ -21,7 +21,11 @@ fi
 
 source scripts/machine.sh
 mkdir -p "$results"
+unset IST_QUICK
 for program in "${programs[@]}"; do
-  build/bench/bench/"$program" --benchmark_out="$results/$program.json" --benchmark_out_format=json "$@"
-  PYTHONPATH=scripts /usr/bin/python3 -m report.stamp "$results/$program.json" "${context[@]}"
+  begin=$SECONDS
+  build/bench/bench/"$program" --benchmark_out="$results/$program.part" --benchmark_out_format=json "$@"
+  PYTHONPATH=scripts /usr/bin/python3 -m report.stamp "$results/$program.part" "${context[@]}" \
+    "seconds=$((SECONDS - begin))" "arguments=$*"
+  mv "$results/$program.part" "$results/$program.json"
 done

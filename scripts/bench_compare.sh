@@ -69,6 +69,7 @@ trap clean_up EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 
+unset IST_QUICK
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data}
 declare -A here  # the programs that are to run, by side
 for side in base head; do
@@ -84,7 +85,11 @@ for side in base head; do
   for program in "${targets[@]}"; do
     found=$("$trees/$side/build/bench/bench/$program" --benchmark_list_tests \
       --benchmark_filter="${filter:-${usual[$program]}}" 2>/dev/null) || fail "$side: $program does not run"
-    [ -z "$found" ] || here[$side]+="$program "
+    if [ -n "$found" ]; then
+      here[$side]+="$program "
+    elif [ -z "$filter" ]; then
+      echo "bench_compare: $side: $program has none of the benchmarks that are usually compared" >&2
+    fi
   done
   [ -n "${here[$side]:-}" ] || fail "$side has no benchmark that is to be compared"
 done

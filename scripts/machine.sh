@@ -1,12 +1,14 @@
 # Sourced from the project's root: which machine this is, and what results on it are made with.
 #   $model     the processor, $machine likewise as the name of a folder, with its cores
-#   $compiler  and $commit, which ends in + where files are changed
+#   $compiler  and $commit, which ends in + where files that are compiled are changed
 #   $results   where raw results go
 #   $context   of the benchmarks: each as name=value
 model=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+model=${model:-$(uname -m)}
 machine=$(tr -cs 'A-Za-z0-9' '-' <<<"$model" | sed 's/-$//')-$(nproc)
 compiler=$(g++ --version | head -n 1)
-commit=$(git describe --always --dirty=+ 2>/dev/null || echo none)
+commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)
+git diff --quiet HEAD -- CMakeLists.txt CMakePresets.json src simd tests bench 2>/dev/null || commit+=+
 results=perf/results/$machine
 flags=$(grep -m 1 'search_step.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
   tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | tr '\n' ' ' || true)

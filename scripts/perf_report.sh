@@ -23,6 +23,6 @@ done
 scripts/setup.sh --peers >&2
 cmake --preset bench | grep '^-- Peers' >&2 || true
 echo "perf_report: building" >&2
-cmake --build --preset bench | tail -n 1 >&2
+cmake --build --preset bench >build/bench.log || { cat build/bench.log >&2; exit 1; }
 source scripts/machine.sh
 PYTHONPATH=scripts exec /usr/bin/python3 -m report "${options[@]}" "$results" "${context[@]}"

@@ -75,7 +75,7 @@ def require_comparable(kept, new):
 
 
 def compare(kept, new):
-    """A line a query, and how many of them are beyond the limit, or on one side only."""
+    """A line a query, and how many of them are beyond the limit, answer something else, or are on one side only."""
     before = {query["name"]: query for query in kept["queries"]}
     after = {query["name"]: query for query in new["queries"]}
     lines, beyond = [], 0
@@ -86,12 +86,13 @@ def compare(kept, new):
             continue
         old, now = before[name]["instructions"], after[name]["instructions"]
         line = f"{name:<34} {old:>12} {now:>12}  {now / old:6.4f}"
+        flaws = [f"{what} {before[name][what]} -> {after[name][what]}" for what in ("found", "sphere_tests")
+                 if before[name][what] != after[name][what]]
         if abs(now - old) > LIMIT * old:
+            flaws.append(f"{'MORE' if now > old else 'FEWER'} by over {LIMIT:.0%}")
+        if flaws:
             beyond += 1
-            line += f"  {'MORE' if now > old else 'FEWER'} by over {LIMIT:.0%}"
-        for what in ("found", "sphere_tests"):
-            if before[name][what] != after[name][what]:
-                line += f", {what} {before[name][what]} -> {after[name][what]}"
+            line += "  " + ", ".join(flaws)
         lines.append(line)
     return lines, beyond
 
@@ -120,7 +121,7 @@ def main(program, baseline, *rest):
         return 0
     if beyond:
         print(f"query_instructions: {beyond} of the queries above changed. If that is meant, "
-              "scripts/query_instructions.sh --update keeps the new counts; perf/NOTES.md says why", file=sys.stderr)
+              "scripts/query_instructions.sh --update keeps the new counts; say in perf/NOTES.md why", file=sys.stderr)
         return 1
     return 0
 

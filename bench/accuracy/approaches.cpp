@@ -46,10 +46,10 @@ std::vector<Approach> make_approaches() {
     way.turned.linear() = turn;
     // At t = kWayBegin it would be where it is stored.
     way.turned.translation() = about - turn * about - kWayBegin * way.direction;
-    way.contact = first_touch(0, 2 * kWayBegin, 0.1, 1e-6,
+    if (exact_gap(way.pose(0)) < kApart) continue;
+    way.contact = first_touch(0, 2 * kWayBegin, kStep, 1e-6,
                               [&](double t) { return exact_touch(way.pose(t)); });
-    // Else it began in the middle of things, or passed by.
-    if (way.contact < kWayBegin / 2) continue;
+    if (way.contact < 0) continue;  // it passed by
     ways.push_back(way);
   }
   return ways;

@@ -20,10 +20,11 @@ struct Approach {
 };
 
 /// Where on a way from `from` on something touches first: looked for in steps of `step`, then
-/// halved down to `within`. Negative where it never does before `to`.
+/// halved down to `within`. Negative where it never does before `to`, or already at `from`.
 template <class Touches>
 [[nodiscard]] double first_touch(double from, double to, double step, double within,
                                  const Touches& touches) {
+  if (touches(from)) return -1;
   double free = from;
   while (!touches(free + step)) {
     free += step;
@@ -37,9 +38,9 @@ template <class Touches>
   return touching;
 }
 
-/// So many of them, always the same: turned by up to 3 degrees about each axis, going up to 20
-/// degrees beside the closing, from where triangles are at least 6 mm of the way from each other.
-/// The exact contact is found by triangles.
+/// So many of them, always the same: turned by up to 3 degrees about each axis, inclined by
+/// up to 20 to each side, from where surfaces are kApart from each other at least. The exact
+/// contact is found by triangles.
 [[nodiscard]] std::span<const Approach> approaches();
 
 /// How far apart the surfaces are, by triangles, to within 2e-6 mm.
@@ -48,6 +49,10 @@ template <class Touches>
 [[nodiscard]] bool exact_touch(const Eigen::Isometry3d& pose);
 
 /// Where on a way the jaws would be closed but for the turn, mm.
-inline constexpr double kWayBegin = 12;
+inline constexpr double kWayBegin = 30;
+/// mm: a touch that is shorter may be passed over.
+inline constexpr double kStep = 0.2;
+/// mm: more than the certain bound of any voxels that are measured.
+inline constexpr double kApart = 6;
 
 }  // namespace ist::bench

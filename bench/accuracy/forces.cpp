@@ -61,6 +61,10 @@ void force(benchmark::State& state, double voxel_size, SpherePolicy policy) {
   }
   state.counters["length_p50"] = lengths.quantile(0.5);
   state.counters["length_max"] = lengths.quantile(1);
+  if (angles.size() == 0) {
+    state.SkipWithError("no pose has a force");
+    return;
+  }
   state.counters["angle_p50"] = angles.quantile(0.5);
   state.counters["angle_max"] = angles.quantile(1);
   state.counters["none"] = none;

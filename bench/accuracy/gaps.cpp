@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "accuracy/approaches.h"
@@ -16,22 +17,28 @@ using Pose = Eigen::Isometry3d;
 // mm: how far the surfaces are apart on the ways.
 constexpr double kDistances[] = {0.1, 0.5, 2, 5};
 
+struct Apart {
+  Pose pose;
+  double truth;  // the distance of the triangles there
+};
+
 // On each way, where the surfaces are so far apart.
-std::vector<Pose> poses_at(double distance) {
-  std::vector<Pose> poses;
+std::vector<Apart> poses_at(double distance) {
+  std::vector<Apart> poses;
   for (const Approach& way : approaches()) {
-    double near = way.contact, far = 0;
+    double near = way.contact, far = 0;  // kApart there, which is more
     while (near - far > 1e-4) {
       const double middle = far + (near - far) / 2;
       (exact_gap(way.pose(middle)) > distance ? far : near) = middle;
     }
-    poses.push_back(way.pose(far));
+    poses.push_back({way.pose(far), exact_gap(way.pose(far))});
   }
   return poses;
 }
 
-const std::vector<Pose>& poses_apart(std::size_t distance) {
-  static std::vector<std::vector<Pose>> made(std::size(kDistances));
+const std::vector<Apart>& poses_apart(std::size_t distance) {
+  static_assert(*std::max_element(std::begin(kDistances), std::end(kDistances)) < kApart);
+  static std::vector<std::vector<Apart>> made(std::size(kDistances));
   if (made[distance].empty()) made[distance] = poses_at(kDistances[distance]);
   return made[distance];
 }
@@ -39,18 +46,17 @@ const std::vector<Pose>& poses_apart(std::size_t distance) {
 // Asks for intervals; each must hold what triangles say.
 template <class Ask>
 void measure(benchmark::State& state, std::size_t distance, const Ask& ask) {
-  const std::vector<Pose>& poses = poses_apart(distance);
+  const std::vector<Apart>& poses = poses_apart(distance);
   constexpr double kRounding = 2e-6;
   const int turns = rounds(31);
   Latencies times, widths;
   for (auto _ : state) {
     for (int turn = 0; turn < turns; ++turn) {
-      for (const Pose& pose : poses) {
+      for (const auto& [pose, truth] : poses) {
         const Stopwatch watch;
         const GapInterval gap = ask(pose);
         times.add(watch.microseconds());
         widths.add(gap.upper - gap.lower);
-        const double truth = turn == 0 ? exact_gap(pose) : gap.lower;
         if (truth < gap.lower - kRounding || truth > gap.upper + kRounding) {
           state.SkipWithError("an interval does not hold the distance");
           return;

@@ -124,12 +124,14 @@ class EmbreePeer final : public Peer {
   }
 
   [[nodiscard]] bool answers(Question question) const override {
-    return question == (part_ == Part::kBoxes ? Question::kCandidates : Question::kPairs);
+    if (part_ == Part::kBoxes) return question == Question::kCandidates;
+    return question == Question::kPairs || question == Question::kMeets;
   }
   void prepare(const Eigen::Isometry3d& pose) override {
     if (prepared()) moving_.move(from_, pose);
   }
   [[nodiscard]] bool prepared() const override { return part_ != Part::kAll; }
+  bool meets(const Eigen::Isometry3d& pose) override { return pairs(pose) > 0; }
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
     if (!prepared()) moving_.move(from_, pose);
     pairs_.clear();

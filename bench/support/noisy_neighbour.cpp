@@ -8,7 +8,7 @@
 namespace ist::bench {
 
 NoisyNeighbour::NoisyNeighbour(bool there) {
-  constexpr std::size_t kBlock = 4096, kBlocks = 2048;  // 64 MB
+  constexpr std::size_t kBlock = 4096, kBlocks = kMegabytes * 1'000'000 / sizeof(double) / kBlock;
   if (!there) return;
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   for (unsigned i = 0; i < cores; ++i) {

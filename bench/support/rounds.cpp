@@ -1,26 +1,42 @@
 #include "support/rounds.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
 #include <memory>
 
 #include "support/stopwatch.h"
 
 namespace ist::bench {
 
+void Rounds::check(const Measured& measured, std::size_t place, const QueryResult& result) const {
+  bool good = result.status == QueryStatus::kDone && result.complete && !result.truncated;
+  for (const Measured& other : measured_) {
+    const bool asked = other.latencies[place].size() > 0;
+    if (!asked || other.answers != measured.answers) continue;
+    good = good && other.results[place].contacts == result.contacts;
+  }
+  if (good) return;
+  std::cerr << measured.name << " is wrong at " << places_[place].name << '\n';
+  std::exit(1);
+}
+
 void Rounds::measure() {
-  std::vector<Way> ways = make_();
+  const std::vector<Way> ways = make_();
   for (const Way& way : ways) {
-    measured_.push_back({way.name, std::vector<Latencies>(places_.size()),
+    measured_.push_back({way.name, way.answers, std::vector<Latencies>(places_.size()),
                          std::vector<QueryResult>(places_.size())});
   }
   for (int turn = 0; turn < turns_; ++turn) {
     for (std::size_t i = 0; i < ways.size(); ++i) {
-      for (int round = 0; round < ways[i].rounds; ++round) {
-        for (std::size_t place = 0; place < places_.size(); ++place) {
-          const Stopwatch watch;
-          measured_[i].results[place] = ways[i].ask(places_[place].pose);
-          measured_[i].latencies[place].add(watch.microseconds());
-        }
+      for (const Place& place : places_) static_cast<void>(ways[i].ask(place.pose));
+      for (std::size_t place = 0; place < places_.size(); ++place) {
+        const Stopwatch watch;
+        const QueryResult result = ways[i].ask(places_[place].pose);
+        const double time = watch.microseconds();
+        check(measured_[i], place, result);
+        measured_[i].latencies[place].add(time);
+        measured_[i].results[place] = result;
       }
     }
   }

@@ -15,8 +15,8 @@ namespace ist::bench {
 /// A way to ask for contacts that is measured beside others.
 struct Way {
   std::string name;
+  std::string answers;  ///< ways with the same word here find as many contacts
   std::function<QueryResult(const Eigen::Isometry3d&)> ask;
-  int rounds = 1;  ///< how often it goes round all poses while the others do it as often as they do
 };
 
 /// A pose, and what it is called in the benchmark's name.
@@ -26,7 +26,9 @@ struct Place {
 };
 
 /// Several ways, each asked all poses one after the other, turn and turn about: so no pose is asked
-/// twice in a row, and all meet the machine as it is at the time.
+/// twice in a row, and all meet the machine as it is at the time. A turn begins with a round that
+/// is not timed, for the way before has left its own bodies in the caches. Ends the program where
+/// an answer is not whole, another than the turn before, or another than it should be.
 class Rounds {
  public:
   /// Makes the ways when it is first measured, so that what is not asked for is not built.
@@ -41,11 +43,12 @@ class Rounds {
 
  private:
   struct Measured {
-    std::string name;
+    std::string name, answers;
     std::vector<Latencies> latencies;  // by place
     std::vector<QueryResult> results;
   };
   void measure();
+  void check(const Measured& measured, std::size_t place, const QueryResult& result) const;
   void report(benchmark::State& state, const std::string& way, std::size_t place, const More& more);
 
   std::vector<Place> places_;

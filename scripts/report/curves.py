@@ -12,19 +12,22 @@ def between(points, x):
     return None
 
 
-def exponent(points):
-    """The power by which y grows with x, by least squares in logarithms."""
-    xs = [math.log(x) for x, _ in points]
-    ys = [math.log(y) for _, y in points]
+def power(xs, ys):
+    """The exponent p and the factor c of y = c x^p, by least squares in logarithms."""
+    xs, ys = [math.log(x) for x in xs], [math.log(y) for y in ys]
     mean_x, mean_y = sum(xs) / len(xs), sum(ys) / len(ys)
-    return sum((x - mean_x) * (y - mean_y) for x, y in zip(xs, ys)) / sum((x - mean_x) ** 2 for x in xs)
+    exponent = sum((x - mean_x) * (y - mean_y) for x, y in zip(xs, ys)) / sum((x - mean_x) ** 2 for x in xs)
+    return exponent, math.exp(mean_y - exponent * mean_x)
 
 
-def crossings(xs, first, second):
-    """Where two curves over the same x change places, between the points."""
-    found = []
-    for i in range(len(xs) - 1):
-        a, b = math.log(first[i] / second[i]), math.log(first[i + 1] / second[i + 1])
-        if a * b < 0:
-            found.append(xs[i] + (xs[i + 1] - xs[i]) * a / (a - b))
+def crossings(xs, first, second, noise=1.05):
+    """Where two curves over the same x change places, between points at which one is less by more than the noise."""
+    found, last = [], None
+    for x, a, b in zip(xs, first, second):
+        lead = math.log(a / b)
+        if abs(lead) < math.log(noise):
+            continue
+        if last is not None and lead * last[1] < 0:
+            found.append(last[0] + (x - last[0]) * last[1] / (last[1] - lead))
+        last = (x, lead)
     return found

@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+import textwrap
 import xml.etree.ElementTree as ElementTree
 
 import matplotlib
@@ -52,7 +53,9 @@ class Pictures:
         """Writes NAME.svg, under it `n` (what was measured how often) and the machine; gives the markdown."""
         for axes in figure.axes:
             plain_ticks(axes)
-        figure.supxlabel(f"{n}. {self.machine}", fontsize=6.5, color="#555555", x=0.01, ha="left")
+        # 6.5 points are some 20 letters an inch.
+        caption = textwrap.fill(f"{n}. {self.machine}", int(20 * figure.get_figwidth()))
+        figure.supxlabel(caption, fontsize=6.5, color="#555555", x=0.01, ha="left")
         file = self.folder / f"{name}.svg"
         figure.savefig(file, metadata={"Date": None})
         plt.close(figure)

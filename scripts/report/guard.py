@@ -23,8 +23,8 @@ def chapter(_results, _pictures):
         "## Instructions",
         "",
         f"{len(rows)} fixed queries of the built-in jaws, as callgrind counts them: what one query executes, one worker "
-        "on AVX2, all that is built before left out. Counts depend on neither load nor clock, so every run of the tests "
-        "repeats them, and fails where one is over 1 % more or less than here. They are no times: a vector "
+        "on AVX2, all that is built before left out. Counts depend on neither load nor clock, so every run of the tests, "
+        "where the compiler is this one, repeats them, and fails where one is over 1 % more or less than here. They are no times: a vector "
         "instruction counts as one, and so does one that waits for memory.",
         "",
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows),

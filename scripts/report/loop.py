@@ -1,11 +1,11 @@
 """How late the loop's ticks begin and how long they take, idle and beside a noisy neighbour."""
 
-from .text import number, table
+from report.text import number, table
 
 PROGRAMS = ["loop_bench"]
 PROGRAM = PROGRAMS[0]
 
-QUANTILES = ("p50", "p90", "p99", "p99.9", "p99.99", "max")
+QUANTILES = ("p50", "p90", "p99", "p99.9", "max")
 # Of each kind of run: name for people, colour, mark.
 KINDS = {
     ("loop", "1"): ("the loop, 1 worker", "#1b9e77", "D"),

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from .text import number, table
+from report.text import number, table
 
 PROGRAMS = ["peers_bench"]
 PROMISES = ["exact", "rounded", "sampled"]
@@ -16,19 +16,23 @@ QUESTIONS = {
 
 # How each is used; what it does not do is read from what it did not answer.
 USES = {
-    "ist": "This library: slabs, with triangles; one worker.",
-    "fcl": "OBBRSS hierarchies in double. Its distance is exact, more than is asked.",
+    "ist": "This library: slabs, with triangles; one worker. Candidates are its exact pairs, which is more than asked.",
+    "fcl": "OBBRSS hierarchies in double. Its distance is to rounding, more than is asked. Debian builds it for any x86-64, "
+           "without its own SSE code, and with assertions. Has no answer of candidates.",
     "fcl_within": "The same, its distance only as far as asked: by setting its traversal's tolerance, which FCL's own "
                   "request does not pass on.",
     "embree": "rtcCollide over boxes in float; triangles told apart by IST's exact test. It takes no pose: the moving "
-              "mesh is moved and its hierarchy refitted, which counts. Does not stop at the first pair.",
+              "mesh is moved and its hierarchy refitted, which counts. Cannot stop at the first pair, so whether any meet "
+              "takes as long as all pairs; knows no distance between meshes.",
     "embree_no_refit": "The same, but moved and refitted before the time begins.",
     "embree_boxes": "rtcCollide alone, refitted before the time begins.",
     "bullet": "GImpact in float, margin 0. Lists all pairs of boxes before it looks at a triangle, so does not stop "
-              "early. Its test of triangles clips one at the edges of the other, and may name more pairs than meet.",
+              "early. Its test of triangles clips one at the edges of the other, and may name more pairs than meet. GImpact "
+              "knows no distance.",
     "bullet_boxes": "GImpact's box search, its candidates told apart by IST's exact test. Boxes are rounded to 16 bits "
                     "an axis, so a pair may be missed.",
-    "cgal": "AABB trees with EPICK, one gone through by the other's boxes; CGAL's parts, put together for this.",
+    "cgal": "AABB trees with EPICK, one gone through by the other's boxes; CGAL's parts, put together for this. It has no "
+            "public least distance between two meshes, only from a point to one.",
     "cgal_rigid": "Rigid_triangle_mesh_collision_detection, which CGAL has for this question.",
     "openvdb": "A narrow-band level set of the fixed jaw (3 voxels to either side), read at one point for each voxel "
                "of the moving jaw's surface. Touches from inside, and misses what is between points.",
@@ -274,6 +278,6 @@ def cannot(answers):
         rows.append([player, PROMISES[int(one["promise"])], ", ".join(not_answered) or "–", USES[player]])
     return ["### What each cannot do", "",
             "Exact: decided without rounding, and checked: the run fails where two such differ. Rounded: decided in "
-            "float or double. Sampled: of points only. A question may be missing since another contestant of the "
-            "same library answers it.", "",
+            "float or double. Sampled: of points only. Answers are compared by how many pairs they "
+            "name. Where several contestants are of one library, each is asked what it is best at.", "",
             *table(["", "answers are", "not asked for", "how it is used, and what differs"], rows), ""]

@@ -1,5 +1,6 @@
 """Runs benchmark programs, and keeps what they give as raw results."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -15,19 +16,28 @@ PROGRAMS = pathlib.Path("build/bench/bench")
 class Runner:
     def __init__(self, results, context, quick):
         self.results, self.context = results, context
-        self.environment = dict(os.environ, IST_QUICK="1") if quick else dict(os.environ)
+        # Nothing that is set for something else is to change what is measured.
+        self.environment = {name: value for name, value in os.environ.items()
+                            if not name.startswith("IST_") or name == "IST_DATA_DIR"}
+        if quick:
+            self.environment["IST_QUICK"] = "1"
         # Those that Google Benchmark repeats by itself are repeated for so long.
         self.least = ["--benchmark_min_time=0.02"] if quick else []
         results.mkdir(parents=True, exist_ok=True)
 
     def run(self, programs, again):
         """Runs those that have no results yet, or all."""
-        missing = [p for p in programs if again or not (self.results / f"{p}.json").exists()]
+        missing = [p for p in programs if again or not self._is_whole(p)]
         for program in programs:
             if program not in missing:
                 print(f"perf_report: {program}: results are there", file=sys.stderr)
         for place, program in enumerate(missing, 1):
             self._run(program, f"[{place}/{len(missing)}] {program}")
+
+    def _is_whole(self, program):
+        """Whether there are results of all of it, and not of some that bench.sh was told to run."""
+        file = self.results / f"{program}.json"
+        return file.exists() and not json.loads(file.read_text())["context"].get("arguments")
 
     def _run(self, program, title):
         command = [str(PROGRAMS / program), *self.least]
@@ -50,6 +60,10 @@ class Runner:
         if run.returncode != 0:
             part.unlink(missing_ok=True)
             sys.exit(f"perf_report: {program} failed: {''.join(said[-5:])}")
+        wrong = [run for run in json.loads(part.read_text())["benchmarks"] if run.get("error_occurred")]
+        if wrong:
+            part.unlink()
+            sys.exit(f"perf_report: {program}: {wrong[0]['name']}: {wrong[0]['error_message']}")
         # Whole or not there: an interrupted run is run again.
         stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}"])
         part.rename(self.results / f"{program}.json")

@@ -2,8 +2,9 @@
 
 import numpy
 
-from .draw import style
-from .text import number, table
+from report.curves import power
+from report.draw import style
+from report.text import number, table
 
 PROGRAMS = ["scaling_bench"]
 PROGRAM = PROGRAMS[0]
@@ -23,12 +24,6 @@ def chapter(results, pictures):
     return lines
 
 
-def _power(x, y):
-    """The exponent p and the factor c of y = c x^p, by least squares of the logarithms."""
-    exponent, factor = numpy.polyfit(numpy.log(x), numpy.log(y), 1)
-    return exponent, float(numpy.exp(factor))
-
-
 def _queries(runs):
     """How often each point of a plot was asked."""
     (count,) = {int(run["rounds"]) for run in runs}
@@ -44,13 +39,13 @@ def _leaves(results, pictures):
         leaves, times = [run["leaves"] for run in own], [run["p50_us"] for run in own]
         # Where it is coarse, the first levels and the call itself are most of the time.
         fine = [i for i, run in enumerate(own) if float(run.parts[1]) <= 0.8]
-        exponent, factor = _power([leaves[i] for i in fine], [times[i] for i in fine])
+        exponent, factor = power([leaves[i] for i in fine], [times[i] for i in fine])
         axes.loglog(leaves, times, mark, color=colour, label=f"dz = {dz} mm: median")
         axes.loglog(leaves, [run["p99_us"] for run in own], mark, color=colour, fillstyle="none", label="99 of 100")
         ends = numpy.array([leaves[fine[0]], leaves[fine[-1]]])
         axes.loglog(ends, factor * ends**exponent, "-", color=colour, label=f"fit: leaves^{exponent:.2f}")
         last = own[-1]
-        told.append((dz, exponent, _power([leaves[i] for i in fine], [own[i]["tests"] for i in fine])[0], last))
+        told.append((dz, exponent, power([leaves[i] for i in fine], [own[i]["tests"] for i in fine])[0], last))
     axes.set(xlabel="leaves of both trees", ylabel="time of a query, µs", title="Time against leaves")
     axes.legend(fontsize=7)
     picture = pictures.save(figure, "scaling_leaves", "Time of a query against the leaves of both trees, log-log",
@@ -107,7 +102,7 @@ def _conformal(results, pictures):
     for (kind, gap), colour, mark in zip(kinds, COLOURS, "DosP"):
         own = [run for run in runs if run.parts[1:3] == [kind, gap]]
         area, times = [run["area_mm2"] for run in own], [run["p50_us"] for run in own]
-        exponent, factor = _power(area, times)
+        exponent, factor = power(area, times)
         time.loglog(area, times, "-" + mark, color=colour, label=f"{kind}, {gap} mm apart: area^{exponent:.2f}")
         met = [(run["area_mm2"], run["contacts"]) for run in own if run["contacts"] > 0]
         if met:

@@ -16,6 +16,7 @@
 #include "cli/progress_bar.h"
 #include "cli/query_options.h"
 #include "ist/base/error.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/query/advice/calibration.h"
 #include "ist/query/kernels.h"
 #include "ist/tree/tree_io.h"
@@ -24,10 +25,6 @@
 namespace ist::cli {
 namespace {
 
-// Of a budget so much is used: times are noisy, and a loop has more to do.
-constexpr double kOfBudget = 0.8;
-// Parts of the larger body's extent: the first size and the coarsest.
-constexpr double kFirst = 1.0 / 50, kCoarsest = 1.0 / 5;
 // Of a body's own: the voxels of the tree whose triangles are asked.
 constexpr double kExact = 1.0 / 200;
 
@@ -37,12 +34,6 @@ struct AdviseArguments {
   std::string axis;
   CalibrationOptions calibration;
   bool json = false;
-};
-
-// A calibration that found no voxel size.
-class NoAdvice : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 void check(const AdviseArguments& options) {
@@ -69,7 +60,7 @@ void check(const AdviseArguments& options) {
   }
 }
 
-double extent_of(const TriangleMesh& mesh) { return box_of_triangles(mesh).diagonal().maxCoeff(); }
+double extent_of(const TriangleMesh& mesh) { return bounding_box(mesh).diagonal().maxCoeff(); }
 
 CheckedMesh load(const std::filesystem::path& file) {
   constexpr double kAny = 1;
@@ -81,18 +72,18 @@ CheckedMesh load(const std::filesystem::path& file) {
   return checked;
 }
 
-SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving) {
-  const auto [smaller, larger] = std::minmax({extent_of(fixed), extent_of(moving)});
-  SizeRange range{larger / Lattice::kMaxCells, kFirst * larger, kCoarsest * larger};
-  range.coarsest = std::min(range.coarsest, 0.5 * Lattice::kMaxRelativeSize * smaller);
-  range.first = std::min(range.first, range.coarsest);
-  if (!(2 * range.finest < range.first)) {
-    throw Error(ErrorCode::kMeshExtent,
-                fmt::format("one body is {:.1e} times as large as the other, and no voxel size is "
-                            "for both: give only the part of it that may be touched",
-                            larger / smaller));
-  }
-  return range;
+SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving,
+                    const AdviseArguments& options) {
+  const double of_fixed = extent_of(fixed), of_moving = extent_of(moving);
+  if (const auto range = sizes_between(of_fixed, of_moving)) return *range;
+  const bool fixed_is_larger = of_fixed > of_moving;
+  throw Error(
+      ErrorCode::kMeshExtent,
+      fmt::format("{}: {:.1e} times as large as {}, and no voxel size is for both: give only the "
+                  "part of it that may be touched",
+                  (fixed_is_larger ? options.fixed : options.moving).string(),
+                  std::max(of_fixed, of_moving) / std::min(of_fixed, of_moving),
+                  (fixed_is_larger ? options.moving : options.fixed).string()));
 }
 
 // A tree to ask triangles of: how large its voxels are is a matter of time alone, so they are made
@@ -143,7 +134,7 @@ void run(const AdviseArguments& options) {
     fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
-  const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh);
+  const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);
   const std::uint64_t max_memory = options.calibration.max_memory;
   const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);
   const SphereTree moving = load_exact(options.moving, std::move(moving_mesh), max_memory);
@@ -152,9 +143,9 @@ void run(const AdviseArguments& options) {
       poses.empty() ? Calibration(bodies, find_path(bodies, options.axis), options.calibration)
                     : Calibration(bodies, std::move(poses), options.calibration);
 
-  const AdviceGoal goal = options.budget
-                              ? AdviceGoal{AdviceGoal::Of::kWorstTick, kOfBudget * *options.budget}
-                              : AdviceGoal{AdviceGoal::Of::kError, *options.error};
+  const AdviceGoal goal =
+      options.budget ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfBudget * *options.budget}
+                     : AdviceGoal{AdviceGoal::Of::kError, *options.error};
   const VoxelAdvice advice = [&] {
     Progress progress;
     const ProgressBar bar(progress);
@@ -169,11 +160,27 @@ void run(const AdviseArguments& options) {
                             "do not: add poses shortly before the bodies touch",
                             options.poses.string()));
   }
-  options.json ? print_json(advice) : print_table(advice, options.fixed, options.moving);
-  if (!advice.recommended) throw NoAdvice(why_none(advice, goal));
+  if (options.budget &&
+      std::all_of(advice.measured.begin(), advice.measured.end(),
+                  [](const SizeMeasure& size) { return size.most_contacts == 0; }) &&
+      !advice.measured.empty()) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: at no pose do voxels touch, so there is nothing that takes time: "
+                            "add the poses at which most touches",
+                            options.poses.string()));
+  }
+  options.json ? print_json(advice) : print_table(advice);
+  if (!advice.recommended) throw std::runtime_error(why_none(advice, goal));
+  if (!options.json) {
+    print_build_commands(advice.measured[*advice.recommended].voxel_size, options.fixed,
+                         options.moving, max_memory);
+  }
   const bool is_last = *advice.recommended + 1 == advice.measured.size();
   if (options.budget && is_last && advice.too_fine) {
-    fmt::print(stderr, "note: {:g} needs more memory than --max-memory allows\n", *advice.too_fine);
+    fmt::print(
+        stderr,
+        "note: {:g} needs more memory than --max-memory allows, or is too fine for a lattice\n",
+        *advice.too_fine);
   }
 }
 
@@ -186,8 +193,8 @@ void add_advise(CLI::App& app) {
   command->add_option("FIXED", options->fixed, "mesh of the body that stays")->required();
   command->add_option("MOVING", options->moving, "mesh of the body that is moved")->required();
   command->add_option("--budget-us", options->budget,
-                      "microseconds that an answer may take: the smallest voxels whose slowest "
-                      "pose takes at most 80 % of it");
+                      "microseconds that a query may take, for all voxels that touch: the smallest "
+                      "voxels whose slowest pose takes at most 80 % of it");
   command->add_option("--error", options->error,
                       "how far apart surfaces may still be when voxels say first that they touch, "
                       "in mesh units: the largest voxels that keep it");
@@ -209,11 +216,14 @@ void add_advise(CLI::App& app) {
                                   target_names()));
   add_max_memory(*command, options->calibration.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(*command,
-              "Each voxel size is built and timed, so let nothing else run. The error is measured, "
-              "too, against triangles;\n"
-              "none is ever larger than the certain bound.\n"
-              "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
+  add_example(
+      *command,
+      "Each voxel size is built and timed, so let nothing else run: what is printed is the "
+      "median of the slowest pose.\n"
+      "Its error is measured against triangles, also on ways that are inclined and turned a "
+      "little; what is certain for\n"
+      "any pose is the bound beside it.\n"
+      "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
   command->callback([options] { run(*options); });
 }
 

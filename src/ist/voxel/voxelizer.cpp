@@ -13,6 +13,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
 
@@ -298,51 +299,34 @@ class BlockWriter {
   std::vector<Sum> sums_;
 };
 
-struct Box {
-  Eigen::Vector3d low, high;
-};
-
-// Of the vertices that triangles name.
-Box box_of(const TriangleMesh& mesh) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle) {
-      box.low = box.low.cwiseMin(mesh.vertices[vertex]);
-      box.high = box.high.cwiseMax(mesh.vertices[vertex]);
-    }
-  }
-  return box;
-}
-
 }  // namespace
 
 Lattice lattice_of(const TriangleMesh& mesh, double voxel_size) {
   const ScopedFloatEnvironment environment;
-  const auto [low, high] = box_of(mesh);
-  return make_lattice(low, high, voxel_size);
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
+  return make_lattice(box.min(), box.max(), voxel_size);
 }
 
 std::optional<Error> lattice_flaw(const TriangleMesh& mesh, double voxel_size) {
   const ScopedFloatEnvironment environment;
-  const auto [low, high] = box_of(mesh);
-  return lattice_flaw(low, high, voxel_size);
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
+  return lattice_flaw(box.min(), box.max(), voxel_size);
 }
 
 VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
   const ScopedFloatEnvironment environment;
   Progress unseen;
   Progress& shown = progress != nullptr ? *progress : unseen;
-  const auto [low, high] = box_of(mesh);
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (mesh.triangles.size() > kMaxTriangles) {
     throw Error(ErrorCode::kMemoryLimit,
                 fmt::format("the mesh has {} triangles, and {} is the most: simplify it",
                             mesh.triangles.size(), kMaxTriangles));
   }
   VoxelSet set;
-  set.lattice = make_lattice(low, high, options.voxel_size);
+  set.lattice = make_lattice(box.min(), box.max(), options.voxel_size);
   const std::optional<Survey> found = fitting_survey(mesh, set.lattice, options, shown);
-  if (!found) refuse(mesh, low, high, options, shown);
+  if (!found) refuse(mesh, box.min(), box.max(), options, shown);
 
   const LatticeMesh lattice_mesh(mesh, set.lattice);
   const std::size_t blocks = found->bins.codes.size();
@@ -365,10 +349,10 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
 bool can_voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Progress* progress) {
   const ScopedFloatEnvironment environment;
   Progress unseen;
-  const auto [low, high] = box_of(mesh);
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (mesh.triangles.size() > kMaxTriangles) return false;
-  if (lattice_flaw(low, high, options.voxel_size)) return false;
-  return fitting_survey(mesh, make_lattice(low, high, options.voxel_size), options,
+  if (lattice_flaw(box.min(), box.max(), options.voxel_size)) return false;
+  return fitting_survey(mesh, make_lattice(box.min(), box.max(), options.voxel_size), options,
                         progress != nullptr ? *progress : unseen)
       .has_value();
 }

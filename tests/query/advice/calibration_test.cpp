@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
+#include "ist/mesh/jaw_model.h"
 #include "ist/query/advice/contact_error.h"
 #include "query/exact/exact_tree.h"
+#include "query/query_cases.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 
@@ -66,13 +69,85 @@ TEST_F(SphereOnBox, MeasuresTheErrorOfAClosing) {
     SCOPED_TRACE(voxel_size);
     const std::optional<SizeMeasure> measured = calibration.measure(voxel_size);
     ASSERT_TRUE(measured);
-    EXPECT_NEAR(measured->error, swept_error(voxel_size), 2 * step(voxel_size));
+    // On inclined ways it may be a little more.
+    const double straight = swept_error(voxel_size);
+    EXPECT_GE(measured->error, straight - 2 * step(voxel_size));
+    EXPECT_LE(measured->error, 1.1 * straight);
     EXPECT_GT(measured->error, 0);
     EXPECT_LE(measured->error, measured->resolution);
     EXPECT_EQ(measured->voxel_size, voxel_size);
-    EXPECT_GT(measured->worst_tick, 0);
     EXPECT_GT(measured->bytes, 0u);
   }
+}
+
+// Whatever else runs: no median is less than the fastest of all, and all rounds fit into the time
+// that the measure took.
+TEST_F(SphereOnBox, MeasuresTheSlowestPose) {
+  using Clock = std::chrono::steady_clock;
+  const auto microseconds = [](Clock::duration time) {
+    return std::chrono::duration<double, std::micro>(time).count();
+  };
+  Calibration calibration(bodies_, path(), options_);
+  const auto begin = Clock::now();
+  const SizeMeasure measured = *calibration.measure(0.1);
+  const double whole = microseconds(Clock::now() - begin);
+
+  const SphereTree fixed = tree_with_triangles(block(), 0.1);
+  const SphereTree moving = tree_with_triangles(sphere(), 0.1);
+  CollisionQuery query(fixed, moving);
+  double slowest = 0;
+  std::uint64_t most = 0;
+  std::vector<Contact> contacts(1 << 16);
+  for (const Eigen::Isometry3d& pose : calibration.poses()) {
+    double fastest = 1e9;
+    for (int i = 0; i < 2000; ++i) {
+      const auto asked = Clock::now();
+      most = std::max(most, query.collide(pose, contacts).contacts);
+      fastest = std::min(fastest, microseconds(Clock::now() - asked));
+    }
+    slowest = std::max(slowest, fastest);
+  }
+  EXPECT_EQ(measured.most_contacts, most);
+  EXPECT_GT(most, 0u);
+  EXPECT_GE(measured.slowest_query, 0.7 * slowest);  // the processor's clock may rise meanwhile
+  // Half of 5 rounds, or more, of the slowest pose take its median at least.
+  EXPECT_LE(3 * measured.slowest_query, whole);
+}
+
+// Jaws come up to each other in other ways than the one that is measured.
+TEST(CalibrationOfJaws, HoldsOnOtherWays) {
+  const SphereTree upper = exact_tree(make_jaw(Jaw::kUpper, 1), 100);
+  const SphereTree lower = exact_tree(make_jaw(Jaw::kLower, 1), 100);
+  ExactBodies bodies(upper, lower);
+  const auto path = find_closing_path(bodies, opening_of(bodies.fixed_box(), bodies.moving_box()));
+  ASSERT_TRUE(path);
+  Calibration calibration(bodies, *path, {1, "", std::uint64_t{4} << 30, 5, {}});
+  const double size = 0.8, error = calibration.measure(size)->error;
+
+  const SphereTree fixed = tree_with_triangles(bodies.fixed(), size);
+  const SphereTree moving = tree_with_triangles(bodies.moving(), size);
+  CollisionQuery query(fixed, moving);
+  Random random(5);
+  double largest = 0;
+  int ways = 0;
+  for (int i = 0; i < 12; ++i) {
+    ClosingPath way = *path;
+    way.opening = (path->opening + random.point(-0.3, 0.3)).normalized();
+    const Eigen::Vector3d half = random.point(-0.02, 0.02);
+    way.turn = Eigen::Quaterniond(1, half[0], half[1], half[2]).normalized().toRotationMatrix();
+    way.about = bodies.moving_box().center();
+    double place = path->begin;
+    while (place < 10 && query.collide(way.pose(place), std::span<Contact>{}).contacts > 0) {
+      place += size / 50;
+    }
+    while (query.collide(way.pose(place), std::span<Contact>{}).contacts == 0) place -= size / 50;
+    ++ways;
+    largest = std::max(largest, bodies.distance(way.pose(place), 1e-3).upper);
+  }
+  EXPECT_EQ(ways, 12);
+  // What is measured is of seven ways, so others may come to a little more, and hardly to less.
+  EXPECT_LE(largest, 1.15 * error);
+  EXPECT_GE(largest, 0.6 * error);
 }
 
 TEST_F(SphereOnBox, RecommendsTheLargestVoxelsThatKeepAnError) {
@@ -122,14 +197,20 @@ TEST_F(SphereOnBox, SizesThatCannotBeBuilt) {
   bool fits = false, does_not = false;
   for (const double voxel_size : {0.4, 0.2, 0.1, 0.05, 0.02, 1e-3, 1e-9, -1.0, 0.0}) {
     SCOPED_TRACE(voxel_size);
-    BuildOptions build;
-    build.voxel_size = voxel_size;
-    build.max_memory = options.max_memory;
     bool builds = true;
-    for (const TriangleMesh& mesh : {block(), sphere()}) {
-      const bool can = can_build_tree(mesh, build);
-      EXPECT_EQ(can, !error_of([&] { static_cast<void>(build_tree(mesh, build)); }));
-      builds = builds && can;
+    for (const SpherePolicy spheres : {SpherePolicy::kSlab, SpherePolicy::kTable}) {
+      for (const bool keep_triangles : {false, true}) {
+        BuildOptions build;
+        build.voxel_size = voxel_size;
+        build.spheres = spheres;
+        build.keep_triangles = keep_triangles;
+        build.max_memory = options.max_memory;
+        for (const TriangleMesh& mesh : {block(), sphere()}) {
+          const bool can = can_build_tree(mesh, build);
+          EXPECT_EQ(can, !error_of([&] { static_cast<void>(build_tree(mesh, build)); }));
+          if (spheres == SpherePolicy::kSlab && !keep_triangles) builds = builds && can;
+        }
+      }
     }
     EXPECT_EQ(calibration.measure(voxel_size).has_value(), builds);
     (builds ? fits : does_not) = true;

@@ -30,7 +30,7 @@ class Measures {
       SizeMeasure measure;
       measure.voxel_size = size;
       measure.error = error_(size);
-      measure.worst_tick = tick_(size);
+      measure.slowest_query = tick_(size);
       return measure;
     });
   }
@@ -91,7 +91,7 @@ TEST(VoxelAdvice, PowerLaws) {
       SCOPED_TRACE(std::to_string(limit) + " ^ " + std::to_string(exponent));
       const Curve curve = power(40, exponent);
       Measures measures(nothing(), curve);
-      const AdviceGoal goal{AdviceGoal::Of::kWorstTick, limit};
+      const AdviceGoal goal{AdviceGoal::Of::kSlowestQuery, limit};
       expect_good(measures.advise(goal), goal, curve);
       EXPECT_LE(measures.asked().size(), 10u);
     }
@@ -108,11 +108,11 @@ TEST(VoxelAdvice, NoiseAndWiggles) {
     };
     const Curve tick = noisy(power(40, -1.3)), error = noisy(power(0.6, 1));
     Measures measures(error, tick);
-    const VoxelAdvice timed = measures.advise({AdviceGoal::Of::kWorstTick, 250});
+    const VoxelAdvice timed = measures.advise({AdviceGoal::Of::kSlowestQuery, 250});
     ASSERT_TRUE(timed.recommended);
     const SizeMeasure& best = timed.measured[*timed.recommended];
-    EXPECT_LE(best.worst_tick, 250);
-    EXPECT_EQ(best.worst_tick, tick(best.voxel_size));
+    EXPECT_LE(best.slowest_query, 250);
+    EXPECT_EQ(best.slowest_query, tick(best.voxel_size));
     EXPECT_NEAR(std::log(best.voxel_size / std::pow(250 / 40.0, 1 / -1.3)), 0, std::log(1.5));
 
     Measures again(error, tick);
@@ -136,7 +136,7 @@ TEST(VoxelAdvice, AStep) {
 
 TEST(VoxelAdvice, NeverReached) {
   Measures slow(nothing(), [](double) { return 100.0; });
-  const VoxelAdvice timed = slow.advise({AdviceGoal::Of::kWorstTick, 99});
+  const VoxelAdvice timed = slow.advise({AdviceGoal::Of::kSlowestQuery, 99});
   EXPECT_FALSE(timed.recommended);
   EXPECT_EQ(timed.measured.front().voxel_size, kRange.coarsest);  // it was tried
 
@@ -148,7 +148,7 @@ TEST(VoxelAdvice, NeverReached) {
 
 TEST(VoxelAdvice, HoldsEverywhere) {
   Measures fast(nothing(), power(1e-3, -1));
-  const VoxelAdvice timed = fast.advise({AdviceGoal::Of::kWorstTick, 99});
+  const VoxelAdvice timed = fast.advise({AdviceGoal::Of::kSlowestQuery, 99});
   ASSERT_TRUE(timed.recommended);
   EXPECT_EQ(timed.measured[*timed.recommended].voxel_size, kRange.finest);
   Measures good(power(1e-3, 1), nothing());
@@ -163,7 +163,7 @@ TEST(VoxelAdvice, SizesThatDoNotFit) {
   constexpr double kFits = 0.15;
   const Curve tick = power(40, -1), error = power(0.6, 1);
   Measures timed(error, tick, kFits);
-  const VoxelAdvice finest = timed.advise({AdviceGoal::Of::kWorstTick, 1e4});
+  const VoxelAdvice finest = timed.advise({AdviceGoal::Of::kSlowestQuery, 1e4});
   ASSERT_TRUE(finest.recommended);
   EXPECT_LE(finest.measured[*finest.recommended].voxel_size, 1.5 * kFits);
   ASSERT_TRUE(finest.too_fine);
@@ -176,7 +176,7 @@ TEST(VoxelAdvice, SizesThatDoNotFit) {
   EXPECT_LE(none.measured.back().voxel_size, 1.5 * kFits);
 
   for (const AdviceGoal& goal :
-       {AdviceGoal{AdviceGoal::Of::kWorstTick, 1e4}, AdviceGoal{AdviceGoal::Of::kError, 0.6 * 6}}) {
+       {AdviceGoal{AdviceGoal::Of::kSlowestQuery, 1e4}, AdviceGoal{AdviceGoal::Of::kError, 0.6 * 6}}) {
     Measures coarse(error, tick, 5);
     const VoxelAdvice advice = coarse.advise(goal);
     ASSERT_TRUE(advice.recommended);

@@ -37,6 +37,7 @@ TEST_P(ClosedForms, AreMetWithinAVoxelAndAHalfAndTenDegrees) {
           EXPECT_NEAR(errors.deepest, depth, 1.5);
         }
         const FormErrors joined = form_errors(form_, fixed, moving, policy, depth, 64);
+        EXPECT_TRUE(joined.finite);
         EXPECT_LE(joined.points, 64u);
         EXPECT_LE(joined.depth, 1.5);
         EXPECT_NEAR(joined.deepest, errors.deepest, 1e-9);
@@ -65,6 +66,7 @@ TEST_P(ClosedForms, AreMetTwiceAsWellWithVoxelsOfHalfTheSize) {
       }
     }
     if (!is_smooth_) continue;
+    EXPECT_TRUE(errors[0].finite && errors[1].finite);
     ASSERT_GT(errors[0].smooth, 50u);
     const double floor = 0.002;  // voxels: what a slab's offset is rounded to
     EXPECT_LE(errors[1].mean_depth(), 1.25 * errors[0].mean_depth() + floor);

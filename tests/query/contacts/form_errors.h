@@ -5,7 +5,7 @@
 
 namespace ist::test {
 
-/// Of contact points where both surfaces are smooth: depths in voxels, normals in degrees.
+/// Of contact points: depths in voxels, normals in degrees, where both surfaces are smooth.
 struct FormErrors {
   std::size_t points = 0;          ///< in all
   std::size_t smooth = 0;          ///< of which so many are where both surfaces are smooth

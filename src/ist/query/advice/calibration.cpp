@@ -22,15 +22,19 @@ double median(std::vector<double>& times) {
   return *middle;
 }
 
-// Microseconds.
-double worst_tick(CollisionQuery& query, const std::vector<Eigen::Isometry3d>& poses,
-                  const CalibrationOptions& options, Progress& progress) {
-  constexpr std::size_t kLeastRounds = 5;
-  std::size_t most = 0;
+std::uint64_t most_contacts(CollisionQuery& query, const std::vector<Eigen::Isometry3d>& poses) {
+  std::uint64_t most = 0;
   for (const Eigen::Isometry3d& pose : poses) {
-    most = std::max<std::size_t>(most, query.collide(pose, std::span<Contact>{}).contacts);
+    most = std::max(most, query.collide(pose, std::span<Contact>{}).contacts);
   }
-  std::vector<Contact> contacts(most + 1);
+  return most;
+}
+
+// Microseconds.
+double slowest_query(CollisionQuery& query, const std::vector<Eigen::Isometry3d>& poses,
+                     std::uint64_t room, const CalibrationOptions& options, Progress& progress) {
+  constexpr std::size_t kLeastRounds = 5;
+  std::vector<Contact> contacts(room + 1);
   std::vector<std::vector<double>> times(poses.size());
   progress.begin_stage("timing answers", options.rounds);
   const Clock::time_point end = Clock::now() + options.time;
@@ -43,16 +47,21 @@ double worst_tick(CollisionQuery& query, const std::vector<Eigen::Isometry3d>& p
     }
     progress.add(1);
   }
-  double worst = 0;
-  for (std::vector<double>& of_pose : times) worst = std::max(worst, median(of_pose));
-  return worst;
+  double slowest = 0;
+  for (std::vector<double>& of_pose : times) slowest = std::max(slowest, median(of_pose));
+  return slowest;
 }
 
 }  // namespace
 
 Calibration::Calibration(ExactBodies& bodies, const ClosingPath& path,
                          const CalibrationOptions& options)
-    : bodies_(bodies), path_(path), poses_(path.poses(kPoses)), options_(options) {}
+    : bodies_(bodies),
+      paths_(paths_beside(bodies, path)),
+      poses_(path.poses(kPoses)),
+      options_(options) {
+  paths_.push_back(path);
+}
 
 Calibration::Calibration(ExactBodies& bodies, std::vector<Eigen::Isometry3d> poses,
                          const CalibrationOptions& options)
@@ -84,10 +93,14 @@ std::optional<SizeMeasure> Calibration::measure(double voxel_size, Progress* pro
   options.period = {};  // one query follows the other
   CollisionQuery query(fixed, moving, options);
   measured.resolution = query.resolution(query.collide(poses_.front(), std::span<Contact>{}));
-  measured.worst_tick = worst_tick(query, poses_, options_, shown);
-  shown.begin_stage("comparing with triangles", 0);
-  measured.error = path_ ? closing_error(bodies_, query, voxel_size, *path_)
-                         : error_at_poses(bodies_, query, poses_);
+  measured.most_contacts = most_contacts(query, poses_);
+  measured.slowest_query = slowest_query(query, poses_, measured.most_contacts, options_, shown);
+  shown.begin_stage("comparing with triangles", paths_.size());
+  if (paths_.empty()) measured.error = error_at_poses(bodies_, query, poses_);
+  for (const ClosingPath& path : paths_) {
+    measured.error = std::max(measured.error, closing_error(bodies_, query, voxel_size, path));
+    shown.add(1);
+  }
   return measured;
 }
 

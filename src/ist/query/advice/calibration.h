@@ -30,17 +30,17 @@ class Calibration {
   /// How many poses of a path are asked.
   static constexpr std::size_t kPoses = 12;
 
-  /// At the poses of a closing. `bodies` must outlive it.
+  /// At the poses of a closing; errors on the ways beside it too. `bodies` must outlive it.
   Calibration(ExactBodies& bodies, const ClosingPath& path, const CalibrationOptions& options);
   /// At poses, one at least, that map moving to fixed mesh coordinates.
   Calibration(ExactBodies& bodies, std::vector<Eigen::Isometry3d> poses,
               const CalibrationOptions& options);
 
-  /// Nothing where a tree of this size cannot be built (can_build_tree). Error: closing_error or
-  /// error_at_poses. Tick: of each pose the median time of CollisionQuery::collide, with room for
-  /// all contacts, back to back but no pose twice in a row where there are others; and of these the
-  /// largest. Cost: both builds, at most `time` or 5 rounds, and that of the error. Throws
-  /// kTargetMissing; std::bad_alloc.
+  /// Nothing where a tree of this size cannot be built (can_build_tree). Error: the largest
+  /// closing_error, or error_at_poses. Time: of each pose the median of CollisionQuery::collide,
+  /// with room for all contacts, back to back but no pose twice in a row where there are others;
+  /// and of these the largest. Cost: both builds, at most `time` or 5 rounds, and that of the
+  /// error. Throws kTargetMissing; std::bad_alloc.
   /// @param progress told of the stages, if not null
   [[nodiscard]] std::optional<SizeMeasure> measure(double voxel_size, Progress* progress = nullptr);
 
@@ -48,7 +48,7 @@ class Calibration {
 
  private:
   ExactBodies& bodies_;
-  std::optional<ClosingPath> path_;
+  std::vector<ClosingPath> paths_;
   std::vector<Eigen::Isometry3d> poses_;
   CalibrationOptions options_;
 };

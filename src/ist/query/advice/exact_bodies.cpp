@@ -1,6 +1,7 @@
 #include "ist/query/advice/exact_bodies.h"
 
 #include "ist/base/assert.h"
+#include "ist/mesh/bounding_box.h"
 
 namespace ist {
 namespace {
@@ -15,8 +16,8 @@ const TriangleMesh& mesh_of(const SphereTree& tree) {
 ExactBodies::ExactBodies(const SphereTree& fixed, const SphereTree& moving)
     : fixed_(mesh_of(fixed)),
       moving_(mesh_of(moving)),
-      fixed_box_(box_of_triangles(fixed_)),
-      moving_box_(box_of_triangles(moving_)),
+      fixed_box_(bounding_box(fixed_)),
+      moving_box_(bounding_box(moving_)),
       query_(fixed, moving),
       inside_(fixed_, moving_) {}
 
@@ -26,14 +27,6 @@ bool ExactBodies::free(const Eigen::Isometry3d& pose) noexcept {
 
 GapInterval ExactBodies::distance(const Eigen::Isometry3d& pose, double tolerance) noexcept {
   return query_.gap(pose, tolerance).gap;
-}
-
-Eigen::AlignedBox3d box_of_triangles(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle) box.extend(mesh.vertices[vertex]);
-  }
-  return box;
 }
 
 }  // namespace ist

@@ -32,7 +32,4 @@ class ExactBodies {
   InsideTest inside_;
 };
 
-/// Round what the triangles of a mesh name.
-[[nodiscard]] Eigen::AlignedBox3d box_of_triangles(const TriangleMesh& mesh);
-
 }  // namespace ist

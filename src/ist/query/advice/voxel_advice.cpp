@@ -9,6 +9,7 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
+#include "ist/voxel/lattice.h"
 
 namespace ist {
 namespace {
@@ -36,7 +37,9 @@ class SizeSearch {
       : goal_(goal),
         range_{round_to_two_digits(range.finest, true), range.first,
                round_to_two_digits(range.coarsest, false)},
-        measure_(measure) {}
+        measure_(measure) {
+    IST_ASSERT(range_.finest <= range_.coarsest);
+  }
 
   VoxelAdvice run() {
     for (std::size_t tries = 0; tries < kMostSizes; ++tries) {
@@ -54,7 +57,7 @@ class SizeSearch {
   }
 
  private:
-  [[nodiscard]] bool coarse_is_safe() const { return goal_.of == AdviceGoal::Of::kWorstTick; }
+  [[nodiscard]] bool coarse_is_safe() const { return goal_.of == AdviceGoal::Of::kSlowestQuery; }
   [[nodiscard]] double at(double size) const {
     return coarse_is_safe() ? -std::log(size) : std::log(size);
   }
@@ -156,6 +159,16 @@ double round_to_two_digits(double size, bool up) {
                        (text[text.find('e') + 1] == '-' ? -1 : 1);
   const bool is_rounder = text.find_first_not_of('0', 3) == text.find('e');
   return number(fmt::format("{}e{}", up && !is_rounder ? digits + 1 : digits, exponent - 1));
+}
+
+std::optional<SizeRange> sizes_between(double fixed_extent, double moving_extent) {
+  constexpr double kFirst = 1.0 / 50, kCoarsest = 1.0 / 5;
+  const auto [smaller, larger] = std::minmax(fixed_extent, moving_extent);
+  SizeRange range{larger / Lattice::kMaxCells, kFirst * larger, kCoarsest * larger};
+  range.coarsest = std::min(range.coarsest, 0.5 * Lattice::kMaxRelativeSize * smaller);
+  range.first = std::min(range.first, range.coarsest);
+  if (!(2 * range.finest < range.first)) return std::nullopt;
+  return range;
 }
 
 VoxelAdvice advise_voxel_size(const AdviceGoal& goal, const SizeRange& range,

@@ -13,8 +13,13 @@ struct SizeMeasure {
   double voxel_size = 0;  ///< mesh units
   /// How far apart the surfaces still were, at most, where voxels said that they touch, mesh units.
   double error = 0;
-  double resolution = 0;          ///< no such error is ever larger, mesh units
-  double worst_tick = 0;          ///< the slowest pose's answer, microseconds
+  double resolution = 0;  ///< no such error is ever larger, mesh units
+  /// Of the slowest pose the median time of all leaf pairs, microseconds. Contact points and
+  /// effects, which a tick of a servo loop needs besides, come on top.
+  double slowest_query = 0;
+  /// Leaf pairs at the pose that has most; 0 where voxels touch at none, and nothing was measured
+  /// that could be slow.
+  std::uint64_t most_contacts = 0;
   double build_milliseconds = 0;  ///< of both trees
   std::uint64_t bytes = 0;        ///< in memory, of both trees
 };
@@ -25,24 +30,33 @@ using MeasureSize = std::function<std::optional<SizeMeasure>(double voxel_size)>
 /// What is to hold of the voxel size that is looked for.
 struct AdviceGoal {
   enum class Of : std::uint8_t {
-    kWorstTick,  ///< at most `limit` microseconds: the smallest size that keeps it
-    kError,      ///< at most `limit` mesh units: the largest size that keeps it
+    kSlowestQuery,  ///< at most `limit` microseconds: the smallest size that keeps it
+    kError,         ///< at most `limit` mesh units: the largest size that keeps it
   };
   Of of;
   double limit;  ///< positive
 
   [[nodiscard]] double value(const SizeMeasure& measure) const noexcept {
-    return of == Of::kError ? measure.error : measure.worst_tick;
+    return of == Of::kError ? measure.error : measure.slowest_query;
   }
   [[nodiscard]] bool holds(const SizeMeasure& measure) const noexcept {
     return value(measure) <= limit;
   }
 };
 
-/// The sizes that are tried, mesh units: `first` first, and none that is finer or coarser.
+/// The sizes that are tried, mesh units: `first` first, and none that is finer or coarser. The
+/// coarsest is at least 1.2 times the finest, so that a size of two digits is between them.
 struct SizeRange {
   double finest, first, coarsest;
 };
+
+/// For two bodies of these largest extents, mesh units: from a fiftieth of the larger one on, down
+/// to what a lattice holds and up to a fifth. Nothing where one is so small that no size is for
+/// both.
+[[nodiscard]] std::optional<SizeRange> sizes_between(double fixed_extent, double moving_extent);
+
+/// Of a budget so much is used: times are noisy, and a loop has more to do.
+inline constexpr double kOfBudget = 0.8;
 
 struct VoxelAdvice {
   std::vector<SizeMeasure> measured;       ///< from coarse to fine
@@ -62,8 +76,8 @@ struct VoxelAdvice {
 [[nodiscard]] VoxelAdvice advise_voxel_size(const AdviceGoal& goal, const SizeRange& range,
                                             const MeasureSize& measure);
 
-/// A number of two significant digits: the next one up, or the next one down. Precondition:
-/// positive and finite.
+/// The same number where it has no more than two significant digits, else the next one up or down
+/// that has. Precondition: positive and finite.
 [[nodiscard]] double round_to_two_digits(double size, bool up);
 
 }  // namespace ist
