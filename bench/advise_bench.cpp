@@ -52,12 +52,12 @@ const int kRegistered = [] {
   for (const double budget : {100.0, 300.0, 1000.0}) {
     if (budget == 100 || !quick()) {
       add(fmt::format("advise/budget/{:g}", budget),
-          {AdviceGoal::Of::kSlowestQuery, kOfBudget * budget});
+          {AdviceGoal::Of::kSlowestQuery, kOfGoal * budget});
     }
   }
   for (const double error : {1.0, 0.5, 0.2, 0.1}) {
     if (error == 1 || !quick()) {
-      add(fmt::format("advise/error/{:g}", error), {AdviceGoal::Of::kError, error});
+      add(fmt::format("advise/error/{:g}", error), {AdviceGoal::Of::kError, kOfGoal * error});
     }
   }
   return 0;

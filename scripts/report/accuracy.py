@@ -132,7 +132,7 @@ def _advice(results, first):
     for run in results.runs("advise_bench", "advise"):
         asked, limit, size = run.parts[1], float(run.parts[2]), run["voxel_size"]
         on_curve = {"error": between(error, size), "budget": between(time, size)}
-        cell = {key: number(value) if value else "finer than measured" for key, value in on_curve.items()}
+        cell = {key: number(value) if value else "beyond what was measured" for key, value in on_curve.items()}
         if on_curve[asked] and on_curve[asked] > limit:
             beyond.append(on_curve[asked] / limit - 1)
             cell[asked] = f"**{cell[asked]}**"
@@ -141,9 +141,9 @@ def _advice(results, first):
     verdict = (f"On that curve {len(rows) - len(beyond)} of {len(rows)} keep what was asked for; the others are in bold, and beyond it by at most "
                f"{100 * max(beyond):.0f} %." if beyond else f"On that curve all {len(rows)} keep what was asked for.")
     return ["### Advice, held against this curve", "",
-            "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that was measured to hold: its time, with a "
-            "reserve of a fifth, at twelve poses of one straight closing, its error on that way and on six that are inclined and turned "
-            "a little. Beside what it measured stands the curve of `slab` above, read between its points, at other poses and on other ways. " + verdict, "",
+            "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that was measured to keep "
+            "80 % of what is asked for: its time at twelve poses of one straight closing, its error on that way and on six that are "
+            "inclined and turned a little. Beside what it measured stands the curve of `slab` above, read between its points, at other poses and on other ways. " + verdict, "",
             *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
                    rows), ""]
 

@@ -143,9 +143,9 @@ void run(const AdviseArguments& options) {
       poses.empty() ? Calibration(bodies, find_path(bodies, options.axis), options.calibration)
                     : Calibration(bodies, std::move(poses), options.calibration);
 
-  const AdviceGoal goal =
-      options.budget ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfBudget * *options.budget}
-                     : AdviceGoal{AdviceGoal::Of::kError, *options.error};
+  const AdviceGoal goal = options.budget
+                              ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfGoal * *options.budget}
+                              : AdviceGoal{AdviceGoal::Of::kError, kOfGoal * *options.error};
   const VoxelAdvice advice = [&] {
     Progress progress;
     const ProgressBar bar(progress);
@@ -195,9 +195,10 @@ void add_advise(CLI::App& app) {
   command->add_option("--budget-us", options->budget,
                       "microseconds that a query may take, for all voxels that touch: the smallest "
                       "voxels whose slowest pose takes at most 80 % of it");
-  command->add_option("--error", options->error,
-                      "how far apart surfaces may still be when voxels say first that they touch, "
-                      "in mesh units: the largest voxels that keep it");
+  command->add_option(
+      "--error", options->error,
+      "how far apart surfaces may still be when voxels say first that they touch, "
+      "in mesh units: the largest voxels with which they were at most 80 % of that");
   command->add_option("--poses", options->poses,
                       "JSON: an array of objects with \"pose\", 16 numbers, column-major; by "
                       "default a straight way on which the bodies come to where they are stored, "

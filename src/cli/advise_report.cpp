@@ -73,13 +73,14 @@ std::string why_none(const VoxelAdvice& advice, const AdviceGoal& goal) {
   if (goal.of == AdviceGoal::Of::kSlowestQuery) {
     const SizeMeasure& coarsest = advice.measured.front();
     return fmt::format(
-        "no voxel size keeps {:g} µs, which is the budget without its reserve: even one of {:g} "
+        "no voxel size keeps {:g} µs, which is 80 % of the budget: even one of {:g} "
         "takes {:.1f} µs: raise --budget-us, or let queries end at a deadline",
         goal.limit, coarsest.voxel_size, coarsest.slowest_query);
   }
   const SizeMeasure& finest = advice.measured.back();
   return fmt::format(
-      "no voxel size keeps an error of {:g}: voxels of {:g} have one of {:.4g}, and {}: raise "
+      "no voxel size keeps an error of {:g}, which is 80 % of what may be: voxels of {:g} have one "
+      "of {:.4g}, and {}: raise "
       "--error, or ask triangles (--exact)",
       goal.limit, finest.voxel_size, finest.error,
       advice.too_fine ? fmt::format("{:g} needs more memory than --max-memory allows, or is too "

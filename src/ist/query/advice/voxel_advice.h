@@ -55,8 +55,9 @@ struct SizeRange {
 /// both.
 [[nodiscard]] std::optional<SizeRange> sizes_between(double fixed_extent, double moving_extent);
 
-/// Of a budget so much is used: times are noisy, and a loop has more to do.
-inline constexpr double kOfBudget = 0.8;
+/// So much of what is asked for is made the goal: times are noisy and a loop has more to do, and
+/// errors are a little larger on ways that were not measured.
+inline constexpr double kOfGoal = 0.8;
 
 struct VoxelAdvice {
   std::vector<SizeMeasure> measured;       ///< from coarse to fine
