@@ -127,19 +127,20 @@ def _table(first):
 
 
 def _advice(results, first):
-    rows, beyond = [], []
+    rows, beyond, known = [], [], 0
     error, time = (sorted((float(r.parts[1]), r[key]) for r in first.by_policy["slab"]) for key in ("error_max", "p50_us"))
     for run in results.runs("advise_bench", "advise"):
         asked, limit, size = run.parts[1], float(run.parts[2]), run["voxel_size"]
         on_curve = {"error": between(error, size), "budget": between(time, size)}
         cell = {key: number(value) if value else "beyond what was measured" for key, value in on_curve.items()}
+        known += on_curve[asked] is not None
         if on_curve[asked] and on_curve[asked] > limit:
             beyond.append(on_curve[asked] / limit - 1)
             cell[asked] = f"**{cell[asked]}**"
         rows.append([f"{limit:g} µs" if asked == "budget" else f"{limit:g} mm", f"{size:g}", run["error"], cell["error"],
                      run["slowest_us"], cell["budget"], f"{run['sizes']:.0f}", run["seconds"]])
-    verdict = (f"On that curve {len(rows) - len(beyond)} of {len(rows)} keep what was asked for; the others are in bold, and beyond it by at most "
-               f"{100 * max(beyond):.0f} %." if beyond else f"On that curve all {len(rows)} keep what was asked for.")
+    verdict = f"Of {known} that are on that curve {known - len(beyond) if beyond else 'all'} keep what was asked for" + (
+        f"; the others are in bold, and beyond it by at most {100 * max(beyond):.0f} %." if beyond else ".")
     return ["### Advice, held against this curve", "",
             "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that was measured to keep "
             "80 % of what is asked for: its time at twelve poses of one straight closing, its error on that way and on six that are "

@@ -98,6 +98,11 @@ def _late_in_words(runs):
                f"within {at('bare', 'timer', condition, 'p99')} and {at('bare', 'timer', condition, 'p99.9')} µs; an "
                f"ordinary thread within {at('bare', 'plain', condition, 'p99')} and "
                f"{at('bare', 'plain', condition, 'p99.9')} µs.")
+    idle, noisy = (runs["bare", "timer", condition]["late_p99_us"] for condition in CONDITIONS)
+    if idle > noisy:
+        yield ("**Idle is the later of the two**, also where nothing is done: so it is the machine's doing. Cores that rest "
+               "take time to wake, and those of a virtual machine may be lent to others meanwhile; a busy neighbour of lower "
+               "priority keeps them awake.")
 
 
 def _taken_in_words(runs):
