@@ -166,7 +166,7 @@ def ladder_plot(variants, pictures, size):
     times.set_title("Time: each step with all above it")
     tests.set_title("Tests")
     times.set_ylabel("step")
-    times.legend(loc="lower right")
+    times.legend(loc="upper left")
     return pictures.save(figure, "ablation_ladder", "Time and tests of a query, part by part",
                          f"Jaws at {size} mm, n = {variants.samples()} queries a dot")
 

@@ -47,7 +47,7 @@ def _meaning(first):
 
 
 def _budget(first, pictures):
-    figure, axes = pictures.figure(width=6.4, height=4.2)
+    figure, axes = pictures.figure(width=7.6, height=4)
     floor = 0.7 * min(run["error_max"] for run in first.runs if run["error_max"] > 0)
     for policy in POLICIES:
         runs = first.by_policy[policy]
@@ -58,10 +58,10 @@ def _budget(first, pictures):
     axes.plot([exact["p50_us"]], [floor], linestyle="", **style("exact", label="all pairs of triangles: error 0"))
     axes.plot([touches["p50_us"]], [floor], linestyle="", **style("touches", label="whether triangles meet: error 0"))
     axes.axvline(BUDGET, color="black", linestyle=":", linewidth=1)
-    axes.annotate(f"{BUDGET} µs", (BUDGET, axes.get_ylim()[1]), xytext=(3, -9), textcoords="offset points", fontsize=8)
+    axes.annotate(f"{BUDGET} µs", (BUDGET, floor), xytext=(3, 0), textcoords="offset points", fontsize=8)
     axes.set(xscale="log", yscale="log", xlabel="slowest pose, µs (median, one worker)",
              ylabel="largest error at first contact, mm", title=f"I have {BUDGET} µs: what accuracy can I have?")
-    axes.legend(title="bounds; numbers are voxel sizes, mm", fontsize=8, title_fontsize=8)
+    axes.legend(title="bounds; numbers are\nvoxel sizes, mm", fontsize=8, title_fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
     picture = pictures.save(figure, "accuracy_for_time", "Largest error at first contact over the time of the slowest pose, by policy",
                             f"n = {first.n:.0f} ways of approach, {first.rounds:.0f} rounds")
     said = []

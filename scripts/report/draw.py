@@ -28,7 +28,7 @@ def plain_ticks(axes):
         if axis.get_scale() != "log":
             continue
         decades = abs(math.log10(high / low))
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < 3 else (1,), numticks=20))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < 2.4 else (1,), numticks=20))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}" if 1e-4 < value < 1e6 else f"{value:.0e}"))
         axis.set_minor_formatter(NullFormatter())
 
