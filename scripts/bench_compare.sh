@@ -43,6 +43,7 @@ while [ $# -gt 0 ]; do
 done
 [ ${#commits[@]} -eq 2 ] || fail "needs two commits, BASE and HEAD; see --help"
 [[ $runs =~ ^[1-9][0-9]?$ ]] && [ "$runs" -ge 3 ] || fail "--runs is from 3 to 99, not '$runs'"
+grep -qE -- "$filter" </dev/null 2>/dev/null || [ $? = 1 ] || fail "--filter: '$filter' is no regular expression"
 declare -A commit
 for i in 0 1; do
   side=$([ $i = 0 ] && echo base || echo head)

@@ -17,6 +17,11 @@ of a query alone, trees loaded, unless said otherwise; a *median* is of so many 
 pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth stand in full
 occlusion, at dz = -1.5 they are just apart. In tables and plots, what is **bold** is best in its row or column, or a loss
 that is meant to be seen: the text says which.
+
+A machine that is shared changes its speed within minutes, so the same query may take other times in other chapters: compare within one.
+What took turns, and so met the machine alike, are all bounds of one voxel size in the cost of accuracy, the article's rates, saved
+spheres, folding and levels, the parts of the query, and the peers. All else was measured one after the other: voxel sizes, gaps,
+advice, one worker and two, the loop. How busy the machine was stands at the end.
 """
 
 
@@ -40,9 +45,7 @@ def made_with(results):
             f"{first['processor']}, {first['num_cpus']} cores at {first['mhz_per_cpu']} MHz; {caches}. "
             f"{first['compiler']}; `{first['flags']}`.", "",
             *table(["program", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)"], rows), "",
-            "A commit with a + had other code than it names. A machine that is shared changes its speed: what takes turns, and so "
-            "met the machine alike, are all bounds of one voxel size in the cost of accuracy, the article's rates, saved spheres, folding "
-            "and levels, the parts of the query, and the peers. All else was measured one after the other: voxel sizes, gaps, one worker and two, the loop."]
+            "A commit with a + had other code than it names."]
 
 
 def programs():

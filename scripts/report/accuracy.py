@@ -144,7 +144,8 @@ def _advice(results, first):
     return ["### Advice, held against this curve", "",
             "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that was measured to keep "
             "80 % of what is asked for: its time at twelve poses of one straight closing, its error on that way and on six that are "
-            "inclined and turned a little. Beside what it measured stands the curve of `slab` above, read between its points, at other poses and on other ways. " + verdict, "",
+            "inclined and turned a little. Beside what it measured stands the curve of `slab` above, read between its points, at other poses, on other ways and at another time. As only "
+            "80 % of a budget are used, its voxels are larger than the curve allows for all of it. " + verdict, "",
             *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
                    rows), ""]
 

@@ -149,8 +149,17 @@ void run(const AdviseArguments& options) {
   const VoxelAdvice advice = [&] {
     Progress progress;
     const ProgressBar bar(progress);
-    return advise_voxel_size(
-        goal, range, [&](double voxel_size) { return calibration.measure(voxel_size, &progress); });
+    return advise_voxel_size(goal, range, [&](double voxel_size) {
+      const std::optional<SizeMeasure> measured = calibration.measure(voxel_size, &progress);
+      // Coarse voxels touch first, and are tried first.
+      if (options.budget && measured && measured->most_contacts == 0) {
+        throw Error(ErrorCode::kInputInvalid,
+                    fmt::format("{}: at no pose do voxels of {:g} touch, so there is nothing that "
+                                "takes time: add the poses at which most touches",
+                                options.poses.string(), voxel_size));
+      }
+      return measured;
+    });
   }();
   if (options.error && !options.poses.empty() && !advice.measured.empty() &&
       std::all_of(advice.measured.begin(), advice.measured.end(),
@@ -158,15 +167,6 @@ void run(const AdviseArguments& options) {
     throw Error(ErrorCode::kInputInvalid,
                 fmt::format("{}: no pose shows an error, because surfaces touch there or voxels "
                             "do not: add poses shortly before the bodies touch",
-                            options.poses.string()));
-  }
-  if (options.budget &&
-      std::all_of(advice.measured.begin(), advice.measured.end(),
-                  [](const SizeMeasure& size) { return size.most_contacts == 0; }) &&
-      !advice.measured.empty()) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: at no pose do voxels touch, so there is nothing that takes time: "
-                            "add the poses at which most touches",
                             options.poses.string()));
   }
   options.json ? print_json(advice) : print_table(advice);

@@ -114,7 +114,7 @@ TEST_F(Advise, AtPoses) {
   refuses(at({0}), 3, "poses.json: no pose shows an error");
   refuses(at({100}), 3, "poses.json: no pose shows an error");
   refuses({"--budget-us", "100", "--max-memory", "2M", "--poses", poses({100})}, 3,
-          "poses.json: at no pose do voxels touch");
+          "poses.json: at no pose do voxels of ");
 }
 
 // No size keeps the goal: what was measured is there, and none of it is recommended.
