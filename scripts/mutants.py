@@ -305,4 +305,6 @@ MUTANTS = [
     Mutant("first-contact-only", "the error of a closing is that next to the touch, whatever comes before",
            [(ADVICE + "contact_error.cpp", "      error = std::max(error, gap.upper);\n      last = place;\n", "      break;\n")],
            ["advice_test"]),
+    Mutant("one-way-alone", "errors are measured on the straight way, and on none beside it",
+           [(ADVICE + "calibration.cpp", "paths_(paths_beside(bodies, path))", "paths_()")], ["advice_test"]),
 ]

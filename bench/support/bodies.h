@@ -6,6 +6,7 @@
 
 #include "ist/mesh/triangle_mesh.h"
 #include "ist/tree/tree_builder.h"
+#include "support/closing.h"
 
 namespace ist::bench {
 
@@ -30,9 +31,7 @@ namespace ist::bench {
 /// Likewise, with their triangles.
 [[nodiscard]] const std::pair<SphereTree, SphereTree>& exact_trees(double voxel_size);
 
-/// The closing: the lower jaw turned by 0.0003 rad about z, so that no face of one body is parallel
-/// to one of the other, and moved by `dz` along z.
-[[nodiscard]] Eigen::Isometry3d closing(double dz);
+using test::closing;
 
 /// Displacements that are measured: full occlusion, …, just before contact.
 inline constexpr double kClosing[] = {0, -0.5, -1, -1.5, -2};

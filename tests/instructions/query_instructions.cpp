@@ -20,6 +20,7 @@
 #include "ist/query/collision_query.h"
 #include "ist/query/kernels.h"
 #include "ist/tree/tree_builder.h"
+#include "support/closing.h"
 
 namespace {
 
@@ -49,16 +50,7 @@ ist::SphereTree jaw(ist::Jaw which) {
   return ist::build_tree(ist::make_jaw(which, 1), options);
 }
 
-// As the benchmarks close them: slightly turned, so that no faces are parallel. `dz` in mm.
-Eigen::Isometry3d closing(double dz) {
-  constexpr double kTurn = 0.0003;  // small enough for two terms of the series
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.matrix()(0, 0) = pose.matrix()(1, 1) = 1 - kTurn * kTurn / 2;
-  pose.matrix()(1, 0) = kTurn - kTurn * kTurn * kTurn / 6;
-  pose.matrix()(0, 1) = -pose.matrix()(1, 0);
-  pose.translation()[2] = dz;
-  return pose;
-}
+using ist::test::closing;
 
 Answer answer_of(const ist::QueryResult& result) { return {result.contacts, result.sphere_tests}; }
 

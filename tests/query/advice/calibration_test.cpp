@@ -80,6 +80,24 @@ TEST_F(SphereOnBox, MeasuresTheErrorOfAClosing) {
   }
 }
 
+// The largest error of all ways, of which one that is inclined is the worst here.
+TEST_F(SphereOnBox, MeasuresTheWaysBeside) {
+  constexpr double kSize = 0.17;
+  const ClosingPath straight = path();
+  const std::vector<ClosingPath> beside = paths_beside(bodies_, straight);
+  ASSERT_EQ(beside.size(), 6u);
+  const SphereTree fixed = tree_with_triangles(block(), kSize);
+  const SphereTree moving = tree_with_triangles(sphere(), kSize);
+  CollisionQuery query(fixed, moving);
+  const double alone = closing_error(bodies_, query, kSize, straight);
+  double largest = alone;
+  for (const ClosingPath& way : beside) {
+    largest = std::max(largest, closing_error(bodies_, query, kSize, way));
+  }
+  EXPECT_GT(largest, alone);
+  EXPECT_EQ(Calibration(bodies_, straight, options_).measure(kSize)->error, largest);
+}
+
 // Whatever else runs: no median is less than the fastest of all, and all rounds fit into the time
 // that the measure took.
 TEST_F(SphereOnBox, MeasuresTheSlowestPose) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ist/mesh/jaw_model.h"
 #include "query/exact/exact_tree.h"
@@ -132,6 +133,28 @@ TEST(ClosingPath, Jaws) {
   expect_is_touch(pair.bodies, *path);
   EXPECT_GT(path->touch, 0.5);  // they are made too close by about 1 mm
   EXPECT_LT(path->touch, 2);
+}
+
+// Inclined by 20 degrees, turned by 3, and where they end the bodies touch.
+TEST(ClosingPath, WaysBeside) {
+  constexpr double kDegrees = 57.29577951308232;
+  Pair pair(kCube, above(0.7));
+  const auto path = find_closing_path(pair.bodies, {2, +1});
+  ASSERT_TRUE(path);
+  const std::vector<ClosingPath> beside = paths_beside(pair.bodies, *path);
+  ASSERT_EQ(beside.size(), 6u);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const ClosingPath& way : beside) {
+    expect_is_touch(pair.bodies, way);
+    EXPECT_EQ(way.end, way.touch);
+    EXPECT_TRUE(pair.bodies.free(way.pose(way.begin)));
+    EXPECT_NEAR(kDegrees * std::acos(way.opening.dot(path->opening)), 20, 0.1);
+    EXPECT_NEAR(kDegrees * Eigen::AngleAxisd(way.turn).angle(), 3, 0.01);
+    const Eigen::Vector3d& middle = pair.bodies.moving_box().center();
+    EXPECT_LT((way.pose(0) * middle - middle).norm(), 1e-12);
+    sum += way.opening - way.opening.dot(path->opening) * path->opening;
+  }
+  EXPECT_LT(sum.norm(), 1e-12);  // to all sides
 }
 
 }  // namespace

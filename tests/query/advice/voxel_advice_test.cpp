@@ -175,8 +175,8 @@ TEST(VoxelAdvice, SizesThatDoNotFit) {
   ASSERT_TRUE(none.too_fine);
   EXPECT_LE(none.measured.back().voxel_size, 1.5 * kFits);
 
-  for (const AdviceGoal& goal :
-       {AdviceGoal{AdviceGoal::Of::kSlowestQuery, 1e4}, AdviceGoal{AdviceGoal::Of::kError, 0.6 * 6}}) {
+  for (const AdviceGoal& goal : {AdviceGoal{AdviceGoal::Of::kSlowestQuery, 1e4},
+                                 AdviceGoal{AdviceGoal::Of::kError, 0.6 * 6}}) {
     Measures coarse(error, tick, 5);
     const VoxelAdvice advice = coarse.advise(goal);
     ASSERT_TRUE(advice.recommended);

@@ -1,6 +1,6 @@
-#include "query/contacts/form_errors.h"
-
 #include <gtest/gtest.h>
+
+#include "query/contacts/form_errors.h"
 
 namespace ist::test {
 namespace {

@@ -1,0 +1,48 @@
+"""What the report decides by: curves between measured points, and numbers as they are written."""
+
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
+from report.curves import between, crossings, power  # noqa: E402  after its folder is known
+from report.text import number, table  # noqa: E402
+
+
+class Curves(unittest.TestCase):
+    def test_a_power_law_is_read_exactly_between_its_points(self):
+        points = [(x, 3 * x**-2) for x in (1, 2, 8)]
+        self.assertAlmostEqual(between(points, 4), 3 / 16)
+        self.assertAlmostEqual(between(points, 8), 3 / 64)
+
+    def test_nothing_is_read_beyond_the_points(self):
+        self.assertIsNone(between([(1, 1), (2, 2)], 0.9))
+        self.assertIsNone(between([(1, 1), (2, 2)], 2.1))
+
+    def test_the_power_is_found(self):
+        exponent, factor = power([1, 2, 4], [5 * x**1.5 for x in (1, 2, 4)])
+        self.assertAlmostEqual(exponent, 1.5)
+        self.assertAlmostEqual(factor, 5)
+
+    def test_curves_cross_where_the_lead_changes(self):
+        (place,) = crossings([0, 10], [1, 2], [2, 1])
+        self.assertAlmostEqual(place, 5)
+        self.assertEqual(crossings([0, 1, 2], [1, 1, 1], [2, 2, 2]), [])
+
+    def test_a_lead_within_the_noise_is_none(self):
+        self.assertEqual(crossings([0, 1, 2], [1, 1.02, 1], [2, 1, 2]), [])
+        self.assertEqual(len(crossings([0, 1, 2], [1, 1.2, 1], [2, 1, 2])), 2)
+
+
+class Texts(unittest.TestCase):
+    def test_numbers_have_the_digits_that_count(self):
+        written = {0: "0", 12345.6: "12,346", 123.4: "123", 12.34: "12.3", 0.012345: "0.0123", 0.00001234: "0.0000123"}
+        for value, text in written.items():
+            self.assertEqual(number(value), text)
+
+    def test_tables_are_markdown(self):
+        self.assertEqual(table(["a", "b"], [["x", 1.5]]), ["| a | b |", "|---|---|", "| x | 1.5 |"])
+
+
+if __name__ == "__main__":
+    unittest.main()
