@@ -21,7 +21,10 @@ BOX = "src/ist/voxel/triangle_box.h"
 EXACT = "src/ist/query/exact/"
 CONTACTS = "src/ist/query/contacts/"
 ADVICE = "src/ist/query/advice/"
+CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
+HARDWARE = "src/ist/hardware/"
+CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
 
@@ -289,6 +292,13 @@ MUTANTS = [
     Mutant("slept-through-not-missed", "deadlines that pass while the loop sleeps are not counted",
            [(HAPTICS + "tick_clock.cpp", "return {late, missed_ + slept_through};",
              "return {late, missed_ + 0 * slept_through};")], ["haptics_test TickSchedule*"]),
+    Mutant("callback-takes-metres", "a device's poses are taken to be in metres, whatever it declares",
+           [(HAPTICS + "servo_callback.cpp", "  device.translation() *= options_.unit;\n", "")],
+           ["haptics_test Callback*"]),
+    Mutant("callback-has-all-day", "a callback's queries have no deadline",
+           [(HAPTICS + "servo_callback.cpp", "budget.deadline = begin + query_time_;",
+             "budget.deadline = begin + 0 * query_time_ + period_ * 1000;")],
+           ["haptics_test Callback*"]),
     Mutant("latency-rounded-down", "a quantile is the shortest time of its bucket",
            [(HAPTICS + "latency_histogram.cpp",
              "((std::uint64_t{bucket} - (octave << kSubBits) + 1) << octave) - 1",
@@ -307,4 +317,64 @@ MUTANTS = [
            ["advice_test"]),
     Mutant("one-way-alone", "errors are measured on the straight way, and on none beside it",
            [(ADVICE + "calibration.cpp", "paths_(paths_beside(bodies, path))", "paths_()")], ["advice_test"]),
+
+    # What a circuit decides by.
+    Mutant("circuit-reach-rounded-down", "the reach that is squared is rounded down",
+           [(HARDWARE + "pair_test.cpp", "(answer.reach + ((std::uint64_t{1} << cut) - 1)) >> cut",
+             "answer.reach >> cut")], ["hardware_test NoMiss*"]),
+    Mutant("circuit-pad-forgets-rounding", "the pad does not hold what rounding centres down errs by",
+           [(HARDWARE + "quantized_pose.cpp", "kTwoFloors = 2 * kLsb;", "kTwoFloors = 0 * kLsb;")],
+           ["hardware_test NoMiss*"]),
+    Mutant("circuit-radius-forgets-offset", "nor the moving radii what their turned offsets err by",
+           [(HARDWARE + "quantized_pose.cpp", "kRadiusSquared[code])) + of_offset",
+             "kRadiusSquared[code])) + 0 * of_offset")], ["hardware_test QuantizedPose*"]),
+    Mutant("circuit-turned-back", "the offset of the moving ball is turned the other way",
+           [(HARDWARE + "pair_test.cpp", "registers.rotation[3 * k + i]", "registers.rotation[3 * i + k]")],
+           ["hardware_test NoMiss*"]),
+    Mutant("vectors-of-any-width", "a number with more digits than its field is cut off",
+           [(HARDWARE + "vector_text.cpp", "if (digits.size() > width) {", "if (digits.size() > 2 * width) {")],
+           ["hardware_test VectorFile*"]),
+    Mutant("verilog-floor-upwards", "the turned offset of the moving ball is rounded up, in Verilog",
+           [(CIRCUIT, "moving_offset_4 <= shifted_3[39:8];", "moving_offset_4 <= shifted_3[39:8] + {31'd0, |shifted_3[7:0]};")],
+           ["ctest Circuit.iverilog"]),
+    Mutant("verilog-reach-rounded-down", "what is left of the reach does not count, in Verilog",
+           [(CIRCUIT, "{1'b0, quotient_6} + {15'd0, remainder_6};", "{1'b0, quotient_6} + {15'd0, remainder_6 & 1'b0};")],
+           ["ctest Circuit.iverilog"]),
+    Mutant("verilog-touching-does-not-count", "`<` for `<=` where squares are compared, in Verilog",
+           [(CIRCUIT, "distance_squared_9 <= {1'b0, bound_squared_9};", "distance_squared_9 < {1'b0, bound_squared_9};")],
+           ["ctest Circuit.iverilog"]),
+    Mutant("verilog-bench-forgets-hit", "the bench compares the reach alone",
+           [("src/ist/hardware/rtl/ist_pair_test_tb.v", "circuit_hit !== due_hit[slot] || ", "")],
+           ["ctest Circuit.iverilog"]),
+
+    # What C is told.
+    Mutant("freed-handle-lives", "a handle leads to whatever has its slot now",
+           [(CAPI + "handle_table.cpp",
+             "if ((state & ~kUsers) != (tag_of(handle) | kAlive)) return {IST_HANDLE_FREED, nullptr};",
+             "if ((state & kAlive) == 0) return {IST_HANDLE_FREED, nullptr};")], ["capi_test CHandles*"]),
+    Mutant("busy-query-entered", "two threads may be in one query",
+           [(CAPI + "handle_table.cpp", "use == HandleUse::kAlone ? 0 : kUsers - 1",
+             "use == HandleUse::kAlone ? kUsers - 1 : kUsers - 1")], ["capi_test CHandles*"]),
+    Mutant("removed-under-its-user", "what is freed while a call uses it is destroyed at once",
+           [(CAPI + "handle_table.cpp", "if ((state & kUsers) == 0) empty(slot);", "empty(slot);")],
+           ["capi_test CHandles*"]),
+    Mutant("unknown-options-ignored", "what a newer caller asks for is passed over in silence",
+           [(CAPI + "sized_struct.h", "if (size > sizeof(Struct) &&\n", "if (size == 0 &&\n")],
+           ["capi_test CSizedStruct*"]),
+    Mutant("old-answer-left", "where a call fails, its result is what the call before left there",
+           [(CAPI + "sized_struct.h", "  write_sized(Struct{}, *out);\n", "")], ["capi_test CMisuse*"]),
+    Mutant("message-for-all-threads", "threads share one last error",
+           [(CAPI + "last_error.cpp", "constinit thread_local char", "constinit char")],
+           ["capi_test CThread*"]),
+
+    # What others get of it.
+    Mutant("export-map-loosened", "whatever other libraries make visible is exported too",
+           [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),
+    Mutant("private-exported", "what is private in a public class is exported",
+           [("src/ist/query/collision_query.h", "IST_LOCAL void set_steps", "void set_steps")],
+           ["ctest Package.Symbols"]),
+    Mutant("vtables-kept-in", "who derives from a class, or makes one, finds no table of its functions",
+           [("src/package/ist.map.in", "      vtable?for?ist::*;\n", "")], ["ctest Package.Headers"]),
+    Mutant("header-left-at-home", "a header that another one includes is not installed",
+           [("src/package/public_headers.txt", "ist/query/chunk_board.h\n", "")], ["ctest Package.Headers"]),
 ]

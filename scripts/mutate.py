@@ -15,6 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
 RESULTS = ROOT / "perf/results/mutants.json"
+PACKAGED = {"ist_shared", "ist_cli", "package_layout"}  # what a test needs that is no program
 SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 
@@ -27,6 +28,7 @@ def sources():
     for folder in ["src", "simd", "tests", "bench", "scripts"]:
         yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
     yield ROOT / "CMakeLists.txt"
+    yield ROOT / "LICENSE"
 
 
 def copy_sources():
@@ -66,23 +68,25 @@ def build(programs):
 
 
 def first_failure(tests):
-    """The first test that fails, or None. A test is a program, or a program and a filter."""
-    environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), **os.environ}
+    """The first test that fails, or None. A test is a program, a program and a filter, or "ctest" and a name."""
+    environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), "IST_REQUIRE_ALL": "1", **os.environ}
     for test in tests:
         program, _, pattern = test.partition(" ")
         command = [BUILD / "tests" / program, "--gtest_fail_fast"]
-        if pattern:
+        if program == "ctest":
+            command = ["ctest", "--test-dir", BUILD, "--no-tests=error", "-R", f"^{pattern}$"]
+        elif pattern:
             command.append(f"--gtest_filter={pattern}")
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS,
                                   env=environment, errors="replace")
         except subprocess.TimeoutExpired:
             return f"{program} (does not end)"
-        if "Running 0 tests" in done.stdout:
+        if "Running 0 tests" in done.stdout or "No tests were found" in done.stdout + done.stderr:
             fail(f"no test is called {test}")
         if done.returncode != 0:
-            failed = re.search(r"\[  FAILED  \] ([\w/.]+)", done.stdout)
-            return failed.group(1) if failed else f"{program} (ends with {done.returncode})"
+            failed = re.search(r"\[  FAILED  \] ([\w/.]+)|- ([\w.]+) \(Failed\)", done.stdout)
+            return failed.group(1) or failed.group(2) if failed else f"{program} (ends with {done.returncode})"
     return None
 
 
@@ -105,7 +109,8 @@ def killer_of(mutant):
 
 
 def programs_of(mutants):
-    return sorted({test.split()[0] for mutant in mutants for test in mutant.tests})
+    programs = {test.split()[0] for mutant in mutants for test in mutant.tests}
+    return sorted(programs - {"ctest"} | (PACKAGED if "ctest" in programs else set()))
 
 
 def write_table(found):

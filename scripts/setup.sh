@@ -2,17 +2,19 @@
 # Installs from Debian 12's packages what is missing to build and test. Works as root or with sudo,
 # and does nothing where all is there.
 #
-#   scripts/setup.sh           what the library, the command and the tests need
-#   scripts/setup.sh --bench   also what the benchmarks and the plots need
-#   scripts/setup.sh --peers   also the libraries that bench/peers compares with
-#   scripts/setup.sh --fuzz    also what the fuzzers need
+#   scripts/setup.sh             what the library, the command and the tests need
+#   scripts/setup.sh --bench     also what the benchmarks and the plots need
+#   scripts/setup.sh --peers     also the libraries that bench/peers compares with
+#   scripts/setup.sh --fuzz      also what the fuzzers need
+#   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev
-  libgtest-dev libgmp-dev python3 valgrind)
+  libgtest-dev libgmp-dev python3 valgrind
+  binutils dpkg-dev file)
 bench=(libbenchmark-dev python3-matplotlib)
 for argument in "$@"; do
   case $argument in
@@ -20,7 +22,8 @@ for argument in "$@"; do
     --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
       libbullet-dev libcgal-dev libopenvdb-dev) ;;
     --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
-    -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --hardware) packages+=(iverilog verilator ghdl yosys) ;;
+    -h | --help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

@@ -15,5 +15,6 @@ void add_collide(CLI::App& app);
 void add_close(CLI::App& app);
 void add_run(CLI::App& app);
 void add_advise(CLI::App& app);
+void add_table(CLI::App& app);
 
 }  // namespace ist::cli

@@ -29,6 +29,7 @@ int exit_code(ErrorCode code) {
     case ErrorCode::kPolicyMissing:
     case ErrorCode::kTrianglesMissing:
     case ErrorCode::kTargetMissing:
+    case ErrorCode::kFixedPointRange:
       return kUsage;
     default:
       return kBadInput;
@@ -46,7 +47,7 @@ int run(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
       "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n5 a "
-      "result breaks a promise (--verify).\n"
+      "result breaks a promise (--verify), or is not the model's (table --check).\n"
       "Research software, not a medical device.");
   add_demo(app);
   add_build(app);
@@ -56,6 +57,7 @@ int run(int argc, char** argv) {
   add_close(app);
   add_run(app);
   add_advise(app);
+  add_table(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {  // or the version: asked for, and printed by whose it is

@@ -45,7 +45,9 @@ TEST_F(Usage, HelpTeaches) {
         "--replay", "--unpaced", "--cpu", "--json", "Example: ist run"}},
       {"advise",
        {"FIXED", "MOVING", "--budget-us", "--error", "--poses", "--axis", "--workers", "--target",
-        "--max-memory", "--json", "Example: ist advise"}}};
+        "--max-memory", "--json", "Example: ist advise"}},
+      {"table",
+       {"--format", "--vectors", "--seed", "--check", "--output", "--json", "Example: ist table"}}};
   for (const auto& [command, parts] : taught) {
     EXPECT_TRUE(says(help.out, "\n  " + command));
     const CommandResult result = ist_well({command, "--help"});
@@ -65,7 +67,8 @@ TEST_F(Usage, SubcommandsAndFlagsThatAreNotThere) {
   refuses({}, "subcommand is required");
   refuses({"nonsense"}, "nonsense: no such subcommand");
   refuses({"--nonsense"}, "--nonsense: no such");
-  for (const char* command : {"demo", "build", "info", "export", "collide", "close", "advise"}) {
+  for (const char* command :
+       {"demo", "build", "info", "export", "collide", "close", "advise", "table"}) {
     const CommandResult result = ist({command, "--nonsense", "1"});
     EXPECT_EQ(result.exit_code, 2) << command;
     EXPECT_EQ(result.out, "");

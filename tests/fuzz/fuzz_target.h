@@ -16,6 +16,7 @@ namespace ist::test {
 [[nodiscard]] std::string fuzz_query(std::string_view bytes);
 [[nodiscard]] std::string fuzz_scene(std::string_view bytes);
 [[nodiscard]] std::string fuzz_tree(std::string_view bytes);
+[[nodiscard]] std::string fuzz_vectors(std::string_view bytes);
 
 /// A promise that does not hold.
 class Finding : public std::logic_error {

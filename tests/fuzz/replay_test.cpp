@@ -34,6 +34,7 @@ const std::vector<Target>& targets() {
       {"query", fuzz_query, {"touching", "apart", "invalid"}},
       {"scene", fuzz_scene, {"fine", "input-invalid"}},
       {"tree", fuzz_tree, {"fine", "not-a-tree", "tree-version", "tree-truncated", "tree-corrupt"}},
+      {"vectors", fuzz_vectors, {"agree", "differ", "input-invalid", "fixed-point-range"}},
   };
   return all;
 }

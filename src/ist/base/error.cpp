@@ -46,6 +46,8 @@ const char* to_string(ErrorCode code) noexcept {
       return "pose-invalid";
     case ErrorCode::kInputInvalid:
       return "input-invalid";
+    case ErrorCode::kFixedPointRange:
+      return "fixed-point-range";
   }
   return "unknown";
 }

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// What went wrong, for code that must tell the cases apart. The text for people is `what()`.
@@ -28,11 +30,12 @@ enum class ErrorCode {
   kTargetMissing,      ///< this processor lacks the instruction set that is asked for
   kPoseInvalid,        ///< not a rigid motion
   kInputInvalid,       ///< another input file whose content does not hold
+  kFixedPointRange,    ///< a number that the hardware's fixed-point format does not hold
 };
 
 /// The only exception of the library. `what()` names the place, the cause and the remedy.
 /// Building and loading throw it; queries never do.
-class Error : public std::runtime_error {
+class IST_API Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& detail) : std::runtime_error(detail), code_(code) {}
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
@@ -42,6 +45,6 @@ class Error : public std::runtime_error {
 };
 
 /// The code's own name, such as "mesh-truncated": stable, for logs and tests.
-[[nodiscard]] const char* to_string(ErrorCode code) noexcept;
+[[nodiscard]] IST_API const char* to_string(ErrorCode code) noexcept;
 
 }  // namespace ist

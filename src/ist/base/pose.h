@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// The rigid motion nearest to `pose`, or nothing when `pose` is none: a number is not finite, the
@@ -13,7 +15,7 @@ namespace ist {
 /// Cost: some 200 flops, no allocation. Source: the Newton iteration for the polar factor, N. J.
 /// Higham, Computing the polar decomposition, SIAM J. Sci. Stat. Comput. 7(4), 1986, in the form
 /// without an inverse, which converges quadratically from here.
-[[nodiscard]] std::optional<Eigen::Isometry3d> project_to_rigid(
+[[nodiscard]] IST_API std::optional<Eigen::Isometry3d> project_to_rigid(
     const Eigen::Isometry3d& pose) noexcept;
 
 /// The motion `second` after `first`, projected to a rigid one; nothing where the product is none
@@ -24,7 +26,7 @@ namespace ist {
 /// was seen.
 ///
 /// The same bits on every instruction set and whatever the caller's arithmetic. Cost: 0.1 µs.
-[[nodiscard]] std::optional<Eigen::Isometry3d> compose_rigid(
+[[nodiscard]] IST_API std::optional<Eigen::Isometry3d> compose_rigid(
     const Eigen::Isometry3d& second, const Eigen::Isometry3d& first) noexcept;
 
 }  // namespace ist

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -20,7 +21,7 @@ struct CouplingSettings {
 /// On the tool acts K · stretch + B · (rate of the stretch), on the hand the opposite; the spring's
 /// stretch counts for no more than max_force / K. Source: J. E. Colgate, M. C. Stanley and J. M.
 /// Brown, Issues in the haptic display of tool use, IROS 1995.
-class VirtualCoupling {
+class IST_API VirtualCoupling {
  public:
   explicit VirtualCoupling(const CouplingSettings& settings) : settings_(settings) {}
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// How long something took, over any number of times: where its quantiles lie, to within 1/32.
@@ -15,7 +17,7 @@ namespace ist {
 /// nothing here allocates, throws or waits. Not for several threads at once.
 ///
 /// Source of the layout: G. Tene, HdrHistogram: a high dynamic range histogram, hdrhistogram.org.
-class LatencyHistogram {
+class IST_API LatencyHistogram {
  public:
   using Nanoseconds = std::chrono::nanoseconds;
 
@@ -51,9 +53,9 @@ class LatencyHistogram {
   static constexpr unsigned kTimeBits = 36;
   static constexpr std::size_t kBuckets = std::size_t{kTimeBits - kSubBits + 1} << kSubBits;
 
-  static std::size_t bucket_of(std::uint64_t time) noexcept;
-  static std::uint64_t last_of(std::size_t bucket) noexcept;
-  void add_to_sum(std::uint64_t time) noexcept;
+  IST_LOCAL static std::size_t bucket_of(std::uint64_t time) noexcept;
+  IST_LOCAL static std::uint64_t last_of(std::size_t bucket) noexcept;
+  IST_LOCAL void add_to_sum(std::uint64_t time) noexcept;
 
   std::array<std::uint64_t, kBuckets> counts_{};
   std::uint64_t count_ = 0, sum_ = 0, max_ = 0;

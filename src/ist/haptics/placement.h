@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// A motion, a force or a change of either, in six numbers: first what belongs to translation, then
@@ -14,7 +16,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
 /// Where the tool is: from its own frame to the scene's, both in metres. The tool's origin is the
 /// centre of the held body's grid.
-struct Placement {
+struct IST_API Placement {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
@@ -35,6 +37,6 @@ struct Placement {
 /// within rounding for turns of less than half a circle. Long turns count for more than their
 /// angle, twice its half's tangent; from 4e-3 short of half a circle they are cut at 1e3, along
 /// their axis. At just half a circle either sense will do.
-[[nodiscard]] Vector6 motion_between(const Placement& from, const Placement& to) noexcept;
+[[nodiscard]] IST_API Vector6 motion_between(const Placement& from, const Placement& to) noexcept;
 
 }  // namespace ist

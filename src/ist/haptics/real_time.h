@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/timer_slack.h"
 
 namespace ist {
@@ -28,7 +29,7 @@ struct RealTimeOptions {
 ///
 /// Made and destroyed by the same thread, outside the ticks. Memory is locked and unlocked for the
 /// whole process: of several of these, only the last one to go should have been asked to.
-class RealTimeThread {
+class IST_API RealTimeThread {
  public:
   /// Cost: a few system calls, and where memory is locked the time to fetch all of the process that
   /// is not yet present. Throws std::bad_alloc, and then nothing was changed.
@@ -54,9 +55,9 @@ class RealTimeThread {
   };
 
   RealTimeThread() = default;
-  void ask_for_fifo(int priority);
-  void ask_for_memory();
-  void ask_for_cpu(int cpu);
+  IST_LOCAL void ask_for_fifo(int priority);
+  IST_LOCAL void ask_for_memory();
+  IST_LOCAL void ask_for_cpu(int cpu);
 
   std::thread::id owner_ = std::this_thread::get_id();
   ScopedTimerSlack slack_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "ist/base/api.h"
 #include "ist/haptics/placement.h"
 
 namespace ist {
@@ -27,7 +28,7 @@ struct SafetySettings {
 ///
 /// A fault is not held up by the slew limit: its output is zero at once, in one step. What is not
 /// finite cannot be limited, so it is a fault.
-class WrenchGuard {
+class IST_API WrenchGuard {
  public:
   /// Precondition: settings are finite, limits and slews positive, soft_start at least 0.
   explicit WrenchGuard(const SafetySettings& settings) : settings_(settings) {}

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/latency_histogram.h"
@@ -56,8 +57,9 @@ struct ServoReport {
 ///
 /// Runs in the calling thread, as RealTimeThread has it. A tick allocates nothing, locks nothing
 /// and waits for no one; its only system calls are those that sleep and read its thread's clock.
-[[nodiscard]] ServoReport run_servo_loop(Simulation& simulation, Device& device,
-                                         const ServoOptions& options, const ServoOutputs& outputs,
-                                         const std::atomic<bool>& stop);
+[[nodiscard]] IST_API ServoReport run_servo_loop(Simulation& simulation, Device& device,
+                                                 const ServoOptions& options,
+                                                 const ServoOutputs& outputs,
+                                                 const std::atomic<bool>& stop);
 
 }  // namespace ist

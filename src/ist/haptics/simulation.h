@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/haptics/coupling.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/safety.h"
@@ -41,7 +42,7 @@ struct Tick {
 ///
 /// A tick allocates nothing, locks nothing and makes no system call. Cost: that of the queries, and
 /// 5 to 15 µs.
-class Simulation {
+class IST_API Simulation {
  public:
   struct Parts {
     std::unique_ptr<TouchQuery> contacts;   ///< null where no effect needs it
@@ -62,6 +63,8 @@ class Simulation {
   void fault() noexcept;
 
   [[nodiscard]] double dt() const noexcept { return dt_; }
+  /// Where the tool is.
+  [[nodiscard]] const Placement& at() const noexcept { return at_; }
   /// Each with the time that it took in all ticks so far.
   [[nodiscard]] std::span<const Tool::TimedEffect> effects() const noexcept { return effects_; }
   /// Bytes of what answers queries.
@@ -75,8 +78,9 @@ class Simulation {
     Placement tool;
     TouchSet contacts, proximity;
   };
-  [[nodiscard]] bool ask(const TickBudget& budget, Tick& tick) noexcept;
-  [[nodiscard]] std::optional<Vector6> move(const VirtualCoupling::Stretch& stretch) noexcept;
+  [[nodiscard]] IST_LOCAL bool ask(const TickBudget& budget, Tick& tick) noexcept;
+  [[nodiscard]] IST_LOCAL std::optional<Vector6> move(
+      const VirtualCoupling::Stretch& stretch) noexcept;
 
   std::unique_ptr<TouchQuery> contacts_, proximity_;
   std::vector<Tool::TimedEffect> effects_;

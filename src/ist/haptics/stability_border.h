@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/coupling.h"
 #include "ist/haptics/devices/device.h"
 
@@ -20,8 +21,8 @@ namespace ist {
 /// For a delay of d periods it follows from the former's condition, b greater than the largest of
 /// T/2 · Re{(1 - 1/z) H(z)}/(1 - cos wT) over |z| = 1: there a delayed spring gives K T/2 times
 /// Dirichlet's kernel, whose largest value is 2d + 1, and a delayed damper -B cos((d + 1) wT).
-[[nodiscard]] double largest_stiffness(double damping, double coupling_damping, double period,
-                                       double delay) noexcept;
+[[nodiscard]] IST_API double largest_stiffness(double damping, double coupling_damping,
+                                               double period, double delay) noexcept;
 
 /// What a setting asked for, the largest value that the border allows, and what is used.
 struct BorderLimit {
@@ -45,7 +46,8 @@ struct ClampedCoupling {
 /// First limits the coupling's damping to half of the device's, so that some is left for stiffness;
 /// then the stiffness to 80 % of the largest with that damping. In rotation likewise. On a device
 /// without damping nothing is left: both become 0. Precondition: largest_stiffness's.
-[[nodiscard]] ClampedCoupling clamp_coupling(const CouplingSettings& asked,
-                                             const DeviceMechanics& device, double period) noexcept;
+[[nodiscard]] IST_API ClampedCoupling clamp_coupling(const CouplingSettings& asked,
+                                                     const DeviceMechanics& device,
+                                                     double period) noexcept;
 
 }  // namespace ist

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "ist/base/api.h"
 #include "ist/haptics/simulation.h"
 
 namespace ist {
@@ -26,13 +27,14 @@ struct TickRecord {
 };
 
 /// Without its times.
-[[nodiscard]] TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
-                                   bool device_known) noexcept;
+[[nodiscard]] IST_API TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
+                                           bool device_known) noexcept;
 
-[[nodiscard]] TickRecord::Pose to_numbers(const Placement& placement) noexcept;
+[[nodiscard]] IST_API TickRecord::Pose to_numbers(const Placement& placement) noexcept;
 /// Nothing where the numbers are no rigid motion; a rotation that is orthonormal to a few 1e-16
 /// comes back bit for bit.
-[[nodiscard]] std::optional<Placement> to_placement(const TickRecord::Pose& numbers) noexcept;
+[[nodiscard]] IST_API std::optional<Placement> to_placement(
+    const TickRecord::Pose& numbers) noexcept;
 
 /// A tick of a recording, to be made again.
 struct RecordedTick {
@@ -42,6 +44,7 @@ struct RecordedTick {
 };
 
 /// Makes it again: the same record but for its times, if all ticks before it were made again.
-[[nodiscard]] TickRecord replay(const RecordedTick& recorded, Simulation& simulation) noexcept;
+[[nodiscard]] IST_API TickRecord replay(const RecordedTick& recorded,
+                                        Simulation& simulation) noexcept;
 
 }  // namespace ist

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "ist/base/api.h"
 #include "ist/haptics/coupling.h"
 #include "ist/haptics/effects/effect.h"
 
@@ -19,7 +20,7 @@ namespace ist {
 /// for stable and transparent 6-DOF manipulation, IEEE Trans. Robotics 22(4), 2006, and M. Wan and
 /// W. A. McNeely, Quasi-static approximation for 6 degrees-of-freedom haptic rendering, IEEE
 /// Visualization 2003.
-class Tool {
+class IST_API Tool {
  public:
   static constexpr int kNewtonSteps = 3;
 

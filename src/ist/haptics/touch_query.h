@@ -2,13 +2,14 @@
 
 #include <chrono>
 
+#include "ist/base/api.h"
 #include "ist/haptics/touch_set.h"
 #include "ist/query/collision_query.h"
 
 namespace ist {
 
 /// Where the bodies' own coordinates are in the scene.
-struct BodyFrames {
+struct IST_API BodyFrames {
   double unit;                  ///< metres in a mesh unit, of both bodies
   Placement fixed;              ///< from the fixed mesh, in metres, to the scene
   Eigen::Vector3d tool_origin;  ///< the tool's origin in the held mesh, mesh units
@@ -30,7 +31,7 @@ struct TouchOptions {
 
 /// What touches the tool: a collision query and its contact points, in the scene's terms. Holds
 /// references to both trees. Memory: that of CollisionQuery and of ContactPoints.
-class TouchQuery {
+class IST_API TouchQuery {
  public:
   TouchQuery(const SphereTree& fixed, const SphereTree& held, const BodyFrames& frames,
              const TouchOptions& options);
@@ -45,7 +46,7 @@ class TouchQuery {
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + points_.bytes(); }
 
  private:
-  void reduce(const Placement& tool, TouchSet& touches) const noexcept;
+  IST_LOCAL void reduce(const Placement& tool, TouchSet& touches) const noexcept;
 
   BodyFrames frames_;
   double area_;  // of a whole leaf pair, mesh units squared

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "ist/base/api.h"
 #include "ist/mesh/triangle_mesh.h"
 
 namespace ist {
@@ -20,6 +21,6 @@ enum class Jaw { kLower, kUpper };
 /// The surface is closed, of genus 0, and faces outward. The lower jaw has 119,096 triangles, the
 /// upper one 106,676. Coordinates are floats held as doubles. Only + - * / and sqrt are used, so
 /// one seed gives the same bytes on every machine. Cost: some 5 ms, one thread.
-TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
+IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 
 }  // namespace ist

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/mesh/triangle_mesh.h"
 
 namespace ist {
@@ -34,9 +35,9 @@ struct MeshReport {
 
 /// Looks at the topology of a mesh. Self-intersections are not looked for.
 /// Cost: O(t log t), some 40 ms for 100,000 triangles.
-[[nodiscard]] MeshReport check_mesh(const TriangleMesh& mesh);
+[[nodiscard]] IST_API MeshReport check_mesh(const TriangleMesh& mesh);
 
 /// Sentences for people on what is wrong; none where nothing is.
-[[nodiscard]] std::vector<std::string> warnings(const MeshReport& report);
+[[nodiscard]] IST_API std::vector<std::string> warnings(const MeshReport& report);
 
 }  // namespace ist

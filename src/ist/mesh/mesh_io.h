@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "ist/base/api.h"
 #include "ist/mesh/triangle_mesh.h"
 
 namespace ist {
@@ -15,13 +16,13 @@ namespace ist {
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, some eight times the file.
 /// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
 /// kMeshNotFinite, kMeshExtent; the text names the file and the place in it.
-[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file);
+[[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes binary STL: little-endian, coordinates narrowed to float, normals from the winding. The
 /// file appears whole or not at all: it is written under another name in the same folder, and then
 /// takes the place of any file of that name.
 ///
 /// Errors: kFileUnwritable, and kMeshNotFinite for a coordinate beyond float.
-void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file);
+IST_API void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file);
 
 }  // namespace ist

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ist/base/api.h"
 #include "ist/mesh/triangle_mesh.h"
 
 namespace ist {
@@ -30,6 +31,6 @@ struct OrientationResult {
 ///
 /// Neither the unit nor the place of the mesh matters. Cost: O(t), some 20 ms for 100,000
 /// triangles; for each component of negative volume, as much again as the components round it hold.
-[[nodiscard]] OrientationResult orient_outward(TriangleMesh& mesh);
+[[nodiscard]] IST_API OrientationResult orient_outward(TriangleMesh& mesh);
 
 }  // namespace ist

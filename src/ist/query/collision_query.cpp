@@ -74,6 +74,8 @@ CollisionQuery::CollisionQuery(const SphereTree& fixed, const SphereTree& moving
   static_cast<void>(collide(Eigen::Isometry3d::Identity(), std::span<Contact>()));
 }
 
+CollisionQuery::~CollisionQuery() = default;
+
 QueryResult CollisionQuery::collide(const Eigen::Isometry3d& pose,
                                     std::span<Contact> out) noexcept {
   const ScopedFloatEnvironment environment;

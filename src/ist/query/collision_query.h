@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "ist/base/api.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/contact.h"
 #include "ist/query/contacts/contact_points.h"
@@ -51,11 +52,12 @@ struct CollisionOptions {
 /// All memory is reserved by the constructor, which also makes the first call of the kernels, so
 /// that no query is slower for being the first. Holds references to both trees, which must outlive
 /// it. Trees may be shared by many threads; one query object belongs to one thread at a time.
-class CollisionQuery {
+class IST_API CollisionQuery {
  public:
   /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; std::bad_alloc.
   CollisionQuery(const SphereTree& fixed, const SphereTree& moving,
                  const CollisionOptions& options = {});
+  ~CollisionQuery();
   CollisionQuery(const CollisionQuery&) = delete;
   CollisionQuery& operator=(const CollisionQuery&) = delete;
 
@@ -153,20 +155,23 @@ class CollisionQuery {
     RootTest roots;
     double grow;  // what every reach is grown by
   };
-  CollisionQuery(const SphereTree& fixed, const SphereTree& moving, const CollisionOptions& options,
-                 const ScopedFloatEnvironment& environment);
-  [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
-                                                 double grow = 0) const noexcept;
+  IST_LOCAL CollisionQuery(const SphereTree& fixed, const SphereTree& moving,
+                           const CollisionOptions& options,
+                           const ScopedFloatEnvironment& environment);
+  [[nodiscard]] IST_LOCAL std::optional<Approach> approach(const Eigen::Isometry3d& pose,
+                                                           double grow = 0) const noexcept;
   // What a triangle may be off that is moved in double, where both trees have any.
-  [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
-  [[nodiscard]] SearchPose narrowed(const Approach& approach, double grow = 0) const noexcept;
-  [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
+  [[nodiscard]] IST_LOCAL double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
+  [[nodiscard]] IST_LOCAL SearchPose narrowed(const Approach& approach,
+                                              double grow = 0) const noexcept;
+  [[nodiscard]] IST_LOCAL double pad_of(const SearchPose& pose) const noexcept;
   // Bounds touch that are no farther apart than `grow`.
-  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink,
-                                   double grow) noexcept;
-  void set_steps(std::size_t made, QueryResult& result) const noexcept;
-  void nearest_leaves(const Approach& approach, double tolerance, GapResult& result) noexcept;
-  [[nodiscard]] Search& alone() noexcept;
+  [[nodiscard]] IST_LOCAL QueryResult search(const Eigen::Isometry3d& pose, ContactSink& sink,
+                                             double grow) noexcept;
+  IST_LOCAL void set_steps(std::size_t made, QueryResult& result) const noexcept;
+  IST_LOCAL void nearest_leaves(const Approach& approach, double tolerance,
+                                GapResult& result) noexcept;
+  [[nodiscard]] IST_LOCAL Search& alone() noexcept;
 
   const SphereTree& fixed_;
   const SphereTree& moving_;

@@ -3,12 +3,13 @@
 #include <cstdint>
 #include <span>
 
+#include "ist/base/api.h"
 #include "ist/query/search_plan.h"
 
 namespace ist {
 
 /// Takes contacts as they are found, in order, many at a time.
-class ContactStream {
+class IST_API ContactStream {
  public:
   /// @return whether more are wanted
   virtual bool take(std::span<const Contact> contacts) noexcept = 0;

@@ -4,17 +4,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/mesh/triangle_mesh.h"
 
 namespace ist {
 
 /// Which of two bodies that do not touch lies inside the other.
 enum class Inside : std::uint8_t { kNone, kFixed, kMoving };
-[[nodiscard]] const char* to_string(Inside inside) noexcept;
+[[nodiscard]] IST_API const char* to_string(Inside inside) noexcept;
 
 /// Tells it by a point of each component of one body and the winding number of the other round it.
 /// Both meshes must outlive it.
-class InsideTest {
+class IST_API InsideTest {
  public:
   InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
 
@@ -29,9 +30,9 @@ class InsideTest {
     std::vector<Eigen::Vector3d> points;   // one a component
     Eigen::AlignedBox3d box;
   };
-  [[nodiscard]] static Body body(const TriangleMesh& mesh);
-  [[nodiscard]] static bool holds(const Body& outer, const Body& inner,
-                                  const Eigen::Isometry3d& to_outer) noexcept;
+  [[nodiscard]] IST_LOCAL static Body body(const TriangleMesh& mesh);
+  [[nodiscard]] IST_LOCAL static bool holds(const Body& outer, const Body& inner,
+                                            const Eigen::Isometry3d& to_outer) noexcept;
 
   Body fixed_, moving_;
 };

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/query/contact.h"
 #include "ist/query/relative_pose.h"
 #include "ist/tree/saved_spheres.h"
@@ -29,7 +30,7 @@ enum class SphereSource : std::uint8_t {
 ///
 /// Holds references to both trees, which must outlive it. One query object belongs to one thread.
 /// Source: the article that the method comes from, section II.E.
-class ReferenceQuery {
+class IST_API ReferenceQuery {
  public:
   /// Both trees must have `policy` (SphereTree::require). Cost: none with kOnTheFly; with kSaved 32
   /// bytes a node.
@@ -65,14 +66,14 @@ class ReferenceQuery {
   };
 
   // Finds the bounds of a node that is child `slot` of `parent`.
-  void bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent, int slot,
-             Node& node) const;
-  [[nodiscard]] Node root(const SphereTree& tree, const SavedSpheres& saved) const;
-  void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
-            Children& children) const;
-  void to_fixed_frame(Node& node) const noexcept;
-  [[nodiscard]] bool touch(const Node& a, const Node& b) noexcept;
-  void descend(const Node& a, const Node& b);
+  IST_LOCAL void bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent,
+                       int slot, Node& node) const;
+  [[nodiscard]] IST_LOCAL Node root(const SphereTree& tree, const SavedSpheres& saved) const;
+  IST_LOCAL void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
+                      Children& children) const;
+  IST_LOCAL void to_fixed_frame(Node& node) const noexcept;
+  [[nodiscard]] IST_LOCAL bool touch(const Node& a, const Node& b) noexcept;
+  IST_LOCAL void descend(const Node& a, const Node& b);
 
   const SphereTree& fixed_;
   const SphereTree& moving_;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/simulation.h"
@@ -34,7 +35,7 @@ struct BuiltScene {
 /// with a remedy, for what only shows now: what a body's file does not have, voxels that are too
 /// small, a start that is not free.
 /// @param max_memory bytes, for each tree
-[[nodiscard]] BuiltScene build_scene(const Scene& scene, Progress* progress = nullptr,
-                                     std::uint64_t max_memory = BuildOptions{}.max_memory);
+[[nodiscard]] IST_API BuiltScene build_scene(const Scene& scene, Progress* progress = nullptr,
+                                             std::uint64_t max_memory = BuildOptions{}.max_memory);
 
 }  // namespace ist

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "ist/base/error.h"
+#include "ist/scene/toml_document.h"
 
 namespace ist {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "ist/scene/toml_document.h"
-
 namespace ist {
+
+struct TomlTable;
 
 /// Where in its file each key of a scene stands, for what turns out to be wrong when all is read.
 /// Of a scene that no file says, it knows nothing.

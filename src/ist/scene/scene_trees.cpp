@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "ist/base/error.h"
+#include "ist/scene/build_note.h"
+#include "ist/scene/load_body.h"
 #include "ist/tree/proximity_body.h"
 #include "ist/tree/tree_builder.h"
 #include "ist/voxel/voxelizer.h"

@@ -4,12 +4,13 @@
 
 #include "ist/base/progress.h"
 #include "ist/haptics/effects/effect.h"
-#include "ist/scene/build_note.h"
-#include "ist/scene/load_body.h"
 #include "ist/scene/scene.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
+
+class BuildNotes;
+struct LoadedBody;
 
 /// What the effects of a scene search.
 struct SceneTrees {

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/api.h"
+
 namespace ist {
 
 /// A node above the leaves, as a search reads it.
@@ -18,7 +20,7 @@ static_assert(sizeof(OctreeNode) == 16);
 /// are contiguous. There is no node for empty space, and a leaf (level 0) is nothing but its index.
 ///
 /// 17 bytes a node above the leaves: 6 bytes a leaf on a surface.
-class LinearOctree {
+class IST_API LinearOctree {
  public:
   /// Folds leaves upwards. `leaf_codes` are Morton codes, ascending, below 8^depth, at least one
   /// and fewer than 2^32. Cost: O(leaves).

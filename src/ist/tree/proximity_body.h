@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -9,6 +10,6 @@ namespace ist {
 /// surface; a leaf of another body in voxels as large touches about one of them, and not all twenty
 /// cells whose spheres it meets. It has no normals. Precondition: the tree has proximity voxels.
 /// Cost: 1 µs a voxel.
-[[nodiscard]] SphereTree proximity_body(const SphereTree& tree);
+[[nodiscard]] IST_API SphereTree proximity_body(const SphereTree& tree);
 
 }  // namespace ist

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/mesh/orientation.h"
 #include "ist/mesh/triangle_mesh.h"
 #include "ist/tree/bound_blocks.h"
@@ -33,7 +34,7 @@ struct ProximityTree {
 
 /// A body made ready for queries. It never changes after it is made, so any number of threads may
 /// read it.
-class SphereTree {
+class IST_API SphereTree {
  public:
   struct Parts {
     Lattice lattice;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/progress.h"
 #include "ist/mesh/triangle_mesh.h"
 #include "ist/tree/sphere_tree.h"
@@ -35,12 +36,13 @@ struct BuildReport {
 ///
 /// Cost: on two cores, for a jaw of 107,000 triangles and 1.76 million voxels, 0.5 s; with kTight
 /// 1.3 s more, with kSlab 2 s more. Errors: those of voxelize.
-[[nodiscard]] SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
-                                    BuildReport* report = nullptr, Progress* progress = nullptr);
+[[nodiscard]] IST_API SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
+                                            BuildReport* report = nullptr,
+                                            Progress* progress = nullptr);
 
 /// Whether build_tree() would give a tree: the voxel size is one for this mesh, and what it makes
 /// fits the memory that is allowed. Cost: a tenth of the build.
-[[nodiscard]] bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
-                                  Progress* progress = nullptr);
+[[nodiscard]] IST_API bool can_build_tree(const TriangleMesh& mesh, const BuildOptions& options,
+                                          Progress* progress = nullptr);
 
 }  // namespace ist

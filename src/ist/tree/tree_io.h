@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "ist/base/api.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -33,16 +34,16 @@ inline constexpr std::uint32_t kTreeFileVersion = 2;
 
 /// Writes the file whole or not at all. Throws kFileUnwritable. Cost: bound by the disk.
 /// Returns the bytes written.
-std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file);
+IST_API std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file);
 
 /// Reads a tree into memory of its own. The checksum and then every count, index and number is
 /// verified before the tree is made, so no file can make a query crash or never end.
 ///
 /// Cost: 1 ns a byte. Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated,
 /// kTreeCorrupt.
-[[nodiscard]] SphereTree read_tree(const std::filesystem::path& file);
+[[nodiscard]] IST_API SphereTree read_tree(const std::filesystem::path& file);
 
 /// Whether the file begins as a tree file does. Throws kFileUnreadable.
-[[nodiscard]] bool is_tree_file(const std::filesystem::path& file);
+[[nodiscard]] IST_API bool is_tree_file(const std::filesystem::path& file);
 
 }  // namespace ist

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "ist/base/api.h"
 #include "ist/haptics/placement.h"
 
 namespace ist {
@@ -15,7 +16,7 @@ struct DeviceMechanics {
 
 /// What a hand holds. It is asked once a tick where it wants the tool, and told once what to feel.
 /// Neither function allocates, locks or throws.
-class Device {
+class IST_API Device {
  public:
   virtual ~Device() = default;
   [[nodiscard]] virtual DeviceMechanics mechanics() const noexcept = 0;

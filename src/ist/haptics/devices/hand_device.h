@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/devices/plan.h"
 
@@ -39,7 +40,7 @@ struct HandSettings {
 ///
 /// Source of the rule: E. Hairer, C. Lubich and G. Wanner, Geometric Numerical Integration,
 /// Springer 2006. The spring's torque is the energy's discrete gradient, as there.
-class HandDevice final : public Device {
+class IST_API HandDevice final : public Device {
  public:
   static constexpr double kLongestDelay = 0.01;    ///< s
   static constexpr double kShortestTick = 0.0001;  ///< s
@@ -79,7 +80,7 @@ class HandDevice final : public Device {
   static constexpr std::size_t kMostWritten = 128;
   static_assert(kMostWritten * kShortestTick > kLongestDelay + 2 * kShortestTick);
 
-  void step(double h) noexcept;
+  IST_LOCAL void step(double h) noexcept;
 
   HandSettings settings_;  // without the plan
   Plan plan_;

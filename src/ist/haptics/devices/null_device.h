@@ -1,11 +1,12 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/devices/device.h"
 
 namespace ist {
 
 /// Nobody's hand: it stays where it is, whatever it should feel, and never comes to an end.
-class NullDevice final : public Device {
+class IST_API NullDevice final : public Device {
  public:
   explicit NullDevice(const Placement& pose, const DeviceMechanics& mechanics = {})
       : pose_(pose), mechanics_(mechanics) {}

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/haptics/placement.h"
 
 namespace ist {
@@ -26,7 +27,7 @@ struct PlanPoint {
 ///
 /// Source of the turn: what animators call nlerp, here by its half angle's tangent, which
 /// Placement::moved takes without a sine.
-class Plan {
+class IST_API Plan {
  public:
   /// Throws kInputInvalid, naming the waypoint, where there is none or one has a flaw
   /// (waypoint_flaw).
@@ -55,6 +56,6 @@ class Plan {
 /// What is wrong with a waypoint and how to mend it, for a sentence; empty where it is sound. Times
 /// start at 0 and ascend, poses are rigid motions, and from one to the next they turn by a third of
 /// a circle at most. `before` is null for the first.
-[[nodiscard]] std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint);
+[[nodiscard]] IST_API std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint);
 
 }  // namespace ist

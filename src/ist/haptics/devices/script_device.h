@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/devices/plan.h"
 
@@ -10,7 +11,7 @@ namespace ist {
 
 /// A hand that goes through a plan, whatever it should feel. Its time is the ticks' nominal one, so
 /// that a run is the same on every machine.
-class ScriptDevice final : public Device {
+class IST_API ScriptDevice final : public Device {
  public:
   /// Throws kInputInvalid where the waypoints are no plan (Plan).
   explicit ScriptDevice(std::vector<Waypoint> waypoints, const DeviceMechanics& mechanics = {});
@@ -34,6 +35,7 @@ class ScriptDevice final : public Device {
 /// Throws kFileUnreadable, and kInputInvalid, naming file, line and remedy: for another header, a
 /// line without eight finite numbers, a waypoint with a flaw (waypoint_flaw), a file without a
 /// waypoint, and one of more than 64 MiB.
-[[nodiscard]] std::vector<Waypoint> read_script(const std::filesystem::path& file, double metres);
+[[nodiscard]] IST_API std::vector<Waypoint> read_script(const std::filesystem::path& file,
+                                                        double metres);
 
 }  // namespace ist

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -27,7 +28,7 @@ struct ContactSettings {
 /// Needs: normals, depth. Source: the tangent-plane force model and the averaging of many contacts
 /// of W. A. McNeely, K. D. Puterbaugh and J. J. Troy, Six degree-of-freedom haptic rendering using
 /// voxel sampling, SIGGRAPH 1999, sections 4.1 and 4.4.
-class ContactEffect final : public Effect {
+class IST_API ContactEffect final : public Effect {
  public:
   static constexpr double kLead = 4;
 

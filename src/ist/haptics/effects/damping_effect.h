@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -21,7 +22,7 @@ struct DampingSettings {
 /// Crossley, Coefficient of restitution interpreted as damping in vibroimpact, ASME J. Applied
 /// Mechanics 42(2), 1975, with a contact's share in place of a power of its depth, and one-sided,
 /// so that no contact pulls.
-class DampingEffect final : public Effect {
+class IST_API DampingEffect final : public Effect {
  public:
   explicit DampingEffect(const DampingSettings& settings) : settings_(settings) {}
 

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "ist/base/api.h"
 #include "ist/haptics/placement.h"
 #include "ist/haptics/touch_set.h"
 
@@ -36,7 +37,7 @@ struct EffectInput {
 };
 
 /// What all effects together do to the tool for a motion from EffectInput::tool.
-struct Response {
+struct IST_API Response {
   Vector6 wrench = Vector6::Zero();  ///< about the tool's origin
   /// -d wrench / d motion, or a symmetric, positive semidefinite matrix near it.
   Matrix6 stiffness = Matrix6::Zero();
@@ -51,7 +52,7 @@ struct Response {
 /// The tool's motion of a tick is found by a few Newton steps, each of which asks every effect what
 /// it does for the motion so far; then each is told the motion that was made. Neither allocates,
 /// locks or throws. All are deterministic and use + - * / and square roots only.
-class Effect {
+class IST_API Effect {
  public:
   virtual ~Effect() = default;
   /// As the scene names it.

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/contact_effect.h"
 
 namespace ist {
@@ -44,7 +45,7 @@ struct FrictionSettings {
 /// of stick-slip friction in mechanical dynamic systems, ASME J. Dynamic Systems, Measurement and
 /// Control 107(1), 1985 (rest is a band about no motion). Cost: some 250 flops a
 /// point.
-class FrictionEffect final : public Effect {
+class IST_API FrictionEffect final : public Effect {
  public:
   /// `contact` must outlive it.
   FrictionEffect(const FrictionSettings& settings, const ContactEffect& contact)
@@ -66,8 +67,9 @@ class FrictionEffect final : public Effect {
 
  private:
   // The most that the contact holds, N.
-  [[nodiscard]] double limit(double normal_force) const noexcept;
-  [[nodiscard]] double normal_force(const TouchSet& contacts, const Vector6& motion) const noexcept;
+  [[nodiscard]] IST_LOCAL double limit(double normal_force) const noexcept;
+  [[nodiscard]] IST_LOCAL double normal_force(const TouchSet& contacts,
+                                              const Vector6& motion) const noexcept;
 
   FrictionSettings settings_;
   const ContactEffect& contact_;

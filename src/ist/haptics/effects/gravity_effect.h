@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -20,7 +21,7 @@ struct GravitySettings {
 /// origin and negative where it stands above; it is left out, being small beside a coupling's.
 ///
 /// Needs: nothing. Source: Newton. Cost: some 400 flops.
-class GravityEffect final : public Effect {
+class IST_API GravityEffect final : public Effect {
  public:
   explicit GravityEffect(const GravitySettings& settings) : settings_(settings) {}
 

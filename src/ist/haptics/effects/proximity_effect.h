@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -22,7 +23,7 @@ struct ProximitySettings {
 /// Puterbaugh and J. J. Troy, Six degree-of-freedom haptic rendering using voxel sampling, SIGGRAPH
 /// 1999. The normal is that of the tool's leaf, and as the other side has none a pair counts for
 /// half.
-class ProximityEffect final : public Effect {
+class IST_API ProximityEffect final : public Effect {
  public:
   explicit ProximityEffect(const ProximitySettings& settings) : settings_(settings) {}
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ist/base/api.h"
 #include "ist/haptics/effects/effect.h"
 
 namespace ist {
@@ -34,7 +35,7 @@ struct SnapSettings {
 /// Needs: nothing. Source: a virtual fixture that attracts, as in L. B. Rosenberg, Virtual
 /// fixtures: perceptual tools for telerobotic manipulation, IEEE VRAIS 1993; the window is own.
 /// Cost: some 400 flops.
-class SnapEffect final : public Effect {
+class IST_API SnapEffect final : public Effect {
  public:
   /// Precondition: the stiffnesses are at least 0, radius and angle are positive, and the angle is
   /// less than half a circle.

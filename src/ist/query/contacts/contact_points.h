@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/api.h"
 #include "ist/base/float_environment.h"
 #include "ist/query/contact_sink.h"
 #include "ist/query/contacts/ancestor_share.h"
@@ -46,7 +47,7 @@ struct ContactPointOptions {
 /// query allocates nothing and locks nothing. Holds references to both trees, which must outlive
 /// it; one object belongs to one thread at a time. Cost: 40 to 100 ns a leaf pair, most where few
 /// of them share a leaf.
-class ContactPoints final : public ContactStream {
+class IST_API ContactPoints final : public ContactStream {
  public:
   /// `policy` is the query's. Throws kPolicyMissing; std::bad_alloc.
   ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
@@ -85,15 +86,16 @@ class ContactPoints final : public ContactStream {
     std::uint32_t leaf;
     ContactLeaf at;
   };
-  ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                const ContactPointOptions& options, const ScopedFloatEnvironment& environment);
-  void take(const Contact& contact) noexcept;
-  [[nodiscard]] ContactLeaf leaf_of(const SphereTree& tree, std::uint32_t leaf,
-                                    const NodeParents& parents) const noexcept;
-  [[nodiscard]] double share_of(const Contact& contact, const NodeBound& moving) noexcept;
-  void add(const PairTerms& pair) noexcept;
-  [[nodiscard]] const ContactLeaf& moved(std::uint32_t leaf) noexcept;
-  void move(std::uint32_t leaf, MovedLeaf& to) const noexcept;
+  IST_LOCAL ContactPoints(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                          const ContactPointOptions& options,
+                          const ScopedFloatEnvironment& environment);
+  IST_LOCAL void take(const Contact& contact) noexcept;
+  [[nodiscard]] IST_LOCAL ContactLeaf leaf_of(const SphereTree& tree, std::uint32_t leaf,
+                                              const NodeParents& parents) const noexcept;
+  [[nodiscard]] IST_LOCAL double share_of(const Contact& contact, const NodeBound& moving) noexcept;
+  IST_LOCAL void add(const PairTerms& pair) noexcept;
+  [[nodiscard]] IST_LOCAL const ContactLeaf& moved(std::uint32_t leaf) noexcept;
+  IST_LOCAL void move(std::uint32_t leaf, MovedLeaf& to) const noexcept;
 
   const SphereTree& fixed_;
   const SphereTree& moving_;

@@ -1,0 +1,159 @@
+"""Makes HARDWARE.md; see hardware_report.sh.
+
+    hardware_report.py RESULTS MADE FILE      raw results; what synthesise.sh and nextpnr-ice40 made; the report
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+from report.results import Results
+from report.text import number, table
+
+CIRCUIT = pathlib.Path("src/ist/hardware/rtl/ist_pair_test.v")
+
+# What is assumed, not measured. A part's size is its maker's; of a memory's highest rate a share is
+# taken, for nodes lie apart and only children lie together.
+ICE40 = {"name": "iCE40 UP5K", "lut": 5280, "multiplier": 8, "memory": 30}
+ECP5 = {"name": "ECP5 LFE5U-25F", "lut": 24288, "multiplier": 28, "memory": 56}
+CLOCKS = [12e6, 48e6, 100e6]
+MEMORIES = [  # name, bytes a transfer, transfers a second, share
+    ("one 16-bit SDRAM at 100 MHz", 2, 100e6, 0.5),
+    ("one 16-bit DDR3 at 400 MHz", 2, 800e6, 0.5),
+]
+CONTACT_BYTES = 8  # two leaves of 32 bits
+SERVO = 1000  # Hz
+
+HEAD = """# The pair test in hardware
+
+Made by `scripts/hardware_report.sh`; nothing in it that was measured is typed by hand. The circuit is
+[`ist_pair_test.v`](../src/ist/hardware/rtl/ist_pair_test.v), specified in [`src/ist/hardware`](../src/ist/hardware/README.md):
+one pair of nodes a clock, its answer {latency} clocks later.
+"""
+
+
+def cells(file):
+    """The cells of a netlist by type. What yosys 0.23 writes round them is no whole JSON."""
+    text = file.read_text()
+    return json.JSONDecoder().raw_decode(text, text.index("{", text.index('"num_cells_by_type"')))[0]
+
+
+def total(counts, pattern):
+    return sum(count for name, count in counts.items() if re.fullmatch(pattern, name))
+
+
+def used(count, of):
+    return f"{count:,} of {of:,} ({100 * count / of:.0f} %)"
+
+
+def synthesis(made):
+    ice40, ecp5 = cells(made / "ice40.json"), cells(made / "ecp5.json")
+    rows = []
+    for part, counts, lut, flip_flop, multiplier, memory in (
+            (ICE40, ice40, total(ice40, "SB_LUT4"), "SB_DFF.*", "SB_MAC16", "SB_RAM40_4K"),
+            (ECP5, ecp5, total(ecp5, "LUT4") + 2 * total(ecp5, "CCU2C"), "TRELLIS_FF", "MULT18X18D", "DP16KD")):
+        rows.append([part["name"], used(lut, part["lut"]), f"{total(counts, flip_flop):,}",
+                     used(total(counts, multiplier), part["multiplier"]), used(total(counts, memory), part["memory"])])
+    version = subprocess.run(["yosys", "-V"], capture_output=True, text=True, check=True).stdout.split(" (")[0]
+    return ["## What it takes", "", f"By {version}; not counted are the registers of a query, and what feeds the circuit.", "",
+            *table(["part", "4-input LUTs", "flip-flops", "multipliers", "memory blocks"], rows), "",
+            "The four multipliers square n_x, n_y, n_z and m; the memory blocks hold the table twice, once for each node of a",
+            "pair. On the iCE40 a carry sits beside its LUT; on the ECP5 one takes a LUT, and is counted."]
+
+
+def placed(made):
+    """The clock on the iCE40 in Hz, or None where nothing was placed; and what is to be said of it."""
+    file = made / "placed.json"
+    if not file.is_file():
+        return None, ["The clock is not measured: that takes nextpnr, and `nextpnr-ice40` is not installed."]
+    said = json.loads(file.read_text())
+    clock = 1e6 * min(entry["achieved"] for entry in said["fmax"].values())
+    logic = said["utilization"]["ICESTORM_LC"]
+    return clock, [
+        f"Placed and routed on the UP5K by nextpnr-ice40 with one seed, it runs at **{clock / 1e6:.1f} MHz**, and takes",
+        f"{used(logic['used'], logic['available'])} logic cells, a shift register of 458 bits with them that replaces its pins."
+        " For the ECP5", "Debian has no such tool: its clock is not measured."]
+
+
+def near_misses(runs):
+    rows = [[f"{run['voxel_size']:g}", run.parts[2], *(f"{int(run[name]):,}" for name in ("pairs", "misses", "false_hits")),
+             f"{100 * run['false_hit_rate']:.3f} %"] for run in runs]
+    worst = max(runs, key=lambda run: run["false_hit_rate"])
+    more = max(runs, key=lambda run: run["pairs"] / run["pairs_exact"])
+    found = max(runs, key=lambda run: run["contacts"] - run["contacts_exact"])
+    extra = int(found["contacts"] - found["contacts_exact"])
+    lines = ["## How often a near miss is a hit", "",
+             "Along a closing, of all pairs that a query meets: how many have no common point, and how many of these the",
+             "circuit calls a hit. It never errs the other way.", "",
+             *table(["voxel", "dz", "pairs tested", "misses", "of them called a hit", "part"], rows), ""]
+    if worst["false_hits"] == 0:
+        return [*lines, "It called none a hit."]
+    lines += [f"At most {100 * worst['false_hit_rate']:.3f} %. That costs"
+              f" {100 * (more['pairs'] / more['pairs_exact'] - 1):.2f} % more pairs at most, and"]
+    lines.append(f"{extra:,} contacts more at most, of {int(found['contacts_exact']):,}." if extra > 0
+                 else "no contact more anywhere.")
+    return lines
+
+
+def rate(value):
+    return f"**{number(value)}**" if value >= SERVO else number(value)
+
+
+def worst_tick(runs, latency, clock):
+    sizes = sorted({run["voxel_size"] for run in runs}, reverse=True)
+    worst = [max((run for run in runs if run["voxel_size"] == size), key=lambda run: run["pairs"]) for size in sizes]
+    clocks = CLOCKS + ([clock] if clock else [])
+    name = lambda hertz: f"{hertz / 1e6:g} MHz" if hertz in CLOCKS else f"{hertz / 1e6:.1f} MHz, as placed"
+    traffic = lambda run: run["words"] * run["word_bytes"] + run["contacts"] * CONTACT_BYTES
+    waiting = lambda run: run["pairs"] + latency * run["opened"]
+    of = lambda run: f"{run['voxel_size']:g}"
+
+    lines = ["## The worst tick, on paper", "",
+             "Nobody has built this. Counted is what a query does down two trees, at the pose of the closing where it tests",
+             f"most; assumed are the clocks, and the memories at a share of their highest rate. **Bold** is {SERVO:,} Hz or more.", "",
+             *table(["voxel", "worst at dz", "pairs P", "pairs opened O", "words read W", "contacts C", "centres moved"],
+                    [[of(run), run.parts[2], *(f"{int(run[key]):,}" for key in ("pairs", "opened", "words", "contacts", "moved"))]
+                     for run in worst]), "",
+             "**By the circuit**: one unit, a pair a clock, gives clock / P ticks a second where it never waits: other pairs are",
+             f"under way while one is opened. Where each opened pair waits for its answer, clock / (P + {latency} O).", "",
+             *table(["clock", *(f"voxel {of(run)}" for run in worst)],
+                    [[name(hertz), *(f"{rate(hertz / run['pairs'])} … {rate(hertz / waiting(run))} Hz" for run in worst)]
+                     for hertz in sorted(clocks)]), "",
+             f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a contact is written in "
+             f"{CONTACT_BYTES}.", "So a tick moves "
+             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, where no word is kept from one pair to the next.", "",
+             *table(["memory", "highest rate", "share assumed", *(f"voxel {of(run)}" for run in worst)],
+                    [["bytes a tick", "", "", *(f"{int(traffic(run)):,}" for run in worst)]]
+                    + [[memory, f"{number(width * per_second / 1e6)} MB/s", f"{100 * share:g} %",
+                        *(f"{rate(width * per_second * share / traffic(run))} Hz" for run in worst)]
+                       for memory, width, per_second, share in MEMORIES]), ""]
+    for run in worst:
+        by_circuit = CLOCKS[-1] / run["pairs"]
+        by_memory = [width * per_second * share / traffic(run) for _, width, per_second, share in MEMORIES]
+        limit = "the circuit" if by_circuit < by_memory[0] else "the memory"
+        holds = min(by_circuit, by_memory[0]) >= SERVO
+        need = run["pairs"] * SERVO / CLOCKS[-1]
+        lines.append(
+            f"- Voxel {of(run)}, {CLOCKS[-1] / 1e6:g} MHz, {MEMORIES[0][0]}: {limit} is the limit, and {SERVO:,} Hz are "
+            f"{'reached' if holds else 'not reached'}; by pairs alone that takes {number(need, 2)} units. The trees take at most "
+            f"{number(run['nodes'] * run['word_bytes'] / 2**20, 2)} MiB.")
+    return lines
+
+
+def main():
+    results, made, file = Results(sys.argv[1]), pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    latency = int(re.search(r"localparam LATENCY = (\d+);", CIRCUIT.read_text()).group(1))
+    runs = results.runs("hardware_bench", "hardware")
+    context = results.context("hardware_bench")
+    clock, said = placed(made)
+    lines = [HEAD.format(latency=latency), *synthesis(made), "", *said, "", *near_misses(runs), "",
+             *worst_tick(runs, latency, clock), "",
+             f"Counted on a {runs[0]['label']} pair of jaws, lengths in millimetres; commit {context['commit']},"
+             f" {context['date'][:10]}. The counts do not depend", "on the machine."]
+    file.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "ist/capi/guard.h"
+#include "ist/capi/handle_table.h"
+
+namespace ist::capi {
+
+static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle takes the place of a pointer");
+
+// What a handle is of says, as T: `using Handle`, the opaque C type; kKind; kUse; kName.
+
+template <typename Handle>
+[[nodiscard]] std::uint64_t number_of(const Handle* handle) noexcept {
+  return reinterpret_cast<std::uintptr_t>(handle);
+}
+
+/// Says what is wrong with a handle that was passed as `argument`; returns the status.
+ist_status fail_by_handle(const Call& call, ist_status status, const char* argument,
+                          const char* kind);
+
+/// Gives a new object away as a handle.
+template <typename T>
+[[nodiscard]] ist_status give(const Call& call, std::unique_ptr<T> object,
+                              typename T::Handle** out) {
+  const std::uint64_t handle = handles().insert(
+      T::kKind, object.get(), [](void* taken) noexcept { delete static_cast<T*>(taken); });
+  if (handle == 0) return fail_by_handle(call, IST_TOO_MANY_HANDLES, "", T::kName);
+  static_cast<void>(object.release());
+  *out = reinterpret_cast<typename T::Handle*>(static_cast<std::uintptr_t>(handle));
+  return IST_OK;
+}
+
+/// The object of a handle, while a call has to do with it.
+template <typename T>
+class Held {
+ public:
+  Held(const Call& call, const char* argument, const typename T::Handle* handle)
+      : handle_(number_of(handle)), taken_(handles().take(handle_, T::kKind, T::kUse)) {
+    if (taken_.status != IST_OK) fail_by_handle(call, taken_.status, argument, T::kName);
+  }
+  ~Held() {
+    if (taken_.status == IST_OK) handles().give_back(handle_);
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  /// IST_OK, or why there is no object; then the message is kept.
+  [[nodiscard]] ist_status status() const noexcept { return taken_.status; }
+  [[nodiscard]] T* operator->() const noexcept { return static_cast<T*>(taken_.object); }
+  [[nodiscard]] T& operator*() const noexcept { return *static_cast<T*>(taken_.object); }
+
+ private:
+  std::uint64_t handle_;
+  HandleTable::Taken taken_;
+};
+
+/// What every ..._free does.
+template <typename T>
+[[nodiscard]] ist_status give_back(const char* function, typename T::Handle* handle) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (handle == nullptr) return IST_OK;
+    const ist_status status = handles().remove(number_of(handle), T::kKind);
+    return status == IST_OK ? status : fail_by_handle(call, status, T::kName, T::kName);
+  });
+}
+
+}  // namespace ist::capi

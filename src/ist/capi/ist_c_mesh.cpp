@@ -1,0 +1,139 @@
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "ist/capi/handle.h"
+#include "ist/capi/objects.h"
+#include "ist/capi/sized_struct.h"
+#include "ist/mesh/mesh_check.h"
+#include "ist/mesh/mesh_io.h"
+
+namespace ist::capi {
+namespace {
+
+// What a caller's arrays are, before anything of them is read.
+template <typename Number>
+struct MeshArrays {
+  const Number* vertices;
+  std::size_t vertex_count;
+  const std::uint32_t* triangles;
+  std::size_t triangle_count;
+};
+
+template <typename Number>
+ist_status check_counts(const Call& call, const MeshArrays<Number>& arrays) {
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  for (const std::size_t count : {arrays.vertex_count, arrays.triangle_count}) {
+    if (count > kMost) {
+      return call.fail(IST_ARGUMENT_INVALID,
+                       "{} vertices and {} triangles: no more than {} of each can be indexed",
+                       arrays.vertex_count, arrays.triangle_count, kMost);
+    }
+  }
+  const auto wrong = call.need_array("vertices", arrays.vertices, arrays.vertex_count);
+  return wrong ? wrong : call.need_array("triangles", arrays.triangles, arrays.triangle_count);
+}
+
+template <typename Number>
+ist_status take_vertices(const Call& call, const MeshArrays<Number>& arrays, TriangleMesh& mesh) {
+  mesh.vertices.reserve(arrays.vertex_count);
+  for (std::size_t i = 0; i < arrays.vertex_count; ++i) {
+    const Number* at = arrays.vertices + 3 * i;
+    const Eigen::Vector3d vertex(at[0], at[1], at[2]);
+    if (!(std::isfinite(vertex[0]) && std::isfinite(vertex[1]) && std::isfinite(vertex[2]))) {
+      return call.fail(IST_MESH_NOT_FINITE, "vertex {} is ({}, {}, {}): give finite numbers", i,
+                       vertex[0], vertex[1], vertex[2]);
+    }
+    mesh.vertices.push_back(vertex);
+  }
+  return IST_OK;
+}
+
+ist_status take_triangles(const Call& call, std::span<const std::uint32_t> indices,
+                          TriangleMesh& mesh) {
+  mesh.triangles.reserve(indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const Triangle triangle = {indices[i], indices[i + 1], indices[i + 2]};
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex >= mesh.vertices.size()) {
+        return call.fail(IST_MESH_BAD_INDEX,
+                         "triangle {} names vertex {}, and there are {}: count from 0", i / 3,
+                         vertex, mesh.vertices.size());
+      }
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return IST_OK;
+}
+
+template <typename Number>
+ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_mesh** out) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"mesh", out}})) return missing;
+    *out = nullptr;
+    if (const ist_status wrong = check_counts(call, arrays)) return wrong;
+    if (arrays.triangle_count == 0) {
+      return arrays.vertex_count == 0
+                 ? call.fail(IST_MESH_EMPTY, "no vertices and no triangles: give some")
+                 : call.fail(IST_MESH_POINTS_ONLY, "{} vertices, but no triangle: give some",
+                             arrays.vertex_count);
+    }
+    auto mesh = std::make_unique<Mesh>();
+    if (const ist_status wrong = take_vertices(call, arrays, mesh->mesh)) return wrong;
+    const std::span indices(arrays.triangles, 3 * arrays.triangle_count);
+    if (const ist_status wrong = take_triangles(call, indices, mesh->mesh)) return wrong;
+    return give(call, std::move(mesh), out);
+  });
+}
+
+}  // namespace
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_mesh_create(const double* vertices, size_t vertex_count, const uint32_t* triangles,
+                           size_t triangle_count, ist_mesh** mesh) IST_NOEXCEPT {
+  return create(__func__, MeshArrays<double>{vertices, vertex_count, triangles, triangle_count},
+                mesh);
+}
+
+ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
+                                 const uint32_t* triangles, size_t triangle_count,
+                                 ist_mesh** mesh) IST_NOEXCEPT {
+  return create(__func__, MeshArrays<float>{vertices, vertex_count, triangles, triangle_count},
+                mesh);
+}
+
+ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
+    *mesh = nullptr;
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    return give(call, std::make_unique<Mesh>(Mesh{ist::read_mesh(path)}), mesh);
+  });
+}
+
+ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    const ist::MeshReport report = ist::check_mesh(held->mesh);
+    ist_mesh_info values{};
+    values.vertices = report.vertices;
+    values.triangles = report.triangles;
+    values.boundary_edges = report.boundary_edges;
+    values.non_manifold_edges = report.non_manifold_edges;
+    values.degenerate_triangles = report.degenerate_triangles;
+    values.components = report.components;
+    values.closed = report.closed;
+    values.consistent = report.consistent;
+    std::copy_n(report.box_min.data(), 3, values.box_min);
+    std::copy_n(report.box_max.data(), 3, values.box_max);
+    values.signed_volume = report.signed_volume;
+    write_sized(values, *info);
+    return IST_OK;
+  });
+}
+
+ist_status ist_mesh_free(ist_mesh* mesh) IST_NOEXCEPT { return give_back<Mesh>(__func__, mesh); }

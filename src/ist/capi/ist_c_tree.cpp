@@ -1,0 +1,99 @@
+#include "ist/capi/handle.h"
+#include "ist/capi/objects.h"
+#include "ist/capi/sized_struct.h"
+#include "ist/tree/tree_builder.h"
+#include "ist/tree/tree_io.h"
+
+namespace ist::capi {
+namespace {
+
+ist_status read_build_options(const Call& call, const ist_build_options& given,
+                              BuildOptions& options) {
+  ist_build_options known;
+  if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
+  if (!are_spheres(known.spheres)) {
+    return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: take one of IST_SPHERES_...",
+                     known.spheres);
+  }
+  const auto is_flag = [](std::int32_t value) { return value == 0 || value == 1; };
+  if (!is_flag(known.keep_triangles) || !is_flag(known.proximity) || known.reserved != 0) {
+    return call.fail(IST_ARGUMENT_INVALID,
+                     "options->keep_triangles is {}, proximity {}, reserved {}: the first two are "
+                     "0 or 1, and the last is 0",
+                     known.keep_triangles, known.proximity, known.reserved);
+  }
+  options.voxel_size = known.voxel_size;
+  options.spheres = policy_of(known.spheres).value_or(options.spheres);
+  options.keep_triangles = known.keep_triangles == 1;
+  options.proximity = known.proximity == 1;
+  if (known.max_memory > 0) options.max_memory = known.max_memory;
+  return IST_OK;
+}
+
+ist_tree_info info_of(const SphereTree& tree) {
+  ist_tree_info info{};
+  info.voxel_size = tree.lattice().voxel_size;
+  info.leaves = tree.octree().leaf_count();
+  info.triangles = tree.triangles() ? tree.triangles()->mesh.triangles.size() : 0;
+  info.bytes = tree.bytes();
+  info.depth = tree.depth();
+  info.spheres = spheres_of(tree.tightest());
+  info.has_triangles = tree.triangles().has_value();
+  info.has_proximity = tree.proximity().has_value();
+  info.outward = tree.orientation() == Orientation::kOutward;
+  const Eigen::Vector3d origin = tree.lattice().origin();
+  std::copy_n(origin.data(), 3, info.origin);
+  info.reach = tree.reach();
+  info.largest_leaf_radius = tree.largest_leaf_radius(tree.tightest());
+  return info;
+}
+
+}  // namespace
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
+                          ist_tree** tree) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
+    *tree = nullptr;
+    if (const ist_status missing = call.need({{"options", options}})) return missing;
+    ist::BuildOptions build;
+    if (const ist_status wrong = read_build_options(call, *options, build)) return wrong;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    return give(call, std::make_unique<Tree>(ist::build_tree(held->mesh, build)), tree);
+  });
+}
+
+ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
+    *tree = nullptr;
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    return give(call, std::make_unique<Tree>(ist::read_tree(path)), tree);
+  });
+}
+
+ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    ist::write_tree(*held->tree, path);
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    write_sized(info_of(*held->tree), *info);
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_free(ist_tree* tree) IST_NOEXCEPT { return give_back<Tree>(__func__, tree); }

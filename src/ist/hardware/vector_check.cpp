@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ist/base/error.h"
+#include "ist/base/input_file.h"
+#include "ist/hardware/vector_text.h"
+#include "ist/hardware/xxh64.h"
+
+namespace ist {
+namespace {
+
+constexpr std::uint64_t kHeaderLines = 8, kCountLine = 3;
+
+[[noreturn]] void bad_file(const std::string& place, const std::string& what) {
+  throw Error(ErrorCode::kInputInvalid, fmt::format("{}: {}", place, what));
+}
+
+// A file line by line, whatever its size.
+class Lines {
+ public:
+  explicit Lines(const std::filesystem::path& file) : file_(file) {}
+
+  /// The next line with its end, where it has one; empty behind the last.
+  std::string_view next() {
+    std::size_t end = text_.find('\n', begin_);
+    while (end == std::string::npos && text_.size() - begin_ < kLongest) {
+      text_.erase(0, begin_);
+      begin_ = 0;
+      const std::size_t before = text_.size();
+      text_.resize(before + kPiece);
+      text_.resize(before + file_.read(text_.data() + before, kPiece));
+      if (text_.size() == before) break;
+      end = text_.find('\n', before);
+    }
+    ++number_;
+    const std::size_t begin = begin_;
+    begin_ = end == std::string::npos ? text_.size() : end + 1;
+    if (begin_ - begin > kLongest) bad_file(place(), "over 1000 characters: no line of vectors");
+    return std::string_view(text_).substr(begin, begin_ - begin);
+  }
+
+  [[nodiscard]] std::uint64_t number() const { return number_; }
+  [[nodiscard]] std::string place() const {
+    return fmt::format("{}, line {}", file_.path().string(), number_);
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 1 << 16, kLongest = 1000;
+  InputFile file_;
+  std::string text_;
+  std::size_t begin_ = 0;  // of what is read and not yet taken
+  std::uint64_t number_ = 0;
+};
+
+std::string_view without_end(std::string_view line) {
+  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+  return line;
+}
+
+// The number behind a header line's first words.
+std::uint64_t header_number(const Lines& lines, std::string_view line, std::string_view words,
+                            int base) {
+  std::uint64_t value = 0;
+  line = without_end(line);
+  if (line.substr(0, words.size()) == words) {
+    const char* end = line.data() + line.size();
+    const auto [stop, error] = std::from_chars(line.data() + words.size(), end, value, base);
+    if (error == std::errc() && stop == end) return value;
+  }
+  bad_file(lines.place(), fmt::format("a vector file says here '{}' and a number", words));
+}
+
+struct Header {
+  std::uint64_t count = 0, checksum = 0;
+};
+
+Header read_header(Lines& lines) {
+  Header header;
+  for (std::uint64_t i = 1; i <= kHeaderLines; ++i) {
+    const std::string_view line = lines.next();
+    if (line.empty() || line.front() != '#') {
+      bad_file(lines.place(),
+               "a vector file begins with 8 lines that begin with #: make one with "
+               "'ist table --vectors 1000'");
+    }
+    if (i == kCountLine) header.count = header_number(lines, line, "# count ", 10);
+    if (i == kHeaderLines) header.checksum = header_number(lines, line, "# checksum xxh64 ", 16);
+  }
+  if (header.count == 0) bad_file(lines.place(), "a file of 0 vectors: there is nothing to check");
+  return header;
+}
+
+void compare(const GoldenVector& vector, std::uint64_t line, std::size_t most, VectorCheck& check) {
+  const PairAnswer answer = test_pair(vector.pair, vector.registers);
+  ++check.vectors;
+  check.hits += answer.hit ? 1 : 0;
+  if (answer == vector.answer) return;
+  ++check.wrong;
+  const auto note = [&](const char* field, std::uint64_t is, std::uint64_t should_be) {
+    if (is == should_be || check.differences.size() >= most) return;
+    check.differences.push_back({line, field, is, should_be});
+  };
+  note("reach", vector.answer.reach, answer.reach);
+  note("hit", vector.answer.hit ? 1 : 0, answer.hit ? 1 : 0);
+}
+
+}  // namespace
+
+VectorCheck check_vectors(const std::filesystem::path& file, std::size_t most) {
+  Lines lines(file);
+  const Header header = read_header(lines);
+  VectorCheck check;
+  Xxh64 checksum;
+  for (std::string_view line = lines.next(); !line.empty(); line = lines.next()) {
+    compare(read_line(without_end(line), lines.place()), lines.number(), most, check);
+    checksum.add(line.data(), line.size());
+    if (check.vectors > header.count) break;
+  }
+  if (check.vectors != header.count) {
+    bad_file(
+        lines.place(),
+        fmt::format("the header promises {} vectors, and the file {}: write it again", header.count,
+                    check.vectors > header.count ? "holds more" : "ends before them"));
+  }
+  check.checksum_holds = checksum.value() == header.checksum;
+  // Where answers differ too, these tell more.
+  if (!check.checksum_holds && check.wrong == 0) {
+    bad_file(file.string(),
+             fmt::format("the vectors are not those that the header was written for, or were "
+                         "damaged: write the file again, or, where you changed them, give {:016x} "
+                         "as the checksum in line {}",
+                         checksum.value(), kHeaderLines));
+  }
+  return check;
+}
+
+}  // namespace ist

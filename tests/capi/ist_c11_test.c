@@ -1,0 +1,235 @@
+/* The whole life of two bodies through the C interface, in plain C11; and what a caller does wrong.
+ * Arrays are as long as they are said to be, so that AddressSanitizer sees what is written beyond.
+ *
+ *   ist_c11_test FOLDER SCENE.toml */
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ist/capi/ist_servo.h"
+
+#define CHECK(condition)                                                                           \
+  do {                                                                                             \
+    if (!(condition)) {                                                                            \
+      fprintf(stderr, "%s:%d: %s does not hold; last error: %s\n", __FILE__, __LINE__, #condition, \
+              ist_last_error_message());                                                           \
+      exit(1);                                                                                     \
+    }                                                                                              \
+  } while (0)
+
+#define IS(call, wanted)                                                                       \
+  do {                                                                                         \
+    const ist_status got = (call);                                                             \
+    if (got != (wanted)) {                                                                     \
+      fprintf(stderr, "%s:%d: %s gives %s and not %s; last error: %s\n", __FILE__, __LINE__,   \
+              #call, ist_status_name(got), ist_status_name(wanted), ist_last_error_message()); \
+      exit(1);                                                                                 \
+    }                                                                                          \
+  } while (0)
+
+/* A cube of edge 10 whose corner is the origin. */
+static const double kCorners[24] = {0, 0, 0,  10, 0, 0,  10, 10, 0,  0, 10, 0,
+                                    0, 0, 10, 10, 0, 10, 10, 10, 10, 0, 10, 10};
+static const uint32_t kTriangles[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                        1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+
+typedef struct {
+  double at[16];
+} pose_at;
+
+static pose_at shifted(double x, double y, double z) {
+  const pose_at pose = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1}};
+  return pose;
+}
+
+static ist_mesh* make_mesh(void) {
+  ist_mesh* mesh = NULL;
+  IS(ist_mesh_create(kCorners, 8, kTriangles, 12, &mesh), IST_OK);
+  ist_mesh_info info = {.struct_size = sizeof info};
+  IS(ist_mesh_get_info(mesh, &info), IST_OK);
+  CHECK(info.vertices == 8 && info.triangles == 12 && info.closed == 1 && info.consistent == 1);
+  CHECK(info.signed_volume == 1000 && info.box_min[0] == 0 && info.box_max[2] == 10);
+  return mesh;
+}
+
+/* Built, saved, and loaded again. */
+static ist_tree* make_tree(const char* folder) {
+  ist_mesh* mesh = make_mesh();
+  const ist_build_options options = {
+      .struct_size = sizeof options, .voxel_size = 1, .keep_triangles = 1};
+  ist_tree* built = NULL;
+  IS(ist_tree_build(mesh, &options, &built), IST_OK);
+  IS(ist_mesh_free(mesh), IST_OK);
+
+  char path[4096];
+  CHECK(snprintf(path, sizeof path, "%s/cube.ist", folder) < (int)sizeof path);
+  IS(ist_tree_save(built, path), IST_OK);
+  ist_tree* loaded = NULL;
+  IS(ist_tree_load(path, &loaded), IST_OK);
+  ist_tree_info was = {.struct_size = sizeof was}, is = {.struct_size = sizeof is};
+  IS(ist_tree_get_info(built, &was), IST_OK);
+  IS(ist_tree_get_info(loaded, &is), IST_OK);
+  CHECK(memcmp(&was, &is, sizeof is) == 0);
+  CHECK(is.voxel_size == 1 && is.leaves > 400 && is.triangles == 12 && is.outward == 1);
+  CHECK(is.spheres == IST_SPHERES_SLAB && is.has_triangles == 1 && is.has_proximity == 0);
+  IS(ist_tree_free(built), IST_OK);
+  return loaded;
+}
+
+/* Both sides of one cube are 0.5 in the other. */
+static void collide(ist_query* query) {
+  const pose_at pose = shifted(9.5, 0.25, 0);
+  ist_query_result counted = {.struct_size = sizeof counted};
+  IS(ist_query_collide(query, pose.at, NULL, 0, &counted), IST_OK);
+  CHECK(counted.contacts > 100 && counted.truncated == 1 && counted.written == 0);
+  CHECK(counted.complete == 1 && counted.resolution > 0);
+
+  ist_contact* all = malloc(counted.contacts * sizeof *all);
+  ist_query_result full = {.struct_size = sizeof full};
+  IS(ist_query_collide(query, pose.at, all, counted.contacts, &full), IST_OK);
+  CHECK(full.written == full.contacts && full.truncated == 0);
+  for (uint64_t i = 1; i < full.written; ++i) {
+    CHECK(all[i - 1].fixed < all[i].fixed ||
+          (all[i - 1].fixed == all[i].fixed && all[i - 1].moving < all[i].moving));
+  }
+  ist_contact* few = malloc(7 * sizeof *few);
+  ist_query_result cut = {.struct_size = sizeof cut};
+  IS(ist_query_collide(query, pose.at, few, 7, &cut), IST_OK);
+  CHECK(cut.contacts == full.contacts && cut.written == 7 && cut.truncated == 1);
+  CHECK(memcmp(few, all, 7 * sizeof *few) == 0);
+
+  const ist_budget little = {.struct_size = sizeof little, .sphere_tests = 20};
+  IS(ist_query_collide_within(query, pose.at, &little, few, 7, &cut), IST_OK);
+  CHECK(cut.complete == 0 && cut.level > 0 && cut.gap_known == 1 && cut.sphere_tests <= 20);
+  const ist_budget hour = {.struct_size = sizeof hour, .nanoseconds = 3600000000000};
+  IS(ist_query_collide_within(query, pose.at, &hour, few, 7, &cut), IST_OK);
+  CHECK(cut.complete == 1 && cut.contacts == full.contacts);
+  free(few);
+  free(all);
+}
+
+static void reduce(ist_query* query) {
+  const pose_at pose = shifted(9.5, 0.25, 0);
+  ist_contact_point* points = malloc(32 * sizeof *points);
+  ist_contact_sums sums = {.struct_size = sizeof sums};
+  ist_query_result result = {.struct_size = sizeof result};
+  IS(ist_query_contact_points(query, pose.at, points, 32, &sums, &result), IST_OK);
+  CHECK(result.points > 0 && result.written == result.points && result.truncated == 0);
+  CHECK(sums.pairs > 0 && sums.spring_force[0] > 0);
+  CHECK(fabs(sums.spring_force[2]) < 0.01 * sums.spring_force[0]);
+  for (uint64_t i = 0; i < result.written; ++i) {
+    CHECK(fabs(points[i].position[0] - 9.75) < 1);
+    CHECK(fabs(points[i].normal[0]) <= 1 && points[i].weight > 0);
+  }
+  ist_contact_point* one = malloc(sizeof *one);
+  IS(ist_query_contact_points(query, pose.at, one, 1, NULL, &result), IST_OK);
+  CHECK(result.written == 1 && result.truncated == 1 && memcmp(one, points, sizeof *one) == 0);
+  free(one);
+  free(points);
+}
+
+static void certify(ist_query* query) {
+  int32_t touch = -1;
+  const pose_at in = shifted(9.5, 0.25, 0), out = shifted(12, 0, 0);
+  IS(ist_query_touches(query, in.at, &touch), IST_OK);
+  CHECK(touch == IST_TOUCH_YES);
+  IS(ist_query_touches(query, out.at, &touch), IST_OK);
+  CHECK(touch == IST_TOUCH_NO);
+
+  ist_gap_result gap = {.struct_size = sizeof gap};
+  IS(ist_query_gap(query, out.at, 0.01, &gap), IST_OK);
+  CHECK(gap.lower <= 2 && gap.upper >= 2 && gap.upper - gap.lower < 0.011);
+
+  ist_triangle_pair* pairs = malloc(200 * sizeof *pairs);
+  ist_exact_result exact = {.struct_size = sizeof exact};
+  IS(ist_query_exact(query, in.at, pairs, 200, &exact), IST_OK);
+  CHECK(exact.pairs > 0 && exact.written == exact.pairs && exact.truncated == 0);
+  IS(ist_query_exact(query, in.at, pairs, 1, &exact), IST_OK);
+  CHECK(exact.written == 1 && exact.truncated == 1);
+  IS(ist_query_exact(query, out.at, NULL, 0, &exact), IST_OK);
+  CHECK(exact.pairs == 0 && exact.truncated == 0);
+  free(pairs);
+}
+
+static void misuse(ist_tree* tree, ist_query* query) {
+  pose_at pose = shifted(9.5, 0, 0);
+  ist_query_result result = {.struct_size = sizeof result};
+  IS(ist_query_collide(NULL, pose.at, NULL, 0, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_collide(query, NULL, NULL, 0, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_collide(query, pose.at, NULL, 1, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_collide(query, pose.at, NULL, 0, NULL), IST_NULL_ARGUMENT);
+  IS(ist_query_collide((ist_query*)tree, pose.at, NULL, 0, &result), IST_HANDLE_KIND);
+  IS(ist_query_collide((ist_query*)&pose, pose.at, NULL, 0, &result), IST_NOT_A_HANDLE);
+  result.struct_size = 0;
+  IS(ist_query_collide(query, pose.at, NULL, 0, &result), IST_STRUCT_SIZE);
+  result.struct_size = sizeof result;
+
+  pose.at[12] = NAN;
+  result.contacts = 77;
+  IS(ist_query_collide(query, pose.at, NULL, 0, &result), IST_POSE_INVALID);
+  CHECK(result.contacts == 0 && result.complete == 0);
+  CHECK(strstr(ist_last_error_message(), "ist_query_collide: pose") != NULL);
+
+  ist_query* gone = NULL;
+  IS(ist_query_create(tree, tree, NULL, &gone), IST_OK);
+  IS(ist_query_free(gone), IST_OK);
+  IS(ist_query_free(gone), IST_HANDLE_FREED);
+  int32_t touch = -1;
+  pose.at[12] = 9.5;
+  IS(ist_query_touches(gone, pose.at, &touch), IST_HANDLE_FREED);
+  CHECK(touch == IST_TOUCH_UNKNOWN);
+  IS(ist_query_free(NULL), IST_OK);
+}
+
+/* A ball is pressed on a box, in millimetres. */
+static void press(const char* scene) {
+  const ist_servo_options options = {
+      .struct_size = sizeof options, .unit = IST_UNIT_MM, .sphere_tests = 1000000};
+  ist_servo* servo = NULL;
+  IS(ist_servo_open_scene(scene, &options, &servo), IST_OK);
+  CHECK(ist_servo_warning(servo, 0) == NULL);
+  ist_servo_info info = {.struct_size = sizeof info};
+  IS(ist_servo_get_info(servo, &info), IST_OK);
+  CHECK(fabs(info.tick_seconds - 1e-3) < 1e-9 && info.ticks == 0);
+  CHECK(info.tool[0] == 1 && info.tool[15] == 1 && info.tool[14] > 0);
+
+  double pose[16], force[3], torque[3], most = 0;
+  memcpy(pose, info.tool, sizeof pose);
+  for (int tick = 0; tick < 600; ++tick) {
+    pose[14] -= 0.006; /* 3.6 mm in all, and it touches after 2 */
+    IS(ist_servo_on_tick(servo, pose, force, torque), IST_OK);
+    if (force[2] > most) most = force[2];
+  }
+  CHECK(most > 0.5 && most < 10);
+  IS(ist_servo_get_info(servo, &info), IST_OK);
+  CHECK(info.ticks == 600 && info.faults == 0 && info.held == 0);
+  CHECK(info.tool[14] > pose[14] + 0.1); /* it stays outside */
+
+  pose[0] = NAN;
+  IS(ist_servo_on_tick(servo, pose, force, torque), IST_POSE_INVALID);
+  CHECK(force[0] == 0 && force[1] == 0 && force[2] == 0 && torque[0] == 0);
+  IS(ist_servo_free(servo), IST_OK);
+  force[0] = force[1] = force[2] = torque[0] = torque[1] = torque[2] = 5;
+  IS(ist_servo_on_tick(servo, pose, force, torque), IST_HANDLE_FREED);
+  CHECK(force[2] == 0 && torque[2] == 0);
+}
+
+int main(int argc, char** argv) {
+  CHECK(argc == 3);
+  CHECK(ist_abi_version() == IST_ABI_VERSION && strlen(ist_version_string()) > 0);
+  CHECK(strcmp(ist_last_error_message(), "") == 0);
+  ist_tree* tree = make_tree(argv[1]);
+  ist_query* query = NULL;
+  IS(ist_query_create(tree, tree, NULL, &query), IST_OK);
+  misuse(tree, query);
+  IS(ist_tree_free(tree), IST_OK); /* the query keeps it */
+  collide(query);
+  reduce(query);
+  certify(query);
+  IS(ist_query_free(query), IST_OK);
+  press(argv[2]);
+  puts("the whole life: fine");
+  return 0;
+}

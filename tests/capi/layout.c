@@ -1,0 +1,193 @@
+/* What a compiled program knows of the C interface: it must never change. */
+
+#include "ist/capi/ist_servo.h"
+
+#define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
+#define AT(type, member, place) \
+  _Static_assert(offsetof(type, member) == (place), #type "." #member " is elsewhere")
+#define IS(name, number) _Static_assert((name) == (number), #name " has another number")
+
+SIZE(ist_status, 4);
+SIZE(ist_mesh*, 8);
+
+SIZE(ist_mesh_info, 120);
+AT(ist_mesh_info, struct_size, 0);
+AT(ist_mesh_info, vertices, 8);
+AT(ist_mesh_info, triangles, 16);
+AT(ist_mesh_info, boundary_edges, 24);
+AT(ist_mesh_info, non_manifold_edges, 32);
+AT(ist_mesh_info, degenerate_triangles, 40);
+AT(ist_mesh_info, components, 48);
+AT(ist_mesh_info, closed, 56);
+AT(ist_mesh_info, consistent, 60);
+AT(ist_mesh_info, box_min, 64);
+AT(ist_mesh_info, box_max, 88);
+AT(ist_mesh_info, signed_volume, 112);
+
+SIZE(ist_build_options, 40);
+AT(ist_build_options, struct_size, 0);
+AT(ist_build_options, voxel_size, 8);
+AT(ist_build_options, spheres, 16);
+AT(ist_build_options, keep_triangles, 20);
+AT(ist_build_options, proximity, 24);
+AT(ist_build_options, reserved, 28);
+AT(ist_build_options, max_memory, 32);
+
+SIZE(ist_tree_info, 104);
+AT(ist_tree_info, struct_size, 0);
+AT(ist_tree_info, voxel_size, 8);
+AT(ist_tree_info, leaves, 16);
+AT(ist_tree_info, triangles, 24);
+AT(ist_tree_info, bytes, 32);
+AT(ist_tree_info, depth, 40);
+AT(ist_tree_info, spheres, 44);
+AT(ist_tree_info, has_triangles, 48);
+AT(ist_tree_info, has_proximity, 52);
+AT(ist_tree_info, outward, 56);
+AT(ist_tree_info, reserved, 60);
+AT(ist_tree_info, origin, 64);
+AT(ist_tree_info, reach, 88);
+AT(ist_tree_info, largest_leaf_radius, 96);
+
+SIZE(ist_query_options, 56);
+AT(ist_query_options, struct_size, 0);
+AT(ist_query_options, spheres, 8);
+AT(ist_query_options, workers, 12);
+AT(ist_query_options, period_ns, 16);
+AT(ist_query_options, frontier_pairs, 24);
+AT(ist_query_options, triangle_pairs, 32);
+AT(ist_query_options, contact_points, 40);
+AT(ist_query_options, target, 48);
+
+SIZE(ist_query_info, 56);
+AT(ist_query_info, struct_size, 0);
+AT(ist_query_info, bytes, 8);
+AT(ist_query_info, contact_points, 16);
+AT(ist_query_info, spheres, 24);
+AT(ist_query_info, workers, 28);
+AT(ist_query_info, exact, 32);
+AT(ist_query_info, reserved, 36);
+AT(ist_query_info, target, 40);
+
+SIZE(ist_contact, 8);
+AT(ist_contact, fixed, 0);
+AT(ist_contact, moving, 4);
+
+SIZE(ist_query_result, 80);
+AT(ist_query_result, struct_size, 0);
+AT(ist_query_result, contacts, 8);
+AT(ist_query_result, points, 16);
+AT(ist_query_result, written, 24);
+AT(ist_query_result, sphere_tests, 32);
+AT(ist_query_result, complete, 40);
+AT(ist_query_result, truncated, 44);
+AT(ist_query_result, level, 48);
+AT(ist_query_result, gap_known, 52);
+AT(ist_query_result, gap_lower, 56);
+AT(ist_query_result, gap_upper, 64);
+AT(ist_query_result, resolution, 72);
+
+SIZE(ist_budget, 24);
+AT(ist_budget, struct_size, 0);
+AT(ist_budget, sphere_tests, 8);
+AT(ist_budget, nanoseconds, 16);
+
+SIZE(ist_contact_point, 64);
+AT(ist_contact_point, position, 0);
+AT(ist_contact_point, normal, 24);
+AT(ist_contact_point, depth, 48);
+AT(ist_contact_point, weight, 56);
+
+SIZE(ist_contact_sums, 144);
+AT(ist_contact_sums, struct_size, 0);
+AT(ist_contact_sums, pairs, 8);
+AT(ist_contact_sums, weight, 16);
+AT(ist_contact_sums, pressure_force, 24);
+AT(ist_contact_sums, pressure_torque, 48);
+AT(ist_contact_sums, spring_force, 72);
+AT(ist_contact_sums, spring_torque, 96);
+AT(ist_contact_sums, about, 120);
+
+SIZE(ist_gap_result, 32);
+AT(ist_gap_result, struct_size, 0);
+AT(ist_gap_result, lower, 8);
+AT(ist_gap_result, upper, 16);
+AT(ist_gap_result, sphere_tests, 24);
+
+SIZE(ist_triangle_pair, 8);
+AT(ist_triangle_pair, fixed, 0);
+AT(ist_triangle_pair, moving, 4);
+
+SIZE(ist_exact_result, 40);
+AT(ist_exact_result, struct_size, 0);
+AT(ist_exact_result, pairs, 8);
+AT(ist_exact_result, written, 16);
+AT(ist_exact_result, sphere_tests, 24);
+AT(ist_exact_result, truncated, 32);
+AT(ist_exact_result, reserved, 36);
+
+SIZE(ist_servo_options, 40);
+AT(ist_servo_options, struct_size, 0);
+AT(ist_servo_options, unit, 8);
+AT(ist_servo_options, reserved, 12);
+AT(ist_servo_options, query_share, 16);
+AT(ist_servo_options, sphere_tests, 24);
+AT(ist_servo_options, max_memory, 32);
+
+SIZE(ist_servo_info, 176);
+AT(ist_servo_info, struct_size, 0);
+AT(ist_servo_info, tick_seconds, 8);
+AT(ist_servo_info, tool, 16);
+AT(ist_servo_info, ticks, 144);
+AT(ist_servo_info, held, 152);
+AT(ist_servo_info, faults, 160);
+AT(ist_servo_info, late, 168);
+
+IS(IST_ABI_VERSION, 1);
+IS(IST_OK, 0);
+IS(IST_NULL_ARGUMENT, 1);
+IS(IST_STRUCT_SIZE, 2);
+IS(IST_ARGUMENT_INVALID, 3);
+IS(IST_NOT_A_HANDLE, 4);
+IS(IST_HANDLE_KIND, 5);
+IS(IST_HANDLE_FREED, 6);
+IS(IST_HANDLE_BUSY, 7);
+IS(IST_TOO_MANY_HANDLES, 8);
+IS(IST_OUT_OF_MEMORY, 9);
+IS(IST_SYSTEM_ERROR, 10);
+IS(IST_INTERNAL_ERROR, 11);
+IS(IST_NOT_PREPARED, 12);
+IS(IST_SERVO_FAULT, 13);
+IS(IST_FILE_UNREADABLE, 101);
+IS(IST_FILE_UNWRITABLE, 102);
+IS(IST_NOT_A_MESH, 103);
+IS(IST_MESH_EMPTY, 104);
+IS(IST_MESH_POINTS_ONLY, 105);
+IS(IST_MESH_TRUNCATED, 106);
+IS(IST_MESH_BAD_INDEX, 107);
+IS(IST_MESH_NOT_FINITE, 108);
+IS(IST_MESH_EXTENT, 109);
+IS(IST_VOXEL_SIZE_INVALID, 110);
+IS(IST_VOXEL_SIZE_TOO_SMALL, 111);
+IS(IST_MEMORY_LIMIT, 112);
+IS(IST_NOT_A_TREE, 113);
+IS(IST_TREE_VERSION, 114);
+IS(IST_TREE_TRUNCATED, 115);
+IS(IST_TREE_CORRUPT, 116);
+IS(IST_POLICY_MISSING, 117);
+IS(IST_TRIANGLES_MISSING, 118);
+IS(IST_TARGET_MISSING, 119);
+IS(IST_POSE_INVALID, 120);
+IS(IST_INPUT_INVALID, 121);
+IS(IST_FIXED_POINT_RANGE, 122);
+IS(IST_SPHERES_DEFAULT, 0);
+IS(IST_SPHERES_SIMPLE, 1);
+IS(IST_SPHERES_TABLE, 2);
+IS(IST_SPHERES_TIGHT, 3);
+IS(IST_SPHERES_SLAB, 4);
+IS(IST_TOUCH_UNKNOWN, 0);
+IS(IST_TOUCH_NO, 1);
+IS(IST_TOUCH_POSSIBLE, 2);
+IS(IST_TOUCH_YES, 3);
+IS(IST_UNIT_M, 1);
+IS(IST_UNIT_MM, 2);

@@ -1,0 +1,58 @@
+// Memory that the system does not give is a code; the process lives on.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+
+#include "capi/c_bodies.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+// The process may have so many bytes of address space more than now, while this lives.
+class LittleMemory {
+ public:
+  explicit LittleMemory(rlim_t more) {
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    getrlimit(RLIMIT_AS, &before_);
+    rlimit now = before_;
+    now.rlim_cur = 4096 * pages + more;
+    setrlimit(RLIMIT_AS, &now);
+  }
+  ~LittleMemory() { setrlimit(RLIMIT_AS, &before_); }
+  LittleMemory(const LittleMemory&) = delete;
+  LittleMemory& operator=(const LittleMemory&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(CMemory, ThatIsNotThereIsTold) {
+  ist_tree* tree = c_tree(icosphere(2, 1), 0.1);
+  auto options = sized<ist_query_options>();
+  options.triangle_pairs = 1 << 26;
+  ist_query* query = nullptr;
+  std::string status, message;
+  {
+    const LittleMemory little(100 << 20);
+    status = name(ist_query_create(tree, tree, &options, &query));
+    message = ist_last_error_message();
+  }
+  EXPECT_EQ(status, "out-of-memory");
+  EXPECT_EQ(message,
+            "ist_query_create: not enough memory: ask for less, or free what is not needed");
+  EXPECT_EQ(query, nullptr);
+
+  ASSERT_EQ(name(ist_query_create(tree, tree, nullptr, &query)), "ok");
+  auto result = sized<ist_query_result>();
+  EXPECT_EQ(name(ist_query_collide(query, c_shift(1.9, 0, 0).data(), nullptr, 0, &result)), "ok");
+  EXPECT_GT(result.contacts, 0u);
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,191 @@
+// Pointers that are null and handles that are none, for every function that takes one.
+
+#include <functional>
+#include <vector>
+
+#include "capi/misuse_case.h"
+
+namespace ist::test {
+namespace {
+
+TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
+  struct Case {
+    const char* argument;
+    ist_status status;
+    std::string message;
+  };
+  std::vector<Case> cases;
+  const auto is_null = [&](const char* argument, ist_status status) {
+    cases.push_back({argument, status, ist_last_error_message()});
+  };
+  const double* corners = corners_.data();
+  const std::uint32_t* indices = indices_.data();
+  const double* pose = pose_.data();
+  is_null("vertices", ist_mesh_create(nullptr, 3, indices, 1, &no_mesh_));
+  is_null("triangles", ist_mesh_create(corners, 3, nullptr, 1, &no_mesh_));
+  is_null("mesh", ist_mesh_create(corners, 3, indices, 1, nullptr));
+  is_null("vertices", ist_mesh_create_float(nullptr, 3, indices, 1, &no_mesh_));
+  is_null("triangles", ist_mesh_create_float(floats_.data(), 3, nullptr, 1, &no_mesh_));
+  is_null("mesh", ist_mesh_create_float(floats_.data(), 3, indices, 1, nullptr));
+  is_null("path", ist_mesh_read(nullptr, &no_mesh_));
+  is_null("mesh", ist_mesh_read(file_.c_str(), nullptr));
+  is_null("mesh", ist_mesh_get_info(nullptr, &mesh_info_));
+  is_null("info", ist_mesh_get_info(mesh_, nullptr));
+
+  is_null("mesh", ist_tree_build(nullptr, &build_, &no_tree_));
+  is_null("options", ist_tree_build(mesh_, nullptr, &no_tree_));
+  is_null("tree", ist_tree_build(mesh_, &build_, nullptr));
+  is_null("path", ist_tree_load(nullptr, &no_tree_));
+  is_null("tree", ist_tree_load(file_.c_str(), nullptr));
+  is_null("tree", ist_tree_save(nullptr, file_.c_str()));
+  is_null("path", ist_tree_save(tree_, nullptr));
+  is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
+  is_null("info", ist_tree_get_info(tree_, nullptr));
+
+  is_null("fixed", ist_query_create(nullptr, tree_, nullptr, &no_query_));
+  is_null("moving", ist_query_create(tree_, nullptr, nullptr, &no_query_));
+  is_null("query", ist_query_create(tree_, tree_, nullptr, nullptr));
+  is_null("query", ist_query_get_info(nullptr, &query_info_));
+  is_null("info", ist_query_get_info(query_, nullptr));
+  is_null("query", ist_query_collide(nullptr, pose, contacts_, 4, &result_));
+  is_null("pose", ist_query_collide(query_, nullptr, contacts_, 4, &result_));
+  is_null("contacts", ist_query_collide(query_, pose, nullptr, 4, &result_));
+  is_null("result", ist_query_collide(query_, pose, contacts_, 4, nullptr));
+  is_null("query", ist_query_collide_within(nullptr, pose, &budget_, contacts_, 4, &result_));
+  is_null("pose", ist_query_collide_within(query_, nullptr, &budget_, contacts_, 4, &result_));
+  is_null("budget", ist_query_collide_within(query_, pose, nullptr, contacts_, 4, &result_));
+  is_null("contacts", ist_query_collide_within(query_, pose, &budget_, nullptr, 4, &result_));
+  is_null("result", ist_query_collide_within(query_, pose, &budget_, contacts_, 4, nullptr));
+  const auto points = [&](ist_query* query, const double* at, ist_contact_point* out,
+                          ist_query_result* result) {
+    return ist_query_contact_points(query, at, out, 4, &sums_, result);
+  };
+  is_null("query", points(nullptr, pose, points_, &result_));
+  is_null("pose", points(query_, nullptr, points_, &result_));
+  is_null("points", points(query_, pose, nullptr, &result_));
+  is_null("result", points(query_, pose, points_, nullptr));
+  const auto within = [&](ist_query* query, const double* at, const ist_budget* budget,
+                          ist_contact_point* out, ist_query_result* result) {
+    return ist_query_contact_points_within(query, at, budget, out, 4, &sums_, result);
+  };
+  is_null("query", within(nullptr, pose, &budget_, points_, &result_));
+  is_null("pose", within(query_, nullptr, &budget_, points_, &result_));
+  is_null("budget", within(query_, pose, nullptr, points_, &result_));
+  is_null("points", within(query_, pose, &budget_, nullptr, &result_));
+  is_null("result", within(query_, pose, &budget_, points_, nullptr));
+  is_null("query", ist_query_gap(nullptr, pose, 0, &gap_));
+  is_null("pose", ist_query_gap(query_, nullptr, 0, &gap_));
+  is_null("result", ist_query_gap(query_, pose, 0, nullptr));
+  is_null("query", ist_query_touches(nullptr, pose, &touch_));
+  is_null("pose", ist_query_touches(query_, nullptr, &touch_));
+  is_null("touch", ist_query_touches(query_, pose, nullptr));
+  is_null("query", ist_query_exact(nullptr, pose, pairs_, 4, &exact_));
+  is_null("pose", ist_query_exact(query_, nullptr, pairs_, 4, &exact_));
+  is_null("pairs", ist_query_exact(query_, pose, nullptr, 4, &exact_));
+  is_null("result", ist_query_exact(query_, pose, pairs_, 4, nullptr));
+
+  is_null("path", ist_servo_open_scene(nullptr, &servo_options_, &no_servo_));
+  is_null("options", ist_servo_open_scene(scene_.c_str(), nullptr, &no_servo_));
+  is_null("servo", ist_servo_open_scene(scene_.c_str(), &servo_options_, nullptr));
+  is_null("servo", ist_servo_get_info(nullptr, &servo_info_));
+  is_null("info", ist_servo_get_info(servo_, nullptr));
+  is_null("servo", ist_servo_on_tick(nullptr, pose, force_, torque_));
+  is_null("pose", ist_servo_on_tick(servo_, nullptr, force_, torque_));
+  is_null("force", ist_servo_on_tick(servo_, pose, nullptr, torque_));
+  is_null("torque", ist_servo_on_tick(servo_, pose, force_, nullptr));
+  for (const Case& c : cases) {
+    EXPECT_EQ(name(c.status), "null-argument") << c.message;
+    EXPECT_NE(c.message.find(std::string(": ") + c.argument + " is NULL"), std::string::npos)
+        << c.argument << " in: " << c.message;
+  }
+  EXPECT_EQ(ist_servo_warning(nullptr, 0), nullptr);
+  EXPECT_TRUE(!no_mesh_ && !no_tree_ && !no_query_ && !no_servo_);
+}
+
+// Every argument that is a handle: given nothing sound, one of each other kind, and a freed one.
+TEST_F(CMisuse, OfAHandleIsTold) {
+  enum Kind { kMesh, kTree, kQuery, kServo };
+  struct Taker {
+    Kind kind;
+    std::function<ist_status(void*)> call;
+  };
+  const double* pose = pose_.data();
+  const std::vector<Taker> takers{
+      {kMesh, [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), &mesh_info_); }},
+      {kMesh,
+       [&](void* h) { return ist_tree_build(static_cast<ist_mesh*>(h), &build_, &no_tree_); }},
+      {kMesh, [&](void* h) { return ist_mesh_free(static_cast<ist_mesh*>(h)); }},
+      {kTree, [&](void* h) { return ist_tree_get_info(static_cast<ist_tree*>(h), &tree_info_); }},
+      {kTree, [&](void* h) { return ist_tree_save(static_cast<ist_tree*>(h), file_.c_str()); }},
+      {kTree,
+       [&](void* h) {
+         return ist_query_create(static_cast<ist_tree*>(h), tree_, nullptr, &no_query_);
+       }},
+      {kTree,
+       [&](void* h) {
+         return ist_query_create(tree_, static_cast<ist_tree*>(h), nullptr, &no_query_);
+       }},
+      {kTree, [&](void* h) { return ist_tree_free(static_cast<ist_tree*>(h)); }},
+      {kQuery,
+       [&](void* h) { return ist_query_get_info(static_cast<ist_query*>(h), &query_info_); }},
+      {kQuery,
+       [&](void* h) {
+         return ist_query_collide(static_cast<ist_query*>(h), pose, contacts_, 4, &result_);
+       }},
+      {kQuery,
+       [&](void* h) {
+         return ist_query_collide_within(static_cast<ist_query*>(h), pose, &budget_, contacts_, 4,
+                                         &result_);
+       }},
+      {kQuery,
+       [&](void* h) {
+         return ist_query_contact_points(static_cast<ist_query*>(h), pose, points_, 4, &sums_,
+                                         &result_);
+       }},
+      {kQuery,
+       [&](void* h) {
+         return ist_query_contact_points_within(static_cast<ist_query*>(h), pose, &budget_, points_,
+                                                4, &sums_, &result_);
+       }},
+      {kQuery, [&](void* h) { return ist_query_gap(static_cast<ist_query*>(h), pose, 0, &gap_); }},
+      {kQuery,
+       [&](void* h) { return ist_query_touches(static_cast<ist_query*>(h), pose, &touch_); }},
+      {kQuery,
+       [&](void* h) {
+         return ist_query_exact(static_cast<ist_query*>(h), pose, pairs_, 4, &exact_);
+       }},
+      {kQuery, [&](void* h) { return ist_query_free(static_cast<ist_query*>(h)); }},
+      {kServo,
+       [&](void* h) { return ist_servo_get_info(static_cast<ist_servo*>(h), &servo_info_); }},
+      {kServo,
+       [&](void* h) {
+         return ist_servo_on_tick(static_cast<ist_servo*>(h), pose, force_, torque_);
+       }},
+      {kServo, [&](void* h) { return ist_servo_free(static_cast<ist_servo*>(h)); }},
+  };
+  const std::array<void*, 4> sound = {mesh_, tree_, query_, servo_};
+  ist_tree* tree = c_tree(box({0, 0, 0}, {2, 2, 2}), 0.5);
+  ist_servo* servo = nullptr;
+  ASSERT_EQ(name(ist_servo_open_scene(scene_.c_str(), &servo_options_, &servo)), "ok");
+  const std::array<void*, 4> freed = {c_mesh(box({0, 0, 0}, {1, 1, 1})), tree, c_query(tree),
+                                      servo};
+  EXPECT_EQ(name(ist_mesh_free(static_cast<ist_mesh*>(freed[kMesh]))), "ok");
+  EXPECT_EQ(name(ist_query_free(static_cast<ist_query*>(freed[kQuery]))), "ok");
+  EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+  for (std::size_t i = 0; i < takers.size(); ++i) {
+    const Taker& taker = takers[i];
+    EXPECT_EQ(name(taker.call(freed[taker.kind])), "handle-freed") << i;
+    EXPECT_EQ(name(taker.call(&pose_)), "not-a-handle") << i;
+    EXPECT_EQ(name(taker.call(reinterpret_cast<void*>(std::uintptr_t{8}))), "not-a-handle") << i;
+    for (const Kind kind : {kMesh, kTree, kQuery, kServo}) {
+      if (kind == taker.kind) continue;
+      EXPECT_EQ(name(taker.call(sound[kind])), "handle-kind") << i << ", " << kind;
+      EXPECT_EQ(name(taker.call(freed[kind])), "handle-kind") << i << ", " << kind;
+    }
+  }
+  EXPECT_EQ(ist_servo_warning(static_cast<ist_servo*>(freed[kServo]), 0), nullptr);
+  EXPECT_FALSE(no_tree_ || no_query_);
+}
+
+}  // namespace
+}  // namespace ist::test

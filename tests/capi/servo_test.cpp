@@ -1,0 +1,149 @@
+// The servo through C: the same forces as the simulation gives, in either unit.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "capi/c_bodies.h"
+#include "ist/haptics/devices/null_device.h"
+#include "ist/scene/scene_builder.h"
+#include "ist/scene/scene_file.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+namespace {
+
+constexpr int kTicks = 120;
+constexpr std::uint64_t kTests = 1'000'000;
+
+// A ball pressed on a box; `more` in [held].
+std::string scene_text(const std::string& more = "") {
+  return R"(unit = "mm"
+rate = 500
+[fixed]
+shape = "box"
+size = [20, 20, 6]
+voxel_size = 1
+[held]
+shape = "sphere"
+radius = 4
+voxel_size = 1
+translation = [0, 0, 8]
+)" + more +
+         R"(
+[device]
+kind = "hand"
+damping = 3
+plan = [{ time = 0, move = [0, 0, 0] }, { time = 1, move = [0, 0, -4] }]
+[effects.contact]
+stiffness = 1000
+[effects.friction]
+)";
+}
+
+class CServo : public ::testing::Test {
+ protected:
+  [[nodiscard]] ist_servo* open(std::int32_t unit, const std::string& text = scene_text()) const {
+    const std::string file = folder_.write("scene.toml", text).string();
+    auto options = sized<ist_servo_options>();
+    options.unit = unit;
+    options.sphere_tests = kTests;
+    ist_servo* servo = nullptr;
+    EXPECT_EQ(name(ist_servo_open_scene(file.c_str(), &options, &servo)), "ok")
+        << ist_last_error_message();
+    return servo;
+  }
+  [[nodiscard]] static ist_servo_info info_of(ist_servo* servo) {
+    auto info = sized<ist_servo_info>();
+    EXPECT_EQ(name(ist_servo_get_info(servo, &info)), "ok");
+    return info;
+  }
+  // Into the box, 2.4 mm deep at the end, in metres and in the scene's axes.
+  [[nodiscard]] static Eigen::Vector3d way(int tick) {
+    return {2e-5 * tick, 0, -1e-3 - 2e-5 * tick};
+  }
+
+  const TempDir folder_;
+};
+
+TEST_F(CServo, GivesWhatTheSimulationGives) {
+  ist_servo* metres = open(IST_UNIT_M);
+  ist_servo* millimetres = open(IST_UNIT_MM);
+  Scene scene = read_scene(folder_.path() / "scene.toml");
+  scene.device = NullSettings{std::get<HandSettings>(scene.device).mechanics};
+  const BuiltScene built = build_scene(scene);
+  const Placement start = *built.device->read();
+
+  const ist_servo_info in_m = info_of(metres), in_mm = info_of(millimetres);
+  EXPECT_EQ(in_m.tick_seconds, built.simulation->dt());
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_EQ(in_m.tool[i], start.isometry().data()[i]) << i;
+    EXPECT_DOUBLE_EQ(in_mm.tool[i], i >= 12 && i < 15 ? 1000 * in_m.tool[i] : in_m.tool[i]) << i;
+  }
+
+  double most = 0;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    Placement device = start;
+    device.translation += way(tick);
+    TickBudget budget;
+    budget.contacts.sphere_tests = budget.proximity.sphere_tests = kTests;
+    const Tick wanted = built.simulation->tick(device, budget);
+    Eigen::Isometry3d pose = device.isometry();
+    double force[3], torque[3];
+    ASSERT_EQ(name(ist_servo_on_tick(metres, pose.data(), force, torque)), "ok");
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_EQ(force[i], wanted.wrench[i]) << tick;
+      ASSERT_EQ(torque[i], wanted.wrench[3 + i]) << tick;
+    }
+    pose.translation() *= 1000;
+    ASSERT_EQ(name(ist_servo_on_tick(millimetres, pose.data(), force, torque)), "ok");
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_NEAR(force[i], wanted.wrench[i], 1e-6) << tick;
+      ASSERT_NEAR(torque[i], wanted.wrench[3 + i], 1e-8) << tick;
+    }
+    most = std::max(most, force[2]);
+  }
+  EXPECT_GT(most, 0.3);
+  EXPECT_EQ(info_of(metres).ticks, std::uint64_t{kTicks});
+  EXPECT_EQ(info_of(metres).held + info_of(metres).faults, 0u);
+  EXPECT_EQ(name(ist_servo_free(metres)), "ok");
+  EXPECT_EQ(name(ist_servo_free(millimetres)), "ok");
+}
+
+TEST_F(CServo, CountsWhatWentWrongAndComesBackSoftly) {
+  ist_servo* servo = open(IST_UNIT_M);
+  const ist_servo_info start = info_of(servo);
+  std::array<double, 16> pose;
+  std::copy_n(start.tool, 16, pose.begin());
+  double force[3], torque[3];
+  const auto tick = [&](double z) {
+    pose[14] = z;
+    return name(ist_servo_on_tick(servo, pose.data(), force, torque));
+  };
+  for (int i = 0; i < 200; ++i) ASSERT_EQ(tick(start.tool[14] - 1.5e-5 * i), "ok");
+  const double deep = pose[14], felt = force[2];
+  EXPECT_GT(felt, 0.3);
+  EXPECT_EQ(tick(NAN), "pose-invalid");
+  EXPECT_EQ(force[2], 0);
+  EXPECT_EQ(tick(deep), "ok");
+  EXPECT_LT(force[2], 0.5 * felt);
+  EXPECT_EQ(info_of(servo).faults, 1u);
+  EXPECT_EQ(info_of(servo).ticks, 202u);
+  EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+}
+
+// Bodies that touch where the scene puts them: the tool starts elsewhere, and that is said.
+TEST_F(CServo, TellsWhatBuildingWarnedOf) {
+  ist_servo* servo =
+      open(IST_UNIT_MM,
+           scene_text("open = \"z\"\n").replace(scene_text().find("0, 0, 8"), 7, "0, 0, 5"));
+  const char* warning = ist_servo_warning(servo, 0);
+  ASSERT_NE(warning, nullptr);
+  EXPECT_NE(std::string(warning).find("held.open"), std::string::npos) << warning;
+  EXPECT_EQ(ist_servo_warning(servo, 100), nullptr);
+  EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+}
+
+}  // namespace
+}  // namespace ist::test

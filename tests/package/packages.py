@@ -1,0 +1,234 @@
+"""Builds and runs programs of someone else's against all that a user may have of the library: see
+CMakeLists.txt, which makes a test of each function here whose name begins with a capital."""
+
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+from clean_root import CleanRoot
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCE = HERE.parent.parent
+SKIPPED = 77
+
+
+class Missing(Exception):
+    """A tool is not installed, so there is nothing to test with."""
+
+
+def run(*command, **options):
+    """What a command prints. Where it fails, the test does, and shows all of it."""
+    ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
+    if ran.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\nfailed with {ran.returncode}:\n{ran.stdout}{ran.stderr}")
+    return ran.stdout
+
+
+def require(holds, text):
+    if not holds:
+        sys.exit(f"packages: {text}")
+
+
+def need(*tools):
+    for tool in tools:
+        if shutil.which(tool) is None:
+            raise Missing(f"{tool} is not installed: scripts/setup.sh does that")
+
+
+def installed_headers():
+    """Below include/; first those that users include, then those that these need."""
+    first, second = (SOURCE / "src/package/public_headers.txt").read_text().split("\n# And ")
+    return [[line for line in part.splitlines() if line.startswith("ist/")] for part in (first, second)]
+
+
+def layout(binary):
+    """What the code in a binary takes for sizes and places: see layout.h."""
+    section = binary.with_suffix(".layout")
+    run("objcopy", "-O", "binary", "--only-section=ist_layout", binary, section)
+    numbers = section.read_bytes()
+    require(len(numbers) > 0, f"{binary} has no section ist_layout")
+    return numbers
+
+
+class Packages:
+    def __init__(self, arguments):
+        self.build, self.work = arguments.build, arguments.work
+        self.compiler, self.library = arguments.compiler, arguments.library
+        self.library_layout = arguments.layout
+        self.prefix = self.work / "prefix"
+
+    def fresh(self, name):
+        folder = self.work / name
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        return folder
+
+    def check_consumer(self, program, before=()):
+        """Runs it, and holds its view of the classes against the library's."""
+        require(layout(program) == layout(self.library_layout), f"{program} sees other classes than the library")
+        printed = run(*before, program, program.with_suffix(".ist"))
+        require("caught file-unreadable" in printed, f"{program} printed:\n{printed}")
+        return printed
+
+    def compile_consumer(self, folder, headers, environment):
+        """By what pkg-config says alone; nothing but Eigen is included besides the headers in one place."""
+        flags = [run("pkg-config", *words, "ist", env=environment).split()
+                 for words in (["--cflags"], ["--libs"])]
+        program, names = folder / "consumer", folder / "consumer.d"
+        run(self.compiler, "-std=c++20", *flags[0], "-MD", "-MF", names, HERE / "consumer/consumer.cpp",
+            "-o", program, *flags[1])
+        included = names.read_text().replace("\\\n", " ").split()
+        ours = [name for name in included if "/ist/" in name]
+        require(ours and all(name.startswith(str(headers)) for name in ours), f"not from {headers}: {ours}")
+        others = [name for name in included if re.match(r"/usr/include/(oneapi|tbb|assimp|fmt|hwy|gmp|xxh|toml)", name)]
+        require(not others, f"a public header includes what is private to the library: {others}")
+        return program
+
+    def Install(self):
+        """An install tree of what is built, whole and without more."""
+        shutil.rmtree(self.prefix, ignore_errors=True)
+        run("cmake", "--install", self.build, "--prefix", self.prefix)
+        files = {str(file.relative_to(self.prefix)) for file in self.prefix.rglob("*") if not file.is_dir()}
+        headers = {f"include/{header}" for part in installed_headers() for header in part}
+        require({file for file in files if file.startswith("include/")} == headers, "other headers than are listed")
+        rest = sorted(re.sub(r"0\.\d+\.\d+$", "V", file) for file in files - headers)
+        config = ["ist-config-version.cmake", "ist-config.cmake"]
+        expected = ["bin/ist", *(f"lib/cmake/ist/{name}" for name in config), "lib/libist.so", "lib/libist.so.0",
+                    "lib/libist.so.V", "lib/pkgconfig/ist.pc",
+                    *(f"share/doc/{name}/copyright" for name in ("ist", "libist-dev", "libist0"))]
+        rest = [file for file in rest if not re.search(r"ist_targets(-\w+)?\.cmake$", file)]
+        require(rest == expected, f"installed are {rest}")
+        dynamic = run("readelf", "-dW", self.prefix / "lib/libist.so")
+        require("[libist.so.0]" in dynamic and "BIND_NOW" in dynamic, f"no SONAME, or bound late:\n{dynamic}")
+        require("RUNPATH" not in dynamic, f"it looks for others where it was built:\n{dynamic}")
+
+    def FindPackage(self):
+        """CMake's find_package, also by code that is compiled for AVX-512."""
+        folder = self.fresh("find_package")
+        run("cmake", "-G", "Ninja", "-S", HERE / "consumer", "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            f"-DCMAKE_CXX_COMPILER={self.compiler}")
+        run("cmake", "--build", folder)
+        printed = self.check_consumer(folder / "consumer")
+        wide = folder / "consumer_wide"
+        if "avx512f" in pathlib.Path("/proc/cpuinfo").read_text():
+            require(self.check_consumer(wide) == printed, "compiled for AVX-512, it has other answers")
+        else:
+            require(layout(wide) == layout(self.library_layout), "compiled for AVX-512, it sees other classes")
+            print("this processor has no AVX-512: what is compiled for it was compared, and not run")
+
+    def PkgConfig(self):
+        need("pkg-config")
+        folder = self.fresh("pkg_config")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
+        program = self.compile_consumer(folder, self.prefix, environment)
+        self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/lib"])
+        if (self.prefix / "include/ist/capi/ist.h").exists():
+            flags = run("pkg-config", "--cflags", "--libs", "ist", env=environment).split()
+            run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", HERE / "consumer/consumer.c", *flags,
+                "-o", folder / "consumer_c")
+            run("env", f"LD_LIBRARY_PATH={self.prefix}/lib", folder / "consumer_c")
+
+    def Debian(self):
+        """The three packages, in a root that holds what they depend on and nothing else."""
+        need("pkg-config", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file")
+        folder = self.fresh("debian")
+        run("cpack", "--config", self.build / "CPackConfig.cmake", "-B", folder / "packages")
+        root = CleanRoot(folder / "root", (folder / "packages").glob("*.deb"))
+        version = root.field("libist0", "Version")
+        require(root.field("libist-dev", "Depends") == f"libist0 (= {version}), libeigen3-dev (>= 3.4)",
+                f"libist-dev depends on {root.field('libist-dev', 'Depends')}")
+        require("libist0" not in root.field("ist", "Depends"), "the command holds the library, and depends on it")
+        require(not root.shared_files(), f"in two packages: {root.shared_files()}")
+        environment = {**os.environ, "PKG_CONFIG_LIBDIR": f"{root.path}/usr/lib/pkgconfig:/usr/share/pkgconfig"}
+        program = self.compile_consumer(folder, root.path, environment)
+        self.check_consumer(program, root.loader("libist0", program))
+        command = root.path / "usr/bin/ist"
+        said = run(*root.loader("ist", command), command, "--version")
+        require(version in said, f"ist --version says {said}")
+
+    def Subdirectory(self):
+        """FetchContent from the sources, in a project that has settings of its own. With IST_COMPILE_ALL=1 all is
+        compiled anew, which takes minutes; else what has been compiled by the same commands is taken."""
+        compile_all = os.environ.get("IST_COMPILE_ALL") == "1"
+        folder = self.fresh("subdirectory")
+        cache = (self.build / "CMakeCache.txt").read_text()
+        same = [f"-D{name}={re.search(rf'^{name}:[A-Z]+=(.*)$', cache, re.MULTILINE)[1]}"
+                for name in ("CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "IST_ASSERTS", "IST_UNITY")]
+        if re.search(r"^CMAKE_DISABLE_PRECOMPILE_HEADERS:[A-Z]+=ON$", cache, re.MULTILINE):
+            same.append("-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON")
+        if not compile_all:
+            same.append(f"-DCMAKE_CXX_COMPILER_LAUNCHER=python3;{HERE}/reuse.py;{self.build};{folder}/_deps/ist-build")
+        run("cmake", "-G", "Ninja", "-S", HERE / "consumer", "-B", folder, f"-DIST_SOURCE={SOURCE}", *same)
+        run("cmake", "--build", folder)
+        self.check_consumer(folder / "consumer")
+        if not compile_all:
+            print("compiled anew:", *(folder / "_deps/ist-build/compiled").read_text().split())
+
+    def Headers(self):
+        """The headers are closed under includes, and what they define can be linked."""
+        folder = self.fresh("headers")
+        public, needed = installed_headers()
+        text = {header: (self.prefix / "include" / header).read_text() for header in public + needed}
+        for header in text:
+            for other in re.findall(r'#include "([^"]+)"', text[header]):
+                require(other in text, f"{header} includes {other}, which is not installed")
+        classes = [name for header in text for name in re.findall(r"^(?:class|struct) IST_API (\w+)", text[header], re.M)]
+        within = {name for header in needed for name in re.findall(r"^(?:class|struct) (\w+)", text[header], re.M)}
+        source = folder / "all.cpp"
+        lines = [f'#include "{header}"' for header in text]
+        lines.append("template <class T> void let_go(T* t) { if constexpr (std::is_destructible_v<T>) delete t; }")
+        lines += [f"template void let_go(ist::{name}*);" for name in classes]
+        source.write_text("\n".join(lines + ["int main() {}\n"]))
+        # Every inline function is compiled. Those of classes that are the library's own need not link.
+        run(self.compiler, "-std=c++20", "-fkeep-inline-functions", "-ffunction-sections", "-DEIGEN_MAX_ALIGN_BYTES=16",
+            f"-I{self.prefix}/include", "-isystem", "/usr/include/eigen3", "-c", source, "-o", folder / "all.o")
+        names = [line.split(maxsplit=1)[1] for line in run("nm", "--defined-only", folder / "all.o").splitlines()]
+        shown = run("c++filt", input="\n".join(names)).splitlines()
+        roots = []
+        for name, plain in zip(names, shown):
+            owner = re.match(r"[WV] (?:void let_go<)?ist::(\w+)", plain)
+            if owner and owner[1] not in within:
+                roots.append(name.split()[1])
+        require(len(roots) > 100, f"only {len(roots)} inline functions")
+        (folder / "roots").write_text("".join(f"-Wl,-u,{name}\n" for name in roots))
+        run(self.compiler, folder / "all.o", f"@{folder}/roots", "-Wl,--gc-sections", "-o", folder / "all",
+            f"-L{self.prefix}/lib", "-list")
+        print(f"{len(roots)} inline functions link")
+
+    def Example(self):
+        """The servo loop of src/examples, as its CMakeLists.txt says to build it."""
+        folder = self.fresh("examples")
+        run("cmake", "-G", "Ninja", "-S", SOURCE / "src/examples", "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            f"-DCMAKE_CXX_COMPILER={self.compiler}")
+        run("cmake", "--build", folder)
+        printed = run(folder / "servo_loop", SOURCE / "src/examples/probe.toml").splitlines()
+        forces = [float(line.split()[0]) for line in printed[:-1]]
+        require(len(forces) == 10 and printed[-1] == "1000 ticks, 0 missed", f"it printed {printed}")
+        # 2 mm above the block, at 4 mm/s: it touches in the middle, and then pushes more and more.
+        require(max(map(abs, forces[:4])) < 0.01, f"a force where nothing touches: {forces}")
+        require(all(a < b for a, b in zip(forces[5:], forces[6:])) and forces[5] > 0.1, f"no push: {forces}")
+        lines = len((SOURCE / "src/examples/servo_loop.cpp").read_text().splitlines())
+        require(lines < 60, f"an example of {lines} lines")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("test")
+    for name in ("build", "work", "library", "layout"):
+        parser.add_argument(f"--{name}", type=pathlib.Path, required=True)
+    parser.add_argument("--compiler", required=True)
+    arguments = parser.parse_args()
+    try:
+        getattr(Packages(arguments), arguments.test)()
+    except Missing as missing:
+        print(f"packages: skipped: {missing}", file=sys.stderr)
+        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
