@@ -67,11 +67,12 @@ void count(benchmark::State& state, double voxel_size, double dz) {
   auto counts = walk.run();
   for (auto _ : state) benchmark::DoNotOptimize(counts = walk.run());
 
-  std::uint64_t misses = 0, false_hits = 0;
+  std::uint64_t misses = 0, false_hits = 0, false_misses = 0;
   const auto compared = [&](const HardwareNode& a, const HardwareNode& b) {
     const bool hit = model(a, b), touch = plain.touch(a, b);
     misses += touch ? 0u : 1u;
     false_hits += hit && !touch ? 1u : 0u;
+    false_misses += touch && !hit ? 1u : 0u;
     return hit;
   };
   static_cast<void>(test::PairWalk(fixed, moving, compared).run());
@@ -92,6 +93,7 @@ void count(benchmark::State& state, double voxel_size, double dz) {
   tell("moved", counts.moved);
   tell("misses", misses);
   tell("false_hits", false_hits);
+  tell("false_misses", false_misses);
   state.counters["false_hit_rate"] =
       misses == 0 ? 0 : static_cast<double>(false_hits) / static_cast<double>(misses);
   state.counters["word_bytes"] = 8;  // a mask and a first child

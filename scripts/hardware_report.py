@@ -84,9 +84,11 @@ def near_misses(runs):
     more = max(runs, key=lambda run: run["pairs"] / run["pairs_exact"])
     found = max(runs, key=lambda run: run["contacts"] - run["contacts_exact"])
     extra = int(found["contacts"] - found["contacts_exact"])
+    lost = sum(int(run["false_misses"]) for run in runs)
     lines = ["## How often a near miss is a hit", "",
-             "Along a closing, of all pairs that a query meets: how many have no common point, and how many of these the",
-             "circuit calls a hit. It never errs the other way.", "",
+             "Along a closing, by `table` spheres, of all pairs that a query meets: how many have no common point, and how many of these the",
+             f"circuit calls a hit. The other way it errs in {lost:,} of {sum(int(run['pairs']) for run in runs):,} pairs"
+             + (".", ": **a hit is missed, which must not be.**")[lost > 0], "",
              *table(["voxel", "dz", "pairs tested", "misses", "of them called a hit", "part"], rows), ""]
     if worst["false_hits"] == 0:
         return [*lines, "It called none a hit."]
@@ -123,7 +125,8 @@ def worst_tick(runs, latency, clock):
                      for hertz in sorted(clocks)]), "",
              f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a contact is written in "
              f"{CONTACT_BYTES}.", "So a tick moves "
-             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, where no word is kept from one pair to the next.", "",
+             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, where no word is kept from one pair to the next, and centres are",
+             "moved when their node is met: kept, each would be 12 bytes to write, and to read at each pair opened.", "",
              *table(["memory", "highest rate", "share assumed", *(f"voxel {of(run)}" for run in worst)],
                     [["bytes a tick", "", "", *(f"{int(traffic(run)):,}" for run in worst)]]
                     + [[memory, f"{number(width * per_second / 1e6)} MB/s", f"{100 * share:g} %",

@@ -38,7 +38,7 @@ def copy_sources():
         if copy.is_file() and copy.read_bytes() == source.read_bytes():
             continue
         copy.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(source, copy)
+        shutil.copy(source, copy)  # scripts stay such
 
 
 def edited(edits, root=COPY):

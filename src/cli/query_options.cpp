@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <system_error>
 
@@ -24,6 +26,20 @@ CLI::Validator no_minus(const std::string& what) {
             return text.find('-') == std::string::npos
                        ? std::string()
                        : fmt::format("give a positive number{}", what.empty() ? "" : " of " + what);
+          },
+          ""};
+}
+
+CLI::Validator whole_number(const std::string& what) {
+  return {[what](const std::string& text) {
+            std::uint64_t value = 0;
+            const char* end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, value);
+            const bool reads_so = error == std::errc() && stop == end;
+            const bool octal = text.size() > 1 && text.front() == '0';
+            return reads_so && !octal
+                       ? std::string()
+                       : fmt::format("{}: give {} as decimal digits, less than 2^64", text, what);
           },
           ""};
 }

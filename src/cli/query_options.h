@@ -18,6 +18,9 @@ namespace ist::cli {
 
 /// Refuses a minus, which would wrap round in a number without sign. `what` is counted, or empty.
 [[nodiscard]] CLI::Validator no_minus(const std::string& what);
+/// Refuses what is not decimal digits of a number below 2^64, which would be taken for another one:
+/// 010 for 8, and what is too large for the largest.
+[[nodiscard]] CLI::Validator whole_number(const std::string& what);
 
 /// Adds to a subcommand's help an example, and what every help ends with.
 void add_example(CLI::App& command, const std::string& example);

@@ -163,12 +163,13 @@ void add_table(CLI::App& app) {
   command
       ->add_option("--vectors", options->vectors,
                    "so many golden vectors of the pair test, corner cases first")
-      ->transform(no_minus("vectors"))
+      ->transform(whole_number("how many"))
       ->check(CLI::Range(std::uint64_t{1}, kMaxVectors));
   command->add_option("--seed", options->seed, "of the vectors that are random; 1 where not given")
-      ->transform(no_minus("a seed"));
+      ->transform(whole_number("a seed"));
   command->add_option("--check", options->check,
-                      "hold a file of vectors against the model; exit code 5 where they differ");
+                      "hold a file of vectors against the model; exit code 5 where they differ, 2 "
+                      "where a number does not fit its format");
   command->add_option("-o,--output", options->output, "the file to write; stdout where not given");
   command->add_flag("--json", options->json, "print one JSON object about what was done");
   add_example(*command,

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
 #include "capi/c_bodies.h"
 #include "ist/mesh/mesh_check.h"
 #include "ist/query/collision_query.h"
+#include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_builder.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
@@ -250,6 +252,49 @@ TEST(CMesh, IsTheSameOfFloats) {
   EXPECT_EQ(info.boundary_edges, 3u);
   EXPECT_EQ(info.components, 1u);
   EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
+}
+
+// What indices in answers are of.
+TEST(CGeometry, IsWhatAnswersCount) {
+  const TriangleMesh mesh = icosphere(2, 1);
+  ist_mesh* c = c_mesh(mesh);
+  std::vector<double> vertices(3 * mesh.vertices.size() + 1, 7);
+  std::vector<std::uint32_t> triangles(3 * mesh.triangles.size() + 1, 7);
+  ASSERT_EQ(name(ist_mesh_copy(c, vertices.data(), mesh.vertices.size(), triangles.data(),
+                               mesh.triangles.size())),
+            "ok");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(vertices[3 * i + static_cast<std::size_t>(axis)], mesh.vertices[i][axis]);
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(triangles[3 * i + k], mesh.triangles[i][k]);
+  }
+  EXPECT_EQ(vertices.back(), 7);
+  EXPECT_EQ(triangles.back(), 7u);
+  // What there is room for, and no more than there is.
+  std::vector<double> two(7, 5);
+  ASSERT_EQ(name(ist_mesh_copy(c, two.data(), 2, nullptr, 0)), "ok");
+  EXPECT_TRUE(std::equal(two.begin(), two.end() - 1, vertices.begin()));
+  EXPECT_EQ(two.back(), 5);
+  EXPECT_EQ(name(ist_mesh_free(c)), "ok");
+
+  BuildOptions options;
+  options.voxel_size = kVoxel;
+  const SphereTree tree = build_tree(mesh, options);
+  ist_tree* c_built = c_tree(mesh, kVoxel);
+  const std::vector<Ball> cubes = level_spheres(tree, SpherePolicy::kSimple, 0);
+  std::vector<double> centres(3 * cubes.size() + 3, 7);
+  ASSERT_EQ(name(ist_tree_copy_leaf_centres(c_built, centres.data(), cubes.size() + 1)), "ok");
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
+    const Eigen::Vector3d centre = tree.lattice().origin() + cubes[i].centre;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(centres[3 * i + static_cast<std::size_t>(axis)], centre[axis], 1e-15);
+    }
+  }
+  EXPECT_EQ(centres[3 * cubes.size()], 7);
+  EXPECT_EQ(name(ist_tree_free(c_built)), "ok");
 }
 
 }  // namespace

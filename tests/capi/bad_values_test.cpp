@@ -59,6 +59,24 @@ TEST_F(CMisuse, OfAPoseIsToldAndNothingIsAnswered) {
   }
 }
 
+// However the call fails, and whichever of its arguments is wrong.
+TEST_F(CMisuse, LeavesNoSumsOfTheCallBefore) {
+  const auto fails = [&](const ist_budget* budget, const char* status) {
+    sums_.weight = 7;
+    result_.contacts = 7;
+    EXPECT_EQ(name(ist_query_contact_points_within(query_, pose_.data(), budget, points_, 4, &sums_,
+                                                   &result_)),
+              status);
+    EXPECT_EQ(sums_.weight, 0);
+  };
+  fails(nullptr, "null-argument");
+  ist_budget unsized{};
+  fails(&unsized, "struct-size");
+  EXPECT_EQ(result_.contacts, 0u);
+  result_.struct_size = 0;
+  fails(&budget_, "struct-size");
+}
+
 TEST_F(CMisuse, OfArraysIsTold) {
   const auto created = [&](std::size_t vertices, std::size_t triangles) {
     return name(ist_mesh_create(corners_.data(), vertices, indices_.data(), triangles, &no_mesh_));

@@ -31,6 +31,9 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("mesh", ist_mesh_read(file_.c_str(), nullptr));
   is_null("mesh", ist_mesh_get_info(nullptr, &mesh_info_));
   is_null("info", ist_mesh_get_info(mesh_, nullptr));
+  is_null("mesh", ist_mesh_copy(nullptr, nullptr, 0, nullptr, 0));
+  is_null("vertices", ist_mesh_copy(mesh_, nullptr, 1, nullptr, 0));
+  is_null("triangles", ist_mesh_copy(mesh_, nullptr, 0, nullptr, 1));
 
   is_null("mesh", ist_tree_build(nullptr, &build_, &no_tree_));
   is_null("options", ist_tree_build(mesh_, nullptr, &no_tree_));
@@ -41,6 +44,8 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("path", ist_tree_save(tree_, nullptr));
   is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
   is_null("info", ist_tree_get_info(tree_, nullptr));
+  is_null("tree", ist_tree_copy_leaf_centres(nullptr, nullptr, 0));
+  is_null("centres", ist_tree_copy_leaf_centres(tree_, nullptr, 1));
 
   is_null("fixed", ist_query_create(nullptr, tree_, nullptr, &no_query_));
   is_null("moving", ist_query_create(tree_, nullptr, nullptr, &no_query_));
@@ -114,6 +119,8 @@ TEST_F(CMisuse, OfAHandleIsTold) {
       {kMesh, [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), &mesh_info_); }},
       {kMesh,
        [&](void* h) { return ist_tree_build(static_cast<ist_mesh*>(h), &build_, &no_tree_); }},
+      {kMesh,
+       [&](void* h) { return ist_mesh_copy(static_cast<ist_mesh*>(h), nullptr, 0, nullptr, 0); }},
       {kMesh, [&](void* h) { return ist_mesh_free(static_cast<ist_mesh*>(h)); }},
       {kTree, [&](void* h) { return ist_tree_get_info(static_cast<ist_tree*>(h), &tree_info_); }},
       {kTree, [&](void* h) { return ist_tree_save(static_cast<ist_tree*>(h), file_.c_str()); }},
@@ -125,6 +132,8 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        [&](void* h) {
          return ist_query_create(tree_, static_cast<ist_tree*>(h), nullptr, &no_query_);
        }},
+      {kTree,
+       [&](void* h) { return ist_tree_copy_leaf_centres(static_cast<ist_tree*>(h), nullptr, 0); }},
       {kTree, [&](void* h) { return ist_tree_free(static_cast<ist_tree*>(h)); }},
       {kQuery,
        [&](void* h) { return ist_query_get_info(static_cast<ist_query*>(h), &query_info_); }},

@@ -130,6 +130,20 @@ TEST_F(CServo, CountsWhatWentWrongAndComesBackSoftly) {
   EXPECT_LT(force[2], 0.5 * felt);
   EXPECT_EQ(info_of(servo).faults, 1u);
   EXPECT_EQ(info_of(servo).ticks, 202u);
+
+  // So it does where it was not even told where the device is, or could not say what to feel.
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(tick(deep), "ok");
+  const double again = force[2];
+  ASSERT_GT(again, 0.3);
+  for (int missing = 0; missing < 3; ++missing) {
+    EXPECT_EQ(
+        name(ist_servo_on_tick(servo, missing == 0 ? nullptr : pose.data(),
+                               missing == 1 ? nullptr : force, missing == 2 ? nullptr : torque)),
+        "null-argument");
+    EXPECT_EQ(tick(deep), "ok");
+    EXPECT_LT(force[2], 0.1 * again);
+  }
+  EXPECT_EQ(info_of(servo).faults, 4u);
   EXPECT_EQ(name(ist_servo_free(servo)), "ok");
 }
 

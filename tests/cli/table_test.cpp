@@ -143,9 +143,12 @@ TEST_F(Table, RefusesOptionsThatMakeNoSense) {
     refuses({"--vectors", count}, "--vectors");
     refuses({"--vectors", count, "-o", path("out.txt")}, "--vectors");
   }
-  refuses({"--vectors", "-1"}, "positive number of vectors");
+  refuses({"--vectors", "-1"}, "as decimal digits");
   refuses({"--vectors", "10", "--seed", "-1"}, "--seed");
   refuses({"--vectors", "10", "--seed", "x"}, "--seed");
+  refuses({"--vectors", "10", "--seed", "18446744073709551616"}, "--seed");
+  refuses({"--vectors", "10", "--seed", "010"}, "--seed");
+  refuses({"--vectors", "010"}, "--vectors");
   refuses({"--vectors", "10", "--format", "c"}, "give one of them");
   refuses({"--check", path("in.txt"), "--format", "c"}, "give one of them");
   refuses({"--check", path("in.txt"), "--vectors", "10"}, "give one of them");

@@ -45,6 +45,10 @@ finds_out() {
   refuses "300 vectors, 300 answers" "$@" +vectors=flipped.txt
   sed '250s/ [0-9a-f]\{10\} \(.\)$/ 0123456789 \1/' few.txt >reach.txt
   refuses "line 250: valid 1, hit" "$@" +vectors=reach.txt
+  sed '250s/ [0-9a-f]\{10\} \(.\)$/ 8000000005 \1/' few.txt >reach.txt
+  refuses "a number in line 250 does not fit" "$@" +vectors=reach.txt
+  sed '250s/.$/3/' few.txt >hit.txt
+  refuses "a number in line 250 does not fit" "$@" +vectors=hit.txt
   head -n 200 few.txt >cut.txt
   refuses "vector 193 of 300 has" "$@" +vectors=cut.txt
   head -n 8 few.txt | sed 's/^# count .*/# count 0/' >none.txt

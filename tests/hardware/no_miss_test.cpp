@@ -212,7 +212,7 @@ TEST(NearMiss, IsAHitOnlyWithinThePublishedBand) {
   double widest_leaf = 0, widest_node = 0;
   for (int i = 0; i < 4000; ++i) {
     const int level = i % 2 == 0 ? 0 : 6 + static_cast<int>(random.below(3));
-    const double ratio = random.uniform(1, 2);
+    const double ratio = random.uniform(1, 2) / static_cast<double>(1u << random.below(7));
     const Lattice fixed_lattice = centred_lattice(10),
                   moving_lattice = centred_lattice(10, 12 * ratio);
     const HardwareNode fixed = random_node(random, 10, level);
@@ -225,8 +225,8 @@ TEST(NearMiss, IsAHitOnlyWithinThePublishedBand) {
       const QuantizedPose quantized = quantize_pose(pose, fixed_lattice, moving_lattice);
       return test_pair(node_pair(quantized, fixed, moving), quantized.registers).hit;
     };
-    const double of_steps = 2.7321 / (1 << 14) + 0.00059 + 0.00078;
-    const double of_pad = 10.0 / 2661 / (1 << level);
+    const double of_steps = 2.7321 / (1 << 14) + 0.00059 + 0.00078 / (1 + ratio);
+    const double of_pad = 10.0 / (level == 0 ? 2661 : 1331) / (1 + ratio) / (1 << level);
     ASSERT_FALSE(hit(of_steps + of_pad)) << "level " << level;
     double inside = 0, outside = of_steps + of_pad;
     for (int step = 0; step < 12; ++step) {

@@ -109,7 +109,11 @@ TEST_F(VectorFile, AgreesWithTheModelThatWroteIt) {
   }
   EXPECT_EQ(checked(file_of(kLine)).hits, 1u);
   // With the ends of lines that other systems write, and in capitals.
-  EXPECT_EQ(checked(file_of(with_field(4, "FF") + "\r")).wrong, 0u);
+  std::string text = file_of(with_field(4, "FF"));
+  text.insert(text.size() - 1, "\r");
+  EXPECT_EQ(checked(text).wrong, 0u);
+  text.resize(text.size() - 2);  // and without the last
+  EXPECT_EQ(checked(text).wrong, 0u);
 }
 
 TEST_F(VectorFile, SaysWhereAnswersDiffer) {
@@ -141,10 +145,10 @@ TEST_F(VectorFile, SaysWhereAnswersDiffer) {
 
 TEST_F(VectorFile, RefusesNumbersThatDoNotFit) {
   const std::vector<std::pair<std::size_t, std::string>> bad = {
-      {0, "000000"},       {0, "60001"},   {1, "9ffff"},   {2, "7ffff"},     {3, "11"},
-      {3, "1f"},           {3, "ff"},      {4, "100"},     {5, "100000000"}, {8, "11"},
-      {9, "0ff"},          {10, "110000"}, {18, "000000"}, {19, "10000"},    {24, "fffff"},
-      {25, "00000014cef"}, {26, "2"},      {26, "f"},      {26, "01"}};
+      {0, "000000"},       {0, "60001"},       {1, "9ffff"},   {2, "7ffff"},     {3, "11"},
+      {3, "1f"},           {3, "ff"},          {4, "100"},     {5, "100000000"}, {8, "11"},
+      {9, "0ff"},          {10, "110000"},     {18, "000000"}, {19, "10000"},    {24, "fffff"},
+      {25, "00000014cef"}, {25, "0200000000"}, {26, "2"},      {26, "f"},        {26, "01"}};
   for (const auto& [field, value] : bad) {
     const std::string refusal = refused(file_of(with_field(field, value)));
     EXPECT_EQ(refusal.rfind("fixed-point-range: ", 0), 0u)
@@ -153,8 +157,14 @@ TEST_F(VectorFile, RefusesNumbersThatDoNotFit) {
     EXPECT_TRUE(has(refusal, vector_fields()[field].name)) << refusal;
   }
   // And the last that do.
-  for (const auto& [field, value] : std::vector<std::pair<std::size_t, std::string>>{
-           {0, "60000"}, {1, "a0000"}, {3, "10"}, {8, "10"}, {5, "80000000"}, {10, "80000"}}) {
+  for (const auto& [field, value] :
+       std::vector<std::pair<std::size_t, std::string>>{{0, "60000"},
+                                                        {1, "a0000"},
+                                                        {3, "10"},
+                                                        {8, "10"},
+                                                        {5, "80000000"},
+                                                        {10, "80000"},
+                                                        {25, "01ffffffff"}}) {
     EXPECT_EQ(refused(file_of(with_field(field, value))), "none") << field << ' ' << value;
   }
 }
@@ -177,7 +187,6 @@ TEST_F(VectorFile, RefusesWhatIsNone) {
   malformed(std::string(text).replace(text.find("# count 50"), 10, "# count 00"), "0 vectors");
   malformed(std::string(text).replace(text.find("xxh64"), 5, "md5sm"), "line 8");
   malformed(text.substr(0, text.size() - 200), "");
-  malformed(text.substr(0, text.size() - 1), "the vectors are not those");
   malformed(file_of(""), "line 9: 0 fields");
   malformed(file_of(std::string(kLine, std::string(kLine).rfind(' '))),
             "26 fields, and a vector has 27");

@@ -126,11 +126,10 @@ class Packages:
         environment = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
         program = self.compile_consumer(folder, self.prefix, environment)
         self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/lib"])
-        if (self.prefix / "include/ist/capi/ist.h").exists():
-            flags = run("pkg-config", "--cflags", "--libs", "ist", env=environment).split()
-            run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", HERE / "consumer/consumer.c", *flags,
-                "-o", folder / "consumer_c")
-            run("env", f"LD_LIBRARY_PATH={self.prefix}/lib", folder / "consumer_c")
+        flags = run("pkg-config", "--cflags", "--libs", "ist", env=environment).split()
+        run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", HERE / "consumer/consumer.c", *flags,
+            "-o", folder / "consumer_c")
+        run("env", f"LD_LIBRARY_PATH={self.prefix}/lib", folder / "consumer_c")
 
     def Debian(self):
         """The three packages, in a root that holds what they depend on and nothing else."""

@@ -1,7 +1,7 @@
 """Holds what the shared library exports against exported_symbols.txt, which is reviewed like code.
 
-    symbols.py LIBRARY             fails where a name came, went, or is none that may get out
-    symbols.py LIBRARY --update    keeps what it exports now; never what may not get out"""
+    python3 symbols.py LIBRARY             fails where a name came, went, or is none that may get out
+    python3 symbols.py LIBRARY --update    keeps what it exports now; never what may not get out"""
 
 import pathlib
 import re
@@ -31,7 +31,7 @@ def declared():
     for header in re.findall(r"^ist/\S+", PUBLIC.read_text(), re.MULTILINE):
         text = re.sub(r"//[^\n]*", "", (SOURCE / header).read_text())
         cpp.update(re.findall(r"\b(?:class|struct) IST_API (\w+)", text))
-        cpp.update(re.findall(r"\bIST_API [\w:<>*&\s]*?(\w+)\(", text))
+        cpp.update(re.findall(r"\bIST_API [\w:<>,*&\s]*?(\w+)\(", text))
         c.update(re.findall(r"\bIST_C_API\b[^;(]*?\b(ist_\w+)\s*\(", text))
     return cpp, c
 
@@ -67,7 +67,7 @@ def main(library, *rest):
     changes = [f"+ {name}" for name in names if name not in kept] + [f"- {name}" for name in kept if name not in names]
     if changes:
         print("\n".join(changes), file=sys.stderr)
-        print("symbols: exported names changed. If that is meant, tests/package/symbols.py LIBRARY --update keeps them: "
+        print("symbols: exported names changed. If that is meant, python3 tests/package/symbols.py LIBRARY --update keeps them: "
               "where one went, C++ needs a new minor version, and C a new SONAME", file=sys.stderr)
         return 1
     print(f"{len(names)} names, {len(c)} of them C functions")

@@ -19,7 +19,7 @@ ECP5 = {"LUT4": 1000, "CCU2C": 107, "TRELLIS_FF": 45, "MULT18X18D": 4, "DP16KD":
 def run(size, dz, **counters):
     return {"name": f"hardware/{size}/{dz}/iterations:3", "label": "made-up", "voxel_size": size, "pairs": 100000,
             "pairs_exact": 100000, "contacts": 10, "contacts_exact": 10, "opened": 10000, "words": 50000, "moved": 7,
-            "misses": 50000, "false_hits": 0, "false_hit_rate": 0, "word_bytes": 8, "nodes": 2**17, **counters}
+            "misses": 50000, "false_hits": 0, "false_misses": 0, "false_hit_rate": 0, "word_bytes": 8, "nodes": 2**17, **counters}
 
 
 class HardwareReport(unittest.TestCase):
@@ -57,6 +57,11 @@ class HardwareReport(unittest.TestCase):
         self.assertNotIn("The clock is not measured:", said)
         self.assertIn("**40.0 MHz**", said)
         self.assertIn("| 40.0 MHz, as placed | 400 … 200 Hz |", said)
+
+    def test_a_hit_that_is_missed_is_not_passed_over(self):
+        self.assertIn("errs in 0 of 200,000 pairs.", self.report(run(0.4, 0.0), run(0.4, -1.0)))
+        self.assertIn("errs in 3 of 200,000 pairs: **a hit is missed",
+                      self.report(run(0.4, 0.0), run(0.4, -1.0, false_misses=3)))
 
     def test_near_misses_are_told_at_their_worst(self):
         self.assertIn("It called none a hit.", self.report(run(0.4, 0.0)))

@@ -10,7 +10,7 @@ constexpr std::uint64_t kSlotBits = 0xFFFF;
 constexpr int kKindAt = 48;
 constexpr std::uint64_t kCountOne = kSlotBits + 1;
 constexpr std::uint64_t kCountBits = 0xFFFFFFFF * kCountOne;
-// Addresses have all of bits 63 to 47 alike.
+// Addresses have all of bits 63 to 56 alike, however many levels their pages have.
 constexpr std::uint64_t kMark = std::uint64_t{0x5A} << 56;
 constexpr std::uint64_t kMarkBits = std::uint64_t{0xFF} << 56;
 static_assert(HandleTable::kSlots == kSlotBits + 1);

@@ -2,7 +2,8 @@
 #define IST_CAPI_IST_H
 
 /*
- * IST for C, and for any language that calls C: where two rigid triangle meshes touch.
+ * IST for C, and for any language that calls C: where two rigid triangle meshes touch. For
+ * processors of 64 bits.
  *
  * Handles. A mesh, a tree, a query and a servo (ist_servo.h) are handles: values that look like
  * pointers and are none. Each is given by one function, and given back by its ist_..._free. A
@@ -112,8 +113,6 @@ IST_C_API const char* ist_status_name(ist_status status) IST_NOEXCEPT;
  * it alone. The text is the thread's, and stands until its next failure. [real time] */
 IST_C_API const char* ist_last_error_message(void) IST_NOEXCEPT;
 
-/* ---- Meshes ---- */
-
 /* A surface of triangles, as given: immutable. */
 typedef struct ist_mesh ist_mesh;
 
@@ -147,16 +146,20 @@ typedef struct ist_mesh_info {
   int32_t closed;                /* 1: every edge is the side of exactly two triangles */
   int32_t consistent;            /* 1: no two triangles run along an edge the same way */
   double box_min[3], box_max[3]; /* of all vertices */
-  double signed_volume;          /* positive outward; means little where not closed */
+  double signed_volume;          /* positive outward; little worth where not closed or > 1e100 */
 } ist_mesh_info;
 
 /* What a mesh holds, and what is wrong with it. Cost: some 40 ms for 100,000 triangles. */
 IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT;
 
+/* Copies vertices, 3 coordinates each, and triangles, 3 indices each, as they are counted in
+ * answers: of each the first that there is room for. Either array may be NULL where its capacity,
+ * in vertices or triangles, is 0. Cost: 1 ns a number. */
+IST_C_API ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
+                                   uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT;
+
 /* NULL is fine, for this and for all other ..._free; a second time is IST_HANDLE_FREED. */
 IST_C_API ist_status ist_mesh_free(ist_mesh* mesh) IST_NOEXCEPT;
-
-/* ---- Trees ---- */
 
 /* A body made ready for queries: immutable. */
 typedef struct ist_tree ist_tree;
@@ -214,10 +217,14 @@ typedef struct ist_tree_info {
 /* Cost: 1 us. */
 IST_C_API ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEXCEPT;
 
+/* Copies the centres of leaves, 3 mesh coordinates each, in the order by which contacts count them:
+ * the first `capacity` of them. A leaf is a cube of edge voxel_size. `centres` may be NULL where
+ * `capacity` is 0. Cost: 20 ns a leaf. */
+IST_C_API ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
+                                                size_t capacity) IST_NOEXCEPT;
+
 /* Queries that use the tree keep it alive. */
 IST_C_API ist_status ist_tree_free(ist_tree* tree) IST_NOEXCEPT;
-
-/* ---- Queries ---- */
 
 /* Two trees, and memory to ask where they touch. One for each thread; trees are shared. */
 typedef struct ist_query ist_query;
@@ -356,7 +363,8 @@ enum {
 };
 
 /* Whether the bodies touch: ends at the first certain answer. Exact where both trees have
- * triangles. `touch` takes IST_TOUCH_... Errors: IST_POSE_INVALID. [real time] */
+ * triangles. `touch` takes IST_TOUCH_... Errors: IST_POSE_INVALID. Cost: at
+ * most that of ist_query_collide, or with triangles of ist_query_exact. [real time] */
 IST_C_API ist_status ist_query_touches(ist_query* query, const double pose[16],
                                        int32_t* touch) IST_NOEXCEPT;
 
@@ -382,6 +390,7 @@ IST_C_API ist_status ist_query_exact(ist_query* query, const double pose[16],
                                      ist_triangle_pair* pairs, size_t capacity,
                                      ist_exact_result* result) IST_NOEXCEPT;
 
+/* The trees go with it where nothing else uses them. */
 IST_C_API ist_status ist_query_free(ist_query* query) IST_NOEXCEPT;
 
 #ifdef __cplusplus

@@ -86,14 +86,18 @@ ist_contact_sums sums_of(const ContactSums& sums) {
   return out;
 }
 
+// Both become zero where they can, whatever is wrong with the other.
+ist_status clear_both(const Call& call, ist_contact_sums* sums, ist_query_result* result) {
+  const ist_status wrong_sums = sums == nullptr ? IST_OK : clear_sized(call, "sums", sums);
+  const ist_status wrong_result = clear_sized(call, "result", result);
+  return wrong_result != IST_OK ? wrong_result : wrong_sums;
+}
+
 template <typename Ask>
 ist_status contact_points(const Call& call, ist_query* query, const double* pose,
                           ist_contact_point* points, std::size_t capacity, ist_contact_sums* sums,
                           ist_query_result* result, const Ask& ask) {
-  if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
-  if (sums != nullptr) {
-    if (const ist_status wrong = clear_sized(call, "sums", sums)) return wrong;
-  }
+  if (const ist_status wrong = clear_both(call, sums, result)) return wrong;
   if (const ist_status missing = call.need({{"pose", pose}})) return missing;
   if (const ist_status missing = call.need_array("points", points, capacity)) return missing;
   const Held<Query> held(call, "query", query);
@@ -163,7 +167,7 @@ ist_status ist_query_contact_points_within(ist_query* query, const double pose[1
                                            size_t capacity, ist_contact_sums* sums,
                                            ist_query_result* result) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status wrong = clear_both(call, sums, result)) return wrong;
     ist::Budget allowed;
     if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
     return contact_points(call, query, pose, points, capacity, sums, result,

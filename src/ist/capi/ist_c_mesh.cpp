@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -132,6 +133,28 @@ ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEX
     std::copy_n(report.box_max.data(), 3, values.box_max);
     values.signed_volume = report.signed_volume;
     write_sized(values, *info);
+    return IST_OK;
+  });
+}
+
+ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
+                         uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    const ist_status bad_vertices = call.need_array("vertices", vertices, vertex_capacity);
+    if (bad_vertices != IST_OK) return bad_vertices;
+    const ist_status bad_triangles = call.need_array("triangles", triangles, triangle_capacity);
+    if (bad_triangles != IST_OK) return bad_triangles;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    const ist::TriangleMesh& made = held->mesh;
+    for (const auto& vertex :
+         std::span(made.vertices).first(std::min(vertex_capacity, made.vertices.size()))) {
+      vertices = std::copy_n(vertex.data(), 3, vertices);
+    }
+    for (const auto& triangle :
+         std::span(made.triangles).first(std::min(triangle_capacity, made.triangles.size()))) {
+      triangles = std::copy_n(triangle.data(), 3, triangles);
+    }
     return IST_OK;
   });
 }

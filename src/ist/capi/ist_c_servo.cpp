@@ -129,11 +129,12 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (force != nullptr) std::fill_n(force, 3, 0.0);
     if (torque != nullptr) std::fill_n(torque, 3, 0.0);
-    if (const auto missing = call.need({{"pose", pose}, {"force", force}, {"torque", torque}})) {
-      return missing;
-    }
     const Held<Servo> held(call, "servo", servo);
     if (held.status() != IST_OK) return held.status();
+    if (const auto missing = call.need({{"pose", pose}, {"force", force}, {"torque", torque}})) {
+      held->callback.fault();
+      return missing;
+    }
     const ist::ServoTick tick =
         held->callback.on_tick(std::span<const double, 16>(pose, 16),
                                std::span<double, 3>(force, 3), std::span<double, 3>(torque, 3));

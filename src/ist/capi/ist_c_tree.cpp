@@ -1,6 +1,12 @@
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "ist/base/float_environment.h"
 #include "ist/capi/handle.h"
 #include "ist/capi/objects.h"
 #include "ist/capi/sized_struct.h"
+#include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_builder.h"
 #include "ist/tree/tree_io.h"
 
@@ -92,6 +98,25 @@ ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEX
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
     write_sized(info_of(*held->tree), *info);
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
+                                      size_t capacity) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const auto missing = call.need_array("centres", centres, capacity)) return missing;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    const ist::ScopedFloatEnvironment environment;
+    const ist::SphereTree& made = *held->tree;
+    const std::vector<std::uint64_t> codes = made.octree().codes(0);
+    for (const std::uint64_t code : std::span(codes).first(std::min(capacity, codes.size()))) {
+      const Eigen::Vector3d centre =
+          made.lattice().origin() +
+          made.lattice().voxel_size * ist::cube_centre(made.lattice(), 0, code);
+      centres = std::copy_n(centre.data(), 3, centres);
+    }
     return IST_OK;
   });
 }

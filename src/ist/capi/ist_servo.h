@@ -41,7 +41,8 @@ IST_C_API ist_status ist_servo_open_scene(const char* path, const ist_servo_opti
                                           ist_servo** servo) IST_NOEXCEPT;
 
 /* What the scene's building warned of, sentence by sentence from `index` 0 on; NULL after the last,
- * and where `servo` is no handle of one. The text lives as long as the servo. */
+ * and where `servo` is no handle of one, or another thread is in a call with it. The text lives as
+ * long as the servo. */
 IST_C_API const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT;
 
 typedef struct ist_servo_info {
@@ -61,12 +62,15 @@ IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) 
 /* One tick. `pose` is where the device is, `force` and `torque` are what the hand is to feel.
  *
  * Whatever is returned but IST_OK, both are zero: what the device is told must be set every tick.
- * After an error forces come back softly. Too little time for all contacts is no error, see
- * ist_servo_info.
- * Errors: IST_POSE_INVALID, IST_SERVO_FAULT. Cost: the queries', and 5 to 15 us. [real time] */
+ * After an error forces come back softly, but after IST_HANDLE_BUSY, which says that another thread
+ * is in a call with this servo: then no tick was made. Too little time for all contacts is no
+ * error, see ist_servo_info.
+ * Errors: IST_POSE_INVALID, IST_SERVO_FAULT, IST_NULL_ARGUMENT. Cost: the queries', and 5 to 15 us.
+ * [real time] */
 IST_C_API ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                                        double torque[3]) IST_NOEXCEPT;
 
+/* The hand feels nothing from it any more: tell the device so. */
 IST_C_API ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT;
 
 #ifdef __cplusplus

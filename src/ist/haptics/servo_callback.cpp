@@ -67,6 +67,12 @@ ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<dou
   return tick.held ? ServoTick::kHeld : ServoTick::kFine;
 }
 
+void ServoCallback::fault() noexcept {
+  simulation_.fault();
+  ++counts_.ticks;
+  ++counts_.faults;
+}
+
 ServoCallback::Pose ServoCallback::tool() const noexcept {
   const ScopedFloatEnvironment environment;
   Eigen::Isometry3d tool = simulation_.at().isometry();

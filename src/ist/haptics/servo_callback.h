@@ -62,6 +62,10 @@ class IST_API ServoCallback {
   ServoTick on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
                     std::span<double, 3> torque) noexcept;
 
+  /// For who calls and knows that something is wrong: counts as a tick that was a fault. Nothing is
+  /// to be felt, and forces come back softly.
+  void fault() noexcept;
+
   /// Where the tool is, in the poses' unit: to begin with where a device should be, and after a
   /// tick what is to be drawn, for it stays outside where the device goes in.
   [[nodiscard]] Pose tool() const noexcept;

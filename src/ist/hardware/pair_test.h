@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "ist/base/api.h"
+
 /// The pair test of the circuit, bit for bit, in integers alone. A unit is a sixth of half a fixed
 /// leaf's edge; README.md in this folder gives the formats, and derives what an answer may err by.
 namespace ist {
@@ -47,6 +49,7 @@ struct PairAnswer {
 /// README.md says how often true where they do not. False where either mask is 0.
 ///
 /// Precondition: levels up to kMaxNodeLevel, a fixed centre within ±kMaxCentre.
-[[nodiscard]] PairAnswer test_pair(const NodePair& pair, const PairRegisters& registers) noexcept;
+[[nodiscard]] IST_API PairAnswer test_pair(const NodePair& pair,
+                                           const PairRegisters& registers) noexcept;
 
 }  // namespace ist

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "ist/base/api.h"
 #include "ist/hardware/pair_test.h"
 #include "ist/voxel/lattice.h"
 
@@ -24,18 +25,18 @@ struct QuantizedPose {
 /// Throws kPoseInvalid where it is none, and kFixedPointRange where the moving voxels are 8 times
 /// as large as the fixed ones or more, or where the pad or any centre that move_centre could give
 /// does not fit its format.
-[[nodiscard]] QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const Lattice& fixed,
-                                          const Lattice& moving);
+[[nodiscard]] IST_API QuantizedPose quantize_pose(const Eigen::Isometry3d& pose,
+                                                  const Lattice& fixed, const Lattice& moving);
 
 /// The centre of a moving node's cube in the fixed tree's frame, units, Q23.8, rounded down.
 ///
 /// @param centre in moving units; within the root cube of the lattice that the pose was made for
-[[nodiscard]] std::array<std::int32_t, 3> move_centre(
+[[nodiscard]] IST_API std::array<std::int32_t, 3> move_centre(
     const QuantizedPose& pose, const std::array<std::int32_t, 3>& centre) noexcept;
 
 /// The registers for a rotation and for moving voxels `ratio` times as large as the fixed ones.
 /// Throws kFixedPointRange where ratio is not below 8.
-[[nodiscard]] PairRegisters make_registers(const Eigen::Matrix3d& rotation, double ratio,
-                                           std::uint16_t pad);
+[[nodiscard]] IST_API PairRegisters make_registers(const Eigen::Matrix3d& rotation, double ratio,
+                                                   std::uint16_t pad);
 
 }  // namespace ist

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ist/base/api.h"
 #include "ist/tree/lookup_table.h"
 
 /// The lookup table as a circuit reads it. README.md in this folder describes words and units.
@@ -68,6 +69,6 @@ inline constexpr std::array<std::uint16_t, 5> kFixedRadii = table_rom_detail::ma
 }
 
 /// XXH64 of the 256 words, each as 16 bits, little endian.
-[[nodiscard]] std::uint64_t table_checksum();
+[[nodiscard]] IST_API std::uint64_t table_checksum();
 
 }  // namespace ist

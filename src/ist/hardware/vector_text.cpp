@@ -38,7 +38,7 @@ constexpr std::array<VectorField, kVectorFields> kFields = {{
     {"radius3", 4, 16, false},
     {"radius4", 4, 16, false},
     {"pad", 4, 16, false},
-    {"reach", 10, 40, false},
+    {"reach", 10, 33, false},
     {"hit", 1, 1, false},
 }};
 
@@ -70,7 +70,9 @@ void for_each_number(Vector& vector, const Use& use) {
 [[noreturn]] void out_of_range(std::string_view place, const VectorField& field,
                                std::string_view digits, const std::string& allowed) {
   throw Error(ErrorCode::kFixedPointRange,
-              fmt::format("{}, field {}: {} does not fit: {}", place, field.name, digits, allowed));
+              fmt::format("{}, field {}: {} does not fit: {}; scale what made it to the formats in "
+                          "src/ist/hardware/README.md",
+                          place, field.name, digits, allowed));
 }
 
 int value_of(char digit) noexcept {
@@ -102,13 +104,14 @@ std::int64_t read_number(const VectorField& field, std::string_view digits,
   const auto width = static_cast<std::size_t>(field.digits);
   if (digits.size() > width) {
     out_of_range(place, field, digits.substr(0, 40),
-                 fmt::format("it has {} bits, {} digits", field.bits, field.digits));
+                 fmt::format("the field has {} digits, and {} bits", field.digits, field.bits));
   }
   if (digits.size() < width) {  // two's complement of how many bits?
     malformed(place, fmt::format("field {}: '{}' must have {} digits", field.name, digits, width));
   }
   if (bits >> field.bits != 0) {
-    out_of_range(place, field, digits, fmt::format("it has {} bits", field.bits));
+    out_of_range(place, field, digits,
+                 fmt::format("the field has no more bits than {}", field.bits));
   }
   const std::uint64_t sign = field.is_signed ? bits >> (field.bits - 1) << field.bits : 0;
   const std::int64_t value = static_cast<std::int64_t>(bits) - static_cast<std::int64_t>(sign);

@@ -1,5 +1,5 @@
 // Whether the spheres of two octree nodes touch: the pair test of src/ist/hardware/README.md, bit for
-// bit. One pair a clock, its answer LATENCY clocks later; no root, no division, four multiplications.
+// bit. One pair a clock, its answer after LATENCY stages; no root, no division, four multiplications.
 //
 // Lengths are in units of h/6, h half the edge of a fixed leaf; Q.8 has 8 bits after the point.
 //
@@ -26,7 +26,7 @@ module ist_pair_test (
     output reg          hit,
     output reg  [ 32:0] reach           // Q.8: within which the centres are compared; for tests
 );
-  // Clocks from the edge that takes a pair to the one after which its answer is there.
+  // Stages: an answer is there after so many edges, the one that takes the pair counted.
   localparam LATENCY = 10;
 
   reg [LATENCY-1:0] valid;
