@@ -171,7 +171,7 @@ void add_demo(CLI::App& app) {
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--seed", options->seed, "another number makes other jaws")
-      ->check(no_minus(""))
+      ->check(whole_number("a seed"))
       ->capture_default_str();
   command->add_option("--keep", options->keep, "folder to write upper_jaw.stl and lower_jaw.stl to")
       ->check(CLI::ExistingDirectory);

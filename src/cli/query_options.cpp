@@ -12,6 +12,18 @@
 #include "ist/query/kernels.h"
 
 namespace ist::cli {
+namespace {
+
+// A minus would wrap round in a number without sign.
+CLI::Validator no_minus() {
+  return {[](const std::string& text) {
+            return text.find('-') == std::string::npos ? std::string()
+                                                       : "give a positive number of bytes";
+          },
+          ""};
+}
+
+}  // namespace
 
 std::vector<std::string> policy_names() {
   std::vector<std::string> names;
@@ -19,15 +31,6 @@ std::vector<std::string> policy_names() {
     names.emplace_back(to_string(policy));
   }
   return names;
-}
-
-CLI::Validator no_minus(const std::string& what) {
-  return {[what](const std::string& text) {
-            return text.find('-') == std::string::npos
-                       ? std::string()
-                       : fmt::format("give a positive number{}", what.empty() ? "" : " of " + what);
-          },
-          ""};
 }
 
 CLI::Validator whole_number(const std::string& what) {
@@ -64,7 +67,7 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
       .add_option("--max-memory", bytes,
                   "most memory that voxels and tree may take, in bytes; K, M and G are understood")
       ->transform(CLI::AsSizeValue(false))
-      ->transform(no_minus("bytes"))  // of the two transformations, the first to be done
+      ->transform(no_minus())  // of the two transformations, the first to be done
       ->default_str("4G");
 }
 
@@ -150,7 +153,7 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       .add_option("--max-tests", options.max_tests,
                   "stop after so many tests, and print what is known by then: the level, and an "
                   "interval that the gap is in")
-      ->transform(no_minus("tests"));
+      ->transform(whole_number("how many tests"));
   command.add_option("--repeat", options.repeat, "how often to time each pose")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

@@ -16,10 +16,8 @@ namespace ist::cli {
 /// The names that --spheres takes.
 [[nodiscard]] std::vector<std::string> policy_names();
 
-/// Refuses a minus, which would wrap round in a number without sign. `what` is counted, or empty.
-[[nodiscard]] CLI::Validator no_minus(const std::string& what);
 /// Refuses what is not decimal digits of a number below 2^64, which would be taken for another one:
-/// 010 for 8, and what is too large for the largest.
+/// -1 for the largest, what is too large for the largest too, and 010 for 8.
 [[nodiscard]] CLI::Validator whole_number(const std::string& what);
 
 /// Adds to a subcommand's help an example, and what every help ends with.

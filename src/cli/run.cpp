@@ -192,7 +192,7 @@ void add_run(CLI::App& app) {
           ->check(CLI::Range(1e-3, 1e6));
   auto* allow_missed =
       command->add_option("--allow-missed", options->allow_missed, "deadlines that may be missed")
-          ->check(no_minus("deadlines"));
+          ->check(whole_number("how many deadlines"));
   auto* record =
       command->add_option("--record", options->record,
                           "write every tick to this file: JSON lines, or CSV if it ends in .csv");

@@ -163,7 +163,7 @@ void add_table(CLI::App& app) {
   command
       ->add_option("--vectors", options->vectors,
                    "so many golden vectors of the pair test, corner cases first")
-      ->transform(whole_number("how many"))
+      ->transform(whole_number("how many vectors"))
       ->check(CLI::Range(std::uint64_t{1}, kMaxVectors));
   command->add_option("--seed", options->seed, "of the vectors that are random; 1 where not given")
       ->transform(whole_number("a seed"));

@@ -49,6 +49,24 @@ template <typename Struct>
   return made;
 }
 
+/// A ball above a box, for a servo.
+inline constexpr const char* kSmallScene = R"(
+unit = "mm"
+[fixed]
+shape = "box"
+size = [10, 10, 4]
+voxel_size = 0.5
+[held]
+shape = "sphere"
+radius = 2
+voxel_size = 0.5
+translation = [0, 0, 4.5]
+[device]
+kind = "null"
+[effects.contact]
+stiffness = 1000
+)";
+
 /// A pose column by column: a shift.
 [[nodiscard]] inline std::array<double, 16> c_shift(double x, double y, double z) {
   return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};

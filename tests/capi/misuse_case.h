@@ -11,23 +11,6 @@
 
 namespace ist::test {
 
-inline constexpr const char* kSmallScene = R"(
-unit = "mm"
-[fixed]
-shape = "box"
-size = [10, 10, 4]
-voxel_size = 1
-[held]
-shape = "box"
-size = [2, 2, 2]
-voxel_size = 1
-translation = [0, 0, 4]
-[device]
-kind = "null"
-[effects.contact]
-stiffness = 1000
-)";
-
 /// One of each handle, and all that a call is given beside it.
 class CMisuse : public ::testing::Test {
  protected:

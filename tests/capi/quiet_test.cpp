@@ -16,23 +16,6 @@
 namespace ist::test {
 namespace {
 
-constexpr const char* kScene = R"(
-unit = "mm"
-[fixed]
-shape = "box"
-size = [10, 10, 4]
-voxel_size = 0.5
-[held]
-shape = "sphere"
-radius = 2
-voxel_size = 0.5
-translation = [0, 0, 4.5]
-[device]
-kind = "null"
-[effects.contact]
-stiffness = 1000
-)";
-
 struct Bodies {
   TempDir folder;
   ist_query* query = c_query(c_tree(icosphere(2, 1), 0.15));
@@ -45,7 +28,7 @@ struct Bodies {
   Bodies() {
     auto options = sized<ist_servo_options>();
     options.unit = IST_UNIT_MM;
-    const std::string file = folder.write("scene.toml", kScene).string();
+    const std::string file = folder.write("scene.toml", kSmallScene).string();
     EXPECT_EQ(name(ist_servo_open_scene(file.c_str(), &options, &servo)), "ok");
     EXPECT_EQ(name(ist_query_free(freed)), "ok");
   }

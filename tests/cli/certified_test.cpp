@@ -102,7 +102,8 @@ TEST_F(Certified, ContradictionsAreRefused) {
   refuses({"--max-tests", "5", "--exact"}, "contradicts");
   refuses({"--max-tests", "5", "--gap", "1"}, "contradicts");
   refuses({"--max-tests", "5", "--verify"}, "contradicts");
-  refuses({"--max-tests", "-5"}, "positive");
+  refuses({"--max-tests", "-5"}, "decimal digits");
+  refuses({"--max-tests", "010"}, "decimal digits");
   refuses({"--max-tests", "1.5"}, "--max-tests");
   refuses({"--gap", "-1"}, "--gap");
   refuses({"--gap", "nan"}, "--gap");

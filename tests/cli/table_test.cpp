@@ -143,7 +143,7 @@ TEST_F(Table, RefusesOptionsThatMakeNoSense) {
     refuses({"--vectors", count}, "--vectors");
     refuses({"--vectors", count, "-o", path("out.txt")}, "--vectors");
   }
-  refuses({"--vectors", "-1"}, "as decimal digits");
+  refuses({"--vectors", "-1"}, "how many vectors as decimal digits");
   refuses({"--vectors", "10", "--seed", "-1"}, "--seed");
   refuses({"--vectors", "10", "--seed", "x"}, "--seed");
   refuses({"--vectors", "10", "--seed", "18446744073709551616"}, "--seed");
