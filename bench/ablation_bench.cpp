@@ -15,7 +15,8 @@
 
 #include "ablation/comparison.h"
 #include "ablation/mask_spheres.h"
-#include "ist/query/kernels.h"
+#include "ist/tree/tree_parts.h"
+#include "simd/dispatch.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 
@@ -89,7 +90,7 @@ void report(benchmark::State& state, double voxel_size, const Parts& parts, std:
   Measured& measured = compared(voxel_size).of(parts);
   measured.latencies[pose].report(state);
   state.counters["tests"] = static_cast<double>(measured.results[pose].sphere_tests);
-  state.counters["contacts"] = static_cast<double>(measured.results[pose].contacts);
+  state.counters["contacts"] = static_cast<double>(measured.results[pose].leaf_pairs);
   state.counters["bytes"] = static_cast<double>(measured.variant.bytes());
   state.counters["n"] = static_cast<double>(measured.rounds);
   state.SetLabel(pair_name());
@@ -97,7 +98,8 @@ void report(benchmark::State& state, double voxel_size, const Parts& parts, std:
 
 // What the spheres of 2^16 nodes take, by a way to make one of a mask.
 void make_spheres(benchmark::State& state, double voxel_size, SphereOfMask make) {
-  const std::vector<std::uint8_t> masks = some_masks(trees(voxel_size).first.octree(), 1 << 16);
+  const std::vector<std::uint8_t> masks =
+      some_masks(trees(voxel_size).first.parts().octree, 1 << 16);
   const auto begin = std::chrono::steady_clock::now();
   for (auto _ : state) {
     for (const std::uint8_t mask : masks) {

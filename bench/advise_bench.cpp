@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "ist/query/advice/calibration.h"
+#include "advise/calibration.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/stopwatch.h"
@@ -18,7 +18,7 @@ void advise(benchmark::State& state, const AdviceGoal& goal) {
     const Stopwatch watch;
     ExactBodies bodies(fixed, moving);
     const auto path =
-        find_closing_path(bodies, opening_of(bodies.fixed_box(), bodies.moving_box()));
+        find_closing_path(bodies, shortest_open_direction(bodies.fixed_box(), bodies.moving_box()));
     if (!path) {
       state.SkipWithError("the jaws pass each other");
       return;

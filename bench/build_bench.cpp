@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "ist/tree/tree_parts.h"
 #include "support/bodies.h"
 #include "support/peak_memory.h"
 
@@ -24,8 +25,8 @@ void build_upper_jaw(benchmark::State& state, double voxel_size, SpherePolicy po
     BuildReport report;
     const SphereTree tree = build_tree(mesh, options, &report);
     for (const auto& stage : report.stages) stages[stage.name].push_back(stage.milliseconds);
-    state.counters["leaves"] = tree.octree().leaf_count();
-    state.counters["nodes"] = static_cast<double>(tree.octree().node_count());
+    state.counters["leaves"] = tree.leaf_count();
+    state.counters["nodes"] = static_cast<double>(tree.parts().octree.node_count());
     state.counters["tree_MB"] = static_cast<double>(tree.bytes()) / 1e6;
   }
   state.counters["peak_MB"] = peak_memory_mb();

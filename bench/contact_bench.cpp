@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/query.h"
 #include "support/bodies.h"
 
 namespace ist::bench {
@@ -13,31 +14,31 @@ namespace {
 void reduce(benchmark::State& state, double voxel_size, SpherePolicy policy, std::size_t most,
             double dz) {
   const auto& [fixed, moving] = trees(voxel_size);
-  CollisionOptions options;
+  QueryOptions options;
   options.policy = policy;
-  CollisionQuery query(fixed, moving, options);
-  ContactPoints points(fixed, moving, policy, {most, ContactPointOptions{}.touched_leaves});
+  Query query(fixed, moving, options);
+  ContactManifold points(fixed, moving, policy, {most, ManifoldOptions{}.max_leaves});
   const Eigen::Isometry3d pose = closing(dz);
-  std::vector<Contact> contacts(1 << 20);
-  const std::uint64_t count = query.collide(pose, contacts).contacts;
-  if (count > contacts.size()) {
+  std::vector<LeafPair> leaf_pairs(1 << 20);
+  const std::uint64_t count = query.leaf_pairs(pose, leaf_pairs).leaf_pairs;
+  if (count > leaf_pairs.size()) {
     state.SkipWithError("there are more contacts than there is room for");
     return;
   }
-  contacts.resize(count);
-  static_cast<void>(query.contact_points(pose, points));
+  leaf_pairs.resize(count);
+  static_cast<void>(query.contacts(pose, points));
   const ContactSums wanted = points.sums();
-  static_cast<void>(points.begin(pose));
-  points.take(contacts);
-  points.finish();
+  static_cast<void>(points.reducer().begin(pose));
+  points.reducer().take(leaf_pairs);
+  points.reducer().finish();
   if (points.sums().weight != wanted.weight || (wanted.weight > 0) != (wanted.pairs > 0)) {
     state.SkipWithError("the list and the stream give different sums");
     return;
   }
   for (auto _ : state) {
-    static_cast<void>(points.begin(pose));
-    points.take(contacts);
-    points.finish();
+    static_cast<void>(points.reducer().begin(pose));
+    points.reducer().take(leaf_pairs);
+    points.reducer().finish();
   }
   const auto pairs = static_cast<double>(count);
   state.counters["pairs"] = pairs;
@@ -53,7 +54,7 @@ void reduce(benchmark::State& state, double voxel_size, SpherePolicy policy, std
 const int kRegistered = [] {
   for (const double size : {0.8, 0.2}) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
-      for (const std::size_t most : {std::size_t{0}, ContactPointOptions{}.points}) {
+      for (const std::size_t most : {std::size_t{0}, ManifoldOptions{}.points}) {
         for (const double dz : kClosing) {
           const std::string name = "contact_points/" + std::to_string(size).substr(0, 3) + "/" +
                                    std::string(to_string(policy)) + "/" + std::to_string(most) +

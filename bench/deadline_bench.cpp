@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "support/bodies.h"
 #include "support/conformal.h"
 #include "support/latencies.h"
@@ -61,7 +61,10 @@ Scene conformal(const test::ConformalPair& pair, const std::string& name) {
 }
 
 Scene jaws() {
-  Scene scene{"jaws", trees(kVoxelSize), {}};
+  Scene scene{"jaws",
+              {build(upper_jaw(), kVoxelSize, SpherePolicy::kSlab),
+               build(lower_jaw(), kVoxelSize, SpherePolicy::kSlab)},
+              {}};
   for (const double dz : kClosing) scene.poses.push_back(closing(dz));
   return scene;
 }
@@ -77,31 +80,31 @@ const Scene& made(const std::string& name, const Make& make) {
   return *last;
 }
 
-CollisionOptions slabs() {
-  CollisionOptions options;
+QueryOptions slabs() {
+  QueryOptions options;
   options.policy = SpherePolicy::kSlab;
   return options;
 }
 
 void unbudgeted(benchmark::State& state, const std::string& name, const Make& make) {
   const Scene& scene = made(name, make);
-  CollisionQuery query(scene.trees.first, scene.trees.second, slabs());
-  std::vector<Contact> contacts(kContacts);
+  Query query(scene.trees.first, scene.trees.second, slabs());
+  std::vector<LeafPair> leaf_pairs(kContacts);
   Latencies latencies;
   QueryResult result;
   std::size_t turn = 0;
   for (auto _ : state) {
     const auto begin = Clock::now();
-    result = query.collide(scene.poses[turn++ % scene.poses.size()], contacts);
+    result = query.leaf_pairs(scene.poses[turn++ % scene.poses.size()], leaf_pairs);
     const std::chrono::duration<double> time = Clock::now() - begin;
     latencies.add(1e6 * time.count());
     state.SetIterationTime(time.count());
   }
   latencies.report(state);
-  result = query.collide(scene.poses[0], contacts);
-  state.counters["leaves"] = static_cast<double>(scene.trees.first.octree().leaf_count());
+  result = query.leaf_pairs(scene.poses[0], leaf_pairs);
+  state.counters["leaves"] = static_cast<double>(scene.trees.first.leaf_count());
   state.counters["tests"] = static_cast<double>(result.sphere_tests);
-  state.counters["pairs"] = static_cast<double>(result.contacts);
+  state.counters["pairs"] = static_cast<double>(result.leaf_pairs);
 }
 
 // Thread times of things that are to end at a deadline, over what they were given. A deadline is
@@ -137,8 +140,8 @@ class Overruns {
 void within(benchmark::State& state, std::chrono::microseconds given, const std::string& name,
             const Make& make) {
   const Scene& scene = made(name, make);
-  CollisionQuery query(scene.trees.first, scene.trees.second, slabs());
-  std::vector<Contact> contacts(kContacts);
+  Query query(scene.trees.first, scene.trees.second, slabs());
+  std::vector<LeafPair> leaf_pairs(kContacts);
   Overruns of_query, of_loop;
   std::size_t turn = 0, complete = 0;
   double tests = 0, most_pairs = 0;
@@ -146,7 +149,7 @@ void within(benchmark::State& state, std::chrono::microseconds given, const std:
     const Eigen::Isometry3d& pose = scene.poses[turn++ % scene.poses.size()];
     QueryResult result;
     of_query.measure(given, [&](Clock::time_point deadline) {
-      result = query.collide(pose, contacts, {.deadline = deadline});
+      result = query.leaf_pairs(pose, leaf_pairs, {.deadline = deadline});
     });
     of_loop.measure(given, [](Clock::time_point deadline) {
       while (Clock::now() < deadline) {
@@ -154,7 +157,7 @@ void within(benchmark::State& state, std::chrono::microseconds given, const std:
     });
     complete += result.complete ? 1 : 0;
     tests += static_cast<double>(result.sphere_tests);
-    most_pairs = std::max(most_pairs, static_cast<double>(result.contacts));
+    most_pairs = std::max(most_pairs, static_cast<double>(result.leaf_pairs));
   }
   of_query.report(state, "over_");
   of_loop.report(state, "loop_");

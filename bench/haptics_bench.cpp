@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/scene/scene_builder.h"
+#include "ist/scene.h"
 
 namespace ist::bench {
 namespace {
@@ -77,8 +77,8 @@ void ticks(benchmark::State& state, double voxel_size, const Names& effects) {
   for (auto _ : state) turn();
   state.SetItemsProcessed(state.iterations());
   state.counters["leaf_pairs"] = tick.leaf_pairs;
-  if (tick.contacts) state.counters["contacts"] = static_cast<double>(tick.contacts->contacts);
-  if (tick.proximity) state.counters["near"] = static_cast<double>(tick.proximity->contacts);
+  if (tick.contacts) state.counters["contacts"] = static_cast<double>(tick.contacts->leaf_pairs);
+  if (tick.proximity) state.counters["near"] = static_cast<double>(tick.proximity->leaf_pairs);
   state.SetLabel(
       fmt::format("{:.1f} MB, built in {:.0f} ms", megabytes(scene), build_milliseconds(scene)));
 }

@@ -1,4 +1,4 @@
-// What the circuit of src/ist/hardware would have to do in a tick, along a closing: pairs tested,
+// What the circuit of src/hardware would have to do in a tick, along a closing: pairs tested,
 // nodes read from memory, centres moved; and how often it calls a near miss a hit.
 //
 // The way down is the reference's, with each pair decided by the model. The time is the model's on
@@ -10,6 +10,7 @@
 
 #include "hardware/pair_walk.h"
 #include "ist/tree/lookup_table.h"
+#include "ist/tree/tree_parts.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 
@@ -58,8 +59,9 @@ class PlainTest {
 
 void count(benchmark::State& state, double voxel_size, double dz) {
   const auto& [fixed, moving] = trees(voxel_size);
-  const QuantizedPose pose = quantize_pose(closing(dz), fixed.lattice(), moving.lattice());
-  const PlainTest plain(pose, moving.lattice().voxel_size / fixed.lattice().voxel_size);
+  const QuantizedPose pose =
+      quantize_pose(closing(dz), fixed.parts().lattice, moving.parts().lattice);
+  const PlainTest plain(pose, moving.voxel_size() / fixed.voxel_size());
   const auto model = [&](const HardwareNode& a, const HardwareNode& b) {
     return test_pair(test::node_pair(pose, a, b), pose.registers).hit;
   };
@@ -86,8 +88,8 @@ void count(benchmark::State& state, double voxel_size, double dz) {
   };
   tell("pairs", counts.tested);
   tell("pairs_exact", exact.tested);
-  tell("contacts", counts.contacts);
-  tell("contacts_exact", exact.contacts);
+  tell("contacts", counts.leaf_pairs);
+  tell("contacts_exact", exact.leaf_pairs);
   tell("opened", counts.opened);
   tell("words", counts.words);
   tell("moved", counts.moved);
@@ -98,7 +100,7 @@ void count(benchmark::State& state, double voxel_size, double dz) {
       misses == 0 ? 0 : static_cast<double>(false_hits) / static_cast<double>(misses);
   state.counters["word_bytes"] = 8;  // a mask and a first child
   state.counters["voxel_size"] = voxel_size;
-  tell("nodes", fixed.octree().node_count() + moving.octree().node_count());
+  tell("nodes", fixed.parts().octree.node_count() + moving.parts().octree.node_count());
   state.SetLabel(pair_name());
 }
 

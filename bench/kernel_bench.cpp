@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/bound_lanes.h"
-#include "ist/query/kernels.h"
-#include "ist/query/search_plan.h"
+#include "ist/query/traversal/search_plan.h"
+#include "simd/dispatch.h"
+#include "simd/lanes.h"
 #include "support/bodies.h"
 
 namespace ist::bench {
@@ -99,26 +99,26 @@ void turn_rows(benchmark::State& state, const Kernels& kernels, SpherePolicy pol
   report(state, "a_block", 1);
 }
 
-void touch_row(benchmark::State& state, const Kernels& kernels, SpherePolicy policy,
-               std::size_t lanes) {
+void overlap_row(benchmark::State& state, const Kernels& kernels, SpherePolicy policy,
+                 std::size_t lanes) {
   const Data& d = data(policy);
   constexpr std::size_t kRows = 4;
   std::vector<std::uint32_t> out(lanes + 16), twin(lanes + 16);
   const auto pass = [&](const Kernels& by, std::vector<std::uint32_t>& to) {
     std::size_t touching = 0;
     for (std::size_t row = 0; row < kRows; ++row) {
-      touching += by.parts.touch_row(d.rows, row, *d.moving, 0, lanes, d.slabs, to.data());
+      touching += by.parts.overlap_row(d.rows, row, *d.moving, 0, lanes, d.slabs, to.data());
     }
     return touching;
   };
   const std::size_t touching = pass(kernels, out);
-  require_twin(touching == pass(kScalarKernels, twin), kernels, "touch_row");
+  require_twin(touching == pass(kScalarKernels, twin), kernels, "overlap_row");
   for (auto _ : state) benchmark::DoNotOptimize(pass(kernels, out));
   report(state, "a_test", kRows * lanes);
   state.counters["touching"] = static_cast<double>(touching) / static_cast<double>(kRows * lanes);
 }
 
-void write_contacts(benchmark::State& state, const Kernels& kernels) {
+void write_leaf_pairs(benchmark::State& state, const Kernels& kernels) {
   // Rows of three, as they are in full occlusion.
   std::vector<SearchGroup> groups;
   std::vector<std::uint32_t> moving;
@@ -126,17 +126,17 @@ void write_contacts(benchmark::State& state, const Kernels& kernels) {
     for (int k = 0; k < 3; ++k) moving.push_back(7 * i);
     groups.push_back({i, static_cast<std::uint32_t>(moving.size())});
   }
-  moving.resize(moving.size() + kFrontierSlack);
+  moving.resize(moving.size() + kFrontierSpare);
   const std::size_t count = groups.back().end;
   const Frontier leaves{groups.data(), moving.data(), groups.size(), count, count};
-  std::vector<Contact> out(count + kContactSlack), twin(count + kContactSlack);
-  kernels.write_contacts(leaves, out.data());
-  kScalarKernels.write_contacts(leaves, twin.data());
+  std::vector<LeafPair> out(count + kLeafPairSpare), twin(count + kLeafPairSpare);
+  kernels.write_leaf_pairs(leaves, out.data());
+  kScalarKernels.write_leaf_pairs(leaves, twin.data());
   require_twin(
       std::equal(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), twin.begin()),
-      kernels, "write_contacts");
+      kernels, "write_leaf_pairs");
   for (auto _ : state) {
-    kernels.write_contacts(leaves, out.data());
+    kernels.write_leaf_pairs(leaves, out.data());
     benchmark::ClobberMemory();
   }
   report(state, "a_contact", count);
@@ -153,11 +153,11 @@ const int kRegistered = [] {
       add("decode" + with, [=](benchmark::State& s) { decode_blocks(s, kernels, policy); });
       add("turn" + with, [=](benchmark::State& s) { turn_rows(s, kernels, policy); });
       for (const std::size_t lanes : {4u, 18u, 64u, 1000u}) {
-        add("touch_row" + with + "/" + std::to_string(lanes),
-            [=](benchmark::State& s) { touch_row(s, kernels, policy, lanes); });
+        add("overlap_row" + with + "/" + std::to_string(lanes),
+            [=](benchmark::State& s) { overlap_row(s, kernels, policy, lanes); });
       }
     }
-    add("write_contacts" + target, [=](benchmark::State& s) { write_contacts(s, kernels); });
+    add("write_leaf_pairs" + target, [=](benchmark::State& s) { write_leaf_pairs(s, kernels); });
   }
   return 0;
 }();

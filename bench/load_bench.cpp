@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/reference.h"
-#include "ist/tree/tree_io.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/bodies.h"
 
 namespace ist::bench {
@@ -20,11 +20,11 @@ void load_and_ask(benchmark::State& state, SpherePolicy policy) {
   double bytes = 0;
   bytes += static_cast<double>(write_tree(build(upper_jaw(), kVoxelSize, policy), upper));
   bytes += static_cast<double>(write_tree(build(lower_jaw(), kVoxelSize, policy), lower));
-  std::vector<Contact> contacts(1 << 20);
+  std::vector<LeafPair> leaf_pairs(1 << 20);
   for (auto _ : state) {
     const SphereTree fixed = read_tree(upper), moving = read_tree(lower);
     ReferenceQuery query(fixed, moving, policy);
-    benchmark::DoNotOptimize(query.collide(closing(-1.5), contacts));
+    benchmark::DoNotOptimize(query.leaf_pairs(closing(-1.5), leaf_pairs));
   }
   state.counters["file_MB"] = bytes / 1e6;
   state.SetLabel(pair_name());

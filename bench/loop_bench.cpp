@@ -11,10 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "ist/haptics/servo_loop.h"
+#include "ist/haptics/real_time.h"
 #include "ist/haptics/tick_clock.h"
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/scene.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 #include "support/noisy_neighbour.h"
@@ -93,7 +92,7 @@ void loop(benchmark::State& state, int workers, bool noisy) {
     report = run_servo_loop(*built.simulation, *built.device, options, outputs, stop);
   }
   const TickRecord end = last.read();
-  if (!end.contacts || end.contacts->contacts == 0 || report.faults > 0) {
+  if (!end.contacts || end.contacts->leaf_pairs == 0 || report.faults > 0) {
     state.SkipWithError("the jaws are not closed at the end, or the loop had a fault");
     return;
   }
@@ -103,7 +102,7 @@ void loop(benchmark::State& state, int workers, bool noisy) {
   state.counters["ticks"] = static_cast<double>(report.ticks);
   state.counters["missed"] = static_cast<double>(report.missed);
   state.counters["held"] = static_cast<double>(report.held);
-  state.counters["contacts"] = static_cast<double>(end.contacts->contacts);
+  state.counters["contacts"] = static_cast<double>(end.contacts->leaf_pairs);
   state.counters["voxel_size"] = *scene.fixed.voxel_size;
   state.counters["denied"] = static_cast<double>(report.notes.size());
   state.SetLabel(joined(report.notes));

@@ -14,9 +14,10 @@
 #include <thread>
 #include <vector>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/kernels.h"
-#include "ist/query/reference.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/query/workers/resident_worker.h"
+#include "simd/dispatch.h"
 #include "support/bodies.h"
 #include "support/latencies.h"
 #include "support/pacer.h"
@@ -34,23 +35,25 @@ double microseconds(Clock::time_point begin, Clock::time_point end) {
 
 // Ends the program where an engine is not what its scalar twin is: its time would mean nothing.
 void check_against_twin(const SphereTree& fixed, const SphereTree& moving,
-                        const CollisionOptions& options, double dz) {
-  CollisionOptions plain = options;
+                        const QueryOptions& options, double dz) {
+  QueryOptions plain = options;
   plain.target = "scalar";
   plain.workers = 1;
-  CollisionQuery query(fixed, moving, options), twin(fixed, moving, plain);
-  std::vector<Contact> a(kContacts), b(kContacts);
-  const QueryResult of_a = query.collide(closing(dz), a), of_b = twin.collide(closing(dz), b);
-  a.resize(std::min<std::uint64_t>(a.size(), of_a.contacts));  // what lies behind them is no answer
-  b.resize(std::min<std::uint64_t>(b.size(), of_b.contacts));
-  if (of_a.contacts == of_b.contacts && of_a.sphere_tests == of_b.sphere_tests && a == b) return;
+  Query query(fixed, moving, options), twin(fixed, moving, plain);
+  std::vector<LeafPair> a(kContacts), b(kContacts);
+  const QueryResult of_a = query.leaf_pairs(closing(dz), a), of_b = twin.leaf_pairs(closing(dz), b);
+  a.resize(
+      std::min<std::uint64_t>(a.size(), of_a.leaf_pairs));  // what lies behind them is no answer
+  b.resize(std::min<std::uint64_t>(b.size(), of_b.leaf_pairs));
+  if (of_a.leaf_pairs == of_b.leaf_pairs && of_a.sphere_tests == of_b.sphere_tests && a == b)
+    return;
   std::cerr << "the query differs from its scalar twin at dz = " << dz << '\n';
   std::exit(1);
 }
 
 struct Case {
   double voxel_size;
-  CollisionOptions options;
+  QueryOptions options;
   bool paced;
   int rounds;
 };
@@ -63,12 +66,12 @@ class Closing {
 
   void report(benchmark::State& state, std::size_t pose) {
     for (auto _ : state) {
-      if (contacts_.empty()) measure();
+      if (leaf_pairs_.empty()) measure();
       state.SetIterationTime(1e-6 * latencies_[pose].quantile(0.5));
     }
     const QueryResult& result = results_[pose];
     latencies_[pose].report(state);
-    state.counters["contacts"] = static_cast<double>(result.contacts);
+    state.counters["contacts"] = static_cast<double>(result.leaf_pairs);
     state.counters["tests"] = static_cast<double>(result.sphere_tests);
     state.counters["ns_a_test"] =
         1e3 * latencies_[pose].quantile(0.5) / static_cast<double>(result.sphere_tests);
@@ -86,15 +89,15 @@ class Closing {
   void measure() {
     const auto& [fixed, moving] = trees(case_.voxel_size);
     for (const double dz : kClosing) check_against_twin(fixed, moving, case_.options, dz);
-    CollisionQuery query(fixed, moving, case_.options);
-    contacts_.resize(kContacts);
+    Query query(fixed, moving, case_.options);
+    leaf_pairs_.resize(kContacts);
     Pacer pacer(kTick);
     const auto before = ResidentWorker::usage();
     for (int round = 0; round < case_.rounds; ++round) {
       for (std::size_t pose = 0; pose < std::size(kClosing); ++pose) {
         if (case_.paced) pacer.wait();
         const auto begin = Clock::now();
-        results_[pose] = query.collide(closing(kClosing[pose]), contacts_);
+        results_[pose] = query.leaf_pairs(closing(kClosing[pose]), leaf_pairs_);
         latencies_[pose].add(microseconds(begin, Clock::now()));
       }
     }
@@ -106,10 +109,10 @@ class Closing {
   }
 
   Case case_;
-  std::vector<Contact> contacts_;
+  std::vector<LeafPair> leaf_pairs_;
   std::array<Latencies, std::size(kClosing)> latencies_;
   std::array<QueryResult, std::size(kClosing)> results_;
-  SharedSearch::Sharing sharing_;
+  Sharing sharing_;
   double helper_share_ = 0;
   std::size_t bytes_ = 0;
 };
@@ -118,17 +121,17 @@ class Closing {
 void beside_reference(benchmark::State& state, double dz) {
   const auto& [fixed, moving] = trees(0.2);
   ReferenceQuery reference(fixed, moving, SpherePolicy::kTable);
-  CollisionOptions alone, helped;
+  QueryOptions serial, helped;
   helped.workers = 2;
   helped.period = std::chrono::nanoseconds(0);
-  CollisionQuery one(fixed, moving, alone), two(fixed, moving, helped);
-  std::vector<Contact> contacts(kContacts);
+  Query one(fixed, moving, serial), two(fixed, moving, helped);
+  std::vector<LeafPair> leaf_pairs(kContacts);
   Latencies of_reference, of_one, of_two;
   const auto ask = [&](auto& query, Latencies& latencies) {
     QueryResult result;
     for (const double other : kClosing) {
       const auto begin = Clock::now();
-      result = query.collide(closing(other), contacts);
+      result = query.leaf_pairs(closing(other), leaf_pairs);
       if (other == dz) latencies.add(microseconds(begin, Clock::now()));
     }
     return result;
@@ -139,7 +142,7 @@ void beside_reference(benchmark::State& state, double dz) {
     for (int i = 0; i < 10; ++i) static_cast<void>(ask(two, of_two));
   }
   const double published = of_reference.quantile(0.5);
-  const QueryResult result = reference.collide(closing(dz), contacts);
+  const QueryResult result = reference.leaf_pairs(closing(dz), leaf_pairs);
   state.counters["reference_us"] = published;
   state.counters["reference_ns_a_test"] =
       1e3 * published / static_cast<double>(result.sphere_tests);
@@ -156,11 +159,11 @@ std::atomic<bool> stalled{false};
 // takes then, beside what it takes alone.
 void worker_stalled(benchmark::State& state, double dz) {
   const auto& [fixed, moving] = trees(0.2);
-  CollisionOptions alone, helped;
+  QueryOptions serial, helped;
   helped.workers = 2;
   helped.period = kTick;
-  CollisionQuery one(fixed, moving, alone), two(fixed, moving, helped);
-  std::vector<Contact> contacts(kContacts);
+  Query one(fixed, moving, serial), two(fixed, moving, helped);
+  std::vector<LeafPair> leaf_pairs(kContacts);
   Latencies of_one, of_two;
   hand_over_hook.store([](HandOver) noexcept {
     stalled = true;
@@ -172,11 +175,11 @@ void worker_stalled(benchmark::State& state, double dz) {
   for (auto _ : state) {
     pacer.wait();
     auto begin = Clock::now();
-    static_cast<void>(one.collide(closing(dz), contacts));
+    static_cast<void>(one.leaf_pairs(closing(dz), leaf_pairs));
     of_one.add(microseconds(begin, Clock::now()));
     pacer.wait();
     begin = Clock::now();
-    static_cast<void>(two.collide(closing(dz), contacts));
+    static_cast<void>(two.leaf_pairs(closing(dz), leaf_pairs));
     of_two.add(microseconds(begin, Clock::now()));
     if (stalled) ++met;
   }
@@ -205,8 +208,8 @@ void add(const Case& c) {
   }
 }
 
-CollisionOptions options(SpherePolicy policy, int workers, std::string target = "") {
-  CollisionOptions options;
+QueryOptions options(SpherePolicy policy, int workers, std::string target = "") {
+  QueryOptions options;
   options.policy = policy;
   options.workers = workers;
   options.target = std::move(target);
@@ -223,7 +226,7 @@ const int kRegistered = [] {
   for (const double size : {0.8, 0.4, 0.2}) {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const int workers : {1, 2}) {
-        CollisionOptions in_a_row = options(policy, workers);
+        QueryOptions in_a_row = options(policy, workers);
         in_a_row.period = std::chrono::nanoseconds(0);
         add({size, in_a_row, false, 1000});
       }

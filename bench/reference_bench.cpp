@@ -4,29 +4,30 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/reference.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 #include "support/bodies.h"
 
 namespace ist::bench {
 namespace {
 
-void collide(benchmark::State& state, double voxel_size, SpherePolicy policy, SphereSource source,
-             double dz) {
+void leaf_pairs(benchmark::State& state, double voxel_size, SpherePolicy policy,
+                SphereSource source, double dz) {
   const auto& [fixed, moving] = trees(voxel_size);
   ReferenceQuery query(fixed, moving, policy, source);
-  std::vector<Contact> contacts(1 << 20);
+  std::vector<LeafPair> leaf_pairs(1 << 20);
   const Eigen::Isometry3d pose = closing(dz);
   QueryResult result;
-  for (auto _ : state) benchmark::DoNotOptimize(result = query.collide(pose, contacts));
+  for (auto _ : state) benchmark::DoNotOptimize(result = query.leaf_pairs(pose, leaf_pairs));
   const auto tests = static_cast<double>(result.sphere_tests);
-  state.counters["contacts"] = static_cast<double>(result.contacts);
+  state.counters["contacts"] = static_cast<double>(result.leaf_pairs);
   state.counters["sphere_tests"] = tests;
   state.counters["per_test"] = benchmark::Counter(
       tests, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   if (source == SphereSource::kSaved) {
     state.counters["saved_MB"] =
         static_cast<double>(sizeof(Ball)) / 1e6 *
-        static_cast<double>(fixed.octree().node_count() + moving.octree().node_count());
+        static_cast<double>(fixed.parts().octree.node_count() + moving.parts().octree.node_count());
   }
   state.SetLabel(pair_name());
 }
@@ -41,7 +42,7 @@ const int kRegistered = [] {
                                    (source == SphereSource::kSaved ? "/saved/" : "/on_the_fly/") +
                                    std::to_string(dz).substr(0, 4);
           benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-            collide(state, size, policy, source, dz);
+            leaf_pairs(state, size, policy, source, dz);
           })->Unit(benchmark::kMicrosecond);
         }
       }

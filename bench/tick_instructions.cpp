@@ -14,9 +14,8 @@
 #include <sstream>
 #include <string>
 
-#include "ist/haptics/tick_record.h"
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/haptics/recording.h"
+#include "ist/scene.h"
 #include "support/ball_on_box.h"
 
 namespace {

@@ -12,7 +12,7 @@ import sys
 from report.results import Results
 from report.text import number, table
 
-CIRCUIT = pathlib.Path("src/ist/hardware/rtl/ist_pair_test.v")
+CIRCUIT = pathlib.Path("src/hardware/rtl/ist_pair_test.v")
 
 # What is assumed, not measured. A part's size is its maker's; of a memory's highest rate a share is
 # taken, for nodes lie apart and only children lie together.
@@ -29,7 +29,7 @@ SERVO = 1000  # Hz
 HEAD = """# The pair test in hardware
 
 Made by `scripts/hardware_report.sh`; nothing in it that was measured is typed by hand. The circuit is
-[`ist_pair_test.v`](../src/ist/hardware/rtl/ist_pair_test.v), specified in [`src/ist/hardware`](../src/ist/hardware/README.md):
+[`ist_pair_test.v`](../src/hardware/rtl/ist_pair_test.v), specified in [`src/hardware`](../src/hardware/README.md):
 one pair of nodes a clock, its answer {latency} clocks later.
 """
 

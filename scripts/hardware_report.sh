@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes perf/HARDWARE.md: what the circuit of src/ist/hardware takes on two FPGAs, by yosys, how often
+# Makes perf/HARDWARE.md: what the circuit of src/hardware takes on two FPGAs, by yosys, how often
 # it calls a near miss a hit, and, on paper, what rate it would give where a tick asks most. Counts
 # along a closing are kept in perf/results/<machine>/hardware_bench.json and made where they are
 # missing. Some 3 minutes once built.
@@ -44,7 +44,7 @@ done
 if command -v nextpnr-ice40 >/dev/null; then
   echo "hardware_report: placing and routing for ice40" >&2
   yosys -q -l "$made/pins.log" -p "
-    read_verilog $made/ist_table_rom.v src/ist/hardware/rtl/ist_pair_test.v
+    read_verilog $made/ist_table_rom.v src/hardware/rtl/ist_pair_test.v
     read_verilog scripts/hardware/ist_pair_test_pins.v
     synth_ice40 -device u -dsp -top ist_pair_test_pins -json $made/pins.json" >&2
   nextpnr-ice40 --up5k --package sg48 --json "$made/pins.json" --pcf-allow-unconstrained --freq 48 \

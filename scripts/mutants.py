@@ -10,36 +10,36 @@ class Mutant(NamedTuple):
     tests: list  # programs, or programs and a filter, in the order in which they are asked
 
 
-SEARCH_POSE = "src/ist/query/search_pose.cpp"
-LANES = "src/ist/query/bound_lanes.h"
+SEARCH_POSE = "src/ist/query/traversal/search_pose.cpp"
+LANES = "simd/lanes.h"
 BOUNDS_INL = "simd/bounds-inl.h"
-SHARED = "src/ist/query/shared_search.cpp"
+SHARED = "src/ist/query/workers/shared_search.cpp"
 NODE_BOUNDS = "src/ist/tree/node_bounds.cpp"
 VOXELIZER = "src/ist/voxel/voxelizer.cpp"
 BINS = "src/ist/voxel/triangle_bins.cpp"
 BOX = "src/ist/voxel/triangle_box.h"
 EXACT = "src/ist/query/exact/"
 CONTACTS = "src/ist/query/contacts/"
-ADVICE = "src/ist/query/advice/"
+ADVICE = "src/advise/"
 CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
-HARDWARE = "src/ist/hardware/"
+HARDWARE = "src/hardware/"
 CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
 
 TANGENCY = "stability_test *Tangency*"
-KERNELS = "search_test *StepParts*:*TouchRow*:*Advance*"
-PROMISE = "search_test *Promise*-*Thread*"
+KERNELS = "search_test *StepParts*:*OverlapRow*:*Advance*"
+GUARANTEE = "search_test *Guarantee*-*Thread*"
 
 MUTANTS = [
     # What a query decides by.
     Mutant("ball-pad-dropped", "float's rounding is not added to the reach of two balls",
-           [(SEARCH_POSE, "round_up(kBallRounding * lengths + kOfGrowth * grow)",
-             "round_up(kOfGrowth * grow)")], [TANGENCY, PROMISE]),
+           [(SEARCH_POSE, "round_up(kBallRounding * lengths + kMarginRounding * margin)",
+             "round_up(kMarginRounding * margin)")], [TANGENCY, GUARANTEE]),
     Mutant("slab-pad-dropped", "nor to that of a ball and a slab",
-           [(SEARCH_POSE, "round_up(kSlabRounding * lengths + kOfGrowth * grow)",
-             "round_up(kOfGrowth * grow)")], [TANGENCY, PROMISE]),
+           [(SEARCH_POSE, "round_up(kSlabRounding * lengths + kMarginRounding * margin)",
+             "round_up(kMarginRounding * margin)")], [TANGENCY, GUARANTEE]),
     Mutant("pad-forgets-the-place", "the pad does not grow with the translation",
            [(SEARCH_POSE, "reaches + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2])",
              "reaches + 0 * t[0]")], ["query_test SearchPose*"]),
@@ -63,7 +63,7 @@ MUTANTS = [
              "rows.offset[at] = -fixed.lane[kOffset][at] * kUnscale;"),
             (BOUNDS_INL, "hn::StoreU(hn::Mul(load(kOffset), unscale), d, rows.offset + k);",
              "hn::StoreU(hn::Neg(hn::Mul(load(kOffset), unscale)), d, rows.offset + k);")],
-           [PROMISE]),
+           [GUARANTEE]),
     Mutant("rotation-narrowed-first", "the translation is turned by a rotation that is float already",
            [(SEARCH_POSE, "moved -= pose.rotation(j, i) * pose.translation[j];",
              "moved -= static_cast<float>(pose.rotation(j, i)) * static_cast<float>(pose.translation[j]);")],
@@ -78,44 +78,45 @@ MUTANTS = [
            [("src/ist/base/pose.cpp", "if (!(determinant(rotation) > 0)) return std::nullopt;",
              "static_cast<void>(determinant(rotation));")], ["base_test"]),
     Mutant("query-forgets-mxcsr", "a query computes as its caller's flags have it",
-           [("src/ist/query/collision_query.cpp", """std::span<Contact> out) noexcept {
-  const ScopedFloatEnvironment environment;""", "std::span<Contact> out) noexcept {")],
+           [("src/ist/query/query.cpp", """  const ScopedFloatEnvironment environment;
+  detail::QueryState& s = *state_;
+  LeafPairSink sink(out);""", "  detail::QueryState& s = *state_;\n  LeafPairSink sink(out);")],
            ["search_test *KeepsTheFloatEnvironment*", "stability_test *Environment*"]),
     Mutant("worker-forgets-mxcsr", "the second worker does",
-           [("src/ist/query/workers.cpp", "const ScopedFloatEnvironment environment;", "")],
+           [("src/ist/query/workers/resident_worker.cpp", "const ScopedFloatEnvironment environment;", "")],
            ["workers_test *Ieee*"]),
     Mutant("build-forgets-mxcsr", "the threads that build do",
            [("src/ist/base/parallel.cpp", "const ScopedFloatEnvironment environment;", "")],
            ["base_test *Parallel*"]),
     # Work that is shared, or cut short.
     Mutant("last-chunk-lost", "the second worker's last chunk is forgotten",
-           [(SHARED, "for (std::size_t index = board_.close(); index < chunk_count_ && in_time; ++index) {",
-             "for (std::size_t index = board_.close(); index + 1 < chunk_count_ && in_time; ++index, ++done) {")],
+           [(SHARED, "for (std::size_t index = queue_.close(); index < chunk_count_ && in_time; ++index) {",
+             "for (std::size_t index = queue_.close(); index + 1 < chunk_count_ && in_time; ++index, ++done) {")],
            ["search_test SharedSearch*"]),
     Mutant("cut-chunk-taken-for-whole", "a chunk for which the worker had no room is taken as it is",
            [(SHARED, "made.whole = !sink.truncated();", "made.whole = true;")],
            ["search_test SharedSearch*"]),
     Mutant("late-worker-believed", "what a worker that is late makes of an earlier query counts",
-           [("src/ist/query/chunk_board.cpp",
+           [("src/ist/query/workers/split_queue.cpp",
              "return epoch << 2 | verdict;", "return (epoch & 0) << 2 | verdict;")],
-           ["workers_test ChunkBoard*", "search_test SharedSearch*"]),
+           ["workers_test SplitQueue*", "search_test SharedSearch*"]),
     Mutant("pruned-taken-for-live", "the nearest pruned pair counts as touching, and the other way round",
-           [(LANES, "float& least = touching ? measure.touching : measure.pruned;",
-             "float& least = touching ? measure.pruned : measure.touching;")],
+           [(LANES, "float& least = touching ? measure.min_overlapping : measure.min_pruned;",
+             "float& least = touching ? measure.min_pruned : measure.min_overlapping;")],
            ["search_test *Within*", KERNELS]),
     Mutant("gap-raised", "the lower end of a gap is four pads higher than float can tell",
-           [("src/ist/query/collision_gap.cpp", "within + known.leaves.touching - pad",
-             "within + known.leaves.touching + 4 * pad")],
+           [("src/ist/query/query_distance.cpp", "within + known.leaves.min_overlapping - pad",
+             "within + known.leaves.min_overlapping + 4 * pad")],
            ["exact_test Gap*"]),
     Mutant("budget-overdrawn", "a budget of tests is compared with what is spent alone",
-           [("src/ist/query/budget.h", "tests > budget_.sphere_tests - tests_",
-             "tests_ > budget_.sphere_tests")], ["search_test *Within*:Spending*"]),
+           [("src/ist/query/traversal/spending.h", "tests > budget_.tests - tests_",
+             "tests_ > budget_.tests")], ["search_test *Within*:Spending*"]),
     # The tree.
     Mutant("table-radius-less", "the lookup table's smallest radius is one less",
-           [("src/ist/tree/lookup_table.h", "best_squared = farthest;\n",
+           [("src/ist/tree/lookup_table_search.h", "best_squared = farthest;\n",
              "best_squared = farthest;\n        if (farthest == 54) farthest = 53;\n")], ["tree_test"]),
     Mutant("table-radius-rounded-down", "the table's radii are rounded down when they become float",
-           [(LANES, "radius * (1 + 0x1p-23)", "radius * (1 - 0x1p-23)")], [KERNELS]),
+           [("src/ist/tree/lookup_table.cpp", "radius * (1 + 0x1p-23)", "radius * (1 - 0x1p-23)")], [KERNELS]),
     Mutant("ball-rounded-down", "a saved radius is rounded down",
            [(NODE_BOUNDS, "std::ceil((std::sqrt(farthest2) + payload.slack) / unit)",
              "std::max(1.0, std::floor((std::sqrt(farthest2) + payload.slack) / unit))")], ["tree_test"]),
@@ -131,7 +132,7 @@ MUTANTS = [
            [(LANES, "((octant & 1) != 0 ? offset : -offset)", "((octant & 2) != 0 ? offset : -offset)"),
             (LANES, "float y = node.centre[1] * side.voxel_size + ((octant & 2) != 0 ? offset : -offset)",
              "float y = node.centre[1] * side.voxel_size + ((octant & 1) != 0 ? offset : -offset)")],
-           [PROMISE]),
+           [GUARANTEE]),
     Mutant("morton-axes-swapped", "codes have y in the bits of z",
            [("src/ist/voxel/morton.h",
              "spread_bits(cell[0]) | spread_bits(cell[1]) << 1 | spread_bits(cell[2]) << 2",
@@ -159,28 +160,28 @@ MUTANTS = [
            [(BINS, "first[i] = block(triangle.min()[axis] - pad - 0.5);",
              "first[i] = block(triangle.min()[axis] + pad);")], ["voxel_test"]),
     Mutant("file-normals-trusted", "triangles are turned as the file's normals say",
-           [("src/ist/mesh/mesh_io.cpp", "      triangulate(polygon, welder.vertices(), welded.triangles);",
-             """      const auto& v = welder.vertices();
+           [("src/ist/mesh/mesh_io.cpp", "      triangulate(polygon, welded.vertices, welded.triangles);",
+             """      const auto& v = welded.vertices;
       if (mesh->HasNormals()) {
         const aiVector3D& n = mesh->mNormals[face.mIndices[0]];
         const Eigen::Vector3d across =
             (v[polygon[1]] - v[polygon[0]]).cross(v[polygon[2]] - v[polygon[0]]);
         if (across.dot(Eigen::Vector3d(n.x, n.y, n.z)) < 0) std::swap(polygon[1], polygon[2]);
       }
-      triangulate(polygon, welder.vertices(), welded.triangles);""")],
+      triangulate(polygon, welded.vertices, welded.triangles);""")],
            ["mesh_test"]),
     Mutant("inside-out-left", "a closed body that is inside out stays so",
-           [("src/ist/mesh/orientation.cpp", "if (sign >= 0 || !is_outermost(mesh, components, component)) continue;",
+           [("src/ist/mesh/orient_outward.cpp", "if (sign >= 0 || !is_outermost(mesh, components, component)) continue;",
              "if (sign >= 0 || is_outermost(mesh, components, component)) continue;")], ["mesh_test"]),
     Mutant("half-a-file-left", "what a write that failed leaves behind is not removed",
-           [("src/ist/base/output_file.cpp", "  ::unlink(temporary_.c_str());\n  paths.erase(temporary_);",
+           [("src/ist/base/files.cpp", "  ::unlink(temporary_.c_str());\n  paths.erase(temporary_);",
              "  paths.erase(temporary_);")], ["base_test OutputFile*"]),
     Mutant("temporary-left-at-a-signal", "temporary files are not removed when a signal ends the process",
-           [("src/ist/base/output_file.cpp",
+           [("src/ist/base/files.cpp",
              "for (const std::filesystem::path& path : paths) ::unlink(path.c_str());", "paths.clear();")],
            ["base_test OutputFile*", "cli_test Interruption*"]),
     Mutant("far-vertex-read", "a tree file may have triangles far outside its grid",
-           [("src/ist/tree/tree_io.cpp", "return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;",
+           [("src/ist/tree/tree_file.cpp", "return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;",
              "return place.minCoeff() <= place.maxCoeff() && lattice.cells > 0;")],
            ["tree_test", "fuzz_test"]),
     Mutant("composed-not-projected", "poses that follow one another are multiplied, and no more",
@@ -195,7 +196,7 @@ MUTANTS = [
            [(EXACT + "node_triangles.cpp", "lattice.voxel_size + rounding;",
              "lattice.voxel_size + 0 * rounding;")], ["stability_test *Shapes*"]),
     Mutant("far-gap-too-narrow", "a gap far from the origin forgets that vertices are rounded",
-           [("src/ist/query/collision_gap.cpp", "nearest.upper > 0 ? bodies->grow : 0", "0 * bodies->grow")],
+           [("src/ist/query/query_distance.cpp", "nearest.upper > 0 ? bodies->margin : 0", "0 * bodies->margin")],
            ["stability_test *Place*:*Shapes*"]),
     Mutant("predicate-without-bound", "the sign of a determinant is believed however small it is",
            [(EXACT + "orientation.cpp", "kBound3 = 8 * kRounding", "kBound3 = 0 * kRounding")],
@@ -209,35 +210,38 @@ MUTANTS = [
              "bounds.box.low[i] = std::max(bounds.box.low[i], 0.5F * (cube.low[i] + cube.high[i]));")],
            ["exact_test"]),
     Mutant("ancestors-not-weighed", "a contact does not fade with its ancestors",
-           [(CONTACTS + "contact_points.cpp", "ancestors_.of(contact.fixed, contact.moving)",
-             "(contact.fixed > 4000000000U ? 0.0 : 1.0)")], ["contacts_test *Lipschitz*:ContactPoints*"]),
+           [(CONTACTS + "contact_reducer.cpp", "ancestors_.of(leaf_pair.fixed, leaf_pair.moving)",
+             "(leaf_pair.fixed > 4000000000U ? 0.0 : 1.0)")], ["contacts_test *Lipschitz*:ContactManifold*"]),
     Mutant("contacts-jump", "a contact weighs all or nothing",
-           [(CONTACTS + "contact_pair.h", "return std::clamp(left / (scale.reach * scale.reach), 0.0, 1.0);",
-             "return left / (scale.reach * scale.reach) > 0 ? 1.0 : 0.0;")],
-           ["contacts_test *Lipschitz*:ContactPoints*"]),
+           [(CONTACTS + "contact_pair.h", "return std::clamp(left / (scale.radius_sum * scale.radius_sum), 0.0, 1.0);",
+             "return left / (scale.radius_sum * scale.radius_sum) > 0 ? 1.0 : 0.0;")],
+           ["contacts_test *Lipschitz*:ContactManifold*"]),
     Mutant("depth-turned-round", "depth is measured against the normal",
            [(CONTACTS + "contact_pair.h", "dot_in_order(terms.normal, difference(fixed.point, moving.point))",
              "dot_in_order(terms.normal, difference(moving.point, fixed.point))")],
-           ["contacts_test *ClosedForms*:ContactPoints*"]),
+           ["contacts_test *ClosedForms*:ContactManifold*"]),
     Mutant("weights-start-at-once", "a contact that begins to push does so with all its weight",
            [(CONTACTS + "contact_pair.h", "if (scale.fade > 0) {", "if (scale.fade > 1e300) {")],
            ["contacts_test"]),
-    Mutant("growth-of-leaves-alone", "leaf pairs are looked for as far as they push, their ancestors are not",
-           [(CONTACTS + "contact_points.cpp", "at.bound = at.bound.grown(scale_.grow);",
-             "at.bound = at.bound.grown(0 * scale_.grow);")], ["contacts_test", "scene_test ShippedScene*"]),
+    Mutant("margin-of-leaves-alone", "leaf pairs are looked for as far as they push, their ancestors are not",
+           [(CONTACTS + "contact_reducer.cpp", "at.bound = at.bound.inflated(scale_.margin);",
+             "at.bound = at.bound.inflated(0 * scale_.margin);")], ["contacts_test", "scene_test ShippedScene*"]),
     # What a hand feels.
     Mutant("held-where-it-is", "where an answer is not complete the tool stays where nothing is known",
-           [(SIMULATION, "    at_ = known_.tool;\n    motion_.reset();", "    motion_.reset();")],
+           [(SIMULATION, "    state.tool_pose = state.last_complete.tool;\n    state.motion.reset();",
+             "    state.motion.reset();")],
            ["haptics_test Pressing*:HeldTicks*"]),
     Mutant("told-of-no-motion", "effects are told of a motion that was taken back",
-           [(SIMULATION, "    at_ = known_.tool;\n    motion_.reset();", "    at_ = known_.tool;")],
+           [(SIMULATION, "    state.tool_pose = state.last_complete.tool;\n    state.motion.reset();",
+             "    state.tool_pose = state.last_complete.tool;")],
            ["haptics_test Pressing*:HeldTicks*"]),
     Mutant("dares-as-before", "a tool that went back dares the same step again",
-           [(SIMULATION, "std::max(kLeastPart, 0.5 * dares_)", "std::max(kLeastPart, dares_)")],
+           [(SIMULATION, "std::max(kLeastStepScale, 0.5 * state.step_scale)",
+             "std::max(kLeastStepScale, state.step_scale)")],
            ["haptics_test Pressing*:HeldTicks*"]),
     Mutant("braking-holds", "where there is no time for what only brakes the tool is held",
-           [(SIMULATION, "if (!complete(tick.proximity)) asked_.proximity = known_.proximity;",
-             "if (!complete(tick.proximity)) return false;")], ["scene_test PayOnly*"]),
+           [(SIMULATION, "if (!is_complete(tick.proximity)) candidate.proximity = last_complete.proximity;",
+             "if (!is_complete(tick.proximity)) return false;")], ["scene_test PayOnly*"]),
     Mutant("tool-tunnels", "a tool goes as far as it is drawn",
            [(HAPTICS + "tool.cpp", "if (way > most) motion *= most / way;",
              "if (way > 1e9 * most) motion *= most / way;")], ["haptics_test Tool*"]),
@@ -248,24 +252,24 @@ MUTANTS = [
            [(HAPTICS + "coupling.cpp", "return force > most ? most / force : 1;",
              "return force > 1e9 * most ? most / force : 1;")], ["haptics_test *Coupling*"]),
     Mutant("force-leaps", "force is not limited from tick to tick",
-           [(HAPTICS + "safety.cpp", "limited(change, most_change)", "limited(change, 1e9 * most_change)")],
-           ["haptics_test *Guard*"]),
+           [(HAPTICS + "wrench_limiter.cpp", "limited(change, most_change)", "limited(change, 1e9 * most_change)")],
+           ["haptics_test WrenchLimiter*"]),
     Mutant("fault-without-soft-start", "after a fault all the force is back at once",
-           [(HAPTICS + "safety.cpp", "good_ = gain_ = 0;", "gain_ = 0;")], ["haptics_test *Guard*"]),
+           [(HAPTICS + "wrench_limiter.cpp", "good_ = gain_ = 0;", "gain_ = 0;")], ["haptics_test WrenchLimiter*"]),
     Mutant("border-without-delay", "the border of stability does not know of the device's delay",
            [(HAPTICS + "stability_border.cpp", "(0.5 * period + delay)", "(0.5 * period + 0 * delay)")],
            ["haptics_test *Border*", "haptics_test *Passiv*"]),
     Mutant("border-too-far", "a coupling may be twice as stiff as is stable",
-           [(HAPTICS + "stability_border.cpp", "kShareOfStiffness = 0.8", "kShareOfStiffness = 2")],
+           [(HAPTICS + "stability_border.cpp", "kStiffnessFraction = 0.8", "kStiffnessFraction = 2")],
            ["haptics_test *Border*", "haptics_test *Clamp*"]),
     Mutant("contact-sticks", "surfaces that part pull each other",
-           [(HAPTICS + "effects/contact_effect.cpp", "std::max(0.0, overlap)", "std::max(-1e9, overlap)")],
+           [(HAPTICS + "effects/contact_effect.cpp", "std::max(0.0, depth)", "std::max(-1e9, depth)")],
            ["haptics_test ContactEffect*"]),
     Mutant("contact-unforeseen", "a contact is believed to grow as its springs do",
            [(HAPTICS + "effects/contact_effect.h", "kLead = 4", "kLead = 1")],
            ["haptics_test ContactEffect*:*Passiv*:*Wall*"]),
     Mutant("brakes-on-the-way-out", "damping holds back what goes away too",
-           [(HAPTICS + "effects/braking.cpp", "if (!(approach > 0)) continue;", "")],
+           [(HAPTICS + "effects/braking.h", "if (!(approach > 0)) continue;", "")],
            ["haptics_test *Damping*:*Proximity*:*Approach*"]),
     Mutant("friction-never-slides", "what sticks holds whatever pulls",
            [(FRICTION, "sliding_ = pull > (1 + kRest) * limit(force);", "sliding_ = pull > 1e9;")],
@@ -284,10 +288,10 @@ MUTANTS = [
            [(HAPTICS + "devices/hand_device.cpp", "if (settings_.resolution > 0) {",
              "if (settings_.resolution > 1e9) {")], ["haptics_test Hand*"]),
     Mutant("snapshot-torn", "a reader takes what the writer was writing",
-           [(HAPTICS + "snapshot.h", "if (count_.load(std::memory_order_relaxed) != count) return std::nullopt;",
+           [(HAPTICS + "recording.h", "if (count_.load(std::memory_order_relaxed) != count) return std::nullopt;",
              "")], ["loop_test Snapshot*"]),
     Mutant("ring-overwritten", "a full ring takes a record in place of its oldest",
-           [(HAPTICS + "tick_ring.h", "      if (end - begin_seen_ == capacity_) return false;", "")],
+           [(HAPTICS + "recording.h", "      if (end - begin_seen_ == capacity_) return false;", "")],
            ["loop_test TickRing*"]),
     Mutant("slept-through-not-missed", "deadlines that pass while the loop sleeps are not counted",
            [(HAPTICS + "tick_clock.cpp", "return {late, missed_ + slept_through};",
@@ -308,15 +312,15 @@ MUTANTS = [
     # What voxel sizes are recommended by.
     Mutant("advice-breaks-its-goal", "a size is recommended that is a tenth beyond what was asked for",
            [(ADVICE + "voxel_advice.h", "return value(measure) <= limit;", "return value(measure) <= 1.1 * limit;")],
-           ["advice_test"]),
+           ["advise_test"]),
     Mutant("advice-far-from-best", "it stops as soon as some size holds",
            [(ADVICE + "voxel_advice.cpp", "if (holds_ && holds_->excess >= kGoodEnough) return std::nullopt;",
-             "if (holds_) return std::nullopt;")], ["advice_test"]),
+             "if (holds_) return std::nullopt;")], ["advise_test"]),
     Mutant("first-contact-only", "the error of a closing is that next to the touch, whatever comes before",
-           [(ADVICE + "contact_error.cpp", "      error = std::max(error, gap.upper);\n      last = place;\n", "      break;\n")],
-           ["advice_test"]),
+           [(ADVICE + "calibration.cpp", "      error = std::max(error, distance.upper);\n      last = offset;\n", "      break;\n")],
+           ["advise_test"]),
     Mutant("one-way-alone", "errors are measured on the straight way, and on none beside it",
-           [(ADVICE + "calibration.cpp", "paths_(paths_beside(bodies, path))", "paths_()")], ["advice_test"]),
+           [(ADVICE + "calibration.cpp", "paths_(paths_beside(bodies, path))", "paths_()")], ["advise_test"]),
 
     # What a circuit decides by.
     Mutant("circuit-reach-rounded-down", "the reach that is squared is rounded down",
@@ -332,7 +336,7 @@ MUTANTS = [
            [(HARDWARE + "pair_test.cpp", "registers.rotation[3 * k + i]", "registers.rotation[3 * i + k]")],
            ["hardware_test NoMiss*"]),
     Mutant("vectors-of-any-width", "a number with more digits than its field is cut off",
-           [(HARDWARE + "vector_text.cpp", "if (digits.size() > width) {", "if (digits.size() > 2 * width) {")],
+           [(HARDWARE + "vector_file.cpp", "if (digits.size() > width) {", "if (digits.size() > 2 * width) {")],
            ["hardware_test VectorFile*"]),
     Mutant("verilog-floor-upwards", "the turned offset of the moving ball is rounded up, in Verilog",
            [(CIRCUIT, "moving_offset_4 <= shifted_3[39:8];", "moving_offset_4 <= shifted_3[39:8] + {31'd0, |shifted_3[7:0]};")],
@@ -344,7 +348,7 @@ MUTANTS = [
            [(CIRCUIT, "distance_squared_9 <= {1'b0, bound_squared_9};", "distance_squared_9 < {1'b0, bound_squared_9};")],
            ["ctest Circuit.iverilog"]),
     Mutant("verilog-bench-forgets-hit", "the bench compares the reach alone",
-           [("src/ist/hardware/rtl/ist_pair_test_tb.v", "circuit_hit !== due_hit[slot] || ", "")],
+           [("src/hardware/rtl/ist_pair_test_tb.v", "circuit_hit !== due_hit[slot] || ", "")],
            ["ctest Circuit.iverilog"]),
 
     # What C is told.
@@ -364,17 +368,17 @@ MUTANTS = [
     Mutant("old-answer-left", "where a call fails, its result is what the call before left there",
            [(CAPI + "sized_struct.h", "  write_sized(Struct{}, *out);\n", "")], ["capi_test CMisuse*"]),
     Mutant("message-for-all-threads", "threads share one last error",
-           [(CAPI + "last_error.cpp", "constinit thread_local char", "constinit char")],
+           [(CAPI + "guard.cpp", "constinit thread_local char", "constinit char")],
            ["capi_test CThread*"]),
 
     # What others get of it.
     Mutant("export-map-loosened", "whatever other libraries make visible is exported too",
            [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),
     Mutant("private-exported", "what is private in a public class is exported",
-           [("src/ist/query/collision_query.h", "IST_LOCAL void set_steps", "void set_steps")],
+           [("src/ist/query/query_state.h", "struct QueryState {", "struct __attribute__((visibility(\"default\"))) QueryState {")],
            ["ctest Package.Symbols"]),
     Mutant("vtables-kept-in", "who derives from a class, or makes one, finds no table of its functions",
            [("src/package/ist.map.in", "      vtable?for?ist::*;\n", "")], ["ctest Package.Headers"]),
     Mutant("header-left-at-home", "a header that another one includes is not installed",
-           [("src/package/public_headers.txt", "ist/query/chunk_board.h\n", "")], ["ctest Package.Headers"]),
+           [("src/package/public_headers.txt", "ist/query/manifold.h\n", "")], ["ctest Package.Headers"]),
 ]

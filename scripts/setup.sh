@@ -13,7 +13,7 @@ packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
   libtomlplusplus-dev
   libcli11-dev nlohmann-json3-dev
-  libgtest-dev libgmp-dev python3 valgrind
+  libgtest-dev libgmp-dev python3 valgrind clang-14
   binutils dpkg-dev file)
 bench=(libbenchmark-dev python3-matplotlib)
 for argument in "$@"; do
@@ -21,7 +21,7 @@ for argument in "$@"; do
     --bench) packages+=("${bench[@]}") ;;
     --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
       libbullet-dev libcgal-dev libopenvdb-dev) ;;
-    --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
+    --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     -h | --help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;

@@ -38,7 +38,7 @@ def number(value):
 
 
 def table(cases):
-    lines = ["| case | samples | error | worst | promised | part of it |", "|---|--:|---|--:|--:|--:|"]
+    lines = ["| case | samples | error | worst | guaranteed | part of it |", "|---|--:|---|--:|--:|--:|"]
     for case in cases:
         part = ratio(case)
         lines.append(
@@ -56,15 +56,15 @@ def plot(cases, file):
         mark = "<" if part <= FLOOR else ">" if part > CEILING else "o"
         axes.plot(min(max(part, FLOOR), CEILING), row, mark, color=colours[case["group"]], markersize=5)
     axes.axvline(1, color="black", linewidth=1)
-    axes.text(1, -0.8, " promised", va="bottom", ha="right", fontsize=8)
+    axes.text(1, -0.8, " guaranteed", va="bottom", ha="right", fontsize=8)
     axes.set_yticks(range(len(shown)), [f"{c['group']}: {c['name']}" for c in shown], fontsize=7)
     axes.set_ylim(len(shown) - 0.5, -1.5)
     axes.set_xscale("log")
     axes.set_xlim(FLOOR / 2, 2 * CEILING)
     axes.grid(axis="x", alpha=0.3)
-    axes.set_xlabel(f"worst error seen / bound promised (a triangle: less than {FLOOR:g})")
+    axes.set_xlabel(f"worst error seen / bound guaranteed (a triangle: less than {FLOOR:g})")
     samples = sum(case["samples"] for case in shown)
-    axes.set_title(f"How much of each promise is used: {len(shown)} cases, n = {samples:,} samples", fontsize=9)
+    axes.set_title(f"How much of each guarantee is used: {len(shown)} cases, n = {samples:,} samples", fontsize=9)
     figure.tight_layout()
     plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none"})
     figure.savefig(file, metadata={"Date": None})
@@ -80,9 +80,9 @@ def main():
     broken = [case for case in cases if case["broken"]]
     lines = [
         "# Stability", "",
-        "Each hard case: how often it was tried, the worst error seen, and what is promised. Made by",
+        "Each hard case: how often it was tried, the worst error seen, and what is guaranteed. Made by",
         "`scripts/stability_report.sh`; every row is a test, and a run of all tests tries it too, with fewer samples.",
-        "A case that is right or wrong counts what was wrong, and promises 0.", "",
+        "A case that is right or wrong counts what was wrong, and guarantees 0.", "",
         f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, "
         f"{len(broken)} broken.", "",
         "![The worst error of each case over its bound](pictures/stability.svg)", ""]
@@ -92,7 +92,7 @@ def main():
             lines += [f"## {title}", "", *table(chosen), ""]
     (folder / "STABILITY.md").write_text("\n".join(lines))
     if broken:
-        print(f"stability_report: {len(broken)} cases break their promise", file=sys.stderr)
+        print(f"stability_report: {len(broken)} cases break their guarantee", file=sys.stderr)
 
 
 main()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes perf/STABILITY.md: tries the hard cases many more times than a run of all tests does, and
-# shows the worst error of each beside what is promised. Some 20 minutes on two cores.
+# shows the worst error of each beside what is guaranteed. Some 20 minutes on two cores.
 #
 #   scripts/stability_report.sh           10 million queries of real jaws, 20 times the other samples
 #   scripts/stability_report.sh --quick   as many as in a run of all tests, written to build/ instead
@@ -29,7 +29,7 @@ run() {  # effort, program, filter
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
 run "$load_effort" load_test '*' &
 load=$!
-# What breaks its promise is shown too.
+# What breaks its guarantee is shown too.
 run "$effort" stability_test '*' || failed=1
 run "$effort" search_test 'SharedTreeThread.*' || failed=1
 run "$effort" fuzz_test '*' || failed=1

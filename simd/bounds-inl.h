@@ -11,19 +11,19 @@
 #include <cstdint>
 #include <limits>
 
-#include "ist/query/bound_lanes.h"
+#include "simd/lanes.h"
 #include "simd/select-inl.h"
 
-// Vector twins of what bound_lanes.h specifies.
+// Vector twins of the scalar forms in simd/lanes.h.
 HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Full vectors for the tests; eight lanes, or as many as there are, for a block.
+// Full vectors for the tests; eight lanes, or as many as a vector has, for a block.
 using Full = hn::ScalableTag<float>;
 using Eight = hn::CappedTag<float, 8>;
 
-// Read from memory: Highway 1.0.3's Iota writes its lanes there one by one, and waits for them.
+// Read from memory: Highway 1.0.3's Iota stores its lanes one by one and then waits to load them.
 alignas(64) constexpr std::uint32_t kSlots[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
 template <typename Integer>
@@ -34,7 +34,7 @@ HWY_INLINE hn::Vec<Eight> FloatsOf(const Integer* HWY_RESTRICT values) {
   return hn::ConvertTo(d, hn::PromoteTo(wide, hn::LoadU(narrow, values)));
 }
 
-// Vector twin of ist::decode for a side that is opened and has blocks.
+// Vector twin of ist::decode for a side that descends and has blocks.
 template <bool kSlabs, std::size_t N>
 HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t parent,
                                      BoundLanes<N>& out, std::size_t at) {
@@ -43,7 +43,7 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
   const OctreeNode& node = side.nodes[parent];
   const BallBlock& ball = side.balls[parent];
   const auto unit = hn::Set(d, side.ball_unit);
-  const std::uint32_t first = side.names_addresses ? 8 * parent : node.first_child;
+  const std::uint32_t first = side.emits_slots ? 8 * parent : node.first_child;
   for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
     const auto store = [&](Lane lane, hn::Vec<Eight> v) {
       hn::StoreU(v, d, out.lane[lane] + at + k);
@@ -65,13 +65,14 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
       store(kOffset, hn::Mul(FloatsOf(slab.offset + k), slab_unit));
       store(kHalf, hn::Mul(FloatsOf(slab.half + k), slab_unit));
     }
-    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kSlots + k)), du, out.name + at + k);
+    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kSlots + k)), du, out.id + at + k);
   }
   return child_count(side, parent);
 }
 
-// What has no blocks, or is not opened, is the scalar form's.
-HWY_INLINE bool HasBlocks(const SearchSide& side) { return side.opens && side.balls != nullptr; }
+// Returns whether the vector form applies: a side without blocks, or one that does not descend,
+// takes the scalar form.
+HWY_INLINE bool HasBlocks(const SearchSide& side) { return side.descends && side.balls != nullptr; }
 
 template <bool kSlabs, std::size_t N>
 HWY_INLINE std::uint32_t Decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& out,
@@ -109,13 +110,13 @@ HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows&
   }
 }
 
-// Vector twin of ist::touch: one row against the moving lanes [begin, end), begin at a multiple of
-// the vector. Writes the names of those that touch to `out` and returns how many; a vector's worth
-// of room is needed behind them.
+// Vector twin of ist::overlap: tests one row against the moving lanes [begin, end), begin at a
+// multiple of the vector. Writes the ids of the overlapping lanes to `out` and returns their
+// number; needs a vector's worth of room behind them.
 template <bool kSlabs>
-HWY_INLINE std::size_t TouchRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
-                                std::size_t begin, std::size_t end,
-                                std::uint32_t* HWY_RESTRICT out) {
+HWY_INLINE std::size_t OverlapRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
+                                  std::size_t begin, std::size_t end,
+                                  std::uint32_t* HWY_RESTRICT out) {
   const Full d;
   const hn::RebindToUnsigned<Full> du;
   const auto x = hn::Set(d, f.x[row]), y = hn::Set(d, f.y[row]), z = hn::Set(d, f.z[row]);
@@ -148,17 +149,17 @@ HWY_INLINE std::size_t TouchRow(const FixedRows& f, std::size_t row, const Movin
       apart = hn::Or(apart, hn::Gt(hn::Abs(above_moving), hn::Add(load(kHalf), scaled_radius)));
     }
     const auto touching = hn::AndNot(apart, hn::FirstN(d, end - i));
-    count += StoreSelected(d, touching, hn::Load(du, m.name + i), out + count);
+    count += StoreSelected(d, touching, hn::Load(du, m.id + i), out + count);
   }
   return count;
 }
 
-// Vector twin of ist::measure, for a row as in TouchRow. Of two numbers that cannot be compared x86
-// takes the second, and the twin the one it has.
+// Vector twin of ist::measure, for a row as in OverlapRow. Where a NaN cannot be compared, x86's
+// min takes its second operand, here the value so far.
 template <bool kSlabs>
 HWY_INLINE std::size_t MeasureRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
                                   std::size_t begin, std::size_t end,
-                                  std::uint32_t* HWY_RESTRICT out, Measure& measure) {
+                                  std::uint32_t* HWY_RESTRICT out, DistanceBounds& measure) {
   const Full d;
   const hn::RebindToUnsigned<Full> du;
   const auto set = [&](const float* numbers) { return hn::Set(d, numbers[row]); };
@@ -192,14 +193,14 @@ HWY_INLINE std::size_t MeasureRow(const FixedRows& f, std::size_t row, const Mov
     pruned = hn::Min(hn::IfThenElse(hn::And(here, separate), apart, none), pruned);
     touching = hn::Min(hn::IfThenElse(hn::AndNot(separate, here), apart, none), touching);
     farthest = hn::Min(hn::IfThenElse(here, hn::Add(distance, reach), none), farthest);
-    count += StoreSelected(d, hn::AndNot(separate, here), hn::Load(du, m.name + i), out + count);
+    count += StoreSelected(d, hn::AndNot(separate, here), hn::Load(du, m.id + i), out + count);
   }
   const auto least = [&](float& so_far, hn::Vec<Full> v) {
     so_far = HWY_MIN(so_far, hn::GetLane(hn::MinOfLanes(d, v)));
   };
-  least(measure.pruned, pruned);
-  least(measure.touching, touching);
-  least(measure.farthest, farthest);
+  least(measure.min_pruned, pruned);
+  least(measure.min_overlapping, touching);
+  least(measure.upper, farthest);
   return count;
 }
 

@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using NearTag = hn::CappedTag<float, 8>;
 using NearVec = hn::Vec<NearTag>;
 
-// How far the corners of one triangle are above the slab of the other, or below it.
+// The distance of one triangle's corners from the other's slab, above or below it.
 HWY_INLINE NearVec ApartAlong(const NearVec (&normal)[3], NearVec bottom, NearVec top,
                               const NearVec (&corner)[3][3], NearVec slack) {
   const auto height = [&](const NearVec(&p)[3]) {
@@ -34,7 +34,7 @@ HWY_INLINE NearVec ApartAlong(const NearVec (&normal)[3], NearVec bottom, NearVe
   return hn::Sub(hn::Max(hn::Sub(lowest, top), hn::Sub(bottom, highest)), slack);
 }
 
-// One number of a triangle, or of several, as vectors.
+// The bounds of one triangle, or of several side by side, as vectors.
 struct NearBounds {
   NearVec low[3], high[3], corner[3][3], normal[3], bottom, top, slack;
 

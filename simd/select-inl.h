@@ -17,9 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Stores the names whose mask is set side by side, and returns how many there are. Writes a whole
-// vector. (Highway 1.0.3's Compress copies its table at every call on AVX2, so only AVX-512 uses
-// it.)
+// Stores the selected ids side by side and returns their number. Writes a whole vector. (Highway
+// 1.0.3's Compress copies its table at every call on AVX2, so only AVX-512 uses it.)
 template <class D>
 HWY_INLINE std::size_t StoreSelected(D d, hn::Mask<D> selected,
                                      hn::Vec<hn::RebindToUnsigned<D>> names,

@@ -7,8 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "ist/query/promise/promise_check.h"
+#include "ist/tree/tree_parts.h"
 #include "support/effort.h"
+#include "verify/answer_verifier.h"
 
 namespace ist::bench {
 namespace {
@@ -33,21 +34,21 @@ std::string name(const Parts& parts) {
 }
 
 bool same_counts(const QueryResult& a, const QueryResult& b) {
-  return a.contacts == b.contacts && a.sphere_tests == b.sphere_tests;
+  return a.leaf_pairs == b.leaf_pairs && a.sphere_tests == b.sphere_tests;
 }
 
 struct Answer {
   QueryResult result;
-  std::vector<Contact> contacts;
+  std::vector<LeafPair> leaf_pairs;
 };
 
 Answer ask(Measured& measured, std::size_t pose) {
-  Answer answer{{}, std::vector<Contact>(kContacts)};
-  answer.result = measured.variant.collide(closing(kClosing[pose]), answer.contacts);
+  Answer answer{{}, std::vector<LeafPair>(kContacts)};
+  answer.result = measured.variant.leaf_pairs(closing(kClosing[pose]), answer.leaf_pairs);
   if (!answer.result.complete || answer.result.truncated) {
     fail(measured.parts, pose, "it does not give all its contacts");
   }
-  answer.contacts.resize(answer.result.contacts);  // what lies behind them is no answer
+  answer.leaf_pairs.resize(answer.result.leaf_pairs);  // what lies behind them is no answer
   return answer;
 }
 
@@ -55,9 +56,9 @@ Answer ask(Measured& measured, std::size_t pose) {
 
 Comparison::Comparison(double voxel_size, const std::vector<Parts>& parts)
     : bodies_{trees(voxel_size).first, trees(voxel_size).second,
-              PointerTree(trees(voxel_size).first.octree()),
-              PointerTree(trees(voxel_size).second.octree())},
-      contacts_(kContacts) {
+              PointerTree(trees(voxel_size).first.parts().octree),
+              PointerTree(trees(voxel_size).second.parts().octree)},
+      leaf_pairs_(kContacts) {
   for (const Parts& one : parts) {
     const bool known = std::any_of(measured_.begin(), measured_.end(),
                                    [&](const Measured& other) { return other.parts == one; });
@@ -78,21 +79,22 @@ void Comparison::check(SpherePolicy policy) {
   const Parts as_specified{Search::kLinear, policy}, in_batches{Search::kBatches, policy};
   Measured reference{as_specified, Variant(bodies_, as_specified)};
   Measured scalar{in_batches, Variant(bodies_, in_batches)};
-  const PromiseCheck promise(bodies_.fixed, bodies_.moving, policy);
+  const AnswerVerifier verifier(bodies_.fixed, bodies_.moving, policy);
   for (std::size_t pose = 0; pose < kPoses; ++pose) {
     const Answer specified = ask(reference, pose), batches = ask(scalar, pose);
     if (pose == 0 || !quick()) {  // the longest of the checks; pose 0 has the most contacts
-      const GivenAnswer given[] = {{specified.result, specified.contacts},
-                                   {batches.result, batches.contacts}};
-      if (const std::optional<Breach> breach = promise.check(closing(kClosing[pose]), given)) {
-        fail(breach->answer == 0 ? as_specified : in_batches, pose, breach->what);
+      const GivenAnswer given[] = {{specified.result, specified.leaf_pairs},
+                                   {batches.result, batches.leaf_pairs}};
+      if (const std::optional<Violation> violation =
+              verifier.check(closing(kClosing[pose]), given)) {
+        fail(violation->answer == 0 ? as_specified : in_batches, pose, violation->detail);
       }
     }
     for (Measured& measured : measured_) {
       if (measured.parts.policy != policy) continue;
       const Answer answer = ask(measured, pose);
       const Answer& twin = measured.parts.search == Search::kBatches ? batches : specified;
-      if (!same_counts(answer.result, twin.result) || answer.contacts != twin.contacts) {
+      if (!same_counts(answer.result, twin.result) || answer.leaf_pairs != twin.leaf_pairs) {
         fail(measured.parts, pose, "it differs from its twin");
       }
       measured.results[pose] = answer.result;
@@ -110,7 +112,7 @@ void Comparison::take_turn(Measured& measured) {
   const auto ask_closing = [&](bool timed) {
     for (std::size_t pose = 0; pose < kPoses; ++pose) {
       const auto begin = Clock::now();
-      const QueryResult result = measured.variant.collide(closing(kClosing[pose]), contacts_);
+      const QueryResult result = measured.variant.leaf_pairs(closing(kClosing[pose]), leaf_pairs_);
       const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
       if (!same_counts(result, measured.results[pose])) {
         fail(measured.parts, pose, "it does not repeat its answer");

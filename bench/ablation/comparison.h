@@ -36,8 +36,8 @@ class Comparison {
   /// Ends the program where a variant's answer to any pose is not what it must be: with pointers
   /// that of ReferenceQuery, contacts, order and tests; in batches that of one worker without SIMD,
   /// likewise; and those two, which may differ in pairs whose geometry does not meet, keep what
-  /// PromiseCheck asks of both; where quick() that is checked in full occlusion alone. A time of a
-  /// wrong answer would mean nothing.
+  /// AnswerVerifier asks of both; where quick() that is checked in full occlusion alone. A time of
+  /// a wrong answer would mean nothing.
   void check();
 
   /// A turn begins with closings that are not timed, so that caches hold what the variant reads and
@@ -54,7 +54,7 @@ class Comparison {
 
   Bodies bodies_;
   std::deque<Measured> measured_;
-  std::vector<Contact> contacts_;
+  std::vector<LeafPair> leaf_pairs_;
 };
 
 }  // namespace ist::bench

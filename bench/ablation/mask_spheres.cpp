@@ -8,8 +8,8 @@
 #include <span>
 
 #include "ist/tree/enclosing_ball.h"
-#include "ist/tree/lookup_table.h"
-#include "ist/tree/sphere_policy.h"
+#include "ist/tree/implicit_ball.h"
+#include "ist/tree/lookup_table_search.h"
 
 namespace ist::bench {
 namespace {

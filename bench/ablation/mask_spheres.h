@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "ist/tree/ball.h"
+#include "ist/tree/bounds.h"
 #include "ist/tree/linear_octree.h"
 
 namespace ist::bench {

@@ -5,8 +5,9 @@
 #include <optional>
 
 #include "ist/base/float_environment.h"
-#include "ist/query/contact_order.h"
 #include "ist/query/query_rules.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::bench {
 namespace {
@@ -21,20 +22,20 @@ bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noex
 
 }  // namespace
 
-QueryResult PointerQuery::collide(const Eigen::Isometry3d& pose, std::span<Contact> out) {
+QueryResult PointerQuery::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
   const ScopedFloatEnvironment environment;
   QueryResult result;
   const std::optional<RelativePose> relative =
-      relative_pose(pose, fixed_.tree.lattice(), moving_.tree.lattice());
+      relative_pose(pose, fixed_.tree.parts().lattice, moving_.tree.parts().lattice);
   if (!relative) {
     result.status = QueryStatus::kInvalidPose;
     result.complete = false;
     return result;
   }
   pose_ = *relative;
-  const double reach = fixed_.tree.reach() + moving_.tree.reach();
+  const double reach = fixed_.tree.bounding_radius() + moving_.tree.bounding_radius();
   const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  slack_ = slack_in_double(reach, farthest);
+  slack_ = pad_in_double(reach, farthest);
   tests_ = 0;
   found_.clear();
 
@@ -43,9 +44,10 @@ QueryResult PointerQuery::collide(const Eigen::Isometry3d& pose, std::span<Conta
   to_fixed_frame(b);
   if (touch(a, b) && farthest <= reach + slack_) descend(a, b);
 
-  sort_by_fixed(found_, sorted_);
+  std::stable_sort(found_.begin(), found_.end(),
+                   [](const LeafPair& x, const LeafPair& y) { return x.fixed < y.fixed; });
   std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
-  result.contacts = found_.size();
+  result.leaf_pairs = found_.size();
   result.truncated = found_.size() > out.size();
   result.sphere_tests = tests_;
   result.pad = 2 * slack_;
@@ -56,10 +58,11 @@ PointerQuery::Visit PointerQuery::visit(const SphereTree& tree, const PointerNod
                                         std::uint32_t parent, int slot) const {
   Visit visit;
   visit.node = &node;
-  visit.ball = is_implicit(policy_)
-                   ? implicit_ball(policy_, tree.lattice(), node.level, node.cube_centre, node.mask)
-                   : tree.saved_ball(node.level, parent, slot);
-  if (policy_ == SpherePolicy::kSlab) visit.slab = tree.saved_slab(node.level, parent, slot);
+  visit.ball = is_implicit(policy_) ? implicit_ball(policy_, tree.parts().lattice, node.level,
+                                                    node.cube_centre, node.mask)
+                                    : tree.parts().saved_ball(node.level, parent, slot);
+  if (policy_ == SpherePolicy::kSlab)
+    visit.slab = tree.parts().saved_slab(node.level, parent, slot);
   return visit;
 }
 
@@ -97,10 +100,10 @@ void PointerQuery::descend(const Visit& a, const Visit& b) {
     found_.push_back({a.node->index, b.node->index});
     return;
   }
-  const double edge_a = fixed_.tree.lattice().edge(a.node->level);
-  const double edge_b = moving_.tree.lattice().edge(b.node->level);
-  const bool open_a = opens(a.node->level, edge_a, b.node->level, edge_b);
-  const bool open_b = opens(b.node->level, edge_b, a.node->level, edge_a);
+  const double edge_a = fixed_.tree.parts().lattice.edge(a.node->level);
+  const double edge_b = moving_.tree.parts().lattice.edge(b.node->level);
+  const bool open_a = descends(a.node->level, edge_a, b.node->level, edge_b);
+  const bool open_b = descends(b.node->level, edge_b, a.node->level, edge_a);
   Children of_a, of_b;
   if (open_a) {
     open(fixed_.tree, *a.node, of_a);

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "ablation/pointer_tree.h"
-#include "ist/query/contact.h"
 #include "ist/query/relative_pose.h"
-#include "ist/tree/slab.h"
+#include "ist/query/results.h"
+#include "ist/tree/bounds.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::bench {
 
@@ -32,7 +33,7 @@ class PointerQuery {
       : fixed_(fixed), moving_(moving), policy_(policy) {}
 
   /// As ReferenceQuery::collide.
-  [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out);
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
 
  private:
   struct Visit {
@@ -58,7 +59,7 @@ class PointerQuery {
   RelativePose pose_;
   double slack_ = 0;  // what a test may err by, and a reach is grown by
   std::uint64_t tests_ = 0;
-  std::vector<Contact> found_, sorted_;
+  std::vector<LeafPair> found_;
 };
 
 }  // namespace ist::bench

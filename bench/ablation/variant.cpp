@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "ablation/pointer_query.h"
-#include "ist/query/collision_query.h"
-#include "ist/query/reference.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::bench {
 namespace {
@@ -16,8 +17,8 @@ using Search = Parts::Search;
 std::size_t saved_bytes(const SphereTree& tree, SpherePolicy policy) {
   std::size_t bytes = 0;
   for (int level = 0; level <= tree.depth(); ++level) {
-    if (!is_implicit(policy)) bytes += tree.balls(level).size_bytes();
-    if (policy == SpherePolicy::kSlab) bytes += tree.slabs(level).size_bytes();
+    if (!is_implicit(policy)) bytes += tree.parts().balls(level).size_bytes();
+    if (policy == SpherePolicy::kSlab) bytes += tree.parts().slabs(level).size_bytes();
   }
   return bytes;
 }
@@ -28,36 +29,36 @@ Variant::Variant(const Bodies& bodies, const Parts& parts)
     : tree_bytes_(saved_bytes(bodies.fixed, parts.policy) +
                   saved_bytes(bodies.moving, parts.policy)) {
   const auto ask_by = [this](auto query) {
-    collide_ = [query = std::move(query)](const Eigen::Isometry3d& pose, std::span<Contact> out) {
-      return query->collide(pose, out);
+    collide_ = [query = std::move(query)](const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
+      return query->leaf_pairs(pose, out);
     };
   };
   if (parts.search == Search::kPointers) {
     tree_bytes_ += bodies.fixed_pointers.bytes() + bodies.moving_pointers.bytes();
-    bytes_for_a_contact_ = 2 * sizeof(Contact);
+    bytes_for_a_leaf_pair_ = 2 * sizeof(LeafPair);
     ask_by(std::make_shared<PointerQuery>(PointerQuery::Body{bodies.fixed, bodies.fixed_pointers},
                                           PointerQuery::Body{bodies.moving, bodies.moving_pointers},
                                           parts.policy));
     return;
   }
-  tree_bytes_ += bodies.fixed.octree().bytes() + bodies.moving.octree().bytes();
+  tree_bytes_ += bodies.fixed.parts().octree.bytes() + bodies.moving.parts().octree.bytes();
   if (parts.search == Search::kLinear) {
-    bytes_for_a_contact_ = 2 * sizeof(Contact);
+    bytes_for_a_leaf_pair_ = 2 * sizeof(LeafPair);
     ask_by(std::make_shared<ReferenceQuery>(bodies.fixed, bodies.moving, parts.policy));
     return;
   }
-  CollisionOptions options;
+  QueryOptions options;
   options.policy = parts.policy;
   options.target = parts.target;
   options.workers = parts.workers;
   options.period = std::chrono::nanoseconds(0);
-  auto query = std::make_shared<CollisionQuery>(bodies.fixed, bodies.moving, options);
+  auto query = std::make_shared<Query>(bodies.fixed, bodies.moving, options);
   reserved_ = query->bytes();
   ask_by(std::move(query));
 }
 
 std::size_t Variant::bytes() const {
-  return tree_bytes_ + reserved_ + bytes_for_a_contact_ * most_contacts_;
+  return tree_bytes_ + reserved_ + bytes_for_a_leaf_pair_ * max_leaf_pairs_;
 }
 
 }  // namespace ist::bench

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ablation/pointer_tree.h"
-#include "ist/query/contact.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::bench {
@@ -25,7 +25,7 @@ struct Parts {
   enum class Search {
     kPointers,  ///< depth first, node by node, by pointers: PointerQuery
     kLinear,    ///< likewise on the linear octree: ReferenceQuery
-    kBatches,   ///< breadth first, in batches of spheres: CollisionQuery
+    kBatches,   ///< breadth first, in batches of spheres: Query
   };
   Search search;
   SpherePolicy policy;
@@ -40,9 +40,9 @@ class Variant {
  public:
   Variant(const Bodies& bodies, const Parts& parts);
 
-  [[nodiscard]] QueryResult collide(const Eigen::Isometry3d& pose, std::span<Contact> out) {
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
     QueryResult result = collide_(pose, out);
-    most_contacts_ = std::max<std::size_t>(most_contacts_, result.contacts);
+    max_leaf_pairs_ = std::max<std::size_t>(max_leaf_pairs_, result.leaf_pairs);
     return result;
   }
 
@@ -50,11 +50,11 @@ class Variant {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  std::function<QueryResult(const Eigen::Isometry3d&, std::span<Contact>)> collide_;
+  std::function<QueryResult(const Eigen::Isometry3d&, std::span<LeafPair>)> collide_;
   std::size_t tree_bytes_ = 0;
-  std::size_t reserved_ = 0;             // of a query that reserves its memory
-  std::size_t most_contacts_ = 0;        // of any answer
-  std::size_t bytes_for_a_contact_ = 0;  // of one that does not
+  std::size_t reserved_ = 0;               // of a query that reserves its memory
+  std::size_t max_leaf_pairs_ = 0;         // of any answer
+  std::size_t bytes_for_a_leaf_pair_ = 0;  // of one that does not
 };
 
 }  // namespace ist::bench

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "query/query_cases.h"
 #include "support/bodies.h"
 #include "support/effort.h"
@@ -10,9 +10,9 @@
 namespace ist::bench {
 namespace {
 
-CollisionQuery& exact_query() {
+Query& exact_query() {
   constexpr double kVoxelSize = 0.4;  // the size of triangles, at which exact answers are fastest
-  static CollisionQuery query(exact_trees(kVoxelSize).first, exact_trees(kVoxelSize).second);
+  static Query query(exact_trees(kVoxelSize).first, exact_trees(kVoxelSize).second);
   return query;
 }
 
@@ -47,9 +47,9 @@ std::vector<Approach> make_approaches() {
     // At t = kWayBegin it would be where it is stored.
     way.turned.translation() = about - turn * about - kWayBegin * way.direction;
     if (exact_gap(way.pose(0)) < kApart) continue;
-    way.contact = first_touch(0, 2 * kWayBegin, kStep, 1e-6,
-                              [&](double t) { return exact_touch(way.pose(t)); });
-    if (way.contact < 0) continue;  // it passed by
+    way.pair = first_touch(0, 2 * kWayBegin, kStep, 1e-6,
+                           [&](double t) { return exact_touch(way.pose(t)); });
+    if (way.pair < 0) continue;  // it passed by
     ways.push_back(way);
   }
   return ways;
@@ -58,12 +58,12 @@ std::vector<Approach> make_approaches() {
 }  // namespace
 
 double exact_gap(const Eigen::Isometry3d& pose) {
-  const GapInterval gap = exact_query().gap(pose, 1e-6).gap;
+  const DistanceInterval gap = exact_query().distance(pose, 1e-6).distance;
   return gap.lower + (gap.upper - gap.lower) / 2;
 }
 
 bool exact_touch(const Eigen::Isometry3d& pose) {
-  return exact_query().touches(pose) == Touch::kYes;
+  return exact_query().intersects(pose).answer == ist::Answer::kYes;
 }
 
 std::span<const Approach> approaches() {

@@ -10,7 +10,7 @@ namespace ist::bench {
 struct Approach {
   Eigen::Isometry3d turned;   ///< the moving jaw's pose at the way's begin, t = 0
   Eigen::Vector3d direction;  ///< of unit length
-  double contact;             ///< where triangles meet first, to within 1e-6 mm
+  double pair;                ///< where triangles meet first, to within 1e-6 mm
 
   [[nodiscard]] Eigen::Isometry3d pose(double t) const {
     Eigen::Isometry3d at = turned;
@@ -23,17 +23,17 @@ struct Approach {
 /// halved down to `within`. Negative where it never does before `to`, or already at `from`.
 template <class Touches>
 [[nodiscard]] double first_touch(double from, double to, double step, double within,
-                                 const Touches& touches) {
-  if (touches(from)) return -1;
+                                 const Touches& intersects) {
+  if (intersects(from)) return -1;
   double free = from;
-  while (!touches(free + step)) {
+  while (!intersects(free + step)) {
     free += step;
     if (free > to) return -1;
   }
   double touching = free + step;
   while (touching - free > within) {
     const double middle = free + (touching - free) / 2;
-    (touches(middle) ? touching : free) = middle;
+    (intersects(middle) ? touching : free) = middle;
   }
   return touching;
 }

@@ -35,8 +35,8 @@ Bodies build_both(double voxel_size, SpherePolicy policy, bool triangles) {
 // A way to find contacts.
 struct Finder {
   std::string name;
-  std::function<bool(const Pose&)> touches;  // whether there are any
-  std::function<void(const Pose&)> ask;      // what is timed
+  std::function<bool(const Pose&)> intersects;  // whether there are any
+  std::function<void(const Pose&)> ask;         // what is timed
   SpherePolicy policy;
   bool triangles;
   double resolution;
@@ -44,29 +44,36 @@ struct Finder {
 
 Finder of_policy(double voxel_size, SpherePolicy policy) {
   const auto& [fixed, moving] = exact_trees(voxel_size);
-  const auto query = std::make_shared<CollisionQuery>(fixed, moving, with_policy(policy));
-  const auto contacts = std::make_shared<std::vector<Contact>>(1 << 20);
+  const auto query = std::make_shared<Query>(fixed, moving, with_policy(policy));
+  const auto leaf_pairs = std::make_shared<std::vector<LeafPair>>(1 << 20);
   return {std::string(to_string(policy)),
-          [=](const Pose& pose) { return query->collide(pose, std::span<Contact>()).contacts > 0; },
-          [=](const Pose& pose) { static_cast<void>(query->collide(pose, *contacts)); },
+          [=](const Pose& pose) {
+            return query->leaf_pairs(pose, std::span<LeafPair>()).leaf_pairs > 0;
+          },
+          [=](const Pose& pose) { static_cast<void>(query->leaf_pairs(pose, *leaf_pairs)); },
           policy,
           false,
-          query->resolution(query->collide(closing(0), *contacts))};
+          query->leaf_pairs(closing(0), *leaf_pairs).resolution};
 }
 
 // Triangles, told apart at voxels of this size: all pairs that meet, or only whether any do.
 Finder of_triangles(double voxel_size, bool all) {
   const auto& [fixed, moving] = exact_trees(voxel_size);
-  const auto query = std::make_shared<CollisionQuery>(fixed, moving);
+  const auto query = std::make_shared<Query>(fixed, moving);
   const auto pairs = std::make_shared<std::vector<TrianglePair>>(1 << 16);
-  const auto touches = [=](const Pose& pose) { return query->touches(pose) == Touch::kYes; };
-  const auto all_pairs = [=](const Pose& pose) {
-    static_cast<void>(query->collide_exact(pose, *pairs));
+  const auto intersects = [=](const Pose& pose) {
+    return query->intersects(pose).answer == ist::Answer::kYes;
   };
-  const auto any = [=](const Pose& pose) { benchmark::DoNotOptimize(touches(pose)); };
-  return {
-      all ? "exact" : "touches", touches, all ? std::function<void(const Pose&)>(all_pairs) : any,
-      SpherePolicy::kSlab,       true,    2e-6};  // what the exact contact is known to
+  const auto all_pairs = [=](const Pose& pose) {
+    static_cast<void>(query->triangle_pairs(pose, *pairs));
+  };
+  const auto any = [=](const Pose& pose) { benchmark::DoNotOptimize(intersects(pose)); };
+  return {all ? "exact" : "touches",
+          intersects,
+          all ? std::function<void(const Pose&)>(all_pairs) : any,
+          SpherePolicy::kSlab,
+          true,
+          2e-6};  // what the exact contact is known to
 }
 
 // All ways to find contacts at one voxel size, timed in turns.
@@ -85,16 +92,17 @@ class Size {
     Latencies errors;
     for (auto _ : state) {
       for (const Approach& way : approaches()) {
-        const double t = first_touch(0, way.contact, kStep, 1e-6,
-                                     [&](double place) { return finder.touches(way.pose(place)); });
-        if (t < 0 || t > way.contact + 2e-6) {
+        const double t = first_touch(0, way.pair, kStep, 1e-6, [&](double place) {
+          return finder.intersects(way.pose(place));
+        });
+        if (t < 0 || t > way.pair + 2e-6) {
           state.SkipWithError("what triangles meet first, voxels have missed");
           return;
         }
         errors.add(exact_gap(way.pose(t)));
       }
       if (errors.quantile(1) > finder.resolution) {
-        state.SkipWithError("an error is larger than the bound that was promised");
+        state.SkipWithError("an error is larger than the bound that was guaranteed");
         return;
       }
       state.SetIterationTime(1e-6 * slowest_[at].quantile(0.5));
@@ -121,7 +129,7 @@ class Size {
     }
     std::vector<Pose> poses;
     for (const double dz : kClosing) poses.push_back(closing(dz));
-    for (const Approach& way : approaches()) poses.push_back(way.pose(way.contact));
+    for (const Approach& way : approaches()) poses.push_back(way.pose(way.pair));
     std::vector<std::vector<Latencies>> times(finders_.size(),
                                               std::vector<Latencies>(poses.size()));
     for (int round = 0; round < rounds(101); ++round) {

@@ -5,7 +5,7 @@
 
 #include "accuracy/approaches.h"
 #include "accuracy/sections.h"
-#include "ist/haptics/touch_query.h"
+#include "ist/haptics/tool_contact_query.h"
 #include "support/latencies.h"
 
 namespace ist::bench {
@@ -17,16 +17,16 @@ constexpr double kDepths[] = {0.02, 0.05, 0.08};
 // N for a stiffness of 1 N/mm, as a scene has it before anything is shared or clamped.
 std::vector<Eigen::Vector3d> forces(double voxel_size, SpherePolicy policy) {
   const auto& [fixed, held] = trees(voxel_size);
-  TouchOptions options;
+  ToolContactOptions options;
   options.policy = policy;
-  TouchQuery query(fixed, held, {1, {}, Eigen::Vector3d::Zero()}, options);
+  ToolContactQuery query(fixed, held, {1, {}, Eigen::Vector3d::Zero()}, options);
   std::vector<Eigen::Vector3d> found;
-  TouchSet touches;
+  ToolContacts contacts;
   for (const Approach& way : approaches()) {
     for (const double depth : kDepths) {
-      const Placement tool = *Placement::from(way.pose(way.contact + depth));
-      static_cast<void>(query.ask(tool, {}, touches));
-      found.push_back(touches.spring.head<3>());
+      const Placement tool = *Placement::from(way.pose(way.pair + depth));
+      static_cast<void>(query.find(tool, {}, contacts));
+      found.push_back(contacts.spring.head<3>());
     }
   }
   return found;

@@ -26,7 +26,7 @@ struct Apart {
 std::vector<Apart> poses_at(double distance) {
   std::vector<Apart> poses;
   for (const Approach& way : approaches()) {
-    double near = way.contact, far = 0;  // kApart there, which is more
+    double near = way.pair, far = 0;  // kApart there, which is more
     while (near - far > 1e-4) {
       const double middle = far + (near - far) / 2;
       (exact_gap(way.pose(middle)) > distance ? far : near) = middle;
@@ -54,7 +54,7 @@ void measure(benchmark::State& state, std::size_t distance, const Ask& ask) {
     for (int turn = 0; turn < turns; ++turn) {
       for (const auto& [pose, truth] : poses) {
         const Stopwatch watch;
-        const GapInterval gap = ask(pose);
+        const DistanceInterval gap = ask(pose);
         times.add(watch.microseconds());
         widths.add(gap.upper - gap.lower);
         if (truth < gap.lower - kRounding || truth > gap.upper + kRounding) {
@@ -75,25 +75,26 @@ void measure(benchmark::State& state, std::size_t distance, const Ask& ask) {
 void of_voxels(benchmark::State& state, double voxel_size, SpherePolicy policy,
                std::size_t distance) {
   const auto& [fixed, moving] = trees(voxel_size);
-  CollisionQuery query(fixed, moving, with_policy(policy));
-  measure(state, distance, [&](const Pose& pose) { return query.gap(pose, 0).gap; });
+  Query query(fixed, moving, with_policy(policy));
+  measure(state, distance, [&](const Pose& pose) { return query.distance(pose, 0).distance; });
 }
 
 void of_triangles(benchmark::State& state, double voxel_size, double tolerance,
                   std::size_t distance) {
   const auto& [fixed, moving] = exact_trees(voxel_size);
-  CollisionQuery query(fixed, moving);
-  measure(state, distance, [&](const Pose& pose) { return query.gap(pose, tolerance).gap; });
+  Query query(fixed, moving);
+  measure(state, distance,
+          [&](const Pose& pose) { return query.distance(pose, tolerance).distance; });
 }
 
 void within(benchmark::State& state, double voxel_size, std::chrono::microseconds budget,
             std::size_t distance) {
   const auto& [fixed, moving] = trees(voxel_size);
-  CollisionQuery query(fixed, moving);
-  std::vector<Contact> contacts(1 << 20);
+  Query query(fixed, moving);
+  std::vector<LeafPair> leaf_pairs(1 << 20);
   measure(state, distance, [&](const Pose& pose) {
     const Budget until{.deadline = Budget::Clock::now() + budget};
-    return *query.collide(pose, contacts, until).gap;
+    return *query.leaf_pairs(pose, leaf_pairs, until).distance;
   });
 }
 

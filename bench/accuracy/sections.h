@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 
@@ -32,8 +32,8 @@ void add_deadlines();
   return {1.6, 0.8, 0.4, 0.2, 0.1};
 }
 
-[[nodiscard]] inline CollisionOptions with_policy(SpherePolicy policy) {
-  CollisionOptions options;
+[[nodiscard]] inline QueryOptions with_policy(SpherePolicy policy) {
+  QueryOptions options;
   options.policy = policy;
   return options;
 }

@@ -6,31 +6,32 @@
 
 #include "accuracy/approaches.h"
 #include "accuracy/sections.h"
-#include "ist/query/promise/leaf_geometry.h"
-#include "ist/query/promise/promise_check.h"
+#include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "support/latencies.h"
+#include "verify/answer_verifier.h"
+#include "verify/leaf_geometry.h"
 
 namespace ist::bench {
 namespace {
 
 using Pose = Eigen::Isometry3d;
 
-struct Verdict {
+struct ChunkState {
   Pose pose;
   bool touch;  // of triangles
 };
 
 // Round the contact of every way, and what triangles say there.
-const std::vector<Verdict>& verdicts() {
-  static const std::vector<Verdict> made = [] {
+const std::vector<ChunkState>& verdicts() {
+  static const std::vector<ChunkState> made = [] {
     constexpr int kAWay = 20;
     constexpr double kBefore = 1.5, kBehind = 0.5;  // mm
-    std::vector<Verdict> all;
+    std::vector<ChunkState> all;
     test::Random random(11);
     for (const Approach& way : approaches()) {
       for (int i = 0; i < kAWay; ++i) {
-        const Pose pose = way.pose(way.contact + random.uniform(-kBefore, kBehind));
+        const Pose pose = way.pose(way.pair + random.uniform(-kBefore, kBehind));
         all.push_back({pose, exact_touch(pose)});
       }
     }
@@ -43,7 +44,7 @@ const std::vector<Verdict>& verdicts() {
 class Leaves {
  public:
   Leaves(const SphereTree& tree, const RelativePose* move)
-      : tree_(tree), codes_(tree.octree().codes(0)), move_(move) {}
+      : tree_(tree), codes_(tree.parts().octree.codes(0)), move_(move) {}
 
   const std::vector<ClippedTriangle>& of(std::uint32_t leaf) {
     const auto [at, is_new] = made_.try_emplace(leaf);
@@ -73,15 +74,16 @@ class Leaves {
 
 // How many of the leaf pairs hold triangles that cross inside of them.
 std::uint64_t crossing(const SphereTree& fixed, const SphereTree& moving, const Pose& pose,
-                       const std::vector<Contact>& contacts) {
-  const RelativePose relative = *relative_pose(pose, fixed.lattice(), moving.lattice());
+                       const std::vector<LeafPair>& leaf_pairs) {
+  const RelativePose relative = *relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
   const double tolerance =
-      PromiseCheck::kTolerance * (fixed.reach() + moving.reach() + relative.translation.norm());
+      AnswerVerifier::kTolerance *
+      (fixed.bounding_radius() + moving.bounding_radius() + relative.translation.norm());
   Leaves of_fixed(fixed, nullptr), of_moving(moving, &relative);
   std::uint64_t count = 0;
-  for (const Contact& contact : contacts) {
-    const auto& as = of_fixed.of(contact.fixed);
-    const auto& bs = of_moving.of(contact.moving);
+  for (const LeafPair& pair : leaf_pairs) {
+    const auto& as = of_fixed.of(pair.fixed);
+    const auto& bs = of_moving.of(pair.moving);
     const bool cross = std::any_of(as.begin(), as.end(), [&](const ClippedTriangle& a) {
       return std::any_of(bs.begin(), bs.end(),
                          [&](const ClippedTriangle& b) { return surely_cross(a, b, tolerance); });
@@ -93,30 +95,31 @@ std::uint64_t crossing(const SphereTree& fixed, const SphereTree& moving, const 
 
 void judge(benchmark::State& state, double voxel_size, SpherePolicy policy) {
   const auto& [fixed, moving] = exact_trees(voxel_size);
-  CollisionQuery query(fixed, moving, with_policy(policy));
+  Query query(fixed, moving, with_policy(policy));
   double missed = 0, false_alarms = 0, touching = 0;
-  std::vector<Contact> contacts(1 << 20);
+  std::vector<LeafPair> leaf_pairs(1 << 20);
   for (auto _ : state) {
-    for (const Verdict& verdict : verdicts()) {
-      const bool said = query.collide(verdict.pose, std::span<Contact>()).contacts > 0;
+    for (const ChunkState& verdict : verdicts()) {
+      const bool said = query.leaf_pairs(verdict.pose, std::span<LeafPair>()).leaf_pairs > 0;
       touching += verdict.touch ? 1 : 0;
       missed += verdict.touch && !said ? 1 : 0;
       false_alarms += !verdict.touch && said ? 1 : 0;
     }
-    const QueryResult result = query.collide(closing(0), contacts);
+    const QueryResult result = query.leaf_pairs(closing(0), leaf_pairs);
     if (result.truncated) {
       state.SkipWithError("there are more contacts than there is room for");
       return;
     }
-    contacts.resize(result.contacts);
-    const GivenAnswer answer{result, contacts};
-    const auto breach = PromiseCheck(fixed, moving, policy).check(closing(0), {&answer, 1});
-    if (breach) {
-      state.SkipWithError(breach->what.c_str());
+    leaf_pairs.resize(result.leaf_pairs);
+    const GivenAnswer answer{result, leaf_pairs};
+    const auto violation = AnswerVerifier(fixed, moving, policy).check(closing(0), {&answer, 1});
+    if (violation) {
+      state.SkipWithError(violation->detail.c_str());
       return;
     }
-    state.counters["leaf_pairs"] = static_cast<double>(result.contacts);
-    state.counters["crossing"] = static_cast<double>(crossing(fixed, moving, closing(0), contacts));
+    state.counters["leaf_pairs"] = static_cast<double>(result.leaf_pairs);
+    state.counters["crossing"] =
+        static_cast<double>(crossing(fixed, moving, closing(0), leaf_pairs));
   }
   const auto n = static_cast<double>(verdicts().size());
   state.counters["n"] = n;

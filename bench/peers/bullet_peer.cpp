@@ -88,7 +88,7 @@ class PairList final : public btManifoldResult {
 class BulletPeer final : public Peer {
  public:
   explicit BulletPeer(std::shared_ptr<Bodies> bodies)
-      : Peer("bullet", Promise::kRounded), bodies_(std::move(bodies)) {
+      : Peer("bullet", Guarantee::kRounded), bodies_(std::move(bodies)) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
   }
 
@@ -118,7 +118,7 @@ class BulletBoxesPeer final : public Peer {
  public:
   BulletBoxesPeer(std::shared_ptr<Bodies> bodies, const TriangleMesh& fixed,
                   const TriangleMesh& moving)
-      : Peer("bullet_boxes", Promise::kRounded),
+      : Peer("bullet_boxes", Guarantee::kRounded),
         bodies_(std::move(bodies)),
         fixed_(fixed),
         moving_(moving) {}

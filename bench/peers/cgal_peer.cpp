@@ -94,7 +94,7 @@ struct Bodies {
 class CgalPeer final : public Peer {
  public:
   explicit CgalPeer(std::shared_ptr<const Bodies> bodies)
-      : Peer("cgal", Promise::kExact), bodies_(std::move(bodies)) {}
+      : Peer("cgal", Guarantee::kExact), bodies_(std::move(bodies)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question == Question::kMeets || question == Question::kPairs;
@@ -121,7 +121,7 @@ class CgalPeer final : public Peer {
 class CgalRigidPeer final : public Peer {
  public:
   explicit CgalRigidPeer(std::shared_ptr<const Bodies> bodies)
-      : Peer("cgal_rigid", Promise::kExact), bodies_(std::move(bodies)) {
+      : Peer("cgal_rigid", Guarantee::kExact), bodies_(std::move(bodies)) {
     fixed_ = detection_.add_mesh(bodies_->fixed.tree, bodies_->fixed.mesh);
     moving_ = detection_.add_mesh(bodies_->moving.tree, bodies_->moving.mesh);
   }

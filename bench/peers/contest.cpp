@@ -12,9 +12,9 @@ const char* to_string(Question question) {
   return kNames[static_cast<std::size_t>(question)];
 }
 
-const char* to_string(Promise promise) {
+const char* to_string(Guarantee guarantee) {
   constexpr const char* kNames[] = {"exact", "rounded", "sampled"};
-  return kNames[static_cast<std::size_t>(promise)];
+  return kNames[static_cast<std::size_t>(guarantee)];
 }
 
 namespace {
@@ -48,9 +48,9 @@ Answer ask(Peer& peer, Question question, const Eigen::Isometry3d& pose) {
 
 }  // namespace
 
-bool agree(Question question, const Answer& ist, const Answer& peer, Promise promise) {
+bool agree(Question question, const Answer& ist, const Answer& peer, Guarantee guarantee) {
   if (question == Question::kCandidates) return peer.pairs >= ist.pairs;
-  const double slack = promise == Promise::kSampled ? voxel_size() : kRounding;
+  const double slack = guarantee == Guarantee::kSampled ? voxel_size() : kRounding;
   return ist.meets == peer.meets && ist.pairs == peer.pairs &&
          ist.gap.lower <= peer.gap.upper + slack && peer.gap.lower <= ist.gap.upper + slack;
 }

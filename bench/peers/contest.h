@@ -14,12 +14,13 @@ namespace ist::bench {
 struct Answer {
   bool meets = false;
   std::uint64_t pairs = 0;
-  GapInterval gap{};
+  DistanceInterval gap{};
 };
 
 /// Whether a contestant's answer is as IST's: no fewer candidates; distances that may be the same;
 /// for one who samples, distances within a voxel.
-[[nodiscard]] bool agree(Question question, const Answer& ist, const Answer& peer, Promise promise);
+[[nodiscard]] bool agree(Question question, const Answer& ist, const Answer& peer,
+                         Guarantee guarantee);
 
 /// What is wrong with IST's answer where the truth is known, if anything.
 [[nodiscard]] std::optional<std::string> untrue(Question question, const Answer& ist,

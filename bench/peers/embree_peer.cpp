@@ -53,7 +53,7 @@ class Body {
     rtcReleaseScene(scene_);
   }
 
-  // In the very doubles that TrianglePairs promises.
+  // In the very doubles that TrianglePairs guarantees.
   void move(const std::vector<Eigen::Vector3d>& from, const Eigen::Isometry3d& pose) {
     const Eigen::Isometry3d rigid = *project_to_rigid(pose);
     const auto& m = rigid.matrix();
@@ -116,7 +116,7 @@ struct Bodies {
 class EmbreePeer final : public Peer {
  public:
   EmbreePeer(const TriangleMesh& moving, std::shared_ptr<Bodies> bodies, Part part)
-      : Peer(kNames[static_cast<std::size_t>(part)], Promise::kExact),
+      : Peer(kNames[static_cast<std::size_t>(part)], Guarantee::kExact),
         part_(part),
         from_(moving.vertices),
         bodies_(std::move(bodies)) {

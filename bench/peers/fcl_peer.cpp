@@ -29,7 +29,7 @@ std::shared_ptr<const Model> model_of(const TriangleMesh& mesh) {
 class FclPeer : public Peer {
  public:
   FclPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
-      : Peer("fcl", Promise::kRounded), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
+      : Peer("fcl", Guarantee::kRounded), fixed_(std::move(fixed)), moving_(std::move(moving)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question != Question::kCandidates;
@@ -38,7 +38,7 @@ class FclPeer : public Peer {
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
     return collide(pose, std::numeric_limits<std::size_t>::max());
   }
-  GapInterval distance(const Eigen::Isometry3d& pose) override {
+  DistanceInterval distance(const Eigen::Isometry3d& pose) override {
     fcl::DistanceResult<double> result;
     fcl::distance<double>(fixed_.get(), fcl::Transform3d::Identity(), moving_.get(), pose,
                           fcl::DistanceRequest<double>(), result);
@@ -60,14 +60,14 @@ class FclPeer : public Peer {
 class FclWithinPeer final : public Peer {
  public:
   FclWithinPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
-      : Peer("fcl_within", Promise::kRounded),
+      : Peer("fcl_within", Guarantee::kRounded),
         fixed_(std::move(fixed)),
         moving_(std::move(moving)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question == Question::kDistance;
   }
-  GapInterval distance(const Eigen::Isometry3d& pose) override {
+  DistanceInterval distance(const Eigen::Isometry3d& pose) override {
     fcl::DistanceResult<double> result;
     fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> node;
     fcl::detail::initialize(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,

@@ -14,9 +14,9 @@ namespace ist::bench {
 ///    on to a mesh in 0.7 (the traversal copies it before it knows the request), so it is set where
 ///    it acts, in the traversal, and the answer is the interval from what is found down to 0.05 mm
 ///    less.
-/// What differs: its predicates are in double and not exact, so nothing is promised where triangles
-/// only touch or lie in one plane. Debian's library is built for any x86-64, without FCL's own SSE
-/// code, and with assertions.
+/// What differs: its predicates are in double and not exact, so nothing is guaranteed where
+/// triangles only touch or lie in one plane. Debian's library is built for any x86-64, without
+/// FCL's own SSE code, and with assertions.
 [[nodiscard]] Library fcl_library();
 
 }  // namespace ist::bench

@@ -1,7 +1,7 @@
 #include "peers/ist_peer.h"
 
-#include "ist/query/collision_query.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
 
 namespace ist::bench {
 namespace {
@@ -11,16 +11,18 @@ constexpr std::size_t kPairs = 1 << 16;
 class IstPeer final : public Peer {
  public:
   IstPeer(const TriangleMesh& fixed, const TriangleMesh& moving)
-      : Peer("ist", Promise::kExact), fixed_(tree(fixed)), moving_(tree(moving)) {}
+      : Peer("ist", Guarantee::kExact), fixed_(tree(fixed)), moving_(tree(moving)) {}
 
   [[nodiscard]] bool answers(Question) const override { return true; }
-  bool meets(const Eigen::Isometry3d& pose) override { return query_.touches(pose) == Touch::kYes; }
+  bool meets(const Eigen::Isometry3d& pose) override {
+    return query_.intersects(pose).answer == ist::Answer::kYes;
+  }
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
-    return query_.collide_exact(pose, pairs_).triangle_pairs;
+    return query_.triangle_pairs(pose, pairs_).triangle_pairs;
   }
   std::uint64_t candidates(const Eigen::Isometry3d& pose) override { return pairs(pose); }
-  GapInterval distance(const Eigen::Isometry3d& pose) override {
-    return query_.gap(pose, kTolerance).gap;
+  DistanceInterval distance(const Eigen::Isometry3d& pose) override {
+    return query_.distance(pose, kTolerance).distance;
   }
 
  private:
@@ -31,14 +33,14 @@ class IstPeer final : public Peer {
     options.keep_triangles = true;
     return build_tree(mesh, options);
   }
-  static CollisionOptions options() {
-    CollisionOptions options;
+  static QueryOptions options() {
+    QueryOptions options;
     options.policy = SpherePolicy::kSlab;
     return options;
   }
 
   const SphereTree fixed_, moving_;
-  CollisionQuery query_{fixed_, moving_, options()};
+  Query query_{fixed_, moving_, options()};
   std::vector<TrianglePair> pairs_ = std::vector<TrianglePair>(kPairs);
 };
 

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <limits>
 
-#include "ist/mesh/mesh_check.h"
+#include "ist/mesh/mesh.h"
 #include "peers/surface_points.h"
 
 namespace ist::bench {
@@ -40,13 +40,13 @@ FloatGrid::Ptr grid_of(const TriangleMesh& mesh) {
 class OpenvdbPeer final : public Peer {
  public:
   OpenvdbPeer(const char* name, FloatGrid::Ptr grid, std::vector<Eigen::Vector3d> points)
-      : Peer(name, Promise::kSampled), grid_(std::move(grid)), points_(std::move(points)) {}
+      : Peer(name, Guarantee::kSampled), grid_(std::move(grid)), points_(std::move(points)) {}
 
   [[nodiscard]] bool answers(Question question) const override {
     return question == Question::kMeets || question == Question::kDistance;
   }
   bool meets(const Eigen::Isometry3d& pose) override { return least(pose, 0, 0) <= 0; }
-  GapInterval distance(const Eigen::Isometry3d& pose) override {
+  DistanceInterval distance(const Eigen::Isometry3d& pose) override {
     const double found = least(pose, -band_, band_);
     if (found >= band_) return {band_ - half_diagonal_, std::numeric_limits<double>::infinity()};
     return {std::max(found, 0.0), std::max(found, 0.0)};

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/contact.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/results.h"
 #include "support/effort.h"
 
 namespace ist::bench {
@@ -30,23 +30,23 @@ inline constexpr double kTolerance = 0.05;
 [[nodiscard]] inline double voxel_size() { return quick() ? 0.8 : 0.2; }
 
 /// How true a contestant's answers are.
-enum class Promise : std::uint8_t {
+enum class Guarantee : std::uint8_t {
   kExact,    ///< decided exactly: who differs from another such is wrong
   kRounded,  ///< decided in float or double
   kSampled,  ///< of some points of the surface, at voxel_size(): may be off by it, and miss contact
 };
-[[nodiscard]] const char* to_string(Promise promise);
+[[nodiscard]] const char* to_string(Guarantee guarantee);
 
 /// Somebody who is asked, in one thread: a library and a way to use it.
 class Peer {
  public:
-  Peer(std::string name, Promise promise) : name_(std::move(name)), promise_(promise) {}
+  Peer(std::string name, Guarantee guarantee) : name_(std::move(name)), guarantee_(guarantee) {}
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
   virtual ~Peer() = default;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] Promise promise() const { return promise_; }
+  [[nodiscard]] Guarantee guarantee() const { return guarantee_; }
   [[nodiscard]] virtual bool answers(Question question) const = 0;
 
   /// What is not to be counted: called before each question, outside of the time that is taken.
@@ -58,11 +58,11 @@ class Peer {
   virtual bool meets(const Eigen::Isometry3d&) { return false; }
   virtual std::uint64_t pairs(const Eigen::Isometry3d&) { return 0; }
   virtual std::uint64_t candidates(const Eigen::Isometry3d&) { return 0; }
-  virtual GapInterval distance(const Eigen::Isometry3d&) { return {}; }
+  virtual DistanceInterval distance(const Eigen::Isometry3d&) { return {}; }
 
  private:
   std::string name_;
-  Promise promise_;
+  Guarantee guarantee_;
 };
 
 using Peers = std::vector<std::unique_ptr<Peer>>;

@@ -65,13 +65,13 @@ void report(benchmark::State& state, Contest& contest, std::size_t index, std::s
   const NamedPose& pose = contest.poses()[at];
   const Question question = contest.question();
   const Answer &ist = contest.players()[0].answers[at], &answer = player.answers[at];
-  const Promise promise = player.peer.promise();
-  const bool agrees = agree(question, ist, answer, promise);
+  const Guarantee guarantee = player.peer.guarantee();
+  const bool agrees = agree(question, ist, answer, guarantee);
   if (const auto wrong = untrue(question, ist, pose)) {
     state.SkipWithError(wrong->c_str());
     return;
   }
-  if (!agrees && promise == Promise::kExact) {
+  if (!agrees && guarantee == Guarantee::kExact) {
     state.SkipWithError("differs from IST, though both are exact");
     return;
   }
@@ -84,7 +84,7 @@ void report(benchmark::State& state, Contest& contest, std::size_t index, std::s
   latencies.report(state);
   state.counters["n"] = player.rounds;
   state.counters["agree"] = agrees ? 1 : 0;
-  state.counters["promise"] = static_cast<double>(promise);
+  state.counters["promise"] = static_cast<double>(guarantee);
   state.counters["prepared"] = player.peer.prepared() ? 1 : 0;
   if (pose.truth) state.counters["true_distance"] = pose.truth->distance;
   report_answer(state, question, ist, answer);

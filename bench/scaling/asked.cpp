@@ -25,62 +25,63 @@ bool is_whole(const QueryResult& result) {
 }
 
 bool is_same(const QueryResult& a, const QueryResult& b) {
-  return a.contacts == b.contacts && a.sphere_tests == b.sphere_tests;
+  return a.leaf_pairs == b.leaf_pairs && a.sphere_tests == b.sphere_tests;
 }
 
 struct Answer {
   QueryResult result;
-  std::vector<Contact> contacts;
+  std::vector<LeafPair> leaf_pairs;
 };
 
-Answer answer(CollisionQuery& query, const Eigen::Isometry3d& pose, std::span<Contact> room) {
-  const QueryResult result = query.collide(pose, room);
-  const auto found = room.first(std::min<std::uint64_t>(result.contacts, room.size()));
+Answer answer(Query& query, const Eigen::Isometry3d& pose, std::span<LeafPair> room) {
+  const QueryResult result = query.leaf_pairs(pose, room);
+  const auto found = room.first(std::min<std::uint64_t>(result.leaf_pairs, room.size()));
   return {result, {found.begin(), found.end()}};
 }
 
 // The twin is gone when the query is made: of large trees, there is not room for both.
 std::vector<Answer> answers_of_twin(const std::pair<SphereTree, SphereTree>& trees,
                                     const std::vector<Eigen::Isometry3d>& poses,
-                                    std::span<Contact> room) {
-  CollisionOptions options;
+                                    std::span<LeafPair> room) {
+  QueryOptions options;
   options.target = "scalar";
-  CollisionQuery twin(trees.first, trees.second, options);
+  Query twin(trees.first, trees.second, options);
   std::vector<Answer> answers;
   for (const Eigen::Isometry3d& pose : poses) answers.push_back(answer(twin, pose, room));
   return answers;
 }
 
-SharedSearch::Sharing sharing_of(const CollisionQuery& query) {
-  return query.workers() == 2 ? query.sharing() : SharedSearch::Sharing{};
+Sharing sharing_of(const Query& query) {
+  return query.workers() == 2 ? query.sharing() : Sharing{};
 }
 
 }  // namespace
 
 std::vector<Asked> ask(const std::pair<SphereTree, SphereTree>& trees,
                        const std::vector<Eigen::Isometry3d>& poses, const AskOptions& options) {
-  std::vector<Contact> contacts(kContacts);
-  const std::vector<Answer> wanted = answers_of_twin(trees, poses, contacts);
-  CollisionOptions asked_for;
+  std::vector<LeafPair> leaf_pairs(kContacts);
+  const std::vector<Answer> wanted = answers_of_twin(trees, poses, leaf_pairs);
+  QueryOptions asked_for;
   asked_for.workers = options.workers;
   asked_for.period = options.period;
-  CollisionQuery query(trees.first, trees.second, asked_for);
+  Query query(trees.first, trees.second, asked_for);
   for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-    const Answer found = answer(query, poses[pose], contacts);
-    require(is_same(found.result, wanted[pose].result) && found.contacts == wanted[pose].contacts,
-            "the query differs from its scalar twin", pose);
+    const Answer found = answer(query, poses[pose], leaf_pairs);
+    require(
+        is_same(found.result, wanted[pose].result) && found.leaf_pairs == wanted[pose].leaf_pairs,
+        "the query differs from its scalar twin", pose);
   }
   std::vector<Asked> asked(poses.size());
   Pacer pacer(options.period);
   for (int round = 0; round < options.rounds; ++round) {
     for (std::size_t pose = 0; pose < poses.size(); ++pose) {
       Asked& of = asked[pose];
-      const SharedSearch::Sharing before = sharing_of(query);
+      const Sharing before = sharing_of(query);
       if (options.period.count() > 0) pacer.wait();
       const auto begin = Clock::now();
-      const QueryResult result = query.collide(poses[pose], contacts);
+      const QueryResult result = query.leaf_pairs(poses[pose], leaf_pairs);
       const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
-      const SharedSearch::Sharing after = sharing_of(query);
+      const Sharing after = sharing_of(query);
       require(is_whole(result), "an answer that is not whole", pose);
       require(round == 0 || is_same(result, of.result), "another answer than before", pose);
       of.times.add(time.count());
@@ -95,7 +96,7 @@ std::vector<Asked> ask(const std::pair<SphereTree, SphereTree>& trees,
 
 void tell(benchmark::State& state, Asked& asked) {
   asked.times.report(state);
-  state.counters["contacts"] = static_cast<double>(asked.result.contacts);
+  state.counters["contacts"] = static_cast<double>(asked.result.leaf_pairs);
   state.counters["tests"] = static_cast<double>(asked.result.sphere_tests);
   state.counters["rounds"] = static_cast<double>(asked.rounds);
 }

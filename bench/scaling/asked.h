@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "support/latencies.h"
 
 namespace ist::bench {

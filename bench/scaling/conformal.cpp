@@ -44,8 +44,8 @@ std::vector<Eigen::Isometry3d> places() {
 }
 
 void require_gap(const std::pair<SphereTree, SphereTree>& trees, double wanted) {
-  CollisionQuery query(trees.first, trees.second);
-  const GapInterval gap = query.gap(Eigen::Isometry3d::Identity(), 0.1 * wanted).gap;
+  Query query(trees.first, trees.second);
+  const DistanceInterval gap = query.distance(Eigen::Isometry3d::Identity(), 0.1 * wanted).distance;
   if (gap.lower <= 1.01 * wanted && gap.upper >= 0.99 * wanted) return;
   std::cerr << "a gap of " << wanted << " is not in [" << gap.lower << ", " << gap.upper << "]\n";
   std::exit(1);
@@ -61,7 +61,7 @@ void report(benchmark::State& state, const Case& c) {
   series.report(state, 0);
   state.counters["area_mm2"] = area_of(c);
   state.counters["leaves"] =
-      static_cast<double>(trees.first.octree().leaf_count()) + trees.second.octree().leaf_count();
+      static_cast<double>(trees.first.leaf_count()) + trees.second.leaf_count();
 }
 
 }  // namespace

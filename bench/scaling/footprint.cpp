@@ -5,7 +5,7 @@
 #include <memory>
 #include <tuple>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "support/bodies.h"
 #include "support/peak_memory.h"
 
@@ -53,9 +53,9 @@ void build_jaws(const Key& key) {
   const double peak = peak_memory_mb() - before;
   kept() = std::make_unique<Kept>(Kept{key, {std::move(fixed), std::move(moving)}});
   const auto& [a, b] = kept()->trees;
-  measured()[key] = {static_cast<double>(a.octree().leaf_count()) + b.octree().leaf_count(),
-                     megabytes(a.bytes() + b.bytes()), megabytes(CollisionQuery(a, b).bytes()),
-                     peak, time.count()};
+  measured()[key] = {static_cast<double>(a.leaf_count()) + b.leaf_count(),
+                     megabytes(a.bytes() + b.bytes()), megabytes(Query(a, b).bytes()), peak,
+                     time.count()};
 }
 
 }  // namespace

@@ -34,12 +34,12 @@ std::vector<Asked> ask_steps() {
 void report(benchmark::State& state, Series& series, std::size_t step) {
   const QueryResult result = series.report(state, step).result;
   const auto& [fixed, moving] = exact_trees(kVoxelSize);
-  CollisionQuery query(fixed, moving);
+  Query query(fixed, moving);
   std::vector<TrianglePair> pairs(kTrianglePairs);
   const Eigen::Isometry3d pose = closing(steps()[step]);
-  const std::uint64_t meet = query.collide_exact(pose, pairs).triangle_pairs;
-  const GapInterval gap = query.gap(pose, 1e-3).gap;
-  if (meet > 0 && (result.contacts == 0 || gap.lower > 0)) {
+  const std::uint64_t meet = query.triangle_pairs(pose, pairs).triangle_pairs;
+  const DistanceInterval gap = query.distance(pose, 1e-3).distance;
+  if (meet > 0 && (result.leaf_pairs == 0 || gap.lower > 0)) {
     std::cerr << "triangles meet, and no leaves do, at dz = " << steps()[step] << '\n';
     std::exit(1);
   }

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/reference.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 #include "seed/sections.h"
 #include "support/bodies.h"
 #include "support/effort.h"
@@ -18,13 +19,13 @@ namespace {
 constexpr std::size_t kContacts = 1 << 20;
 
 template <class Query, class... Options>
-Way way(const std::string& name, const std::string& answers, double voxel_size,
-        const Options&... options) {
+AxisDirection way(const std::string& name, const std::string& answers, double voxel_size,
+                  const Options&... options) {
   const auto& [fixed, moving] = trees(voxel_size);
   const auto query = std::make_shared<Query>(fixed, moving, options...);
-  const auto contacts = std::make_shared<std::vector<Contact>>(kContacts);
+  const auto leaf_pairs = std::make_shared<std::vector<LeafPair>>(kContacts);
   return {name, answers,
-          [=](const Eigen::Isometry3d& pose) { return query->collide(pose, *contacts); }};
+          [=](const Eigen::Isometry3d& pose) { return query->leaf_pairs(pose, *leaf_pairs); }};
 }
 
 Place at(double distance) { return {fmt::format("{:g}", distance), closing(-distance)}; }
@@ -41,7 +42,7 @@ void add_saved(double voxel_size) {
   Rounds::add(
       fmt::format("saved/{:g}", voxel_size), names, {at(0), at(1.5)},
       [=] {
-        std::vector<Way> ways;
+        std::vector<AxisDirection> ways;
         for (std::size_t i = 0; i < names.size(); ++i) {
           const SpherePolicy policy = kImplicit[i / 2];
           ways.push_back(
@@ -53,11 +54,11 @@ void add_saved(double voxel_size) {
       rounds(31),
       [=](benchmark::State& state, const QueryResult&) {
         const auto& [fixed, moving] = trees(voxel_size);
-        const auto nodes =
-            static_cast<double>(fixed.octree().node_count() + moving.octree().node_count());
+        const auto nodes = static_cast<double>(fixed.parts().octree.node_count() +
+                                               moving.parts().octree.node_count());
         state.counters["saved_MB"] = sizeof(Ball) * nodes / 1e6;
         state.counters["octree_MB"] =
-            static_cast<double>(fixed.octree().bytes() + moving.octree().bytes()) / 1e6;
+            static_cast<double>(fixed.parts().octree.bytes() + moving.parts().octree.bytes()) / 1e6;
       });
 }
 
@@ -77,16 +78,16 @@ void add_rate(const std::string& name, double voxel_size, double unit, int turns
   Rounds::add(
       fmt::format("rate/{}", name), names, places,
       [=] {
-        std::vector<Way> ways;
+        std::vector<AxisDirection> ways;
         for (const SpherePolicy policy : kSpherePolicies) {
           const std::string& of = names[ways.size()];
           ways.push_back(way<ReferenceQuery>(of, of, voxel_size, policy));
         }
         for (const SpherePolicy policy : kSpherePolicies) {
           const std::string& of = names[ways.size()];
-          CollisionOptions options;
+          QueryOptions options;
           options.policy = policy;
-          ways.push_back(way<CollisionQuery>(of, of, voxel_size, options));
+          ways.push_back(way<Query>(of, of, voxel_size, options));
         }
         return ways;
       },

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ist/mesh/bounding_box.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 #include "seed/sections.h"
 #include "support/bodies.h"
@@ -30,9 +31,9 @@ void voxels(benchmark::State& state, double voxel_size) {
       if (stage.name == std::string("voxels")) voxel_times.add(1e3 * stage.milliseconds);
       if (stage.name == std::string("octree")) octree_times.add(1e3 * stage.milliseconds);
     }
-    state.counters["leaves"] = tree.octree().leaf_count();
-    state.counters["nodes"] = static_cast<double>(tree.octree().node_count());
-    state.counters["cells"] = tree.lattice().cells;
+    state.counters["leaves"] = tree.leaf_count();
+    state.counters["nodes"] = static_cast<double>(tree.parts().octree.node_count());
+    state.counters["cells"] = tree.parts().lattice.cells;
     state.counters["depth"] = tree.depth();
     state.counters["MB"] = static_cast<double>(tree.bytes()) / 1e6;
   }

@@ -10,11 +10,12 @@
 #include "ist/haptics/effects/gravity_effect.h"
 #include "ist/haptics/effects/proximity_effect.h"
 #include "ist/haptics/effects/snap_effect.h"
-#include "ist/haptics/surface_radius.h"
-#include "ist/mesh/orientation.h"
-#include "ist/mesh/shape_model.h"
+#include "ist/haptics/simulation_parts.h"
+#include "ist/haptics/tool.h"
+#include "ist/mesh/mesh.h"
+#include "ist/models/models.h"
 #include "ist/tree/proximity_body.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist::bench {
@@ -81,20 +82,16 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
   const Placement start{Eigen::Matrix3d::Identity(), kUnit * (origin + move)};
 
   BallOnBox made;
-  Simulation::Parts parts{nullptr,
-                          nullptr,
-                          effects_of(effects, start),
-                          {1000, 0.5, 1, 5e-4, 5, 0.2},
-                          {8, 0.3, 500, 20, 0.5},
-                          Tool(0, Tool::kNoLimit),
-                          start,
-                          1e-3};
+  detail::SimulationParts parts{.effects = effects_of(effects, start),
+                                .tool = Tool(0, Tool::kNoLimit),
+                                .start = start,
+                                .dt = 1e-3};
   if (effects.contains("contact")) {
     made.box = tree_of(box, {.voxel_size = kBoxVoxel, .spheres = SpherePolicy::kSlab});
     made.ball = tree_of(ball, {.voxel_size = kBallVoxel, .spheres = SpherePolicy::kSlab});
-    parts.contacts = std::make_unique<TouchQuery>(
+    parts.contacts = std::make_unique<ToolContactQuery>(
         *made.box, *made.ball, frames,
-        TouchOptions{.policy = SpherePolicy::kSlab, .least_depth = -kMargin});
+        ToolContactOptions{.policy = SpherePolicy::kSlab, .least_depth = -kMargin});
     parts.tool = Tool(kUnit * surface_radius(*made.ball), kUnit * kBallVoxel);
   }
   if (effects.contains("proximity")) {
@@ -103,20 +100,11 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
         tree_of(box, {.voxel_size = voxel, .spheres = SpherePolicy::kTable, .proximity = true});
     made.near_box = std::make_unique<const SphereTree>(proximity_body(*around));
     made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
-    parts.proximity = std::make_unique<TouchQuery>(
+    parts.proximity = std::make_unique<ToolContactQuery>(
         *made.near_box, *made.near_ball, frames,
-        TouchOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0});
+        ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
   }
-  made.device = std::make_unique<HandDevice>(HandSettings{.mechanics = {2, 2e-3, 0},
-                                                          .mass = 0.2,
-                                                          .inertia = 2e-4,
-                                                          .arm_stiffness = 500,
-                                                          .arm_damping = 10,
-                                                          .arm_angular_stiffness = 1,
-                                                          .arm_angular_damping = 0.02,
-                                                          .resolution = 0,
-                                                          .angular_resolution = 0,
-                                                          .plan = plan_from(start)});
+  made.device = std::make_unique<HandDevice>(HandSettings{.plan = plan_from(start)});
   made.simulation = std::make_unique<Simulation>(std::move(parts));
   return made;
 }

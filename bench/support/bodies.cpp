@@ -5,8 +5,8 @@
 #include <map>
 #include <memory>
 
-#include "ist/mesh/jaw_model.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
+#include "ist/models/models.h"
 
 namespace ist::bench {
 namespace {

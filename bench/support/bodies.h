@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/closing.h"
 
 namespace ist::bench {

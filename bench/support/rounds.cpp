@@ -14,7 +14,7 @@ void Rounds::check(const Measured& measured, std::size_t place, const QueryResul
   for (const Measured& other : measured_) {
     const bool asked = other.latencies[place].size() > 0;
     if (!asked || other.answers != measured.answers) continue;
-    good = good && other.results[place].contacts == result.contacts;
+    good = good && other.results[place].leaf_pairs == result.leaf_pairs;
   }
   if (good) return;
   std::cerr << measured.name << " is wrong at " << places_[place].name << '\n';
@@ -22,8 +22,8 @@ void Rounds::check(const Measured& measured, std::size_t place, const QueryResul
 }
 
 void Rounds::measure() {
-  const std::vector<Way> ways = make_();
-  for (const Way& way : ways) {
+  const std::vector<AxisDirection> ways = make_();
+  for (const AxisDirection& way : ways) {
     measured_.push_back({way.name, way.answers, std::vector<Latencies>(places_.size()),
                          std::vector<QueryResult>(places_.size())});
   }
@@ -57,7 +57,7 @@ void Rounds::report(benchmark::State& state, const std::string& way, std::size_t
     state.SetIterationTime(1e-6 * latencies.quantile(0.5));
     latencies.report(state);
     state.counters["n"] = static_cast<double>(latencies.size());
-    state.counters["contacts"] = static_cast<double>(result.contacts);
+    state.counters["contacts"] = static_cast<double>(result.leaf_pairs);
     state.counters["tests"] = static_cast<double>(result.sphere_tests);
     if (more) more(state, result);
   }

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/contact.h"
+#include "ist/query/results.h"
 #include "support/latencies.h"
 
 namespace ist::bench {
 
 /// A way to ask for contacts that is measured beside others.
-struct Way {
+struct AxisDirection {
   std::string name;
   std::string answers;  ///< ways with the same word here find as many contacts
   std::function<QueryResult(const Eigen::Isometry3d&)> ask;
@@ -32,7 +32,7 @@ struct Place {
 class Rounds {
  public:
   /// Makes the ways when it is first measured, so that what is not asked for is not built.
-  using Make = std::function<std::vector<Way>()>;
+  using Make = std::function<std::vector<AxisDirection>()>;
   Rounds(std::vector<Place> places, Make make, int turns)
       : places_(std::move(places)), make_(std::move(make)), turns_(turns) {}
 

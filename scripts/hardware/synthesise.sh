@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Synthesises src/ist/hardware/rtl/ist_pair_test.v with yosys, without the port that only tests read.
+# Synthesises src/hardware/rtl/ist_pair_test.v with yosys, without the port that only tests read.
 # Fails where there is a latch, a divider, a loop, or not four multiplications, before and after.
 #
 #   scripts/hardware/synthesise.sh ice40|ecp5 IST FOLDER
@@ -9,7 +9,7 @@
 set -euo pipefail
 [ $# -eq 3 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 family=$1 ist=$2 folder=$3
-rtl=$(cd "$(dirname "$0")/../../src/ist/hardware/rtl" && pwd)
+rtl=$(cd "$(dirname "$0")/../../src/hardware/rtl" && pwd)
 case $family in
   ice40) synthesis="synth_ice40 -device u -dsp -top ist_pair_test" multiplier=SB_MAC16 ;;
   ecp5) synthesis="synth_ecp5 -top ist_pair_test" multiplier=MULT18X18D ;;

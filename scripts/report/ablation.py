@@ -214,7 +214,7 @@ def contacts_text(variants):
         ("pointers_simple", "circumspheres"), ("pointers_table", "the table"), ("batches", "the table in batches"),
         ("tight", "tight balls"), ("slab", "slabs")))
     return (
-        "Steps that change the bounds change the answer too, within what is promised: they drop pairs of leaves "
+        "Steps that change the bounds change the answer too, within what is guaranteed: they drop pairs of leaves "
         f"whose surfaces do not meet. Contacts at dz = 0: {found}. What comes after keeps each of them, and their "
         "order.")
 
@@ -231,7 +231,7 @@ def chapter(results, pictures):
         f"out one by one. All variants ask the same trees of the {first['label']} jaws at the same poses in one "
         "process, in turns, so that whatever else the machine does meets them all. Each answer is checked: variants "
         "that search alike with the same bounds give the same contacts and make as many tests, and the two ways to "
-        "search differ only in pairs that the promise leaves open. Times are from pose in to sorted contacts out, "
+        "search differ only in pairs that the guarantee leaves open. Times are from pose in to sorted contacts out, "
         f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, fewest of "
         "those that take longest. A test is a test of two nodes' bounds. Losses, that is factors below "
         f"{1 - NOISE:.2f}, for what is nearer to 1 is noise, are in "

@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 from report.text import number, table
 
 PROGRAMS = ["peers_bench"]
-PROMISES = ["exact", "rounded", "sampled"]
+GUARANTEES = ["exact", "rounded", "sampled"]
 
 QUESTIONS = {
     "meets": "Do any triangles meet?",
@@ -62,7 +62,7 @@ class Answers:
     def name(self, player):
         """With a mark where it does not do all that the others do."""
         run = self.row(player)[0]
-        return player + (" ~" if PROMISES[int(run["promise"])] == "sampled" else "") + (" +" if run["prepared"] else "")
+        return player + (" ~" if GUARANTEES[int(run["promise"])] == "sampled" else "") + (" +" if run["prepared"] else "")
 
     def unmarked(self, player, pose):
         return self.name(player) == player and self.runs[player, pose]["agree"]
@@ -233,7 +233,7 @@ def sampled(answers):
     meets, distance = answers["meets"], answers["distance"]
     rows = []
     for player in meets.players:
-        if PROMISES[int(meets.row(player)[0]["promise"])] != "sampled":
+        if GUARANTEES[int(meets.row(player)[0]["promise"])] != "sampled":
             continue
         touching = sum(run["meets"] for run in meets.row("ist"))
         missed = sum(run["missed"] for run in meets.row(player))
@@ -275,7 +275,7 @@ def cannot(answers):
     for player in players:
         not_answered = [question for question, asked in answers.items() if player not in asked.players]
         one = next(asked.row(player)[0] for asked in answers.values() if player in asked.players)
-        rows.append([player, PROMISES[int(one["promise"])], ", ".join(not_answered) or "–", USES[player]])
+        rows.append([player, GUARANTEES[int(one["promise"])], ", ".join(not_answered) or "–", USES[player]])
     return ["### What each cannot do", "",
             "Exact: decided without rounding, and checked: the run fails where two such differ. Rounded: decided in "
             "float or double. Sampled: of points only. Answers are compared by how many pairs they "

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 
 #include "cli/progress_bar.h"
+#include "cli/query_options.h"
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_check.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_io.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
 namespace {
@@ -33,9 +32,9 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
 
 CheckedMesh load_mesh(const std::filesystem::path& file) {
   if (is_tree_file(file)) {
-    throw Error(ErrorCode::kNotAMesh,
-                fmt::format("{}: it is a tree already: name the mesh that it was built from",
-                            file.string()));
+    throw Error(
+        ErrorCode::kNotAMesh,
+        fmt::format("{}: this is a tree: name the mesh that it was built from", file.string()));
   }
   CheckedMesh checked{read_mesh(file), {}};
   for (const std::string& warning : warnings(check_mesh(checked.mesh))) {
@@ -53,8 +52,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                const BuildOptions& options, std::vector<std::string>& warnings,
                                BuildReport* report) {
-  Progress progress;
-  const ProgressBar bar(progress);
+  ProgressBar progress;
   BuildReport own;
   BuildReport& filled = report != nullptr ? *report : own;
   SphereTree tree = build_tree(std::move(mesh), options, &filled, &progress);
@@ -64,24 +62,22 @@ SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                    filled.turned_components == 1 ? " was" : "s were"));
   }
   if (tree.orientation() == Orientation::kAssumed) {
-    warnings.push_back(fmt::format(
-        "{}: not closed and consistent: its outside is assumed from the winding of its triangles",
-        name));
+    warnings.push_back(
+        fmt::format("{}: not closed or not wound consistently: its outside is assumed from the "
+                    "winding of its triangles",
+                    name));
   }
   return tree;
 }
 
 Bodies load_bodies(const BodyFiles& files) {
   const bool fixed_is_tree = is_tree_file(files.fixed), moving_is_tree = is_tree_file(files.moving);
-  if (fixed_is_tree && moving_is_tree && files.voxel_size) {
-    throw CLI::ValidationError("--voxel-size",
-                               "both bodies are trees, which have their voxel sizes");
-  }
-  if (!(fixed_is_tree && moving_is_tree) && !files.voxel_size) {
-    throw CLI::ValidationError(
-        "--voxel-size", fmt::format("needed, because {} is a mesh",
-                                    fixed_is_tree ? files.moving.string() : files.fixed.string()));
-  }
+  const bool both_are_trees = fixed_is_tree && moving_is_tree;
+  refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
+            "both bodies are trees, which have their own voxel sizes: leave it out");
+  refuse_if(!both_are_trees && !files.voxel_size, "--voxel-size",
+            fmt::format("needed, because {} is a mesh: give the edge of a voxel in mesh units",
+                        fixed_is_tree ? files.moving.string() : files.fixed.string()));
   Bodies bodies{load_body(files.fixed, fixed_is_tree, files),
                 load_body(files.moving, moving_is_tree, files), SpherePolicy::kTable};
   bodies.policy =

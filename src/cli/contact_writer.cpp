@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ist/base/pose.h"
+#include "ist/query/contacts/contact_reducer.h"
 #include "ist/tree/saved_spheres.h"
 
 namespace ist::cli {
@@ -20,36 +21,31 @@ ContactWriter::ContactWriter(const std::filesystem::path& file, const Bodies& bo
       points_(bodies.fixed, bodies.moving, bodies.policy) {}
 
 void ContactWriter::write(std::size_t index, const Eigen::Isometry3d& pose,
-                          std::span<const Contact> contacts, bool complete) {
-  // As the query does: the pose that is answered for is the rigid one nearest to what was given.
+                          std::span<const LeafPair> leaf_pairs, bool complete) {
+  const auto add = [this](const nlohmann::ordered_json& line) {
+    lines_ += line.dump();
+    lines_ += '\n';
+    if (lines_.size() > (1 << 20)) flush();
+  };
+  // The rigid pose nearest to the given one, which the query answers for.
   const Eigen::Isometry3d rigid = *project_to_rigid(pose);
-  for (const Contact& contact : contacts) {
-    const Eigen::Vector3d fixed = bodies_.fixed.lattice().origin() + fixed_[contact.fixed].centre;
-    const Eigen::Vector3d moving =
-        rigid * (bodies_.moving.lattice().origin() + moving_[contact.moving].centre);
-    add(nlohmann::ordered_json{
-        {"index", index}, {"fixed_centre", triple(fixed)}, {"moving_centre", triple(moving)}}
-            .dump());
+  for (const LeafPair& pair : leaf_pairs) {
+    const Eigen::Vector3d fixed = bodies_.fixed.origin() + fixed_[pair.fixed].centre;
+    const Eigen::Vector3d moving = rigid * (bodies_.moving.origin() + moving_[pair.moving].centre);
+    add({{"index", index}, {"fixed_centre", triple(fixed)}, {"moving_centre", triple(moving)}});
   }
-  if (complete && points_.begin(pose)) {
-    points_.take(contacts);
-    points_.finish();
-    for (const ContactPoint& point : points_.points()) {
-      add(nlohmann::ordered_json{{"index", index},
-                                 {"position", triple(point.position)},
-                                 {"normal", triple(point.normal)},
-                                 {"depth", point.depth},
-                                 {"weight", point.weight}}
-              .dump());
+  if (complete && points_.reducer().begin(pose)) {
+    points_.reducer().take(leaf_pairs);
+    points_.reducer().finish();
+    for (const Contact& point : points_.points()) {
+      add({{"index", index},
+           {"position", triple(point.position)},
+           {"normal", triple(point.normal)},
+           {"depth", point.depth},
+           {"weight", point.weight}});
     }
   }
   flush();
-}
-
-void ContactWriter::add(const std::string& line) {
-  lines_ += line;
-  lines_ += '\n';
-  if (lines_.size() > (1 << 20)) flush();
 }
 
 void ContactWriter::flush() {

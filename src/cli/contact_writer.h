@@ -8,33 +8,34 @@
 #include <vector>
 
 #include "cli/bodies.h"
-#include "ist/base/output_file.h"
-#include "ist/query/contact.h"
-#include "ist/query/contacts/contact_points.h"
+#include "ist/base/files.h"
+#include "ist/query/manifold.h"
+#include "ist/query/results.h"
+#include "ist/tree/bounds.h"
 
 namespace ist::cli {
 
-/// Writes contacts in fixed coordinates, one JSON object a line: of each pose all leaf pairs, the
-/// centres of their spheres, and then its contact points. The file is there, whole, after commit().
+/// Writes leaf pairs and contacts in fixed coordinates, one JSON object a line: for each pose all
+/// leaf pairs, as the centres of their spheres, then its contacts. The file appears, complete,
+/// after commit().
 class ContactWriter {
  public:
-  /// `bodies` must outlive it.
+  /// Opens the file. `bodies` must outlive the writer.
   ContactWriter(const std::filesystem::path& file, const Bodies& bodies);
 
-  /// All contacts of a pose, in order. Of an answer that is not `complete` there are no points:
-  /// they would be those of a part.
-  void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const Contact> contacts,
+  /// Writes all leaf pairs of a pose, in order, then its contacts; without contacts if the answer
+  /// is not `complete`, because a part of the leaf pairs would give other ones.
+  void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const LeafPair> leaf_pairs,
              bool complete);
   void commit() { file_.commit(); }
 
  private:
-  void add(const std::string& line);
   void flush();
 
   OutputFile file_;
   const Bodies& bodies_;
   std::vector<Ball> fixed_, moving_;
-  ContactPoints points_;
+  ContactManifold points_;
   std::string lines_;  // not yet written
 };
 

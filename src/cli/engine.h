@@ -3,66 +3,66 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "ist/query/contact.h"
-#include "ist/tree/sphere_tree.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
 
 namespace ist::cli {
 
-/// The names that --engine takes, the default first.
+/// The values of --engine, the default first.
 inline constexpr std::array kEngineNames = {"simd", "reference"};
 
-/// What an engine is made with, beside the trees. All but the policy are simd's alone.
+/// The options of an engine. All but the policy apply to simd alone.
 struct EngineOptions {
-  SpherePolicy policy;
-  std::string target;  ///< empty: IST_TARGET's, or the best
+  SpherePolicy policy = SpherePolicy::kTable;
+  std::string target = {};  ///< instruction set; empty: IST_TARGET's, or the best
   int workers = 1;
-  bool exact = false;                           ///< triangles too, and who is inside whom
-  std::optional<std::uint64_t> max_tests = {};  ///< that a query may make
-  std::optional<double> gap = {};               ///< the tolerance of the gap, if it is asked for
+  bool exact = false;                           ///< also find the pairs of triangles that intersect
+  std::optional<std::uint64_t> max_tests = {};  ///< most sphere tests of a query
+  std::optional<double> gap = {};  ///< tolerance of the distance, mesh units; empty: not computed
 };
 
-/// One query on one pair of trees, with a span that grows until every contact fits.
+/// A query on a pair of trees, with a span that grows until every leaf pair fits.
 class Engine {
  public:
   struct Answer {
     QueryResult result;
-    double microseconds;  ///< of the query alone, the spans long enough; the gap's is not counted
-    std::optional<std::uint64_t> triangle_pairs;  ///< where they were asked for
-    std::optional<GapInterval> gap;               ///< where it was asked for
+    double microseconds;  ///< of the query alone, with large enough spans, without the distance
+    std::optional<std::uint64_t> triangle_pairs = {};  ///< if requested
+    std::optional<DistanceInterval> gap = {};  ///< between the surfaces, if requested or bounded
   };
 
-  virtual ~Engine() = default;
+  /// Makes the engine of a name in kEngineNames; both trees must outlive it. Throws kPolicyMissing,
+  /// kTargetMissing, kMemoryLimit.
+  Engine(std::string_view name, const SphereTree& fixed, const SphereTree& moving,
+         const EngineOptions& options);
 
-  [[nodiscard]] virtual std::string_view name() const = 0;
-  [[nodiscard]] virtual std::string_view target() const = 0;
-  [[nodiscard]] virtual int workers() const = 0;
-  [[nodiscard]] virtual double resolution(const QueryResult& result) const = 0;
+  [[nodiscard]] std::string_view name() const { return kEngineNames[simd_ ? 0 : 1]; }
+  [[nodiscard]] std::string_view target() const;
+  [[nodiscard]] int workers() const { return simd_ ? simd_->workers() : 1; }
+  [[nodiscard]] Answer ask(const Eigen::Isometry3d& pose);
+  /// Returns all leaf pairs of the last answer.
+  [[nodiscard]] std::span<const LeafPair> leaf_pairs() const {
+    return {leaf_pairs_.data(), count_};
+  }
 
-  [[nodiscard]] virtual Answer ask(const Eigen::Isometry3d& pose) = 0;
-  /// Of the last answer, all of them.
-  [[nodiscard]] std::span<const Contact> contacts() const { return {contacts_.data(), count_}; }
-
- protected:
-  std::vector<Contact> contacts_ = std::vector<Contact>(1 << 16);
+ private:
+  std::optional<Query> simd_;
+  std::optional<ReferenceQuery> reference_;  // exactly one of both
+  EngineOptions options_;
+  std::vector<LeafPair> leaf_pairs_ = std::vector<LeafPair>(1 << 16);
+  std::vector<TrianglePair> pairs_;
   std::size_t count_ = 0;
 };
 
-/// `name` is one of kEngineNames; both trees must outlive it. Throws kPolicyMissing,
-/// kTargetMissing, kMemoryLimit.
-[[nodiscard]] std::unique_ptr<Engine> make_engine(std::string_view name, const SphereTree& fixed,
-                                                  const SphereTree& moving,
-                                                  const EngineOptions& options);
+using Engines = std::vector<Engine>;
 
-using Engines = std::vector<std::unique_ptr<Engine>>;
-
-/// The instruction sets of simd that this processor has, best first: "avx3, avx2, …".
+/// Returns the instruction sets of simd that this processor has, best first: "avx3, avx2, …".
 [[nodiscard]] std::string target_names();
 
 }  // namespace ist::cli

@@ -4,12 +4,12 @@
 #include <thread>
 
 #include "cli/progress_bar.h"
-#include "ist/base/output_file.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 namespace {
 
-// Those that would end the process; one that the caller chose to ignore stays ignored, as under
+// Returns the signals to handle. A signal that the caller chose to ignore stays ignored, as under
 // nohup.
 sigset_t ending_signals() {
   sigset_t signals;
@@ -22,16 +22,16 @@ sigset_t ending_signals() {
   return signals;
 }
 
-// Whether the next signal asks to stop, and whether one has.
+// `stops`: the next signal is a request to stop; `asked_to_stop`: there was one.
 std::atomic<bool> stops{false}, asked_to_stop{false};
 
 }  // namespace
 
-void leave_nothing_half_done() {
+void install_signal_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);
   const sigset_t signals = ending_signals();
-  // Threads take after the one that makes them, so the signal waits for the one that waits for it:
-  // which may lock and free, as no handler may.
+  // Every thread inherits the mask, so signals wait for the thread in sigwait(), which, unlike a
+  // handler, may lock and free.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals] {
     int signal = 0;

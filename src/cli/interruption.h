@@ -4,13 +4,14 @@
 
 namespace ist::cli {
 
-/// From now on SIGINT, SIGTERM and SIGHUP still end the process, by the signal itself, but no
-/// unfinished file stays behind and no progress bar; and a file that grows beyond its limit
-/// (SIGXFSZ) is an error like a full disk. To be called before there is any other thread.
-void leave_nothing_half_done();
+/// Installs the handling of signals. SIGINT, SIGTERM and SIGHUP still end the process by the signal
+/// itself, but unfinished files and the progress bar are removed first; a file that grows beyond
+/// its limit (SIGXFSZ) is an error like a full disk. Must be called before there is any other
+/// thread.
+void install_signal_handlers();
 
-/// While it lives, the first of those signals does not end the process but asks it to stop: what
-/// runs comes to rest and keeps what it has. The next one ends it. One at a time.
+/// Turns the first SIGINT, SIGTERM or SIGHUP during its lifetime into a request to stop: the
+/// command stops and keeps its results. The next signal ends the process. One object at a time.
 class StopOnInterruption {
  public:
   StopOnInterruption() noexcept;
@@ -18,8 +19,9 @@ class StopOnInterruption {
   StopOnInterruption(const StopOnInterruption&) = delete;
   StopOnInterruption& operator=(const StopOnInterruption&) = delete;
 
-  /// As a signal would.
+  /// Requests to stop, as a signal would.
   void ask() noexcept;
+  /// Returns a flag that is set by the request.
   [[nodiscard]] const std::atomic<bool>& asked() const noexcept;
 };
 

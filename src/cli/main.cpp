@@ -8,18 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
+#include "cli/commands/commands.h"
+#include "cli/exit_code.h"
 #include "cli/interruption.h"
-#include "cli/run.h"
-#include "cli/verify.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
 namespace {
 
-constexpr int kFailed = 1, kUsage = 2, kBadInput = 3, kDeadlinesMissed = 4, kPromiseBroken = 5;
-
-int exit_code(ErrorCode code) {
+ExitCode exit_code(ErrorCode code) {
   switch (code) {
     case ErrorCode::kFileUnwritable:
       return kFailed;
@@ -37,7 +34,7 @@ int exit_code(ErrorCode code) {
 }
 
 int run(int argc, char** argv) {
-  leave_nothing_half_done();
+  install_signal_handlers();
   CLI::App app(
       "Finds where two rigid triangle meshes touch. Try 'ist demo' first: it needs no files.\n"
       "Lengths are in the unit of the mesh files, millimetres by habit.",
@@ -46,8 +43,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", IST_VERSION);
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
-      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n5 a "
-      "result breaks a promise (--verify), or is not the model's (table --check).\n"
+      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n"
+      "5 a result breaks a guarantee (--verify), or differs from the model (table --check).\n"
       "Research software, not a medical device.");
   add_demo(app);
   add_build(app);
@@ -60,19 +57,19 @@ int run(int argc, char** argv) {
   add_table(app);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& help) {  // or the version: asked for, and printed by whose it is
+  } catch (const CLI::Success& help) {  // or the version, which its own command prints
     return app.exit(help);
   } catch (const CLI::RequiredError&) {
     const std::vector<std::string> strange = app.remaining();
     if (!app.get_subcommands().empty() || strange.empty()) throw;
     throw CLI::ValidationError(strange.front(), "no such subcommand or option");
   }
-  // What a full disk swallowed shows here at the latest.
+  // An earlier write that failed, as on a full disk, shows here at the latest.
   if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
   return 0;
 }
 
-// All that the standard library and TBB say of it is in the text.
+// The standard library and TBB report it by the text alone.
 bool is_lack_of_threads(const std::exception& error) {
   return std::strstr(error.what(), std::strerror(EAGAIN)) != nullptr;
 }
@@ -88,12 +85,9 @@ int main(int argc, char** argv) try {
 } catch (const ist::Error& error) {
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
   return ist::cli::exit_code(error.code());
-} catch (const ist::cli::PromiseBroken& broken) {
-  std::fprintf(stderr, "ist: %s\n", broken.what());
-  return ist::cli::kPromiseBroken;
-} catch (const ist::cli::DeadlinesMissed& missed) {
-  std::fprintf(stderr, "ist: %s\n", missed.what());
-  return ist::cli::kDeadlinesMissed;
+} catch (const ist::cli::Failure& failure) {
+  std::fprintf(stderr, "ist: %s\n", failure.what());
+  return failure.exit_code;
 } catch (const std::bad_alloc&) {
   std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
   return ist::cli::kFailed;

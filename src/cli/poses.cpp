@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ist/base/error.h"
-#include "ist/base/input_file.h"
+#include "ist/base/files.h"
 #include "ist/base/pose.h"
 
 namespace ist::cli {
@@ -18,7 +18,7 @@ namespace {
   throw Error(code, fmt::format("{}: {}", file.string(), what));
 }
 
-// Takes nothing in; finds where a text stops being JSON.
+// Discards all values; finds the place where a text stops being JSON.
 struct Locator : nlohmann::json_sax<nlohmann::json> {
   std::string error;
 

@@ -6,8 +6,8 @@
 
 namespace ist::cli {
 
-/// The poses of a JSON file: an array of objects with `pose`, 16 numbers, column-major; other keys
-/// are passed over. Throws kFileUnreadable, and kInputInvalid or kPoseInvalid naming the file and
+/// Reads the poses of a JSON file: an array of objects with `pose`, 16 numbers, column-major; other
+/// keys are ignored. Throws kFileUnreadable, and kInputInvalid or kPoseInvalid naming the file and
 /// the place.
 [[nodiscard]] std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file);
 

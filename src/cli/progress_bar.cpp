@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <stop_token>
 #include <string>
 #include <utility>
 
@@ -15,7 +18,7 @@ constexpr std::chrono::seconds kPatience{2};
 constexpr std::chrono::milliseconds kPeriod{100};
 constexpr std::size_t kWidth = 30;
 
-// The terminal's last line, which there is one of.
+// The terminal's last line, of which there is one.
 std::mutex line_mutex;
 bool line_is_drawn = false;
 
@@ -37,34 +40,31 @@ void clear_line() {
   std::fflush(stderr);
 }
 
-}  // namespace
-
-ProgressBar::ProgressBar(const Progress& progress) : progress_(progress) {
-  if (isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { show(); });
-}
-
-ProgressBar::~ProgressBar() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    end_ = true;
-  }
-  ended_.notify_one();
-  thread_.join();
-}
-
-void ProgressBar::show() {
-  std::unique_lock lock(mutex_);
-  if (ended_.wait_for(lock, kPatience, [this] { return end_; })) return;
+void show(const Progress& progress, const std::stop_token& end) {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any ended;
+  const auto ends_within = [&](std::chrono::milliseconds time) {
+    ended.wait_for(lock, end, time, [] { return false; });
+    return end.stop_requested();
+  };
+  if (ends_within(kPatience)) return;
   do {
-    draw(progress_);
-  } while (!ended_.wait_for(lock, kPeriod, [this] { return end_; }));
+    draw(progress);
+  } while (!ends_within(kPeriod));
   const std::lock_guard line(line_mutex);
   clear_line();
 }
 
+}  // namespace
+
+ProgressBar::ProgressBar() {
+  if (isatty(STDERR_FILENO) == 0) return;
+  thread_ = std::jthread([this](const std::stop_token& end) { show(*this, end); });
+}
+
 void abandon_progress_bar() noexcept {
-  line_mutex.lock();  // and never unlocked: nothing is to follow
+  line_mutex.lock();  // never unlocked, so that nothing is drawn after it
   clear_line();
 }
 

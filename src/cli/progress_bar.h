@@ -1,33 +1,23 @@
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
 #include <thread>
 
 #include "ist/base/progress.h"
 
 namespace ist::cli {
 
-/// Shows a Progress on stderr while this object lives: from two seconds on, and on a terminal only.
-class ProgressBar {
+/// A Progress that is drawn on stderr during its lifetime: from two seconds on, and on a terminal
+/// only.
+class ProgressBar : public Progress {
  public:
-  explicit ProgressBar(const Progress& progress);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
+  ProgressBar();
 
  private:
-  void show();
-
-  const Progress& progress_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool end_ = false;
-  std::thread thread_;
+  std::jthread thread_;
 };
 
-/// Clears the line of a bar that is shown, for a process that ends by a signal: a thread that draws
-/// waits from then on for ever. Not for signal handlers: it takes a lock.
+/// Clears the line of a visible bar before the process ends by a signal; a thread that draws then
+/// waits for ever. Takes a lock, so no signal handler may call it.
 void abandon_progress_bar() noexcept;
 
 }  // namespace ist::cli

@@ -9,22 +9,9 @@
 #include <limits>
 #include <system_error>
 
-#include "ist/query/kernels.h"
+#include "simd/dispatch.h"
 
 namespace ist::cli {
-namespace {
-
-// A minus would wrap round in a number without sign.
-CLI::Validator no_minus() {
-  return {[](const std::string& text) {
-            return text.find('-') == std::string::npos ? std::string()
-                                                       : "give a positive number of bytes";
-          },
-          ""};
-}
-
-}  // namespace
-
 std::vector<std::string> policy_names() {
   std::vector<std::string> names;
   for (const SpherePolicy policy : kSpherePolicies) {
@@ -47,60 +34,58 @@ CLI::Validator whole_number(const std::string& what) {
           ""};
 }
 
+void refuse_if(bool wrong, const std::string& option, const std::string& why) {
+  if (wrong) throw CLI::ValidationError(option, why);
+}
+
 void add_example(CLI::App& command, const std::string& example) {
   command.footer(example + "\n" + command.get_parent()->get_footer());
 }
 
-void keep_inputs(const std::filesystem::path& output,
-                 std::initializer_list<std::filesystem::path> inputs) {
+void refuse_to_overwrite(const std::filesystem::path& output,
+                         std::initializer_list<std::filesystem::path> inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code neither;
-    if (!output.empty() && std::filesystem::equivalent(output, input, neither)) {
-      throw CLI::ValidationError(output.string(),
-                                 "writing it would destroy an input: name another file");
-    }
+    refuse_if(!output.empty() && std::filesystem::equivalent(output, input, neither),
+              output.string(), "writing it would destroy an input: name another file");
   }
 }
 
 void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
+  // A minus sign would wrap round in an unsigned number.
+  const auto refuse_minus = [](const std::string& text) {
+    return std::string(text.find('-') == text.npos ? "" : "give a positive number of bytes");
+  };
   command
       .add_option("--max-memory", bytes,
-                  "most memory that voxels and tree may take, in bytes; K, M and G are understood")
+                  "most memory for voxels and tree, in bytes, or with K, M or G")
       ->transform(CLI::AsSizeValue(false))
-      ->transform(no_minus())  // of the two transformations, the first to be done
+      ->transform(CLI::Validator(refuse_minus, ""))  // applied before the transformation above
       ->default_str("4G");
 }
 
 void QueryOptions::check() const {
-  for (auto name = engines.begin(); name != engines.end(); ++name) {
-    if (std::find(std::next(name), engines.end(), *name) != engines.end()) {
-      throw CLI::ValidationError("--engine", fmt::format("{} is named twice", *name));
-    }
+  for (const std::string& name : engines) {
+    refuse_if(std::count(engines.begin(), engines.end(), name) > 1, "--engine",
+              fmt::format("{} is named twice", name));
   }
-  if (gap && !std::isfinite(*gap)) {
-    throw CLI::ValidationError("--gap", "give a tolerance in mesh units");
-  }
-  if (max_tests && exact) {
-    throw CLI::ValidationError("--max-tests", "contradicts --exact, which tests all");
-  }
-  if (max_tests && gap) {
-    throw CLI::ValidationError("--max-tests", "contradicts --gap, which tests what it must");
-  }
-  if (max_tests && verify) {
-    throw CLI::ValidationError("--max-tests",
-                               "contradicts --verify, which asks for complete answers");
-  }
+  refuse_if(gap && !std::isfinite(*gap), "--gap", "give a finite tolerance in mesh units");
+  refuse_if(max_tests && exact, "--max-tests", "contradicts --exact, which makes all tests");
+  refuse_if(max_tests && gap, "--max-tests",
+            "contradicts --gap, which makes the tests that its tolerance needs");
+  refuse_if(max_tests && verify, "--max-tests",
+            "contradicts --verify, which checks complete answers");
   if (std::find(engines.begin(), engines.end(), "simd") != engines.end()) {
-    static_cast<void>(find_kernels(target));  // before anything is built
+    static_cast<void>(select_kernels(target));  // before anything is built
     return;
   }
   constexpr const char* kNoSimd = "goes with --engine simd: the reference is scalar, in one thread";
-  if (!target.empty()) throw CLI::ValidationError("--target", kNoSimd);
-  if (workers != 1) throw CLI::ValidationError("--workers", kNoSimd);
-  constexpr const char* kNoAnswer = "goes with --engine simd: the reference finds leaves alone";
-  if (exact) throw CLI::ValidationError("--exact", kNoAnswer);
-  if (gap) throw CLI::ValidationError("--gap", kNoAnswer);
-  if (max_tests) throw CLI::ValidationError("--max-tests", kNoAnswer);
+  refuse_if(!target.empty(), "--target", kNoSimd);
+  refuse_if(workers != 1, "--workers", kNoSimd);
+  constexpr const char* kNoAnswer = "goes with --engine simd: the reference finds leaf pairs only";
+  refuse_if(exact, "--exact", kNoAnswer);
+  refuse_if(gap.has_value(), "--gap", kNoAnswer);
+  refuse_if(max_tests.has_value(), "--max-tests", kNoAnswer);
 }
 
 BodyFiles QueryOptions::body_files() const {
@@ -116,56 +101,54 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
   command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
-                     "edge of a voxel, in mesh units; for meshes, which are voxelised first");
+                     "edge of a voxel, in mesh units; needed if a body is a mesh");
   command
       .add_option("--spheres", options.spheres,
-                  "how nodes are read as spheres; by default the tightest that both bodies have")
+                  "bounds of the nodes; by default the tightest that both bodies have")
       ->check(CLI::IsMember(policy_names()));
   command
       .add_option(
           "--engine", options.engines,
-          "simd is the fast path, reference the published query; may be given for each, and "
-          "they are asked in turn")
+          "simd is the fast query, reference the published one; given twice, both run in turn")
       ->check(CLI::IsMember(std::vector<std::string>(kEngineNames.begin(), kEngineNames.end())))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->capture_default_str();
   command
       .add_option("--workers", options.workers,
-                  "threads of simd; a second one helps where queries follow at once, so name no "
-                  "other engine beside it")
+                  "threads of simd; a second one helps if queries follow each other at once, so "
+                  "name no other engine beside it")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
-  command.add_option("--target", options.target,
-                     fmt::format("instruction set of simd: {} on this processor; by default what "
-                                 "the environment's IST_TARGET names, or the first. All answer "
-                                 "alike",
-                                 target_names()));
+  command.add_option(
+      "--target", options.target,
+      fmt::format("instruction set of simd: {} on this processor; by default IST_TARGET of the "
+                  "environment, or the first. All give the same answers",
+                  target_names()));
   command.add_flag("--exact", options.exact,
-                   "find the pairs of triangles that meet, touching included, and which body lies "
-                   "inside the other; of meshes, or of trees built with --exact");
+                   "find the pairs of triangles that intersect, touching included, and which body "
+                   "lies inside the other; needs meshes, or trees built with --exact");
   command
       .add_option("--gap", options.gap,
                   "find the distance between the surfaces, to within this tolerance in mesh units; "
-                  "of trees without triangles, as far as their voxels tell")
+                  "without triangles, as sharply as the voxels allow")
       ->check(CLI::Range(0.0, std::numeric_limits<double>::max()));
   command
       .add_option("--max-tests", options.max_tests,
-                  "stop after so many tests, and print what is known by then: the level, and an "
-                  "interval that the gap is in")
-      ->transform(whole_number("how many tests"));
-  command.add_option("--repeat", options.repeat, "how often to time each pose")
+                  "stop after this number of sphere tests; print the level reached, and an "
+                  "interval of the distance (gap_lower, gap_upper)")
+      ->transform(whole_number("the number of tests"));
+  command.add_option("--repeat", options.repeat, "times that each pose is timed")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command.add_option("--contacts", options.contacts,
-                     "write the first engine's contacts here, one JSON object each, in fixed "
-                     "coordinates: of each pose all leaf pairs, and then the contact points they "
-                     "come to, at most 32");
-  command.add_flag(
-      "--verify", options.verify,
-      "ask each engine each pose once more and check those answers against what is promised, some "
-      "0.1 s a pose; exit code 5 if a promise is broken. With tight and slab, only meshes and "
-      "trees built with --exact show whether a pair is missing");
+  command.add_option("--contacts", options.leaf_pairs,
+                     "write the first engine's contacts to this file, one JSON object each, in "
+                     "fixed coordinates: for each pose all leaf pairs, then the contact points to "
+                     "which they are reduced, at most 32");
+  command.add_flag("--verify", options.verify,
+                   "run each engine at each pose once more and check the answers against the "
+                   "guarantee, some 0.1 s a pose; exit code 5 if it is broken. With tight and "
+                   "slab, only meshes and trees built with --exact show whether a pair is missing");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
 }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,26 +11,28 @@
 
 #include "cli/contact_writer.h"
 #include "cli/engine.h"
+#include "cli/exit_code.h"
 #include "cli/progress_bar.h"
-#include "cli/verify.h"
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
-#include "ist/query/inside.h"
+#include "ist/tree/implicit_ball.h"
+#include "ist/tree/tree_parts.h"
+#include "verify/answer_verifier.h"
 
 namespace ist::cli {
 namespace {
 
-// What one engine answered at one pose, and how long each time took.
+// An engine's answer at one pose, and the time of each run.
 struct Answer {
   Engine::Answer last;
-  std::optional<Inside> inside;  // where nothing touches, and it was asked
+  std::optional<Inside> inside;  // if requested, and no triangles intersect
   std::vector<double> microseconds;
 
-  // Nothing where it stopped before it knew.
+  // Returns nothing if the query stopped before it knew.
   [[nodiscard]] std::optional<bool> colliding() const {
     if (last.triangle_pairs) return *last.triangle_pairs > 0;
-    if (last.result.contacts == 0 && !last.result.complete) return std::nullopt;
-    return last.result.contacts > 0;
+    if (last.result.leaf_pairs == 0 && !last.result.complete) return std::nullopt;
+    return last.result.leaf_pairs > 0;
   }
 
   [[nodiscard]] double fastest() const {
@@ -52,41 +54,31 @@ nlohmann::ordered_json or_null(const std::optional<Number>& number) {
 nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const Bodies& bodies,
                                  const QueryOptions& options, const Answer& answer) {
   const QueryResult& r = answer.last.result;
-  std::optional<double> gap_lower, gap_upper;
-  if (answer.last.gap) {
-    gap_lower = answer.last.gap->lower;
-    gap_upper = answer.last.gap->upper;
-  }
-  std::optional<std::string> inside;
-  if (answer.inside) inside = to_string(*answer.inside);
+  const std::optional<DistanceInterval>& gap = answer.last.gap;
   nlohmann::ordered_json line{
       {"index", index},
       {"engine", engine.name()},
       {"spheres", to_string(bodies.policy)},
       {"target", engine.target()},
       {"workers", engine.workers()},
-      {"voxel_size", {bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size}},
-      {"resolution", engine.resolution(r)},
+      {"voxel_size", {bodies.fixed.voxel_size(), bodies.moving.voxel_size()}},
+      {"resolution", r.resolution},
       {"complete", r.complete},
       {"truncated", r.truncated},
       {"level", r.level},
       {"colliding", or_null(answer.colliding())},
-      {"inside", or_null(inside)},
-      {"contacts", r.contacts}};
+      {"inside", answer.inside ? nlohmann::ordered_json(to_string(*answer.inside)) : nullptr},
+      {"contacts", r.leaf_pairs}};
   if (options.exact) line["triangle_pairs"] = or_null(answer.last.triangle_pairs);
-  line["gap_lower"] = or_null(gap_lower);
-  line["gap_upper"] = or_null(gap_upper);
+  line["gap_lower"] = gap ? nlohmann::ordered_json(gap->lower) : nullptr;
+  line["gap_upper"] = gap ? nlohmann::ordered_json(gap->upper) : nullptr;
   line["sphere_tests"] = r.sphere_tests;
   line["microseconds_min"] = answer.fastest();
   line["microseconds_median"] = answer.median();
   return line;
 }
 
-const char* touch(const std::optional<bool>& colliding) {
-  return !colliding ? "?" : *colliding ? "yes" : "no";
-}
-
-// What is more than leaves, for those that asked: a line of words under the table's.
+// Prints the results beyond leaf pairs, in words, below the table's line.
 void print_beside(const Answer& answer) {
   const Engine::Answer& last = answer.last;
   std::string words;
@@ -114,13 +106,15 @@ void require_triangles(const Bodies& bodies) {
   }
 }
 
-void print_table(const Engines& engines, const Bodies& bodies,
-                 const std::vector<std::vector<Answer>>& answers) {
+// By pose, then by engine.
+using Answers = std::vector<std::vector<Answer>>;
+
+void print_table(const Engines& engines, const Bodies& bodies, const Answers& answers) {
   fmt::print("spheres {}, voxel size {} and {}", to_string(bodies.policy),
-             bodies.fixed.lattice().voxel_size, bodies.moving.lattice().voxel_size);
-  for (const auto& engine : engines) {
-    fmt::print("; {}: {}, {} worker{}", engine->name(), engine->target(), engine->workers(),
-               engine->workers() == 1 ? "" : "s");
+             bodies.fixed.voxel_size(), bodies.moving.voxel_size());
+  for (const Engine& engine : engines) {
+    fmt::print("; {}: {}, {} worker{}", engine.name(), engine.target(), engine.workers(),
+               engine.workers() == 1 ? "" : "s");
   }
   fmt::print("\n");
   fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine", "touch",
@@ -128,8 +122,10 @@ void print_table(const Engines& engines, const Bodies& bodies,
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Answer& answer = answers[i][e];
+      const std::optional<bool> colliding = answer.colliding();
+      const char* touch = !colliding ? "?" : (*colliding ? "yes" : "no");
       fmt::print("{:>5}  {:<10} {:>9} {:>10} {:>12} {:>12.1f} {:>10.1f} {:>10.0f}\n", i,
-                 engines[e]->name(), touch(answer.colliding()), answer.last.result.contacts,
+                 engines[e].name(), touch, answer.last.result.leaf_pairs,
                  answer.last.result.sphere_tests, answer.median(), answer.fastest(),
                  1e6 / answer.median());
       print_beside(answer);
@@ -137,54 +133,89 @@ void print_table(const Engines& engines, const Bodies& bodies,
   }
 }
 
-}  // namespace
-
-void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
-                 const QueryOptions& options) {
-  const EngineOptions with{bodies.policy, options.target,    options.workers,
-                           options.exact, options.max_tests, options.gap};
-  std::optional<InsideTest> inside;
-  if (options.exact) {
-    require_triangles(bodies);
-    inside.emplace(bodies.fixed.triangles()->mesh, bodies.moving.triangles()->mesh);
-  }
-  Engines engines;
-  for (const std::string& name : options.engines) {
-    engines.push_back(make_engine(name, bodies.fixed, bodies.moving, with));
-  }
-  std::optional<ContactWriter> writer;
-  if (!options.contacts.empty()) writer.emplace(options.contacts, bodies);
-
-  std::vector<std::vector<Answer>> answers(poses.size(), std::vector<Answer>(engines.size()));
-  Progress progress;
-  progress.begin_stage("asking", static_cast<std::uint64_t>(options.repeat) * poses.size());
-  auto bar = std::make_unique<ProgressBar>(progress);
-  for (int round = 0; round < options.repeat; ++round) {
+Answers ask(Engines& engines, std::span<const Eigen::Isometry3d> poses, int repeat,
+            const std::optional<InsideTest>& inside, std::optional<ContactWriter>& writer) {
+  Answers answers(poses.size(), std::vector<Answer>(engines.size()));
+  ProgressBar progress;
+  progress.begin_stage("asking", static_cast<std::uint64_t>(repeat) * poses.size());
+  for (int round = 0; round < repeat; ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       for (std::size_t e = 0; e < engines.size(); ++e) {
         Answer& answer = answers[i][e];
-        answer.last = engines[e]->ask(poses[i]);
+        answer.last = engines[e].ask(poses[i]);
         answer.microseconds.push_back(answer.last.microseconds);
         if (inside && round == 0 && answer.last.triangle_pairs == 0U) {
           answer.inside = inside->at(*project_to_rigid(poses[i]));
         }
         if (writer && round == 0 && e == 0) {
-          writer->write(i, poses[i], engines[e]->contacts(), answer.last.result.complete);
+          writer->write(i, poses[i], engines[e].leaf_pairs(), answer.last.result.complete);
         }
       }
       progress.add(1);
     }
   }
-  bar.reset();
+  return answers;
+}
+
+// Runs each engine at each pose once more, untimed, and checks the answers against the guarantee.
+// Prints the checked properties to stderr; throws a Failure that names pose, engine and pair.
+void verify(Engines& engines, const Bodies& bodies, std::span<const Eigen::Isometry3d> poses) {
+  const AnswerVerifier check(bodies.fixed, bodies.moving, bodies.policy);
+  {
+    ProgressBar progress;
+    progress.begin_stage("verifying", poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      std::vector<GivenAnswer> answers;
+      for (Engine& engine : engines) {
+        const QueryResult result = engine.ask(poses[i]).result;
+        answers.push_back({result, engine.leaf_pairs()});
+      }
+      if (const std::optional<Violation> violation = check.check(poses[i], answers)) {
+        throw Failure(
+            kGuaranteeBroken,
+            fmt::format("pose {}, engine {}: {}. This is an error in ist: please report it with "
+                        "both bodies and the pose",
+                        i, engines[violation->answer].name(), violation->detail));
+      }
+      progress.add(1);
+    }
+  }
+  const std::string rest =
+      check.knows_geometry()
+          ? fmt::format(" and no pair of voxels whose {} is missing",
+                        is_implicit(bodies.policy) ? "cubes intersect" : "triangles cross")
+          : fmt::format(
+                "{} but a missing pair would not show: the trees hold no triangles: build "
+                "them with --exact, or name meshes",
+                engines.size() > 1 ? " and the engines agree," : "");
+  std::fprintf(stderr, "verified: at each of %zu poses, the bounds of every leaf pair overlap,%s\n",
+               poses.size(), rest.c_str());
+}
+
+}  // namespace
+
+void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
+                 const QueryOptions& options) {
+  std::optional<InsideTest> inside;
+  if (options.exact) {
+    require_triangles(bodies);
+    inside.emplace(bodies.fixed.parts().triangles->mesh, bodies.moving.parts().triangles->mesh);
+  }
+  Engines engines;
+  for (const std::string& name : options.engines) {
+    engines.emplace_back(name, bodies.fixed, bodies.moving,
+                         EngineOptions{bodies.policy, options.target, options.workers,
+                                       options.exact, options.max_tests, options.gap});
+  }
+  std::optional<ContactWriter> writer;
+  if (!options.leaf_pairs.empty()) writer.emplace(options.leaf_pairs, bodies);
+  const Answers answers = ask(engines, poses, options.repeat, inside, writer);
   if (options.verify) verify(engines, bodies, poses);
   if (writer) writer->commit();
-  if (!options.json) {
-    print_table(engines, bodies, answers);
-    return;
-  }
+  if (!options.json) return print_table(engines, bodies, answers);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      fmt::print("{}\n", json_line(i, *engines[e], bodies, options, answers[i][e]).dump());
+      fmt::print("{}\n", json_line(i, engines[e], bodies, options, answers[i][e]).dump());
     }
   }
 }

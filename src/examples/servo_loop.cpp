@@ -1,24 +1,24 @@
-// A servo loop with a device of its own: a ball is lowered on a block, and what the hand feels is
-// printed meanwhile. `servo_loop probe.toml` makes 1000 ticks as fast as it can, and `servo_loop
-// probe.toml --paced` one a millisecond.
-#include <ist/haptics/servo_loop.h>
-#include <ist/scene/scene_builder.h>
-#include <ist/scene/scene_file.h>
+// A servo loop with its own device: lowers a ball on a block, and prints the force on the hand.
+// `servo_loop probe.toml` makes 1000 ticks as fast as it can; `servo_loop probe.toml --paced` one a
+// millisecond.
+#include <ist/haptics.h>
+#include <ist/scene.h>
 
 #include <array>
 #include <cstdio>
 #include <thread>
 
-// Your hardware goes here. The loop's thread calls read() and then write() once a tick: neither may
-// allocate, lock, print or throw. Metres, newtons and newton metres, in the axes of the scene.
+// Replace this by your hardware. The loop's thread calls read() and then write() once a tick:
+// neither may allocate, lock, print or throw. Units are metres, newtons and newton metres, in the
+// axes of the scene.
 class Probe final : public ist::Device {
  public:
   explicit Probe(const ist::Placement& start) : pose_(start) {}
-  // As [device] in the scene says it, by which build_scene() keeps the coupling stable.
+  // The values of [device] in the scene, by which build_scene() keeps the coupling stable.
   ist::DeviceMechanics mechanics() const noexcept override { return {.damping = 2}; }
-  // Where the encoders are. std::nullopt where they cannot tell: there is no force then.
+  // Returns the pose of the encoders; std::nullopt if it is unknown, and the force is then zero.
   std::optional<ist::Placement> read() noexcept override { return pose_; }
-  // The wrench goes to the motors. This one feels nothing, and sinks by 4 mm/s.
+  // Sends the wrench to the motors. This device feels nothing, and sinks by 4 mm/s.
   void write(const ist::Vector6& /*wrench*/, double dt) noexcept override {
     pose_.translation.z() -= 0.004 * dt;
   }
@@ -29,14 +29,14 @@ class Probe final : public ist::Device {
 
 int main(int argc, char** argv) try {
   ist::BuiltScene built = ist::build_scene(ist::read_scene(argc > 1 ? argv[1] : "probe.toml"));
-  Probe probe(*built.device->read());  // at first where the scene puts the ball
+  Probe probe(*built.device->read());  // starts at the ball's pose in the scene
 
-  // Ticks come out through a ring, for which a paced loop never waits.
+  // The loop writes ticks into a ring, for which a paced loop never waits.
   ist::TickRing<ist::TickRecord> ticks(1 << 10);
   std::atomic<bool> stop{false}, done{false};
   ist::ServoReport report;
   std::thread loop([&] {
-    const ist::ServoOptions options{.ticks = 1000, .paced = argc > 2, .real_time = {}};
+    const ist::ServoOptions options{.ticks = 1000, .paced = argc > 2};
     report = ist::run_servo_loop(*built.simulation, probe, options, {.records = &ticks}, stop);
     done = true;
   });

@@ -7,8 +7,9 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-# The files tell which libraries they need, and those tell their packages and versions.
+# Dependencies are derived from the libraries that the files need.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_CURRENT_BINARY_DIR})  # of libist, for libist_hardware
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 # A program is bound to one minor version (ist.map.in).
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")

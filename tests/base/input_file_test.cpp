@@ -1,11 +1,10 @@
-#include "ist/base/input_file.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
 
+#include "ist/base/files.h"
 #include "support/errors.h"
 #include "support/temp_dir.h"
 

@@ -1,11 +1,10 @@
-#include "ist/base/output_file.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
 
+#include "ist/base/files.h"
 #include "support/errors.h"
 #include "support/skip.h"
 #include "support/temp_dir.h"

@@ -1,4 +1,4 @@
-// The C interface gives what the C++ one gives, bit for bit.
+// The C interface gives the same answers as the C++ interface, bit for bit.
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "capi/c_bodies.h"
-#include "ist/mesh/mesh_check.h"
-#include "ist/query/collision_query.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
 #include "ist/tree/saved_spheres.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
 
@@ -34,7 +34,7 @@ class CAnswers : public ::testing::Test {
     return build_tree(mesh, options);
   }
 
-  // Apart, near, touching a little and a lot.
+  // Apart, near, and with small and large intersections.
   [[nodiscard]] static std::vector<Eigen::Isometry3d> poses() {
     Random random(11);
     std::vector<Eigen::Isometry3d> poses;
@@ -48,116 +48,220 @@ class CAnswers : public ::testing::Test {
 
   const TriangleMesh mesh_ = icosphere(3, 1);
   const SphereTree tree_ = build(mesh_);
-  CollisionQuery query_{tree_, tree_};
-  ContactPoints points_{tree_, tree_, query_.policy()};
+  Query query_{tree_, tree_};
+  ContactManifold manifold_{tree_, tree_, query_.policy()};
   ist_query* c_query_ = nullptr;
-  std::vector<Contact> contacts_ = std::vector<Contact>(1 << 14);
-  std::vector<ist_contact> c_contacts_ = std::vector<ist_contact>(1 << 14);
+  std::vector<LeafPair> leaf_pairs_ = std::vector<LeafPair>(1 << 14);
+  std::vector<ist_leaf_pair> c_leaf_pairs_ = std::vector<ist_leaf_pair>(1 << 14);
 };
 
-void expect_same(const ist_query_result& c, const QueryResult& result,
-                 const CollisionQuery& query) {
-  EXPECT_EQ(c.contacts, result.contacts);
+void expect_same(const ist_query_result& c, const QueryResult& result) {
+  EXPECT_EQ(c.leaf_pairs, result.leaf_pairs);
   EXPECT_EQ(c.sphere_tests, result.sphere_tests);
   EXPECT_EQ(c.complete, result.complete ? 1 : 0);
   EXPECT_EQ(c.level, result.level);
-  EXPECT_EQ(c.gap_known, result.gap ? 1 : 0);
-  EXPECT_EQ(c.gap_lower, result.gap ? result.gap->lower : 0);
-  EXPECT_EQ(c.gap_upper, result.gap ? result.gap->upper : 0);
-  EXPECT_EQ(c.resolution, query.resolution(result));
+  EXPECT_EQ(c.distance_known, result.distance ? 1 : 0);
+  EXPECT_EQ(c.distance_lower, result.distance ? result.distance->lower : 0);
+  EXPECT_EQ(c.distance_upper, result.distance ? result.distance->upper : 0);
+  EXPECT_EQ(c.resolution, result.resolution);
 }
 
-TEST_F(CAnswers, AreTheSameContacts) {
-  std::uint64_t contacts = 0;
+void expect_same(const ist_contact& c, const Contact& contact) {
+  EXPECT_EQ(Eigen::Vector3d(c.position), contact.position);
+  EXPECT_EQ(Eigen::Vector3d(c.normal), contact.normal);
+  EXPECT_EQ(c.depth, contact.depth);
+  EXPECT_EQ(c.weight, contact.weight);
+}
+
+void expect_same(const ist_contact_sums& c, const ContactSums& sums) {
+  EXPECT_EQ(c.pairs, sums.pairs);
+  EXPECT_EQ(c.weight, sums.weight);
+  EXPECT_EQ(Eigen::Vector3d(c.pressure_force), sums.pressure.force);
+  EXPECT_EQ(Eigen::Vector3d(c.pressure_torque), sums.pressure.torque);
+  EXPECT_EQ(Eigen::Vector3d(c.spring_force), sums.spring.force);
+  EXPECT_EQ(Eigen::Vector3d(c.spring_torque), sums.spring.torque);
+  EXPECT_EQ(Eigen::Vector3d(c.about), sums.about);
+}
+
+TEST_F(CAnswers, AreTheSameLeafPairs) {
+  std::uint64_t leaf_pairs = 0;
   for (const Eigen::Isometry3d& pose : poses()) {
-    for (const std::size_t room : {contacts_.size(), std::size_t{5}}) {
-      const QueryResult result = query_.collide(pose, std::span(contacts_).first(room));
+    for (const std::size_t room : {leaf_pairs_.size(), std::size_t{5}}) {
+      const QueryResult result = query_.leaf_pairs(pose, std::span(leaf_pairs_).first(room));
       auto c = sized<ist_query_result>();
-      ASSERT_EQ(name(ist_query_collide(c_query_, pose.data(), c_contacts_.data(), room, &c)), "ok");
-      expect_same(c, result, query_);
+      ASSERT_EQ(name(ist_query_leaf_pairs(c_query_, pose.data(), nullptr, c_leaf_pairs_.data(),
+                                          room, &c)),
+                "ok");
+      expect_same(c, result);
       EXPECT_EQ(c.truncated, result.truncated ? 1 : 0);
-      ASSERT_EQ(c.written, std::min<std::uint64_t>(result.contacts, room));
-      EXPECT_EQ(std::memcmp(contacts_.data(), c_contacts_.data(), c.written * sizeof(Contact)), 0);
-      contacts += c.contacts;
+      ASSERT_EQ(c.written, std::min<std::uint64_t>(result.leaf_pairs, room));
+      EXPECT_EQ(std::memcmp(leaf_pairs_.data(), c_leaf_pairs_.data(), c.written * sizeof(LeafPair)),
+                0);
+      leaf_pairs += c.leaf_pairs;
     }
   }
-  EXPECT_GT(contacts, 1000u);
+  EXPECT_GT(leaf_pairs, 1000u);
 }
 
 TEST_F(CAnswers, AreTheSameWithABudget) {
   int incomplete = 0;
   for (const Eigen::Isometry3d& pose : poses()) {
     for (const std::uint64_t tests : {3u, 200u, 1'000'000u}) {
-      const QueryResult result = query_.collide(pose, contacts_, {.sphere_tests = tests});
+      const QueryResult result = query_.leaf_pairs(pose, leaf_pairs_, {.tests = tests});
       const ist_budget budget{sizeof budget, tests, 0};
       auto c = sized<ist_query_result>();
-      ASSERT_EQ(name(ist_query_collide_within(c_query_, pose.data(), &budget, c_contacts_.data(),
-                                              c_contacts_.size(), &c)),
+      ASSERT_EQ(name(ist_query_leaf_pairs(c_query_, pose.data(), &budget, c_leaf_pairs_.data(),
+                                          c_leaf_pairs_.size(), &c)),
                 "ok");
-      expect_same(c, result, query_);
+      expect_same(c, result);
       incomplete += 1 - c.complete;
     }
   }
   EXPECT_GT(incomplete, 5);
 }
 
-// A budget of time: none of it is left at once, or there is more than a clock counts.
+// Time limits of 1 ns, of more than the clock can count, and of 0, which is no limit.
 TEST_F(CAnswers, KeepABudgetOfTime) {
   const Eigen::Isometry3d pose = shift({1.7, 0, 0});
   const auto asked = [&](std::uint64_t nanoseconds) {
     const ist_budget budget{sizeof budget, 0, nanoseconds};
     auto c = sized<ist_query_result>();
-    EXPECT_EQ(name(ist_query_collide_within(c_query_, pose.data(), &budget, c_contacts_.data(),
-                                            c_contacts_.size(), &c)),
+    EXPECT_EQ(name(ist_query_leaf_pairs(c_query_, pose.data(), &budget, c_leaf_pairs_.data(),
+                                        c_leaf_pairs_.size(), &c)),
               "ok");
     return c;
   };
   EXPECT_EQ(asked(1).complete, 0);
   const ist_query_result all = asked(UINT64_MAX);
   EXPECT_EQ(all.complete, 1);
-  EXPECT_EQ(all.contacts, query_.collide(pose, contacts_).contacts);
-  EXPECT_EQ(asked(0).contacts, all.contacts);
+  EXPECT_EQ(all.leaf_pairs, query_.leaf_pairs(pose, leaf_pairs_).leaf_pairs);
+  EXPECT_EQ(asked(0).leaf_pairs, all.leaf_pairs);
 }
 
-TEST_F(CAnswers, AreTheSamePointsAndSums) {
-  std::vector<ist_contact_point> c_points(32);
+// A budget without limits changes no answer, and makes the distance known.
+TEST_F(CAnswers, AreTheSameWithoutAndWithAnEmptyBudget) {
+  int unknown = 0;
+  std::vector<ist_contact> contacts(32), same_contacts(32);
+  std::vector<ist_leaf_pair> same_pairs(c_leaf_pairs_.size());
+  for (const Eigen::Isometry3d& pose : poses()) {
+    const auto none = sized<ist_query_result>();
+    auto without = none;
+    ASSERT_EQ(name(ist_query_leaf_pairs(c_query_, pose.data(), nullptr, c_leaf_pairs_.data(),
+                                        c_leaf_pairs_.size(), &without)),
+              "ok");
+    auto sums = sized<ist_contact_sums>();
+    auto without_sums = sums;
+    auto contacts_without = none;
+    ASSERT_EQ(name(ist_query_contacts(c_query_, pose.data(), nullptr, contacts.data(), 32,
+                                      &without_sums, &contacts_without)),
+              "ok");
+    unknown += 1 - without.distance_known;
+    for (const auto& [tests, nanoseconds] : {std::pair<std::uint64_t, std::uint64_t>{0, 0},
+                                             {UINT64_MAX, 0},
+                                             {0, UINT64_MAX},
+                                             {UINT64_MAX, UINT64_MAX}}) {
+      const ist_budget budget{sizeof budget, tests, nanoseconds};
+      auto with = none;
+      ASSERT_EQ(name(ist_query_leaf_pairs(c_query_, pose.data(), &budget, same_pairs.data(),
+                                          same_pairs.size(), &with)),
+                "ok");
+      EXPECT_EQ(with.leaf_pairs, without.leaf_pairs);
+      EXPECT_EQ(with.written, without.written);
+      EXPECT_EQ(with.sphere_tests, without.sphere_tests);
+      EXPECT_EQ(with.complete, 1);
+      EXPECT_EQ(with.distance_known, 1);
+      EXPECT_EQ(std::memcmp(same_pairs.data(), c_leaf_pairs_.data(),
+                            without.written * sizeof(ist_leaf_pair)),
+                0);
+
+      auto contacts_with = none;
+      ASSERT_EQ(name(ist_query_contacts(c_query_, pose.data(), &budget, same_contacts.data(), 32,
+                                        &sums, &contacts_with)),
+                "ok");
+      EXPECT_EQ(std::memcmp(&sums, &without_sums, sizeof sums), 0);
+      EXPECT_EQ(std::memcmp(&contacts_with, &contacts_without, sizeof contacts_with), 0);
+      EXPECT_EQ(contacts_with.distance_known, 1);
+      EXPECT_EQ(std::memcmp(same_contacts.data(), contacts.data(),
+                            contacts_with.written * sizeof(ist_contact)),
+                0);
+    }
+  }
+  EXPECT_GT(unknown, 3);
+}
+
+TEST_F(CAnswers, AreTheSameContactsAndSums) {
+  std::vector<ist_contact> c_contacts(32);
   std::uint64_t made = 0;
   for (const Eigen::Isometry3d& pose : poses()) {
-    for (const std::uint64_t tests : {UINT64_MAX, std::uint64_t{500}}) {
+    for (const std::uint64_t tests : {std::uint64_t{0}, std::uint64_t{500}}) {
       const ist_budget budget{sizeof budget, tests, 0};
       auto sums = sized<ist_contact_sums>();
       auto c = sized<ist_query_result>();
-      const bool all = tests == UINT64_MAX;
-      const QueryResult result =
-          all ? query_.contact_points(pose, points_)
-              : query_.contact_points(pose, points_, {.sphere_tests = tests});
-      ASSERT_EQ(
-          name(all ? ist_query_contact_points(c_query_, pose.data(), c_points.data(),
-                                              c_points.size(), &sums, &c)
-                   : ist_query_contact_points_within(c_query_, pose.data(), &budget,
-                                                     c_points.data(), c_points.size(), &sums, &c)),
-          "ok");
-      expect_same(c, result, query_);
-      ASSERT_EQ(c.points, points_.points().size());
-      ASSERT_EQ(c.written, c.points);
-      made += c.points;
+      const bool all = tests == 0;
+      const QueryResult result = all ? query_.contacts(pose, manifold_)
+                                     : query_.contacts(pose, manifold_, {.tests = tests});
+      ASSERT_EQ(name(ist_query_contacts(c_query_, pose.data(), all ? nullptr : &budget,
+                                        c_contacts.data(), c_contacts.size(), &sums, &c)),
+                "ok");
+      expect_same(c, result);
+      ASSERT_EQ(c.contacts, manifold_.points().size());
+      ASSERT_EQ(c.written, c.contacts);
+      made += c.contacts;
       for (std::size_t i = 0; i < c.written; ++i) {
-        const ContactPoint& point = points_.points()[i];
-        EXPECT_EQ(Eigen::Vector3d(c_points[i].position), point.position);
-        EXPECT_EQ(Eigen::Vector3d(c_points[i].normal), point.normal);
-        EXPECT_EQ(c_points[i].depth, point.depth);
-        EXPECT_EQ(c_points[i].weight, point.weight);
+        expect_same(c_contacts[i], manifold_.points()[i]);
       }
-      EXPECT_EQ(sums.pairs, points_.sums().pairs);
-      EXPECT_EQ(sums.weight, points_.sums().weight);
-      EXPECT_EQ(Eigen::Vector3d(sums.pressure_force), points_.sums().pressure.force);
-      EXPECT_EQ(Eigen::Vector3d(sums.pressure_torque), points_.sums().pressure.torque);
-      EXPECT_EQ(Eigen::Vector3d(sums.spring_force), points_.sums().spring.force);
-      EXPECT_EQ(Eigen::Vector3d(sums.spring_torque), points_.sums().spring.torque);
-      EXPECT_EQ(Eigen::Vector3d(sums.about), points_.sums().about);
+      expect_same(sums, manifold_.sums());
+
+      double force[3], torque[3];
+      for (const double stiffness : {0.0, 2.5, -1e3}) {
+        ASSERT_EQ(name(ist_contact_sums_wrench(&sums, stiffness, force, torque)), "ok");
+        EXPECT_EQ(Eigen::Vector3d(force), stiffness * manifold_.sums().spring.force);
+        EXPECT_EQ(Eigen::Vector3d(torque), stiffness * manifold_.sums().spring.torque);
+        EXPECT_EQ(Eigen::Vector3d(force), manifold_.wrench(stiffness).force);
+        EXPECT_EQ(Eigen::Vector3d(torque), manifold_.wrench(stiffness).torque);
+      }
     }
   }
   EXPECT_GT(made, 100u);
+}
+
+// Springs begin at the push distance, as in a manifold with its negative as least depth.
+TEST_F(CAnswers, AreTheSameWithAPushDistance) {
+  ist_tree* tree = c_tree(mesh_, kVoxel);
+  std::vector<ist_contact> c_contacts(32);
+  std::vector<double> weights;
+  for (const auto& [push_distance, least_depth] :
+       {std::pair{0.0, -2.0}, {2.0, -2.0}, {1.5, -1.5}, {0.25, -0.25}, {-1.0, 0.0}}) {
+    auto options = sized<ist_query_options>();
+    options.push_distance = push_distance;
+    ist_query* query = nullptr;
+    ASSERT_EQ(name(ist_query_create(tree, tree, &options, &query)), "ok");
+    ContactManifold manifold(tree_, tree_, query_.policy(), {.least_depth = least_depth});
+    std::uint64_t made = 0;
+    double weight = 0;
+    for (const Eigen::Isometry3d& pose : poses()) {
+      auto sums = sized<ist_contact_sums>();
+      auto c = sized<ist_query_result>();
+      const QueryResult result = query_.contacts(pose, manifold);
+      ASSERT_EQ(name(ist_query_contacts(query, pose.data(), nullptr, c_contacts.data(),
+                                        c_contacts.size(), &sums, &c)),
+                "ok");
+      expect_same(c, result);
+      expect_same(sums, manifold.sums());
+      ASSERT_EQ(c.written, manifold.points().size());
+      for (std::size_t i = 0; i < c.written; ++i) {
+        expect_same(c_contacts[i], manifold.points()[i]);
+      }
+      made += c.contacts;
+      weight += sums.weight;
+    }
+    EXPECT_GT(made, 50u) << push_distance;
+    weights.push_back(weight);
+    EXPECT_EQ(name(ist_query_free(query)), "ok");
+  }
+  EXPECT_EQ(weights[0], weights[1]);
+  for (std::size_t i = 2; i < weights.size(); ++i) EXPECT_LT(weights[i], weights[i - 1]);
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
 TEST_F(CAnswers, AreTheSameCertainOnes) {
@@ -165,136 +269,35 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
   std::vector<ist_triangle_pair> c_pairs(1 << 12);
   std::uint64_t met = 0;
   for (const Eigen::Isometry3d& pose : poses()) {
-    auto gap = sized<ist_gap_result>();
-    ASSERT_EQ(name(ist_query_gap(c_query_, pose.data(), 0.001, &gap)), "ok");
-    const GapResult gap_result = query_.gap(pose, 0.001);
-    EXPECT_EQ(gap.lower, gap_result.gap.lower);
-    EXPECT_EQ(gap.upper, gap_result.gap.upper);
-    EXPECT_EQ(gap.sphere_tests, gap_result.sphere_tests);
+    auto distance = sized<ist_distance_result>();
+    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 0.001, &distance)), "ok");
+    const DistanceResult wanted = query_.distance(pose, 0.001);
+    EXPECT_EQ(distance.lower, wanted.distance.lower);
+    EXPECT_EQ(distance.upper, wanted.distance.upper);
+    EXPECT_EQ(distance.sphere_tests, wanted.sphere_tests);
+    EXPECT_EQ(distance.complete, wanted.complete ? 1 : 0);
+    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, &distance)), "ok");
+    EXPECT_EQ(distance.complete, 1);
 
-    std::int32_t touch = -1;
-    ASSERT_EQ(name(ist_query_touches(c_query_, pose.data(), &touch)), "ok");
-    EXPECT_EQ(touch, query_.touches(pose) == Touch::kYes ? IST_TOUCH_YES : IST_TOUCH_NO);
+    std::int32_t answer = -1;
+    ASSERT_EQ(name(ist_query_intersects(c_query_, pose.data(), &answer)), "ok");
+    EXPECT_EQ(answer,
+              query_.intersects(pose).answer == ist::Answer::kYes ? IST_ANSWER_YES : IST_ANSWER_NO);
 
-    auto exact = sized<ist_exact_result>();
-    ASSERT_EQ(name(ist_query_exact(c_query_, pose.data(), c_pairs.data(), c_pairs.size(), &exact)),
-              "ok");
-    const ExactResult exact_result = query_.collide_exact(pose, pairs);
-    EXPECT_EQ(exact.pairs, exact_result.triangle_pairs);
-    EXPECT_EQ(exact.sphere_tests, exact_result.sphere_tests);
-    ASSERT_EQ(exact.written, exact.pairs);
-    EXPECT_EQ(std::memcmp(pairs.data(), c_pairs.data(), exact.written * sizeof(TrianglePair)), 0);
-    met += exact.pairs;
+    auto c = sized<ist_triangle_pairs_result>();
+    ASSERT_EQ(
+        name(ist_query_triangle_pairs(c_query_, pose.data(), c_pairs.data(), c_pairs.size(), &c)),
+        "ok");
+    const TrianglePairsResult result = query_.triangle_pairs(pose, pairs);
+    EXPECT_EQ(c.pairs, result.triangle_pairs);
+    EXPECT_EQ(c.sphere_tests, result.sphere_tests);
+    EXPECT_EQ(c.truncated, 0);
+    ASSERT_EQ(c.written, c.pairs);
+    EXPECT_EQ(std::memcmp(pairs.data(), c_pairs.data(), c.written * sizeof(TrianglePair)), 0);
+    EXPECT_EQ(answer == IST_ANSWER_YES, c.pairs > 0);
+    met += c.pairs;
   }
   EXPECT_GT(met, 100u);
-}
-
-// Without triangles leaves that touch say no more than that.
-TEST(CAnswer, MayBePossibleWithoutTriangles) {
-  ist_query* query = c_query(c_tree(icosphere(2, 1), 0.2, false));
-  std::int32_t touch = -1;
-  ASSERT_EQ(name(ist_query_touches(query, c_shift(1.8, 0, 0).data(), &touch)), "ok");
-  EXPECT_EQ(touch, IST_TOUCH_POSSIBLE);
-  auto exact = sized<ist_exact_result>();
-  EXPECT_EQ(name(ist_query_exact(query, c_shift(1.8, 0, 0).data(), nullptr, 0, &exact)),
-            "triangles-missing");
-  EXPECT_EQ(name(ist_query_free(query)), "ok");
-}
-
-// Options say what they say.
-TEST(CAnswer, ComesOfTheOptionsThatAreGiven) {
-  ist_tree* tree = c_tree(icosphere(2, 1), 0.2);
-  auto options = sized<ist_query_options>();
-  options.spheres = IST_SPHERES_TABLE;
-  options.workers = 2;
-  options.period_ns = -1;
-  options.contact_points = 5;
-  options.target = "scalar";
-  ist_query* query = nullptr;
-  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &query)), "ok");
-  auto info = sized<ist_query_info>();
-  ASSERT_EQ(name(ist_query_get_info(query, &info)), "ok");
-  EXPECT_EQ(info.spheres, IST_SPHERES_TABLE);
-  EXPECT_EQ(info.workers, 2);
-  EXPECT_EQ(info.contact_points, 5u);
-  EXPECT_EQ(info.exact, 1);
-  EXPECT_STREQ(info.target, "scalar");
-  EXPECT_GT(info.bytes, 100'000u);
-  auto result = sized<ist_query_result>();
-  std::vector<ist_contact_point> points(8);
-  ASSERT_EQ(name(ist_query_contact_points(query, c_shift(1.8, 0, 0).data(), points.data(), 8,
-                                          nullptr, &result)),
-            "ok");
-  EXPECT_EQ(result.points, 5u);
-  EXPECT_EQ(name(ist_query_free(query)), "ok");
-
-  options.contact_points = -1;
-  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &query)), "ok");
-  EXPECT_EQ(name(ist_query_contact_points(query, c_shift(1.8, 0, 0).data(), points.data(), 8,
-                                          nullptr, &result)),
-            "not-prepared");
-  EXPECT_EQ(name(ist_query_free(query)), "ok");
-  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
-}
-
-// Floats are the doubles that they are.
-TEST(CMesh, IsTheSameOfFloats) {
-  const std::array<float, 9> floats = {0.1F, 0, 0, 1.3F, 0.2F, 0, 0, 2.7F, 0.4F};
-  const std::array<std::uint32_t, 3> triangle = {0, 1, 2};
-  ist_mesh* mesh = nullptr;
-  ASSERT_EQ(name(ist_mesh_create_float(floats.data(), 3, triangle.data(), 1, &mesh)), "ok");
-  auto info = sized<ist_mesh_info>();
-  ASSERT_EQ(name(ist_mesh_get_info(mesh, &info)), "ok");
-  EXPECT_EQ(info.box_max[0], double{1.3F});
-  EXPECT_EQ(info.box_max[1], double{2.7F});
-  EXPECT_EQ(info.box_max[2], double{0.4F});
-  EXPECT_EQ(info.closed, 0);
-  EXPECT_EQ(info.boundary_edges, 3u);
-  EXPECT_EQ(info.components, 1u);
-  EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
-}
-
-// What indices in answers are of.
-TEST(CGeometry, IsWhatAnswersCount) {
-  const TriangleMesh mesh = icosphere(2, 1);
-  ist_mesh* c = c_mesh(mesh);
-  std::vector<double> vertices(3 * mesh.vertices.size() + 1, 7);
-  std::vector<std::uint32_t> triangles(3 * mesh.triangles.size() + 1, 7);
-  ASSERT_EQ(name(ist_mesh_copy(c, vertices.data(), mesh.vertices.size(), triangles.data(),
-                               mesh.triangles.size())),
-            "ok");
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_EQ(vertices[3 * i + static_cast<std::size_t>(axis)], mesh.vertices[i][axis]);
-    }
-  }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(triangles[3 * i + k], mesh.triangles[i][k]);
-  }
-  EXPECT_EQ(vertices.back(), 7);
-  EXPECT_EQ(triangles.back(), 7u);
-  // What there is room for, and no more than there is.
-  std::vector<double> two(7, 5);
-  ASSERT_EQ(name(ist_mesh_copy(c, two.data(), 2, nullptr, 0)), "ok");
-  EXPECT_TRUE(std::equal(two.begin(), two.end() - 1, vertices.begin()));
-  EXPECT_EQ(two.back(), 5);
-  EXPECT_EQ(name(ist_mesh_free(c)), "ok");
-
-  BuildOptions options;
-  options.voxel_size = kVoxel;
-  const SphereTree tree = build_tree(mesh, options);
-  ist_tree* c_built = c_tree(mesh, kVoxel);
-  const std::vector<Ball> cubes = level_spheres(tree, SpherePolicy::kSimple, 0);
-  std::vector<double> centres(3 * cubes.size() + 3, 7);
-  ASSERT_EQ(name(ist_tree_copy_leaf_centres(c_built, centres.data(), cubes.size() + 1)), "ok");
-  for (std::size_t i = 0; i < cubes.size(); ++i) {
-    const Eigen::Vector3d centre = tree.lattice().origin() + cubes[i].centre;
-    for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_NEAR(centres[3 * i + static_cast<std::size_t>(axis)], centre[axis], 1e-15);
-    }
-  }
-  EXPECT_EQ(centres[3 * cubes.size()], 7);
-  EXPECT_EQ(name(ist_tree_free(c_built)), "ok");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a caller gives that has no sense, and the code that it gets.
+// Invalid values and their error codes.
 
 #include <cmath>
 #include <limits>
@@ -26,55 +26,99 @@ TEST_F(CMisuse, OfAPoseIsToldAndNothingIsAnswered) {
   for (const std::array<double, 16>& at : poses) {
     const double* pose = at.data();
     ASSERT_EQ(name(query(pose_.data())), "ok");
-    ASSERT_GT(result_.contacts, 0u);
+    ASSERT_GT(result_.leaf_pairs, 0u);
     EXPECT_EQ(name(query(pose)), "pose-invalid");
-    EXPECT_EQ(result_.contacts + result_.written + result_.sphere_tests, 0u);
+    EXPECT_EQ(result_.leaf_pairs + result_.written + result_.sphere_tests, 0u);
     EXPECT_EQ(result_.complete, 0);
     EXPECT_EQ(result_.resolution, 0);
 
-    EXPECT_EQ(name(ist_query_collide_within(query_, pose, &budget_, contacts_, 4, &result_)),
+    for (const ist_budget* budget : std::array<const ist_budget*, 2>{nullptr, &budget_}) {
+      result_.complete = result_.distance_known = 7;
+      EXPECT_EQ(name(ist_query_leaf_pairs(query_, pose, budget, leaf_pairs_, 4, &result_)),
+                "pose-invalid");
+      EXPECT_EQ(result_.complete + result_.distance_known, 0);
+      sums_.weight = 7;
+      result_.contacts = 7;
+      EXPECT_EQ(name(ist_query_contacts(query_, pose, budget, contacts_, 4, &sums_, &result_)),
+                "pose-invalid");
+      EXPECT_EQ(sums_.weight, 0);
+      EXPECT_EQ(result_.contacts, 0u);
+    }
+    distance_.lower = distance_.upper = distance_.complete = 7;
+    EXPECT_EQ(name(ist_query_distance(query_, pose, 0.1, &distance_)), "pose-invalid");
+    EXPECT_EQ(distance_.lower + distance_.upper + distance_.complete, 0);
+    answer_ = IST_ANSWER_NO;
+    EXPECT_EQ(name(ist_query_intersects(query_, pose, &answer_)), "pose-invalid");
+    EXPECT_EQ(answer_, IST_ANSWER_UNKNOWN);
+    triangle_result_.pairs = 7;
+    EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose, triangle_pairs_, 4, &triangle_result_)),
               "pose-invalid");
-    EXPECT_EQ(result_.complete + result_.gap_known, 0);
-    sums_.weight = 7;
-    EXPECT_EQ(name(ist_query_contact_points(query_, pose, points_, 4, &sums_, &result_)),
-              "pose-invalid");
-    EXPECT_EQ(sums_.weight, 0);
-    sums_.weight = 7;
-    EXPECT_EQ(
-        name(ist_query_contact_points_within(query_, pose, &budget_, points_, 4, &sums_, &result_)),
-        "pose-invalid");
-    EXPECT_EQ(sums_.weight, 0);
-    gap_.lower = gap_.upper = 7;
-    EXPECT_EQ(name(ist_query_gap(query_, pose, 0.1, &gap_)), "pose-invalid");
-    EXPECT_EQ(gap_.lower + gap_.upper, 0);
-    touch_ = IST_TOUCH_NO;
-    EXPECT_EQ(name(ist_query_touches(query_, pose, &touch_)), "pose-invalid");
-    EXPECT_EQ(touch_, IST_TOUCH_UNKNOWN);
-    exact_.pairs = 7;
-    EXPECT_EQ(name(ist_query_exact(query_, pose, pairs_, 4, &exact_)), "pose-invalid");
-    EXPECT_EQ(exact_.pairs, 0u);
+    EXPECT_EQ(triangle_result_.pairs, 0u);
     force_[1] = torque_[2] = 7;
     EXPECT_EQ(name(ist_servo_on_tick(servo_, pose, force_, torque_)), "pose-invalid");
     EXPECT_EQ(force_[1] + torque_[2], 0);
   }
 }
 
-// However the call fails, and whichever of its arguments is wrong.
+// A failed call clears all outputs, whichever argument is wrong.
 TEST_F(CMisuse, LeavesNoSumsOfTheCallBefore) {
-  const auto fails = [&](const ist_budget* budget, const char* status) {
+  const auto fails = [&](const ist_budget* budget, const ist_contact* contacts,
+                         const char* status) {
     sums_.weight = 7;
-    result_.contacts = 7;
-    EXPECT_EQ(name(ist_query_contact_points_within(query_, pose_.data(), budget, points_, 4, &sums_,
-                                                   &result_)),
+    result_.leaf_pairs = 7;
+    EXPECT_EQ(name(ist_query_contacts(query_, pose_.data(), budget,
+                                      const_cast<ist_contact*>(contacts), 4, &sums_, &result_)),
               status);
     EXPECT_EQ(sums_.weight, 0);
   };
-  fails(nullptr, "null-argument");
+  fails(nullptr, nullptr, "null-argument");
+  EXPECT_EQ(result_.leaf_pairs, 0u);
   ist_budget unsized{};
-  fails(&unsized, "struct-size");
-  EXPECT_EQ(result_.contacts, 0u);
+  fails(&unsized, contacts_, "struct-size");
+  EXPECT_EQ(result_.leaf_pairs, 0u);
   result_.struct_size = 0;
-  fails(&budget_, "struct-size");
+  fails(&budget_, contacts_, "struct-size");
+
+  result_ = sized<ist_query_result>();
+  result_.leaf_pairs = 7;
+  sums_.struct_size = 4;
+  EXPECT_EQ(name(ist_query_contacts(query_, pose_.data(), nullptr, contacts_, 4, &sums_, &result_)),
+            "struct-size");
+  EXPECT_EQ(result_.leaf_pairs, 0u);
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_query_contacts: sums->struct_size is 4: set it to sizeof, which is 144");
+}
+
+// A failed call clears each wrench output that it has.
+TEST_F(CMisuse, OfAWrenchIsToldAndGivesNoForce) {
+  sums_.spring_force[0] = 2;
+  sums_.spring_torque[1] = 3;
+  const auto fails = [&](const ist_contact_sums* sums, double stiffness, double* force,
+                         double* torque, const char* status) {
+    std::fill_n(force_, 3, 7.0);
+    std::fill_n(torque_, 3, 7.0);
+    EXPECT_EQ(name(ist_contact_sums_wrench(sums, stiffness, force, torque)), status);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(force_[i], force == nullptr ? 7 : 0);
+      EXPECT_EQ(torque_[i], torque == nullptr ? 7 : 0);
+    }
+  };
+  fails(nullptr, 1, force_, torque_, "null-argument");
+  fails(&sums_, 1, nullptr, torque_, "null-argument");
+  fails(&sums_, 1, force_, nullptr, "null-argument");
+  for (const double bad : {static_cast<double>(NAN), HUGE_VAL, -HUGE_VAL}) {
+    fails(&sums_, bad, force_, torque_, "argument-invalid");
+  }
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_contact_sums_wrench: stiffness is -inf: pass a finite number");
+  for (const std::size_t size : {std::size_t{0}, std::size_t{8}, std::size_t{100}, SIZE_MAX}) {
+    sums_.struct_size = size;
+    fails(&sums_, 1, force_, torque_, "struct-size");
+  }
+  ist_contact_sums longer[2] = {sums_, sums_};
+  longer[0].struct_size = sizeof(ist_contact_sums) + 8;
+  longer[1].struct_size = 1;  // the member that follows
+  fails(longer, 1, force_, torque_, "struct-size");
 }
 
 TEST_F(CMisuse, OfArraysIsTold) {
@@ -86,8 +130,10 @@ TEST_F(CMisuse, OfArraysIsTold) {
   EXPECT_EQ(created(std::size_t{1} << 32, 1), "argument-invalid");
   EXPECT_EQ(created(3, SIZE_MAX), "argument-invalid");
   EXPECT_EQ(created(2, 1), "mesh-bad-index");
-  EXPECT_STREQ(ist_last_error_message(),
-               "ist_mesh_create: triangle 0 names vertex 2, and there are 2: count from 0");
+  EXPECT_STREQ(
+      ist_last_error_message(),
+      "ist_mesh_create: triangle 0 has the vertex index 2, but there are 2 vertices: count "
+      "from 0");
   corners_[5] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(created(3, 1), "mesh-not-finite");
   floats_[7] = std::numeric_limits<float>::quiet_NaN();
@@ -95,10 +141,20 @@ TEST_F(CMisuse, OfArraysIsTold) {
             "mesh-not-finite");
   EXPECT_EQ(no_mesh_, nullptr);
 
-  // A span of nothing is one; a longer one than memory is none.
-  EXPECT_EQ(name(ist_query_collide(query_, pose_.data(), nullptr, 0, &result_)), "ok");
+  // An empty array is valid; an array longer than any memory is not.
+  EXPECT_EQ(name(ist_query_leaf_pairs(query_, pose_.data(), nullptr, nullptr, 0, &result_)), "ok");
   EXPECT_EQ(result_.truncated, 1);
-  EXPECT_EQ(name(ist_query_collide(query_, pose_.data(), contacts_, SIZE_MAX, &result_)),
+  EXPECT_EQ(
+      name(ist_query_leaf_pairs(query_, pose_.data(), nullptr, leaf_pairs_, SIZE_MAX, &result_)),
+      "argument-invalid");
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_query_leaf_pairs: pairs has 18446744073709551615 elements: pass at most "
+               "36028797018963967");
+  EXPECT_EQ(name(ist_query_contacts(query_, pose_.data(), nullptr, contacts_, SIZE_MAX, nullptr,
+                                    &result_)),
+            "argument-invalid");
+  EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose_.data(), triangle_pairs_, SIZE_MAX,
+                                          &triangle_result_)),
             "argument-invalid");
 }
 
@@ -130,8 +186,14 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(queried([](auto& o) { o.period_ns = -2; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.frontier_pairs = UINT64_MAX; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.triangle_pairs = UINT64_MAX; }), "argument-invalid");
-  EXPECT_EQ(queried([](auto& o) { o.contact_points = 4097; }), "argument-invalid");
-  EXPECT_EQ(queried([](auto& o) { o.contact_points = -2; }), "argument-invalid");
+  EXPECT_EQ(queried([](auto& o) { o.contacts = 4097; }), "argument-invalid");
+  EXPECT_EQ(queried([](auto& o) { o.contacts = -2; }), "argument-invalid");
+  for (const double bad : {2.001, -0.5, -1.5, -2.0, HUGE_VAL, -HUGE_VAL, double{NAN}}) {
+    EXPECT_EQ(queried([bad](auto& o) { o.push_distance = bad; }), "argument-invalid") << bad;
+  }
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_query_create: options->push_distance is nan: pass a number from 0 (the "
+               "default) to 2 mean voxel sizes, or -1 for springs that begin where surfaces meet");
   EXPECT_EQ(queried([](auto& o) { o.target = "z80"; }), "target-missing");
   EXPECT_EQ(queried([](auto& o) { o.struct_size = 7; }), "struct-size");
 
@@ -143,20 +205,28 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(opened([](auto& o) { o.unit = 0; }), "argument-invalid");
   EXPECT_EQ(opened([](auto& o) { o.unit = 3; }), "argument-invalid");
   EXPECT_EQ(opened([](auto& o) { o.reserved = 1; }), "argument-invalid");
-  EXPECT_EQ(opened([](auto& o) { o.query_share = -0.1; }), "argument-invalid");
-  EXPECT_EQ(opened([](auto& o) { o.query_share = 1.1; }), "argument-invalid");
-  EXPECT_EQ(opened([](auto& o) { o.query_share = NAN; }), "argument-invalid");
+  EXPECT_EQ(opened([](auto& o) { o.query_time_fraction = -0.1; }), "argument-invalid");
+  EXPECT_EQ(opened([](auto& o) { o.query_time_fraction = 1.1; }), "argument-invalid");
+  EXPECT_EQ(opened([](auto& o) { o.query_time_fraction = NAN; }), "argument-invalid");
+  EXPECT_STREQ(ist_last_error_message(),
+               "ist_servo_open_scene: options->query_time_fraction is nan: pass a fraction of a "
+               "tick, from 0 to 1");
   EXPECT_EQ(opened([](auto& o) { o.struct_size = 1 << 20; }), "struct-size");
 
   budget_.struct_size = 4;
-  EXPECT_EQ(name(ist_query_collide_within(query_, pose_.data(), &budget_, contacts_, 4, &result_)),
+  EXPECT_EQ(name(ist_query_leaf_pairs(query_, pose_.data(), &budget_, leaf_pairs_, 4, &result_)),
             "struct-size");
-  EXPECT_EQ(name(ist_query_gap(query_, pose_.data(), NAN, &gap_)), "argument-invalid");
-  EXPECT_EQ(name(ist_query_gap(query_, pose_.data(), -1, &gap_)), "argument-invalid");
+  EXPECT_EQ(
+      name(ist_query_contacts(query_, pose_.data(), &budget_, contacts_, 4, &sums_, &result_)),
+      "struct-size");
+  distance_.upper = 7;
+  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), NAN, &distance_)), "argument-invalid");
+  EXPECT_EQ(distance_.upper, 0);
+  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), -1, &distance_)), "argument-invalid");
   EXPECT_TRUE(!no_tree_ && !no_query_ && !no_servo_);
 }
 
-// A sound and an unsound file; the message names it.
+// Missing and invalid files; the message names the file.
 TEST_F(CMisuse, OfFilesIsTold) {
   const std::string none = (folder_.path() / "none").string();
   EXPECT_EQ(name(ist_tree_load(none.c_str(), &no_tree_)), "file-unreadable");

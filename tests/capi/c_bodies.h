@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ist/capi/ist_servo.h"
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::test {
 

@@ -1,4 +1,4 @@
-// No exception comes out, whatever it is, and each becomes its code.
+// No exception leaves a C function; each becomes an error code.
 
 #include "ist/capi/guard.h"
 

@@ -1,5 +1,5 @@
-/* The whole life of two bodies through the C interface, in plain C11; and what a caller does wrong.
- * Arrays are as long as they are said to be, so that AddressSanitizer sees what is written beyond.
+/* The whole life of two bodies through the C interface, in plain C11, and errors of a caller.
+ * Arrays have exactly their stated lengths, so that AddressSanitizer sees each access beyond.
  *
  *   ist_c11_test FOLDER SCENE.toml */
 
@@ -78,108 +78,124 @@ static ist_tree* make_tree(const char* folder) {
   return loaded;
 }
 
-/* Both sides of one cube are 0.5 in the other. */
-static void collide(ist_query* query) {
+/* The cubes overlap by 0.5 along x. */
+static void leaf_pairs(ist_query* query) {
   const pose_at pose = shifted(9.5, 0.25, 0);
   ist_query_result counted = {.struct_size = sizeof counted};
-  IS(ist_query_collide(query, pose.at, NULL, 0, &counted), IST_OK);
-  CHECK(counted.contacts > 100 && counted.truncated == 1 && counted.written == 0);
-  CHECK(counted.complete == 1 && counted.resolution > 0);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, NULL, 0, &counted), IST_OK);
+  CHECK(counted.leaf_pairs > 100 && counted.truncated == 1 && counted.written == 0);
+  CHECK(counted.complete == 1 && counted.resolution > 0 && counted.distance_known == 0);
 
-  ist_contact* all = malloc(counted.contacts * sizeof *all);
+  ist_leaf_pair* all = malloc(counted.leaf_pairs * sizeof *all);
   ist_query_result full = {.struct_size = sizeof full};
-  IS(ist_query_collide(query, pose.at, all, counted.contacts, &full), IST_OK);
-  CHECK(full.written == full.contacts && full.truncated == 0);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, all, counted.leaf_pairs, &full), IST_OK);
+  CHECK(full.written == full.leaf_pairs && full.truncated == 0);
   for (uint64_t i = 1; i < full.written; ++i) {
     CHECK(all[i - 1].fixed < all[i].fixed ||
           (all[i - 1].fixed == all[i].fixed && all[i - 1].moving < all[i].moving));
   }
-  ist_contact* few = malloc(7 * sizeof *few);
+  ist_leaf_pair* few = malloc(7 * sizeof *few);
   ist_query_result cut = {.struct_size = sizeof cut};
-  IS(ist_query_collide(query, pose.at, few, 7, &cut), IST_OK);
-  CHECK(cut.contacts == full.contacts && cut.written == 7 && cut.truncated == 1);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, few, 7, &cut), IST_OK);
+  CHECK(cut.leaf_pairs == full.leaf_pairs && cut.written == 7 && cut.truncated == 1);
   CHECK(memcmp(few, all, 7 * sizeof *few) == 0);
 
-  const ist_budget little = {.struct_size = sizeof little, .sphere_tests = 20};
-  IS(ist_query_collide_within(query, pose.at, &little, few, 7, &cut), IST_OK);
-  CHECK(cut.complete == 0 && cut.level > 0 && cut.gap_known == 1 && cut.sphere_tests <= 20);
+  const ist_budget little = {.struct_size = sizeof little, .tests = 20};
+  IS(ist_query_leaf_pairs(query, pose.at, &little, few, 7, &cut), IST_OK);
+  CHECK(cut.complete == 0 && cut.level > 0 && cut.distance_known == 1 && cut.sphere_tests <= 20);
   const ist_budget hour = {.struct_size = sizeof hour, .nanoseconds = 3600000000000};
-  IS(ist_query_collide_within(query, pose.at, &hour, few, 7, &cut), IST_OK);
-  CHECK(cut.complete == 1 && cut.contacts == full.contacts);
+  IS(ist_query_leaf_pairs(query, pose.at, &hour, few, 7, &cut), IST_OK);
+  CHECK(cut.complete == 1 && cut.leaf_pairs == full.leaf_pairs);
+  const ist_budget unlimited = {.struct_size = sizeof unlimited};
+  IS(ist_query_leaf_pairs(query, pose.at, &unlimited, few, 7, &cut), IST_OK);
+  CHECK(cut.complete == 1 && cut.leaf_pairs == full.leaf_pairs && cut.distance_known == 1);
   free(few);
   free(all);
 }
 
 static void reduce(ist_query* query) {
   const pose_at pose = shifted(9.5, 0.25, 0);
-  ist_contact_point* points = malloc(32 * sizeof *points);
+  ist_contact* contacts = malloc(32 * sizeof *contacts);
   ist_contact_sums sums = {.struct_size = sizeof sums};
   ist_query_result result = {.struct_size = sizeof result};
-  IS(ist_query_contact_points(query, pose.at, points, 32, &sums, &result), IST_OK);
-  CHECK(result.points > 0 && result.written == result.points && result.truncated == 0);
+  IS(ist_query_contacts(query, pose.at, NULL, contacts, 32, &sums, &result), IST_OK);
+  CHECK(result.contacts > 0 && result.written == result.contacts && result.truncated == 0);
   CHECK(sums.pairs > 0 && sums.spring_force[0] > 0);
   CHECK(fabs(sums.spring_force[2]) < 0.01 * sums.spring_force[0]);
   for (uint64_t i = 0; i < result.written; ++i) {
-    CHECK(fabs(points[i].position[0] - 9.75) < 1);
-    CHECK(fabs(points[i].normal[0]) <= 1 && points[i].weight > 0);
+    CHECK(fabs(contacts[i].position[0] - 9.75) < 1);
+    CHECK(fabs(contacts[i].normal[0]) <= 1 && contacts[i].weight > 0);
   }
-  ist_contact_point* one = malloc(sizeof *one);
-  IS(ist_query_contact_points(query, pose.at, one, 1, NULL, &result), IST_OK);
-  CHECK(result.written == 1 && result.truncated == 1 && memcmp(one, points, sizeof *one) == 0);
+  double force[3], torque[3];
+  IS(ist_contact_sums_wrench(&sums, 0.5, force, torque), IST_OK);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(force[i] == 0.5 * sums.spring_force[i] && torque[i] == 0.5 * sums.spring_torque[i]);
+  }
+  ist_contact* one = malloc(sizeof *one);
+  IS(ist_query_contacts(query, pose.at, NULL, one, 1, NULL, &result), IST_OK);
+  CHECK(result.written == 1 && result.truncated == 1 && memcmp(one, contacts, sizeof *one) == 0);
+  const ist_budget little = {.struct_size = sizeof little, .tests = 20};
+  IS(ist_query_contacts(query, pose.at, &little, NULL, 0, &sums, &result), IST_OK);
+  CHECK(result.complete == 0 && result.written == 0 && result.distance_known == 1);
   free(one);
-  free(points);
+  free(contacts);
 }
 
 static void certify(ist_query* query) {
-  int32_t touch = -1;
+  int32_t answer = -1;
   const pose_at in = shifted(9.5, 0.25, 0), out = shifted(12, 0, 0);
-  IS(ist_query_touches(query, in.at, &touch), IST_OK);
-  CHECK(touch == IST_TOUCH_YES);
-  IS(ist_query_touches(query, out.at, &touch), IST_OK);
-  CHECK(touch == IST_TOUCH_NO);
+  IS(ist_query_intersects(query, in.at, &answer), IST_OK);
+  CHECK(answer == IST_ANSWER_YES);
+  IS(ist_query_intersects(query, out.at, &answer), IST_OK);
+  CHECK(answer == IST_ANSWER_NO);
 
-  ist_gap_result gap = {.struct_size = sizeof gap};
-  IS(ist_query_gap(query, out.at, 0.01, &gap), IST_OK);
-  CHECK(gap.lower <= 2 && gap.upper >= 2 && gap.upper - gap.lower < 0.011);
+  ist_distance_result distance = {.struct_size = sizeof distance};
+  IS(ist_query_distance(query, out.at, 0.01, &distance), IST_OK);
+  CHECK(distance.lower <= 2 && distance.upper >= 2 && distance.upper - distance.lower < 0.011);
+  CHECK(distance.complete == 1 || distance.upper - distance.lower > 0.01);
+  IS(ist_query_distance(query, out.at, 5, &distance), IST_OK);
+  CHECK(distance.lower <= 2 && distance.upper >= 2 && distance.complete == 1);
+  IS(ist_query_distance(query, in.at, 0, &distance), IST_OK);
+  CHECK(distance.lower == 0 && distance.upper == 0 && distance.complete == 1);
 
   ist_triangle_pair* pairs = malloc(200 * sizeof *pairs);
-  ist_exact_result exact = {.struct_size = sizeof exact};
-  IS(ist_query_exact(query, in.at, pairs, 200, &exact), IST_OK);
-  CHECK(exact.pairs > 0 && exact.written == exact.pairs && exact.truncated == 0);
-  IS(ist_query_exact(query, in.at, pairs, 1, &exact), IST_OK);
-  CHECK(exact.written == 1 && exact.truncated == 1);
-  IS(ist_query_exact(query, out.at, NULL, 0, &exact), IST_OK);
-  CHECK(exact.pairs == 0 && exact.truncated == 0);
+  ist_triangle_pairs_result result = {.struct_size = sizeof result};
+  IS(ist_query_triangle_pairs(query, in.at, pairs, 200, &result), IST_OK);
+  CHECK(result.pairs > 0 && result.written == result.pairs && result.truncated == 0);
+  IS(ist_query_triangle_pairs(query, in.at, pairs, 1, &result), IST_OK);
+  CHECK(result.written == 1 && result.truncated == 1);
+  IS(ist_query_triangle_pairs(query, out.at, NULL, 0, &result), IST_OK);
+  CHECK(result.pairs == 0 && result.truncated == 0);
   free(pairs);
 }
 
 static void misuse(ist_tree* tree, ist_query* query) {
   pose_at pose = shifted(9.5, 0, 0);
   ist_query_result result = {.struct_size = sizeof result};
-  IS(ist_query_collide(NULL, pose.at, NULL, 0, &result), IST_NULL_ARGUMENT);
-  IS(ist_query_collide(query, NULL, NULL, 0, &result), IST_NULL_ARGUMENT);
-  IS(ist_query_collide(query, pose.at, NULL, 1, &result), IST_NULL_ARGUMENT);
-  IS(ist_query_collide(query, pose.at, NULL, 0, NULL), IST_NULL_ARGUMENT);
-  IS(ist_query_collide((ist_query*)tree, pose.at, NULL, 0, &result), IST_HANDLE_KIND);
-  IS(ist_query_collide((ist_query*)&pose, pose.at, NULL, 0, &result), IST_NOT_A_HANDLE);
+  IS(ist_query_leaf_pairs(NULL, pose.at, NULL, NULL, 0, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_leaf_pairs(query, NULL, NULL, NULL, 0, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, NULL, 1, &result), IST_NULL_ARGUMENT);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, NULL, 0, NULL), IST_NULL_ARGUMENT);
+  IS(ist_query_leaf_pairs((ist_query*)tree, pose.at, NULL, NULL, 0, &result), IST_HANDLE_KIND);
+  IS(ist_query_leaf_pairs((ist_query*)&pose, pose.at, NULL, NULL, 0, &result), IST_NOT_A_HANDLE);
   result.struct_size = 0;
-  IS(ist_query_collide(query, pose.at, NULL, 0, &result), IST_STRUCT_SIZE);
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, NULL, 0, &result), IST_STRUCT_SIZE);
   result.struct_size = sizeof result;
 
   pose.at[12] = NAN;
-  result.contacts = 77;
-  IS(ist_query_collide(query, pose.at, NULL, 0, &result), IST_POSE_INVALID);
-  CHECK(result.contacts == 0 && result.complete == 0);
-  CHECK(strstr(ist_last_error_message(), "ist_query_collide: pose") != NULL);
+  result.leaf_pairs = 77;
+  IS(ist_query_leaf_pairs(query, pose.at, NULL, NULL, 0, &result), IST_POSE_INVALID);
+  CHECK(result.leaf_pairs == 0 && result.complete == 0);
+  CHECK(strstr(ist_last_error_message(), "ist_query_leaf_pairs: pose") != NULL);
 
   ist_query* gone = NULL;
   IS(ist_query_create(tree, tree, NULL, &gone), IST_OK);
   IS(ist_query_free(gone), IST_OK);
   IS(ist_query_free(gone), IST_HANDLE_FREED);
-  int32_t touch = -1;
+  int32_t answer = -1;
   pose.at[12] = 9.5;
-  IS(ist_query_touches(gone, pose.at, &touch), IST_HANDLE_FREED);
-  CHECK(touch == IST_TOUCH_UNKNOWN);
+  IS(ist_query_intersects(gone, pose.at, &answer), IST_HANDLE_FREED);
+  CHECK(answer == IST_ANSWER_UNKNOWN);
   IS(ist_query_free(NULL), IST_OK);
 }
 
@@ -198,7 +214,7 @@ static void press(const char* scene) {
   double pose[16], force[3], torque[3], most = 0;
   memcpy(pose, info.tool, sizeof pose);
   for (int tick = 0; tick < 600; ++tick) {
-    pose[14] -= 0.006; /* 3.6 mm in all, and it touches after 2 */
+    pose[14] -= 0.006; /* 3.6 mm in all, and it meets the box after 2 */
     IS(ist_servo_on_tick(servo, pose, force, torque), IST_OK);
     if (force[2] > most) most = force[2];
   }
@@ -225,7 +241,7 @@ int main(int argc, char** argv) {
   IS(ist_query_create(tree, tree, NULL, &query), IST_OK);
   misuse(tree, query);
   IS(ist_tree_free(tree), IST_OK); /* the query keeps it */
-  collide(query);
+  leaf_pairs(query);
   reduce(query);
   certify(query);
   IS(ist_query_free(query), IST_OK);

@@ -1,4 +1,4 @@
-/* What a compiled program knows of the C interface: it must never change. */
+/* Sizes, offsets and numbers of the C interface in compiled programs. They must never change. */
 
 #include "ist/capi/ist_servo.h"
 
@@ -46,57 +46,58 @@ AT(ist_tree_info, has_proximity, 52);
 AT(ist_tree_info, outward, 56);
 AT(ist_tree_info, reserved, 60);
 AT(ist_tree_info, origin, 64);
-AT(ist_tree_info, reach, 88);
+AT(ist_tree_info, bounding_radius, 88);
 AT(ist_tree_info, largest_leaf_radius, 96);
 
-SIZE(ist_query_options, 56);
+SIZE(ist_query_options, 64);
 AT(ist_query_options, struct_size, 0);
 AT(ist_query_options, spheres, 8);
 AT(ist_query_options, workers, 12);
 AT(ist_query_options, period_ns, 16);
 AT(ist_query_options, frontier_pairs, 24);
 AT(ist_query_options, triangle_pairs, 32);
-AT(ist_query_options, contact_points, 40);
+AT(ist_query_options, contacts, 40);
 AT(ist_query_options, target, 48);
+AT(ist_query_options, push_distance, 56);
 
 SIZE(ist_query_info, 56);
 AT(ist_query_info, struct_size, 0);
 AT(ist_query_info, bytes, 8);
-AT(ist_query_info, contact_points, 16);
+AT(ist_query_info, contacts, 16);
 AT(ist_query_info, spheres, 24);
 AT(ist_query_info, workers, 28);
-AT(ist_query_info, exact, 32);
+AT(ist_query_info, has_triangles, 32);
 AT(ist_query_info, reserved, 36);
 AT(ist_query_info, target, 40);
 
-SIZE(ist_contact, 8);
-AT(ist_contact, fixed, 0);
-AT(ist_contact, moving, 4);
+SIZE(ist_leaf_pair, 8);
+AT(ist_leaf_pair, fixed, 0);
+AT(ist_leaf_pair, moving, 4);
 
 SIZE(ist_query_result, 80);
 AT(ist_query_result, struct_size, 0);
-AT(ist_query_result, contacts, 8);
-AT(ist_query_result, points, 16);
+AT(ist_query_result, leaf_pairs, 8);
+AT(ist_query_result, contacts, 16);
 AT(ist_query_result, written, 24);
 AT(ist_query_result, sphere_tests, 32);
 AT(ist_query_result, complete, 40);
 AT(ist_query_result, truncated, 44);
 AT(ist_query_result, level, 48);
-AT(ist_query_result, gap_known, 52);
-AT(ist_query_result, gap_lower, 56);
-AT(ist_query_result, gap_upper, 64);
+AT(ist_query_result, distance_known, 52);
+AT(ist_query_result, distance_lower, 56);
+AT(ist_query_result, distance_upper, 64);
 AT(ist_query_result, resolution, 72);
 
 SIZE(ist_budget, 24);
 AT(ist_budget, struct_size, 0);
-AT(ist_budget, sphere_tests, 8);
+AT(ist_budget, tests, 8);
 AT(ist_budget, nanoseconds, 16);
 
-SIZE(ist_contact_point, 64);
-AT(ist_contact_point, position, 0);
-AT(ist_contact_point, normal, 24);
-AT(ist_contact_point, depth, 48);
-AT(ist_contact_point, weight, 56);
+SIZE(ist_contact, 64);
+AT(ist_contact, position, 0);
+AT(ist_contact, normal, 24);
+AT(ist_contact, depth, 48);
+AT(ist_contact, weight, 56);
 
 SIZE(ist_contact_sums, 144);
 AT(ist_contact_sums, struct_size, 0);
@@ -108,29 +109,31 @@ AT(ist_contact_sums, spring_force, 72);
 AT(ist_contact_sums, spring_torque, 96);
 AT(ist_contact_sums, about, 120);
 
-SIZE(ist_gap_result, 32);
-AT(ist_gap_result, struct_size, 0);
-AT(ist_gap_result, lower, 8);
-AT(ist_gap_result, upper, 16);
-AT(ist_gap_result, sphere_tests, 24);
+SIZE(ist_distance_result, 40);
+AT(ist_distance_result, struct_size, 0);
+AT(ist_distance_result, lower, 8);
+AT(ist_distance_result, upper, 16);
+AT(ist_distance_result, sphere_tests, 24);
+AT(ist_distance_result, complete, 32);
+AT(ist_distance_result, reserved, 36);
 
 SIZE(ist_triangle_pair, 8);
 AT(ist_triangle_pair, fixed, 0);
 AT(ist_triangle_pair, moving, 4);
 
-SIZE(ist_exact_result, 40);
-AT(ist_exact_result, struct_size, 0);
-AT(ist_exact_result, pairs, 8);
-AT(ist_exact_result, written, 16);
-AT(ist_exact_result, sphere_tests, 24);
-AT(ist_exact_result, truncated, 32);
-AT(ist_exact_result, reserved, 36);
+SIZE(ist_triangle_pairs_result, 40);
+AT(ist_triangle_pairs_result, struct_size, 0);
+AT(ist_triangle_pairs_result, pairs, 8);
+AT(ist_triangle_pairs_result, written, 16);
+AT(ist_triangle_pairs_result, sphere_tests, 24);
+AT(ist_triangle_pairs_result, truncated, 32);
+AT(ist_triangle_pairs_result, reserved, 36);
 
 SIZE(ist_servo_options, 40);
 AT(ist_servo_options, struct_size, 0);
 AT(ist_servo_options, unit, 8);
 AT(ist_servo_options, reserved, 12);
-AT(ist_servo_options, query_share, 16);
+AT(ist_servo_options, query_time_fraction, 16);
 AT(ist_servo_options, sphere_tests, 24);
 AT(ist_servo_options, max_memory, 32);
 
@@ -185,9 +188,9 @@ IS(IST_SPHERES_SIMPLE, 1);
 IS(IST_SPHERES_TABLE, 2);
 IS(IST_SPHERES_TIGHT, 3);
 IS(IST_SPHERES_SLAB, 4);
-IS(IST_TOUCH_UNKNOWN, 0);
-IS(IST_TOUCH_NO, 1);
-IS(IST_TOUCH_POSSIBLE, 2);
-IS(IST_TOUCH_YES, 3);
+IS(IST_ANSWER_UNKNOWN, 0);
+IS(IST_ANSWER_NO, 1);
+IS(IST_ANSWER_NEAR, 2);
+IS(IST_ANSWER_YES, 3);
 IS(IST_UNIT_M, 1);
 IS(IST_UNIT_MM, 2);

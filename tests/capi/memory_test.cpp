@@ -1,4 +1,4 @@
-// Memory that the system does not give is a code; the process lives on.
+// A failed allocation gives an error code, and the process continues.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 namespace ist::test {
 namespace {
 
-// The process may have so many bytes of address space more than now, while this lives.
+// Limits the process to `more` bytes beyond its present address space.
 class LittleMemory {
  public:
   explicit LittleMemory(rlim_t more) {
@@ -42,14 +42,15 @@ TEST(CMemory, ThatIsNotThereIsTold) {
     message = ist_last_error_message();
   }
   EXPECT_EQ(status, "out-of-memory");
-  EXPECT_EQ(message,
-            "ist_query_create: not enough memory: ask for less, or free what is not needed");
+  EXPECT_EQ(message, "ist_query_create: not enough memory: request less, or free unused objects");
   EXPECT_EQ(query, nullptr);
 
   ASSERT_EQ(name(ist_query_create(tree, tree, nullptr, &query)), "ok");
   auto result = sized<ist_query_result>();
-  EXPECT_EQ(name(ist_query_collide(query, c_shift(1.9, 0, 0).data(), nullptr, 0, &result)), "ok");
-  EXPECT_GT(result.contacts, 0u);
+  EXPECT_EQ(
+      name(ist_query_leaf_pairs(query, c_shift(1.9, 0, 0).data(), nullptr, nullptr, 0, &result)),
+      "ok");
+  EXPECT_GT(result.leaf_pairs, 0u);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }

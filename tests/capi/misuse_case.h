@@ -11,7 +11,7 @@
 
 namespace ist::test {
 
-/// One of each handle, and all that a call is given beside it.
+/// One handle of each kind, and all other arguments of a call.
 class CMisuse : public ::testing::Test {
  protected:
   CMisuse() {
@@ -31,7 +31,7 @@ class CMisuse : public ::testing::Test {
   }
 
   [[nodiscard]] ist_status query(const double* pose) {
-    return ist_query_collide(query_, pose, contacts_, 4, &result_);
+    return ist_query_leaf_pairs(query_, pose, nullptr, leaf_pairs_, 4, &result_);
   }
 
   const TempDir folder_;
@@ -42,7 +42,7 @@ class CMisuse : public ::testing::Test {
   ist_query* query_ = nullptr;
   ist_servo* servo_ = nullptr;
 
-  // What a call is given beside its handle, and takes.
+  // The other arguments and the outputs of a call.
   std::array<double, 16> pose_ = c_shift(1.5, 0, 0);
   std::array<double, 9> corners_ = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   std::array<float, 9> floats_ = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -57,12 +57,12 @@ class CMisuse : public ::testing::Test {
   ist_budget budget_ = sized<ist_budget>();
   ist_query_result result_ = sized<ist_query_result>();
   ist_contact_sums sums_ = sized<ist_contact_sums>();
-  ist_gap_result gap_ = sized<ist_gap_result>();
-  ist_exact_result exact_ = sized<ist_exact_result>();
+  ist_distance_result distance_ = sized<ist_distance_result>();
+  ist_triangle_pairs_result triangle_result_ = sized<ist_triangle_pairs_result>();
+  ist_leaf_pair leaf_pairs_[4] = {};
   ist_contact contacts_[4] = {};
-  ist_contact_point points_[4] = {};
-  ist_triangle_pair pairs_[4] = {};
-  std::int32_t touch_ = 0;
+  ist_triangle_pair triangle_pairs_[4] = {};
+  std::int32_t answer_ = 0;
   double force_[3] = {}, torque_[3] = {};
   ist_mesh* no_mesh_ = nullptr;
   ist_tree* no_tree_ = nullptr;

@@ -1,4 +1,4 @@
-// Pointers that are null and handles that are none, for every function that takes one.
+// NULL pointers and invalid handles, for every function that takes one.
 
 #include <functional>
 #include <vector>
@@ -52,42 +52,35 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("query", ist_query_create(tree_, tree_, nullptr, nullptr));
   is_null("query", ist_query_get_info(nullptr, &query_info_));
   is_null("info", ist_query_get_info(query_, nullptr));
-  is_null("query", ist_query_collide(nullptr, pose, contacts_, 4, &result_));
-  is_null("pose", ist_query_collide(query_, nullptr, contacts_, 4, &result_));
-  is_null("contacts", ist_query_collide(query_, pose, nullptr, 4, &result_));
-  is_null("result", ist_query_collide(query_, pose, contacts_, 4, nullptr));
-  is_null("query", ist_query_collide_within(nullptr, pose, &budget_, contacts_, 4, &result_));
-  is_null("pose", ist_query_collide_within(query_, nullptr, &budget_, contacts_, 4, &result_));
-  is_null("budget", ist_query_collide_within(query_, pose, nullptr, contacts_, 4, &result_));
-  is_null("contacts", ist_query_collide_within(query_, pose, &budget_, nullptr, 4, &result_));
-  is_null("result", ist_query_collide_within(query_, pose, &budget_, contacts_, 4, nullptr));
-  const auto points = [&](ist_query* query, const double* at, ist_contact_point* out,
-                          ist_query_result* result) {
-    return ist_query_contact_points(query, at, out, 4, &sums_, result);
+  is_null("query", ist_query_leaf_pairs(nullptr, pose, &budget_, leaf_pairs_, 4, &result_));
+  is_null("pose", ist_query_leaf_pairs(query_, nullptr, &budget_, leaf_pairs_, 4, &result_));
+  is_null("pairs", ist_query_leaf_pairs(query_, pose, &budget_, nullptr, 4, &result_));
+  is_null("result", ist_query_leaf_pairs(query_, pose, &budget_, leaf_pairs_, 4, nullptr));
+  const auto contacts = [&](ist_query* query, const double* at, ist_contact* out,
+                            ist_query_result* result) {
+    return ist_query_contacts(query, at, &budget_, out, 4, &sums_, result);
   };
-  is_null("query", points(nullptr, pose, points_, &result_));
-  is_null("pose", points(query_, nullptr, points_, &result_));
-  is_null("points", points(query_, pose, nullptr, &result_));
-  is_null("result", points(query_, pose, points_, nullptr));
-  const auto within = [&](ist_query* query, const double* at, const ist_budget* budget,
-                          ist_contact_point* out, ist_query_result* result) {
-    return ist_query_contact_points_within(query, at, budget, out, 4, &sums_, result);
+  is_null("query", contacts(nullptr, pose, contacts_, &result_));
+  is_null("pose", contacts(query_, nullptr, contacts_, &result_));
+  is_null("contacts", contacts(query_, pose, nullptr, &result_));
+  is_null("result", contacts(query_, pose, contacts_, nullptr));
+  is_null("sums", ist_contact_sums_wrench(nullptr, 1, force_, torque_));
+  is_null("force", ist_contact_sums_wrench(&sums_, 1, nullptr, torque_));
+  is_null("torque", ist_contact_sums_wrench(&sums_, 1, force_, nullptr));
+  is_null("query", ist_query_distance(nullptr, pose, 0, &distance_));
+  is_null("pose", ist_query_distance(query_, nullptr, 0, &distance_));
+  is_null("result", ist_query_distance(query_, pose, 0, nullptr));
+  is_null("query", ist_query_intersects(nullptr, pose, &answer_));
+  is_null("pose", ist_query_intersects(query_, nullptr, &answer_));
+  is_null("answer", ist_query_intersects(query_, pose, nullptr));
+  const auto triangles = [&](ist_query* query, const double* at, ist_triangle_pair* out,
+                             ist_triangle_pairs_result* result) {
+    return ist_query_triangle_pairs(query, at, out, 4, result);
   };
-  is_null("query", within(nullptr, pose, &budget_, points_, &result_));
-  is_null("pose", within(query_, nullptr, &budget_, points_, &result_));
-  is_null("budget", within(query_, pose, nullptr, points_, &result_));
-  is_null("points", within(query_, pose, &budget_, nullptr, &result_));
-  is_null("result", within(query_, pose, &budget_, points_, nullptr));
-  is_null("query", ist_query_gap(nullptr, pose, 0, &gap_));
-  is_null("pose", ist_query_gap(query_, nullptr, 0, &gap_));
-  is_null("result", ist_query_gap(query_, pose, 0, nullptr));
-  is_null("query", ist_query_touches(nullptr, pose, &touch_));
-  is_null("pose", ist_query_touches(query_, nullptr, &touch_));
-  is_null("touch", ist_query_touches(query_, pose, nullptr));
-  is_null("query", ist_query_exact(nullptr, pose, pairs_, 4, &exact_));
-  is_null("pose", ist_query_exact(query_, nullptr, pairs_, 4, &exact_));
-  is_null("pairs", ist_query_exact(query_, pose, nullptr, 4, &exact_));
-  is_null("result", ist_query_exact(query_, pose, pairs_, 4, nullptr));
+  is_null("query", triangles(nullptr, pose, triangle_pairs_, &triangle_result_));
+  is_null("pose", triangles(query_, nullptr, triangle_pairs_, &triangle_result_));
+  is_null("pairs", triangles(query_, pose, nullptr, &triangle_result_));
+  is_null("result", triangles(query_, pose, triangle_pairs_, nullptr));
 
   is_null("path", ist_servo_open_scene(nullptr, &servo_options_, &no_servo_));
   is_null("options", ist_servo_open_scene(scene_.c_str(), nullptr, &no_servo_));
@@ -107,7 +100,7 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   EXPECT_TRUE(!no_mesh_ && !no_tree_ && !no_query_ && !no_servo_);
 }
 
-// Every argument that is a handle: given nothing sound, one of each other kind, and a freed one.
+// Every handle argument, with invalid values, a handle of each other kind and a freed handle.
 TEST_F(CMisuse, OfAHandleIsTold) {
   enum Kind { kMesh, kTree, kQuery, kServo };
   struct Taker {
@@ -139,29 +132,24 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        [&](void* h) { return ist_query_get_info(static_cast<ist_query*>(h), &query_info_); }},
       {kQuery,
        [&](void* h) {
-         return ist_query_collide(static_cast<ist_query*>(h), pose, contacts_, 4, &result_);
+         return ist_query_leaf_pairs(static_cast<ist_query*>(h), pose, &budget_, leaf_pairs_, 4,
+                                     &result_);
        }},
       {kQuery,
        [&](void* h) {
-         return ist_query_collide_within(static_cast<ist_query*>(h), pose, &budget_, contacts_, 4,
-                                         &result_);
+         return ist_query_contacts(static_cast<ist_query*>(h), pose, &budget_, contacts_, 4, &sums_,
+                                   &result_);
        }},
       {kQuery,
        [&](void* h) {
-         return ist_query_contact_points(static_cast<ist_query*>(h), pose, points_, 4, &sums_,
-                                         &result_);
+         return ist_query_distance(static_cast<ist_query*>(h), pose, 0, &distance_);
        }},
       {kQuery,
-       [&](void* h) {
-         return ist_query_contact_points_within(static_cast<ist_query*>(h), pose, &budget_, points_,
-                                                4, &sums_, &result_);
-       }},
-      {kQuery, [&](void* h) { return ist_query_gap(static_cast<ist_query*>(h), pose, 0, &gap_); }},
-      {kQuery,
-       [&](void* h) { return ist_query_touches(static_cast<ist_query*>(h), pose, &touch_); }},
+       [&](void* h) { return ist_query_intersects(static_cast<ist_query*>(h), pose, &answer_); }},
       {kQuery,
        [&](void* h) {
-         return ist_query_exact(static_cast<ist_query*>(h), pose, pairs_, 4, &exact_);
+         return ist_query_triangle_pairs(static_cast<ist_query*>(h), pose, triangle_pairs_, 4,
+                                         &triangle_result_);
        }},
       {kQuery, [&](void* h) { return ist_query_free(static_cast<ist_query*>(h)); }},
       {kServo,

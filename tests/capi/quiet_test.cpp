@@ -1,5 +1,5 @@
-// What is marked real time in ist.h allocates nothing and makes no system call, also where it
-// fails.
+// Functions marked [real time] in ist_c.h allocate no memory and make no system call, even with
+// errors.
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ struct Bodies {
   ist_query* query = c_query(c_tree(icosphere(2, 1), 0.15));
   ist_query* freed = c_query(c_tree(icosphere(1, 1), 0.5));
   ist_servo* servo = nullptr;
-  std::vector<ist_contact> contacts = std::vector<ist_contact>(1 << 12);
-  std::vector<ist_contact_point> points = std::vector<ist_contact_point>(32);
-  std::vector<ist_triangle_pair> pairs = std::vector<ist_triangle_pair>(1 << 12);
+  std::vector<ist_leaf_pair> leaf_pairs = std::vector<ist_leaf_pair>(1 << 12);
+  std::vector<ist_contact> contacts = std::vector<ist_contact>(32);
+  std::vector<ist_triangle_pair> triangle_pairs = std::vector<ist_triangle_pair>(1 << 12);
 
   Bodies() {
     auto options = sized<ist_servo_options>();
@@ -38,18 +38,18 @@ struct Bodies {
   }
 };
 
-// How many calls did, and did not, what is expected of them.
+// Counts of the calls with the expected status and of the others, and of their answers.
 struct Asked {
   int as_expected = 0, otherwise = 0;
-  std::uint64_t contacts = 0, points = 0, pairs = 0;
+  std::uint64_t leaf_pairs = 0, contacts = 0, triangle_pairs = 0;
   double force = 0;
 
   void status(ist_status is, ist_status wanted) noexcept {
     ++(is == wanted ? as_expected : otherwise);
   }
   [[nodiscard]] bool all() const noexcept {
-    return otherwise == 0 && as_expected > 1000 && contacts > 100 && points > 100 && pairs > 100 &&
-           force > 0.1;
+    return otherwise == 0 && as_expected > 1000 && leaf_pairs > 100 && contacts > 100 &&
+           triangle_pairs > 100 && force > 0.1;
   }
 };
 
@@ -57,12 +57,12 @@ Asked ask_all(Bodies& bodies) noexcept {
   Asked seen;
   auto result = sized<ist_query_result>();
   auto sums = sized<ist_contact_sums>();
-  auto gap = sized<ist_gap_result>();
-  auto exact = sized<ist_exact_result>();
+  auto distance = sized<ist_distance_result>();
+  auto triangle_result = sized<ist_triangle_pairs_result>();
   auto query_info = sized<ist_query_info>();
   auto servo_info = sized<ist_servo_info>();
   auto budget = sized<ist_budget>();
-  std::int32_t touch = 0;
+  std::int32_t answer = 0;
   double force[3], torque[3];
   seen.status(ist_servo_get_info(bodies.servo, &servo_info), IST_OK);
   for (int i = 0; i < 150; ++i) {
@@ -70,30 +70,31 @@ Asked ask_all(Bodies& bodies) noexcept {
     const ist_status wanted = bad ? IST_POSE_INVALID : IST_OK;
     std::array<double, 16> pose = c_shift(1.7 + 0.002 * i, 0, 0);
     if (bad) pose[5] = 3;
-    budget.sphere_tests = i % 2 == 0 ? 100 : 0;
+    budget.tests = i % 2 == 0 ? 100 : 0;
     budget.nanoseconds = i % 2 == 0 ? 0 : 20'000;
     const double* at = pose.data();
-    seen.status(ist_query_collide(bodies.query, at, bodies.contacts.data(), bodies.contacts.size(),
-                                  &result),
+    for (const ist_budget* limits : std::array<const ist_budget*, 2>{nullptr, &budget}) {
+      seen.status(ist_query_leaf_pairs(bodies.query, at, limits, bodies.leaf_pairs.data(),
+                                       bodies.leaf_pairs.size(), &result),
+                  wanted);
+      seen.leaf_pairs += result.written;
+      seen.status(
+          ist_query_contacts(bodies.query, at, limits, bodies.contacts.data(), 32, &sums, &result),
+          wanted);
+      seen.contacts += result.written;
+    }
+    seen.status(ist_contact_sums_wrench(&sums, bad ? NAN : 2, force, torque),
+                bad ? IST_ARGUMENT_INVALID : IST_OK);
+    seen.status(ist_query_distance(bodies.query, at, 0.01, &distance), wanted);
+    seen.status(ist_query_intersects(bodies.query, at, &answer), wanted);
+    seen.status(ist_query_triangle_pairs(bodies.query, at, bodies.triangle_pairs.data(),
+                                         bodies.triangle_pairs.size(), &triangle_result),
                 wanted);
-    seen.contacts += result.written;
-    seen.status(ist_query_collide_within(bodies.query, at, &budget, bodies.contacts.data(),
-                                         bodies.contacts.size(), &result),
-                wanted);
-    seen.status(
-        ist_query_contact_points(bodies.query, at, bodies.points.data(), 32, &sums, &result),
-        wanted);
-    seen.points += result.written;
-    seen.status(ist_query_contact_points_within(bodies.query, at, &budget, bodies.points.data(), 32,
-                                                &sums, &result),
-                wanted);
-    seen.status(ist_query_gap(bodies.query, at, 0.01, &gap), wanted);
-    seen.status(ist_query_touches(bodies.query, at, &touch), wanted);
-    seen.status(ist_query_exact(bodies.query, at, bodies.pairs.data(), bodies.pairs.size(), &exact),
-                wanted);
-    seen.pairs += exact.written;
-    seen.status(ist_query_collide(bodies.freed, at, nullptr, 0, &result), IST_HANDLE_FREED);
-    seen.status(ist_query_collide(bodies.query, at, nullptr, 7, &result), IST_NULL_ARGUMENT);
+    seen.triangle_pairs += triangle_result.written;
+    seen.status(ist_query_leaf_pairs(bodies.freed, at, nullptr, nullptr, 0, &result),
+                IST_HANDLE_FREED);
+    seen.status(ist_query_leaf_pairs(bodies.query, at, nullptr, nullptr, 7, &result),
+                IST_NULL_ARGUMENT);
     seen.status(ist_query_get_info(bodies.query, &query_info), IST_OK);
 
     std::array<double, 16> device;
@@ -113,8 +114,9 @@ TEST(CQuiet, AllocatesNothing) {
   const std::uint64_t before = allocations();
   const Asked seen = ask_all(bodies);
   EXPECT_EQ(allocations() - before, 0u);
-  EXPECT_TRUE(seen.all()) << seen.as_expected << ' ' << seen.otherwise << ' ' << seen.contacts
-                          << ' ' << seen.points << ' ' << seen.pairs << ' ' << seen.force;
+  EXPECT_TRUE(seen.all()) << seen.as_expected << ' ' << seen.otherwise << ' ' << seen.leaf_pairs
+                          << ' ' << seen.contacts << ' ' << seen.triangle_pairs << ' '
+                          << seen.force;
 }
 
 TEST(CQuiet, MakesNoSystemCall) {

@@ -1,4 +1,4 @@
-// The servo through C: the same forces as the simulation gives, in either unit.
+// The servo through C gives the simulation's forces, in either unit.
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "capi/c_bodies.h"
-#include "ist/haptics/devices/null_device.h"
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/haptics/devices/device.h"
+#include "ist/scene.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -87,7 +86,7 @@ TEST_F(CServo, GivesWhatTheSimulationGives) {
     Placement device = start;
     device.translation += way(tick);
     TickBudget budget;
-    budget.contacts.sphere_tests = budget.proximity.sphere_tests = kTests;
+    budget.contacts.tests = budget.proximity.tests = kTests;
     const Tick wanted = built.simulation->tick(device, budget);
     Eigen::Isometry3d pose = device.isometry();
     double force[3], torque[3];
@@ -131,7 +130,7 @@ TEST_F(CServo, CountsWhatWentWrongAndComesBackSoftly) {
   EXPECT_EQ(info_of(servo).faults, 1u);
   EXPECT_EQ(info_of(servo).ticks, 202u);
 
-  // So it does where it was not even told where the device is, or could not say what to feel.
+  // The same holds without a pose, and without an array for the force or the torque.
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(tick(deep), "ok");
   const double again = force[2];
   ASSERT_GT(again, 0.3);
@@ -147,7 +146,7 @@ TEST_F(CServo, CountsWhatWentWrongAndComesBackSoftly) {
   EXPECT_EQ(name(ist_servo_free(servo)), "ok");
 }
 
-// Bodies that touch where the scene puts them: the tool starts elsewhere, and that is said.
+// The scene's bodies intersect: the tool starts elsewhere, with a warning.
 TEST_F(CServo, TellsWhatBuildingWarnedOf) {
   ist_servo* servo =
       open(IST_UNIT_MM,

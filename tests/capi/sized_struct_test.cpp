@@ -12,7 +12,7 @@
 namespace ist::test {
 namespace {
 
-// What a header gave first, and what it gave later.
+// An older and a newer version of one struct.
 struct Old {
   std::size_t struct_size;
   double a;
@@ -47,8 +47,8 @@ TEST(CSizedStruct, OfANewerHeaderMayAskForWhatIsKnownOnly) {
   given.c = 1;
   EXPECT_EQ(name(capi::read_sized(kCall, "options", as<New, Old>(given), known)), "struct-size");
   EXPECT_STREQ(ist_last_error_message(),
-               "f: options has 24 bytes, and what is behind the first 16 is not zero: this library "
-               "is older than that, and does not know what it means");
+               "f: options has 24 bytes, and a member after byte 16 is not zero: this library is "
+               "older and does not know the member; set it to zero, or update the library");
 }
 
 TEST(CSizedStruct, NeedsASize) {
@@ -67,7 +67,7 @@ TEST(CSizedStruct, IsFilledInAsFarAsItGoes) {
   capi::write_sized(New{0, 4, 5, 6}, pair[0]);
   EXPECT_EQ(pair[0].struct_size, sizeof(Old));
   EXPECT_EQ(pair[0].a, 4);
-  EXPECT_EQ(pair[0].b, 9);  // not the caller's struct any more
+  EXPECT_EQ(pair[0].b, 9);  // beyond the caller's struct
   EXPECT_EQ(pair[1].a, 9);
 
   New longer{sizeof(New), 9, 9, 9};
@@ -78,8 +78,8 @@ TEST(CSizedStruct, IsFilledInAsFarAsItGoes) {
   EXPECT_EQ(longer.c, 0);
 }
 
-// Through the interface: options of a time when there was nothing but the voxel size, and a result
-// of a time when there were but two counts.
+// Through the interface: the shortest build options, query options before push_distance, a result
+// with two counts, a distance without its complete flag, and sums without springs.
 TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_mesh* mesh = nullptr;
   const std::array<double, 9> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -88,7 +88,7 @@ TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_build_options options{};
   options.struct_size = 16;
   options.voxel_size = 0.1;
-  options.spheres = 99;  // behind what is there
+  options.spheres = 99;  // beyond struct_size
   ist_tree* tree = nullptr;
   ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok") << ist_last_error_message();
   ist_query* query = c_query(tree);
@@ -96,10 +96,40 @@ TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_query_result result{};
   result.struct_size = 24;
   result.written = 99;
-  ASSERT_EQ(name(ist_query_collide(query, c_shift(0, 0, 0).data(), nullptr, 0, &result)), "ok");
-  EXPECT_GT(result.contacts, 0u);
+  ASSERT_EQ(
+      name(ist_query_leaf_pairs(query, c_shift(0, 0, 0).data(), nullptr, nullptr, 0, &result)),
+      "ok");
+  EXPECT_GT(result.leaf_pairs, 0u);
   EXPECT_EQ(result.written, 99u);
+
+  ist_distance_result distance{};
+  distance.struct_size = 32;
+  distance.complete = 99;
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(3, 0, 0).data(), 0.1, &distance)), "ok");
+  EXPECT_GT(distance.upper, 1);
+  EXPECT_EQ(distance.complete, 99);
+
+  ist_contact_sums sums{};
+  sums.struct_size = 72;
+  sums.spring_force[0] = sums.about[2] = 99;
+  const std::array<double, 16> opposite = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0.7, 0.02, 1};
+  ASSERT_EQ(name(ist_query_contacts(query, opposite.data(), nullptr, nullptr, 0, &sums, &result)),
+            "ok");
+  EXPECT_GT(sums.pairs, 0u);
+  EXPECT_EQ(sums.spring_force[0], 99);
+  EXPECT_EQ(sums.about[2], 99);
+  double force[3], torque[3];
+  ASSERT_EQ(name(ist_contact_sums_wrench(&sums, 1, force, torque)), "ok");
+  EXPECT_EQ(force[0], 0);  // beyond struct_size
   EXPECT_EQ(name(ist_query_free(query)), "ok");
+
+  ist_query_options asked{};
+  asked.struct_size = 56;
+  asked.push_distance = 99;  // beyond struct_size
+  ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok");
+  ASSERT_EQ(name(ist_query_create(tree, tree, &asked, &query)), "ok") << ist_last_error_message();
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
   EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
 }
 

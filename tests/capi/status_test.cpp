@@ -10,13 +10,17 @@
 namespace ist::test {
 namespace {
 
-// One that is added to ErrorCode and not to the C interface fails here.
+// Fails for an ErrorCode without a number in the C interface.
 TEST(CStatus, HasEveryErrorCode) {
   int codes = 0;
   for (; to_string(static_cast<ErrorCode>(codes)) != std::string("unknown"); ++codes) {
     const auto code = static_cast<ErrorCode>(codes);
     const ist_status status = capi::status_of(code);
-    EXPECT_GT(status, 100) << to_string(code);
+    if (code == ErrorCode::kArgumentInvalid) {
+      EXPECT_EQ(status, IST_ARGUMENT_INVALID);  // as old as the C interface
+    } else {
+      EXPECT_GT(status, 100) << to_string(code);
+    }
     EXPECT_EQ(capi::error_code_of(status), code);
     EXPECT_EQ(name(status), to_string(code));
   }
@@ -28,7 +32,7 @@ TEST(CStatus, HasNamesThatDiffer) {
   std::set<std::string> names;
   for (ist_status status = IST_OK; status <= IST_SERVO_FAULT; ++status) {
     names.insert(name(status));
-    EXPECT_FALSE(capi::error_code_of(status));
+    EXPECT_EQ(capi::error_code_of(status).has_value(), status == IST_ARGUMENT_INVALID);
   }
   EXPECT_EQ(names.size(), std::size_t{IST_SERVO_FAULT} + 1);
   EXPECT_EQ(names.count("unknown"), 0u);

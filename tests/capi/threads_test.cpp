@@ -1,5 +1,5 @@
-// What threads may do at once: anything with different handles, and nothing worse than a code with
-// the same one.
+// Simultaneous calls: any calls with different handles; calls with the same handle give at worst an
+// error code.
 
 #include <gtest/gtest.h>
 
@@ -48,11 +48,11 @@ TEST(CThread, HasAMessageOfItsOwn) {
   EXPECT_EQ(ist_last_error_message(), before);
 }
 
-// Each makes a query of the same tree and asks it, while somebody frees the tree.
+// Each thread queries the same tree while one of them frees it.
 TEST(CThread, MayUseATreeThatAnotherFrees) {
   ist_tree* tree = c_tree(icosphere(2, 1), 0.2);
   std::barrier together(kThreads);
-  std::array<std::uint64_t, kThreads> contacts{};
+  std::array<std::uint64_t, kThreads> leaf_pairs{};
   run([&](int i) {
     ist_query* query = nullptr;
     EXPECT_EQ(name(ist_query_create(tree, tree, nullptr, &query)), "ok");
@@ -65,32 +65,36 @@ TEST(CThread, MayUseATreeThatAnotherFrees) {
     EXPECT_TRUE(status == IST_OK ? info.leaves > 0 : status == IST_HANDLE_FREED && info.leaves == 0)
         << name(status);
     auto result = sized<ist_query_result>();
-    EXPECT_EQ(name(ist_query_collide(query, c_shift(1.7, 0, 0).data(), nullptr, 0, &result)), "ok");
-    contacts[static_cast<std::size_t>(i)] = result.contacts;
+    EXPECT_EQ(
+        name(ist_query_leaf_pairs(query, c_shift(1.7, 0, 0).data(), nullptr, nullptr, 0, &result)),
+        "ok");
+    leaf_pairs[static_cast<std::size_t>(i)] = result.leaf_pairs;
     EXPECT_EQ(name(ist_query_free(query)), "ok");
   });
-  for (const std::uint64_t count : contacts) EXPECT_EQ(count, contacts[0]);
-  EXPECT_GT(contacts[0], 10u);
+  for (const std::uint64_t count : leaf_pairs) EXPECT_EQ(count, leaf_pairs[0]);
+  EXPECT_GT(leaf_pairs[0], 10u);
 }
 
-// One query, which all ask: each gets its answer, or is told that it is busy.
+// All threads use one query: each call gives the answer or IST_HANDLE_BUSY.
 TEST(CThread, IsToldWhereItsQueryIsBusy) {
   ist_query* query = c_query(c_tree(icosphere(3, 1), 0.1));
   auto expected = sized<ist_query_result>();
-  ASSERT_EQ(name(ist_query_collide(query, c_shift(1.5, 0, 0).data(), nullptr, 0, &expected)), "ok");
+  ASSERT_EQ(
+      name(ist_query_leaf_pairs(query, c_shift(1.5, 0, 0).data(), nullptr, nullptr, 0, &expected)),
+      "ok");
   std::atomic<int> answered{0}, busy{0};
   run([&](int) {
     for (int i = 0; i < 100'000 && (i < 100 || busy == 0); ++i) {
       auto result = sized<ist_query_result>();
       const ist_status status =
-          ist_query_collide(query, c_shift(1.5, 0, 0).data(), nullptr, 0, &result);
+          ist_query_leaf_pairs(query, c_shift(1.5, 0, 0).data(), nullptr, nullptr, 0, &result);
       if (status == IST_OK) {
-        EXPECT_EQ(result.contacts, expected.contacts);
+        EXPECT_EQ(result.leaf_pairs, expected.leaf_pairs);
         EXPECT_EQ(result.sphere_tests, expected.sphere_tests);
         ++answered;
       } else {
         EXPECT_EQ(name(status), "handle-busy");
-        EXPECT_EQ(result.contacts, 0u);
+        EXPECT_EQ(result.leaf_pairs, 0u);
         ++busy;
       }
     }

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 #include "support/run_command.h"
 #include "support/temp_dir.h"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "cli/cli_case.h"
-#include "ist/query/kernels.h"
+#include "simd/dispatch.h"
 
 namespace ist::test {
 namespace {
@@ -62,7 +62,7 @@ TEST_F(Engines, TheEnvironmentNamesATarget) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return json_lines(result.out).at(0)["target"];
   };
-  EXPECT_EQ(target_of(ist(question({}))), find_kernels({}).target);
+  EXPECT_EQ(target_of(ist(question({}))), select_kernels({}).target);
   EXPECT_EQ(target_of(with_target("scalar", question({}))), "scalar");
   EXPECT_EQ(target_of(with_target("scalar", question({"--target", all_kernels()[0].target}))),
             all_kernels()[0].target);
@@ -74,7 +74,7 @@ TEST_F(Engines, TheEnvironmentNamesATarget) {
 }
 
 TEST_F(Engines, TwoWorkersAnswerLikeOne) {
-  const auto contacts = [this] { return file_content(path("contacts.jsonl")); };
+  const auto leaf_pairs = [this] { return file_content(path("contacts.jsonl")); };
   for (const char* spheres : {"simple", "slab"}) {
     const auto ask = [&](const std::string& workers) {
       const CommandResult result = ist_well(question(
@@ -84,10 +84,10 @@ TEST_F(Engines, TwoWorkersAnswerLikeOne) {
       }
       return answers(result);
     };
-    const auto alone = ask("1");
-    const std::string of_one = contacts();
-    EXPECT_EQ(ask("2"), alone);
-    EXPECT_EQ(contacts(), of_one);
+    const auto serial = ask("1");
+    const std::string of_one = leaf_pairs();
+    EXPECT_EQ(ask("2"), serial);
+    EXPECT_EQ(leaf_pairs(), of_one);
   }
 }
 

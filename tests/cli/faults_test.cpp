@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "cli/cli_case.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_io.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/errors.h"
 #include "support/memory_file.h"
 #include "support/mesh_files.h"
@@ -121,7 +121,7 @@ TEST_F(Faults, MemoryThatEndsIsNamedWithTheRemedy) {
                                             {"build", ball, "-o", tree, "--voxel-size", "0.05"});
     if (result.exit_code == 127) continue;  // not even its libraries could be loaded
     if (result.exit_code == 0) {
-      EXPECT_GT(read_tree(tree).octree().leaf_count(), 1000u);
+      EXPECT_GT(read_tree(tree).leaf_count(), 1000u);
       EXPECT_EQ(dir_.entries(), before.size());
       EXPECT_GT(refused, 5);
       return;

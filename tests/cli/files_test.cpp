@@ -5,7 +5,8 @@
 #include <set>
 
 #include "cli/cli_case.h"
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "support/ply_file.h"
 #include "support/shapes.h"
 
@@ -28,12 +29,12 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_EQ(line["triangles"], 320);
   EXPECT_EQ(line["voxel_size"], 0.5);
   EXPECT_EQ(line["spheres"], "slab");
-  EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
-  EXPECT_EQ(line["nodes"], tree.octree().node_count());
+  EXPECT_EQ(line["voxels"], tree.leaf_count());
+  EXPECT_EQ(line["nodes"], tree.parts().octree.node_count());
   EXPECT_EQ(line["depth"], 3);
   EXPECT_EQ(line["bytes"], std::filesystem::file_size(path("out.ist")));
   EXPECT_TRUE(line["memory"].is_number_unsigned());
-  EXPECT_EQ(line["proximity_voxels"], tree.proximity()->octree.leaf_count());
+  EXPECT_EQ(line["proximity_voxels"], tree.parts().proximity->octree.leaf_count());
   EXPECT_EQ(line["warnings"], json::array());
   EXPECT_GT(line["milliseconds"].size(), 2u);
   for (const json& stage : line["milliseconds"]) EXPECT_TRUE(stage.is_number());
@@ -41,7 +42,7 @@ TEST_F(Files, BuildSaysWhatItMade) {
 
   const CommandResult plain =
       ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5"});
-  EXPECT_TRUE(says(plain.out, std::to_string(tree.octree().leaf_count()) + " voxels"));
+  EXPECT_TRUE(says(plain.out, std::to_string(tree.leaf_count()) + " voxels"));
   EXPECT_TRUE(says(plain.out, "depth 3"));
   EXPECT_TRUE(says(plain.out, "ms"));
 }
@@ -58,7 +59,7 @@ TEST_F(Files, BuildSavesTheSpheresThatItIsAskedFor) {
     // 8 bytes a ball, and 5 a slab.
     const std::uintmax_t more = std::filesystem::file_size(path("out.ist")) - bytes;
     if (bytes > 0) {
-      EXPECT_EQ(more, tree.octree().node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
+      EXPECT_EQ(more, tree.parts().octree.node_count() * (tree.has(SpherePolicy::kSlab) ? 5 : 8));
     }
     bytes += more;
   }
@@ -73,7 +74,7 @@ TEST_F(Files, BuildReplacesAFileOnlyWhenItSucceeds) {
   EXPECT_EQ(file_content(tree), before);
   ist_well({"build", ball(), "-o", tree, "--voxel-size", "1"});
   EXPECT_NE(file_content(tree), before);
-  EXPECT_EQ(read_tree(tree).lattice().voxel_size, 1);
+  EXPECT_EQ(read_tree(tree).voxel_size(), 1);
   EXPECT_EQ(dir_.entries(), entries + 1);
 }
 
@@ -124,7 +125,7 @@ TEST_F(Files, InfoOfATree) {
   EXPECT_EQ(line["voxel_size"], 0.5);
   EXPECT_EQ(line["cells"], 8);
   EXPECT_EQ(line["depth"], 3);
-  EXPECT_EQ(line["voxels"], tree.octree().leaf_count());
+  EXPECT_EQ(line["voxels"], tree.leaf_count());
   EXPECT_EQ(line["orientation"], "outward");
   EXPECT_EQ(line["triangles"], false);
   EXPECT_EQ(line["proximity"], false);
@@ -133,7 +134,7 @@ TEST_F(Files, InfoOfATree) {
     const json& row = line["levels"][level];
     EXPECT_EQ(row["level"], level);
     EXPECT_EQ(row["edge"], std::ldexp(0.5, static_cast<int>(level)));
-    EXPECT_EQ(row["nodes"], tree.octree().node_count(static_cast<int>(level)));
+    EXPECT_EQ(row["nodes"], tree.parts().octree.node_count(static_cast<int>(level)));
     EXPECT_LE(row["volume"]["table"], row["volume"]["simple"]);
     EXPECT_GT(row["volume"]["tight"], 0);
     EXPECT_FALSE(row["volume"].contains("slab"));
@@ -152,7 +153,7 @@ TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
       if (*spheres != '\0') arguments.insert(arguments.end(), {"--spheres", spheres});
       const auto lines = json_lines(ist_well(arguments).out);
       const PlyFile ply = parse_ply(file_content(path("s.ply")));
-      EXPECT_EQ(ply.vertices.size(), tree.octree().node_count(level));
+      EXPECT_EQ(ply.vertices.size(), tree.parts().octree.node_count(level));
       ASSERT_EQ(lines.size(), 1u);
       EXPECT_EQ(lines[0]["count"], ply.vertices.size());
       EXPECT_EQ(lines[0]["what"], "spheres");
@@ -180,7 +181,7 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
     ist_well({"export", file, "--what", "voxels", "--level", std::to_string(level), "-o",
               path("v.ply")});
     const PlyFile ply = parse_ply(file_content(path("v.ply")));
-    EXPECT_EQ(ply.vertices.size(), 8u * tree.octree().node_count(level));
+    EXPECT_EQ(ply.vertices.size(), 8u * tree.parts().octree.node_count(level));
     const auto place = [&](std::uint32_t vertex) {
       const auto& v = ply.vertices.at(vertex);
       return std::array<float, 3>{v.at("x"), v.at("y"), v.at("z")};
@@ -210,7 +211,7 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
       EXPECT_EQ(count.second, 0);
     }
     const double cube = std::pow(std::ldexp(0.5, level), 3);
-    EXPECT_NEAR(volume, cube * tree.octree().node_count(level), 1e-4) << "faces turn outward";
+    EXPECT_NEAR(volume, cube * tree.parts().octree.node_count(level), 1e-4) << "faces turn outward";
   }
 }
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "cli/cli_case.h"
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 
@@ -33,7 +33,7 @@ class Interruption : public CliTest {
 
 TEST_F(Interruption, OfAQueryLeavesNoContacts) {
   StabilityCase seen("faults", "signal in a query", "wrong outcomes");
-  const std::string tree = ball_tree(), contacts = write("c", "older");
+  const std::string tree = ball_tree(), leaf_pairs = write("c", "older");
   const std::size_t entries = dir_.entries();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Process process(IST_COMMAND, long_query(tree));
@@ -42,7 +42,7 @@ TEST_F(Interruption, OfAQueryLeavesNoContacts) {
     const CommandResult result = process.wait();
     const bool clean = result.exit_code == 128 + signal && result.out.empty() &&
                        result.err.empty() && dir_.entries() == entries &&
-                       file_content(contacts) == "older";
+                       file_content(leaf_pairs) == "older";
     seen.sample(!clean, 0, std::to_string(result.exit_code) + ": " + result.err);
   }
 }

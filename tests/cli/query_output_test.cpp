@@ -2,8 +2,8 @@
 #include <map>
 
 #include "cli/cli_case.h"
-#include "ist/query/kernels.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
+#include "simd/dispatch.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -62,7 +62,7 @@ class QueryOutput : public CliTest {
     EXPECT_EQ(line["complete"], true);
     EXPECT_EQ(line["truncated"], false);
     EXPECT_EQ(line["level"], 0);
-    EXPECT_EQ(line["target"], line["engine"] == "simd" ? find_kernels({}).target : "scalar");
+    EXPECT_EQ(line["target"], line["engine"] == "simd" ? select_kernels({}).target : "scalar");
     EXPECT_EQ(line["workers"], 1);
     EXPECT_GE(line["sphere_tests"], 1);
     EXPECT_GT(line["microseconds_min"], 0);
@@ -172,19 +172,19 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
     std::map<std::size_t, std::size_t> count;
     std::map<std::size_t, std::vector<json>> points;
     std::size_t last = 0;
-    for (const json& contact : json_lines(file_content(path("contacts.jsonl")))) {
-      const auto index = contact["index"].get<std::size_t>();
+    for (const json& leaf_pair : json_lines(file_content(path("contacts.jsonl")))) {
+      const auto index = leaf_pair["index"].get<std::size_t>();
       EXPECT_GE(index, last);
       last = index;
-      if (contact.contains("position")) {
-        points[index].push_back(contact);
+      if (leaf_pair.contains("position")) {
+        points[index].push_back(leaf_pair);
         continue;
       }
-      EXPECT_EQ(contact.size(), 3u);
+      EXPECT_EQ(leaf_pair.size(), 3u);
       EXPECT_EQ(points.count(index), 0u);  // they come after all leaf pairs of a pose
       ++count[index];
-      const auto fixed = contact["fixed_centre"].get<std::vector<double>>();
-      const auto moving = contact["moving_centre"].get<std::vector<double>>();
+      const auto fixed = leaf_pair["fixed_centre"].get<std::vector<double>>();
+      const auto moving = leaf_pair["moving_centre"].get<std::vector<double>>();
       ASSERT_TRUE(fixed.size() == 3 && moving.size() == 3);
       double square = 0;
       for (std::size_t i = 0; i < 3; ++i) square += (fixed[i] - moving[i]) * (fixed[i] - moving[i]);

@@ -147,17 +147,18 @@ TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
   };
   const std::size_t device = third.find("\"device\":["), end = third.find(']', device);
   const std::vector<std::pair<std::string, std::string>> damaged{
-      {third.substr(0, 100), "no JSON object"},
-      {"", "no JSON object"},
-      {"[1, 2]", "no JSON object"},
+      {third.substr(0, 100), "not a JSON object"},
+      {"", "not a JSON object"},
+      {"[1, 2]", "not a JSON object"},
       {replaced(third, "\"tick\"", "\"tock\""), "no key 'tick'"},
       {replaced(third, "\"tick\":2", "\"tick\":null"), "'tick' is null"},
-      {replaced(third, "\"tick\":2", "\"tick\":-2"), "'tick' is no whole number"},
+      {replaced(third, "\"tick\":2", "\"tick\":-2"), "'tick' is not a whole number"},
       {replaced(third, "\"sphere_tests\"", "\"tests\""), "no key 'sphere_tests'"},
-      {replaced(third, "\"device\":[", "\"device\":[1,"), "'device' is no 12 numbers"},
-      {replaced(third, "\"device\":[", "\"device\":[\"x\","), "'device' is no 12 numbers"},
+      {replaced(third, "\"device\":[", "\"device\":[1,"), "'device' is not an array of 12 numbers"},
+      {replaced(third, "\"device\":[", "\"device\":[\"x\","),
+       "'device' is not an array of 12 numbers"},
       {third.substr(0, device) + "\"device\":[0,0,0,2,0,0,0,2,0,0,0,2" + third.substr(end),
-       "'device' is no rigid motion"},
+       "'device' is not a rigid motion"},
       {replaced(third, "\"device\"", "\"hand\""), "no key 'device'"}};
   for (const auto& [line, flaw] : damaged) {
     const std::string bad = write("bad.jsonl", with_third(line)), out = path("out.jsonl");

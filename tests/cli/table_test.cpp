@@ -88,8 +88,8 @@ TEST_F(Table, SaysWhereAnswersDiffer) {
   const CommandResult result = ist({"table", "--check", file});
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_EQ(result.out, file + ", line 9: hit is 1, and 0 in the model\n");
-  EXPECT_TRUE(says(result.err, "1 of 3 vectors have another answer than the model"));
-  EXPECT_TRUE(says(result.err, "nor is the checksum that of the vectors"));
+  EXPECT_TRUE(says(result.err, "1 of 3 vectors differ from the model"));
+  EXPECT_TRUE(says(result.err, "the checksum does not match the vectors"));
 
   const CommandResult json = ist({"table", "--check", file, "--json"});
   EXPECT_EQ(json.exit_code, 5);
@@ -129,8 +129,9 @@ TEST_F(Table, RefusesFilesThatAreNone) {
   malformed(path("none.txt"), "[file-unreadable]");
   malformed(write("empty.txt", ""), "line 1: a vector file begins with 8 lines");
   malformed(ball(), "[input-invalid]");
-  malformed(changed("# count 3", "# count 4"), "promises 4 vectors, and the file ends before them");
-  malformed(changed(" 0005 ", " 00o5 "), "line 9: field pad: '00o5' is no hexadecimal number");
+  malformed(changed("# count 3", "# count 4"),
+            "announces 4 vectors, but the file ends before them");
+  malformed(changed(" 0005 ", " 00o5 "), "line 9: field pad: '00o5' is not a hexadecimal number");
   malformed(changed("# checksum xxh64 ", "# checksum xxh32 "), "line 8");
 }
 
@@ -143,7 +144,7 @@ TEST_F(Table, RefusesOptionsThatMakeNoSense) {
     refuses({"--vectors", count}, "--vectors");
     refuses({"--vectors", count, "-o", path("out.txt")}, "--vectors");
   }
-  refuses({"--vectors", "-1"}, "how many vectors as decimal digits");
+  refuses({"--vectors", "-1"}, "the number of vectors as decimal digits");
   refuses({"--vectors", "10", "--seed", "-1"}, "--seed");
   refuses({"--vectors", "10", "--seed", "x"}, "--seed");
   refuses({"--vectors", "10", "--seed", "18446744073709551616"}, "--seed");

@@ -26,7 +26,7 @@ TEST_F(Usage, HelpTeaches) {
   EXPECT_TRUE(says(help.out, "ist demo"));
   EXPECT_TRUE(says(help.out,
                    "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed "
-                   "(run),\n5 a result breaks a promise"));
+                   "(run),\n5 a result breaks a guarantee"));
   EXPECT_EQ(help.err, "");
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},

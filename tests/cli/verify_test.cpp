@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "cli/cli_case.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -18,8 +18,9 @@ class Verify : public CliTest {
     options.spheres = SpherePolicy::kTight;
     options.keep_triangles = true;
     const SphereTree tree = build_tree(icosphere(2, 2), options);
-    SphereTree::Parts parts{tree.lattice(), tree.octree(),    tree.orientation(), tree.normals(),
-                            tree.bounds(),  tree.triangles(), std::nullopt};
+    TreeParts parts{tree.parts().lattice, tree.parts().octree, tree.orientation(),
+                    tree.parts().normals, tree.parts().bounds, tree.parts().triangles,
+                    std::nullopt};
     for (BallBlock& block : parts.bounds.balls[0]) {
       for (std::uint16_t& radius : block.r) radius = static_cast<std::uint16_t>(radius / 16);
     }
@@ -37,27 +38,29 @@ TEST_F(Verify, WhatIsTrueIsConfirmed) {
                     "--json", "--spheres", spheres, "--engine", "reference", "--engine", "simd",
                     "--workers", workers});
       EXPECT_EQ(json_lines(result.out).size(), 8u);
-      EXPECT_TRUE(says(result.err, "verified: at each of 4 poses, the bounds of every contact"));
+      EXPECT_TRUE(says(result.err, "verified: at each of 4 poses, the bounds of every leaf pair"));
       const bool cubes = spheres == "simple" || spheres == "table";
-      EXPECT_TRUE(says(result.err, cubes ? "cubes meet is there" : "triangles cross is there"));
+      EXPECT_TRUE(
+          says(result.err, cubes ? "cubes intersect is missing" : "triangles cross is missing"));
     }
   }
 }
 
 TEST_F(Verify, WhatCannotBeKnownIsSaid) {
   const std::string tree = ball_tree(), list = poses({0, 1});
-  EXPECT_TRUE(says(ist_well({"collide", tree, tree, "--poses", list, "--verify"}).err,
-                   "no more is known: the trees hold no triangles: build them with --exact"));
+  EXPECT_TRUE(
+      says(ist_well({"collide", tree, tree, "--poses", list, "--verify"}).err,
+           "a missing pair would not show: the trees hold no triangles: build them with --exact"));
   EXPECT_TRUE(says(ist_well({"collide", tree, tree, "--poses", list, "--verify", "--engine", "simd",
                              "--engine", "reference"})
                        .err,
                    "and the engines agree"));
   ist_well({"build", ball(), "-o", tree, "--voxel-size", "0.5", "--exact"});
   EXPECT_TRUE(says(ist_well({"collide", tree, tree, "--poses", list, "--verify"}).err,
-                   "triangles cross is there"));
+                   "triangles cross is missing"));
 }
 
-TEST_F(Verify, ABrokenPromiseHasAnExitCode) {
+TEST_F(Verify, ABrokenGuaranteeHasAnExitCode) {
   const std::string lies = lying_tree();
   const std::vector<std::string> arguments{"close", lies,   lies,  "--axis", "x",    "--from",
                                            "10",    "--to", "1.1", "--step", "4.45", "--json"};

@@ -6,7 +6,7 @@
 
 namespace ist::test {
 
-/// A target does with any bytes what a user could, and checks what is promised of any input. It
+/// A target does with any bytes what a user could, and checks what is guaranteed of any input. It
 /// returns what they came to, in a word: the name of the ist::Error, or what was found. All that it
 /// throws is a finding.
 ///
@@ -18,7 +18,7 @@ namespace ist::test {
 [[nodiscard]] std::string fuzz_tree(std::string_view bytes);
 [[nodiscard]] std::string fuzz_vectors(std::string_view bytes);
 
-/// A promise that does not hold.
+/// A guarantee that does not hold.
 class Finding : public std::logic_error {
  public:
   using std::logic_error::logic_error;

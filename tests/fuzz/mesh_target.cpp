@@ -9,8 +9,8 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/query_checks.h"
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/memory_file.h"
 #include "support/mesh_files.h"
 #include "support/temp_dir.h"
@@ -42,7 +42,7 @@ double extent_of(const TriangleMesh& mesh) {
   return box.sizes().maxCoeff();
 }
 
-void check_mesh(const TriangleMesh& mesh) {
+void require_sound(const TriangleMesh& mesh) {
   std::set<std::array<double, 3>> places;
   for (const Eigen::Vector3d& v : mesh.vertices) {
     require(std::all_of(v.begin(), v.end(),
@@ -85,7 +85,7 @@ std::string fuzz_mesh(std::string_view bytes) {
     require(text.find(name) != std::string_view::npos, "an error does not name the file");
     return to_string(error.code());
   }
-  check_mesh(mesh);
+  require_sound(mesh);
   const TriangleMesh again = read_mesh(file.write("mesh", as_binary_stl(mesh)));
   require(corners(again) == corners(mesh), "a mesh does not come back from STL as it was");
   constexpr std::size_t kFew = 16;  // triangles, of which a tree is soon built

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/promise/promise_check.h"
+#include "ist/query/query.h"
+#include "verify/answer_verifier.h"
 
 namespace ist::test {
 
@@ -17,7 +17,8 @@ class QueryChecks {
  public:
   /// How far the trees are believed.
   enum class Trees {
-    kBuilt,  ///< as build_tree made them: answers must keep the promise, and agree with each other
+    kBuilt,  ///< as build_tree made them: answers must keep the guarantee, and agree with each
+             ///< other
     kRead,   ///< of a file that was made up: bounds may hold no triangle, and so tell of nothing
   };
 
@@ -32,18 +33,18 @@ class QueryChecks {
 
  private:
   struct Asked;
-  void check_invalid(CollisionQuery& query, ContactPoints& points, const Eigen::Isometry3d& pose);
+  void check_invalid(Query& query, ContactManifold& points, const Eigen::Isometry3d& pose);
   void check_list(const Asked& asked) const;
-  void check_gap(CollisionQuery& query, const Asked& asked, const Eigen::Isometry3d& pose) const;
-  void check_points(CollisionQuery& query, ContactPoints& points, const Asked& asked,
+  void check_gap(Query& query, const Asked& asked, const Eigen::Isometry3d& pose) const;
+  void check_points(Query& query, ContactManifold& points, const Asked& asked,
                     const Eigen::Isometry3d& pose) const;
-  void check_exact(CollisionQuery& scalar, CollisionQuery& best, const Asked& asked,
+  void check_exact(Query& scalar, Query& best, const Asked& asked,
                    const Eigen::Isometry3d& pose) const;
 
   struct Policy {
-    std::unique_ptr<CollisionQuery> scalar, best;
-    std::unique_ptr<ContactPoints> points;
-    std::unique_ptr<PromiseCheck> promise;  // of trees that were built
+    std::unique_ptr<Query> scalar, best;
+    std::unique_ptr<ContactManifold> points;
+    std::unique_ptr<AnswerVerifier> guarantee;  // of trees that were built
   };
   const SphereTree& fixed_;
   const SphereTree& moving_;

@@ -91,9 +91,9 @@ std::string fuzz_query(std::string_view text) {
   Bytes bytes(text);
   const unsigned head = bytes.next<std::uint8_t>();
   QueryChecks& checks = pair_checks(head & 3U);
-  const auto touches = checks.at(next_pose(head >> 4 & 3U, bytes), head >> 2 & 3U);
-  if (!touches) return "invalid";
-  return *touches ? "touching" : "apart";
+  const auto intersects = checks.at(next_pose(head >> 4 & 3U, bytes), head >> 2 & 3U);
+  if (!intersects) return "invalid";
+  return *intersects ? "touching" : "apart";
 }
 
 }  // namespace ist::test

@@ -6,7 +6,7 @@
 #include "fuzz/fuzz_target.h"
 #include "ist/base/error.h"
 #include "ist/haptics/devices/plan.h"
-#include "ist/scene/scene_file.h"
+#include "ist/scene.h"
 #include "support/memory_file.h"
 
 namespace ist::test {

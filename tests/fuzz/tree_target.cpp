@@ -25,7 +25,7 @@ std::string outcome(const std::string& bytes) {
   }
   require(file_of(*tree) == bytes, "a tree is not saved as it was read");
   QueryChecks checks(*tree, *tree, QueryChecks::Trees::kRead);
-  const double s = tree->lattice().voxel_size;
+  const double s = tree->voxel_size();
   for (const Eigen::Isometry3d& pose :
        {Eigen::Isometry3d::Identity(), turn_and_shift(0), turn_and_shift(0.7 * s)}) {
     require(checks.at(pose).has_value(), "a rigid pose is none");

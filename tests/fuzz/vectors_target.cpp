@@ -1,8 +1,8 @@
 // A file of golden vectors, as `ist table --check` takes it.
 
 #include "fuzz/fuzz_target.h"
+#include "hardware/vector_file.h"
 #include "ist/base/error.h"
-#include "ist/hardware/vector_file.h"
 #include "support/memory_file.h"
 
 namespace ist::test {

@@ -1,8 +1,9 @@
 #include "haptics/haptic_cases.h"
 
 #include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/surface_radius.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/haptics/simulation_parts.h"
+#include "ist/haptics/tool.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -17,16 +18,17 @@ SphereTree tree_of(const TriangleMesh& mesh, double voxel_size) {
 }  // namespace
 
 Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
-  const BodyFrames frames{1e-3, Placement(), held_->lattice().origin()};
-  Simulation::Parts parts{std::make_unique<TouchQuery>(*fixed_, *held_, frames,
-                                                       TouchOptions{SpherePolicy::kSlab, -0.5}),
-                          nullptr,
-                          {},
-                          kHapticCoupling,
-                          kHapticSafety,
-                          Tool(1e-3 * surface_radius(*held_), voxel()),
-                          at(1e-3),
-                          1e-3};
+  const BodyFrames frames{1e-3, Placement(), held_->origin()};
+  detail::SimulationParts parts{
+      std::make_unique<ToolContactQuery>(*fixed_, *held_, frames,
+                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}),
+      nullptr,
+      {},
+      kHapticCoupling,
+      kHapticSafety,
+      Tool(1e-3 * surface_radius(*held_), voxel()),
+      at(1e-3),
+      1e-3};
   parts.effects.push_back(std::make_unique<ContactEffect>(ContactSettings{2000, 0.5}));
   if (other) parts.effects.push_back(std::move(other));
   return Simulation(std::move(parts));
@@ -34,7 +36,7 @@ Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
 
 HapticBodies ball_over_box() {
   SphereTree held = tree_of(icosphere(4, 5), 0.5);
-  const double touching = 1e-3 * (5 + held.lattice().origin().z());
+  const double touching = 1e-3 * (5 + held.origin().z());
   return {tree_of(box({-10, -10, -4}, {10, 10, 0}), 0.5), std::move(held), touching};
 }
 

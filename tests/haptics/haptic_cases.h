@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "ist/haptics/simulation.h"
+#include "ist/haptics/simulation_parts.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::test {
@@ -26,7 +26,7 @@ class HapticBodies {
   }
   /// Of the tool, where the surfaces meet, m.
   [[nodiscard]] double touching() const noexcept { return touching_; }
-  [[nodiscard]] double voxel() const noexcept { return 1e-3 * held_->lattice().voxel_size; }
+  [[nodiscard]] double voxel() const noexcept { return 1e-3 * held_->voxel_size(); }
 
  private:
   std::unique_ptr<const SphereTree> fixed_, held_;

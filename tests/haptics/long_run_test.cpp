@@ -9,12 +9,12 @@
 #include "ist/haptics/devices/hand_device.h"
 #include "ist/haptics/effects/damping_effect.h"
 #include "ist/haptics/effects/friction_effect.h"
-#include "ist/haptics/simulation.h"
+#include "ist/haptics/simulation_parts.h"
 #include "ist/haptics/stability_border.h"
-#include "ist/haptics/surface_radius.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/query/collision_query.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/haptics/tool.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/data_dir.h"
 #include "support/seeded.h"
 #include "support/skip.h"
@@ -45,7 +45,7 @@ class HumanPair {
   explicit HumanPair(double voxel_size)
       : fixed_(tree("human_maxilla.stl", voxel_size)),
         held_(tree("human_mandible.stl", voxel_size)),
-        frames_{1e-3, Placement(), held_.lattice().origin()},
+        frames_{1e-3, Placement(), held_.origin()},
         exact_(fixed_, held_) {}
 
   [[nodiscard]] Placement home() const {
@@ -55,14 +55,14 @@ class HumanPair {
   [[nodiscard]] Placement moved(const Placement& by) const {
     return {by.rotation, by.translation + home().translation};
   }
-  [[nodiscard]] double voxel() const { return 1e-3 * held_.lattice().voxel_size; }
+  [[nodiscard]] double voxel() const { return 1e-3 * held_.voxel_size(); }
   [[nodiscard]] bool surfaces_meet(const Placement& tool) {
-    return exact_.touches(frames_.query_pose(tool)) == Touch::kYes;
+    return exact_.intersects(frames_.query_pose(tool)).answer == Answer::kYes;
   }
   [[nodiscard]] Simulation simulation(const CouplingSettings& coupling) const {
-    Simulation::Parts parts{
-        std::make_unique<TouchQuery>(fixed_, held_, frames_,
-                                     TouchOptions{SpherePolicy::kSlab, -kMargin}),
+    detail::SimulationParts parts{
+        std::make_unique<ToolContactQuery>(fixed_, held_, frames_,
+                                           ToolContactOptions{SpherePolicy::kSlab, -kMargin}),
         nullptr,
         {},
         coupling,
@@ -88,7 +88,7 @@ class HumanPair {
   }
   SphereTree fixed_, held_;
   BodyFrames frames_;
-  CollisionQuery exact_;
+  Query exact_;
 };
 
 // Presses one after the other, each to another place and with another turn.

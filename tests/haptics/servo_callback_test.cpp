@@ -67,7 +67,7 @@ TEST_F(Callback, GivesWhatTheSimulationGivesBitForBit) {
   double felt = 0, turned = 0;
   for (const FakeScheduler::Call& call : calls) {
     TickBudget budget;
-    budget.contacts.sphere_tests = budget.proximity.sphere_tests = 1'000'000;
+    budget.contacts.tests = budget.proximity.tests = 1'000'000;
     const Tick tick = plain.tick(Placement::from(path.at(call.time).isometry()), budget);
     EXPECT_EQ(call.answer, static_cast<int>(ServoTick::kFine));
     for (int i = 0; i < 3; ++i) {
@@ -176,9 +176,9 @@ TEST_F(Callback, HoldsTheToolWhereThereIsNoTime) {
   EXPECT_EQ(callback.counts().held, 20u);
   EXPECT_EQ(callback.tool()[14], bodies_.at(1e-3).translation.z());
 
-  // By the clock: a share that is over when the query begins.
+  // By the clock: a fraction that is over when the query begins.
   Simulation other = bodies_.simulation();
-  ServoCallback hasty(other, {.query_share = 1e-9});
+  ServoCallback hasty(other, {.query_time_fraction = 1e-9});
   EXPECT_EQ(scheduler(hasty).run(1).front().answer, static_cast<int>(ServoTick::kHeld));
 }
 
@@ -213,15 +213,15 @@ TEST_F(Callback, RefusesSettingsWithoutSense) {
     try {
       ServoCallback(simulation_, options);
     } catch (const Error& error) {
-      return error.code() == ErrorCode::kInputInvalid;
+      return error.code() == ErrorCode::kArgumentInvalid;
     }
     return false;
   };
   for (const double unit : {0.0, -1.0, none, endless}) EXPECT_TRUE(refuses({.unit = unit})) << unit;
-  for (const double share : {0.0, -0.5, 1.01, none}) {
-    EXPECT_TRUE(refuses({.query_share = share})) << share;
+  for (const double fraction : {0.0, -0.5, 1.01, none}) {
+    EXPECT_TRUE(refuses({.query_time_fraction = fraction})) << fraction;
   }
-  EXPECT_FALSE(refuses({.query_share = 1}));
+  EXPECT_FALSE(refuses({.query_time_fraction = 1}));
 }
 
 }  // namespace

@@ -4,10 +4,12 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <vector>
 
 #include "haptics/haptic_cases.h"
+#include "support/errors.h"
 
 namespace ist::test {
 namespace {
@@ -51,9 +53,7 @@ class DownwardHand final : public Device {
   std::vector<Vector6> told_;
 };
 
-ServoOptions unpaced(std::uint64_t ticks) {
-  return {.ticks = ticks, .paced = false, .real_time = {}};
-}
+ServoOptions unpaced(std::uint64_t ticks) { return {.ticks = ticks, .paced = false}; }
 ServoOptions paced(std::uint64_t ticks) {
   return {.ticks = ticks, .real_time = {.lock_memory = false}};
 }
@@ -183,6 +183,18 @@ TEST_F(ServoLoop, CountsTheRecordsThatFindNoRoom) {
   const std::vector<TickRecord> records = all_of(small);
   ASSERT_EQ(records.size(), 16u);
   EXPECT_EQ(records.front().tick, 0u);
+}
+
+TEST_F(ServoLoop, RefusesAFractionOutOfRange) {
+  for (const double fraction : {0.0, -0.5, 1.01, std::nan("")}) {
+    const std::optional<Error> error = error_of([&] {
+      const ServoOptions options{.ticks = 1, .paced = false, .query_time_fraction = fraction};
+      static_cast<void>(run_servo_loop(simulation_, hand_, options, {}, stop_));
+    });
+    ASSERT_TRUE(error) << fraction;
+    EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+  }
+  EXPECT_EQ(hand_.reads(), 0u);
 }
 
 TEST(ServoLoopThreads, AnotherThreadSeesWholeTicksOneAfterTheOther) {

@@ -33,7 +33,7 @@ class Pressing : public ::testing::Test {
 
 TEST_F(Pressing, NothingIsFeltWhereNothingIsTouched) {
   const Tick tick = close_to(9e-4);
-  EXPECT_EQ(tick.contacts->contacts, 0u);
+  EXPECT_EQ(tick.contacts->leaf_pairs, 0u);
   EXPECT_LT(tick.wrench.norm(), 1e-9);
   EXPECT_LT((tick.tool.translation - tick.device.translation).norm(), 1e-12);
 }
@@ -79,7 +79,7 @@ TEST_F(Pressing, DoesNotTunnel) {
 TEST_F(Pressing, KeepsWhatItKnewWhereAnAnswerIsNotComplete) {
   const Tick before = close_to(-1e-3);
   TickBudget none;
-  none.contacts.sphere_tests = 3;
+  none.contacts.tests = 3;
   double force = before.wrench[2];
   for (int i = 1; i <= 100; ++i) {
     const Tick tick = press(-1e-3 - 5e-6 * i, none);
@@ -97,7 +97,7 @@ TEST_F(Pressing, KeepsWhatItKnewWhereAnAnswerIsNotComplete) {
 // A step that led to where there was no time is tried again half as long, and half again.
 TEST_F(Pressing, DaresHalfAsLongAStepWhereThereWasNoTime) {
   TickBudget none;
-  none.contacts.sphere_tests = 0;
+  none.contacts.tests = 0;
   press(1e-3);
   double before = press(1e-3).tool.translation.z();
   for (double part = 1; part > 0.1; part *= 0.5) {
@@ -116,7 +116,7 @@ TEST_F(Pressing, DaresHalfAsLongAStepWhereThereWasNoTime) {
 // However long there was no time, the tool goes on when there is.
 TEST_F(Pressing, GoesOnAfterAnyNumberOfAnswersThatWereNotComplete) {
   TickBudget none;
-  none.contacts.sphere_tests = 0;
+  none.contacts.tests = 0;
   for (int i = 0; i < 3000; ++i) EXPECT_TRUE(press(8e-4, none).held);
   Tick tick{};
   for (int i = 0; i < 100; ++i) tick = press(8e-4);
@@ -124,9 +124,9 @@ TEST_F(Pressing, GoesOnAfterAnyNumberOfAnswersThatWereNotComplete) {
 }
 
 // What an effect is told of: the way of the tool, without what it came back from.
-class Way final : public Effect {
+class AxisDirection final : public Effect {
  public:
-  Way(double& sum, int& ticks) : sum_(sum), ticks_(ticks) {}
+  AxisDirection(double& sum, int& ticks) : sum_(sum), ticks_(ticks) {}
   [[nodiscard]] std::string_view name() const noexcept override { return "way"; }
   [[nodiscard]] EffectNeeds needs() const noexcept override { return {}; }
   void respond(const EffectInput&, const Vector6&, Response&) const noexcept override {}
@@ -144,9 +144,9 @@ TEST(HeldTicks, EffectsGoWithTheToolAndNotAheadOfIt) {
   const HapticBodies bodies = ball_over_box();
   double way = 0;
   int told = 0, held = 0;
-  Simulation simulation = bodies.simulation(std::make_unique<Way>(way, told));
+  Simulation simulation = bodies.simulation(std::make_unique<AxisDirection>(way, told));
   TickBudget none;
-  none.contacts.sphere_tests = 0;
+  none.contacts.tests = 0;
   Tick tick{};
   for (int i = 0; i < 400; ++i) {
     tick = simulation.tick(bodies.at(1e-3 - 5e-6 * i), i % 5 == 2 ? none : TickBudget());
@@ -194,16 +194,16 @@ TEST_F(Pressing, ABudgetInTestsGivesTheSameBits) {
   for (int i = 0; i < 400; ++i) {
     const double z = 1e-3 - 1e-5 * i;
     TickBudget budget;
-    if (i % 7 == 3) budget.contacts.sphere_tests = static_cast<std::uint64_t>(i);
+    if (i % 7 == 3) budget.contacts.tests = static_cast<std::uint64_t>(i);
     const Tick first = press(z, budget);
     TickBudget stopped;
-    stopped.contacts.sphere_tests = first.contacts->sphere_tests;
+    stopped.contacts.tests = first.contacts->sphere_tests;
     const Tick second = again.tick(bodies_.at(z), stopped);
     EXPECT_EQ(first.tool.translation, second.tool.translation);
     EXPECT_EQ(first.tool.rotation, second.tool.rotation);
     EXPECT_EQ(first.wrench, second.wrench);
     EXPECT_EQ(first.held, second.held);
-    EXPECT_EQ(first.contacts->contacts, second.contacts->contacts);
+    EXPECT_EQ(first.contacts->leaf_pairs, second.contacts->leaf_pairs);
   }
 }
 

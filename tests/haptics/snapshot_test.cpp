@@ -1,11 +1,11 @@
-#include "ist/haptics/snapshot.h"
-
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
 #include <chrono>
 #include <iostream>
 #include <vector>
+
+#include "ist/haptics/recording.h"
 
 namespace ist::test {
 namespace {

@@ -1,12 +1,11 @@
-#include "ist/haptics/surface_radius.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "ist/mesh/jaw_model.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/haptics/tool.h"
+#include "ist/models/models.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
 
@@ -27,7 +26,7 @@ void expect_radius_of(const TriangleMesh& mesh, double voxel_size) {
   options.voxel_size = voxel_size;
   options.spheres = SpherePolicy::kSimple;
   const SphereTree tree = build_tree(mesh, options);
-  const double farthest = farthest_vertex(mesh, tree.lattice().origin());
+  const double farthest = farthest_vertex(mesh, tree.origin());
   const double radius = surface_radius(tree);
   EXPECT_GE(radius, farthest) << voxel_size;
   EXPECT_LE(radius, (farthest + 2 * std::sqrt(3.0) * voxel_size) * (1 + 1e-8)) << voxel_size;

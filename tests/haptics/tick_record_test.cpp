@@ -1,11 +1,10 @@
-#include "ist/haptics/tick_record.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "haptics/effects/effect_case.h"
 #include "haptics/haptic_cases.h"
+#include "ist/haptics/recording.h"
 
 namespace ist::test {
 namespace {
@@ -15,7 +14,7 @@ TEST(TickRecord, HoldsATickInPlainNumbers) {
   Simulation simulation = bodies.simulation();
   Tick tick{};
   for (int i = 0; i < 600; ++i) tick = simulation.tick(bodies.at(1e-3 - 5e-6 * i), {});
-  ASSERT_GT(tick.contacts->contacts, 0u);
+  ASSERT_GT(tick.contacts->leaf_pairs, 0u);
   const TickRecord record = record_of(7, 1e-3, tick, true);
   EXPECT_EQ(record.tick, 7u);
   EXPECT_TRUE(record.device_known);
@@ -66,11 +65,11 @@ TEST(TickRecord, ReplayMakesTheSameTicks) {
     std::optional<Placement> device = bodies.at(1e-3 - 4e-6 * static_cast<double>(i));
     if (i % 97 == 50) device.reset();
     TickBudget budget;
-    if (i % 11 == 3) budget.contacts.sphere_tests = 5 * i;
+    if (i % 11 == 3) budget.contacts.tests = 5 * i;
     const TickRecord made =
         record_of(i, first.dt(), first.tick(device, budget), device.has_value());
     TickBudget stopped;
-    stopped.contacts.sphere_tests = made.contacts->sphere_tests;
+    stopped.contacts.tests = made.contacts->sphere_tests;
     const TickRecord repeated = replay({i, device, stopped}, again);
     EXPECT_EQ(repeated.tick, i);
     EXPECT_EQ(repeated.device, made.device);

@@ -1,5 +1,3 @@
-#include "ist/haptics/tick_ring.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,14 +7,15 @@
 #include <thread>
 #include <vector>
 
+#include "ist/haptics/recording.h"
+#include "support/errors.h"
 #include "support/seeded.h"
 
 namespace ist::test {
 namespace {
 
 TEST(TickRing, RoundsItsRoomUpToAPowerOfTwo) {
-  for (const auto& [asked, given] :
-       {std::pair{0u, 1u}, {1u, 1u}, {2u, 2u}, {3u, 4u}, {1000u, 1024u}}) {
+  for (const auto& [asked, given] : {std::pair{1u, 1u}, {2u, 2u}, {3u, 4u}, {1000u, 1024u}}) {
     TickRing<int> ring(asked);
     EXPECT_EQ(ring.capacity(), given);
     for (unsigned i = 0; i < given; ++i) EXPECT_TRUE(ring.push(7)) << asked;
@@ -102,6 +101,14 @@ TEST(TickRingThreads, WhatIsPushedIsPoppedOnceInOrderAndWhole) {
   EXPECT_EQ(popped + lost, kTicks);
   EXPECT_EQ(skipped, lost);
   std::cout << "records popped: " << popped << ", lost: " << lost << '\n';
+}
+
+TEST(TickRing, RefusesACapacityOutOfRange) {
+  for (const std::size_t capacity : {std::size_t{0}, (std::size_t{1} << 32) + 1, SIZE_MAX}) {
+    const std::optional<Error> error = error_of([&] { TickRing<int> ring(capacity); });
+    ASSERT_TRUE(error) << capacity;
+    EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+  }
 }
 
 }  // namespace

@@ -15,16 +15,18 @@ constexpr double kDt = 1e-3, kContact = 3000;
 // A tool that touches one plane z = const, from above, so many metres deep.
 struct Bench {
   Placement at;
-  TouchSet contacts, proximity;
+  ToolContacts contacts, proximity;
   VirtualCoupling coupling{kSpring};
   VirtualCoupling::Stretch stretch{Vector6::Zero(), Vector6::Zero(), kDt};
-  std::vector<Tool::TimedEffect> effects;
+  TimedEffects effects;
 
-  explicit Bench(double overlap) {
-    contacts.add({Eigen::Vector3d(0, 0, -0.01), Eigen::Vector3d::UnitZ(), overlap, 1});
-    contacts.spring[2] = overlap;
+  explicit Bench(double depth) {
+    contacts.add({Eigen::Vector3d(0, 0, -0.01), Eigen::Vector3d::UnitZ(), depth, 1});
+    contacts.spring[2] = depth;
     contacts.count = 1;
-    effects.push_back({std::make_unique<ContactEffect>(ContactSettings{kContact, 0.5}), {}});
+    std::vector<std::unique_ptr<Effect>> contact;
+    contact.push_back(std::make_unique<ContactEffect>(ContactSettings{kContact, 0.5}));
+    effects = TimedEffects(std::move(contact));
   }
   std::optional<Vector6> move(const Tool& tool, double part = 1) {
     return tool.motion({at, contacts, proximity, kDt}, effects, coupling, stretch, part);
@@ -33,7 +35,7 @@ struct Bench {
 
 TEST(Tool, FollowsTheDeviceWhereNothingIsTouched) {
   Bench bench(0);
-  bench.effects.clear();
+  bench.effects = TimedEffects();
   bench.stretch.length << 1e-3, -2e-3, 3e-3, 0.01, 0.02, -0.03;
   const auto motion = bench.move(Tool(0, Tool::kNoLimit));
   ASSERT_TRUE(motion);

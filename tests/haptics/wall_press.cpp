@@ -5,9 +5,9 @@
 
 #include "ist/haptics/devices/hand_device.h"
 #include "ist/haptics/effects/contact_effect.h"
-#include "ist/haptics/simulation.h"
-#include "ist/haptics/surface_radius.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/haptics/simulation_parts.h"
+#include "ist/haptics/tool.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -26,7 +26,7 @@ std::unique_ptr<const SphereTree> tree_of(const TriangleMesh& mesh) {
 }
 
 Placement start_of(const Wall& wall) {
-  return {Eigen::Matrix3d::Identity(), kMillimetre * wall.held->lattice().origin()};
+  return {Eigen::Matrix3d::Identity(), kMillimetre * wall.held->origin()};
 }
 
 HandSettings hand_of(const Wall& wall, const PressSettings& settings) {
@@ -38,6 +38,7 @@ HandSettings hand_of(const Wall& wall, const PressSettings& settings) {
   hand.inertia = 1e-4;
   hand.arm_stiffness = 500;
   hand.arm_angular_stiffness = 0.5;
+  hand.arm_damping = hand.arm_angular_damping = 0;
   (wall.turns ? hand.angular_resolution : hand.resolution) = settings.resolution;
   const Placement start = start_of(wall), pressed = start.moved(wall.reach * wall.way);
   hand.plan = {{0, start}, {0.2, pressed}, {kLeave, pressed}, {0.7, start}, {0.8, start}};
@@ -59,17 +60,17 @@ CouplingSettings coupling_of(const Wall& wall, const PressSettings& settings) {
 }
 
 Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
-  const BodyFrames frames{kMillimetre, Placement(), wall.held->lattice().origin()};
+  const BodyFrames frames{kMillimetre, Placement(), wall.held->origin()};
   // Nothing but the coupling shapes the wrench.
   constexpr SafetySettings kOpen{1e4, 100, 1e9, 1e7, 0};
-  Simulation::Parts parts{
-      std::make_unique<TouchQuery>(*wall.fixed, *wall.held, frames,
-                                   TouchOptions{SpherePolicy::kSlab, -0.5}),
+  detail::SimulationParts parts{
+      std::make_unique<ToolContactQuery>(*wall.fixed, *wall.held, frames,
+                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}),
       nullptr,
       {},
       coupling_of(wall, settings),
       kOpen,
-      Tool(kMillimetre * surface_radius(*wall.held), kMillimetre * wall.held->lattice().voxel_size),
+      Tool(kMillimetre * surface_radius(*wall.held), kMillimetre * wall.held->voxel_size()),
       start_of(wall),
       1 / settings.rate};
   parts.effects.push_back(
@@ -130,13 +131,13 @@ PressResult press(const Wall& wall, const PressSettings& settings) {
     device.write(tick.wrench, period);
     result.most_felt = std::max(result.most_felt, -wall.way.dot(tick.wrench));
 
-    const bool touches = tick.leaf_pairs > 0;
-    if (touches && !touched) {
+    const bool contact = tick.leaf_pairs > 0;
+    if (contact && !touched) {
       result.allowance += (settings.stiffness * period + damping) * period * speed * speed;
     }
-    touched = touched || touches;
+    touched = touched || contact;
     // A wrench is felt for as long as it is delayed after the bodies have parted.
-    if (touches || device.work() != work) {
+    if (contact || device.work() != work) {
       result.returned += (device.work() - work) - (device.damped() - damped);
       gone += std::abs(wall.way.dot(motion_between(before, device.pose())));
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Holds src/ist/hardware/rtl against golden vectors, and the table against its other forms, with one
+# Holds src/hardware/rtl against golden vectors, and the table against its other forms, with one
 # tool. What should be found out is tried too: an answer that is wrong, a file that is cut off.
 #
 #   tests/hardware/circuit_test.sh iverilog|verilator|ghdl|yosys IST FOLDER
@@ -13,7 +13,7 @@ set -euo pipefail
 tool=$1 ist=$2 folder=$3
 here=$(cd "$(dirname "$0")" && pwd)
 source_folder=$(cd "$here/../.." && pwd)
-rtl=$source_folder/src/ist/hardware/rtl
+rtl=$source_folder/src/hardware/rtl
 rm -rf "$folder"
 mkdir -p "$folder"
 cd "$folder"

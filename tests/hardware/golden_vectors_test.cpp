@@ -1,4 +1,4 @@
-#include "ist/hardware/golden_vectors.h"
+#include "hardware/golden_vectors.h"
 
 #include <gtest/gtest.h>
 

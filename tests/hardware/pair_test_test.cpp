@@ -3,7 +3,7 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
-#include "ist/hardware/golden_vectors.h"
+#include "hardware/golden_vectors.h"
 #include "ist/hardware/table_rom.h"
 #include "ist/tree/lookup_table.h"
 
@@ -76,7 +76,7 @@ TEST(PairTest, IsWhatTheReadmeSays) {
   EXPECT_LT(hits, (corners + kRandom) * 2 / 3);
 }
 
-// What the README promises of widths, at the registers' ends.
+// What the README guarantees of widths, at the registers' ends.
 TEST(PairTest, NumbersHaveTheBitsThatTheReadmeGives) {
   std::int64_t farthest = 0;
   std::uint64_t reach = 0;
@@ -95,7 +95,7 @@ TEST(PairTest, NumbersHaveTheBitsThatTheReadmeGives) {
 TEST(TableRom, HoldsTheTable) {
   for (std::size_t mask = 1; mask < 256; ++mask) {
     const TableBall ball = kLookupTable[mask];
-    const std::uint16_t word = kTableRom[mask];
+    const std::uint16_t word = table_rom()[mask];
     EXPECT_EQ(rom_coordinate(word, 0), ball.x) << mask;
     EXPECT_EQ(rom_coordinate(word, 1), ball.y) << mask;
     EXPECT_EQ(rom_coordinate(word, 2), ball.z) << mask;
@@ -103,7 +103,7 @@ TEST(TableRom, HoldsTheTable) {
     EXPECT_EQ(kRadiusSquared[rom_radius_code(word)], ball.radius_squared) << mask;
     EXPECT_LT(word, 1 << 12) << mask;
   }
-  EXPECT_EQ(rom_radius_code(kTableRom[0]), kNoRadius);
+  EXPECT_EQ(rom_radius_code(table_rom()[0]), kNoRadius);
 }
 
 TEST(TableRom, FixedRadiiAreTheRootsRoundedUp) {

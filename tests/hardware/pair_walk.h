@@ -7,24 +7,25 @@
 #include "hardware/node_pair.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::test {
 
 /// The way of a query down two trees, as a unit round the circuit would go it: the reference's,
 /// with each pair of nodes decided by `touch(fixed, moving)`, two HardwareNodes.
-template <typename Touch>
+template <typename FoundPairs>
 class PairWalk {
  public:
   /// Counted while it goes.
   struct Counts {
-    std::uint64_t tested = 0;    ///< pairs
-    std::uint64_t contacts = 0;  ///< pairs of leaves that touch
-    std::uint64_t opened = 0;    ///< pairs whose children were read
-    std::uint64_t words = 0;     ///< read: a node's mask and first child. Leaves have none
-    std::uint64_t moved = 0;     ///< centres that went through the mover
+    std::uint64_t tested = 0;      ///< pairs
+    std::uint64_t leaf_pairs = 0;  ///< pairs of leaves that touch
+    std::uint64_t opened = 0;      ///< pairs whose children were read
+    std::uint64_t words = 0;       ///< read: a node's mask and first child. Leaves have none
+    std::uint64_t moved = 0;       ///< centres that went through the mover
   };
 
-  PairWalk(const SphereTree& fixed, const SphereTree& moving, Touch touch)
+  PairWalk(const SphereTree& fixed, const SphereTree& moving, FoundPairs touch)
       : fixed_(fixed), moving_(moving), touch_(touch) {}
 
   [[nodiscard]] Counts run() {
@@ -49,20 +50,21 @@ class PairWalk {
   static Node root(const SphereTree& tree) {
     return {{{},
              tree.depth(),
-             tree.depth() == 0 ? std::uint8_t{255} : tree.octree().mask(tree.depth(), 0)},
+             tree.depth() == 0 ? std::uint8_t{255} : tree.parts().octree.mask(tree.depth(), 0)},
             0};
   }
 
   Children open(const SphereTree& tree, const Node& node) {
     const int level = node.seen.level - 1;
     Children children;
-    std::uint32_t index = tree.octree().first_child(level + 1, node.index);
+    std::uint32_t index = tree.parts().octree.first_child(level + 1, node.index);
     for (unsigned bits = node.seen.mask; bits != 0; bits &= bits - 1) {
       const int k = std::countr_zero(bits);
       Node& child = children.nodes[static_cast<std::size_t>(children.count++)];
       child = {node.seen, index++};
       child.seen.level = level;
-      child.seen.mask = level == 0 ? std::uint8_t{255} : tree.octree().mask(level, child.index);
+      child.seen.mask =
+          level == 0 ? std::uint8_t{255} : tree.parts().octree.mask(level, child.index);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         child.seen.centre[axis] += (k >> axis & 1) != 0 ? 6 << level : -(6 << level);
       }
@@ -75,15 +77,15 @@ class PairWalk {
     ++counts_.tested;
     if (!touch_(a.seen, b.seen)) return;
     if (a.seen.level == 0 && b.seen.level == 0) {
-      ++counts_.contacts;
+      ++counts_.leaf_pairs;
       return;
     }
     ++counts_.opened;
-    const double edge_a = fixed_.lattice().edge(a.seen.level);
-    const double edge_b = moving_.lattice().edge(b.seen.level);
+    const double edge_a = fixed_.parts().lattice.edge(a.seen.level);
+    const double edge_b = moving_.parts().lattice.edge(b.seen.level);
     Children of_a{1, {a}}, of_b{1, {b}};
-    if (opens(a.seen.level, edge_a, b.seen.level, edge_b)) of_a = open(fixed_, a);
-    if (opens(b.seen.level, edge_b, a.seen.level, edge_a)) {
+    if (descends(a.seen.level, edge_a, b.seen.level, edge_b)) of_a = open(fixed_, a);
+    if (descends(b.seen.level, edge_b, a.seen.level, edge_a)) {
       of_b = open(moving_, b);
       counts_.moved += static_cast<std::uint64_t>(of_b.count);
     }
@@ -96,7 +98,7 @@ class PairWalk {
 
   const SphereTree& fixed_;
   const SphereTree& moving_;
-  Touch touch_;
+  FoundPairs touch_;
   Counts counts_;
 };
 

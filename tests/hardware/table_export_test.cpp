@@ -1,4 +1,4 @@
-#include "ist/hardware/table_export.h"
+#include "hardware/table_export.h"
 
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -106,7 +106,6 @@ TEST(TableExport, CIsReadByACCompiler) {
   const TempDir dir;
   dir.write("ist_table_rom.h", text_of(TableFormat::kC));
   const std::string source = dir.write("print.c", R"(
-#include "ist_table_rom.h"
 #include "ist_table_rom.h"
 #include <stdio.h>
 int main(void) {

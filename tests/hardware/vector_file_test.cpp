@@ -1,4 +1,4 @@
-#include "ist/hardware/vector_file.h"
+#include "hardware/vector_file.h"
 
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -182,7 +182,7 @@ TEST_F(VectorFile, RefusesWhatIsNone) {
   malformed(std::string(5000, 'x'), "over 1000 characters");
   malformed("#\n#\n# count 1\n" + std::string(kLine), "line 4: a vector file begins");
   malformed(std::string(text).replace(text.find("# count 50"), 10, "# count ab"), "line 3");
-  malformed(std::string(text).replace(text.find("# count 50"), 10, "# count 51"), "promises 51");
+  malformed(std::string(text).replace(text.find("# count 50"), 10, "# count 51"), "announces 51");
   malformed(std::string(text).replace(text.find("# count 50"), 10, "# count 49"), "holds more");
   malformed(std::string(text).replace(text.find("# count 50"), 10, "# count 00"), "0 vectors");
   malformed(std::string(text).replace(text.find("xxh64"), 5, "md5sm"), "line 8");
@@ -190,15 +190,15 @@ TEST_F(VectorFile, RefusesWhatIsNone) {
   malformed(file_of(""), "line 9: 0 fields");
   malformed(file_of(std::string(kLine, std::string(kLine).rfind(' '))),
             "26 fields, and a vector has 27");
-  malformed(file_of(std::string(kLine) + " 1"), "behind the 27 fields");
-  malformed(file_of(with_field(5, "0000000x")), "field moving_x: '0000000x' is no hexadecimal");
-  malformed(file_of(with_field(5, "-0000001")), "no hexadecimal");
+  malformed(file_of(std::string(kLine) + " 1"), "after the 27 fields");
+  malformed(file_of(with_field(5, "0000000x")), "field moving_x: '0000000x' is not a hexadecimal");
+  malformed(file_of(with_field(5, "-0000001")), "not a hexadecimal");
   malformed(file_of(with_field(10, "1000")), "must have 5 digits");
   // Two vectors changed about, whose answers are right: only the checksum tells.
   const std::size_t line = std::string(kLine).size() + 1, end = text.size();
   malformed(
       text.substr(0, end - 2 * line) + text.substr(end - line) + text.substr(end - 2 * line, line),
-      "the vectors are not those");
+      "the vectors do not match the checksum");
 }
 
 }  // namespace

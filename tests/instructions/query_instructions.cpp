@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/jaw_model.h"
-#include "ist/query/collision_query.h"
-#include "ist/query/kernels.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/models/models.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
+#include "simd/dispatch.h"
 #include "support/closing.h"
 
 namespace {
@@ -52,37 +52,39 @@ ist::SphereTree jaw(ist::Jaw which) {
 
 using ist::test::closing;
 
-Answer answer_of(const ist::QueryResult& result) { return {result.contacts, result.sphere_tests}; }
+Answer answer_of(const ist::QueryResult& result) {
+  return {result.leaf_pairs, result.sphere_tests};
+}
 
 void count_all() {
   const ist::SphereTree fixed = jaw(ist::Jaw::kUpper), moving = jaw(ist::Jaw::kLower);
   const Eigen::Isometry3d closed = closing(0), near = closing(-1.5), apart = closing(-2.5);
-  std::vector<ist::Contact> contacts(1 << 18);
+  std::vector<ist::LeafPair> leaf_pairs(1 << 18);
   std::vector<ist::TrianglePair> pairs(1 << 16);
-  ist::CollisionOptions options;
+  ist::QueryOptions options;
   options.target = kTarget;
   for (const ist::SpherePolicy policy : ist::kSpherePolicies) {
     options.policy = policy;
-    ist::CollisionQuery query(fixed, moving, options);
+    ist::Query query(fixed, moving, options);
     count("collide/" + std::string(to_string(policy)) + "/closed",
-          [&] { return answer_of(query.collide(closed, contacts)); });
+          [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs)); });
   }
   options.policy = ist::SpherePolicy::kSlab;
-  ist::CollisionQuery query(fixed, moving, options);
-  ist::ContactPoints points(fixed, moving, query.policy());
-  count("collide/slab/near", [&] { return answer_of(query.collide(near, contacts)); });
+  ist::Query query(fixed, moving, options);
+  ist::ContactManifold points(fixed, moving, query.policy());
+  count("collide/slab/near", [&] { return answer_of(query.leaf_pairs(near, leaf_pairs)); });
   count("collide/slab/within_20000_tests",
-        [&] { return answer_of(query.collide(closed, contacts, {.sphere_tests = 20'000})); });
-  count("contact_points/closed", [&] { return answer_of(query.contact_points(closed, points)); });
+        [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs, {.tests = 20'000})); });
+  count("contact_points/closed", [&] { return answer_of(query.contacts(closed, points)); });
   count("gap/apart", [&] {
-    const ist::GapResult result = query.gap(apart, 0.01);
-    return Answer{result.gap.lower > 0 ? 1U : 0U, result.sphere_tests};
+    const ist::DistanceResult result = query.distance(apart, 0.01);
+    return Answer{result.distance.lower > 0 ? 1U : 0U, result.sphere_tests};
   });
   count("touches/near", [&] {  // where leaves touch and triangles do not; it tells no tests
-    return Answer{query.touches(near) == ist::Touch::kYes ? 1U : 0U, 0};
+    return Answer{query.intersects(near).answer == ist::Answer::kYes ? 1U : 0U, 0};
   });
   count("collide_exact/closed", [&] {
-    const ist::ExactResult result = query.collide_exact(closed, pairs);
+    const ist::TrianglePairsResult result = query.triangle_pairs(closed, pairs);
     return Answer{result.triangle_pairs, result.sphere_tests};
   });
 }

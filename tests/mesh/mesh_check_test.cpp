@@ -1,5 +1,3 @@
-#include "ist/mesh/mesh_check.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include <string>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -116,7 +114,7 @@ TEST(Warnings, SayInWordsWhatIsWrong) {
   report.degenerate_triangles = 1;
   const std::vector<std::string> one = warnings(report);
   ASSERT_EQ(one.size(), 5u);
-  EXPECT_EQ(one[3], "1 triangle is there twice.");
+  EXPECT_EQ(one[3], "1 triangle repeats an earlier one.");
   report.duplicate_triangles = 22;
   EXPECT_EQ(warnings(report)[3], "22 triangles repeat an earlier one.");
   EXPECT_EQ(warnings(check_mesh(test::inside_out(test::icosphere(0, 1)))),

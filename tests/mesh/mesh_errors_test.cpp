@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -231,7 +231,7 @@ TEST(ReadMesh, SaysWhatWhereAndWhatToDo) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.what(), file.string() +
-                                ": line 4: a face names vertex 9, which is not there; "
+                                ": line 4: a face names vertex 9, which does not exist; "
                                 "export the mesh again");
   }
 }

@@ -1,5 +1,3 @@
-#include "ist/mesh/mesh_io.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -15,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
@@ -20,7 +20,7 @@ using test::corners;
 using test::narrowed;
 using test::TempDir;
 
-const TriangleMesh kBox = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
+const TriangleMesh kSolid = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
 
 TEST(WriteStl, ComesBackTheSame) {
   const TempDir folder;
@@ -61,9 +61,9 @@ std::string write_code(const TriangleMesh& mesh, const std::filesystem::path& fi
 TEST(WriteStl, LeavesNothingBehindWhereItFails) {
   const TempDir folder;
   std::filesystem::create_directory(folder.path() / "taken");
-  EXPECT_EQ(write_code(kBox, folder.path() / "missing" / "a.stl"), "file-unwritable");
-  EXPECT_EQ(write_code(kBox, folder.path() / "taken"), "file-unwritable");
-  TriangleMesh wide = kBox;
+  EXPECT_EQ(write_code(kSolid, folder.path() / "missing" / "a.stl"), "file-unwritable");
+  EXPECT_EQ(write_code(kSolid, folder.path() / "taken"), "file-unwritable");
+  TriangleMesh wide = kSolid;
   wide.vertices[0].x() = 1e39;
   EXPECT_EQ(write_code(wide, folder.path() / "a.stl"), "mesh-not-finite");
   EXPECT_EQ(folder.entries(), 1u);

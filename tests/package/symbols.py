@@ -44,7 +44,7 @@ def flaw(name, version, cpp, c):
         return "has a version of the other language"
     if re.fullmatch(r"ist_\w+", name):
         return None if name in c else "is declared by no public C header"
-    own = re.match(rf"(?:{OF_CLASS})?ist::(\w+)", name)
+    own = re.match(rf"(?:{OF_CLASS})?ist::(?:detail::)?(\w+)", name)
     if own is None:
         return "is not the project's"
     return None if own[1] in cpp else "is declared by no public header"

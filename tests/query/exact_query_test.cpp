@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
 
@@ -131,10 +132,10 @@ TEST(ExactPairs, SlabsMeetToTheLastBit) {
   const TriangleMesh square = open_strip(1);
   const SphereTree tree = tree_of(square, 1);
   const ExactBody body(square, tree);
-  const Slab slab = tree.saved_slab(0, 0, 0);
+  const Slab slab = tree.parts().saved_slab(0, 0, 0);
   ASSERT_EQ(slab.normal.cwiseAbs(), Eigen::Vector3d(0, 0, 126.0 / 128));
   ASSERT_EQ(slab.offset, 0);
-  const mpq_class reach = mpq_class(slab.half) + mpq_class(tree.saved_ball(0, 0, 0).radius);
+  const mpq_class reach = mpq_class(slab.half) + mpq_class(tree.parts().saved_ball(0, 0, 0).radius);
   for (const double pad : {0.0, 0x1p-20, -0x1p-20}) {
     const auto meet = [&](SpherePolicy policy, double gap) {
       const ExactPair above(body, body, shift({0, 0, gap})), below(body, body, shift({0, 0, -gap}));
@@ -150,17 +151,17 @@ TEST(ExactPairs, SlabsMeetToTheLastBit) {
   }
 }
 
-TEST_F(OneVoxelPair, ThePromiseIsCheckedBothWays) {
-  const std::vector<Contact> none, one{{0, 0}}, twice{{0, 0}, {0, 0}}, strange{{0, 0}, {0, 1}};
+TEST_F(OneVoxelPair, TheGuaranteeIsCheckedBothWays) {
+  const std::vector<LeafPair> none, one{{0, 0}}, twice{{0, 0}, {0, 0}}, strange{{0, 0}, {0, 1}};
   for (const SpherePolicy policy : kSpherePolicies) {
     const ExactPair touching(body_, body_, Eigen::Isometry3d::Identity());
-    EXPECT_TRUE(keeps_promise(touching, policy, one, 0));
-    EXPECT_FALSE(keeps_promise(touching, policy, none, 0));
-    EXPECT_FALSE(keeps_promise(touching, policy, twice, 0));
-    EXPECT_FALSE(keeps_promise(touching, policy, strange, 0));
+    EXPECT_TRUE(keeps_guarantee(touching, policy, one, 0));
+    EXPECT_FALSE(keeps_guarantee(touching, policy, none, 0));
+    EXPECT_FALSE(keeps_guarantee(touching, policy, twice, 0));
+    EXPECT_FALSE(keeps_guarantee(touching, policy, strange, 0));
     const ExactPair apart(body_, body_, shift({3, 0, 0}));
-    EXPECT_TRUE(keeps_promise(apart, policy, none, 0));
-    EXPECT_FALSE(keeps_promise(apart, policy, one, 0));
+    EXPECT_TRUE(keeps_guarantee(apart, policy, none, 0));
+    EXPECT_FALSE(keeps_guarantee(apart, policy, one, 0));
   }
 }
 

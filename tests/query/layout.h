@@ -3,8 +3,9 @@
 #include <array>
 #include <cstddef>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/reference.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
 
 namespace ist::test {
 
@@ -16,10 +17,9 @@ consteval std::array<std::size_t, 2 * sizeof...(Types)> layout_of() {
 /// Sizes and alignments of what consumers have in their memory, as the code that calls it sees
 /// them.
 consteval auto public_layout() {
-  return layout_of<SphereTree, TriangleMesh, ReferenceQuery, CollisionQuery, CollisionOptions,
-                   ContactPoints, ContactPoint, ContactSums, ContactRates, ExactSearch,
-                   TrianglePairs, Search, SearchPlan, QueryResult, ExactResult, GapResult,
-                   RelativePose>();
+  return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
+                   Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
+                   TrianglePairsResult, DistanceResult, Sharing>();
 }
 
 /// As code compiled for AVX-512 does.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
 
 namespace ist::test {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/contact.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::test {
@@ -46,31 +46,31 @@ class Random {
 [[nodiscard]] Eigen::Isometry3d shift(const Eigen::Vector3d& translation);
 
 /// An answer with all its contacts.
-struct Answer {
+struct FoundPairs {
   QueryResult result;
-  std::vector<Contact> contacts;
+  std::vector<LeafPair> leaf_pairs;
 };
 
 /// Asks any engine for all contacts of a pose.
 template <class Query>
-[[nodiscard]] Answer ask(Query& query, const Eigen::Isometry3d& pose) {
-  Answer answer{{}, std::vector<Contact>(1 << 12)};
-  answer.result = query.collide(pose, answer.contacts);
+[[nodiscard]] FoundPairs ask(Query& query, const Eigen::Isometry3d& pose) {
+  FoundPairs answer{{}, std::vector<LeafPair>(1 << 12)};
+  answer.result = query.leaf_pairs(pose, answer.leaf_pairs);
   if (answer.result.truncated) {
-    answer.contacts.resize(answer.result.contacts);
-    answer.result = query.collide(pose, answer.contacts);
+    answer.leaf_pairs.resize(answer.result.leaf_pairs);
+    answer.result = query.leaf_pairs(pose, answer.leaf_pairs);
   }
-  answer.contacts.resize(answer.result.contacts);
+  answer.leaf_pairs.resize(answer.result.leaf_pairs);
   return answer;
 }
 
 /// The last double `t` in [from, to] at which `touches(t)`: true at `from` and false at `to`.
 template <class Touches>
-[[nodiscard]] double last_touching(double from, double to, const Touches& touches) {
+[[nodiscard]] double last_touching(double from, double to, const Touches& intersects) {
   while (true) {
     const double middle = from + 0.5 * (to - from);
     if (middle == from || middle == to) return from;
-    (touches(middle) ? from : to) = middle;
+    (intersects(middle) ? from : to) = middle;
   }
 }
 

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "ist/mesh/mesh_io.h"
-#include "ist/query/collision_query.h"
-#include "ist/query/reference.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
 #include "support/data_dir.h"
 #include "support/skip.h"
@@ -42,7 +42,7 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
   options.spheres = SpherePolicy::kSlab;
   const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
   const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
-  std::vector<Contact> contacts(1 << 18);
+  std::vector<LeafPair> leaf_pairs(1 << 18);
   for (const SpherePolicy policy : kSpherePolicies) {
     ReferenceQuery query(fixed, moving, policy);
     int free = 0;
@@ -51,12 +51,12 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
       const auto numbers = item["pose"].get<std::vector<double>>();
       Eigen::Isometry3d pose;
       std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
-      const QueryResult result = query.collide(pose, contacts);
+      const QueryResult result = query.leaf_pairs(pose, leaf_pairs);
       EXPECT_EQ(result.status, QueryStatus::kDone);
       EXPECT_FALSE(result.truncated);
-      EXPECT_TRUE(result.contacts > 0 || item["triangle_pairs"] == 0);
-      EXPECT_TRUE(result.contacts == 0 || item["distance"] <= query.resolution(result));
-      free += result.contacts == 0;
+      EXPECT_TRUE(result.leaf_pairs > 0 || item["triangle_pairs"] == 0);
+      EXPECT_TRUE(result.leaf_pairs == 0 || item["distance"] <= result.resolution);
+      free += result.leaf_pairs == 0;
     }
     EXPECT_GE(free, 1);
   }
@@ -73,17 +73,18 @@ TEST_P(RealPairs, HaveTheTrianglesThatMeet) {
   options.keep_triangles = true;
   const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
   const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
-  CollisionQuery query(fixed, moving);
+  Query query(fixed, moving);
   std::vector<TrianglePair> pairs(1 << 14);
   for (const nlohmann::json& item : truth) {
     SCOPED_TRACE(item["label"].get<std::string>());
     const auto numbers = item["pose"].get<std::vector<double>>();
     Eigen::Isometry3d pose;
     std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
-    const ExactResult result = query.collide_exact(pose, pairs);
+    const TrianglePairsResult result = query.triangle_pairs(pose, pairs);
     EXPECT_EQ(result.triangle_pairs, item["triangle_pairs"]);
-    EXPECT_EQ(query.touches(pose), result.triangle_pairs > 0 ? Touch::kYes : Touch::kNo);
-    const GapInterval gap = query.gap(pose, 1e-3).gap;
+    EXPECT_EQ(query.intersects(pose).answer,
+              result.triangle_pairs > 0 ? ist::Answer::kYes : ist::Answer::kNo);
+    const DistanceInterval gap = query.distance(pose, 1e-3).distance;
     EXPECT_LE(gap.lower, item["distance"].get<double>() + 1e-5);
     EXPECT_GE(gap.upper, item["distance"].get<double>() - 1e-5);
     EXPECT_LE(gap.upper - gap.lower, 1e-3 + 1e-5);

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/shape_model.h"
-#include "ist/scene/scene_file.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
+#include "ist/models/models.h"
+#include "ist/scene.h"
+#include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
 #include "support/errors.h"
 #include "support/temp_dir.h"
@@ -72,7 +71,7 @@ TEST_F(BadSceneTest, HasNoSuchNumberOfWorkers) {
 }
 
 TEST_F(BadSceneTest, IsNoToml) {
-  const std::string toml = "write it as TOML 1.0 has it";
+  const std::string toml = "write it in TOML 1.0";
   expect_refused({
       {"rate = 1000", "rate = ", 2, "expected value", toml},
       {"rate = 1000", "rate 1000", 2, "expected '='", toml},
@@ -102,9 +101,9 @@ TEST_F(BadSceneTest, IsNoToml) {
 TEST_F(BadSceneTest, IsTooMuch) {
   const std::string many(1001, ' ');
   expect_refused({
-      {"rate = 1000", "rate = 1000 " + many, 2, "a line of more than 1000 bytes", "break it"},
+      {"rate = 1000", "rate = 1000 " + many, 2, "a line of more than 1000 bytes", "break the line"},
       added("x = " + std::string(300, '[') + std::string(300, ']') + "\n", 19,
-            "exceeded maximum nested value depth", "write it as TOML"),
+            "exceeded maximum nested value depth", "write it in TOML"),
       // Each part of a key is a table of its own.
       added(
           "[x" +
@@ -114,7 +113,7 @@ TEST_F(BadSceneTest, IsTooMuch) {
                 return s;
               }() +
               "]\n",
-          19, "more than 8 values in each other", "take them out"),
+          19, "more than 8 nested values", "take the inner ones out"),
   });
   std::string large(kSoundScene);
   while (large.size() <= (std::size_t{1} << 20)) large += "# a long story\n";
@@ -194,9 +193,9 @@ TEST_F(BadSceneTest, HasValuesOfTheWrongKind) {
       {"radius = 5", "radius = 5\nopen = \"-\"", 10, "'open' in [held] is \"-\"", "\"-z\""},
       {"radius = 5", "radius = 5\nopen = \"xy\"", 10, "'open' in [held] is \"xy\"", "\"-z\""},
       {"\"sphere\"\nradius = 5", "\"lower jaw\"\nseed = -1", 9, "'seed' in [held] is -1",
-       "a whole number from 0 on"},
+       "a whole number of at least 0"},
       {"\"sphere\"\nradius = 5", "\"lower jaw\"\nseed = 1.5", 9, "'seed' in [held] is 1.5",
-       "a whole number from 0 on"},
+       "a whole number of at least 0"},
       {"\"hand\"", "\"foot\"", 12, "'kind' in [device] is \"foot\"", "\"hand\", \"script\""},
       {"[device]", "[[device]]", 11, "'device' in the file is an array of 1", "a table, [device]"},
       added("[[safety]]\n", 19, "'safety' in the file is an array of 1", "a table, [safety]"),
@@ -218,7 +217,7 @@ TEST_F(BadSceneTest, HasNumbersWithoutSense) {
       {"radius = 5", "radius = -5", 9, "'radius' in [held] is -5", "from 1e-12"},
       {"voxel_size = 0.5", "voxel_size = 0.0", 10, "'voxel_size' in [held] is 0", "from 1e-12"},
       {"radius = 5", "radius = 5\nquaternion = [0, 0, 0, 0]", 10,
-       "'quaternion' in [held] is an array of 4", "[1, 0, 0, 0] turns nothing"},
+       "'quaternion' in [held] is an array of 4", "[1, 0, 0, 0] is no turn"},
       {"radius = 5", "radius = 5\nquaternion = [1, 0, 0, nan]", 10, "'quaternion' in [held] is nan",
        "give a number"},
       {"radius = 5", "radius = 5\nquaternion = [1, 0, 0]", 10,
@@ -269,7 +268,7 @@ TEST_F(BadSceneTest, ContradictsItself) {
       {"\"sphere\"\nradius = 5", "\"file\"\nradius = 5", 8, "'shape' in [held] is \"file\"",
        "give"},
       {"unit = \"mm\"\nrate = 1000\n[fixed]\nshape = \"box\"\nsize = [40, 40, 10]",
-       "unit = \"m\"\n[fixed]\nshape = \"upper jaw\"", 3, "a built-in jaw is made in millimetres",
+       "unit = \"m\"\n[fixed]\nshape = \"upper jaw\"", 3, "a built-in jaw is in millimetres",
        "write unit = \"mm\""},
       {"[effects.contact]\nstiffness = 2000", "[effects.friction]", 17,
        "[effects.friction] acts at contacts", "add the table [effects.contact]"},
@@ -283,7 +282,7 @@ TEST_F(BadSceneTest, ContradictsItself) {
       {"time = 1,", "time = 0,", 15, "[device.plan.2]: the time 0 s does not come after 0 s",
        "let times ascend"},
       {"move = [0, 0, -4]", "move = [0, 0, -4], turn = [0, 0, 1, 0]", 15,
-       "more than a third of a circle", "put one between"},
+       "more than a third of a circle", "add a waypoint between"},
   });
 }
 
@@ -292,7 +291,8 @@ TEST_F(BadSceneTest, NamesFilesThatAreNotThere) {
   ::unsetenv("IST_DATA_DIR");
   expect_refused({
       {shape, "file = \"none.stl\"", 4,
-       "there is no file " + (folder_.path() / "none.stl").string(), "from the scene's folder"},
+       "there is no file " + (folder_.path() / "none.stl").string(),
+       "starts at the scene's folder"},
       {shape, "file = \"/none/at/all.stl\"", 4, "there is no file /none/at/all.stl", "check"},
       {shape, "file = \".\"", 4, "there is no file", "check 'file'"},
       {shape, "file = \"\"", 4, "there is no file", "check 'file'"},
@@ -302,8 +302,9 @@ TEST_F(BadSceneTest, NamesFilesThatAreNotThere) {
       {shape, "file = \"${IST_DATA_DIR}/a.stl\"", 4, "'file' needs IST_DATA_DIR, which is not set",
        "set it in the environment"},
       {shape, "file = \"${HOME}/a.stl\"", 4, "'file' names a variable in \"${HOME}/a.stl\"",
-       "${IST_DATA_DIR}/… at the beginning is the only one"},
-      {shape, "file = \"a/${IST_DATA_DIR}/a.stl\"", 4, "'file' names a variable", "the only one"},
+       "only ${IST_DATA_DIR}/… at the beginning is known"},
+      {shape, "file = \"a/${IST_DATA_DIR}/a.stl\"", 4, "'file' names a variable",
+       "only ${IST_DATA_DIR}"},
       {"kind = \"hand\"", "kind = \"script\"\npath = \"none.csv\"", 13, "there is no file",
        "check 'path'"},
   });
@@ -318,7 +319,7 @@ TEST_F(BadSceneTest, GivesAVoxelSizeToATree) {
   options.voxel_size = 0.5;
   write_tree(build_tree(make_box({0, 0, 0}, {1, 1, 1}), options), folder_.path() / "box.ist");
   expect_refused({{"shape = \"box\"\nsize = [40, 40, 10]", "file = \"box.ist\"", 5,
-                   "the file is a tree, which has its voxel size", "take it out"}});
+                   "the file is a tree, which has a voxel size", "take the key out"}});
 }
 
 TEST_F(BadSceneTest, HasAScriptThatIsNone) {

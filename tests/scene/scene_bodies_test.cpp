@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
+#include "ist/haptics/effects/contact_effect.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
 #include "scene/scene_case.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -55,12 +55,18 @@ TEST_F(SceneBodies, WhoseOutsideIsNotKnownPushNothingAndSaySo) {
   const std::string text =
       with_ball("file = \"open.stl\"\nvoxel_size = 0.5\n") + "[effects.gravity]\nmass = 0.05\n";
   const BuiltScene scene = built(text);
-  EXPECT_TRUE(warns(scene, "pushes nothing: mend it, or say trust_normals = true in [held]"));
+  EXPECT_TRUE(warns(scene, "no contact is felt: repair it, or say trust_normals = true in [held]"));
   EXPECT_FALSE(warns(scene, "in [fixed]"));
   ASSERT_EQ(scene.simulation->effects().size(), 1u);
-  EXPECT_EQ(scene.simulation->effects()[0].effect->name(), "gravity");
+  EXPECT_EQ(scene.simulation->effects()[0].name, "gravity");
   EXPECT_EQ(scene.simulation->bytes(), 0u);
   EXPECT_FALSE(note_of(scene, "held tree").built);
+
+  // An effect of the caller's is left out by the same rule.
+  std::vector<std::unique_ptr<Effect>> own;
+  own.push_back(std::make_unique<ContactEffect>(ContactSettings{}));
+  const BuiltScene with_own = build_scene(scene_of(text), std::move(own));
+  EXPECT_EQ(with_own.simulation->effects().size(), 1u);
   EXPECT_EQ(pressed_by(scene), 0);  // nothing holds its weight but the hand
 
   const BuiltScene silent = built(replaced(text, "[effects.contact]\nstiffness = 2000\n", ""));
@@ -110,12 +116,12 @@ TEST_F(SceneBodies, ProximityNeedsTheTrianglesOfATree) {
       error_of([&] { static_cast<void>(built(with_ball("file = \"plain.ist\"\n") + proximity)); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
-  for (const char* part : {"scene.toml:17: it needs the triangles of", "plain.ist", "--exact"}) {
+  for (const char* part : {"scene.toml:17: proximity needs triangles", "plain.ist", "--exact"}) {
     EXPECT_NE(std::string(error->what()).find(part), std::string::npos) << error->what();
   }
   const BuiltScene scene = built(with_ball("file = \"exact.ist\"\n") + proximity);
   ASSERT_TRUE(scene.trees.near_held);
-  EXPECT_EQ(scene.trees.near_held->lattice().voxel_size, 0.5);
+  EXPECT_EQ(scene.trees.near_held->voxel_size(), 0.5);
 }
 
 // By whatever spheres are named, if the tree has them; by the tightest of both where none are.
@@ -155,17 +161,18 @@ TEST_F(SceneBodies, VoxelsTooSmallAreRefusedByTheLineThatNamesThem) {
   for (const Case& each :
        {Case{replaced(sound, "voxel_size = 0.5", "voxel_size = 1e-5"),
              "scene.toml:10: the held shape: voxel size 1e-05", "the smallest size for this mesh"},
-        Case{sound, "scene.toml:6: the fixed shape: voxel size 1 needs more than the 100000 bytes",
+        Case{sound,
+             "scene.toml:6: the fixed shape: voxel size 1 needs more than the allowed 100000 bytes",
              "use a voxel size of", 100'000},
         Case{sound + proximity + "1e-5\n",
-             "scene.toml:20: in voxels of half of it: the fixed shape",
+             "scene.toml:20: proximity voxels have half that size: the fixed shape",
              "the smallest size for this mesh"},
         Case{replaced(sound, "[effects.contact]\nstiffness = 2000\n", proximity + "0.2\n"),
              "scene.toml:18: the fixed shape: voxel size 0.1 needs", "use a voxel size of",
              1'000'000}}) {
     SCOPED_TRACE(each.what);
-    const std::optional<Error> error = error_of(
-        [&] { static_cast<void>(build_scene(scene_of(each.text), nullptr, each.max_memory)); });
+    const std::optional<Error> error =
+        error_of([&] { static_cast<void>(build_scene(scene_of(each.text), {}, each.max_memory)); });
     ASSERT_TRUE(error) << "it is built";
     EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
     for (const std::string& part : {each.what, each.remedy}) {

@@ -1,11 +1,10 @@
 // Only what a scene names is built, and what it says of its bodies is kept.
 
-#include "ist/scene/scene_builder.h"
-
 #include <array>
 #include <map>
 #include <set>
 
+#include "ist/haptics/tool.h"
 #include "ist/scene/make_effects.h"
 #include "scene/scene_case.h"
 
@@ -39,7 +38,7 @@ class PayOnlyForWhatIsNamed : public SceneCase {
 Names effects_of(const BuiltScene& scene) {
   Names names;
   for (const auto& effect : scene.simulation->effects()) {
-    names.insert(std::string(effect.effect->name()));
+    names.insert(std::string(effect.name));
   }
   return names;
 }
@@ -145,7 +144,7 @@ TEST_F(PayOnlyForWhatIsNamed, ATickAsksOnlyWhatIsNeeded) {
 TEST_F(PayOnlyForWhatIsNamed, WhatOnlyBrakesDoesNotHoldTheTool) {
   const BuiltScene scene = with(kAll);
   TickBudget budget;
-  budget.proximity.sphere_tests = 2;
+  budget.proximity.tests = 2;
   const double start = scene.device->read()->translation.z();
   double way = 0, pairs = 0;
   int stopped = 0;

@@ -6,8 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/scene.h"
 #include "scene/scene_text.h"
 #include "support/temp_dir.h"
 

@@ -1,13 +1,11 @@
-#include "ist/scene/scene_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <string>
 
-#include "ist/mesh/shape_model.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
+#include "ist/models/models.h"
+#include "ist/scene.h"
+#include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
 #include "support/temp_dir.h"
 

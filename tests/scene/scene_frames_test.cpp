@@ -48,8 +48,8 @@ std::vector<Vector6> felt(const Scene& scene) {
   return wrenches;
 }
 
-// To within 3 mN of some newtons, in every tick. One answer is the same to 1e-9 (TouchQuery), but
-// which points are joined, and when what sticks begins to slide, may hang on a rounding.
+// To within 3 mN of some newtons, in every tick. One answer is the same to 1e-9 (ToolContactQuery),
+// but which points are joined, and when what sticks begins to slide, may hang on a rounding.
 void expect_same(const std::vector<Vector6>& a, const std::vector<Vector6>& b) {
   double force = 0, torque = 0, most = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {

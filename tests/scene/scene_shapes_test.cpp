@@ -1,11 +1,11 @@
-#include "ist/scene/scene_shapes.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ist/mesh/jaw_model.h"
-#include "ist/mesh/mesh_check.h"
+#include "ist/mesh/mesh.h"
+#include "ist/models/models.h"
+#include "ist/scene.h"
+#include "support/errors.h"
 
 namespace ist::test {
 namespace {
@@ -85,6 +85,19 @@ TEST(SceneShape, IsClosedAndFacesOutwardWhateverItIs) {
     EXPECT_EQ(report.components, 1u) << static_cast<int>(kind);
     EXPECT_EQ(report.degenerate_triangles, 0u) << static_cast<int>(kind);
     EXPECT_GT(report.signed_volume, 0) << static_cast<int>(kind);
+  }
+}
+
+TEST(MakeShape, RefusesLengthsOutOfRange) {
+  using Kind = BuiltInShape::Kind;
+  for (const double length : {0.0, -1.0, 1e13, std::nan("")}) {
+    for (const BuiltInShape& shape : {BuiltInShape{.size = {1, length, 1}},
+                                      BuiltInShape{.kind = Kind::kSphere, .radius = length},
+                                      BuiltInShape{.kind = Kind::kCylinder, .height = length}}) {
+      const std::optional<Error> error = error_of([&] { static_cast<void>(make_shape(shape)); });
+      ASSERT_TRUE(error) << length;
+      EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+    }
   }
 }
 

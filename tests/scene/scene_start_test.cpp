@@ -47,7 +47,8 @@ TEST_F(SceneStart, IsWhereTheDeviceStarts) {
 }
 
 TEST_F(SceneStart, ThatTouchesIsRefusedWithARemedy) {
-  expect_refused(starting("[0, 0, 9]"), "the bodies touch", "open = \"-z\", or start elsewhere");
+  expect_refused(starting("[0, 0, 9]"), "the bodies intersect",
+                 "open = \"-z\", or start elsewhere");
 }
 
 // The ball of 5 in the box of 40 x 40 x 10 touches its faces; one of 2 does not, and is inside.
@@ -75,7 +76,7 @@ TEST_F(SceneStart, IsOpenedAlongItsAxisUntilItIsFree) {
     EXPECT_GT(sign * moved.z(), 10e-3);
     EXPECT_LT(sign * moved.z(), 12.5e-3);
     // It does touch nothing, and a hand that stays away feels only its coupling.
-    EXPECT_EQ(scene.simulation->tick(std::nullopt, {}).contacts->contacts, 0u);
+    EXPECT_EQ(scene.simulation->tick(std::nullopt, {}).contacts->leaf_pairs, 0u);
   }
 }
 
@@ -89,10 +90,10 @@ TEST_F(SceneStart, ThatIsFreeIsNotOpened) {
 TEST_F(SceneStart, ThatIsFreeHasAGapThatTicksTell) {
   const BuiltScene scene = built(starting("[0, 0, 15]"));
   const Tick tick = scene.simulation->tick(scene.device->read(), {});
-  ASSERT_TRUE(tick.contacts && tick.contacts->gap);
-  EXPECT_LE(tick.contacts->gap->lower, 5.01);  // the ball's facets lie inside it
-  EXPECT_GE(tick.contacts->gap->upper, 5);
-  EXPECT_LT(tick.contacts->gap->upper - tick.contacts->gap->lower, 40);
+  ASSERT_TRUE(tick.contacts && tick.contacts->distance);
+  EXPECT_LE(tick.contacts->distance->lower, 5.01);  // the ball's facets lie inside it
+  EXPECT_GE(tick.contacts->distance->upper, 5);
+  EXPECT_LT(tick.contacts->distance->upper - tick.contacts->distance->lower, 40);
 }
 
 // A turned fixed body does not turn the axis, which is the scene's.

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/scene.h"
 #include "support/data_dir.h"
 #include "support/skip.h"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "query/search/scenes.h"
-#include "query/search/targets.h"
+#include "query/scenes.h"
+#include "simd/targets.h"
 
 namespace ist::test {
 
@@ -19,16 +19,16 @@ class AllEngines {
              std::size_t frontier_pairs = 1 << 10) {
     for (const std::string& target : all_targets()) {
       for (const int workers : {1, 2}) {
-        CollisionOptions options = options_of(policy, target, workers);
+        QueryOptions options = options_of(policy, target, workers);
         options.frontier_pairs = frontier_pairs;
-        engines_.push_back(std::make_unique<CollisionQuery>(fixed, moving, options));
+        engines_.push_back(std::make_unique<Query>(fixed, moving, options));
       }
     }
   }
 
   /// The one answer of all of them; a test fails where there are two.
-  Answer operator()(const Eigen::Isometry3d& pose) {
-    Answer answer = ask(first(), pose);
+  FoundPairs operator()(const Eigen::Isometry3d& pose) {
+    FoundPairs answer = ask(first(), pose);
     EXPECT_EQ(answer.result.status, QueryStatus::kDone);
     EXPECT_TRUE(answer.result.complete);
     for (const auto& engine : engines_) {
@@ -40,12 +40,12 @@ class AllEngines {
   }
 
   /// One of them, to search with.
-  [[nodiscard]] CollisionQuery& first() { return *engines_.front(); }
+  [[nodiscard]] Query& first() { return *engines_.front(); }
   /// The best with two workers.
-  [[nodiscard]] const CollisionQuery& shared() const { return *engines_[1]; }
+  [[nodiscard]] const Query& shared() const { return *engines_[1]; }
 
  private:
-  std::vector<std::unique_ptr<CollisionQuery>> engines_;
+  std::vector<std::unique_ptr<Query>> engines_;
 };
 
 }  // namespace ist::test

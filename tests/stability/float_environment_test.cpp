@@ -8,17 +8,15 @@
 #include <sstream>
 
 #include "ist/base/pose.h"
-#include "ist/mesh/mesh_check.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/mesh/orientation.h"
-#include "ist/query/inside.h"
-#include "ist/query/reference.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
 #include "ist/tree/bound_builder.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
-#include "ist/tree/tree_statistics.h"
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/sphere_tree.h"
 #include "ist/voxel/voxelizer.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 #include "support/temp_dir.h"
@@ -73,7 +71,7 @@ class Record {
   void add(const Eigen::Vector3d& vector) {
     for (const double x : vector) add(x);
   }
-  void add(const GapInterval& gap) {
+  void add(const DistanceInterval& gap) {
     add(gap.lower);
     add(gap.upper);
   }
@@ -84,8 +82,8 @@ class Record {
       add(moving);
     }
   }
-  void add(const Answer& answer) {
-    pairs(answer.contacts);
+  void add(const FoundPairs& answer) {
+    pairs(answer.leaf_pairs);
     add(answer.result.sphere_tests);
     add(answer.result.pad);
   }
@@ -167,35 +165,34 @@ std::string all_of_it(const Meshes& meshes, double unit, const std::filesystem::
   const InsideTest inside(meshes.a, meshes.b);
   for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
     for (const int workers : {1, 2}) {
-      auto query = host.keeps([&] {
-        return std::make_unique<CollisionQuery>(fixed, moving, options_of(policy, "", workers));
-      });
+      auto query = host.keeps(
+          [&] { return std::make_unique<Query>(fixed, moving, options_of(policy, "", workers)); });
       auto reference = host.keeps([&] {
         return std::make_unique<ReferenceQuery>(fixed, moving, policy, SphereSource::kSaved);
       });
       auto points =
-          host.keeps([&] { return std::make_unique<ContactPoints>(fixed, moving, policy); });
+          host.keeps([&] { return std::make_unique<ContactManifold>(fixed, moving, policy); });
       record.add(points->rates().spring_torque);
       for (const double distance : {1.5, 2.5, 0.0}) {
         const Eigen::Isometry3d pose =
             pose_of(rotation, {distance * unit, 1e-310, 0.25 * distance * unit});
-        const Answer answer = host.keeps([&] { return ask(*query, pose); });
+        const FoundPairs answer = host.keeps([&] { return ask(*query, pose); });
         record.add(answer);
-        record.add(host.keeps([&] { return query->resolution(answer.result); }));
+        record.add(answer.result.resolution);
         record.add(host.keeps([&] { return ask(*reference, pose); }));
-        record.add(host.keeps([&] { return query->gap(pose, 0); }).gap);
+        record.add(host.keeps([&] { return query->distance(pose, 0); }).distance);
         record.add(*host.keeps([&] {
-                          return query->collide(pose, std::span<Contact>(),
-                                                Budget{.sphere_tests = 200});
+                          return query->leaf_pairs(pose, std::span<LeafPair>(),
+                                                   Budget{.tests = 200});
                         })
-                        .gap);
+                        .distance);
         std::vector<TrianglePair> pairs(1 << 12);
-        pairs.resize(host.keeps([&] { return query->collide_exact(pose, pairs); }).triangle_pairs);
+        pairs.resize(host.keeps([&] { return query->triangle_pairs(pose, pairs); }).triangle_pairs);
         record.pairs(pairs);
-        record.add(host.keeps([&] { return query->touches(pose); }));
+        record.add(host.keeps([&] { return query->intersects(pose).answer; }));
         record.add(host.keeps([&] { return inside.at(pose); }));
-        static_cast<void>(host.keeps([&] { return query->contact_points(pose, *points); }));
-        for (const ContactPoint& point : points->points()) {
+        static_cast<void>(host.keeps([&] { return query->contacts(pose, *points); }));
+        for (const Contact& point : points->points()) {
           record.add(point.position);
           record.add(point.normal);
           record.add(point.depth);
@@ -244,11 +241,11 @@ TEST(FloatEnvironment, OfTheSecondWorkerIsNotTheCallers) {
   StabilityCase wrong("arithmetic", "the second worker's rounding, FTZ and DAZ",
                       "answers that differ");
   const Scene& scene = shells();
-  CollisionQuery alone(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-  const Answer expected = ask(alone, scene.pose);
+  Query serial(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+  const FoundPairs expected = ask(serial, scene.pose);
   for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
-    Answer answer = expected;
-    std::optional<CollisionQuery> query;
+    FoundPairs answer = expected;
+    std::optional<Query> query;
     {
       HostArithmetic host(rounding,
                           kFlushToZero | kDenormalsAreZero);  // and the worker comes in it
@@ -259,7 +256,7 @@ TEST(FloatEnvironment, OfTheSecondWorkerIsNotTheCallers) {
          query->sharing().chunks < 4 && Clock::now() < give_up;) {
       {
         HostArithmetic host(rounding, kFlushToZero | kDenormalsAreZero);
-        answer.result = query->collide(scene.pose, answer.contacts);
+        answer.result = query->leaf_pairs(scene.pose, answer.leaf_pairs);
       }
       wrong.sample(same(answer, expected) ? 0 : 1, 0);
     }

@@ -4,15 +4,16 @@
 #include <cmath>
 #include <limits>
 
-#include "ist/query/contacts/node_bound.h"
-#include "ist/query/kernels.h"
-#include "ist/query/promise/read_bounds.h"
+#include "ist/query/contacts/contact_leaf.h"
+#include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/meeting_pairs.h"
 #include "query/exact/mesh_distance.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
+#include "simd/dispatch.h"
 #include "stability/search_overlap.h"
+#include "verify/read_bounds.h"
 
 namespace ist::test {
 namespace {
@@ -29,9 +30,9 @@ ShapeCases::ShapeCases(const std::string& shape)
 
 void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
   constexpr int kParts = 16;  // of a pad, to which it is measured
-  const Lattice& lattice = tree.lattice();
-  const std::vector<std::uint64_t> codes = tree.octree().codes(0);
-  const auto& [mesh, lists] = *tree.triangles();
+  const Lattice& lattice = tree.parts().lattice;
+  const std::vector<std::uint64_t> codes = tree.parts().octree.codes(0);
+  const auto& [mesh, lists] = *tree.parts().triangles;
   std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
   for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
     for (const std::uint32_t t : lists[voxel]) found[t].push_back(codes[voxel]);
@@ -59,10 +60,10 @@ void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
 HardPair::Asked::Asked(const SphereTree& fixed, const SphereTree& moving, SpherePolicy by)
     : policy(by), reference(fixed, moving, by), points(fixed, moving, by, {32, 1 << 12}) {
   const auto add = [&](const std::string& target, int workers) {
-    CollisionOptions options = options_of(by, target, workers);
+    QueryOptions options = options_of(by, target, workers);
     options.frontier_pairs = 1 << 10;
     options.triangle_pairs = 1 << 12;
-    engines.push_back(std::make_unique<CollisionQuery>(fixed, moving, options));
+    engines.push_back(std::make_unique<Query>(fixed, moving, options));
   };
   for (const Kernels& kernels : all_kernels()) add(kernels.target, 1);
   add("", 2);
@@ -88,23 +89,24 @@ HardPair::HardPair(const TriangleMesh& fixed, double fixed_voxel, const Triangle
 bool HardPair::check(const Eigen::Isometry3d& pose, ShapeCases& cases) {
   const ExactPair exact(exact_fixed_, exact_moving_, pose);
   const std::vector<TrianglePair> meeting = meeting_pairs(fixed_, moving_, pose);
-  const double distance =
-      meeting.empty() ? mesh_distance(fixed_.triangles()->mesh, moving_.triangles()->mesh, pose)
-                      : 0;
+  const double distance = meeting.empty() ? mesh_distance(fixed_.parts().triangles->mesh,
+                                                          moving_.parts().triangles->mesh, pose)
+                                          : 0;
   std::vector<TrianglePair> pairs(meeting.size() + 1);
   for (const auto& asked : asked_) {
     SCOPED_TRACE(to_string(asked->policy));
     check_leaf_pairs(*asked, exact, pose, cases);
     check_contact_points(*asked, pose, cases.answers);
     for (const auto& engine : asked->engines) {
-      const ExactResult found = engine->collide_exact(pose, pairs);
+      const TrianglePairsResult found = engine->triangle_pairs(pose, pairs);
       const bool right = found.triangle_pairs == meeting.size() &&
                          std::equal(meeting.begin(), meeting.end(), pairs.begin()) &&
-                         engine->touches(pose) == (meeting.empty() ? Touch::kNo : Touch::kYes);
+                         engine->intersects(pose).answer ==
+                             (meeting.empty() ? ist::Answer::kNo : ist::Answer::kYes);
       cases.answers.sample(right ? 0 : 1, 0, "triangle pairs");
       check_gap(*engine, distance, pose, cases.gap);
     }
-    CollisionQuery plain(plain_fixed_, plain_moving_, options_of(asked->policy));
+    Query plain(plain_fixed_, plain_moving_, options_of(asked->policy));
     check_gap(plain, distance, pose, cases.gap);
   }
   return !meeting.empty();
@@ -112,52 +114,54 @@ bool HardPair::check(const Eigen::Isometry3d& pose, ShapeCases& cases) {
 
 void HardPair::check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eigen::Isometry3d& pose,
                                 ShapeCases& cases) {
-  const Answer answer = ask(*asked.engines.front(), pose);
+  const FoundPairs answer = ask(*asked.engines.front(), pose);
   for (const auto& engine : asked.engines) {
     cases.answers.sample(same(ask(*engine, pose), answer) ? 0 : 1, 0, engine->target());
   }
   const double pad = answer.result.pad;
-  const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
+  const RelativePose relative =
+      *relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
   double apart = 0;
-  for (const Contact& pair : answer.contacts) {
+  for (const LeafPair& pair : answer.leaf_pairs) {
     apart = std::max(apart, -leaf_overlap(fixed_, moving_, asked.policy, relative, pair));
   }
-  const auto kept = keeps_promise(exact, asked.policy, answer.contacts, pad);
-  cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.contacts.size(), 1),
+  const auto kept = keeps_guarantee(exact, asked.policy, answer.leaf_pairs, pad);
+  cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.leaf_pairs.size(), 1),
                               kept ? apart : kInfinity, pad, kept.message());
-  const Answer reference = ask(asked.reference, pose);
-  const auto promised =
-      keeps_promise(exact, asked.policy, reference.contacts, reference.result.pad);
-  cases.answers.sample(promised ? 0 : 1, 0, promised.message());
+  const FoundPairs reference = ask(asked.reference, pose);
+  const auto guaranteed =
+      keeps_guarantee(exact, asked.policy, reference.leaf_pairs, reference.result.pad);
+  cases.answers.sample(guaranteed ? 0 : 1, 0, guaranteed.message());
 }
 
 void HardPair::check_contact_points(Asked& asked, const Eigen::Isometry3d& pose,
                                     StabilityCase& answers) {
-  const double size = 0.5 * (fixed_.lattice().voxel_size + moving_.lattice().voxel_size);
-  const Touched first = touched(*asked.engines.front(), asked.points, pose);
+  const double size = 0.5 * (fixed_.voxel_size() + moving_.voxel_size());
+  const FoundContacts first = find_contacts(*asked.engines.front(), asked.points, pose);
   answers.sample(is_sound(first, size) ? 0 : 1, 0, "contact points");
   for (const auto& engine : asked.engines) {
-    answers.sample(same(touched(*engine, asked.points, pose), first) ? 0 : 1, 0,
+    answers.sample(same(find_contacts(*engine, asked.points, pose), first) ? 0 : 1, 0,
                    "contact points of another engine");
   }
 }
 
-void HardPair::check_gap(CollisionQuery& query, double distance, const Eigen::Isometry3d& pose,
+void HardPair::check_gap(Query& query, double distance, const Eigen::Isometry3d& pose,
                          StabilityCase& gap) {
   const double place = largest_coordinate_ + pose.translation().cwiseAbs().maxCoeff();
   // Of the distance that it is held against, and of the one that a query with triangles measures;
   // and as far as either's moved vertices are rounded.
   const double error = kTriangleDistanceError * (longest_edge_ + distance) + 0x1p-50 * place;
-  for (const double tolerance : {0.0, 0.05 * fixed_.lattice().voxel_size}) {
-    const GapInterval found = query.gap(pose, tolerance).gap;
+  for (const double tolerance : {0.0, 0.05 * fixed_.voxel_size()}) {
+    const DistanceInterval found = query.distance(pose, tolerance).distance;
     gap.sample(outside(found, distance), error);
-    const double wide = query.is_exact() ? tolerance + 2 * error + 0x1p-47 * place
-                                         : std::max(tolerance, 2 * query.resolution({}));
+    const double wide = query.has_triangles()
+                            ? tolerance + 2 * error + 0x1p-47 * place
+                            : std::max(tolerance, 2 * query.leaf_pairs(pose, {}).resolution);
     gap.sample(std::max(0.0, found.upper - found.lower - wide), error, "width");
   }
   for (const std::uint64_t tests : {1u, 40u, 1000u}) {
-    const QueryResult found = query.collide(pose, {}, {.sphere_tests = tests});
-    gap.sample(outside(*found.gap, distance), error, "stopped early");
+    const QueryResult found = query.leaf_pairs(pose, {}, {.tests = tests});
+    gap.sample(outside(*found.distance, distance), error, "stopped early");
   }
 }
 

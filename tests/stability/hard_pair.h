@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/contacts/contact_points.h"
-#include "ist/query/reference.h"
+#include "ist/query/manifold.h"
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
 #include "support/exact_query.h"
 #include "support/stability.h"
 
@@ -37,8 +37,9 @@ class HardPair {
   [[nodiscard]] const SphereTree& fixed() const { return fixed_; }
   [[nodiscard]] const SphereTree& moving() const { return moving_; }
 
-  /// Leaf pairs keep their promise, triangle pairs are those that meet, the gap holds the distance,
-  /// contact points are finite, and all engines give the same bits. Returns whether they touch.
+  /// Leaf pairs keep their guarantee, triangle pairs are those that meet, the gap holds the
+  /// distance, contact points are finite, and all engines give the same bits. Returns whether they
+  /// touch.
   bool check(const Eigen::Isometry3d& pose, ShapeCases& cases);
 
  private:
@@ -47,14 +48,13 @@ class HardPair {
 
     SpherePolicy policy;
     ReferenceQuery reference;
-    ContactPoints points;
-    std::vector<std::unique_ptr<CollisionQuery>> engines;  // the last one with two workers
+    ContactManifold points;
+    std::vector<std::unique_ptr<Query>> engines;  // the last one with two workers
   };
   void check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eigen::Isometry3d& pose,
                         ShapeCases& cases);
   void check_contact_points(Asked& asked, const Eigen::Isometry3d& pose, StabilityCase& answers);
-  void check_gap(CollisionQuery& query, double distance, const Eigen::Isometry3d& pose,
-                 StabilityCase& gap);
+  void check_gap(Query& query, double distance, const Eigen::Isometry3d& pose, StabilityCase& gap);
 
   SphereTree fixed_, moving_;              // with their triangles
   SphereTree plain_fixed_, plain_moving_;  // and without

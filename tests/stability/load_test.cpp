@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ist/mesh/mesh_io.h"
-#include "ist/query/collision_query.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
 #include "query/exact/exact_tree.h"
 #include "query/query_cases.h"
 #include "query/quiet/allocations.h"
@@ -76,9 +76,9 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
   if (!std::filesystem::exists(path(pair.fixed))) IST_SKIP(path(pair.fixed) << " is not there");
   const SphereTree fixed = tree_with_triangles(read_mesh(path(pair.fixed)), 0.8),
                    moving = tree_with_triangles(read_mesh(path(pair.moving)), 0.8);
-  CollisionQuery query(fixed, moving);
-  ContactPoints points(fixed, moving, query.policy());
-  std::vector<Contact> contacts(1 << 17);
+  Query query(fixed, moving);
+  ContactManifold points(fixed, moving, query.policy());
+  std::vector<LeafPair> leaf_pairs(1 << 17);
   std::vector<TrianglePair> triangles(1 << 14);
   Random random(7);
   std::uint64_t hash = 0, wrong = 0;
@@ -88,15 +88,15 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
   const auto take_number = [&take](double number) { take(&number, sizeof(number)); };
   // What is asked besides contacts costs more, and is asked of some poses.
   const auto ask_for_gap = [&](const Isometry3d& pose) {
-    const GapResult result = query.gap(pose, 0.1);
-    const auto [lower, upper] = result.gap;
+    const DistanceResult result = query.distance(pose, 0.1);
+    const auto [lower, upper] = result.distance;
     wrong += result.status == QueryStatus::kDone &&
              !(0 <= lower && lower <= upper && std::isfinite(upper));
     take_number(lower), take_number(upper);
   };
   const auto ask_for_points = [&](const Isometry3d& pose) {
-    static_cast<void>(query.contact_points(pose, points));
-    for (const ContactPoint& point : points.points()) {
+    static_cast<void>(query.contacts(pose, points));
+    for (const Contact& point : points.points()) {
       const double sum = point.depth + point.weight;
       wrong += !(std::isfinite(sum) && point.weight >= 0);
       take_number(point.depth), take_number(point.weight);
@@ -106,7 +106,7 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
     take_number(sums.weight), take_number(sums.spring.force[2]);
   };
   const auto ask_for_triangles = [&](const Isometry3d& pose) {
-    const ExactResult result = query.collide_exact(pose, triangles);
+    const TrianglePairsResult result = query.triangle_pairs(pose, triangles);
     take(triangles.data(),
          std::min<std::size_t>(result.triangle_pairs, triangles.size()) * sizeof(TrianglePair));
   };
@@ -121,13 +121,13 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
   std::uint64_t touching = 0;
   for (int i = 1; i <= count; ++i) {
     const Isometry3d pose = random_pose(random, pair.centre);
-    const QueryResult result = query.collide(pose, contacts);
+    const QueryResult result = query.leaf_pairs(pose, leaf_pairs);
     wrong += result.truncated || !(result.pad >= 0);
-    touching += result.contacts > 0;
+    touching += result.leaf_pairs > 0;
     const std::array<std::uint64_t, 3> found = {static_cast<std::uint64_t>(result.status),
-                                                result.contacts, result.sphere_tests};
+                                                result.leaf_pairs, result.sphere_tests};
     take(found.data(), sizeof(found));
-    take(contacts.data(), result.contacts * sizeof(Contact));
+    take(leaf_pairs.data(), result.leaf_pairs * sizeof(LeafPair));
     if (i % 500 == 0) ask_for_gap(pose);
     if (i % 500 == 150) ask_for_points(pose);
     if (i % 500 == 300) ask_for_triangles(pose);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "ist/base/pose.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "stability/search_overlap.h"
 #include "support/stability.h"
 
@@ -84,10 +84,11 @@ Eigen::Isometry3d screw(double tangent, const Eigen::Vector3d& step) {
 void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d& direct,
                      double turn, double shift_by, StabilityCase& pairs) {
   const Scene& scene = solids()[0];
-  const double reach = scene.moving.reach() + 3;  // a lever of what is moved out to where they part
+  const double reach =
+      scene.moving.bounding_radius() + 3;  // a lever of what is moved out to where they part
   std::size_t differing = 0;
   for (const SpherePolicy policy : {SpherePolicy::kTight, SpherePolicy::kSlab}) {
-    CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
+    Query query(scene.fixed, scene.moving, options_of(policy));
     Random random(3);
     for (int i = 0; i < 12; ++i) {
       const Eigen::Matrix3d rotation = random.rotation();
@@ -96,16 +97,17 @@ void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d&
         return compose_rigid(motion, pose_of(rotation, x * out)).value();
       };
       const double last = last_touching(
-          1, 3, [&](double x) { return ask(query, place(direct, x)).result.contacts > 0; });
+          1, 3, [&](double x) { return ask(query, place(direct, x)).result.leaf_pairs > 0; });
       for (const double x : {last, std::nextafter(last, 3)}) {
-        const Answer a = ask(query, place(composed, x)), b = ask(query, place(direct, x));
+        const FoundPairs a = ask(query, place(composed, x)), b = ask(query, place(direct, x));
         ASSERT_EQ(a.result.status, QueryStatus::kDone);
         const double band = std::max(a.result.pad, b.result.pad) + turn * reach + shift_by;
-        std::vector<Contact> differ;
-        std::set_symmetric_difference(a.contacts.begin(), a.contacts.end(), b.contacts.begin(),
-                                      b.contacts.end(), std::back_inserter(differ));
+        std::vector<LeafPair> differ;
+        std::set_symmetric_difference(a.leaf_pairs.begin(), a.leaf_pairs.end(),
+                                      b.leaf_pairs.begin(), b.leaf_pairs.end(),
+                                      std::back_inserter(differ));
         differing += differ.size();
-        for (const Contact& pair : differ) {
+        for (const LeafPair& pair : differ) {
           const double overlap =
               search_overlap(scene.fixed, scene.moving, policy, place(direct, x), pair);
           pairs.sample(std::abs(overlap), band);
@@ -166,7 +168,7 @@ TEST_F(LongRun, WithoutProjectionIsStillAPose) {
   const auto projected = project_to_rigid(pose);
   ASSERT_TRUE(projected);
   EXPECT_LE(from_orthonormal(*projected), 1e-15);
-  CollisionQuery query(solids()[0].fixed, solids()[0].moving);
+  Query query(solids()[0].fixed, solids()[0].moving);
   EXPECT_TRUE(same(ask(query, pose), ask(query, *projected)));
   const Eigen::Isometry3d direct =
       project_to_rigid(LongMotion(motion).times(count_).rounded()).value();

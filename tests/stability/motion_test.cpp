@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/mesh_distance.h"
 #include "query/query_cases.h"
@@ -36,12 +36,14 @@ struct LastTouch {
 };
 LastTouch last_touch(const Body& fixed, const Body& moving, SpherePolicy policy,
                      const Isometry3d& from, const Vector3d& direction, double far) {
-  CollisionOptions options;
+  QueryOptions options;
   options.policy = policy;
-  CollisionQuery query(fixed.plain, moving.plain, options), exact(fixed.exact, moving.exact);
+  Query query(fixed.plain, moving.plain, options), exact(fixed.exact, moving.exact);
   const auto at = [&](double t) { return shift(t * direction) * from; };
-  return {last_touching(0, far, [&](double t) { return query.collide(at(t), {}).contacts > 0; }),
-          last_touching(0, far, [&](double t) { return exact.touches(at(t)) == Touch::kYes; })};
+  return {
+      last_touching(0, far, [&](double t) { return query.leaf_pairs(at(t), {}).leaf_pairs > 0; }),
+      last_touching(0, far,
+                    [&](double t) { return exact.intersects(at(t)).answer == ist::Answer::kYes; })};
 }
 
 // Through the first contact of leaves, in steps of 1e-4 mm and in parts of the pad; through that of
@@ -57,11 +59,12 @@ std::size_t sweep_all(const Body& fixed, const Body& moving, SpherePolicy policy
   sweep.along(line(at(last.leaves + steps / 2 * fine), -direction, fine, steps));
   sweep.along(line(at(last.triangles + steps / 2 * kStep), -direction, kStep, steps));
   sweep.along(line(from, -direction, kStep, steps));
-  const Vector3d centre = moving.plain.lattice().origin();
+  const Vector3d centre = moving.plain.origin();
   for (const Vector3d& axis :
        {direction, Vector3d(direction.cross(Vector3d(1, 2, 3)).normalized())})
     for (const double t : {last.leaves, last.triangles, 0.0})
-      sweep.along(turn(at(t), axis, centre, sweep.lever(), moving.plain.reach(), kStep, steps / 2));
+      sweep.along(turn(at(t), axis, centre, sweep.lever(), moving.plain.bounding_radius(), kStep,
+                       steps / 2));
   return sweep.changes();
 }
 
@@ -91,8 +94,8 @@ TEST_P(Motion, OfFacesOnLatticePlanesChangesNoFasterThanItsRates) {
   sweep.along(line(shift({0.5 - 50 * kStep, 0, 2}), x, kStep, 100));
   sweep.along(
       line(shift({0.5 - 50 * kStep, 0.5, 2.5}), Vector3d(1, 1, -1) / std::sqrt(3.0), kStep, 100));
-  sweep.along(turn(shift({0.5, 0, 2}), x, cube.plain.lattice().origin(), sweep.lever(),
-                   cube.plain.reach(), kStep, 100));
+  sweep.along(turn(shift({0.5, 0, 2}), x, cube.plain.origin(), sweep.lever(),
+                   cube.plain.bounding_radius(), kStep, 100));
   EXPECT_GT(sweep.changes(), 10u);
 }
 
@@ -111,15 +114,15 @@ class TwoSizes {
   };
   void check(const std::vector<const Body*>& fixed, const std::vector<const Body*>& moving,
              const std::vector<At>& poses) {
-    std::vector<GapInterval> common(poses.size(), {0, HUGE_VAL});
-    const auto ask_all = [&](CollisionQuery& query) {
+    std::vector<DistanceInterval> common(poses.size(), {0, HUGE_VAL});
+    const auto ask_all = [&](Query& query) {
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto& [pose, distance, error] = poses[i];
-        std::vector<GapInterval> found = {query.gap(pose, 0).gap};
+        std::vector<DistanceInterval> found = {query.distance(pose, 0).distance};
         for (const std::uint64_t tests : {1u, 30u, 300u}) {
-          found.push_back(*query.collide(pose, {}, {.sphere_tests = tests}).gap);
+          found.push_back(*query.leaf_pairs(pose, {}, {.tests = tests}).distance);
         }
-        for (const GapInterval& gap : found) {
+        for (const DistanceInterval& gap : found) {
           truth_.sample(outside(gap, distance), error);
           common[i] = {std::max(common[i].lower, gap.lower), std::min(common[i].upper, gap.upper)};
         }
@@ -127,10 +130,10 @@ class TwoSizes {
     };
     for (std::size_t i = 0; i < fixed.size(); ++i) {
       for (const SpherePolicy policy : kSpherePolicies) {
-        CollisionOptions options;
+        QueryOptions options;
         options.policy = policy;
         options.triangle_pairs = 1 << 12;
-        CollisionQuery exact(fixed[i]->exact, moving[i]->exact, options),
+        Query exact(fixed[i]->exact, moving[i]->exact, options),
             plain(fixed[i]->plain, moving[i]->plain, options);
         ask_all(exact);
         ask_all(plain);
@@ -184,11 +187,11 @@ TEST(MotionOfRealJaws, ChangesNoFasterThanItsRates) {
   }
 
   const Body coarse_fixed(maxilla, 3.2), coarse_moving(mandible, 3.2);
-  CollisionQuery query(fixed.exact, moving.exact);
+  Query query(fixed.exact, moving.exact);
   std::vector<TwoSizes::At> poses;
   for (const double t : {0.0, 1.35, 2.5, 20.0}) {
     const Isometry3d pose = shift(t * down) * from;
-    const GapInterval gap = query.gap(pose, 0).gap;
+    const DistanceInterval gap = query.distance(pose, 0).distance;
     poses.push_back({pose, 0.5 * (gap.lower + gap.upper), gap.upper - gap.lower});
   }
   TwoSizes("real jaws").check({&fixed, &coarse_fixed}, {&moving, &coarse_moving}, poses);

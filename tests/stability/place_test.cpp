@@ -45,11 +45,11 @@ TriangleMesh rounded(TriangleMesh mesh, double scale, double step) {
 struct Bodies : ExactBodies {
   Bodies(const TriangleMesh& a, double size_a, const TriangleMesh& b, double size_b)
       : ExactBodies(a, tree_with_triangles(a, size_a), b, tree_with_triangles(b, size_b)) {}
-  // The answer of all engines, held against the promise.
-  Answer check(AllEngines& engines, const Eigen::Isometry3d& pose, StabilityCase& wrong) const {
-    const Answer answer = engines(pose);
+  // The answer of all engines, held against the guarantee.
+  FoundPairs check(AllEngines& engines, const Eigen::Isometry3d& pose, StabilityCase& wrong) const {
+    const FoundPairs answer = engines(pose);
     const auto kept =
-        keeps_promise(at(pose), engines.first().policy(), answer.contacts, answer.result.pad);
+        keeps_guarantee(at(pose), engines.first().policy(), answer.leaf_pairs, answer.result.pad);
     wrong.sample(kept ? 0 : 1, 0, kept.message());
     return answer;
   }
@@ -94,12 +94,12 @@ TEST_P(Place, OfTheSceneCostsNothing) {
       const Eigen::Isometry3d both = pose_of(rotation, at + away - rotation * away);
       const auto compare = [&](const Bodies& bodies, AllEngines& engines,
                                const Eigen::Isometry3d& pose, const Eigen::Isometry3d& same_pose) {
-        const Answer there = bodies.check(engines, pose, wrong);
-        const Answer here = near.check(at_origin, same_pose, wrong);
+        const FoundPairs there = bodies.check(engines, pose, wrong);
+        const FoundPairs here = near.check(at_origin, same_pose, wrong);
         // Twice a float that is rounded up: of translations that differ in their last bits.
         pads.sample(std::abs(there.result.pad / here.result.pad - 1), 0x1p-22);
         if (i % 3 == 0) {
-          EXPECT_EQ(there.contacts, here.contacts);
+          EXPECT_EQ(there.leaf_pairs, here.leaf_pairs);
         }
       };
       compare(fixed_far, fixed_away, one, at_the_origin(one, away, {0, 0, 0}));
@@ -121,14 +121,14 @@ TEST(PlaceOfBodies, DoesNotMakeTheGapFalse) {
     const SphereTree near_b = tree_with_triangles(b, 0.25 * scale);
     const SphereTree far_a = tree_with_triangles(moved(a, away), 0.25 * scale);
     const SphereTree far_b = tree_with_triangles(moved(b, away), 0.25 * scale);
-    CollisionQuery near(near_a, near_b), far(far_a, far_b);
+    Query near(near_a, near_b), far(far_a, far_b);
     Random random(8);
     for (int i = 0; i < samples(60); ++i) {
       const Eigen::Matrix3d rotation = random.rotation();
       const Eigen::Vector3d at = scale * random.uniform(1.5, 2.5) * random.direction();
       const Eigen::Isometry3d pose = pose_of(rotation, at + away - rotation * away);
-      const GapInterval here = near.gap(at_the_origin(pose, away, away), 0).gap;
-      const GapInterval there = far.gap(pose, 0).gap;
+      const DistanceInterval here = near.distance(at_the_origin(pose, away, away), 0).distance;
+      const DistanceInterval there = far.distance(pose, 0).distance;
       if (!(here.lower > 0)) continue;
       // At the origin the distance in the middle is right to some last bits, unless triangles are
       // as good as parallel.
@@ -153,7 +153,7 @@ TEST_P(Place, OnTheLatticeIsDecided) {
       joined(triangle({0, 0, 0}, {3, 0, 0}, {0, 3, 3}), triangle({3, 3, 3}, {3, 0, 0}, {0, 3, 3}));
   const Bodies bodies(planes, 1, roof, 1);
   AllEngines engines(bodies.fixed, bodies.moving, GetParam());
-  std::size_t contacts = 0;
+  std::size_t leaf_pairs = 0;
   int quaternions = 0;
   for (const Eigen::Matrix3d& turn : quarter_turns()) {
     const Eigen::Quaterniond q(turn), minus(-q.w(), -q.x(), -q.y(), -q.z());
@@ -161,13 +161,13 @@ TEST_P(Place, OnTheLatticeIsDecided) {
     EXPECT_EQ(rotation, minus.toRotationMatrix());
     for (const Eigen::Vector3d& at :
          {Eigen::Vector3d(4, 0, 0), Eigen::Vector3d(4, 4, 1), Eigen::Vector3d(1, 2, -3)}) {
-      contacts += bodies.check(engines, pose_of(turn, at), wrong).contacts.size();
+      leaf_pairs += bodies.check(engines, pose_of(turn, at), wrong).leaf_pairs.size();
       if (rotation == turn) continue;
       ++quaternions;
-      contacts += bodies.check(engines, pose_of(rotation, at), wrong).contacts.size();
+      leaf_pairs += bodies.check(engines, pose_of(rotation, at), wrong).leaf_pairs.size();
     }
   }
-  EXPECT_GT(contacts, 300u);
+  EXPECT_GT(leaf_pairs, 300u);
   EXPECT_GT(quaternions, 10);
 }
 
@@ -182,15 +182,15 @@ TEST_P(Place, MayBeGivenInDenormals) {
   const Bodies bodies(spiky, 0.25, flat, 0.3);
   AllEngines engines(bodies.fixed, bodies.moving, GetParam());
   Random random(9);
-  std::size_t contacts = 0;
+  std::size_t leaf_pairs = 0;
   for (int i = 0; i < samples(12); ++i) {
     const Eigen::Matrix3d rotation =
         i % 2 == 0 ? quarter_turns()[random.below(24)] : random.rotation();
     const Eigen::Vector3d at(kTiny * random.uniform(-1, 1), i % 3 == 0 ? 1 : -kLeast,
                              i % 3 == 1 ? 0.5 : kTiny);
-    contacts += bodies.check(engines, pose_of(rotation, at), wrong).contacts.size();
+    leaf_pairs += bodies.check(engines, pose_of(rotation, at), wrong).leaf_pairs.size();
   }
-  EXPECT_GT(contacts, 100u);
+  EXPECT_GT(leaf_pairs, 100u);
 }
 
 // As far as doubles go, far beyond floats: one test of two roots, and an interval that holds the
@@ -201,14 +201,14 @@ TEST_P(Place, BeyondTheRangeOfFloatEndsAtTheRoot) {
                       "wrong answers");
   const SphereTree tree = tree_with_triangles(box({0, 0, 0}, {1, 1, 1}), 0.25);
   const auto at_root = [](const auto& result) { return result.sphere_tests == 1; };
-  const auto within = [](const GapInterval& gap, const mpq_class& squared) {
+  const auto within = [](const DistanceInterval& gap, const mpq_class& squared) {
     if (!std::isfinite(gap.lower) || !std::isfinite(gap.upper) || gap.lower <= 0) return false;
     const mpq_class lower(gap.lower), upper(gap.upper);
     return lower * lower <= squared && (upper * upper >= squared || gap.upper == kMost);
   };
   AllEngines engines(tree, tree, GetParam());
-  CollisionQuery& query = engines.first();
-  ContactPoints points(tree, tree, GetParam());
+  Query& query = engines.first();
+  ContactManifold points(tree, tree, GetParam());
   for (const double far : {1e26, 1e39, 1e300, kMost}) {
     for (int axes = 1; axes < 8; ++axes) {
       for (const double sign : {-1.0, 1.0}) {
@@ -218,18 +218,18 @@ TEST_P(Place, BeyondTheRangeOfFloatEndsAtTheRoot) {
         const mpq_class apart = mpq_class(far) - 1;
         const mpq_class squared = (axes & 1) * apart * apart + (axes >> 1 & 1) * apart * apart +
                                   (axes >> 2) * apart * apart;
-        const Answer answer = engines(pose);
-        const QueryResult within_budget = query.collide(pose, std::span<Contact>(), Budget{});
-        const GapResult gap = query.gap(pose, 0);
-        const ExactResult exact = query.collide_exact(pose, {});
-        const QueryResult felt = query.contact_points(pose, points);
+        const FoundPairs answer = engines(pose);
+        const QueryResult within_budget = query.leaf_pairs(pose, std::span<LeafPair>(), Budget{});
+        const DistanceResult gap = query.distance(pose, 0);
+        const TrianglePairsResult exact = query.triangle_pairs(pose, {});
+        const QueryResult felt = query.contacts(pose, points);
         const bool right =
-            at_root(answer.result) && answer.contacts.empty() && std::isfinite(answer.result.pad) &&
-            within(*answer.result.gap, squared) && at_root(within_budget) &&
-            within(*within_budget.gap, squared) && at_root(gap) && within(gap.gap, squared) &&
-            at_root(exact) && exact.triangle_pairs == 0 && at_root(felt) && felt.contacts == 0 &&
-            points.points().empty() && points.sums().weight == 0 &&
-            query.touches(pose) == Touch::kNo;
+            at_root(answer.result) && answer.leaf_pairs.empty() &&
+            std::isfinite(answer.result.pad) && within(*answer.result.distance, squared) &&
+            at_root(within_budget) && within(*within_budget.distance, squared) && at_root(gap) &&
+            within(gap.distance, squared) && at_root(exact) && exact.triangle_pairs == 0 &&
+            at_root(felt) && felt.leaf_pairs == 0 && points.points().empty() &&
+            points.sums().weight == 0 && query.intersects(pose).answer == ist::Answer::kNo;
         wrong.sample(right ? 0 : 1, 0, "at " + std::to_string(at[0]));
       }
     }

@@ -5,19 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/mesh/mesh_io.h"
-#include "ist/query/promise/promise_check.h"
-#include "ist/query/reference.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/meeting_pairs.h"
 #include "query/exact/mesh_distance.h"
-#include "query/search/scenes.h"
-#include "query/search/targets.h"
+#include "query/scenes.h"
+#include "simd/targets.h"
 #include "support/data_dir.h"
 #include "support/shapes.h"
 #include "support/skip.h"
 #include "support/stability.h"
+#include "verify/answer_verifier.h"
 
 namespace ist::test {
 namespace {
@@ -37,38 +38,38 @@ INSTANTIATE_TEST_SUITE_P(Files, RealBodies,
                            return name.substr(name.find('/') + 1);
                          });
 
-// Two bodies at some poses: the promise, by the library's own check if asked; the same bits from
+// Two bodies at some poses: the guarantee, by the library's own check if asked; the same bits from
 // all targets; contact points that are numbers.
 void check_answers(const SphereTree& fixed, const SphereTree& moving,
-                   const std::vector<Isometry3d>& poses, bool promise, StabilityCase& answers) {
+                   const std::vector<Isometry3d>& poses, bool guarantee, StabilityCase& answers) {
   const SphereTree plain_fixed = without_triangles(fixed), plain_moving = without_triangles(moving);
   for (const SpherePolicy policy : kSpherePolicies) {
     SCOPED_TRACE(to_string(policy));
-    const PromiseCheck check(fixed, moving, policy);
+    const AnswerVerifier check(fixed, moving, policy);
     ReferenceQuery reference(plain_fixed, plain_moving, policy);
-    ContactPoints points(plain_fixed, plain_moving, policy);
-    std::vector<std::unique_ptr<CollisionQuery>> engines;
+    ContactManifold points(plain_fixed, plain_moving, policy);
+    std::vector<std::unique_ptr<Query>> engines;
     const auto add = [&](const std::string& target, int workers) {
-      engines.push_back(std::make_unique<CollisionQuery>(plain_fixed, plain_moving,
-                                                         options_of(policy, target, workers)));
+      engines.push_back(
+          std::make_unique<Query>(plain_fixed, plain_moving, options_of(policy, target, workers)));
     };
     for (const std::string& target : all_targets()) add(target, 1);
     add("", 2);
     for (const Isometry3d& pose : poses) {
-      const Answer answer = ask(*engines.front(), pose);
-      const Touched first = touched(*engines.front(), points, pose);
-      if (promise) {
-        const Answer plain = ask(reference, pose);
-        const auto breach =
-            check.check(pose, std::vector{GivenAnswer{answer.result, answer.contacts},
-                                          GivenAnswer{plain.result, plain.contacts}});
-        answers.sample(breach ? 1 : 0, 0, breach ? breach->what : "");
+      const FoundPairs answer = ask(*engines.front(), pose);
+      const FoundContacts first = find_contacts(*engines.front(), points, pose);
+      if (guarantee) {
+        const FoundPairs plain = ask(reference, pose);
+        const auto violation =
+            check.check(pose, std::vector{GivenAnswer{answer.result, answer.leaf_pairs},
+                                          GivenAnswer{plain.result, plain.leaf_pairs}});
+        answers.sample(violation ? 1 : 0, 0, violation ? violation->detail : "");
       }
-      answers.sample(is_sound(first, fixed.lattice().voxel_size) ? 0 : 1, 0, "contact points");
+      answers.sample(is_sound(first, fixed.voxel_size()) ? 0 : 1, 0, "contact points");
       for (const auto& engine : engines) {
         answers.sample(same(ask(*engine, pose), answer) ? 0 : 1, 0, engine->target());
       }
-      answers.sample(same(touched(*engines.back(), points, pose), first) ? 0 : 1, 0,
+      answers.sample(same(find_contacts(*engines.back(), points, pose), first) ? 0 : 1, 0,
                      "contact points by two workers");
     }
   }
@@ -78,12 +79,12 @@ void check_answers(const SphereTree& fixed, const SphereTree& moving,
 // meet, against what all pairs of triangles give.
 void check_distance(const SphereTree& body, const SphereTree& ball, double reach, Random& random,
                     StabilityCase& gap, StabilityCase& answers) {
-  const TriangleMesh &mesh = body.triangles()->mesh, &other = ball.triangles()->mesh;
-  const double size = body.lattice().voxel_size;
+  const TriangleMesh &mesh = body.parts().triangles->mesh, &other = ball.parts().triangles->mesh;
+  const double size = body.voxel_size();
   const double longest = std::max(longest_edge(mesh), longest_edge(other));
-  std::vector<std::unique_ptr<CollisionQuery>> queries;
+  std::vector<std::unique_ptr<Query>> queries;
   for (const SpherePolicy policy : kSpherePolicies) {
-    queries.push_back(std::make_unique<CollisionQuery>(body, ball, options_of(policy)));
+    queries.push_back(std::make_unique<Query>(body, ball, options_of(policy)));
   }
   for (int i = 0; i < samples(3); ++i) {
     // Every other time a corner of the ball on one of the body.
@@ -97,25 +98,25 @@ void check_distance(const SphereTree& body, const SphereTree& ball, double reach
     const double error = kTriangleDistanceError * (distance + longest);
     for (const auto& query : queries) {
       std::vector<TrianglePair> pairs(meeting.size() + 1);
-      const ExactResult found = query->collide_exact(pose, pairs);
+      const TrianglePairsResult found = query->triangle_pairs(pose, pairs);
       answers.sample(found.triangle_pairs == meeting.size() &&
                              std::equal(meeting.begin(), meeting.end(), pairs.begin())
                          ? 0
                          : 1,
                      0, "triangle pairs");
       for (const double tolerance : {0.0, 0.3 * size}) {
-        const GapInterval interval = query->gap(pose, tolerance).gap;
+        const DistanceInterval interval = query->distance(pose, tolerance).distance;
         gap.sample(outside(interval, distance), error);
         const double wide = tolerance + 2 * error;
         gap.sample(std::max(0.0, interval.upper - interval.lower - wide), error, "width");
       }
-      const GapInterval early = *query->collide(pose, {}, {.sphere_tests = 300}).gap;
+      const DistanceInterval early = *query->leaf_pairs(pose, {}, {.tests = 300}).distance;
       gap.sample(outside(early, distance), error, "early");
     }
   }
 }
 
-TEST_P(RealBodies, KeepEveryPromise) {
+TEST_P(RealBodies, KeepEveryGuarantee) {
   const auto file = data_dir() / (std::string(GetParam()) + ".stl");
   if (!std::filesystem::exists(file)) IST_SKIP(file << " is not there");
   const std::string name = file.stem();
@@ -124,7 +125,7 @@ TEST_P(RealBodies, KeepEveryPromise) {
   const TriangleMesh mesh = read_mesh(file);
   constexpr double kCells = 20;
   const SphereTree body = exact_tree(mesh, kCells);
-  const double size = body.lattice().voxel_size, reach = 2 * size;
+  const double size = body.voxel_size(), reach = 2 * size;
   const SphereTree ball = exact_tree(icosphere(0, reach), 4);
   Random random(23);
   // On itself as it is; and a part of it in another part, where the check affords to look.

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <string>
 
-#include "ist/query/reference.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 
@@ -48,10 +50,10 @@ class Scaled {
         fixed_(tree(icosphere(1, 1))),
         moving_(tree(box({-0.75, -0.5, -0.625}, {0.75, 0.5, 0.625}))) {
     for (const SphereTree* tree : {&fixed_, &moving_}) {
-      for (const double x : tree->lattice().corner) numbers_.add(x, 1);
-      for (const std::uint64_t code : tree->octree().codes(0)) numbers_.count(code);
-      for (const PackedNormal normal : tree->normals()) numbers_.count(normal.word());
-      numbers_.add(tree->reach(), 1);
+      for (const double x : tree->parts().lattice.corner) numbers_.add(x, 1);
+      for (const std::uint64_t code : tree->parts().octree.codes(0)) numbers_.count(code);
+      for (const PackedNormal normal : tree->parts().normals) numbers_.count(normal.word());
+      numbers_.add(tree->bounding_radius(), 1);
     }
   }
 
@@ -59,22 +61,22 @@ class Scaled {
   const std::vector<double>& ask_all() {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const char* target : {"", "scalar"}) {
-        CollisionOptions options = options_of(policy, target);
+        QueryOptions options = options_of(policy, target);
         options.frontier_pairs = 1 << 10;
         options.triangle_pairs = 1 << 12;
-        CollisionQuery query(fixed_, moving_, options);
+        Query query(fixed_, moving_, options);
         ReferenceQuery reference(fixed_, moving_, policy);
-        ContactPoints points(fixed_, moving_, policy, {8, 64});
+        ContactManifold points(fixed_, moving_, policy, {8, 64});
         for (int i = 0; i < samples(2); ++i) {
           Random random(static_cast<std::uint64_t>(i));
           const Eigen::Matrix3d rotation = random.rotation();
           const Eigen::Vector3d out = random.direction();
           for (const double distance : {1.25, 2.5}) {  // where they meet, and where they do not
             const Eigen::Isometry3d pose = pose_of(rotation, unit_ * distance * out);
-            leaves(query, ask(query, pose));
-            const Answer published = ask(reference, pose);
-            leaves(reference, published);
-            contacts(query, points, pose);
+            leaves(ask(query, pose));
+            const FoundPairs published = ask(reference, pose);
+            leaves(published);
+            leaf_pairs(query, points, pose);
             triangles(query, pose);
           }
         }
@@ -89,22 +91,21 @@ class Scaled {
     return tree_with_triangles(mesh, 0.19 * unit_);
   }
 
-  template <class Query>
-  void leaves(const Query& query, const Answer& answer) {
-    numbers_.pairs(answer.contacts);
+  void leaves(const FoundPairs& answer) {
+    numbers_.pairs(answer.leaf_pairs);
     numbers_.count(answer.result.sphere_tests);
     numbers_.add(answer.result.pad, 1);
-    numbers_.add(query.resolution(answer.result), 1);
+    numbers_.add(answer.result.resolution, 1);
   }
 
-  void gap(const GapInterval& gap) {
+  void gap(const DistanceInterval& gap) {
     numbers_.add(gap.lower, 1);
     numbers_.add(gap.upper, 1);
   }
 
-  void contacts(CollisionQuery& query, ContactPoints& points, const Eigen::Isometry3d& pose) {
-    numbers_.count(query.contact_points(pose, points).contacts);
-    for (const ContactPoint& point : points.points()) {
+  void leaf_pairs(Query& query, ContactManifold& points, const Eigen::Isometry3d& pose) {
+    numbers_.count(query.contacts(pose, points).leaf_pairs);
+    for (const Contact& point : points.points()) {
       numbers_.add(point.position, 1);
       numbers_.add(point.normal, 0);
       numbers_.add(point.depth, 1);
@@ -124,24 +125,24 @@ class Scaled {
     numbers_.add(rates.spring_torque, 3);
   }
 
-  void triangles(CollisionQuery& query, const Eigen::Isometry3d& pose) {
+  void triangles(Query& query, const Eigen::Isometry3d& pose) {
     std::vector<TrianglePair> pairs(1 << 12);
-    const ExactResult exact = query.collide_exact(pose, pairs);
+    const TrianglePairsResult exact = query.triangle_pairs(pose, pairs);
     EXPECT_FALSE(exact.truncated);
     pairs.resize(exact.triangle_pairs);
     numbers_.pairs(pairs);
     numbers_.count(exact.sphere_tests);
-    numbers_.count(static_cast<std::uint64_t>(query.touches(pose)));
+    numbers_.count(static_cast<std::uint64_t>(query.intersects(pose).answer));
     for (const double tolerance : {0.0, 0.125}) {
-      const GapResult found = query.gap(pose, tolerance * unit_);
-      gap(found.gap);
+      const DistanceResult found = query.distance(pose, tolerance * unit_);
+      gap(found.distance);
       numbers_.count(found.sphere_tests);
     }
     Budget budget;
-    budget.sphere_tests = 300;
-    const QueryResult part = query.collide(pose, std::span<Contact>(), budget);
+    budget.tests = 300;
+    const QueryResult part = query.leaf_pairs(pose, std::span<LeafPair>(), budget);
     numbers_.count(static_cast<std::uint64_t>(part.level));
-    gap(*part.gap);
+    gap(*part.distance);
   }
 
   double unit_;

@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
-#include "ist/query/contact.h"
 #include "ist/query/relative_pose.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::test {
@@ -12,12 +12,12 @@ namespace ist::test {
 /// of the balls, or of a ball and a slab; below 0 where they are apart. In double, without a pad.
 [[nodiscard]] double leaf_overlap(const SphereTree& fixed, const SphereTree& moving,
                                   SpherePolicy policy, const RelativePose& pose,
-                                  const Contact& pair);
+                                  const LeafPair& pair);
 
 /// The least overlap of all pairs of nodes that a search tests on its way to two leaves, theirs
 /// included: the pair is in its answer while none of them is apart.
 [[nodiscard]] double search_overlap(const SphereTree& fixed, const SphereTree& moving,
                                     SpherePolicy policy, const Eigen::Isometry3d& pose,
-                                    const Contact& pair);
+                                    const LeafPair& pair);
 
 }  // namespace ist::test

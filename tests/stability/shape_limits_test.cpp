@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/mesh/mesh_check.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "stability/hard_pair.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -54,7 +55,7 @@ TEST(ShapeLimits, AMeshWithoutExtentIsRefused) {
 }
 
 // As small as a body may be, in one voxel and in some, everything holds.
-TEST(ShapeLimits, TheSmallestBodiesKeepEveryPromise) {
+TEST(ShapeLimits, TheSmallestBodiesKeepEveryGuarantee) {
   ShapeCases cases("the smallest extent");
   const TriangleMesh ball = icosphere(0, 0.6e-12);
   for (const double voxel_size : {0.4e-12, 1e-9}) {
@@ -79,36 +80,41 @@ TEST(ShapeLimits, AMillionTrianglesInOnePlace) {
   EXPECT_EQ(error_name([&] { static_cast<void>(exact_tree_of(mesh, 1e-4, nullptr, 1 << 22)); }),
             "memory-limit");
   const SphereTree once = exact_tree_of(coincident(1), 1.9);
-  answers.sample(tree.octree().codes(0) == once.octree().codes(0) ? 0 : 1, 0, "voxels");
+  answers.sample(tree.parts().octree.codes(0) == once.parts().octree.codes(0) ? 0 : 1, 0, "voxels");
 
   const SphereTree other =
       exact_tree_of(triangle({0, 0, -0.5}, {0.3, 0.1, 0.9}, {-0.2, 0.2, 0.7}), 0.5);
   std::vector<TrianglePair> first(1000);
   for (const SpherePolicy policy : kSpherePolicies) {
-    CollisionOptions options;
+    QueryOptions options;
     options.policy = policy;
     options.triangle_pairs = 1 << 15;  // in some passes
-    CollisionQuery query(tree, other, options), plain(once, other, options);
+    Query query(tree, other, options), plain(once, other, options);
     for (const double z : {0.0, 0.8, 2.0}) {
       const Isometry3d pose = shift({0.1, 0, z});
-      answers.sample(ask(query, pose).contacts == ask(plain, pose).contacts ? 0 : 1, 0, "leaves");
-      const GapInterval gap = query.gap(pose, 0).gap, expected = plain.gap(pose, 0).gap;
+      answers.sample(ask(query, pose).leaf_pairs == ask(plain, pose).leaf_pairs ? 0 : 1, 0,
+                     "leaves");
+      const DistanceInterval gap = query.distance(pose, 0).distance,
+                             expected = plain.distance(pose, 0).distance;
       answers.sample(gap.lower == expected.lower && gap.upper == expected.upper ? 0 : 1, 0, "gap");
-      const bool touch = plain.touches(pose) == Touch::kYes;
-      EXPECT_EQ(touch, z == 0.0);
-      answers.sample((query.touches(pose) == Touch::kYes) == touch ? 0 : 1, 0, "touch");
+      const bool meet = plain.intersects(pose).answer == ist::Answer::kYes;
+      EXPECT_EQ(meet, z == 0.0);
+      answers.sample((query.intersects(pose).answer == ist::Answer::kYes) == meet ? 0 : 1, 0,
+                     "meet");
 
-      const ExactResult found = query.collide_exact(pose, first);
-      bool right = found.triangle_pairs == (touch ? count : 0) && found.truncated == touch;
-      for (std::uint32_t i = 0; i < first.size() && touch; ++i) {
+      const TrianglePairsResult found = query.triangle_pairs(pose, first);
+      bool right = found.triangle_pairs == (meet ? count : 0) && found.truncated == meet;
+      for (std::uint32_t i = 0; i < first.size() && meet; ++i) {
         right = right && first[i] == TrianglePair{i, 0};
       }
       answers.sample(right ? 0 : 1, 0, "triangle pairs");
     }
   }
-  CollisionQuery itself(tree, tree);
-  answers.sample(itself.touches(Isometry3d::Identity()) == Touch::kYes ? 0 : 1, 0, "on itself");
-  answers.sample(itself.gap(Isometry3d::Identity(), 0).gap.upper == 0 ? 0 : 1, 0, "on itself");
+  Query itself(tree, tree);
+  answers.sample(itself.intersects(Isometry3d::Identity()).answer == ist::Answer::kYes ? 0 : 1, 0,
+                 "on itself");
+  answers.sample(itself.distance(Isometry3d::Identity(), 0).distance.upper == 0 ? 0 : 1, 0,
+                 "on itself");
 }
 
 // Turned outward, and so the same body to the last bit.
@@ -126,22 +132,23 @@ TEST(ShapeLimits, InsideOutIsOutsideOut) {
                      turned = exact_tree_of(inside_out(mesh), 0.21, &report);
     EXPECT_EQ(report.turned_components, check_mesh(mesh).components);
     for (const SpherePolicy policy : kSpherePolicies) {
-      CollisionQuery a(right, ball, options_of(policy)), b(turned, ball, options_of(policy)),
+      Query a(right, ball, options_of(policy)), b(turned, ball, options_of(policy)),
           c(ball, right, options_of(policy)), d(ball, turned, options_of(policy));
-      ContactPoints of_a(right, ball, policy), of_b(turned, ball, policy),
+      ContactManifold of_a(right, ball, policy), of_b(turned, ball, policy),
           of_c(ball, right, policy), of_d(ball, turned, policy);
       for (int i = 0; i < samples(3); ++i) {
         const Vector3d on = mesh.vertices[random.below(mesh.vertices.size())];
         const Isometry3d pose =
             pose_of(random.rotation(), on + random.uniform(0.4, 0.9) * random.direction());
-        const Touched points = touched(a, of_a, pose);
+        const FoundContacts points = find_contacts(a, of_a, pose);
         pressed += points.sums.weight > 0 ? 1U : 0U;
         answers.sample(same(ask(a, pose), ask(b, pose)) ? 0 : 1, 0, "leaf pairs");
-        answers.sample(same(points, touched(b, of_b, pose)) ? 0 : 1, 0, "contact points");
+        answers.sample(same(points, find_contacts(b, of_b, pose)) ? 0 : 1, 0, "contact points");
         const Isometry3d back = pose.inverse();
-        answers.sample(same(touched(c, of_c, back), touched(d, of_d, back)) ? 0 : 1, 0,
+        answers.sample(same(find_contacts(c, of_c, back), find_contacts(d, of_d, back)) ? 0 : 1, 0,
                        "contact points of the moving body");
-        const GapInterval gap = a.gap(pose, 0).gap, other = b.gap(pose, 0).gap;
+        const DistanceInterval gap = a.distance(pose, 0).distance,
+                               other = b.distance(pose, 0).distance;
         answers.sample(gap.lower == other.lower && gap.upper == other.upper ? 0 : 1, 0, "gap");
       }
     }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <ostream>
 
+#include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "stability/hard_pair.h"
 #include "support/seeded.h"
@@ -137,14 +138,14 @@ INSTANTIATE_TEST_SUITE_P(Hard, Shapes, ::testing::ValuesIn(kShapes), [](const au
 Eigen::Isometry3d vertices_together(const SphereTree& fixed, const SphereTree& moving,
                                     const Eigen::Matrix3d& rotation, const Vector3d& by,
                                     Random& random) {
-  const auto& a = fixed.triangles()->mesh.vertices;
-  const auto& b = moving.triangles()->mesh.vertices;
+  const auto& a = fixed.parts().triangles->mesh.vertices;
+  const auto& b = moving.parts().triangles->mesh.vertices;
   const Vector3d on_a = a[random.below(a.size())], on_b = b[random.below(b.size())];
   return pose_of(rotation, (on_a - rotation * on_b) + by);
 }
 
 // As it is on itself; touching in a vertex to the last bit of a double, near, and apart.
-TEST_P(Shapes, KeepEveryPromise) {
+TEST_P(Shapes, KeepEveryGuarantee) {
   const Shape& shape = GetParam();
   ShapeCases cases(shape.name);
   Random random(17);

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "ist/query/contacts/contact_pair.h"
-#include "ist/query/promise/read_bounds.h"
+#include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_rules.h"
+#include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "stability/search_overlap.h"
+#include "verify/read_bounds.h"
 
 namespace ist::test {
 namespace {
@@ -22,8 +24,8 @@ std::string title(const std::string& what, SpherePolicy policy) {
   return what + ", " + std::string(to_string(policy));
 }
 
-CollisionOptions with(SpherePolicy policy) {
-  CollisionOptions options;
+QueryOptions with(SpherePolicy policy) {
+  QueryOptions options;
   options.policy = policy;
   options.triangle_pairs = 1 << 12;
   return options;
@@ -67,7 +69,7 @@ Sweep::Sweep(const SphereTree& fixed, const SphereTree& moving, const SphereTree
 void Sweep::along(const Path& path) {
   last_seen_.clear();
   Step before = look(path.at(0));
-  for (const Contact& c : before.pairs) last_seen_[std::uint64_t{c.fixed} << 32 | c.moving] = 0;
+  for (const LeafPair& c : before.pairs) last_seen_[std::uint64_t{c.fixed} << 32 | c.moving] = 0;
   for (int k = 1; k <= path.steps; ++k) {
     Step now = look(path.at(k));
     compare_pairs(before, now);
@@ -80,30 +82,35 @@ void Sweep::along(const Path& path) {
 }
 
 Sweep::Step Sweep::look(const Isometry3d& pose) {
-  Answer answer = ask(plain_, pose);
-  static_cast<void>(plain_.contact_points(pose, points_));
+  FoundPairs answer = ask(plain_, pose);
+  static_cast<void>(plain_.contacts(pose, points_));
   const double s = ContactScale(fixed_, moving_).size;
   double stretched = 0;
-  for (const ContactPoint& p : points_.points()) stretched += p.weight * (p.depth + 2 * s);
-  return {pose,      answer.result.pad,       std::move(answer.contacts), points_.sums(),
-          stretched, exact_.gap(pose, 0).gap, plain_.gap(pose, 0).gap};
+  for (const Contact& p : points_.points()) stretched += p.weight * (p.depth + 2 * s);
+  return {pose,
+          answer.result.pad,
+          std::move(answer.leaf_pairs),
+          points_.sums(),
+          stretched,
+          exact_.distance(pose, 0).distance,
+          plain_.distance(pose, 0).distance};
 }
 
-double Sweep::overlap(const Contact& pair, const Isometry3d& pose) const {
+double Sweep::overlap(const LeafPair& pair, const Isometry3d& pose) const {
   return search_overlap(fixed_, moving_, policy_, pose, pair);
 }
 
 // A pair is in an answer only if nothing over it is farther apart than the pad, and is out of one
 // only if something is apart.
 void Sweep::compare_pairs(const Step& before, const Step& now) {
-  const double doubles =
-      slack_in_double(fixed_.reach() + moving_.reach(), fixed_.reach() + moving_.reach());
+  const double doubles = pad_in_double(fixed_.bounding_radius() + moving_.bounding_radius(),
+                                       fixed_.bounding_radius() + moving_.bounding_radius());
   for (const bool left : {true, false}) {
     const Step &in = left ? before : now, &out = left ? now : before;
-    std::vector<Contact> changed;
+    std::vector<LeafPair> changed;
     std::set_difference(in.pairs.begin(), in.pairs.end(), out.pairs.begin(), out.pairs.end(),
                         std::back_inserter(changed));
-    for (const Contact& pair : changed) {
+    for (const LeafPair& pair : changed) {
       cases_.edges.sample(std::max(0.0, -overlap(pair, in.pose)), in.pad, "in");
       cases_.edges.sample(std::max(0.0, overlap(pair, out.pose)), doubles, "out");
     }
@@ -113,7 +120,7 @@ void Sweep::compare_pairs(const Step& before, const Step& now) {
 
 void Sweep::find_returns(const Path& path, int step, const Step& now) {
   double worst = 0;
-  for (const Contact& pair : now.pairs) {
+  for (const LeafPair& pair : now.pairs) {
     const auto [seen, is_new] =
         last_seen_.try_emplace(std::uint64_t{pair.fixed} << 32 | pair.moving, step);
     for (int missing = seen->second + 1; missing < step; ++missing) {
@@ -125,8 +132,8 @@ void Sweep::find_returns(const Path& path, int step, const Step& now) {
 }
 
 void Sweep::compare_gap(const Step& before, const Step& now, double way) {
-  const auto middle = [](const GapInterval& gap) { return 0.5 * (gap.lower + gap.upper); };
-  const auto half = [](const GapInterval& gap) { return 0.5 * (gap.upper - gap.lower); };
+  const auto middle = [](const DistanceInterval& gap) { return 0.5 * (gap.lower + gap.upper); };
+  const auto half = [](const DistanceInterval& gap) { return 0.5 * (gap.upper - gap.lower); };
   cases_.gap.sample(std::abs(middle(now.exact) - middle(before.exact)),
                     way + half(now.exact) + half(before.exact));
   // Those without triangles are wide: no farther apart, then.
@@ -156,11 +163,12 @@ void Sweep::compare_sums(const Step& before, const Step& now, double motion) {
 
 void Sweep::compare_depths(const Step& before, const Step& now, double motion) {
   const ContactScale scale(fixed_, moving_);
-  const auto terms = [&](const Contact& pair, const Isometry3d& pose) {
-    const RelativePose relative = *relative_pose(pose, fixed_.lattice(), moving_.lattice());
+  const auto terms = [&](const LeafPair& pair, const Isometry3d& pose) {
+    const RelativePose relative =
+        *relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
     return pair_terms(
-        read_leaf(fixed_, policy_, pair.fixed, parent_of(fixed_.octree(), 0, pair.fixed)),
-        read_leaf(moving_, policy_, pair.moving, parent_of(moving_.octree(), 0, pair.moving))
+        read_leaf(fixed_, policy_, pair.fixed, parent_of(fixed_.parts().octree, 0, pair.fixed)),
+        read_leaf(moving_, policy_, pair.moving, parent_of(moving_.parts().octree, 0, pair.moving))
             .in(relative),
         scale);
   };

@@ -6,8 +6,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/contacts/contact_points.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/manifold.h"
+#include "ist/query/query.h"
 #include "ist/query/relative_pose.h"
 #include "support/stability.h"
 
@@ -44,7 +45,7 @@ struct MotionCases {
 
 /// Moves one body along paths and looks at what changes from each step to the next.
 ///
-/// What a leaf pair promises in motion: a search comes to it while each pair of nodes over it
+/// What a leaf pair guarantees in motion: a search comes to it while each pair of nodes over it
 /// passes its test, and each test is whether two balls, or a ball and a slab, are near enough. So
 /// it enters and leaves where the least overlap of them all passes between 0 and the pad. Along a
 /// straight line that overlap is a concave function: the pair is there in one interval, and comes
@@ -60,19 +61,19 @@ class Sweep {
   /// Pairs that entered or left in all paths.
   [[nodiscard]] std::size_t changes() const { return changes_; }
   /// By which ContactRates counts turns.
-  [[nodiscard]] double lever() const { return points_.rates().lever; }
+  [[nodiscard]] double lever() { return points_.rates().lever; }
 
  private:
   struct Step {
     Eigen::Isometry3d pose;
     double pad;
-    std::vector<Contact> pairs;
+    std::vector<LeafPair> pairs;
     ContactSums sums;
     double stretched;  // the sum of w (d + 2s) of all points
-    GapInterval exact, plain;
+    DistanceInterval exact, plain;
   };
   [[nodiscard]] Step look(const Eigen::Isometry3d& pose);
-  [[nodiscard]] double overlap(const Contact& pair, const Eigen::Isometry3d& pose) const;
+  [[nodiscard]] double overlap(const LeafPair& pair, const Eigen::Isometry3d& pose) const;
   void compare_pairs(const Step& before, const Step& now);
   void find_returns(const Path& path, int step, const Step& now);
   void compare_gap(const Step& before, const Step& now, double way);
@@ -83,8 +84,8 @@ class Sweep {
   const SphereTree& moving_;
   SpherePolicy policy_;
   MotionCases& cases_;
-  CollisionQuery exact_, plain_;
-  ContactPoints points_;
+  Query exact_, plain_;
+  ContactManifold points_;
   std::unordered_map<std::uint64_t, int> last_seen_;  // step, by pair
   std::size_t changes_ = 0;
 };

@@ -13,7 +13,7 @@ namespace ist::test {
 namespace {
 
 // A straight way on which bodies touch at `from` and are apart at `to`.
-struct Way {
+struct AxisDirection {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d start, direction;  // x = 0 is at the start
   double from, to;
@@ -24,9 +24,9 @@ struct Way {
 
 // One vertex of each brought together, and then apart: along an axis, where x is the coordinate
 // itself, or along any direction.
-Way way_apart(const TriangleMesh& a, const TriangleMesh& b, const Eigen::Matrix3d& rotation,
-              bool along_axis, Random& random) {
-  Way way{rotation, a.vertices[random.below(a.vertices.size())], {}, 0, 20};
+AxisDirection way_apart(const TriangleMesh& a, const TriangleMesh& b,
+                        const Eigen::Matrix3d& rotation, bool along_axis, Random& random) {
+  AxisDirection way{rotation, a.vertices[random.below(a.vertices.size())], {}, 0, 20};
   way.start -= rotation * b.vertices[random.below(b.vertices.size())];
   if (!along_axis) {
     way.direction = random.direction();
@@ -54,12 +54,13 @@ std::vector<double> ulps_round(double x) {
   return all;
 }
 
-bool holds(const Answer& answer, const Contact& pair) {
-  return std::find(answer.contacts.begin(), answer.contacts.end(), pair) != answer.contacts.end();
+bool holds(const FoundPairs& answer, const LeafPair& pair) {
+  return std::find(answer.leaf_pairs.begin(), answer.leaf_pairs.end(), pair) !=
+         answer.leaf_pairs.end();
 }
 
 // How far the bounds of a pair are apart, in pads, if that is no more than one.
-double pads_apart(const ExactPair& exact, SpherePolicy policy, const Contact& pair, double pad) {
+double pads_apart(const ExactPair& exact, SpherePolicy policy, const LeafPair& pair, double pad) {
   double apart = 0, together = 1;
   if (exact.bounds_meet(policy, pair.fixed, pair.moving, 0)) return 0;
   for (int step = 0; step < 10; ++step) {
@@ -81,15 +82,15 @@ struct Cases {
 
 class Tangency : public ::testing::TestWithParam<SpherePolicy> {
  protected:
-  // All engines at each of these places, against the promise.
-  void check(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const Way& way,
+  // All engines at each of these places, against the guarantee.
+  void check(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const AxisDirection& way,
              const std::vector<double>& places) {
     for (const double x : places) {
-      const Answer answer = engines(way.at(x));
+      const FoundPairs answer = engines(way.at(x));
       const ExactPair exact = bodies.at(way.at(x));
-      const auto kept = keeps_promise(exact, GetParam(), answer.contacts, answer.result.pad);
+      const auto kept = keeps_guarantee(exact, GetParam(), answer.leaf_pairs, answer.result.pad);
       cases.wrong.sample(kept ? 0 : 1, 0, kept.message());
-      for (const Contact& pair : answer.contacts) {
+      for (const LeafPair& pair : answer.leaf_pairs) {
         cases.pads.sample(pads_apart(exact, GetParam(), pair, answer.result.pad), 1);
       }
     }
@@ -97,26 +98,26 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
 
   // Where the last contact ends.
   void check_last_contact(Cases& cases, const ExactBodies& bodies, AllEngines& engines,
-                          const Way& way) {
+                          const AxisDirection& way) {
     const double last = last_touching(way.from, way.to, [&](double x) {
-      return ask(engines.first(), way.at(x)).result.contacts > 0;
+      return ask(engines.first(), way.at(x)).result.leaf_pairs > 0;
     });
-    EXPECT_GT(engines(way.at(last)).contacts.size(), 0u);
+    EXPECT_GT(engines(way.at(last)).leaf_pairs.size(), 0u);
     check(cases, bodies, engines, way, ulps_round(last));
   }
 
   // Where the geometry of one pair ends to meet, which is in the answer until then, and where its
   // bounds part by more than the pad, from where on it is not. True where there is such a pair.
-  bool check_one_pair(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const Way& way,
-                      Random& random) {
+  bool check_one_pair(Cases& cases, const ExactBodies& bodies, AllEngines& engines,
+                      const AxisDirection& way, Random& random) {
     const SpherePolicy policy = GetParam();
-    std::vector<Contact> meeting = engines(way.at(way.from)).contacts;
+    std::vector<LeafPair> meeting = engines(way.at(way.from)).leaf_pairs;
     const ExactPair from = bodies.at(way.at(way.from));
-    std::erase_if(meeting, [&](const Contact& pair) {
+    std::erase_if(meeting, [&](const LeafPair& pair) {
       return !from.geometry_meets(policy, pair.fixed, pair.moving);
     });
     if (meeting.empty()) return false;
-    const Contact pair = meeting[random.below(meeting.size())];
+    const LeafPair pair = meeting[random.below(meeting.size())];
     const double last = last_touching(way.from, way.to, [&](double x) {
       return bodies.at(way.at(x)).geometry_meets(policy, pair.fixed, pair.moving);
     });
@@ -162,7 +163,7 @@ TEST_P(Tangency, IsDecidedToTheLastFloat) {
     const Eigen::Matrix3d rotation =
         kind < 2 ? turns[random.below(turns.size())] : random.rotation();
     AllEngines engines(bodies.fixed, bodies.moving, GetParam());
-    const Way way = way_apart(a, b, rotation, kind < 3, random);
+    const AxisDirection way = way_apart(a, b, rotation, kind < 3, random);
     check_last_contact(cases, bodies, engines, way);
     pairs += check_one_pair(cases, bodies, engines, way, random) ? 1 : 0;
   }
@@ -176,16 +177,16 @@ TEST_P(Tangency, IsDecidedAmidManyOthers) {
   const ExactBodies bodies(ball, tree_of(ball, 14), ball, tree_of(ball, 14));
   AllEngines engines(bodies.fixed, bodies.moving, GetParam(), 1 << 16);
   Random random(1);
-  const Way way{Eigen::Matrix3d::Identity(), {0, 0.02, 0.005}, {1, 0, 0}, 0.01, 4};
+  const AxisDirection way{Eigen::Matrix3d::Identity(), {0, 0.02, 0.005}, {1, 0, 0}, 0.01, 4};
   for (int i = 0; i < samples(1); ++i) {
-    const std::vector<Contact> all = engines(way.at(way.from)).contacts;
+    const std::vector<LeafPair> all = engines(way.at(way.from)).leaf_pairs;
     EXPECT_GT(all.size(), 1000u);
-    const Contact pair = all[random.below(all.size())];
+    const LeafPair pair = all[random.below(all.size())];
     const double last = last_touching(
         way.from, way.to, [&](double x) { return holds(ask(engines.first(), way.at(x)), pair); });
     const std::vector<double> places = ulps_round(last);
     for (std::size_t k = 0; k < places.size(); k += 5) {
-      const Answer answer = engines(way.at(places[k]));
+      const FoundPairs answer = engines(way.at(places[k]));
       const ExactPair exact = bodies.at(way.at(places[k]));
       const bool there = holds(answer, pair);
       const bool meets = exact.geometry_meets(GetParam(), pair.fixed, pair.moving);
@@ -195,9 +196,9 @@ TEST_P(Tangency, IsDecidedAmidManyOthers) {
       cases.one_pair.sample(there && apart ? 1 : 0, 0);
       if (there && !apart) cases.pads.sample(pads_apart(exact, GetParam(), pair, pad), 1);
     }
-    const Answer answer = engines(way.at(last));
+    const FoundPairs answer = engines(way.at(last));
     const auto kept =
-        keeps_promise(bodies.at(way.at(last)), GetParam(), answer.contacts, answer.result.pad);
+        keeps_guarantee(bodies.at(way.at(last)), GetParam(), answer.leaf_pairs, answer.result.pad);
     cases.wrong.sample(kept ? 0 : 1, 0, kept.message());
   }
   EXPECT_GT(engines.shared().sharing().worth, 0u);

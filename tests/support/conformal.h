@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::test {
 

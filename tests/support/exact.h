@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 #include "ist/voxel/lattice.h"
 
 /// Geometry in exact rationals: the oracle that code in double is held against. Plain and slow, and
@@ -60,7 +60,7 @@ struct ExactBall {
 /// The smallest ball that holds the points, at least one.
 [[nodiscard]] ExactBall smallest_ball(const std::vector<ExactPoint>& points);
 
-/// The pad that is promised: a thousand millionth of the grid's extent, mesh units.
+/// The pad that is guaranteed: a thousand millionth of the grid's extent, mesh units.
 [[nodiscard]] mpq_class exact_pad(const Lattice& lattice);
 
 /// The cube of an octree node, mesh units: corner + (whole number) * voxel size.

@@ -5,6 +5,7 @@
 
 #include "ist/base/pose.h"
 #include "ist/tree/saved_spheres.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/morton.h"
 
 namespace ist::test {
@@ -21,13 +22,13 @@ ExactPoint unit(std::size_t axis) {
 }  // namespace
 
 ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
-    : tree_(tree), voxel_size_(tree.lattice().voxel_size) {
-  const Lattice& lattice = tree.lattice();
+    : tree_(tree), voxel_size_(tree.voxel_size()) {
+  const Lattice& lattice = tree.parts().lattice;
   const mpq_class root_centre(lattice.root_centre());
   for (std::size_t i = 0; i < 3; ++i) {
     origin_[i] = mpq_class(lattice.corner[i]) + root_centre * voxel_size_;
   }
-  for (const std::uint64_t code : tree.octree().codes(0)) {
+  for (const std::uint64_t code : tree.parts().octree.codes(0)) {
     const Cell cell = morton_decode(code);
     Leaf& leaf = leaves_.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -62,7 +63,7 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
 
 // From the description of the blocks.
 void ExactBody::unpack_bounds() {
-  const std::vector<std::uint64_t> codes = tree_.octree().codes(0);
+  const std::vector<std::uint64_t> codes = tree_.parts().octree.codes(0);
   const mpq_class unit = voxel_size_ / 32768, slab_unit = voxel_size_ / 256;
   std::size_t parent = 0;
   int slot = 0;
@@ -72,7 +73,7 @@ void ExactBody::unpack_bounds() {
       slot = 0;
     }
     Bound& bound = leaves_[leaf].bound;
-    const PackedBall ball = tree_.balls(0)[parent][slot];
+    const PackedBall ball = tree_.parts().balls(0)[parent][slot];
     bound.centre = leaves_[leaf].cube_centre;  // of the parent's cube: half an edge away, or none
     for (std::size_t i = 0; i < 3 && tree_.depth() > 0; ++i) {
       bound.centre[i] += ((codes[leaf] >> i & 1) != 0 ? -1 : 1) * voxel_size_ / 2;
@@ -82,7 +83,7 @@ void ExactBody::unpack_bounds() {
     bound.radius = ball.r * unit;
     bound.rounded_centre = rounded(bound.centre);
     if (!tree_.has(SpherePolicy::kSlab)) continue;
-    const PackedSlab slab = tree_.slabs(0)[parent][slot];
+    const PackedSlab slab = tree_.parts().slabs(0)[parent][slot];
     bound.normal = mpq_class(1, 128) *
                    ExactPoint{{mpq_class(slab.nx), mpq_class(slab.ny), mpq_class(slab.nz)}};
     bound.offset = slab.offset * slab_unit;
@@ -105,7 +106,7 @@ ExactPair::ExactPair(const ExactBody& fixed, const ExactBody& moving, const Eige
     }
   }
   rounded_translation_ = rounded(translation_);
-  margin_ = 1e-12 * (fixed.tree_.reach() + moving.tree_.reach() +
+  margin_ = 1e-12 * (fixed.tree_.bounding_radius() + moving.tree_.bounding_radius() +
                      rounded_translation_.cwiseAbs().maxCoeff());
 
   std::vector<ExactPoint> directions;
@@ -148,7 +149,7 @@ bool ExactPair::geometry_meets(SpherePolicy policy, std::uint32_t fixed_leaf,
 }
 
 bool ExactPair::cubes_meet(std::uint32_t fixed_leaf, std::uint32_t moving_leaf) const {
-  const double edges = fixed_.tree_.lattice().voxel_size + moving_.tree_.lattice().voxel_size;
+  const double edges = fixed_.tree_.voxel_size() + moving_.tree_.voxel_size();
   const double distance =
       (fixed_.leaves_[fixed_leaf].rounded_centre - moved_centres_[moving_leaf]).norm();
   if (distance > 0.8661 * edges + margin_) return false;  // circumspheres
@@ -192,7 +193,7 @@ bool ExactPair::polygons_apart(const ExactBody::Polygon& fixed,
 }
 
 bool ExactPair::triangles_meet(std::uint32_t fixed_leaf, std::uint32_t moving_leaf) const {
-  const double edges = fixed_.tree_.lattice().voxel_size + moving_.tree_.lattice().voxel_size;
+  const double edges = fixed_.tree_.voxel_size() + moving_.tree_.voxel_size();
   const double distance =
       (fixed_.leaves_[fixed_leaf].rounded_centre - moved_centres_[moving_leaf]).norm();
   if (distance > 0.8661 * edges + margin_) return false;  // not even the cubes meet
@@ -215,7 +216,7 @@ bool ExactPair::bounds_meet(SpherePolicy policy, std::uint32_t fixed_leaf,
   const ExactBody::Leaf& a = fixed_.leaves_[fixed_leaf];
   const ExactBody::Leaf& b = moving_.leaves_[moving_leaf];
   if (is_implicit(policy)) {
-    const double edges = fixed_.tree_.lattice().voxel_size + moving_.tree_.lattice().voxel_size;
+    const double edges = fixed_.tree_.voxel_size() + moving_.tree_.voxel_size();
     const double apart =
         (a.rounded_centre - moved_centres_[moving_leaf]).norm() - (0.5 * kSqrt3 * edges + pad);
     if (apart > margin_ || apart < -margin_) return apart < 0;
@@ -258,8 +259,8 @@ bool ExactPair::slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound&
          abs(dot(turned, exactly) + moving.offset) <= moving.half + fixed.radius + mpq_class(pad);
 }
 
-::testing::AssertionResult keeps_promise(const ExactPair& pair, SpherePolicy policy,
-                                         std::span<const Contact> contacts, double pad) {
+::testing::AssertionResult keeps_guarantee(const ExactPair& pair, SpherePolicy policy,
+                                           std::span<const LeafPair> leaf_pairs, double pad) {
   const auto says = [policy](const char* what, std::uint32_t f, std::uint32_t m) {
     return ::testing::AssertionFailure() << to_string(policy) << ": the pair of fixed leaf " << f
                                          << " and moving leaf " << m << " " << what;
@@ -267,7 +268,7 @@ bool ExactPair::slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound&
   std::size_t next = 0;
   for (std::uint32_t f = 0; f < pair.fixed().leaf_count(); ++f) {
     for (std::uint32_t m = 0; m < pair.moving().leaf_count(); ++m) {
-      if (next < contacts.size() && contacts[next] == Contact{f, m}) {
+      if (next < leaf_pairs.size() && leaf_pairs[next] == LeafPair{f, m}) {
         ++next;
         if (!pair.bounds_meet(policy, f, m, pad)) {
           return says("is in the answer, but its bounds are apart", f, m);
@@ -277,9 +278,9 @@ bool ExactPair::slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound&
       }
     }
   }
-  if (next < contacts.size()) {
+  if (next < leaf_pairs.size()) {
     return says("is in the answer out of order, twice, or without being there",
-                contacts[next].fixed, contacts[next].moving);
+                leaf_pairs[next].fixed, leaf_pairs[next].moving);
   }
   return ::testing::AssertionSuccess();
 }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/contact.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 #include "support/exact_polygon.h"
 
@@ -25,7 +25,7 @@ class ExactBody {
   ExactBody(const TriangleMesh& mesh, const SphereTree& tree);
 
   [[nodiscard]] const SphereTree& tree() const { return tree_; }
-  [[nodiscard]] std::uint32_t leaf_count() const { return tree_.octree().leaf_count(); }
+  [[nodiscard]] std::uint32_t leaf_count() const { return tree_.leaf_count(); }
   [[nodiscard]] const ExactPoint& origin() const { return origin_; }
 
  private:
@@ -57,7 +57,7 @@ class ExactBody {
 /// filter in double that never decides what is close.
 ///
 /// This is the oracle of every query. It knows nothing of inner nodes: their balls are not nested,
-/// and the promise is about leaves alone. The pose is that of project_to_rigid, number by number,
+/// and the guarantee is about leaves alone. The pose is that of project_to_rigid, number by number,
 /// so that its rotation is off orthonormal by what that leaves.
 class ExactPair {
  public:
@@ -125,14 +125,14 @@ struct ExactBodies {
   ExactBody exact_fixed, exact_moving;
 };
 
-/// Whether an answer is what the design promises:
+/// Whether an answer is what the design guarantees:
 ///   {leaf pairs whose geometry meets} ⊆ answer ⊆ {leaf pairs whose bounds meet, within the pad},
 /// and sorted by fixed leaf, then by moving leaf, each pair once. Looks at all pairs of leaves.
 /// Where it is not, says which pair and why.
 ///
 /// Cost: some 50 ns a pair, and 10 to 500 µs for one that is too close for the filter.
-[[nodiscard]] ::testing::AssertionResult keeps_promise(const ExactPair& pair, SpherePolicy policy,
-                                                       std::span<const Contact> contacts,
-                                                       double pad);
+[[nodiscard]] ::testing::AssertionResult keeps_guarantee(const ExactPair& pair, SpherePolicy policy,
+                                                         std::span<const LeafPair> leaf_pairs,
+                                                         double pad);
 
 }  // namespace ist::test

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::test {
 

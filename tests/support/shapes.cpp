@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "ist/mesh/shape_model.h"
-#include "ist/mesh/shape_rings.h"
+#include "ist/models/models.h"
+#include "ist/models/shape_rings.h"
 
 namespace ist::test {
 

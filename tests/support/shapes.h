@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::test {
 

@@ -29,7 +29,7 @@ void StabilityCase::samples_of(std::uint64_t count, double error, double bound,
   const bool holds = error <= bound;  // false for what is no number
   if (!holds && ++broken_ <= 5) {
     ADD_FAILURE() << group_ << ", " << name_ << ": " << error << " " << error_ << " where at most "
-                  << bound << " is promised" << (what.empty() ? "" : ": ") << what;
+                  << bound << " is guaranteed" << (what.empty() ? "" : ": ") << what;
   }
   const double ratio = !holds      ? std::numeric_limits<double>::infinity()
                        : bound > 0 ? error / bound

@@ -9,7 +9,7 @@ namespace ist::test {
 /// is set. A run of all tests tries few; the report of perf/STABILITY.md more.
 [[nodiscard]] int samples(int few);
 
-/// One line of perf/STABILITY.md: errors that were seen in a hard case, beside what is promised.
+/// One line of perf/STABILITY.md: errors that were seen in a hard case, beside what is guaranteed.
 ///
 /// Each sample that breaks its bound fails the test. At its end the case is appended, as one JSON
 /// object, to the file that IST_STABILITY names, if it names one.

@@ -4,7 +4,8 @@
 
 #include <stdexcept>
 
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "support/memory_file.h"
 #include "support/temp_dir.h"
 
@@ -17,20 +18,20 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
     of_masks = of_leaves + 4;
     return of_masks + of.node_count() - of.leaf_count();
   };
-  const std::size_t leaf_count = tree.octree().leaf_count();
-  normals = octree(kNodes, tree.octree(), leaves, masks);
+  const std::size_t leaf_count = tree.leaf_count();
+  normals = octree(kNodes, tree.parts().octree, leaves, masks);
   balls = normals + 4 * leaf_count;
-  slabs = balls + 8 * tree.octree().node_count();
-  counts = slabs + 5 * tree.octree().node_count();
+  slabs = balls + 8 * tree.parts().octree.node_count();
+  counts = slabs + 5 * tree.parts().octree.node_count();
   vertices = counts + 24;
-  const auto& [mesh, lists] = *tree.triangles();
+  const auto& [mesh, lists] = *tree.parts().triangles;
   triangles = vertices + 24 * mesh.vertices.size();
   list_begins = triangles + 12 * mesh.triangles.size();
   list_ids = list_begins + 4 * (leaf_count + 1);
   proximity_depth = list_ids + 4 * lists.ids.size();
   proximity_nodes = proximity_depth + 4;
   const std::size_t end =
-      octree(proximity_nodes, tree.proximity()->octree, proximity_leaves, proximity_masks);
+      octree(proximity_nodes, tree.parts().proximity->octree, proximity_leaves, proximity_masks);
   if (end != bytes.size()) throw std::logic_error("the file is not as its format is described");
 }
 

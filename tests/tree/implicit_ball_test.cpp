@@ -1,9 +1,10 @@
+#include "ist/tree/implicit_ball.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "ist/tree/saved_spheres.h"
-#include "ist/tree/sphere_policy.h"
 #include "support/exact.h"
 #include "support/seeded.h"
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "ist/tree/sphere_policy.h"
+#include "ist/tree/implicit_ball.h"
 #include "support/exact.h"
 
 namespace ist {

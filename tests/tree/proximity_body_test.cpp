@@ -6,8 +6,9 @@
 
 #include <cmath>
 
-#include "ist/query/collision_query.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/morton.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
@@ -30,12 +31,13 @@ SphereTree ball_with_proximity() {
 // The centre of each proximity cell, from where the lattice says that cells are.
 std::vector<Vector3d> cells_of(const SphereTree& tree) {
   std::vector<Vector3d> centres;
-  for (const std::uint64_t code : tree.proximity()->octree.codes(0)) {
+  for (const std::uint64_t code : tree.parts().proximity->octree.codes(0)) {
     const auto cell = morton_decode(code);
     Vector3d centre;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       centre[static_cast<Eigen::Index>(axis)] =
-          tree.lattice().corner[axis] + (cell[axis] - double{ProximityTree::kMargin} + 0.5) * kSize;
+          tree.parts().lattice.corner[axis] +
+          (cell[axis] - double{ProximityTree::kMargin} + 0.5) * kSize;
     }
     centres.push_back(centre);
   }
@@ -60,23 +62,23 @@ TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
   const SphereTree tree = ball_with_proximity();
   const SphereTree body = proximity_body(tree);
   const std::vector<Vector3d> cells = cells_of(tree);
-  ASSERT_EQ(body.octree().leaf_count(), cells.size());
+  ASSERT_EQ(body.leaf_count(), cells.size());
   EXPECT_EQ(body.tightest(), SpherePolicy::kTight);
   const SphereTree probe = tree_of(box(Vector3d::Zero(), Vector3d::Constant(kProbe)), 1);
-  ASSERT_EQ(probe.octree().leaf_count(), 1u);
+  ASSERT_EQ(probe.leaf_count(), 1u);
   const double balls = 0.5 * std::sqrt(3.0) * (kSize + kProbe);
 
   Random random(5);
   std::size_t touching = 0, free = 0;
   for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
-    CollisionOptions options;
+    QueryOptions options;
     options.policy = policy;
-    CollisionQuery query(body, probe, options);
+    Query query(body, probe, options);
     for (int i = 0; i < 400; ++i) {
       const Vector3d at = Vector3d(5, -3, 2) + random.point(-1.7, 1.7);
-      const Answer answer = ask(query, shift(at - Vector3d::Constant(0.5 * kProbe)));
+      const FoundPairs answer = ask(query, shift(at - Vector3d::Constant(0.5 * kProbe)));
       std::vector<bool> found(cells.size());
-      for (const Contact& contact : answer.contacts) found[contact.fixed] = true;
+      for (const LeafPair& pair : answer.leaf_pairs) found[pair.fixed] = true;
       for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         const Vector3d apart = (cells[cell] - at).cwiseAbs();
         if (apart.maxCoeff() <= 0.5 * (kSize + kProbe)) {
@@ -85,7 +87,7 @@ TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
           EXPECT_FALSE(found[cell]) << "a cell is far off";
         }
       }
-      ++(answer.contacts.empty() ? free : touching);
+      ++(answer.leaf_pairs.empty() ? free : touching);
     }
   }
   EXPECT_GT(touching, 100u);
@@ -98,9 +100,9 @@ TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
   const SphereTree body = proximity_body(tree);
   const std::vector<Vector3d> cells = cells_of(tree);
   const SphereTree probe = tree_of(box(Vector3d::Zero(), Vector3d::Constant(kProbe)), 1);
-  CollisionOptions options;
+  QueryOptions options;
   options.policy = SpherePolicy::kTight;
-  CollisionQuery query(body, probe, options);
+  Query query(body, probe, options);
   const double ball = 0.5 * std::sqrt(3.0) * kProbe;
   // A tight ball is at most 1 % too large, and a point's is what packing rounds.
   const double slop = 0.01 * ball + 3 * 0x1p-16 * 2 * (kSize + kProbe) * 4;
@@ -109,20 +111,20 @@ TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
   for (int i = 0; i < 2000; ++i) {
     const Vector3d at =
         cells[static_cast<std::size_t>(i) % cells.size()] + random.point(-0.06, 0.06);
-    std::vector<bool> touched(cells.size());
-    for (const Contact& contact :
-         ask(query, shift(at - Vector3d::Constant(0.5 * kProbe))).contacts) {
-      touched[contact.fixed] = true;
+    std::vector<bool> overlapping(cells.size());
+    for (const LeafPair& pair :
+         ask(query, shift(at - Vector3d::Constant(0.5 * kProbe))).leaf_pairs) {
+      overlapping[pair.fixed] = true;
     }
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       const double apart = (cells[cell] - at).norm();
       if (apart <= ball) {
-        EXPECT_TRUE(touched[cell]) << "a centre is missed";
+        EXPECT_TRUE(overlapping[cell]) << "a centre is missed";
       }
       if (apart > ball + slop) {
-        EXPECT_FALSE(touched[cell]) << "a centre is far off";
+        EXPECT_FALSE(overlapping[cell]) << "a centre is far off";
       }
-      found += touched[cell] ? 1U : 0U;
+      found += overlapping[cell] ? 1U : 0U;
     }
   }
   EXPECT_GT(found, 500u);
@@ -139,9 +141,9 @@ TEST(ProximityBody, KeepsTheMeshCoordinatesWhereItIsDeeper) {
   const SphereTree body = proximity_body(tree);
   EXPECT_EQ(tree.depth(), 3);
   EXPECT_EQ(body.depth(), 4);
-  EXPECT_EQ(body.lattice().voxel_size, 0.25);
-  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(body.lattice().corner[axis], -0.5);
-  EXPECT_EQ(body.lattice().cells, tree.lattice().cells + 4);
+  EXPECT_EQ(body.voxel_size(), 0.25);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(body.parts().lattice.corner[axis], -0.5);
+  EXPECT_EQ(body.parts().lattice.cells, tree.parts().lattice.cells + 4);
 }
 
 }  // namespace

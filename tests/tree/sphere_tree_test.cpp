@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "ist/tree/saved_spheres.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_statistics.h"
+#include "ist/tree/tree_parts.h"
 #include "support/errors.h"
 #include "support/exact.h"
 #include "support/seeded.h"
@@ -38,7 +37,7 @@ void expect_within_reach(const SphereTree& tree) {
   for (const SpherePolicy policy : kSpherePolicies) {
     for (const auto& level : save_spheres(tree, policy)) {
       for (const Ball& ball : level) {
-        const mpq_class room = mpq_class(tree.reach()) - mpq_class(ball.radius);
+        const mpq_class room = mpq_class(tree.bounding_radius()) - mpq_class(ball.radius);
         ASSERT_GE(room, 0);
         ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << to_string(policy);
       }
@@ -67,20 +66,20 @@ TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
           nodes = 0;
           for (const std::uint8_t m : here) nodes += static_cast<unsigned>(std::popcount(m));
         }
-        SphereTree::Parts parts{Lattice{{0, 0, 0}, voxel_size, 8, 3},
-                                LinearOctree(masks),
-                                Orientation::kOutward,
-                                std::vector<PackedNormal>(nodes),
-                                {},
-                                std::nullopt,
-                                std::nullopt};
+        TreeParts parts{Lattice{{0, 0, 0}, voxel_size, 8, 3},
+                        LinearOctree(masks),
+                        Orientation::kOutward,
+                        std::vector<PackedNormal>(nodes),
+                        {},
+                        std::nullopt,
+                        std::nullopt};
         const SphereTree tree(std::move(parts));
         for (const auto& ball : level_spheres(tree, SpherePolicy::kTable, 3)) {
-          const mpq_class room = mpq_class(tree.reach()) - mpq_class(ball.radius);
+          const mpq_class room = mpq_class(tree.bounding_radius()) - mpq_class(ball.radius);
           ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << mask;
         }
         for (const auto& ball : level_spheres(tree, SpherePolicy::kSimple, 0)) {
-          ASSERT_LE(ball.centre.norm() + ball.radius, tree.reach() * (1 + 1e-15)) << mask;
+          ASSERT_LE(ball.centre.norm() + ball.radius, tree.bounding_radius() * (1 + 1e-15)) << mask;
         }
       }
     }
@@ -107,15 +106,15 @@ TEST(SphereTree, OfOneVoxelIsOneSphereAPolicy) {
     options.keep_triangles = true;
     const SphereTree tree = build_tree(mesh, options);
     EXPECT_EQ(tree.depth(), 0);
-    EXPECT_EQ(tree.octree().node_count(), 1u);
-    EXPECT_EQ(tree.triangles()->lists.ids.size(), mesh.triangles.size());
+    EXPECT_EQ(tree.parts().octree.node_count(), 1u);
+    EXPECT_EQ(tree.parts().triangles->lists.ids.size(), mesh.triangles.size());
     expect_within_reach(tree);
     for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres saved = save_spheres(tree, policy);
       ASSERT_EQ(saved.size(), 1u);
       ASSERT_EQ(saved[0].size(), 1u);
     }
-    EXPECT_EQ(tree.ball(SpherePolicy::kTable, 0, 0, {0, 0, 0}).radius, 2.5 * kSqrt3);
+    EXPECT_EQ(tree.parts().ball(SpherePolicy::kTable, 0, 0, {0, 0, 0}).radius, 2.5 * kSqrt3);
     EXPECT_EQ(level_statistics(tree).size(), 1u);
   }
 }
@@ -128,8 +127,8 @@ TEST(SphereTree, APowerOfTwoScalesEverythingExactly) {
     TriangleMesh scaled = mesh;
     for (Eigen::Vector3d& vertex : scaled.vertices) vertex *= factor;
     const SphereTree other = tree_of(scaled, 0.17 * factor);
-    ASSERT_EQ(other.octree().codes(0), tree.octree().codes(0));
-    EXPECT_EQ(other.reach(), tree.reach() * factor);
+    ASSERT_EQ(other.parts().octree.codes(0), tree.parts().octree.codes(0));
+    EXPECT_EQ(other.bounding_radius(), tree.bounding_radius() * factor);
     for (const SpherePolicy policy : kSpherePolicies) {
       const SavedSpheres a = save_spheres(tree, policy), b = save_spheres(other, policy);
       for (std::size_t level = 0; level < a.size(); ++level) {
@@ -151,19 +150,19 @@ TEST(SphereTree, UnpacksItsBounds) {
   };
   for (int level = 0; level <= tree.depth(); ++level) {
     const mpq_class edge = mpq_class(voxel_size) * (1 << level), unit = edge / 32768;
-    for (std::uint32_t parent = 0; parent < tree.balls(level).size(); ++parent) {
-      const OctreeNode& from = tree.octree().nodes(level + 1)[parent];
-      for (int slot = 0; slot < tree.octree().child_count(level + 1, parent); ++slot) {
-        const PackedBall packed = tree.balls(level)[parent][slot];
-        const Ball ball = tree.saved_ball(level, parent, slot);
+    for (std::uint32_t parent = 0; parent < tree.parts().balls(level).size(); ++parent) {
+      const OctreeNode& from = tree.parts().octree.nodes(level + 1)[parent];
+      for (int slot = 0; slot < tree.parts().octree.child_count(level + 1, parent); ++slot) {
+        const PackedBall packed = tree.parts().balls(level)[parent][slot];
+        const Ball ball = tree.parts().saved_ball(level, parent, slot);
         const int centre[] = {packed.x, packed.y, packed.z};
         for (int i = 0; i < 3; ++i) {
           const mpq_class origin = mpq_class(double{from.centre[i]}) * mpq_class(voxel_size);
           expect_near(ball.centre[i], origin + centre[i] * unit);
         }
         expect_near(ball.radius, packed.r * unit);
-        const PackedSlab thin = tree.slabs(level)[parent][slot];
-        const Slab slab = tree.saved_slab(level, parent, slot);
+        const PackedSlab thin = tree.parts().slabs(level)[parent][slot];
+        const Slab slab = tree.parts().saved_slab(level, parent, slot);
         EXPECT_EQ(128 * slab.normal, Eigen::Vector3d(thin.nx, thin.ny, thin.nz));
         expect_near(slab.offset, thin.offset * edge / 256);
         expect_near(slab.half, thin.half * edge / 256);
@@ -203,7 +202,7 @@ TEST(TreeStatistics, AddUpWhatTheLevelsHold) {
   const auto levels = level_statistics(tree);
   ASSERT_EQ(levels.size(), static_cast<std::size_t>(tree.depth()) + 1);
   for (const LevelStatistics& level : levels) {
-    EXPECT_EQ(level.nodes, tree.octree().node_count(level.level));
+    EXPECT_EQ(level.nodes, tree.parts().octree.node_count(level.level));
     EXPECT_EQ(level.edge, 0.1 * (1 << level.level));
     ASSERT_EQ(level.spheres.size(), kSpherePolicies.size());
     // The circumsphere of a cube of edge e: (√3/2) π e³.

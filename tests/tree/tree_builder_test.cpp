@@ -1,5 +1,3 @@
-#include "ist/tree/tree_builder.h"
-
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
@@ -7,6 +5,8 @@
 
 #include "ist/base/parallel.h"
 #include "ist/tree/saved_spheres.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -25,7 +25,7 @@ BuildOptions everything(double voxel_size) {
 
 std::vector<std::uint32_t> words(const SphereTree& tree) {
   std::vector<std::uint32_t> words;
-  for (const PackedNormal normal : tree.normals()) words.push_back(normal.word());
+  for (const PackedNormal normal : tree.parts().normals) words.push_back(normal.word());
   return words;
 }
 
@@ -33,13 +33,13 @@ TEST(BuildTree, HasTheVoxelsAsLeavesInOrder) {
   const TriangleMesh mesh = test::icosphere(2, 1);
   const VoxelSet voxels = voxelize(mesh, {0.13, true});
   const SphereTree tree = build_tree(mesh, everything(0.13));
-  EXPECT_EQ(tree.lattice(), voxels.lattice);
-  EXPECT_EQ(tree.octree().codes(0), voxels.codes);
-  EXPECT_EQ(tree.triangles()->lists.first, voxels.triangles.first);
-  EXPECT_EQ(tree.triangles()->lists.ids, voxels.triangles.ids);
-  EXPECT_EQ(tree.triangles()->mesh.triangles, mesh.triangles);
+  EXPECT_EQ(tree.parts().lattice, voxels.lattice);
+  EXPECT_EQ(tree.parts().octree.codes(0), voxels.codes);
+  EXPECT_EQ(tree.parts().triangles->lists.first, voxels.triangles.first);
+  EXPECT_EQ(tree.parts().triangles->lists.ids, voxels.triangles.ids);
+  EXPECT_EQ(tree.parts().triangles->mesh.triangles, mesh.triangles);
   const std::vector<std::uint64_t> near = proximity_voxels(mesh, voxels);
-  EXPECT_EQ(tree.proximity()->octree.codes(0), near);
+  EXPECT_EQ(tree.parts().proximity->octree.codes(0), near);
 }
 
 TEST(BuildTree, KeepsNoMoreThanItIsAskedFor) {
@@ -49,7 +49,7 @@ TEST(BuildTree, KeepsNoMoreThanItIsAskedFor) {
   const SphereTree tree = build_tree(test::icosphere(1, 1), options);
   EXPECT_FALSE(tree.has(SpherePolicy::kTight));
   EXPECT_FALSE(tree.triangles());
-  EXPECT_FALSE(tree.proximity());
+  EXPECT_FALSE(tree.parts().proximity);
 }
 
 TEST(BuildTree, SavesWhatItIsAskedFor) {
@@ -69,16 +69,17 @@ TEST(BuildTree, TurnsAnInsideOutMeshOutwardAndReportsIt) {
   EXPECT_EQ(turned.turned_components, 1u);
   EXPECT_FALSE(turned.stages.empty());
   EXPECT_EQ(wrong.orientation(), Orientation::kOutward);
-  ASSERT_EQ(wrong.octree().codes(0), right.octree().codes(0));
-  const auto codes = wrong.octree().codes(0);
+  ASSERT_EQ(wrong.parts().octree.codes(0), right.parts().octree.codes(0));
+  const auto codes = wrong.parts().octree.codes(0);
   for (std::size_t leaf = 0; leaf < codes.size(); ++leaf) {
     // The sphere's centre is the grid's, half an extent from its corner.
-    const Eigen::Vector3d outward = 0.15 * (cube_centre(wrong.lattice(), 0, codes[leaf]).array() +
-                                            wrong.lattice().root_centre()) +
-                                    Eigen::Vector3d(wrong.lattice().corner.data()).array();
-    EXPECT_GT(wrong.normals()[leaf].direction().dot(outward.normalized()), 0.95);
+    const Eigen::Vector3d outward =
+        0.15 * (cube_centre(wrong.parts().lattice, 0, codes[leaf]).array() +
+                wrong.parts().lattice.root_centre()) +
+        Eigen::Vector3d(wrong.parts().lattice.corner.data()).array();
+    EXPECT_GT(wrong.parts().normals[leaf].direction().dot(outward.normalized()), 0.95);
   }
-  EXPECT_EQ(wrong.proximity()->octree.codes(0), right.proximity()->octree.codes(0));
+  EXPECT_EQ(wrong.parts().proximity->octree.codes(0), right.parts().proximity->octree.codes(0));
 }
 
 TEST(BuildTree, AnOpenMeshIsBelieved) {
@@ -86,7 +87,7 @@ TEST(BuildTree, AnOpenMeshIsBelieved) {
   const SphereTree tree = build_tree(test::open_strip(4), everything(0.5), &report);
   EXPECT_EQ(tree.orientation(), Orientation::kAssumed);
   EXPECT_EQ(report.turned_components, 0u);
-  for (const PackedNormal normal : tree.normals()) {
+  for (const PackedNormal normal : tree.parts().normals) {
     EXPECT_EQ(normal.direction(), Eigen::Vector3d(0, 0, 1));
   }
 }
@@ -94,26 +95,27 @@ TEST(BuildTree, AnOpenMeshIsBelieved) {
 TEST(BuildTree, AMeshWithoutAreaHasNoOutsideAndNoProximityVoxels) {
   const TriangleMesh needle = test::triangle({0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5});
   const SphereTree tree = build_tree(needle, everything(0.2));
-  EXPECT_GT(tree.octree().leaf_count(), 0u);
-  EXPECT_FALSE(tree.proximity());
+  EXPECT_GT(tree.leaf_count(), 0u);
+  EXPECT_FALSE(tree.parts().proximity);
 }
 
 TEST(BuildTree, IsTheSameForAnyNumberOfThreadsAndAnyArithmeticOfTheHost) {
   const TriangleMesh mesh = test::icosphere(3, 1);
   const SphereTree reference = build_tree(mesh, everything(0.04));
   const auto expect_same = [&](const SphereTree& tree) {
-    EXPECT_EQ(tree.octree().codes(0), reference.octree().codes(0));
+    EXPECT_EQ(tree.parts().octree.codes(0), reference.parts().octree.codes(0));
     EXPECT_EQ(words(tree), words(reference));
     for (int level = 0; level <= tree.depth(); ++level) {
-      ASSERT_EQ(tree.balls(level).size(), reference.balls(level).size());
-      EXPECT_EQ(std::memcmp(tree.balls(level).data(), reference.balls(level).data(),
-                            tree.balls(level).size_bytes()),
+      ASSERT_EQ(tree.parts().balls(level).size(), reference.parts().balls(level).size());
+      EXPECT_EQ(std::memcmp(tree.parts().balls(level).data(), reference.parts().balls(level).data(),
+                            tree.parts().balls(level).size_bytes()),
                 0);
-      EXPECT_EQ(std::memcmp(tree.slabs(level).data(), reference.slabs(level).data(),
-                            tree.slabs(level).size_bytes()),
+      EXPECT_EQ(std::memcmp(tree.parts().slabs(level).data(), reference.parts().slabs(level).data(),
+                            tree.parts().slabs(level).size_bytes()),
                 0);
     }
-    EXPECT_EQ(tree.proximity()->octree.codes(0), reference.proximity()->octree.codes(0));
+    EXPECT_EQ(tree.parts().proximity->octree.codes(0),
+              reference.parts().proximity->octree.codes(0));
   };
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const ScopedThreadLimit limit(threads);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_stream.h"
 #include "support/errors.h"
 #include "support/largest_allocation.h"

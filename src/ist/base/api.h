@@ -1,15 +1,16 @@
 #pragma once
 
-// Eigen's alignment hangs on the instruction set of who compiles, and what the library allocates
-// the program may free: so both have it alike.
-#if !defined(EIGEN_MAX_ALIGN_BYTES) || EIGEN_MAX_ALIGN_BYTES != 16
+#if __cplusplus < 202002L
+#error "IST needs C++20: compile with -std=c++20, or ask CMake for cxx_std_20"
+#elif !defined(EIGEN_MAX_ALIGN_BYTES) || EIGEN_MAX_ALIGN_BYTES != 16
+// Eigen's alignment depends on the caller's instruction set, and a program may free memory that the
+// library allocated: both need the same alignment.
 #error "IST needs -DEIGEN_MAX_ALIGN_BYTES=16, as CMake's ist::ist and pkg-config's ist give it"
 #endif
 
-/// Stands before each class and function that is meant for users: the shared library exports it,
-/// and nothing else of `ist`. What an installed header declares without it is there because a
-/// public class is made of it, and is no one's to call.
+/// Marks each class and function of the public interface: the shared library exports it, and
+/// nothing else of namespace ist.
 #define IST_API __attribute__((visibility("default")))
 
-/// Stands before what is private in such a class: not exported, and so free to change.
+/// Marks a private member of such a class: not exported.
 #define IST_LOCAL __attribute__((visibility("hidden")))

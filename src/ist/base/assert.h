@@ -3,8 +3,8 @@
 #ifdef IST_ASSERTS
 #include <cstdio>
 #include <cstdlib>
-/// Checks a precondition whose breach is a bug in the caller. On in the test presets, which are
-/// optimised like the release, because that is where bugs that change values show.
+/// Aborts if a precondition fails, which is a bug of the caller. Enabled in the test presets, which
+/// are optimised like the release so that bugs that optimisation exposes appear there.
 #define IST_ASSERT(condition)                                                                \
   do {                                                                                       \
     if (!(condition)) {                                                                      \

@@ -4,9 +4,9 @@
 
 namespace ist {
 
-/// A sum or dot product whose rounding error is that of twice the precision of double, rounded once
-/// at the end: |error| <= u·|result| + n²u²·Σ|terms|, u = 2⁻⁵³. Neither order nor instruction set
-/// changes it, for it uses + - × only.
+/// Accumulates a sum or dot product in twice the precision of double and rounds it once at the end:
+/// |error| <= u·|result| + n²u²·Σ|terms|, u = 2⁻⁵³. Uses + - × only, so every instruction set gives
+/// the same bits.
 ///
 /// Source: T. Ogita, S. M. Rump, S. Oishi, Accurate sum and dot product, SIAM J. Sci. Comput.
 /// 26(6), 2005 (algorithms Sum2 and Dot2); Dekker's product, without a fused multiply-add.

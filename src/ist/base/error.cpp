@@ -1,55 +1,25 @@
 #include "ist/base/error.h"
 
+#include <array>
+
 namespace ist {
+namespace {
+
+// In the order of ErrorCode.
+constexpr std::array kNames = {
+    "file-unreadable",  "file-unwritable",    "not-a-mesh",           "mesh-empty",
+    "mesh-points-only", "mesh-truncated",     "mesh-bad-index",       "mesh-not-finite",
+    "mesh-extent",      "voxel-size-invalid", "voxel-size-too-small", "memory-limit",
+    "not-a-tree",       "tree-version",       "tree-truncated",       "tree-corrupt",
+    "policy-missing",   "triangles-missing",  "target-missing",       "pose-invalid",
+    "argument-invalid", "input-invalid",      "fixed-point-range"};
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::kFixedPointRange) + 1);
+
+}  // namespace
 
 const char* to_string(ErrorCode code) noexcept {
-  switch (code) {
-    case ErrorCode::kFileUnreadable:
-      return "file-unreadable";
-    case ErrorCode::kFileUnwritable:
-      return "file-unwritable";
-    case ErrorCode::kNotAMesh:
-      return "not-a-mesh";
-    case ErrorCode::kMeshEmpty:
-      return "mesh-empty";
-    case ErrorCode::kMeshPointsOnly:
-      return "mesh-points-only";
-    case ErrorCode::kMeshTruncated:
-      return "mesh-truncated";
-    case ErrorCode::kMeshBadIndex:
-      return "mesh-bad-index";
-    case ErrorCode::kMeshNotFinite:
-      return "mesh-not-finite";
-    case ErrorCode::kMeshExtent:
-      return "mesh-extent";
-    case ErrorCode::kVoxelSizeInvalid:
-      return "voxel-size-invalid";
-    case ErrorCode::kVoxelSizeTooSmall:
-      return "voxel-size-too-small";
-    case ErrorCode::kMemoryLimit:
-      return "memory-limit";
-    case ErrorCode::kNotATree:
-      return "not-a-tree";
-    case ErrorCode::kTreeVersion:
-      return "tree-version";
-    case ErrorCode::kTreeTruncated:
-      return "tree-truncated";
-    case ErrorCode::kTreeCorrupt:
-      return "tree-corrupt";
-    case ErrorCode::kPolicyMissing:
-      return "policy-missing";
-    case ErrorCode::kTrianglesMissing:
-      return "triangles-missing";
-    case ErrorCode::kTargetMissing:
-      return "target-missing";
-    case ErrorCode::kPoseInvalid:
-      return "pose-invalid";
-    case ErrorCode::kInputInvalid:
-      return "input-invalid";
-    case ErrorCode::kFixedPointRange:
-      return "fixed-point-range";
-  }
-  return "unknown";
+  const auto at = static_cast<std::size_t>(code);
+  return at < kNames.size() ? kNames[at] : "unknown";
 }
 
 }  // namespace ist

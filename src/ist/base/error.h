@@ -7,30 +7,32 @@
 
 namespace ist {
 
-/// What went wrong, for code that must tell the cases apart. The text for people is `what()`.
+/// Identifies the kind of an error, for code that handles kinds differently. `what()` is the text
+/// for people.
 enum class ErrorCode {
   kFileUnreadable,     ///< the file cannot be opened or read
   kFileUnwritable,     ///< the file cannot be created, written or renamed
-  kNotAMesh,           ///< the content is in no mesh format that is read here
-  kMeshEmpty,          ///< a mesh format, but no triangle and no vertex
-  kMeshPointsOnly,     ///< vertices or lines, but no triangle
-  kMeshTruncated,      ///< the file ends before its content does
-  kMeshBadIndex,       ///< a face names a vertex that is not there
+  kNotAMesh,           ///< the content is in no supported mesh format
+  kMeshEmpty,          ///< the file holds neither a triangle nor a vertex
+  kMeshPointsOnly,     ///< the file holds vertices or lines, but no triangle
+  kMeshTruncated,      ///< the file ends before its last element
+  kMeshBadIndex,       ///< a face refers to a vertex that does not exist
   kMeshNotFinite,      ///< a vertex is NaN or infinite
   kMeshExtent,         ///< the largest extent is zero or outside [1e-12, 1e15] units
-  kVoxelSizeInvalid,   ///< not a positive, finite number
-  kVoxelSizeTooSmall,  ///< needs more than 2^16 voxels an axis
-  kMemoryLimit,        ///< would need more memory than was allowed
-  kNotATree,           ///< not a tree file, or one of another byte order
-  kTreeVersion,        ///< a tree file of another version
-  kTreeTruncated,      ///< a tree file that ends too early or too late
-  kTreeCorrupt,        ///< a tree file whose checksum or content does not hold
-  kPolicyMissing,      ///< the tree was built without the spheres that are asked for
-  kTrianglesMissing,   ///< the tree was built without the triangles that are asked for
-  kTargetMissing,      ///< this processor lacks the instruction set that is asked for
-  kPoseInvalid,        ///< not a rigid motion
-  kInputInvalid,       ///< another input file whose content does not hold
-  kFixedPointRange,    ///< a number that the hardware's fixed-point format does not hold
+  kVoxelSizeInvalid,   ///< not positive and finite, or over 1,000 times the extent
+  kVoxelSizeTooSmall,  ///< the grid would need more than 2^16 voxels an axis
+  kMemoryLimit,        ///< the result would need more memory than allowed
+  kNotATree,           ///< the file is not a tree file, or has another byte order
+  kTreeVersion,        ///< the tree file has another version
+  kTreeTruncated,      ///< the tree file is shorter or longer than its header says
+  kTreeCorrupt,        ///< the tree file's checksum or content is invalid
+  kPolicyMissing,      ///< the tree lacks the requested spheres
+  kTrianglesMissing,   ///< the tree lacks the triangles that an exact query needs
+  kTargetMissing,      ///< this processor lacks the requested instruction set
+  kPoseInvalid,        ///< the pose is not a rigid motion
+  kArgumentInvalid,    ///< an option or argument is outside its range
+  kInputInvalid,       ///< the content of another input file is invalid
+  kFixedPointRange,    ///< a number does not fit the hardware's fixed-point format
 };
 
 /// The only exception of the library. `what()` names the place, the cause and the remedy.
@@ -44,7 +46,7 @@ class IST_API Error : public std::runtime_error {
   ErrorCode code_;
 };
 
-/// The code's own name, such as "mesh-truncated": stable, for logs and tests.
+/// Returns the code's name, such as "mesh-truncated": stable, for logs and tests.
 [[nodiscard]] IST_API const char* to_string(ErrorCode code) noexcept;
 
 }  // namespace ist

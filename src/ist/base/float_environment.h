@@ -4,10 +4,10 @@
 
 namespace ist {
 
-/// Arithmetic as IEEE 754 has it (round to nearest, no flush to zero, no denormals are zero) while
-/// this object lives; the caller's setting comes back after, with its flags. What reads, builds or
-/// asks holds one in each thread, constructors too, so that a host that changed MXCSR gets the same
-/// bits as one that did not.
+/// Sets IEEE 754 arithmetic (round to nearest, no flush to zero, no denormals are zero) in the
+/// calling thread while this object lives, and then restores the caller's MXCSR with its flags.
+/// Every function that reads, builds or queries holds one in each thread, constructors included, so
+/// a host that changed MXCSR gets the same bits as any other.
 class ScopedFloatEnvironment {
  public:
   ScopedFloatEnvironment() noexcept : saved_(_mm_getcsr()) { _mm_setcsr(kDefault); }

@@ -5,13 +5,13 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/tbb_ranges.h"
 
 namespace ist {
 namespace {
 
-// What TBB promises, said again where a tool can see it that cannot look into TBB: what was written
-// before a loop is there in each of its ranges, and what the ranges wrote is there after the loop.
+// These atomics repeat TBB's memory ordering for race detectors that cannot see into TBB: writes
+// before a loop are visible in each of its ranges, and writes of the ranges are visible after the
+// loop.
 std::atomic<std::size_t> loops_begun{0};
 
 struct Loop {
@@ -43,8 +43,7 @@ void parallel_for(std::size_t count, std::size_t grain,
 }
 
 void parallel_sort(std::span<std::uint64_t> keys) {
-  constexpr std::size_t kSmallest = 1
-                                    << 14;  // sorted in less time than another thread takes to come
+  constexpr std::size_t kSmallest = 1 << 14;  // sorted before another thread would start
   std::size_t run = std::max(kSmallest, (keys.size() + 15) / 16);
   parallel_for(keys.size(), run, [keys](std::size_t begin, std::size_t end) {
     std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin),

@@ -3,31 +3,42 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
-
-#include "ist/base/tbb_ranges.h"
 
 namespace ist {
 
-/// Calls `body(begin, end)` on consecutive ranges that cover [0, count), on all cores. Ranges hold
-/// `grain` items, the last one fewer: they do not depend on the number of threads, so a body that
-/// writes by range gives the same result for any. Each range runs in ScopedFloatEnvironment. An
-/// exception of the body reaches the caller.
+/// Calls `body(begin, end)` on consecutive ranges that cover [0, count), on all cores. Each range
+/// holds `grain` items, the last one possibly fewer. The ranges do not depend on the number of
+/// threads, so a body that writes by range gives the same result for any number. Each range runs in
+/// a ScopedFloatEnvironment. An exception of the body reaches the caller.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Sorts ascending, on all cores.
+/// Sorts `keys` in ascending order, on all cores.
 void parallel_sort(std::span<std::uint64_t> keys);
 
-/// Bounds the threads that the functions above use while this object lives.
+/// Limits parallel_for and parallel_sort to `threads` threads while this object lives.
 class ScopedThreadLimit {
  public:
-  explicit ScopedThreadLimit(std::size_t threads) : limit_(threads) {}
-  ScopedThreadLimit(const ScopedThreadLimit&) = delete;
-  ScopedThreadLimit& operator=(const ScopedThreadLimit&) = delete;
+  explicit ScopedThreadLimit(std::size_t threads);
+  ~ScopedThreadLimit();
 
  private:
-  TbbThreadLimit limit_;
+  struct Control;
+  std::unique_ptr<Control> control_;
 };
+
+/// Calls `run(context, 0)` … `run(context, ranges - 1)`, each once, on all cores. An exception
+/// reaches the caller. Only parallel_for calls this function.
+void tbb_ranges(std::size_t ranges, void (*run)(void* context, std::size_t range), void* context);
+
+/// Calls `run(context)` once on a thread of TBB, concurrently with all other work of TBB, as soon
+/// as a thread is free (even if TBB is limited to one). Returns at once. The call may begin while
+/// the process is ending, so `context` and all objects that `run` uses must never be destroyed.
+void tbb_aside(void (*run)(void* context), void* context);
+
+/// Returns the number of threads that TBB uses by default, the caller's included.
+[[nodiscard]] std::size_t tbb_threads();
 
 }  // namespace ist

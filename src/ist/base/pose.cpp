@@ -7,9 +7,9 @@
 namespace ist {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // of RᵀR - I, entry by entry
+constexpr double kTolerance = 1e-5;  // bound of each entry of RᵀR - I
 
-// Written out, so that the order of the sums is this code's and no library's.
+// Returns AᵀA, written out so that no library decides the order of the sums.
 Eigen::Matrix3d transpose_times(const Eigen::Matrix3d& a) noexcept {
   Eigen::Matrix3d product;
   for (int i = 0; i < 3; ++i) {
@@ -47,7 +47,7 @@ std::optional<Eigen::Isometry3d> project_to_rigid(const Eigen::Isometry3d& pose)
   Eigen::Matrix3d rotation = m.block<3, 3>(0, 0);
   if (!is_nearly_orthonormal(transpose_times(rotation))) return std::nullopt;
   if (!(determinant(rotation) > 0)) return std::nullopt;
-  // 1e-5, 1e-10, 1e-20: two steps reach the last bit, a third settles it.
+  // The error falls as 1e-5, 1e-10, 1e-20: two steps reach the last bit, a third settles it.
   for (int step = 0; step < 3; ++step) {
     const Eigen::Matrix3d gram = transpose_times(rotation);
     Eigen::Matrix3d next;
@@ -70,7 +70,7 @@ std::optional<Eigen::Isometry3d> compose_rigid(const Eigen::Isometry3d& second,
   const ScopedFloatEnvironment environment;
   const Eigen::Matrix4d &a = second.matrix(), &b = first.matrix();
   Eigen::Isometry3d product;
-  for (int i = 0; i < 4; ++i) {  // all four rows: one that is not 0 0 0 1 is refused
+  for (int i = 0; i < 4; ++i) {  // all four rows, so that a wrong last row is refused
     for (int j = 0; j < 4; ++j) {
       product.matrix()(i, j) =
           ((a(i, 0) * b(0, j) + a(i, 1) * b(1, j)) + a(i, 2) * b(2, j)) + a(i, 3) * b(3, j);

@@ -5,10 +5,11 @@
 
 namespace ist {
 
-/// How far a build is: written by the threads that build, read by one that shows it, at any time.
+/// Holds the progress of a build. The building threads write it; any thread may read it at any
+/// time.
 class Progress {
  public:
-  /// `name` must outlive this object: stages are named by literals.
+  /// Begins a stage of `total` items. `name` must outlive this object, as a literal does.
   void begin_stage(const char* name, std::uint64_t total) noexcept {
     done_.store(0, std::memory_order_relaxed);
     total_.store(total, std::memory_order_relaxed);

@@ -5,7 +5,7 @@
 
 namespace ist {
 
-/// The places of the bits that are set in a byte, lowest first, then zeros.
+/// The positions of the set bits of each byte, lowest first, then zeros.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 256> kSetBits = [] {
   std::array<std::array<std::uint8_t, 8>, 256> places{};
   for (std::size_t byte = 0; byte < 256; ++byte) {

@@ -1,9 +1,9 @@
-#include "ist/base/tbb_ranges.h"
-
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "ist/base/parallel.h"
 
 namespace ist {
 
@@ -12,20 +12,21 @@ void tbb_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* conte
 }
 
 void tbb_aside(void (*run)(void*), void* context) {
-  // An arena with no place but its caller's, who never comes: TBB lends such a one a worker for
-  // what is enqueued, even where it is limited to one thread. It lives until its task has ended.
+  // The arena's only slot is reserved for a caller that never joins. TBB lends such an arena a
+  // worker for enqueued tasks even if TBB is limited to one thread. The arena lives until its task
+  // has ended.
   tbb::task_arena arena(1, 1, tbb::task_arena::priority::high);
   arena.enqueue([=] { run(context); });
 }
 
 std::size_t tbb_threads() { return static_cast<std::size_t>(tbb::info::default_concurrency()); }
 
-struct TbbThreadLimit::Control {
+struct ScopedThreadLimit::Control {
   tbb::global_control limit;
 };
 
-TbbThreadLimit::TbbThreadLimit(std::size_t threads)
+ScopedThreadLimit::ScopedThreadLimit(std::size_t threads)
     : control_(new Control{{tbb::global_control::max_allowed_parallelism, threads}}) {}
-TbbThreadLimit::~TbbThreadLimit() = default;
+ScopedThreadLimit::~ScopedThreadLimit() = default;
 
 }  // namespace ist

@@ -4,8 +4,8 @@
 
 namespace ist {
 
-/// While it lives, timers of the calling thread wake it as late as the machine makes them, and not
-/// 50 µs later still, which is how far Linux otherwise lets them slip to join others.
+/// Sets the calling thread's timer slack to 1 ns while this object lives, so that timers wake the
+/// thread as soon as the machine can. By default Linux delays timers by up to 50 µs to join them.
 class ScopedTimerSlack {
  public:
   ScopedTimerSlack() noexcept : saved_(prctl(PR_GET_TIMERSLACK)) { prctl(PR_SET_TIMERSLACK, 1ul); }

@@ -1,5 +1,6 @@
 #include "ist/capi/guard.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -9,27 +10,41 @@
 #include "ist/capi/status.h"
 
 namespace ist::capi {
+namespace {
+
+// Part of a thread's static storage, without constructor and destructor.
+constinit thread_local char message[kLastErrorBytes] = {};
+
+}  // namespace
+
+const char* last_error() noexcept { return message; }
+
+ist_status Call::store(ist_status status, std::string_view text) const noexcept {
+  char* to = message;
+  for (const std::string_view part : {std::string_view(function_), std::string_view(": "), text}) {
+    const auto room = static_cast<std::size_t>(message + kLastErrorBytes - 1 - to);
+    to = std::copy_n(part.data(), std::min(part.size(), room), to);
+  }
+  *to = '\0';
+  return status;
+}
 
 ist_status Call::fail_by_exception() const noexcept {
-  const auto fail_as = [this](ist_status status, const char* text) {
-    set_last_error(function_, text);
-    return status;
-  };
-  constexpr const char* kNoMemory = "not enough memory: ask for less, or free what is not needed";
+  constexpr const char* kNoMemory = "not enough memory: request less, or free unused objects";
   try {
     throw;
   } catch (const Error& error) {
-    return fail_as(status_of(error.code()), error.what());
+    return store(status_of(error.code()), error.what());
   } catch (const std::bad_alloc&) {
-    return fail_as(IST_OUT_OF_MEMORY, kNoMemory);
-  } catch (const std::length_error&) {  // of a vector that no memory could hold
-    return fail_as(IST_OUT_OF_MEMORY, kNoMemory);
+    return store(IST_OUT_OF_MEMORY, kNoMemory);
+  } catch (const std::length_error&) {  // from a vector beyond its largest size
+    return store(IST_OUT_OF_MEMORY, kNoMemory);
   } catch (const std::system_error& error) {
-    return fail_as(IST_SYSTEM_ERROR, error.what());
+    return store(IST_SYSTEM_ERROR, error.what());
   } catch (const std::exception& error) {
-    return fail_as(IST_INTERNAL_ERROR, error.what());
+    return store(IST_INTERNAL_ERROR, error.what());
   } catch (...) {
-    return fail_as(IST_INTERNAL_ERROR, "an exception that is none of the standard's");
+    return store(IST_INTERNAL_ERROR, "unknown exception: report this bug");
   }
 }
 

@@ -9,59 +9,66 @@
 #include <string_view>
 #include <utility>
 
-#include "ist/capi/ist.h"
-#include "ist/capi/last_error.h"
+#include "ist/capi/ist_c.h"
 
 namespace ist::capi {
 
-/// A call of a C function, which can fail.
+/// The size of a thread's error message, with its terminating zero.
+inline constexpr std::size_t kLastErrorBytes = 512;
+
+/// Returns the calling thread's message; empty before the first error.
+[[nodiscard]] const char* last_error() noexcept;
+
+/// One call of a C function. Its members report errors.
 class Call {
  public:
   explicit Call(const char* function) : function_(function) {}
 
-  /// Keeps the message, `function: text`, and returns the status. Allocates nothing.
+  /// Stores `function: text` as the calling thread's message, cut to kLastErrorBytes, and returns
+  /// the status. Allocates no memory.
+  ist_status store(ist_status status, std::string_view text) const noexcept;
+  /// Stores a formatted text, as store() does.
   template <typename... Args>
   ist_status fail(ist_status status, fmt::format_string<Args...> text, Args&&... args) const {
     char buffer[kLastErrorBytes];
     const auto end =
         fmt::format_to_n(buffer, kLastErrorBytes, text, std::forward<Args>(args)...).out;
-    set_last_error(function_, {buffer, static_cast<std::size_t>(end - buffer)});
-    return status;
+    return store(status, {buffer, static_cast<std::size_t>(end - buffer)});
   }
 
-  /// What must not be NULL, by its name.
+  /// A required pointer and its name.
   struct Needed {
     const char* name;
     const void* pointer;
   };
-  /// Fails for the first that is.
+  /// Fails for the first pointer that is NULL.
   [[nodiscard]] ist_status need(std::initializer_list<Needed> all) const {
     for (const Needed& needed : all) {
       if (needed.pointer == nullptr) {
-        return fail(IST_NULL_ARGUMENT, "{} is NULL, and must not be", needed.name);
+        return fail(IST_NULL_ARGUMENT, "{} is NULL: pass a valid pointer", needed.name);
       }
     }
     return IST_OK;
   }
-  /// Fails for an array that is NULL and not empty, and for one that cannot be.
+  /// Fails for an array that is NULL but not empty, and for an impossible length.
   [[nodiscard]] ist_status need_array(const char* name, const void* array,
                                       std::size_t count) const {
-    constexpr std::size_t kMost = PTRDIFF_MAX / 256;  // the bytes of so many can be counted
+    constexpr std::size_t kMost = PTRDIFF_MAX / 256;  // no element is larger than 256 bytes
     if (count > kMost) {
-      return fail(IST_ARGUMENT_INVALID, "{} elements of {}: no memory has so many", count, name);
+      return fail(IST_ARGUMENT_INVALID, "{} has {} elements: pass at most {}", name, count, kMost);
     }
     if (array != nullptr || count == 0) return IST_OK;
-    return fail(IST_NULL_ARGUMENT, "{} is NULL, and should have {} elements", name, count);
+    return fail(IST_NULL_ARGUMENT, "{} is NULL: pass an array of {} elements", name, count);
   }
 
-  /// The exception that is being handled, as a status; keeps its message.
+  /// Converts the current exception to a status and stores its message.
   [[nodiscard]] ist_status fail_by_exception() const noexcept;
 
  private:
   const char* function_;
 };
 
-/// Runs the body of a C function: an exception that would leave it becomes a status.
+/// Runs the body of a C function and converts any exception to a status.
 template <typename Body>
 ist_status guarded(const char* function, const Body& body) noexcept {
   const Call call(function);

@@ -6,18 +6,22 @@ ist_status fail_by_handle(const Call& call, ist_status status, const char* argum
                           const char* kind) {
   switch (status) {
     case IST_NULL_ARGUMENT:
-      return call.fail(status, "{} is NULL, and must not be", argument);
+      return call.fail(status, "{} is NULL: pass a {}", argument, kind);
     case IST_NOT_A_HANDLE:
-      return call.fail(status, "{} is no handle: pass one that this library gave", argument);
+      return call.fail(status, "{} is not a handle: pass a {} that this library created", argument,
+                       kind);
     case IST_HANDLE_KIND:
-      return call.fail(status, "{} is a handle, but of no {}", argument, kind);
+      return call.fail(status, "{} is a handle of another kind: pass a {}", argument, kind);
     case IST_HANDLE_FREED:
-      return call.fail(status, "{} is a {} that was freed", argument, kind);
-    case IST_HANDLE_BUSY:
-      return call.fail(status, "{} is in a call of another thread: make a {} for each thread",
+      return call.fail(status,
+                       "{} is a {} that was freed: do not use a handle after its ist_..._free",
                        argument, kind);
+    case IST_HANDLE_BUSY:
+      return call.fail(status, "another thread is using {}: create a {} for each thread", argument,
+                       kind);
     default:
-      return call.fail(status, "no more than {} handles live at a time: free a {} or another one",
+      return call.fail(status,
+                       "{} handles are alive, the most possible: free a {} or another object",
                        HandleTable::kSlots, kind);
   }
 }

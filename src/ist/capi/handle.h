@@ -8,20 +8,20 @@
 
 namespace ist::capi {
 
-static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle takes the place of a pointer");
+static_assert(sizeof(void*) == sizeof(std::uint64_t), "a handle has the size of a pointer");
 
-// What a handle is of says, as T: `using Handle`, the opaque C type; kKind; kUse; kName.
+// The type T of an object declares `using Handle`, its opaque C type; kKind; kUse; kName.
 
 template <typename Handle>
 [[nodiscard]] std::uint64_t number_of(const Handle* handle) noexcept {
   return reinterpret_cast<std::uintptr_t>(handle);
 }
 
-/// Says what is wrong with a handle that was passed as `argument`; returns the status.
+/// Stores the message for an invalid handle, passed as `argument`, and returns the status.
 ist_status fail_by_handle(const Call& call, ist_status status, const char* argument,
                           const char* kind);
 
-/// Gives a new object away as a handle.
+/// Moves a new object into the handle table and writes its handle to `out`.
 template <typename T>
 [[nodiscard]] ist_status give(const Call& call, std::unique_ptr<T> object,
                               typename T::Handle** out) {
@@ -33,7 +33,7 @@ template <typename T>
   return IST_OK;
 }
 
-/// The object of a handle, while a call has to do with it.
+/// Keeps the object of a handle alive during a call.
 template <typename T>
 class Held {
  public:
@@ -47,7 +47,7 @@ class Held {
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
-  /// IST_OK, or why there is no object; then the message is kept.
+  /// IST_OK, or the error; the message is then stored.
   [[nodiscard]] ist_status status() const noexcept { return taken_.status; }
   [[nodiscard]] T* operator->() const noexcept { return static_cast<T*>(taken_.object); }
   [[nodiscard]] T& operator*() const noexcept { return *static_cast<T*>(taken_.object); }
@@ -57,7 +57,7 @@ class Held {
   HandleTable::Taken taken_;
 };
 
-/// What every ..._free does.
+/// Implements every ..._free.
 template <typename T>
 [[nodiscard]] ist_status give_back(const char* function, typename T::Handle* handle) noexcept {
   return guarded(function, [&](const Call& call) -> ist_status {

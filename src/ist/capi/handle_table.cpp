@@ -5,17 +5,17 @@ namespace {
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-// Of a handle, from the top: 8 bits that mark it, 8 of its kind, 32 that count, 16 of its slot.
+// A handle has, from the top, 8 bits of mark, 8 of kind, 32 of count and 16 of slot.
 constexpr std::uint64_t kSlotBits = 0xFFFF;
 constexpr int kKindAt = 48;
 constexpr std::uint64_t kCountOne = kSlotBits + 1;
 constexpr std::uint64_t kCountBits = 0xFFFFFFFF * kCountOne;
-// Addresses have all of bits 63 to 56 alike, however many levels their pages have.
+// In every address bits 63 to 56 are equal, with 4 or 5 levels of page tables.
 constexpr std::uint64_t kMark = std::uint64_t{0x5A} << 56;
 constexpr std::uint64_t kMarkBits = std::uint64_t{0xFF} << 56;
 static_assert(HandleTable::kSlots == kSlotBits + 1);
 
-// Of a state, in the place of the slot.
+// A state has these bits in place of the slot.
 constexpr std::uint64_t kAlive = 0x8000, kUsers = 0x7FFF;
 
 constexpr std::uint64_t marked(HandleKind kind) {
@@ -23,7 +23,7 @@ constexpr std::uint64_t marked(HandleKind kind) {
 }
 constexpr std::uint64_t tag_of(std::uint64_t handle) { return handle & ~kSlotBits; }
 
-// Before any slot is looked at.
+// Checks the mark and the kind, without access to a slot.
 ist_status check(std::uint64_t handle, HandleKind kind) noexcept {
   if (handle == 0) return IST_NULL_ARGUMENT;
   if ((handle & kMarkBits) != kMark) return IST_NOT_A_HANDLE;
@@ -68,7 +68,7 @@ HandleTable::Taken HandleTable::take(std::uint64_t handle, HandleKind kind,
 void HandleTable::give_back(std::uint64_t handle) noexcept {
   Slot& slot = slots_[handle & kSlotBits];
   const std::uint64_t before = slot.state.fetch_sub(1, std::memory_order_acq_rel);
-  if ((before & kSlotBits) == 1) empty(slot);  // the last one, and it does not live
+  if ((before & kSlotBits) == 1) empty(slot);  // the last user of a removed object
 }
 
 ist_status HandleTable::remove(std::uint64_t handle, HandleKind kind) noexcept {
@@ -83,7 +83,7 @@ ist_status HandleTable::remove(std::uint64_t handle, HandleKind kind) noexcept {
   return IST_OK;
 }
 
-// By the one who found that nobody else can.
+// Only the last user of a removed object calls this.
 void HandleTable::empty(Slot& slot) noexcept {
   slot.destroy(slot.object);
   slot.state.store(slot.state.load(std::memory_order_relaxed) & kCountBits,

@@ -5,24 +5,24 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ist/capi/ist.h"
+#include "ist/capi/ist_c.h"
 
 namespace ist::capi {
 
-/// What a handle is of.
+/// The kind of the object of a handle.
 enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo };
 
-/// Who may use an object at a time: any number of threads, or one.
+/// Whether any number of threads may use an object at a time, or one.
 enum class HandleUse : std::uint8_t { kShared, kAlone };
 
-/// From handles to objects. A handle is a number that no pointer of this processor can be, made of
-/// the object's kind, its slot, and how often that slot was given out: so one that was freed, is of
-/// another kind or was never given is recognised without looking at any memory but the table's.
+/// Maps handles to objects. A handle consists of the object's kind, its slot and the number of
+/// times the slot was used; no pointer of this processor has such a value. The table therefore
+/// recognises a handle that was freed, has another kind or never existed, and reads no memory but
+/// its own.
 ///
-/// A call takes the object and gives it back; an object that is removed meanwhile is destroyed by
-/// the last to give it back. take() and give_back() are one atomic operation each, tried again only
-/// where another thread uses the same object just then; nothing here locks. All may be called by
-/// any number of threads.
+/// A call takes the object and gives it back; the last user destroys an object that was removed
+/// meanwhile. take() and give_back() are one atomic operation each, repeated only while another
+/// thread changes the same slot; no function locks. Any number of threads may call all functions.
 class HandleTable {
  public:
   using Destroy = void (*)(void* object) noexcept;
@@ -32,25 +32,25 @@ class HandleTable {
   HandleTable(const HandleTable&) = delete;
   HandleTable& operator=(const HandleTable&) = delete;
 
-  /// A handle of the object, which is the table's from now on; 0 where all slots are taken, and
-  /// then it is not.
+  /// Takes ownership of the object and returns its handle. Returns 0 where all slots are in use;
+  /// the caller then keeps the object.
   [[nodiscard]] std::uint64_t insert(HandleKind kind, void* object, Destroy destroy) noexcept;
 
-  /// An object, or why there is none.
+  /// An object, or an error.
   struct Taken {
     ist_status status;
     void* object;
   };
   [[nodiscard]] Taken take(std::uint64_t handle, HandleKind kind, HandleUse use) noexcept;
-  /// Of a handle that was taken.
+  /// Ends a use that take() began.
   void give_back(std::uint64_t handle) noexcept;
 
-  /// The handle is no more; its object goes with its last user.
+  /// Invalidates the handle; the last user destroys the object.
   [[nodiscard]] ist_status remove(std::uint64_t handle, HandleKind kind) noexcept;
 
  private:
-  // `state` is the handle with the number of users in the place of the slot, and whether it lives.
-  // An empty slot keeps the count of how often it was given out, without mark and kind.
+  // `state` is the handle, with the flag kAlive and the number of users in place of the slot. An
+  // empty slot keeps only its count of uses, without mark and kind.
   struct Slot {
     std::atomic<std::uint64_t> state{0};
     void* object = nullptr;
@@ -59,7 +59,7 @@ class HandleTable {
   void empty(Slot& slot) noexcept;
 
   std::array<Slot, kSlots> slots_{};
-  std::atomic<std::uint64_t> next_{0};  // slot to try: all in turn, so that none is soon used again
+  std::atomic<std::uint64_t> next_{0};  // next slot to try; slots take turns, to delay their reuse
 };
 
 /// The table of all handles of the process.

@@ -3,16 +3,13 @@
 #include <limits>
 #include <span>
 
-#include "ist/capi/handle.h"
 #include "ist/capi/objects.h"
-#include "ist/capi/sized_struct.h"
-#include "ist/mesh/mesh_check.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::capi {
 namespace {
 
-// What a caller's arrays are, before anything of them is read.
+// A caller's arrays and their lengths.
 template <typename Number>
 struct MeshArrays {
   const Number* vertices;
@@ -27,8 +24,8 @@ ist_status check_counts(const Call& call, const MeshArrays<Number>& arrays) {
   for (const std::size_t count : {arrays.vertex_count, arrays.triangle_count}) {
     if (count > kMost) {
       return call.fail(IST_ARGUMENT_INVALID,
-                       "{} vertices and {} triangles: no more than {} of each can be indexed",
-                       arrays.vertex_count, arrays.triangle_count, kMost);
+                       "{} vertices and {} triangles: pass at most {} of each", arrays.vertex_count,
+                       arrays.triangle_count, kMost);
     }
   }
   const auto wrong = call.need_array("vertices", arrays.vertices, arrays.vertex_count);
@@ -42,7 +39,7 @@ ist_status take_vertices(const Call& call, const MeshArrays<Number>& arrays, Tri
     const Number* at = arrays.vertices + 3 * i;
     const Eigen::Vector3d vertex(at[0], at[1], at[2]);
     if (!(std::isfinite(vertex[0]) && std::isfinite(vertex[1]) && std::isfinite(vertex[2]))) {
-      return call.fail(IST_MESH_NOT_FINITE, "vertex {} is ({}, {}, {}): give finite numbers", i,
+      return call.fail(IST_MESH_NOT_FINITE, "vertex {} is ({}, {}, {}): pass finite numbers", i,
                        vertex[0], vertex[1], vertex[2]);
     }
     mesh.vertices.push_back(vertex);
@@ -57,14 +54,32 @@ ist_status take_triangles(const Call& call, std::span<const std::uint32_t> indic
     const Triangle triangle = {indices[i], indices[i + 1], indices[i + 2]};
     for (const std::uint32_t vertex : triangle) {
       if (vertex >= mesh.vertices.size()) {
-        return call.fail(IST_MESH_BAD_INDEX,
-                         "triangle {} names vertex {}, and there are {}: count from 0", i / 3,
-                         vertex, mesh.vertices.size());
+        return call.fail(
+            IST_MESH_BAD_INDEX,
+            "triangle {} has the vertex index {}, but there are {} vertices: count from 0", i / 3,
+            vertex, mesh.vertices.size());
       }
     }
     mesh.triangles.push_back(triangle);
   }
   return IST_OK;
+}
+
+ist_mesh_info mesh_info_of(const Mesh& mesh) {
+  const MeshReport report = check_mesh(mesh.mesh);
+  ist_mesh_info info{};
+  info.vertices = report.vertices;
+  info.triangles = report.triangles;
+  info.boundary_edges = report.boundary_edges;
+  info.non_manifold_edges = report.non_manifold_edges;
+  info.degenerate_triangles = report.degenerate_triangles;
+  info.components = report.components;
+  info.closed = report.closed;
+  info.consistent = report.consistent;
+  std::copy_n(report.box_min.data(), 3, info.box_min);
+  std::copy_n(report.box_max.data(), 3, info.box_max);
+  info.signed_volume = report.signed_volume;
+  return info;
 }
 
 template <typename Number>
@@ -75,8 +90,9 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
     if (const ist_status wrong = check_counts(call, arrays)) return wrong;
     if (arrays.triangle_count == 0) {
       return arrays.vertex_count == 0
-                 ? call.fail(IST_MESH_EMPTY, "no vertices and no triangles: give some")
-                 : call.fail(IST_MESH_POINTS_ONLY, "{} vertices, but no triangle: give some",
+                 ? call.fail(IST_MESH_EMPTY, "the mesh has no vertices and no triangles: pass some")
+                 : call.fail(IST_MESH_POINTS_ONLY,
+                             "the mesh has {} vertices, but no triangles: pass some",
                              arrays.vertex_count);
     }
     auto mesh = std::make_unique<Mesh>();
@@ -115,26 +131,7 @@ ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT {
 }
 
 ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
-    const Held<Mesh> held(call, "mesh", mesh);
-    if (held.status() != IST_OK) return held.status();
-    const ist::MeshReport report = ist::check_mesh(held->mesh);
-    ist_mesh_info values{};
-    values.vertices = report.vertices;
-    values.triangles = report.triangles;
-    values.boundary_edges = report.boundary_edges;
-    values.non_manifold_edges = report.non_manifold_edges;
-    values.degenerate_triangles = report.degenerate_triangles;
-    values.components = report.components;
-    values.closed = report.closed;
-    values.consistent = report.consistent;
-    std::copy_n(report.box_min.data(), 3, values.box_min);
-    std::copy_n(report.box_max.data(), 3, values.box_max);
-    values.signed_volume = report.signed_volume;
-    write_sized(values, *info);
-    return IST_OK;
-  });
+  return get_info<Mesh>(__func__, mesh, info, mesh_info_of);
 }
 
 ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,

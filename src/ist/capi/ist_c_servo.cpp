@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <variant>
 
-#include "ist/capi/ask.h"
-#include "ist/capi/handle.h"
 #include "ist/capi/ist_servo.h"
 #include "ist/capi/objects.h"
-#include "ist/capi/sized_struct.h"
 #include "ist/haptics/servo_callback.h"
-#include "ist/scene/scene_builder.h"
-#include "ist/scene/scene_file.h"
+#include "ist/scene.h"
 
 namespace ist::capi {
 namespace {
@@ -23,7 +19,7 @@ struct Servo {
       : scene(std::move(built)), callback(*scene.simulation, options) {}
 
   BuiltScene scene;
-  ServoCallback callback;  // turns the scene's simulation
+  ServoCallback callback;  // refers to the scene's simulation
 };
 
 struct OpenOptions {
@@ -37,35 +33,33 @@ ist_status read_servo_options(const Call& call, const ist_servo_options& given,
   if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
   if (known.unit != IST_UNIT_M && known.unit != IST_UNIT_MM) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->unit is {}: say IST_UNIT_M or IST_UNIT_MM, as the poses are",
+                     "options->unit is {}: pass IST_UNIT_M or IST_UNIT_MM, the unit of the poses",
                      known.unit);
   }
   if (known.reserved != 0) {
     return call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
   }
-  if (!(known.query_share >= 0 && known.query_share <= 1)) {
+  if (!(known.query_time_fraction >= 0 && known.query_time_fraction <= 1)) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->query_share is {}: take a part of a tick, up to 1",
-                     known.query_share);
+                     "options->query_time_fraction is {}: pass a fraction of a tick, from 0 to 1",
+                     known.query_time_fraction);
   }
   options.callback.unit = known.unit == IST_UNIT_MM ? 0.001 : 1;
-  if (known.query_share > 0) options.callback.query_share = known.query_share;
+  if (known.query_time_fraction > 0) {
+    options.callback.query_time_fraction = known.query_time_fraction;
+  }
   if (known.sphere_tests > 0) options.callback.sphere_tests = known.sphere_tests;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
   return IST_OK;
 }
 
-// The caller is the device: the file's tells its mechanics alone.
+// Replaces the scene's device by the caller, and keeps only the mechanics of the scene's device.
 void replace_device(Scene& scene) {
-  struct Mechanics {
-    DeviceMechanics operator()(const NullSettings& null) const { return null.mechanics; }
-    DeviceMechanics operator()(const ScriptSettings& script) const { return script.mechanics; }
-    DeviceMechanics operator()(const HandSettings& hand) const { return hand.mechanics; }
-  };
-  scene.device = NullSettings{std::visit(Mechanics(), scene.device)};
+  const auto mechanics_of = [](const auto& settings) { return settings.mechanics; };
+  scene.device = NullSettings{std::visit(mechanics_of, scene.device)};
 }
 
-ist_servo_info info_of(const Servo& servo) {
+ist_servo_info servo_info_of(const Servo& servo) {
   ist_servo_info info{};
   info.tick_seconds = servo.scene.simulation->dt();
   const ServoCallback::Pose tool = servo.callback.tool();
@@ -97,7 +91,7 @@ ist_status ist_servo_open_scene(const char* path, const ist_servo_options* optio
     replace_device(scene);
     return give(
         call,
-        std::make_unique<Servo>(ist::build_scene(scene, nullptr, asked.max_memory), asked.callback),
+        std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory), asked.callback),
         servo);
   });
 }
@@ -115,13 +109,7 @@ const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT {
 }
 
 ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
-    const Held<Servo> held(call, "servo", servo);
-    if (held.status() != IST_OK) return held.status();
-    write_sized(info_of(*held), *info);
-    return IST_OK;
-  });
+  return get_info<Servo>(__func__, servo, info, servo_info_of);
 }
 
 ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
@@ -142,8 +130,10 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
     if (!ist::Placement::from(to_isometry(pose))) {
       return status_of(call, ist::QueryStatus::kInvalidPose);
     }
-    return call.fail(IST_SERVO_FAULT,
-                     "forces that are no numbers: nothing is felt, and they come back softly");
+    return call.fail(
+        IST_SERVO_FAULT,
+        "a force was not a number: the output is zero, and forces return gradually; report "
+        "the scene if this repeats");
   });
 }
 

@@ -3,12 +3,10 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
-#include "ist/capi/handle.h"
 #include "ist/capi/objects.h"
-#include "ist/capi/sized_struct.h"
 #include "ist/tree/saved_spheres.h"
-#include "ist/tree/tree_builder.h"
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::capi {
 namespace {
@@ -18,14 +16,14 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
   ist_build_options known;
   if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
   if (!are_spheres(known.spheres)) {
-    return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: take one of IST_SPHERES_...",
+    return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
                      known.spheres);
   }
   const auto is_flag = [](std::int32_t value) { return value == 0 || value == 1; };
   if (!is_flag(known.keep_triangles) || !is_flag(known.proximity) || known.reserved != 0) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->keep_triangles is {}, proximity {}, reserved {}: the first two are "
-                     "0 or 1, and the last is 0",
+                     "options->keep_triangles is {}, proximity is {} and reserved is {}: pass 0 or "
+                     "1 for the first two and 0 for the last",
                      known.keep_triangles, known.proximity, known.reserved);
   }
   options.voxel_size = known.voxel_size;
@@ -36,20 +34,21 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
   return IST_OK;
 }
 
-ist_tree_info info_of(const SphereTree& tree) {
+ist_tree_info tree_info_of(const Tree& object) {
+  const SphereTree& tree = *object.tree;
   ist_tree_info info{};
-  info.voxel_size = tree.lattice().voxel_size;
-  info.leaves = tree.octree().leaf_count();
-  info.triangles = tree.triangles() ? tree.triangles()->mesh.triangles.size() : 0;
+  info.voxel_size = tree.voxel_size();
+  info.leaves = tree.leaf_count();
+  info.triangles = tree.triangles() ? tree.triangles()->triangles.size() : 0;
   info.bytes = tree.bytes();
   info.depth = tree.depth();
   info.spheres = spheres_of(tree.tightest());
-  info.has_triangles = tree.triangles().has_value();
-  info.has_proximity = tree.proximity().has_value();
+  info.has_triangles = tree.triangles() != nullptr;
+  info.has_proximity = tree.has_proximity();
   info.outward = tree.orientation() == Orientation::kOutward;
-  const Eigen::Vector3d origin = tree.lattice().origin();
+  const Eigen::Vector3d origin = tree.origin();
   std::copy_n(origin.data(), 3, info.origin);
-  info.reach = tree.reach();
+  info.bounding_radius = tree.bounding_radius();
   info.largest_leaf_radius = tree.largest_leaf_radius(tree.tightest());
   return info;
 }
@@ -93,13 +92,7 @@ ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT {
 }
 
 ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
-    const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
-    write_sized(info_of(*held->tree), *info);
-    return IST_OK;
-  });
+  return get_info<Tree>(__func__, tree, info, tree_info_of);
 }
 
 ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
@@ -108,13 +101,8 @@ ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
     if (const auto missing = call.need_array("centres", centres, capacity)) return missing;
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
-    const ist::ScopedFloatEnvironment environment;
-    const ist::SphereTree& made = *held->tree;
-    const std::vector<std::uint64_t> codes = made.octree().codes(0);
-    for (const std::uint64_t code : std::span(codes).first(std::min(capacity, codes.size()))) {
-      const Eigen::Vector3d centre =
-          made.lattice().origin() +
-          made.lattice().voxel_size * ist::cube_centre(made.lattice(), 0, code);
+    const std::vector<Eigen::Vector3d> all = held->tree->leaf_centres();
+    for (const Eigen::Vector3d& centre : std::span(all).first(std::min(capacity, all.size()))) {
       centres = std::copy_n(centre.data(), 3, centres);
     }
     return IST_OK;

@@ -2,15 +2,15 @@
 #define IST_CAPI_IST_SERVO_H
 
 /*
- * Force feedback in a device's own loop: once a tick it brings where the handle is, and takes along
- * what the hand is to feel. For conventions see ist.h.
+ * Force feedback in a device's own loop: each tick passes the handle's pose and receives the force
+ * and torque for the hand. The conventions of ist_c.h apply.
  *
- * Metres or millimetres is the caller's choice; forces are in N, torques in N m about the tool's
- * origin, both in the scene's axes. The tool's frame has the held mesh's axes, and its origin is
- * the centre of the held body's grid. Poses map it to the scene.
+ * The caller chooses metres or millimetres for poses. Forces are in N and torques in N m about the
+ * tool's origin, both along the scene's axes. The tool's frame has the held mesh's axes; its origin
+ * is the centre of the held body's grid. Poses map the tool's frame to the scene.
  */
 
-#include "ist/capi/ist.h"
+#include "ist/capi/ist_c.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,58 +19,59 @@ extern "C" {
 /* The unit of the poses' translations. */
 enum { IST_UNIT_M = 1, IST_UNIT_MM = 2 };
 
-/* A scene that is simulated. It belongs to one thread at a time. */
+/* A simulated scene. It belongs to one thread at a time. */
 typedef struct ist_servo ist_servo;
 
 typedef struct ist_servo_options {
   size_t struct_size;
-  int32_t unit;       /* to be given: IST_UNIT_M or IST_UNIT_MM */
-  int32_t reserved;   /* zero */
-  double query_share; /* part of a tick in which queries may begin anything; default 0.7, up to 1 */
-  uint64_t sphere_tests; /* what each of a tick's queries may spend instead, by no clock: the same
-                            forces in every run; 0: the clock decides */
-  uint64_t max_memory;   /* bytes, for each tree; default 4 GiB */
+  int32_t unit;               /* IST_UNIT_M or IST_UNIT_MM; required */
+  int32_t reserved;           /* zero */
+  double query_time_fraction; /* fraction of a tick for queries, from 0 to 1; default 0.7 */
+  uint64_t sphere_tests; /* tests per query of a tick, instead of a time limit: the same forces in
+                            every run; 0: the time limit applies */
+  uint64_t max_memory;   /* memory limit of each tree, bytes; default 4 GiB */
 } ist_servo_options;
 
-/* Reads a scene (TOML), reads or makes its bodies, builds what its effects need, and puts the tool
- * where it is free. The caller is the scene's device: of its table `device`, damping and delay
- * count, for they limit what coupling is stable; who moves it does not.
- * Errors: IST_INPUT_INVALID, by the scene's file and line, and those of ist_mesh_read and
- * ist_tree_load; IST_ARGUMENT_INVALID. Cost: some seconds. */
+/* Reads a scene (TOML), reads or creates its bodies, builds the trees of its effects and moves the
+ * tool to a free place. The caller is the scene's device: the damping and the delay in the scene's
+ * table `device` limit the stable coupling; the caller's poses replace its motion.
+ * Errors: IST_INPUT_INVALID, with the scene's file and line in the message; the errors of
+ * ist_mesh_read and ist_tree_load; IST_ARGUMENT_INVALID. Cost: a few seconds. */
 IST_C_API ist_status ist_servo_open_scene(const char* path, const ist_servo_options* options,
                                           ist_servo** servo) IST_NOEXCEPT;
 
-/* What the scene's building warned of, sentence by sentence from `index` 0 on; NULL after the last,
- * and where `servo` is no handle of one, or another thread is in a call with it. The text lives as
- * long as the servo. */
+/* Returns the warning number `index`, from 0, of the scene's construction; NULL after the last
+ * warning, for an invalid handle, and while another thread uses the servo. The text lives as long
+ * as the servo. */
 IST_C_API const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT;
 
 typedef struct ist_servo_info {
   size_t struct_size;
-  double tick_seconds; /* what a tick counts as, however late it comes */
-  double tool[16]; /* where the tool is: before the first tick where a device should be, and then
-                      what is to be drawn, for it stays outside where the device goes in */
+  double tick_seconds; /* nominal duration of a tick, s */
+  double tool[16]; /* pose of the tool. Before the first tick it is the start pose for the device;
+                      afterwards it is the pose to draw, which stays outside the fixed body */
   uint64_t ticks;
-  uint64_t held;   /* ticks with too little time for all contacts: the tool stayed */
-  uint64_t faults; /* ticks in which nothing was felt, for what was wrong */
-  uint64_t late;   /* ticks that took longer than a tick has */
+  uint64_t held;   /* ticks with too little time for all contacts: the tool did not move */
+  uint64_t faults; /* ticks with an error: the force was zero */
+  uint64_t late;   /* ticks that took longer than tick_seconds */
 } ist_servo_info;
 
-/* [real time] */
+/* Gives the state of a servo. [real time] */
 IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCEPT;
 
-/* One tick. `pose` is where the device is, `force` and `torque` are what the hand is to feel.
+/* Computes one tick: `pose` is the pose of the device; `force` and `torque` receive the output for
+ * the hand.
  *
- * Whatever is returned but IST_OK, both are zero: what the device is told must be set every tick.
- * After an error forces come back softly, but after IST_HANDLE_BUSY, which says that another thread
- * is in a call with this servo: then no tick was made. Too little time for all contacts is no
- * error, see ist_servo_info.
- * Errors: IST_POSE_INVALID, IST_SERVO_FAULT, IST_NULL_ARGUMENT. Cost: the queries', and 5 to 15 us.
+ * Both outputs are zero after any error; the caller must command them to the device in every tick.
+ * After an error the forces return gradually. IST_HANDLE_BUSY is different: another thread is using
+ * the servo, and the call computes no tick. Too little time for all contacts is not an error;
+ * ist_servo_info counts it as `held`.
+ * Errors: IST_POSE_INVALID, IST_SERVO_FAULT, IST_NULL_ARGUMENT. Cost: the queries, plus 5 to 15 us.
  * [real time] */
 IST_C_API ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                                        double torque[3]) IST_NOEXCEPT;
 
-/* The hand feels nothing from it any more: tell the device so. */
+/* Frees a servo. The caller must then command zero force to the device. */
 IST_C_API ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT;
 
 #ifdef __cplusplus

@@ -1,14 +1,16 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 
-#include "ist/capi/handle_table.h"
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/collision_query.h"
+#include "ist/capi/handle.h"
+#include "ist/capi/sized_struct.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 
-/// What handles are of; a servo's stands by its functions.
+/// The objects of handles, except Servo (ist_c_servo.cpp), and what the functions on them share.
 namespace ist::capi {
 
 struct Mesh {
@@ -30,31 +32,31 @@ struct Tree {
   std::shared_ptr<const SphereTree> tree;
 };
 
-struct Query {
+struct QueryObject {
   using Handle = ist_query;
   static constexpr HandleKind kKind = HandleKind::kQuery;
   static constexpr HandleUse kUse = HandleUse::kAlone;
   static constexpr const char* kName = "query";
 
-  Query(std::shared_ptr<const SphereTree> fixed_tree, std::shared_ptr<const SphereTree> moving_tree,
-        const CollisionOptions& options)
+  /// @param manifold_options empty: the query gives no contacts
+  QueryObject(std::shared_ptr<const SphereTree> fixed_tree,
+              std::shared_ptr<const SphereTree> moving_tree, const QueryOptions& options,
+              const std::optional<ManifoldOptions>& manifold_options)
       : fixed(std::move(fixed_tree)),
         moving(std::move(moving_tree)),
-        query(*fixed, *moving, options) {}
-
-  /// Contact points, at most so many; 0: none will be asked for.
-  void prepare_points(std::size_t most) {
-    most_points = most;
-    if (most > 0) points.emplace(*fixed, *moving, query.policy(), ContactPointOptions{most});
+        query(*fixed, *moving, options) {
+    if (!manifold_options) return;
+    max_contacts = manifold_options->points;
+    manifold.emplace(*fixed, *moving, query.policy(), *manifold_options);
   }
 
   std::shared_ptr<const SphereTree> fixed, moving;  // the query refers to them
-  CollisionQuery query;
-  std::optional<ContactPoints> points;
-  std::size_t most_points = 0;
+  Query query;
+  std::optional<ContactManifold> manifold;
+  std::size_t max_contacts = 0;
 };
 
-/// IST_SPHERES_... of a policy.
+/// Converts a policy to its IST_SPHERES_...
 [[nodiscard]] constexpr std::int32_t spheres_of(SpherePolicy policy) noexcept {
   return static_cast<std::int32_t>(policy) + IST_SPHERES_SIMPLE;
 }
@@ -66,10 +68,29 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
 [[nodiscard]] constexpr bool are_spheres(std::int32_t spheres) noexcept {
   return spheres >= IST_SPHERES_DEFAULT && spheres <= IST_SPHERES_SLAB;
 }
-/// The other way; nothing for the default. Precondition: are_spheres.
+/// Converts an IST_SPHERES_... to its policy; empty for the default. Precondition: are_spheres.
 [[nodiscard]] constexpr std::optional<SpherePolicy> policy_of(std::int32_t spheres) noexcept {
   if (spheres == IST_SPHERES_DEFAULT) return std::nullopt;
   return static_cast<SpherePolicy>(spheres - IST_SPHERES_SIMPLE);
+}
+
+/// Converts 16 numbers in column-major order, without a check.
+[[nodiscard]] Eigen::Isometry3d to_isometry(const double pose[16]) noexcept;
+
+/// Converts a query's status; stores the message of an error.
+[[nodiscard]] ist_status status_of(const Call& call, QueryStatus status);
+
+/// Implements every ..._get_info by `info_of(object)`.
+template <typename T, SizedStruct Info, typename Body>
+[[nodiscard]] ist_status get_info(const char* function, const typename T::Handle* handle,
+                                  Info* info, const Body& info_of) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+    const Held<T> held(call, T::kName, handle);
+    if (held.status() != IST_OK) return held.status();
+    write_sized(info_of(*held), *info);
+    return IST_OK;
+  });
 }
 
 }  // namespace ist::capi

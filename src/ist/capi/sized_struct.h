@@ -9,7 +9,7 @@
 
 namespace ist::capi {
 
-/// Every struct with a size is of words of 8 bytes, so that a shorter one ends between members.
+/// A sized struct consists of words of 8 bytes, so that a shorter version ends between members.
 inline constexpr std::size_t kStructWord = 8, kLeastStruct = 16, kMostStruct = 4096;
 
 template <typename Struct>
@@ -20,7 +20,7 @@ concept SizedStruct = std::is_trivially_copyable_v<Struct> && std::is_standard_l
                       sizeof(Struct) >= kLeastStruct &&
                       sizeof(Struct) <= kMostStruct&& offsetof(Struct, struct_size) == 0;
 
-/// Fails where what stands in struct_size is no size.
+/// Fails where struct_size is not a valid size.
 template <SizedStruct Struct>
 [[nodiscard]] ist_status check_size(const Call& call, const char* name, const Struct& given) {
   const std::size_t size = given.struct_size;
@@ -29,8 +29,8 @@ template <SizedStruct Struct>
                    size, sizeof(Struct));
 }
 
-/// Copies options that a caller gave, of whatever age. Fails for a size that is none, and where
-/// something is asked for that this library does not know.
+/// Copies a caller's options of any version. Fails for an invalid size, and where a member unknown
+/// to this library is not zero.
 template <SizedStruct Struct>
 [[nodiscard]] ist_status read_sized(const Call& call, const char* name, const Struct& given,
                                     Struct& options) {
@@ -40,8 +40,8 @@ template <SizedStruct Struct>
   if (size > sizeof(Struct) &&
       std::any_of(bytes + sizeof(Struct), bytes + size, [](unsigned char b) { return b != 0; })) {
     return call.fail(IST_STRUCT_SIZE,
-                     "{} has {} bytes, and what is behind the first {} is not zero: this library "
-                     "is older than that, and does not know what it means",
+                     "{} has {} bytes, and a member after byte {} is not zero: this library is "
+                     "older and does not know the member; set it to zero, or update the library",
                      name, size, sizeof(Struct));
   }
   options = {};
@@ -50,8 +50,8 @@ template <SizedStruct Struct>
   return IST_OK;
 }
 
-/// Fills in a caller's struct of whatever age: what it has room for; what this library does not
-/// know becomes zero. Its size must be one (check_size).
+/// Fills a caller's struct of any version as far as its size allows, and sets members unknown to
+/// this library to zero. The size must be valid (check_size).
 template <SizedStruct Struct>
 void write_sized(const Struct& values, Struct& out) noexcept {
   const std::size_t size = out.struct_size, known = std::min(size, sizeof(Struct));
@@ -62,7 +62,7 @@ void write_sized(const Struct& values, Struct& out) noexcept {
   std::fill(bytes + known, bytes + size, static_cast<unsigned char>(0));
 }
 
-/// Makes a caller's struct ready to be filled in, all zero, or fails.
+/// Sets all members of a caller's struct to zero. Fails for NULL and for an invalid size.
 template <SizedStruct Struct>
 [[nodiscard]] ist_status clear_sized(const Call& call, const char* name, Struct* out) {
   if (const ist_status missing = call.need({{name, out}})) return missing;

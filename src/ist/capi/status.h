@@ -3,14 +3,14 @@
 #include <optional>
 
 #include "ist/base/error.h"
-#include "ist/capi/ist.h"
+#include "ist/capi/ist_c.h"
 
 namespace ist::capi {
 
-/// The C interface's number of a code. Numbers are for ever, whatever order ErrorCode has.
+/// Converts a code to its C number. The numbers never change, even if the order of ErrorCode does.
 [[nodiscard]] ist_status status_of(ErrorCode code) noexcept;
 
-/// The other way; nothing for a number that is none of an ErrorCode.
+/// Converts a C number to its code; empty for a number without an ErrorCode.
 [[nodiscard]] std::optional<ErrorCode> error_code_of(ist_status status) noexcept;
 
 }  // namespace ist::capi

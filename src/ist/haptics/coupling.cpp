@@ -5,7 +5,7 @@
 namespace ist {
 namespace {
 
-// Of a spring that is stretched beyond what gives `most`: the part of its stiffness that is left.
+// The fraction of a spring's stiffness that keeps its force at `most` or below.
 double part_of(double stiffness, double most, const Eigen::Vector3d& stretch) noexcept {
   const double force = stiffness * std::sqrt(stretch.squaredNorm());
   return force > most ? most / force : 1;

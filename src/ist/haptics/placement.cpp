@@ -8,7 +8,7 @@ namespace {
 constexpr double kLongestTurn = 1e3;  // as a motion: twice the half angle's tangent
 constexpr double kLeastCosine = 4 / (1 + 0.25 * kLongestTurn * kLongestTurn);  // 1 + trace there
 
-// The rotation of the quaternion (1, half), whatever its length.
+// The rotation of the quaternion (1, half), of any length.
 Eigen::Matrix3d turn_by(const Eigen::Vector3d& half) noexcept {
   const double square = half.squaredNorm();
   Eigen::Matrix3d cross;
@@ -17,9 +17,9 @@ Eigen::Matrix3d turn_by(const Eigen::Vector3d& half) noexcept {
          (1 + square);
 }
 
-// The axis of about half a turn, where the sine is too small to show it. The symmetric part, less
-// the cosine, is (1 - cosine) axis axisᵀ; its longest column is the most exact. At half a turn
-// either sign will do.
+// The axis of about half a turn, whose sine is too small for the usual formula. The symmetric part
+// minus the cosine is (1 - cosine) axis axisᵀ; its longest column is the most exact. At half a turn
+// the sign is arbitrary.
 Eigen::Vector3d half_turn_axis(const Eigen::Matrix3d& turn, const Eigen::Vector3d& sine) noexcept {
   const double cosine = 0.5 * (turn.trace() - 1);
   const Eigen::Matrix3d square =
@@ -47,13 +47,13 @@ std::optional<Placement> Placement::from(const Eigen::Isometry3d& pose) noexcept
   return Placement{rigid->linear(), rigid->translation()};
 }
 
-Placement Placement::nudged(const Vector6& motion) const noexcept {
+Placement Placement::integrated_fast(const Vector6& motion) const noexcept {
   return {turn_by(0.5 * motion.tail<3>()) * rotation, translation + motion.head<3>()};
 }
 
 Placement Placement::moved(const Vector6& motion) const noexcept {
-  const Placement after = nudged(motion);
-  // Products of many rotations drift apart; the factor is rigid, so this is always one.
+  const Placement after = integrated_fast(motion);
+  // Products of many rotations drift from rigid; this projects them back.
   const auto rigid = project_to_rigid(after.isometry());
   return {rigid ? Eigen::Matrix3d(rigid->linear()) : rotation, after.translation};
 }

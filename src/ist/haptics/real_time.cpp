@@ -18,9 +18,9 @@ constexpr std::size_t kStack = 256 * 1024;  // more than a tick needs
 
 std::string cause(int error) { return std::system_category().message(error); }
 
-// Whether the process may lock more than its limit allows, so that to lock all that it will ever
-// allocate makes no allocation fail. The system is asked by trying: no list of privileges tells
-// what a container has taken away. Nothing is fetched, as the memory is not accessible.
+// Tests whether the process may lock memory beyond its limit, without which mlockall would make
+// later allocations fail. A trial is the only reliable test in a container with reduced privileges.
+// The trial's memory is inaccessible, so no page is fetched. Returns 0 or an errno.
 int try_to_lock_beyond(rlim_t limit) {
   const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const std::size_t size = static_cast<std::size_t>(limit) / page * page + page;
@@ -31,7 +31,7 @@ int try_to_lock_beyond(rlim_t limit) {
   return 0;
 }
 
-// The pages of the stack that a tick will use are present after.
+// Fetches the stack pages that a tick will use.
 [[gnu::noinline]] void touch_stack() {
   std::array<volatile unsigned char, kStack> stack;
   for (std::size_t i = 0; i < kStack; i += 1024) stack[i] = 0;
@@ -39,7 +39,7 @@ int try_to_lock_beyond(rlim_t limit) {
 
 }  // namespace
 
-// Delegates first: should a note find no memory, the destructor puts back what was done.
+// Delegates first, so that the destructor restores the thread if a note throws.
 RealTimeThread::RealTimeThread(const RealTimeOptions& options) : RealTimeThread() {
   if (options.lock_memory) ask_for_memory();
   touch_stack();
@@ -61,7 +61,7 @@ void RealTimeThread::ask_for_fifo(int priority) {
   sched_param before{};
   const int policy = sched_getscheduler(0);
   const sched_param wanted{.sched_priority = priority};
-  // A thread that was told to have ordinary children keeps to that: only root may take it back.
+  // SCHED_RESET_ON_FORK is kept if it is set: only root may clear it.
   if (policy >= 0 && sched_getparam(0, &before) == 0 &&
       sched_setscheduler(0, SCHED_FIFO | (policy & SCHED_RESET_ON_FORK), &wanted) == 0) {
     policy_ = Policy{policy, before.sched_priority};
@@ -96,16 +96,16 @@ void RealTimeThread::ask_for_memory() {
 void RealTimeThread::ask_for_cpu(int cpu) {
   cpu_set_t before, wanted;
   CPU_ZERO(&wanted);
-  CPU_SET(static_cast<std::size_t>(cpu), &wanted);  // none where the number is beyond the set
+  CPU_SET(static_cast<std::size_t>(cpu), &wanted);  // no effect beyond the set
   if (sched_getaffinity(0, sizeof before, &before) == 0 &&
       sched_setaffinity(0, sizeof wanted, &wanted) == 0) {
     affinity_ = before;
     return;
   }
   const int error = errno;
-  notes_.push_back(
-      fmt::format("processor {} was not given ({}): name one of those that `taskset -pc $$` lists",
-                  cpu, cause(error)));
+  notes_.push_back(fmt::format(
+      "the loop was not pinned to processor {} ({}): name a processor that `taskset -pc $$` lists",
+      cpu, cause(error)));
 }
 
 }  // namespace ist

@@ -13,22 +13,21 @@ namespace {
 
 using Clock = Budget::Clock;
 
-Clock::duration seconds(double count) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(count));
+std::chrono::nanoseconds seconds(double count) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(count));
 }
 
 void check(const ServoCallbackOptions& options) {
   if (!(std::isfinite(options.unit) && options.unit > 0)) {
     throw Error(
-        ErrorCode::kInputInvalid,
-        fmt::format("the poses' unit is {} m: name how many metres it has, such as 1 or 0.001",
+        ErrorCode::kArgumentInvalid,
+        fmt::format("the unit of poses is {} m: give its length in metres, such as 1 or 0.001",
                     options.unit));
   }
-  if (!(options.query_share > 0 && options.query_share <= 1)) {
-    throw Error(
-        ErrorCode::kInputInvalid,
-        fmt::format("queries may take {} of a tick: it has to be more than 0, and at most 1",
-                    options.query_share));
+  if (!(options.query_time_fraction > 0 && options.query_time_fraction <= 1)) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("query_time_fraction is {}: give a number above 0 and at most 1",
+                            options.query_time_fraction));
   }
 }
 
@@ -38,7 +37,7 @@ ServoCallback::ServoCallback(Simulation& simulation, const ServoCallbackOptions&
     : simulation_(simulation), options_(options) {
   check(options);
   period_ = seconds(simulation.dt());
-  query_time_ = seconds(options.query_share * simulation.dt());
+  query_time_ = seconds(options.query_time_fraction * simulation.dt());
 }
 
 ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
@@ -51,7 +50,7 @@ ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<dou
 
   Budget budget;
   if (options_.sphere_tests) {
-    budget.sphere_tests = *options_.sphere_tests;
+    budget.tests = *options_.sphere_tests;
   } else {
     budget.deadline = begin + query_time_;
   }
@@ -75,7 +74,7 @@ void ServoCallback::fault() noexcept {
 
 ServoCallback::Pose ServoCallback::tool() const noexcept {
   const ScopedFloatEnvironment environment;
-  Eigen::Isometry3d tool = simulation_.at().isometry();
+  Eigen::Isometry3d tool = simulation_.tool_pose().isometry();
   tool.translation() /= options_.unit;
   Pose pose;
   std::copy_n(tool.data(), pose.size(), pose.begin());

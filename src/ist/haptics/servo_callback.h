@@ -12,69 +12,69 @@
 namespace ist {
 
 struct ServoCallbackOptions {
-  /// Metres in the unit of the poses' translations: 1, or 0.001 for a device that speaks
-  /// millimetres. Forces are in N and torques in N m all the same.
+  /// Metres in the unit of the poses' translations: 1, or 0.001 for millimetres. Forces are in N
+  /// and torques in N m in any case.
   double unit = 1;
-  /// Part of the tick's length in which queries may still begin anything, from the call on.
-  double query_share = 0.7;
-  /// What each of a tick's queries may spend instead, by no clock: the same forces in every run.
+  /// The fraction of a tick, from the call on, in which queries may search: above 0, at most 1.
+  double query_time_fraction = 0.7;
+  /// A limit of tests for each query of a tick, in place of the clock: equal forces in every run.
   std::optional<std::uint64_t> sphere_tests = std::nullopt;
 };
 
-/// How a tick went.
+/// The outcome of a tick.
 enum class ServoTick {
-  kFine,   ///< all was known
-  kHeld,   ///< not enough time for all contacts: the tool is where they were last known
-  kFault,  ///< a pose that is no rigid motion, or forces that are no numbers: nothing is felt
+  kFine,   ///< the contacts were complete
+  kHeld,   ///< the contacts were incomplete: the tool is at its last complete pose
+  kFault,  ///< the pose is no rigid motion, or a force is not finite: no force
 };
 
-/// For a loop that is not ours: a device's own thread, which brings where its handle is once a
-/// tick and takes along what the hand is to feel. run_servo_loop() is the loop that is ours.
+/// Makes ticks in the thread of a device's driver, which calls on_tick() with the device's pose
+/// and sends the returned force to the motors. run_servo_loop() is the library's own loop.
 ///
-/// Poses are plain doubles, column by column, so that who calls needs no Eigen: they map the tool's
-/// own frame to the scene's. The tool's origin is the centre of the held body's grid, its axes are
-/// the held mesh's, and all torques are about that origin.
+/// Poses are 16 doubles in column-major order; they map the tool's frame to the scene's. The tool's
+/// origin is the centre of the held body's grid, its axes are the held mesh's, and torques are
+/// about that origin.
 ///
-/// A call should come every Simulation::dt() seconds, which is what a tick counts as, however late
-/// it comes. Calls belong to one thread at a time. Setting up that thread for real time, and to
-/// call in time, is the device's.
+/// Call on_tick() every Simulation::dt() seconds; each call counts as a tick of that length. One
+/// thread calls at a time. Scheduling that thread for real time is up to the caller.
 class IST_API ServoCallback {
  public:
   using Pose = std::array<double, 16>;
 
   struct Counts {
     std::uint64_t ticks = 0, held = 0, faults = 0;
-    std::uint64_t late = 0;  ///< took longer than a tick has
+    std::uint64_t late = 0;  ///< ticks that took longer than Simulation::dt()
   };
 
-  /// Throws kInputInvalid for a unit that is no positive number, or a share outside (0, 1].
-  /// @param simulation outlives this object, and is turned by it alone
-  ServoCallback(Simulation& simulation, const ServoCallbackOptions& options);
+  /// Throws kArgumentInvalid for a unit that is not positive and finite, or a query_time_fraction
+  /// outside (0, 1].
+  /// @param simulation must outlive the object; no one else may make its ticks
+  explicit ServoCallback(Simulation& simulation, const ServoCallbackOptions& options = {});
 
-  /// One tick.
+  /// Makes one tick.
   ///
-  /// @param pose   where the device is; it draws the tool there
-  /// @param force  takes what the hand is to feel, N, scene axes; zero at a fault
-  /// @param torque likewise, N m
+  /// @param pose   the device's pose, to which the coupling draws the tool
+  /// @param force  receives the force on the hand, N, scene axes; zero at a fault
+  /// @param torque receives the torque on the hand, N m; zero at a fault
   ///
-  /// Allocates nothing, locks nothing, makes no system call, and whatever the caller's arithmetic
-  /// is gives the same bits. Cost: Simulation::tick().
+  /// Allocates nothing, locks nothing and makes no system call. The result does not depend on the
+  /// caller's rounding mode. Cost: Simulation::tick().
   ServoTick on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
                     std::span<double, 3> torque) noexcept;
 
-  /// For who calls and knows that something is wrong: counts as a tick that was a fault. Nothing is
-  /// to be felt, and forces come back softly.
+  /// Counts a tick as a fault, for a caller that has no valid pose. Set the force to zero; it
+  /// returns through the soft start.
   void fault() noexcept;
 
-  /// Where the tool is, in the poses' unit: to begin with where a device should be, and after a
-  /// tick what is to be drawn, for it stays outside where the device goes in.
+  /// The tool's pose in the poses' unit: before the first tick the start pose for the device, later
+  /// the pose to draw, which stays outside the fixed body.
   [[nodiscard]] Pose tool() const noexcept;
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
 
  private:
   Simulation& simulation_;
   ServoCallbackOptions options_;
-  Budget::Clock::duration period_, query_time_;
+  std::chrono::nanoseconds period_, query_time_;
   Counts counts_;
 };
 

@@ -1,9 +1,12 @@
 #include "ist/haptics/servo_loop.h"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <thread>
 
+#include "ist/base/error.h"
+#include "ist/haptics/real_time.h"
 #include "ist/haptics/tick_clock.h"
 
 namespace ist {
@@ -14,7 +17,7 @@ using std::chrono::nanoseconds;
 
 nanoseconds effects_time(const Simulation& simulation) noexcept {
   nanoseconds sum{};
-  for (const Tool::TimedEffect& effect : simulation.effects()) sum += effect.time;
+  for (const EffectTime& effect : simulation.effects()) sum += effect.time;
   return sum;
 }
 
@@ -44,7 +47,7 @@ class Loop {
     TickStart start{};
     for (std::uint64_t tick = 0;
          tick < options_.ticks && !stop.load(std::memory_order_relaxed) && !device_.done();) {
-      keep(turn(tick, begin, start));
+      keep(make_tick(tick, begin, start));
       if (options_.paced) {
         start = clock_.wait_for_next();
         report_.missed += start.missed;
@@ -63,14 +66,15 @@ class Loop {
     TickBudget budget;
     if (options_.paced) {
       budget.contacts.deadline = budget.proximity.deadline =
-          clock_.release() + nanoseconds(static_cast<nanoseconds::rep>(
-                                 options_.query_share * static_cast<double>(period_.count())));
+          clock_.release() +
+          nanoseconds(static_cast<nanoseconds::rep>(options_.query_time_fraction *
+                                                    static_cast<double>(period_.count())));
     }
     return budget;
   }
 
-  [[nodiscard]] TickRecord turn(std::uint64_t number, Clock::time_point begin,
-                                const TickStart& start) noexcept {
+  [[nodiscard]] TickRecord make_tick(std::uint64_t number, Clock::time_point begin,
+                                     const TickStart& start) noexcept {
     const nanoseconds used = thread_time(), effects = effects_time(simulation_);
     const std::optional<Placement> at = device_.read();
     const Tick tick = simulation_.tick(at, budget());
@@ -107,7 +111,7 @@ class Loop {
         ++report_.lost_records;
         return;
       }
-      std::this_thread::yield();  // without a beat there is time
+      std::this_thread::yield();  // an unpaced loop has time
     }
   }
 
@@ -124,7 +128,12 @@ class Loop {
 
 ServoReport run_servo_loop(Simulation& simulation, Device& device, const ServoOptions& options,
                            const ServoOutputs& outputs, const std::atomic<bool>& stop) {
-  // A loop that does not wait must not keep others from their processor.
+  if (!(options.query_time_fraction > 0 && options.query_time_fraction <= 1)) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("query_time_fraction is {}: give a number above 0 and at most 1",
+                            options.query_time_fraction));
+  }
+  // An unpaced loop must not keep other threads from their processor.
   std::optional<RealTimeThread> real_time;
   if (options.paced) real_time.emplace(options.real_time);
   ServoReport report = Loop(simulation, device, options, outputs).run(stop);

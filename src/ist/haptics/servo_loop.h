@@ -11,52 +11,60 @@
 #include "ist/base/progress.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/latency_histogram.h"
-#include "ist/haptics/real_time.h"
+#include "ist/haptics/recording.h"
 #include "ist/haptics/simulation.h"
-#include "ist/haptics/snapshot.h"
-#include "ist/haptics/tick_record.h"
-#include "ist/haptics/tick_ring.h"
 
 namespace ist {
 
+/// Requests of a paced loop to the system. A denied request is noted in ServoReport::notes, and the
+/// loop runs without it.
+struct RealTimeOptions {
+  int priority = 80;                      ///< under SCHED_FIFO, 1 to 99
+  std::optional<int> cpu = std::nullopt;  ///< pins the loop to this processor, counted from 0
+  bool lock_memory = true;                ///< locks all memory of the process (mlockall)
+};
+
 struct ServoOptions {
-  std::uint64_t ticks;  ///< it ends after so many, those that were missed included
-  /// By the clock, one a period; else one after the other without a look at it, and only budgets in
-  /// tests count.
+  std::uint64_t ticks = 0;  ///< the number of ticks, missed ones included
+  /// Makes one tick each period. If false, ticks follow each other without a clock, and queries
+  /// have no deadline.
   bool paced = true;
-  /// Part of the period in which queries may still begin anything, from the tick's release on.
-  double query_share = 0.7;
-  RealTimeOptions real_time;
+  /// The fraction of a period, from the tick's release on, in which queries may search: above 0, at
+  /// most 1.
+  double query_time_fraction = 0.7;
+  RealTimeOptions real_time = {};
 };
 
-/// Where ticks go; each may be null.
+/// The receivers of ticks; each may be null.
 struct ServoOutputs {
-  /// Every tick. A paced loop loses those that find it full, another one waits.
+  /// Every tick. If the ring is full, a paced loop drops the record; an unpaced one waits.
   TickRing<TickRecord>* records = nullptr;
-  Snapshot<TickRecord>* snapshot = nullptr;  ///< the last tick, for whoever looks
-  Progress* progress = nullptr;              ///< ticks that are done, of ServoOptions::ticks
+  Snapshot<TickRecord>* snapshot = nullptr;  ///< the last tick
+  Progress* progress = nullptr;              ///< ticks done, of ServoOptions::ticks
 };
 
-/// What a run of the loop came to.
+/// The statistics of a run.
 struct ServoReport {
-  LatencyHistogram late;  ///< release jitter: from when a tick should have begun to when it did
-  LatencyHistogram execution;  ///< from then until the device was told
-  LatencyHistogram cpu;        ///< what the loop's thread used of its processor
-  /// The tick that used most of the processor: that, and what the effects took of it.
+  LatencyHistogram late;       ///< release jitter: from a tick's release to its start
+  LatencyHistogram execution;  ///< from its start to the end of Device::write
+  LatencyHistogram cpu;        ///< processor time of the loop's thread
+  /// The largest processor time of a tick, and the time of the effects in that tick.
   std::chrono::nanoseconds worst_cpu{}, worst_effects{};
-  std::uint64_t ticks = 0;   ///< that were made
-  std::uint64_t missed = 0;  ///< ended after their period, or were left out for one that did
-  std::uint64_t held = 0;    ///< whose answer was not complete
+  std::uint64_t ticks = 0;   ///< ticks made
+  std::uint64_t missed = 0;  ///< ticks that ended after their period, or were skipped
+  std::uint64_t held = 0;    ///< ticks with incomplete contacts
   std::uint64_t faults = 0;
   std::uint64_t lost_records = 0;
-  std::vector<std::string> notes;  ///< what the system did not permit
+  std::vector<std::string> notes;  ///< denied requests to the system, with cause and remedy
 };
 
-/// The servo loop: reads the device, turns the simulation by one tick, and tells the device what to
-/// feel, once a period. At the end, and where `stop` is set, the device is told to rest.
+/// Runs the servo loop in the calling thread: once a period it reads the device, makes a tick and
+/// writes the wrench to the device. Returns after ServoOptions::ticks, when the device is done, or
+/// after `stop` is set; the last write to the device is a zero wrench.
 ///
-/// Runs in the calling thread, as RealTimeThread has it. A tick allocates nothing, locks nothing
-/// and waits for no one; its only system calls are those that sleep and read its thread's clock.
+/// A tick allocates nothing and locks nothing; its only system calls sleep and read the thread's
+/// clock. Threads that the loop's thread starts meanwhile inherit its scheduling. Throws
+/// kArgumentInvalid for a query_time_fraction outside (0, 1]; std::bad_alloc.
 [[nodiscard]] IST_API ServoReport run_servo_loop(Simulation& simulation, Device& device,
                                                  const ServoOptions& options,
                                                  const ServoOutputs& outputs,

@@ -1,100 +1,100 @@
 #pragma once
 
-#include <cstdint>
+#include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
-#include <vector>
+#include <span>
+#include <string_view>
 
 #include "ist/base/api.h"
-#include "ist/haptics/coupling.h"
-#include "ist/haptics/effects/effect.h"
-#include "ist/haptics/safety.h"
-#include "ist/haptics/tool.h"
-#include "ist/haptics/touch_query.h"
+#include "ist/haptics/placement.h"
+#include "ist/query/results.h"
 
 namespace ist {
 
-/// What a tick's queries may spend, one after the other.
+namespace detail {
+struct SimulationParts;
+struct SimulationState;
+}  // namespace detail
+
+/// The spring and damper between the device and the tool.
+struct CouplingSettings {
+  double stiffness = 1000;        ///< K, N/m
+  double damping = 0.5;           ///< B, N s/m
+  double angular_stiffness = 1;   ///< N m/rad
+  double angular_damping = 5e-4;  ///< N m s/rad
+  double max_force = 5;           ///< of the spring, N
+  double max_torque = 0.2;        ///< N m
+};
+
+/// The limits of the wrench on the hand. Always on.
+struct SafetySettings {
+  double max_force = 8;     ///< N
+  double max_torque = 0.3;  ///< N m
+  double force_slew = 500;  ///< N/s
+  double torque_slew = 20;  ///< N m/s
+  double soft_start = 0.5;  ///< ramp from no force to full force, at the start and after a fault, s
+};
+
+/// The budgets of a tick's queries, which run one after the other.
 struct TickBudget {
-  Budget contacts, proximity;
+  Budget contacts = {}, proximity = {};
 };
 
-/// What a tick came to.
+/// The result of a tick.
 struct Tick {
-  Placement device;  ///< as it was read; where it was not, as it was last
-  Placement tool;    ///< where the tool is after the tick
-  Vector6 wrench;    ///< what the hand feels, about the tool's origin
-  bool fault;        ///< no device, or numbers that are none: the wrench is zero
-  bool held;         ///< the contacts' answer was not complete, so the tool is where one last was
-  /// Of the queries at the pose before; nothing where no effect needs them. Mesh units.
-  std::optional<QueryResult> contacts, proximity;
-  double leaf_pairs;  ///< that bear a load, by weight
+  Placement device = {};             ///< as read; the last known pose if it could not be read
+  Placement tool = {};               ///< after the tick
+  Vector6 wrench = Vector6::Zero();  ///< on the hand, about the tool's origin
+  bool fault = false;  ///< no device pose, or numbers that are not finite: the wrench is zero
+  bool held = false;   ///< the contacts were incomplete: the tool is at its last complete pose
+  /// The results of the queries at the tool's pose before the tick, mesh units. Empty if no effect
+  /// needs the query.
+  std::optional<QueryResult> contacts = {}, proximity = {};
+  double leaf_pairs = 0;  ///< load-bearing leaf pairs, by weight
 };
 
-/// What the loop turns: from where the hand is to what it feels, one tick after the other, without
-/// a clock. The same bits for the same device poses and the same answers of the queries.
+/// An effect of a simulation and the time spent in it.
+struct EffectTime {
+  std::string_view name;
+  std::chrono::nanoseconds time;  ///< in all ticks so far
+};
+
+/// Computes the wrench on the hand from the pose of the hand, tick by tick, without a clock. Equal
+/// device poses and equal results of the queries give equal bits. Made by build_scene().
 ///
-/// A tick asks what touches the tool where it is, moves it there where coupling and effects are in
-/// balance, no farther than a voxel, and passes on what the coupling pulls. Where the contacts'
-/// answer is not complete the tool goes back to where one last was, with the contacts found there,
-/// and dares half as long a step from there: lack of time never lowers resistance. Where
-/// proximity's is not, what brakes is what it was.
+/// A tick queries the contacts at the tool's pose, moves the tool to the balance of coupling and
+/// effects by at most one voxel, and returns the coupling's wrench. If the contacts are incomplete
+/// the tool returns to its last complete pose and contacts, and its step limit halves: lack of time
+/// never lowers resistance. If the proximity points are incomplete the last complete ones are used.
 ///
-/// A tick allocates nothing, locks nothing and makes no system call. Cost: that of the queries, and
-/// 5 to 15 µs.
+/// A tick allocates nothing, locks nothing and makes no system call. Cost: the queries, and 5 to 15
+/// µs. A simulation is used by one thread at a time.
 class IST_API Simulation {
  public:
-  struct Parts {
-    std::unique_ptr<TouchQuery> contacts;   ///< null where no effect needs it
-    std::unique_ptr<TouchQuery> proximity;  ///< likewise
-    std::vector<std::unique_ptr<Effect>> effects;
-    CouplingSettings coupling;
-    SafetySettings safety;
-    Tool tool;
-    Placement start;  ///< of the tool
-    double dt;        ///< of a tick, s
-  };
-  explicit Simulation(Parts parts);
+  explicit Simulation(detail::SimulationParts parts);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
 
-  /// @param device where the hand is; nothing where that is not known
+  /// Makes one tick.
+  /// @param device the pose of the hand; empty if it is not known, which is a fault
   [[nodiscard]] Tick tick(const std::optional<Placement>& device,
-                          const TickBudget& budget) noexcept;
-  /// What is felt becomes zero, and returns only through the soft start.
+                          const TickBudget& budget = {}) noexcept;
+  /// Sets the wrench to zero; it returns through the soft start. Effects forget earlier ticks.
   void fault() noexcept;
 
-  [[nodiscard]] double dt() const noexcept { return dt_; }
-  /// Where the tool is.
-  [[nodiscard]] const Placement& at() const noexcept { return at_; }
-  /// Each with the time that it took in all ticks so far.
-  [[nodiscard]] std::span<const Tool::TimedEffect> effects() const noexcept { return effects_; }
-  /// Bytes of what answers queries.
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return (contacts_ ? contacts_->bytes() : 0) + (proximity_ ? proximity_->bytes() : 0);
-  }
+  /// The length of a tick, s.
+  [[nodiscard]] double dt() const noexcept;
+  [[nodiscard]] const Placement& tool_pose() const noexcept;
+  /// The effects in the order of their calls.
+  [[nodiscard]] std::span<const EffectTime> effects() const noexcept;
+  /// Bytes reserved by the queries.
+  [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  // What touches the tool at a pose where all answers were complete.
-  struct Known {
-    Placement tool;
-    TouchSet contacts, proximity;
-  };
-  [[nodiscard]] IST_LOCAL bool ask(const TickBudget& budget, Tick& tick) noexcept;
-  [[nodiscard]] IST_LOCAL std::optional<Vector6> move(
-      const VirtualCoupling::Stretch& stretch) noexcept;
-
-  std::unique_ptr<TouchQuery> contacts_, proximity_;
-  std::vector<Tool::TimedEffect> effects_;
-  VirtualCoupling coupling_;
-  WrenchGuard guard_;
-  Tool tool_;
-  double dt_;
-  Placement at_;                     // of the tool
-  std::optional<Placement> device_;  // a tick before
-  Known known_, asked_;
-  // Of the tool since all was known; nothing where it has not moved. Effects are told of it when
-  // all is known where it led, for a tool that goes back must not leave them there.
-  std::optional<Vector6> motion_;
-  double dares_ = 1;  // part of the longest step
+  std::unique_ptr<detail::SimulationState> state_;
 };
 
 }  // namespace ist

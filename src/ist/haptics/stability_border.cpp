@@ -6,16 +6,16 @@
 namespace ist {
 namespace {
 
-constexpr double kShareOfDamping = 0.5;
-constexpr double kShareOfStiffness = 0.8;
+constexpr double kDampingFraction = 0.5;
+constexpr double kStiffnessFraction = 0.8;
 
 BorderLimit limit_damping(double asked, double device_damping) noexcept {
-  const double largest = kShareOfDamping * device_damping;
+  const double largest = kDampingFraction * device_damping;
   return {asked, largest, std::clamp(asked, -largest, largest)};
 }
 
 BorderLimit limit_stiffness(double asked, double largest) noexcept {
-  return {asked, largest, std::min(asked, kShareOfStiffness * largest)};
+  return {asked, largest, std::min(asked, kStiffnessFraction * largest)};
 }
 
 }  // namespace

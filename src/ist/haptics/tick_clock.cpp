@@ -14,10 +14,10 @@ namespace ist {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// On Linux its time is that of CLOCK_MONOTONIC, in nanoseconds since the same epoch.
+// On Linux this is CLOCK_MONOTONIC, in nanoseconds since the same epoch.
 static_assert(std::is_same_v<Clock::period, std::nano>);
 
-// Times that are past end it at once.
+// Returns at once if the time has passed.
 void sleep_until(TickClock::Time time) noexcept {
   const auto ns = time.time_since_epoch().count();
   const timespec end{.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
@@ -31,7 +31,7 @@ void sleep_until(TickClock::Time time) noexcept {
 }  // namespace
 
 TickSchedule::Time TickSchedule::next(Time now) noexcept {
-  // What has passed is before `now`: a tick that would begin right now is not missed.
+  // A release at `now` itself is not missed.
   const Nanoseconds past = now - release() - Nanoseconds{1};
   missed_ = static_cast<std::uint64_t>(std::max(past, Nanoseconds{0}) / period_);
   tick_ += 1 + missed_;

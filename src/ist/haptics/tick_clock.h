@@ -5,15 +5,14 @@
 
 namespace ist {
 
-/// How a tick began.
+/// The start of a tick.
 struct TickStart {
-  std::chrono::nanoseconds late;  ///< from the time for which it was set to when it began: jitter
-  std::uint64_t missed;           ///< whole ticks that were left out before it
+  std::chrono::nanoseconds late;  ///< release jitter: from the tick's release to its start
+  std::uint64_t missed;           ///< ticks skipped before it
 };
 
-/// At which times ticks begin: at a start and every period after it, whatever became of the ticks
-/// before, so that no lateness adds up. A tick whose time has passed is left out: ticks that were
-/// missed never follow in a bunch.
+/// Schedules ticks at a start and every period after it, so that lateness does not accumulate. A
+/// tick whose time has passed is skipped: missed ticks never follow in a bunch.
 ///
 ///     sleep until schedule.next(now)
 ///     tick = schedule.begin(now)
@@ -22,22 +21,22 @@ class TickSchedule {
   using Time = std::chrono::steady_clock::time_point;
   using Nanoseconds = std::chrono::nanoseconds;
 
-  /// Tick 0 begins at `start`. Precondition: a positive period.
+  /// Releases tick 0 at `start`. Precondition: a positive period.
   TickSchedule(Time start, Nanoseconds period) noexcept : start_(start), period_(period) {}
 
-  /// The present tick is over at `now`: when the next begins whose time has not passed.
+  /// Ends the present tick at `now` and returns the release of the next tick that has not passed.
   [[nodiscard]] Time next(Time now) noexcept;
-  /// It begins, at `now`, not before that time. Where that is later by whole periods, they are
-  /// missed too, and the present tick is the one within whose period it begins.
+  /// Begins that tick at `now`, not before its release. If `now` is later by whole periods, their
+  /// ticks are missed too, and the tick of the present period begins.
   [[nodiscard]] TickStart begin(Time now) noexcept;
 
-  /// Of the present tick, by number: those that began and those that were missed, without tick 0.
+  /// The number of the present tick, from 0; missed ticks count.
   [[nodiscard]] std::uint64_t tick() const noexcept { return tick_; }
-  /// When the present tick should have begun,
+  /// The release of the present tick.
   [[nodiscard]] Time release() const noexcept {
     return start_ + static_cast<Nanoseconds::rep>(tick_) * period_;
   }
-  /// and by when it must have ended.
+  /// The end of its period.
   [[nodiscard]] Time deadline() const noexcept { return release() + period_; }
 
  private:
@@ -47,28 +46,27 @@ class TickSchedule {
   std::uint64_t missed_ = 0;  // before the present tick
 };
 
-/// The beat of a loop: sleeps from tick to tick, as a TickSchedule says. Its times are those of
-/// steady_clock. Not for several threads at once.
+/// Sleeps from tick to tick of a TickSchedule, on steady_clock. Used by one thread.
 ///
-/// Timers wake a thread late, by 50 µs in the median on a virtual machine and by 200 at 99 of 100.
-/// So it rises before the tick and waits for it awake, which takes up to that much of a core.
+/// Timers wake a thread late: on a virtual machine by 50 µs in the median, and by 200 µs at the
+/// 99th percentile. The clock therefore wakes early and spins until the release.
 class TickClock {
  public:
   using Time = TickSchedule::Time;
 
-  /// How long before a tick it rises; no more than half a period.
+  /// The time between waking and the release; at most half a period.
   static constexpr std::chrono::nanoseconds kLead = std::chrono::microseconds(100);
 
-  /// Precondition: a positive period. (Loops of up to 10 kHz are meant: 100 µs.)
+  /// Precondition: a positive period, usually 100 µs or more.
   explicit TickClock(std::chrono::nanoseconds period) noexcept;
 
-  /// Tick 0 begins now.
+  /// Begins tick 0.
   void start() noexcept;
   /// Ends the present tick and sleeps until the next one. Signals do not shorten the sleep.
   [[nodiscard]] TickStart wait_for_next() noexcept;
 
   [[nodiscard]] std::chrono::nanoseconds period() const noexcept { return period_; }
-  /// Of the present tick: see TickSchedule.
+  /// The present tick: see TickSchedule.
   [[nodiscard]] std::uint64_t tick() const noexcept { return schedule_.tick(); }
   [[nodiscard]] Time release() const noexcept { return schedule_.release(); }
   [[nodiscard]] Time deadline() const noexcept { return schedule_.deadline(); }

@@ -2,11 +2,17 @@
 
 #include <Eigen/Geometry>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 
-/// Round the vertices that triangles name; empty where there are no triangles. Cost: O(triangles).
-[[nodiscard]] Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) noexcept;
+/// Returns the bounding box of the vertices that triangles use; empty without triangles. Cost:
+/// O(triangles).
+[[nodiscard]] inline Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) noexcept {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) box.extend(mesh.vertices[vertex]);
+  return box;
+}
 
 }  // namespace ist

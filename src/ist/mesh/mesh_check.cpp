@@ -1,5 +1,3 @@
-#include "ist/mesh/mesh_check.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -8,7 +6,8 @@
 #include <string_view>
 
 #include "ist/base/float_environment.h"
-#include "ist/mesh/edges.h"
+#include "ist/mesh/components.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 namespace {
@@ -17,7 +16,7 @@ bool is_degenerate(const TriangleMesh& mesh, const Triangle& triangle) {
   if (has_equal_indices(triangle)) return true;
   Eigen::Vector3d u = mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]];
   Eigen::Vector3d v = mesh.vertices[triangle[2]] - mesh.vertices[triangle[0]];
-  // Scaled by the larger extent, so that the fourth powers stay in range whatever the unit.
+  // Scaled by the larger extent, so that the fourth powers stay in range for any unit.
   const double extent = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
   if (!(extent > 0)) return true;
   u /= extent;
@@ -62,8 +61,8 @@ void count_components(const TriangleMesh& mesh, std::span<const EdgeUse> uses, M
   report.open_components = static_cast<std::size_t>(std::count(open.begin(), open.end(), true));
 }
 
-// Six times the volume of a tetrahedron is a determinant; relative to one of the mesh's own
-// vertices, so that the place of the mesh does not blur the sum.
+// Returns the sum of signed tetrahedron volumes (determinants / 6) relative to a vertex of the
+// mesh, so that the mesh's distance from the origin adds no rounding error.
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
   const Eigen::Vector3d origin = mesh.vertices[mesh.triangles[0][0]];
@@ -107,14 +106,14 @@ std::vector<std::string> warnings(const MeshReport& report) {
     if (count > 1) sentences.push_back(fmt::format(fmt::runtime(many), count));
   };
   warn(report.boundary_edges,
-       "The surface is open: 1 edge is the side of one triangle only. What is inside is a guess.",
-       "The surface is open: {} edges are sides of one triangle only. What is inside is a guess.");
-  warn(report.non_manifold_edges, "1 edge is the side of more than two triangles.",
-       "{} edges are sides of more than two triangles.");
+       "The surface is open: 1 edge belongs to only one triangle. The inside is a guess.",
+       "The surface is open: {} edges belong to only one triangle. The inside is a guess.");
+  warn(report.non_manifold_edges, "1 edge belongs to more than two triangles.",
+       "{} edges belong to more than two triangles.");
   warn(report.inconsistent_edges,
-       "At 1 edge the two triangles are turned opposite ways; normals there are a guess.",
-       "At {} edges the two triangles are turned opposite ways; normals there are a guess.");
-  warn(report.duplicate_triangles, "1 triangle is there twice.",
+       "1 edge joins two triangles of opposite winding; normals there are a guess.",
+       "{} edges join two triangles of opposite winding; normals there are a guess.");
+  warn(report.duplicate_triangles, "1 triangle repeats an earlier one.",
        "{} triangles repeat an earlier one.");
   warn(report.degenerate_triangles, "1 triangle has no area.", "{} triangles have no area.");
   if (report.closed && report.consistent && report.signed_volume < 0)

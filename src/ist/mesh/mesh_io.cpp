@@ -1,29 +1,29 @@
-#include "ist/mesh/mesh_io.h"
-
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
-#include <cmath>
+#include <bit>
 #include <limits>
 #include <new>
 #include <span>
 #include <string_view>
-#include <utility>
+#include <unordered_map>
 
+#include "ist/base/assert.h"
+#include "ist/base/files.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/input_file.h"
 #include "ist/mesh/format/mesh_format.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/format/triangulate.h"
-#include "ist/mesh/format/weld.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 namespace {
 
-// Keeps assimp from any file that the content may name.
+// Denies assimp every file that the content may name.
 class NoFiles : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -40,7 +40,8 @@ std::span<const unsigned> corners_of(const aiFace& face) {
   return {face.mIndices, face.mNumIndices};
 }
 
-// Whether the scene holds what the checks found, and nothing that is not there is named.
+// Whether the scene has the faces that the checks found, and each corner refers to an existing
+// vertex.
 bool holds(const aiScene& scene, std::size_t faces) {
   std::size_t found = 0;
   for (const aiMesh* mesh : meshes_of(scene)) {
@@ -54,29 +55,44 @@ bool holds(const aiScene& scene, std::size_t faces) {
   return found == faces;
 }
 
-TriangleMesh weld_scene(const aiScene& scene) {
-  std::size_t corner_count = 0, triangle_count = 0;
-  for (const aiMesh* mesh : meshes_of(scene)) {
-    for (const aiFace& face : faces_of(*mesh)) {
-      corner_count += face.mNumIndices;
-      triangle_count += face.mNumIndices - 2;
+struct PointHash {
+  std::size_t operator()(const std::array<float, 3>& point) const noexcept {
+    std::uint64_t hash = 0;
+    for (const float coordinate : point) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(coordinate)) * 0x9E3779B97F4A7C15u;
+      hash ^= hash >> 32;
     }
+    return hash;
   }
-  Welder welder(corner_count);
+};
+
+// Welds points into vertices: points with exactly the same three floats become one vertex; -0
+// equals 0. Vertices are in the order of first appearance.
+TriangleMesh weld_scene(const aiScene& scene) {
+  std::size_t triangle_count = 0;
+  for (const aiMesh* mesh : meshes_of(scene))
+    for (const aiFace& face : faces_of(*mesh)) triangle_count += face.mNumIndices - 2;
   TriangleMesh welded;
   welded.triangles.reserve(triangle_count);
+  std::unordered_map<std::array<float, 3>, std::uint32_t, PointHash> known;
+  known.reserve(triangle_count / 2);  // the vertices of a closed surface
+  const auto index_of = [&](const aiVector3D& v) {
+    IST_ASSERT(known.size() < std::numeric_limits<std::uint32_t>::max());
+    const std::array<float, 3> point = {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};  // turns -0 into 0
+    const auto next = static_cast<std::uint32_t>(known.size());
+    const auto [vertex, is_new] = known.try_emplace(point, next);
+    if (is_new) welded.vertices.emplace_back(point[0], point[1], point[2]);
+    return vertex->second;
+  };
   std::vector<std::uint32_t> polygon;
   for (const aiMesh* mesh : meshes_of(scene)) {
     for (const aiFace& face : faces_of(*mesh)) {
       polygon.clear();
-      for (const unsigned corner : corners_of(face)) {
-        const aiVector3D& v = mesh->mVertices[corner];
-        polygon.push_back(welder.index_of({v.x, v.y, v.z}));
-      }
-      triangulate(polygon, welder.vertices(), welded.triangles);
+      for (const unsigned corner : corners_of(face))
+        polygon.push_back(index_of(mesh->mVertices[corner]));
+      triangulate(polygon, welded.vertices, welded.triangles);
     }
   }
-  welded.vertices = welder.vertices();
   return welded;
 }
 
@@ -85,16 +101,16 @@ TriangleMesh parse(const CheckedContent& content, const std::string& file) {
   importer.SetIOHandler(new NoFiles);  // the importer deletes it
   const aiScene* scene =
       importer.ReadFileFromMemory(content.bytes.data(), content.bytes.size(), 0, content.format);
-  // It catches whatever is thrown, and keeps the text.
+  // The importer catches every exception and keeps only its text.
   if (scene == nullptr && importer.GetErrorString() == std::string_view(std::bad_alloc().what()))
     throw std::bad_alloc();
   if (scene == nullptr)
-    fail_mesh(
-        ErrorCode::kNotAMesh, file, "",
-        fmt::format("assimp refuses it: {}; export the mesh again", importer.GetErrorString()));
+    fail_mesh(ErrorCode::kNotAMesh, file, "",
+              fmt::format("assimp rejects the file: {}; export the mesh again",
+                          importer.GetErrorString()));
   if (!holds(*scene, content.faces))
     fail_mesh(ErrorCode::kNotAMesh, file, "",
-              fmt::format("assimp does not find the {} faces that are there; export the mesh again",
+              fmt::format("assimp does not find the file's {} faces; export the mesh again",
                           content.faces));
   return weld_scene(*scene);
 }
@@ -106,14 +122,14 @@ void check_extent(const TriangleMesh& mesh, const std::string& file) {
   const double extent = box.sizes().maxCoeff();
   if (!(extent >= kSmallest && extent <= kLargest))
     fail_mesh(ErrorCode::kMeshExtent, file, "",
-              fmt::format("its largest extent is {:g}, outside [{:g}, {:g}]; scale the mesh",
+              fmt::format("the largest extent is {:g} units, outside [{:g}, {:g}]; scale the mesh",
                           extent, kSmallest, kLargest));
 }
 
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-  const ScopedFloatEnvironment environment;  // numbers in text are rounded too
+  const ScopedFloatEnvironment environment;  // parsing numbers rounds as well
   TriangleMesh mesh = parse(check_content(InputFile(file).read_rest(), file), file.string());
   check_extent(mesh, file.string());
   return mesh;

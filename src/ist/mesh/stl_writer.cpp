@@ -8,16 +8,16 @@
 #include <string>
 
 #include "ist/base/assert.h"
+#include "ist/base/files.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/output_file.h"
 #include "ist/mesh/format/binary_content.h"
 #include "ist/mesh/format/text_reader.h"
-#include "ist/mesh/mesh_io.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 namespace {
 
-// Zero for a triangle without area, as the format has it.
+// Returns the unit normal, or zero for a triangle without area, as is usual in STL.
 std::array<float, 3> unit_normal(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                  const Eigen::Vector3d& c) {
   Eigen::Vector3d u = b - a, v = c - a;
@@ -39,7 +39,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
   const ScopedFloatEnvironment environment;
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max())
     fail_mesh(ErrorCode::kFileUnwritable, file.string(), "",
-              "an STL holds no more than 2^32 - 1 triangles; write the mesh in parts");
+              "an STL holds at most 2^32 - 1 triangles; write the mesh in parts");
   std::string bytes(kStlCountEnd + kStlFacetBytes * mesh.triangles.size(), '\0');
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::memcpy(bytes.data() + kStlHeaderBytes, &count, sizeof count);

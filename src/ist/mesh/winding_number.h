@@ -5,14 +5,14 @@
 #include <optional>
 #include <span>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 
-/// How often some triangles of a mesh wind round a point, by a ray from it: what it crosses, out
-/// less in. The direction is changed while the ray meets an edge; all of them do only from a point
-/// on the surface, for which there is no answer. Where the triangles do not enclose the point, it
-/// is what the ray meets.
+/// Returns the winding number of some triangles of a mesh round a point: outward minus inward
+/// crossings of a ray from the point. The ray takes another direction if it hits an edge. Returns
+/// nullopt if all directions do, as happens only for a point on the surface. For an open surface
+/// the result depends on the ray's direction.
 ///
 /// Cost: 5 ns a triangle. Allocates nothing.
 [[nodiscard]] std::optional<int> winding_number(const TriangleMesh& mesh,

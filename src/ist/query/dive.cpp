@@ -14,7 +14,7 @@ struct Near {
   float apart;
 };
 
-// The nearest pairs seen, in order.
+// The nearest pairs added so far, sorted by distance.
 class Nearest {
  public:
   void add(const Near& pair) {
@@ -33,15 +33,16 @@ class Nearest {
 
 using Eight = Eigen::Array<float, 8, 1>;
 
-// How far a row and each of eight moving nodes are apart, or how deep in each other, as measure()
-// says, and how far their points are at most.
+// The signed distance between the bounds of a row and of each of eight moving nodes, as measure()
+// defines it, and the upper bound of the distance between their points; mesh units.
 struct Distances {
   Eight apart, farthest;
 };
 Distances measure_eight(const FixedRows& f, std::size_t row, const MovingLanes& m, bool slabs) {
   const auto lane = [&](Lane number) { return Eigen::Map<const Eight>(m.lane[number]); };
   const Eight dx = lane(kX) - f.x[row], dy = lane(kY) - f.y[row], dz = lane(kZ) - f.z[row];
-  // One by one: Eigen's root of several is by an estimate, whose bits depend on the processor.
+  // Square roots are taken one by one: Eigen estimates those of an array, with bits that depend on
+  // the processor.
   const Eight distance =
       ((dx * dx + dy * dy) + dz * dz).unaryExpr([](float x) { return std::sqrt(x); });
   const Eight reach = lane(kRadius) + f.radius[row];
@@ -78,7 +79,7 @@ Dive dive(const SearchPlan& plan, const Kernels& kernels, const SearchPose& pose
         for (std::uint32_t j = 0; j < of_b; ++j) {
           const auto at = static_cast<Eigen::Index>(j);
           farthest = std::min(farthest, distances.farthest[at]);
-          nearest.add({scratch.fixed.name[i], scratch.moving.name[j], distances.apart[at]});
+          nearest.add({scratch.fixed.id[i], scratch.moving.id[j], distances.apart[at]});
         }
       }
       found.tests += of_a * of_b;

@@ -2,22 +2,23 @@
 
 #include <span>
 
-#include "ist/query/bound_lanes.h"
-#include "ist/query/search_plan.h"
+#include "ist/query/traversal/search_plan.h"
+#include "simd/dispatch.h"
+#include "simd/lanes.h"
 
 namespace ist {
 
-/// Some pairs of leaves that are near each other, or deep in each other, found in a straight way
-/// down both trees: at each step only the few pairs are opened whose bounds are least apart.
+/// The leaf pairs found by a beam search down both trees: each step descends from the kWidth pairs
+/// of nodes whose bounds are nearest to each other or overlap most.
 struct Dive {
   static constexpr std::size_t kWidth = 6;
-  Contact leaves[kWidth];
+  LeafPair leaves[kWidth];
   std::size_t count = 0;
   std::uint64_t tests = 0;
-  float farthest;  ///< two points of the surfaces are no farther apart, pads included
+  float farthest;  ///< no less than the distance between the surfaces, mesh units, pad included
 };
 
-/// Cost: some 130 tests a level, 16 µs in all.
+/// Runs the beam search from the roots to the leaves. Cost: some 130 tests a level, 16 µs in all.
 [[nodiscard]] Dive dive(const SearchPlan& plan, const Kernels& kernels, const SearchPose& pose,
                         SearchScratch& scratch) noexcept;
 

@@ -1,53 +1,61 @@
-#include "ist/query/inside.h"
-
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
 
 #include "ist/base/float_environment.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
+#include "ist/query/query.h"
 
 namespace ist {
+namespace detail {
+
+struct InsideState {
+  struct Body {
+    explicit Body(const TriangleMesh& of) : mesh(of) {
+      for (const Component& component : components_of(mesh)) {
+        triangles.insert(triangles.end(), component.triangles.begin(), component.triangles.end());
+        points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
+        box.extend(component.box);
+      }
+    }
+    // Whether all components of the other body lie inside this one.
+    [[nodiscard]] bool holds(const Body& inner, const Eigen::Isometry3d& to_this) const noexcept {
+      const auto inside = [&](const Eigen::Vector3d& point) {
+        const Eigen::Vector3d there = to_this * point;
+        return box.contains(there) && winding_number(mesh, triangles, there).value_or(0) != 0;
+      };
+      return !inner.points.empty() && std::all_of(inner.points.begin(), inner.points.end(), inside);
+    }
+
+    const TriangleMesh& mesh;
+    std::vector<std::uint32_t> triangles;  // of all components
+    std::vector<Eigen::Vector3d> points;   // one a component
+    Eigen::AlignedBox3d box;
+  };
+
+  Body fixed, moving;
+};
+
+}  // namespace detail
 
 const char* to_string(Inside inside) noexcept {
-  switch (inside) {
-    case Inside::kFixed:
-      return "fixed";
-    case Inside::kMoving:
-      return "moving";
-    case Inside::kNone:
-      break;
-  }
-  return "none";
+  constexpr std::array kNames = {"none", "fixed", "moving"};
+  return kNames[static_cast<std::size_t>(inside)];
 }
 
 InsideTest::InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving)
-    : fixed_(body(fixed)), moving_(body(moving)) {}
-
-InsideTest::Body InsideTest::body(const TriangleMesh& mesh) {
-  Body body{mesh, {}, {}, {}};
-  for (const Component& component : components_of(mesh)) {
-    body.triangles.insert(body.triangles.end(), component.triangles.begin(),
-                          component.triangles.end());
-    body.points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
-    body.box.extend(component.box);
-  }
-  return body;
-}
-
-bool InsideTest::holds(const Body& outer, const Body& inner,
-                       const Eigen::Isometry3d& to_outer) noexcept {
-  return !inner.points.empty() &&
-         std::all_of(inner.points.begin(), inner.points.end(), [&](const Eigen::Vector3d& point) {
-           const Eigen::Vector3d there = to_outer * point;
-           return outer.box.contains(there) &&
-                  winding_number(outer.mesh, outer.triangles, there).value_or(0) != 0;
-         });
-}
+    : state_(new detail::InsideState{detail::InsideState::Body(fixed),
+                                     detail::InsideState::Body(moving)}) {}
+InsideTest::~InsideTest() = default;
+InsideTest::InsideTest(InsideTest&&) noexcept = default;
+InsideTest& InsideTest::operator=(InsideTest&&) noexcept = default;
 
 Inside InsideTest::at(const Eigen::Isometry3d& pose) const noexcept {
   const ScopedFloatEnvironment environment;
-  if (holds(fixed_, moving_, pose)) return Inside::kMoving;
-  return holds(moving_, fixed_, pose.inverse()) ? Inside::kFixed : Inside::kNone;
+  if (state_->fixed.holds(state_->moving, pose)) return Inside::kMoving;
+  return state_->moving.holds(state_->fixed, pose.inverse()) ? Inside::kFixed : Inside::kNone;
 }
 
 }  // namespace ist

@@ -12,8 +12,8 @@ std::optional<RelativePose> relative_pose(const Eigen::Isometry3d& pose, const L
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
   if (!rigid) return std::nullopt;
   RelativePose result{rigid->linear(), {}};
-  // Both frames begin at the corner plus half the root cube's edge, which is exact as such a pair
-  // and would not be as one number.
+  // The origin of a frame is the grid's corner plus half the root cube's edge: exact as a pair of
+  // numbers, rounded as one.
   const double moving_half = 0.5 * moving.edge(moving.depth);
   const double fixed_half = 0.5 * fixed.edge(fixed.depth);
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -25,7 +25,7 @@ std::optional<RelativePose> relative_pose(const Eigen::Isometry3d& pose, const L
       sum.add_product(result.rotation(i, j), moving.corner[static_cast<std::size_t>(j)]);
       sum.add_product(result.rotation(i, j), moving_half);
     }
-    // Only a translation near the end of double's range overflows, and next to it no corner counts.
+    // Only a translation near the end of double's range overflows; beside it no corner counts.
     const double value = sum.value();
     result.translation[i] = std::isfinite(value) ? value : rigid->translation()[i];
   }

@@ -7,13 +7,15 @@ namespace ist {
 FreeStart::FreeStart(const SphereTree& fixed, const SphereTree& held,
                      const TriangleMesh* fixed_mesh, const TriangleMesh* held_mesh)
     : query_(fixed, held),
-      voxel_(std::min(fixed.lattice().voxel_size, held.lattice().voxel_size)),
-      farthest_(2 * (fixed.reach() + held.reach())) {
+      voxel_(std::min(fixed.voxel_size(), held.voxel_size())),
+      farthest_(2 * (fixed.bounding_radius() + held.bounding_radius())) {
   if (fixed_mesh != nullptr && held_mesh != nullptr) inside_.emplace(*fixed_mesh, *held_mesh);
 }
 
 FreeStart::State FreeStart::at(const Eigen::Isometry3d& pose) noexcept {
-  if (query_.touches(pose) != Touch::kNo) return State::kTouching;
+  if (const IntersectionResult found = query_.intersects(pose);
+      found.status != QueryStatus::kDone || found.answer != Answer::kNo)
+    return State::kIntersecting;
   if (inside_ && inside_->at(pose) != Inside::kNone) return State::kInside;
   return State::kFree;
 }

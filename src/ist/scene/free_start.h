@@ -3,32 +3,32 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/collision_query.h"
-#include "ist/query/inside.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
 
 namespace ist {
 
-/// Whether two bodies are free of each other at a pose, and the nearest pose along an axis at which
-/// they are.
+/// Tests whether two bodies are free of each other at a pose, and finds the nearest free pose along
+/// an axis.
 class FreeStart {
  public:
-  /// Without meshes it is not known whether one body is inside the other: then it is believed that
-  /// none is. All must outlive it.
+  /// All arguments must outlive the object. If a mesh is null, a body inside the other one counts
+  /// as free.
   FreeStart(const SphereTree& fixed, const SphereTree& held, const TriangleMesh* fixed_mesh,
             const TriangleMesh* held_mesh);
 
-  enum class State { kFree, kTouching, kInside };
+  enum class State { kFree, kIntersecting, kInside };
   [[nodiscard]] State at(const Eigen::Isometry3d& pose) noexcept;
 
-  /// How far the held body must go along `axis`, a unit vector in fixed mesh coordinates, mesh
-  /// units: the first multiple of a voxel at which it is free, and a voxel more where it had to be
-  /// moved at all. Nothing if it never is within both bodies' extents. Cost: 20 to 300 µs a voxel.
+  /// Finds the distance by which the held body must move along `axis`, a unit vector in fixed mesh
+  /// coordinates, to be free, mesh units: 0, or the first multiple of a voxel at which it is free
+  /// and one voxel more. Empty where none is within both bodies' extents. Cost: 20 to 300 µs a
+  /// voxel.
   [[nodiscard]] std::optional<double> opening(const Eigen::Isometry3d& pose,
                                               const Eigen::Vector3d& axis) noexcept;
 
  private:
-  CollisionQuery query_;
+  Query query_;
   std::optional<InsideTest> inside_;
   double voxel_, farthest_;
 };

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include "ist/base/error.h"
-#include "ist/mesh/mesh_check.h"
-#include "ist/mesh/mesh_io.h"
-#include "ist/mesh/orientation.h"
-#include "ist/scene/scene_shapes.h"
-#include "ist/tree/tree_io.h"
+#include "ist/mesh/mesh.h"
+#include "ist/scene/scene_lines.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist {
@@ -16,16 +14,16 @@ namespace {
 void take_tree(LoadedBody& body, const std::filesystem::path& file) {
   body.tree = std::make_unique<const SphereTree>(read_tree(file));
   body.outside_is_known = body.tree->orientation() == Orientation::kOutward;
-  body.origin = body.tree->lattice().origin();
+  body.origin = body.tree->origin();
   if (body.tree->triangles()) {
-    body.mesh = std::make_unique<TriangleMesh>(body.tree->triangles()->mesh);
+    body.mesh = std::make_unique<TriangleMesh>(body.tree->parts().triangles->mesh);
   }
 }
 
 void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Scene& scene) {
   if (const std::optional<Error> flaw = lattice_flaw(mesh, voxel_size)) {
-    scene.lines.fail(fmt::format("{}.voxel_size", body.table),
-                     fmt::format("{}: {}", body.name, flaw->what()));
+    fail_at(scene, fmt::format("{}.voxel_size", body.table),
+            fmt::format("{}: {}", body.name, flaw->what()));
   }
   body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
   body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;

@@ -4,26 +4,25 @@
 #include <string>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/scene/scene.h"
-#include "ist/tree/sphere_tree.h"
+#include "ist/mesh/mesh.h"
+#include "ist/scene.h"
 
 namespace ist {
 
-/// A body of a scene as its file or shape gives it, before anything is built.
+/// A body of a scene as read from its file or made from its shape.
 struct LoadedBody {
   const char* table;  ///< of the scene: "fixed" or "held"
-  std::string name;   ///< of the file or the shape, for people
-  /// Turned outward. Null where the source is a tree that was built without triangles.
+  std::string name;   ///< of the file or the shape, for messages
+  /// Oriented outward. Null if the source is a tree that was built without triangles.
   std::unique_ptr<TriangleMesh> mesh;
-  std::unique_ptr<const SphereTree> tree;            ///< null where the source is none
-  bool outside_is_known = false;                     ///< by its triangles, or it is trusted
+  std::unique_ptr<const SphereTree> tree;            ///< null unless the source is a tree
+  bool outside_is_known = false;                     ///< from its triangles, or trusted
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of the grid, mesh coordinates
 };
 
-/// Reads or makes a body of the scene, that of the table "fixed" or "held"; what is wrong with it
-/// is added to `warnings`. Throws what reading throws, and kInputInvalid, by the scene's file and
-/// line, for a voxel size that does not fit the mesh.
+/// Reads or makes the body of the table "fixed" or "held", and adds the flaws of its mesh to
+/// `warnings`. Throws the errors of reading; kInputInvalid (fail_at) for a missing voxel size or
+/// one that does not fit the mesh.
 [[nodiscard]] LoadedBody load_body(const Scene& scene, const SceneBody& body, const char* table,
                                    std::vector<std::string>& warnings);
 

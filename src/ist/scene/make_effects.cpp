@@ -1,6 +1,11 @@
 #include "ist/scene/make_effects.h"
 
+#include "ist/haptics/effects/contact_effect.h"
+#include "ist/haptics/effects/damping_effect.h"
+#include "ist/haptics/effects/friction_effect.h"
 #include "ist/haptics/effects/gravity_effect.h"
+#include "ist/haptics/effects/proximity_effect.h"
+#include "ist/haptics/effects/snap_effect.h"
 
 namespace ist {
 

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include "ist/haptics/devices/hand_device.h"
 #include "ist/scene/table_reader.h"
 
 namespace ist {
 
-/// What is sensible in a scene: wide enough for any device there is, and narrow enough that a slip
-/// of a unit or of a sign is seen. Lengths are in the scene's unit, all else is SI.
+/// The ranges of a scene's numbers: wide enough for any device, and narrow enough to catch a wrong
+/// unit or sign. Lengths are in the scene's unit, all else is SI.
 inline constexpr NumberRange kRate{1, 1e4, "Hz"};
 inline constexpr NumberRange kDuration{1e-3, 1e6, "s"};
 inline constexpr NumberRange kInstant{0, 1e6, "s"};
@@ -30,5 +33,16 @@ inline constexpr NumberRange kTorque{1e-9, 1e3, "N m"};
 inline constexpr NumberRange kForceSlew{1e-3, 1e9, "N/s"};
 inline constexpr NumberRange kTorqueSlew{1e-6, 1e9, "N m/s"};
 inline constexpr NumberRange kSoftStart{0, 60, "s"};
+
+/// Returns the metres in a unit of length, "m", "cm", "mm", "um" or "inch", or nullopt for another
+/// name.
+[[nodiscard]] constexpr std::optional<double> metres_in(std::string_view unit) noexcept {
+  if (unit == "m") return 1.0;
+  if (unit == "cm") return 1e-2;
+  if (unit == "mm") return 1e-3;
+  if (unit == "um") return 1e-6;
+  if (unit == "inch") return 0.0254;
+  return std::nullopt;
+}
 
 }  // namespace ist

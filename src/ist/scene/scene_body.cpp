@@ -4,10 +4,9 @@
 #include <cstdlib>
 #include <utility>
 
-#include "ist/base/units.h"
 #include "ist/scene/ranges.h"
 #include "ist/scene/scene_parts.h"
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
 
 namespace ist {
 namespace {
@@ -41,8 +40,7 @@ BuiltInShape read_shape(TableReader& table, double unit) {
     case Kind::kLowerJaw:
       shape.seed = table.whole_number("seed", shape.seed);
       if (unit != metres_in("mm")) {
-        table.fail("shape",
-                   "a built-in jaw is made in millimetres, and the scene's unit is another",
+        table.fail("shape", "a built-in jaw is in millimetres, and the scene's unit is another",
                    R"(write unit = "mm")");
       }
       break;
@@ -77,7 +75,7 @@ SceneBody read_body(TableReader table, double unit) {
   if (!is_tree) {
     body.voxel_size = table.number("voxel_size", kLength);
   } else if (table.has("voxel_size")) {
-    table.fail("voxel_size", "the file is a tree, which has its voxel size", "take it out");
+    table.fail("voxel_size", "the file is a tree, which has a voxel size", "take the key out");
   }
   if (table.has("spheres")) {
     body.spheres =
@@ -104,14 +102,14 @@ std::filesystem::path read_path(TableReader& table, std::string_view key) {
     file = std::filesystem::path(folder) / text.substr(kPrefix.size());
   } else if (text.find("${") != std::string::npos) {
     table.fail(key, fmt::format("'{}' names a variable in \"{}\"", key, text),
-               fmt::format("{}… at the beginning is the only one that is known", kPrefix));
+               fmt::format("only {}… at the beginning is known", kPrefix));
   } else {
     file = table.file().parent_path() / text;
   }
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) {
     table.fail(key, fmt::format("there is no file {}", file.string()),
-               fmt::format("check '{}'; what is not absolute is from the scene's folder", key));
+               fmt::format("check '{}'; a relative path starts at the scene's folder", key));
   }
   return file;
 }

@@ -1,31 +1,34 @@
-#include "ist/scene/scene_builder.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
-#include "ist/haptics/devices/null_device.h"
-#include "ist/haptics/devices/script_device.h"
+#include "ist/haptics/simulation_parts.h"
 #include "ist/haptics/stability_border.h"
-#include "ist/haptics/surface_radius.h"
+#include "ist/haptics/tool.h"
+#include "ist/scene/build_notes.h"
 #include "ist/scene/free_start.h"
 #include "ist/scene/load_body.h"
 #include "ist/scene/make_effects.h"
+#include "ist/scene/scene_lines.h"
+#include "ist/scene/scene_parts.h"
+#include "ist/scene/scene_trees.h"
 
 namespace ist {
 namespace {
 
 class Builder {
  public:
-  Builder(const Scene& scene, Progress* progress, std::uint64_t max_memory)
-      : scene_(scene), progress_(progress), max_memory_(max_memory) {}
+  Builder(const Scene& scene, std::vector<std::unique_ptr<Effect>> own, std::uint64_t max_memory,
+          Progress* progress)
+      : scene_(scene), own_(std::move(own)), max_memory_(max_memory), progress_(progress) {}
 
   BuiltScene build() {
     load();
-    name_effects();
+    choose_effects();
     built_.trees = build_scene_trees(scene_, fixed_, held_, needs_, max_memory_, notes_, progress_);
     place();
     build_simulation();
@@ -35,7 +38,7 @@ class Builder {
 
  private:
   void load();
-  void name_effects();
+  void choose_effects();
   void warn_of_unknown_outside(const LoadedBody& body);
   void place();
   void build_simulation();
@@ -44,8 +47,9 @@ class Builder {
   [[nodiscard]] std::unique_ptr<Device> make_device() const;
 
   const Scene& scene_;
-  Progress* progress_;
+  std::vector<std::unique_ptr<Effect>> own_;
   std::uint64_t max_memory_;
+  Progress* progress_;
   BuiltScene built_;
   BuildNotes notes_;
   LoadedBody fixed_{}, held_{};
@@ -66,22 +70,33 @@ void Builder::load() {
            held_.origin};
 }
 
+bool needs_outside(const EffectNeeds& needs) {
+  return needs.normals || needs.depth || needs.proximity;
+}
+
 void Builder::warn_of_unknown_outside(const LoadedBody& body) {
-  if (body.outside_is_known || !(scene_.contact || scene_.proximity)) return;
+  if (body.outside_is_known) return;
+  const bool own = std::any_of(own_.begin(), own_.end(),
+                               [](const auto& effect) { return needs_outside(effect->needs()); });
+  if (!scene_.contact && !scene_.proximity && !own) return;
   built_.warnings.push_back(
-      fmt::format("{}: not closed and consistent, so its outside is not known and it pushes "
-                  "nothing: mend it, or say trust_normals = true in [{}]",
+      fmt::format("{}: the mesh is not closed and consistent, so its outside is not known and no "
+                  "contact is felt: repair it, or say trust_normals = true in [{}]",
                   body.name, body.table));
 }
 
-void Builder::name_effects() {
+void Builder::choose_effects() {
   warn_of_unknown_outside(fixed_);
   warn_of_unknown_outside(held_);
-  effects_ = make_effects(scene_, home_, fixed_.outside_is_known && held_.outside_is_known);
+  const bool outside_is_known = fixed_.outside_is_known && held_.outside_is_known;
+  effects_ = make_effects(scene_, home_, outside_is_known);
+  for (auto& effect : own_) {
+    if (outside_is_known || !needs_outside(effect->needs())) effects_.push_back(std::move(effect));
+  }
   needs_ = needs_of(effects_);
 }
 
-// Where the device begins.
+// The device's pose at the beginning of its plan.
 Placement Builder::plan_start() const {
   if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
     return home_.moved(script->plan.front().pose);
@@ -95,7 +110,7 @@ Placement Builder::plan_start() const {
 void Builder::place() {
   start_ = plan_start();
   if (!needs_.contacts()) {
-    notes_.skip("free start", "nothing is touched");
+    notes_.skip("free start", "no effect needs contacts");
     return;
   }
   FreeStart start(*built_.trees.fixed, *built_.trees.held, fixed_.mesh.get(), held_.mesh.get());
@@ -103,28 +118,28 @@ void Builder::place() {
   const FreeStart::State state = start.at(pose);
   if (!fixed_.mesh || !held_.mesh) {
     built_.warnings.push_back(
-        fmt::format("{}: a tree without triangles, so it is not known whether one body starts "
-                    "inside the other: build it with --exact to know",
+        fmt::format("{}: the tree has no triangles, so a start inside the other body cannot be "
+                    "detected: build it with --exact",
                     (fixed_.mesh ? held_ : fixed_).name));
   }
   if (state == FreeStart::State::kFree) return;
-  const char* how = state == FreeStart::State::kTouching ? "the bodies touch, or may touch,"
-                                                         : "one body is inside the other";
+  const char* how = state == FreeStart::State::kIntersecting
+                        ? "the bodies intersect, or may intersect,"
+                        : "one body is inside the other";
   if (!scene_.open) {
-    scene_.lines.fail(
-        "held.open",
-        fmt::format("{} where the device starts: say in [held] along which axis they open, as "
-                    "open = \"-z\", or start elsewhere",
+    fail_at(
+        scene_, "held.open",
+        fmt::format("{} where the device starts: name the axis along which they open in [held], "
+                    "as open = \"-z\", or start elsewhere",
                     how));
   }
   const std::optional<double> way =
       start.opening(pose, scene_.fixed.rotation.transpose() * *scene_.open);
   if (!way) {
-    scene_.lines.fail(
-        "held.open",
-        fmt::format("{} where the device starts, and all along the axis of held.open: name "
-                    "another, or start elsewhere",
-                    how));
+    fail_at(scene_, "held.open",
+            fmt::format("{} where the device starts, and all along the axis of held.open: name "
+                        "another axis, or start elsewhere",
+                        how));
   }
   start_.translation += (*way * scene_.unit) * *scene_.open;
   built_.warnings.push_back(
@@ -138,27 +153,27 @@ std::unique_ptr<Device> Builder::make_device() const {
     return plan;
   };
   if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
-    return std::make_unique<ScriptDevice>(at_home(script->plan), script->mechanics);
+    return make_script_device(at_home(script->plan), script->mechanics);
   }
   if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) {
     HandSettings settings = *hand;
     settings.plan = at_home(settings.plan);
-    return std::make_unique<HandDevice>(settings);
+    return make_hand_device(std::move(settings));
   }
-  return std::make_unique<NullDevice>(start_, std::get<NullSettings>(scene_.device).mechanics);
+  return make_null_device(start_, std::get<NullSettings>(scene_.device).mechanics);
 }
 
 void Builder::warn_of(const BorderLimit& limit, const char* key, const char* unit) {
   if (!limit.clamped()) return;
   built_.warnings.push_back(
-      fmt::format("{} of {:.4g} {} is too near to what this device's damping, the rate and the "
-                  "delay allow, which is {:.4g}, or beyond it: {:.4g} is used",
+      fmt::format("{} of {:.4g} {} is too near to the stability border of this device, rate and "
+                  "delay, {:.4g}, or beyond it: {:.4g} is used",
                   key, limit.asked, unit, limit.largest, limit.used));
 }
 
 void Builder::build_simulation() {
   built_.device = make_device();
-  // As clocks count it.
+  // In whole nanoseconds, as the loop's clock counts.
   const double period = 1e-9 * std::floor(1e9 / scene_.rate);
   const ClampedCoupling coupling =
       clamp_coupling(scene_.coupling, built_.device->mechanics(), period);
@@ -167,38 +182,39 @@ void Builder::build_simulation() {
   warn_of(coupling.angular_damping, "coupling.angular_damping", "N m s/rad");
   warn_of(coupling.angular_stiffness, "coupling.angular_stiffness", "N m/rad");
 
-  Simulation::Parts parts{nullptr,       nullptr,    {},     coupling.settings,
-                          scene_.safety, Tool(0, 0), start_, period};
-  // Where nothing is touched, nothing tunnels either.
+  detail::SimulationParts parts{.coupling = coupling.settings,
+                                .safety = scene_.safety,
+                                .tool = Tool(0, 0),
+                                .start = start_,
+                                .dt = period};
   built_.step_limit = Tool::kNoLimit;
   double radius = 0;
   const SceneTrees& trees = built_.trees;
   if (trees.fixed) {
-    parts.contacts = notes_.make("contact points", "for effects that push", [&] {
+    parts.contacts = notes_.make("contact points", "for effects at contacts", [&] {
       const SpherePolicy policy = std::min(scene_.fixed.spheres.value_or(trees.fixed->tightest()),
                                            scene_.held.spheres.value_or(trees.held->tightest()));
-      return std::make_unique<TouchQuery>(
+      return std::make_unique<ToolContactQuery>(
           *trees.fixed, *trees.held, frames_,
-          TouchOptions{
+          ToolContactOptions{
               .policy = policy,
-              .least_depth = -scene_.contact->margin,
+              .least_depth = -scene_.contact.value_or(ContactSettings()).margin,
               .workers = scene_.workers,
               .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * period))});
     });
-    built_.step_limit =
-        scene_.unit * std::min(trees.fixed->lattice().voxel_size, trees.held->lattice().voxel_size);
+    built_.step_limit = scene_.unit * std::min(trees.fixed->voxel_size(), trees.held->voxel_size());
     radius = scene_.unit * surface_radius(*trees.held);
   } else {
-    notes_.skip("contact points", "there are no trees to look in");
+    notes_.skip("contact points", "no effect needs them");
   }
   if (trees.near_fixed) {
     parts.proximity = notes_.make("proximity query", "for effects.proximity", [&] {
-      return std::make_unique<TouchQuery>(
+      return std::make_unique<ToolContactQuery>(
           *trees.near_fixed, *trees.near_held, frames_,
-          TouchOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .growth = 0});
+          ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
     });
   } else {
-    notes_.skip("proximity query", "there are no trees to look in");
+    notes_.skip("proximity query", "no effect needs it");
   }
   parts.tool = Tool(radius, built_.step_limit);
   parts.effects = std::move(effects_);
@@ -207,9 +223,14 @@ void Builder::build_simulation() {
 
 }  // namespace
 
-BuiltScene build_scene(const Scene& scene, Progress* progress, std::uint64_t max_memory) {
+BuiltScene build_scene(const Scene& scene, std::vector<std::unique_ptr<Effect>> own,
+                       std::uint64_t max_memory, Progress* progress) {
   const ScopedFloatEnvironment environment;
-  return Builder(scene, progress, max_memory).build();
+  check_scene(scene);
+  if (std::any_of(own.begin(), own.end(), [](const auto& effect) { return !effect; })) {
+    throw Error(ErrorCode::kArgumentInvalid, "an own effect is null: give effects only");
+  }
+  return Builder(scene, std::move(own), max_memory, progress).build();
 }
 
 }  // namespace ist

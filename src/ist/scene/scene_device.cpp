@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "ist/haptics/devices/script_device.h"
+#include "ist/haptics/devices/plan.h"
 #include "ist/scene/ranges.h"
 #include "ist/scene/scene_parts.h"
 
@@ -28,17 +28,17 @@ std::vector<Waypoint> read_plan(TableReader& device, double unit) {
   return plan;
 }
 
-// Where nothing is said: an arm that holds a stylus lightly. With the device's own damping it
-// swings at 8 Hz, damped to 0.6 of what is critical; its turn at 11 Hz, to 0.8.
 HandSettings read_hand(TableReader& device, const DeviceMechanics& mechanics, double unit) {
-  HandSettings hand{};
+  HandSettings hand;
   hand.mechanics = mechanics;
-  hand.mass = device.number("mass", kMass, 0.2);
-  hand.inertia = device.number("inertia", kInertia, 2e-4);
-  hand.arm_stiffness = device.number("arm_stiffness", kStiffness, 500);
-  hand.arm_damping = device.number("arm_damping", kDamping, 10);
-  hand.arm_angular_stiffness = device.number("arm_angular_stiffness", kAngularStiffness, 1);
-  hand.arm_angular_damping = device.number("arm_angular_damping", kAngularDamping, 0.02);
+  hand.mass = device.number("mass", kMass, hand.mass);
+  hand.inertia = device.number("inertia", kInertia, hand.inertia);
+  hand.arm_stiffness = device.number("arm_stiffness", kStiffness, hand.arm_stiffness);
+  hand.arm_damping = device.number("arm_damping", kDamping, hand.arm_damping);
+  hand.arm_angular_stiffness =
+      device.number("arm_angular_stiffness", kAngularStiffness, hand.arm_angular_stiffness);
+  hand.arm_angular_damping =
+      device.number("arm_angular_damping", kAngularDamping, hand.arm_angular_damping);
   hand.resolution = unit * device.number("resolution", kResolution, 0);
   hand.angular_resolution = device.number("angular_resolution", kAngularResolution, 0);
   hand.plan = read_plan(device, unit);
@@ -55,10 +55,11 @@ ScriptSettings read_plan_file(TableReader& device, const DeviceMechanics& mechan
 void read_device(TableReader& scene, Scene& result) {
   TableReader device = scene.table("device");
   const DeviceKind kind = device.choice("kind", device_kind, R"("hand", "script" or "null")");
+  const DeviceMechanics usual = HandSettings().mechanics;
   const DeviceMechanics mechanics{
-      .damping = device.number("damping", kDamping, 2),
-      .angular_damping = device.number("angular_damping", kAngularDamping, 2e-3),
-      .delay = device.number("delay", kDelay, 0)};
+      .damping = device.number("damping", kDamping, usual.damping),
+      .angular_damping = device.number("angular_damping", kAngularDamping, usual.angular_damping),
+      .delay = device.number("delay", kDelay, usual.delay)};
   switch (kind) {
     case DeviceKind::kHand:
       result.device = read_hand(device, mechanics, result.unit);

@@ -9,43 +9,44 @@ namespace ist {
 namespace {
 
 ContactSettings read_contact(TableReader contact) {
-  ContactSettings settings{};
-  settings.stiffness = contact.number("stiffness", kStiffness, 2000);
-  settings.margin = contact.number("margin", kMargin, 0.25);
+  ContactSettings settings;
+  settings.stiffness = contact.number("stiffness", kStiffness, settings.stiffness);
+  settings.margin = contact.number("margin", kMargin, settings.margin);
   return settings;
 }
 
 FrictionSettings read_friction(TableReader friction) {
-  FrictionSettings settings{};
-  settings.static_coefficient = friction.number("static", kFriction, 0.3);
-  settings.dynamic_coefficient =
-      friction.number("dynamic", kFriction, std::min(0.2, settings.static_coefficient));
-  settings.stiffness = friction.number("stiffness", kStiffness, 1000);
+  FrictionSettings settings;
+  settings.static_coefficient = friction.number("static", kFriction, settings.static_coefficient);
+  settings.dynamic_coefficient = friction.number(
+      "dynamic", kFriction, std::min(settings.dynamic_coefficient, settings.static_coefficient));
+  settings.stiffness = friction.number("stiffness", kStiffness, settings.stiffness);
   if (settings.dynamic_coefficient > settings.static_coefficient) {
     friction.fail("dynamic",
                   fmt::format("'dynamic' is {}, more than 'static', which is {}",
                               settings.dynamic_coefficient, settings.static_coefficient),
-                  "what slides is held back by less: lower it");
+                  "lower it: friction falls as sliding begins");
   }
   return settings;
 }
 
 SceneGravity read_gravity(TableReader gravity) {
-  SceneGravity settings{};
+  SceneGravity settings;
   settings.mass = gravity.number("mass", kMass);
   if (gravity.has("centre")) settings.centre = gravity.vector("centre", kPlace);
-  settings.acceleration = gravity.vector("acceleration", kAcceleration, {0, 0, -9.81});
+  settings.acceleration = gravity.vector("acceleration", kAcceleration, settings.acceleration);
   return settings;
 }
 
 SnapSettings read_snap(TableReader snap, double unit) {
-  SnapSettings settings{};
+  SnapSettings settings;
   settings.pose.rotation = snap.rotation("turn");
   settings.pose.translation = unit * snap.vector("move", kPlace, Eigen::Vector3d::Zero());
-  settings.stiffness = snap.number("stiffness", kStiffness, 200);
-  settings.angular_stiffness = snap.number("angular_stiffness", kAngularStiffness, 0.2);
+  settings.stiffness = snap.number("stiffness", kStiffness, settings.stiffness);
+  settings.angular_stiffness =
+      snap.number("angular_stiffness", kAngularStiffness, settings.angular_stiffness);
   settings.radius = unit * snap.number("radius", kLength);
-  settings.angle = snap.number("angle", kAngle, 0.2);
+  settings.angle = snap.number("angle", kAngle, settings.angle);
   return settings;
 }
 
@@ -57,12 +58,14 @@ void read_effects(TableReader& scene, Scene& result) {
   if (effects.has("contact")) result.contact = read_contact(effects.table("contact"));
   if (effects.has("friction")) result.friction = read_friction(effects.table("friction"));
   if (effects.has("damping")) {
-    result.damping = {.damping = effects.table("damping").number("damping", kDamping, 1)};
+    result.damping = {
+        .damping = effects.table("damping").number("damping", kDamping, DampingSettings().damping)};
   }
   if (effects.has("proximity")) {
     TableReader proximity = effects.table("proximity");
-    result.proximity = {.distance = result.unit * proximity.number("distance", kLength),
-                        .damping = proximity.number("damping", kDamping, 2)};
+    result.proximity = {
+        .distance = result.unit * proximity.number("distance", kLength),
+        .damping = proximity.number("damping", kDamping, ProximitySettings().damping)};
   }
   if (effects.has("gravity")) result.gravity = read_gravity(effects.table("gravity"));
   if (effects.has("snap")) result.snap = read_snap(effects.table("snap"), result.unit);

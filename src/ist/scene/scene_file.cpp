@@ -1,18 +1,16 @@
-#include "ist/scene/scene_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "ist/base/float_environment.h"
-#include "ist/base/units.h"
 #include "ist/scene/ranges.h"
+#include "ist/scene/scene_lines.h"
 #include "ist/scene/scene_parts.h"
 
 namespace ist {
 namespace {
 
-// What is always on is read as if the file named it, so that each default stands in one place.
+// Adds a table that is always on, so that its defaults are read in one place.
 void open_if_missing(TomlTable& document, std::string_view key) {
   const bool is_there = std::any_of(document.entries.begin(), document.entries.end(),
                                     [key](const TomlEntry& each) { return each.key == key; });
@@ -24,21 +22,23 @@ int read_workers(TableReader& scene, int otherwise) {
       scene.whole_number("workers", static_cast<std::uint64_t>(otherwise));
   if (workers != 1 && workers != 2) {
     scene.fail("workers", fmt::format("'workers' is {}", workers),
-               "give 1, or 2 for a second thread that helps to look for contacts");
+               "give 1, or 2 for a second thread that searches for contacts");
   }
   return static_cast<int>(workers);
 }
 
 SafetySettings read_safety(TableReader& scene) {
   TableReader safety = scene.table("safety");
-  return {.max_force = safety.number("max_force", kForce, 8),
-          .max_torque = safety.number("max_torque", kTorque, 0.3),
-          .force_slew = safety.number("force_slew", kForceSlew, 500),
-          .torque_slew = safety.number("torque_slew", kTorqueSlew, 20),
-          .soft_start = safety.number("soft_start", kSoftStart, 0.5)};
+  const SafetySettings usual;
+  return {.max_force = safety.number("max_force", kForce, usual.max_force),
+          .max_torque = safety.number("max_torque", kTorque, usual.max_torque),
+          .force_slew = safety.number("force_slew", kForceSlew, usual.force_slew),
+          .torque_slew = safety.number("torque_slew", kTorqueSlew, usual.torque_slew),
+          .soft_start = safety.number("soft_start", kSoftStart, usual.soft_start)};
 }
 
-// A spring that could ask for more than is let through would be a spring that is cut off.
+// Reads a spring's limit, which must not exceed the safety limit: a spring beyond it would be cut
+// off.
 double read_limit(TableReader& coupling, std::string_view key, const NumberRange& range,
                   double otherwise, double safe) {
   const double limit = coupling.number(key, range, std::min(otherwise, safe));
@@ -54,20 +54,16 @@ double read_limit(TableReader& coupling, std::string_view key, const NumberRange
 
 CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety) {
   TableReader coupling = scene.table("coupling");
-  return {.stiffness = coupling.number("stiffness", kStiffness, 1000),
-          .damping = coupling.number("damping", kDamping, 0.5),
-          .angular_stiffness = coupling.number("angular_stiffness", kAngularStiffness, 1),
-          .angular_damping = coupling.number("angular_damping", kAngularDamping, 5e-4),
-          .max_force = read_limit(coupling, "max_force", kForce, 5, safety.max_force),
-          .max_torque = read_limit(coupling, "max_torque", kTorque, 0.2, safety.max_torque)};
-}
-
-// What acts at contacts has none where none are found.
-void check_contact_is_there(TableReader& scene, const Scene& result) {
-  if (result.contact || !(result.friction || result.damping)) return;
-  const char* effect = result.friction ? "friction" : "damping";
-  scene.table("effects").fail(effect, fmt::format("[effects.{}] acts at contacts", effect),
-                              "add the table [effects.contact], or take this one out");
+  const CouplingSettings usual;
+  return {
+      .stiffness = coupling.number("stiffness", kStiffness, usual.stiffness),
+      .damping = coupling.number("damping", kDamping, usual.damping),
+      .angular_stiffness =
+          coupling.number("angular_stiffness", kAngularStiffness, usual.angular_stiffness),
+      .angular_damping = coupling.number("angular_damping", kAngularDamping, usual.angular_damping),
+      .max_force = read_limit(coupling, "max_force", kForce, usual.max_force, safety.max_force),
+      .max_torque =
+          read_limit(coupling, "max_torque", kTorque, usual.max_torque, safety.max_torque)};
 }
 
 }  // namespace
@@ -77,7 +73,7 @@ Scene read_scene(const std::filesystem::path& file) {
   TomlTable document = read_toml(file);
   Scene scene{};
   scene.file = file;
-  scene.lines = SceneLines(file, document);
+  scene.lines = std::make_shared<const detail::SceneLines>(document);
   open_if_missing(document, "safety");
   open_if_missing(document, "coupling");
   TableReader reader(file, document);
@@ -91,7 +87,7 @@ Scene read_scene(const std::filesystem::path& file) {
   scene.coupling = read_coupling(reader, scene.safety);
   read_effects(reader, scene);
   reader.refuse_unknown();
-  check_contact_is_there(reader, scene);
+  check_scene(scene);
   return scene;
 }
 

@@ -7,12 +7,12 @@
 
 namespace ist {
 
-SceneLines::SceneLines(const std::filesystem::path& file, const TomlTable& document) : file_(file) {
+detail::SceneLines::SceneLines(const TomlTable& document) {
   lines_.emplace("", document.line);
   add(document, "");
 }
 
-void SceneLines::add(const TomlTable& table, const std::string& path) {
+void detail::SceneLines::add(const TomlTable& table, const std::string& path) {
   for (const TomlEntry& entry : table.entries) {
     const std::string key = path.empty() ? entry.key : fmt::format("{}.{}", path, entry.key);
     lines_.emplace(key, entry.value.line);
@@ -20,17 +20,22 @@ void SceneLines::add(const TomlTable& table, const std::string& path) {
   }
 }
 
-void SceneLines::fail(std::string_view key, std::string_view text) const {
-  if (lines_.empty()) {
+std::size_t detail::SceneLines::line_of(std::string_view key) const {
+  auto line = lines_.find(key);
+  while (line == lines_.end()) {
+    const std::size_t dot = key.rfind('.');
+    key = dot == std::string_view::npos ? std::string_view() : key.substr(0, dot);
+    line = lines_.find(key);
+  }
+  return line->second;
+}
+
+void fail_at(const Scene& scene, std::string_view key, std::string_view text) {
+  if (!scene.lines) {
     throw Error(ErrorCode::kInputInvalid, fmt::format("the scene's {}: {}", key, text));
   }
-  auto line = lines_.find(key);
-  for (std::string_view table = key; line == lines_.end(); line = lines_.find(table)) {
-    const std::size_t dot = table.rfind('.');
-    table = dot == std::string_view::npos ? std::string_view() : table.substr(0, dot);
-  }
   throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}:{}: {}", file_.string(), line->second, text));
+              fmt::format("{}:{}: {}", scene.file.string(), scene.lines->line_of(key), text));
 }
 
 }  // namespace ist

@@ -7,27 +7,33 @@
 #include <string>
 #include <string_view>
 
+#include "ist/scene.h"
+
 namespace ist {
 
 struct TomlTable;
 
-/// Where in its file each key of a scene stands, for what turns out to be wrong when all is read.
-/// Of a scene that no file says, it knows nothing.
+namespace detail {
+
+/// The lines of a scene's keys in its file, for errors that show only after reading.
 class SceneLines {
  public:
-  SceneLines() = default;
-  SceneLines(const std::filesystem::path& file, const TomlTable& document);
+  explicit SceneLines(const TomlTable& document);
 
-  /// Throws kInputInvalid for a key by its path, "held.voxel_size": the file and the line where it
-  /// stands, or, where it does not, the table that it would stand in, and `text`, which ends in a
-  /// remedy.
-  [[noreturn]] void fail(std::string_view key, std::string_view text) const;
+  /// The line of a key by its path, such as "held.voxel_size"; if the key is missing, the line of
+  /// the innermost table of its path that is there.
+  [[nodiscard]] std::size_t line_of(std::string_view key) const;
 
  private:
   void add(const TomlTable& table, const std::string& path);
 
-  std::filesystem::path file_;
   std::map<std::string, std::size_t, std::less<>> lines_;
 };
+
+}  // namespace detail
+
+/// Throws kInputInvalid for a key by its path: the scene's file, the key's line, and `text`, which
+/// ends in a remedy. For a scene without a file it names the key instead.
+[[noreturn]] void fail_at(const Scene& scene, std::string_view key, std::string_view text);
 
 }  // namespace ist

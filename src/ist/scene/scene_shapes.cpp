@@ -1,14 +1,21 @@
-#include "ist/scene/scene_shapes.h"
+#include <fmt/format.h>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
-#include "ist/mesh/jaw_model.h"
-#include "ist/mesh/shape_model.h"
+#include "ist/models/models.h"
+#include "ist/scene.h"
 
 namespace ist {
 namespace {
 
 constexpr int kSphereLevel = 5;
 constexpr int kCylinderQuarter = 64;
+
+void check_length(double length) {
+  if (length >= 1e-12 && length <= 1e12) return;
+  throw Error(ErrorCode::kArgumentInvalid,
+              fmt::format("a shape of length {}: give lengths from 1e-12 to 1e12", length));
+}
 
 TriangleMesh centred_cylinder(double radius, double height) {
   TriangleMesh mesh = make_cylinder(kCylinderQuarter, radius, height);
@@ -27,13 +34,18 @@ TriangleMesh make_shape(const BuiltInShape& shape) {
     case Kind::kLowerJaw:
       return make_jaw(Jaw::kLower, shape.seed);
     case Kind::kBox:
+      for (const double length : shape.size) check_length(length);
       return make_box(-0.5 * shape.size, 0.5 * shape.size);
     case Kind::kSphere:
+      check_length(shape.radius);
       return make_icosphere(kSphereLevel, shape.radius);
     case Kind::kCylinder:
+      check_length(shape.radius);
+      check_length(shape.height);
       return centred_cylinder(shape.radius, shape.height);
   }
-  return {};
+  throw Error(ErrorCode::kArgumentInvalid,
+              "an unknown kind of shape: give one of BuiltInShape::Kind");
 }
 
 }  // namespace ist

@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include "ist/base/error.h"
-#include "ist/scene/build_note.h"
+#include "ist/scene/build_notes.h"
 #include "ist/scene/load_body.h"
+#include "ist/scene/scene_lines.h"
 #include "ist/tree/proximity_body.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist {
 namespace {
 
-// Proximity voxels are at most so many of their edges from the surface.
+// The extent of proximity voxels from the surface, in voxel edges.
 constexpr double kProximityEdges = 2;
 
 constexpr const char* kDistance = "effects.proximity.distance";
@@ -34,8 +35,8 @@ class TreeBuilder {
 
   [[nodiscard]] Tree contact_tree(LoadedBody& body, const SceneBody& named, bool triangles);
   [[nodiscard]] double near_voxel_size(const LoadedBody& fixed, const LoadedBody& held) const;
-  void check_spheres(const LoadedBody& body, const SceneBody& named) const;
-  // `key` is where the voxel size comes from.
+  void check_tree(const LoadedBody& body, const SceneBody& named, bool triangles) const;
+  // `key` is the scene's key of the voxel size.
   [[nodiscard]] Tree build(const LoadedBody& body, const std::string& key, BuildOptions options);
 
   const Scene& scene_;
@@ -51,17 +52,23 @@ TreeBuilder::Tree TreeBuilder::build(const LoadedBody& body, const std::string& 
   try {
     return std::make_unique<const SphereTree>(build_tree(*body.mesh, options, nullptr, progress_));
   } catch (const Error& error) {
-    scene_.lines.fail(key, fmt::format("{}: {}", body.name, error.what()));
+    fail_at(scene_, key, fmt::format("{}: {}", body.name, error.what()));
   }
 }
 
-// Of a tree file, which has the spheres that it was built with.
-void TreeBuilder::check_spheres(const LoadedBody& body, const SceneBody& named) const {
+// Checks that a tree file has the spheres and triangles that the scene needs.
+void TreeBuilder::check_tree(const LoadedBody& body, const SceneBody& named, bool triangles) const {
+  if (triangles && body.tree->triangles() == nullptr) {
+    fail_at(scene_, fmt::format("{}.file", body.table),
+            fmt::format("an effect needs triangles, and {} has none: name the mesh, or build the "
+                        "tree with --exact",
+                        body.name));
+  }
   if (!named.spheres || body.tree->has(*named.spheres)) return;
-  scene_.lines.fail(fmt::format("{}.spheres", body.table),
-                    fmt::format("spheres = \"{0}\" in [{1}], and {2} has none: build the tree "
-                                "with --spheres {0}, or take the key out",
-                                to_string(*named.spheres), body.table, body.name));
+  fail_at(scene_, fmt::format("{}.spheres", body.table),
+          fmt::format("spheres = \"{0}\" in [{1}], and {2} has none: build the tree "
+                      "with --spheres {0}, or take the key out",
+                      to_string(*named.spheres), body.table, body.name));
 }
 
 TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, const SceneBody& named,
@@ -69,7 +76,7 @@ TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, const SceneBody& n
   const std::string why = fmt::format("{}, for contacts", body.name);
   return notes_.make(fmt::format("{} tree", body.table), why, [&] {
     if (body.tree) {
-      check_spheres(body, named);
+      check_tree(body, named, triangles);
       return std::move(body.tree);
     }
     return build(body, fmt::format("{}.voxel_size", body.table),
@@ -80,17 +87,23 @@ TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, const SceneBody& n
 }
 
 double TreeBuilder::near_voxel_size(const LoadedBody& fixed, const LoadedBody& held) const {
+  if (!scene_.proximity) {
+    fail_at(scene_, "effects.proximity",
+            "an effect needs proximity voxels, whose size is half of the distance: add the table "
+            "with a distance; damping = 0 makes it no brake");
+  }
   const double size = scene_.proximity->distance / (kProximityEdges * scene_.unit);
   for (const LoadedBody* body : {&fixed, &held}) {
     if (!body->mesh) {
-      scene_.lines.fail("effects.proximity",
-                        fmt::format("it needs the triangles of {}, which the tree was built "
-                                    "without: name the mesh, or build the tree with --exact",
-                                    body->name));
+      fail_at(scene_, "effects.proximity",
+              fmt::format("proximity needs triangles, and {} has none: name the mesh, or "
+                          "build the tree with --exact",
+                          body->name));
     }
     if (const std::optional<Error> flaw = lattice_flaw(*body->mesh, size)) {
-      scene_.lines.fail(kDistance,
-                        fmt::format("in voxels of half of it: {}: {}", body->name, flaw->what()));
+      fail_at(
+          scene_, kDistance,
+          fmt::format("proximity voxels have half that size: {}: {}", body->name, flaw->what()));
     }
   }
   return size;
@@ -102,11 +115,9 @@ void TreeBuilder::build_near_trees(const LoadedBody& fixed, const LoadedBody& he
   trees_.near_fixed = notes_.make("proximity voxels", why, [&] {
     const Tree tree = build(
         fixed, kDistance, {.voxel_size = size, .spheres = SpherePolicy::kTable, .proximity = true});
-    if (!tree->proximity()) {
-      scene_.lines.fail("effects.proximity",
-                        fmt::format("{} has no outside to be near to: mend the mesh, or take the "
-                                    "table out",
-                                    fixed.name));
+    if (!tree->parts().proximity) {
+      fail_at(scene_, "effects.proximity",
+              fmt::format("{} has no outside: repair the mesh, or take the table out", fixed.name));
     }
     return std::make_unique<const SphereTree>(proximity_body(*tree));
   });
@@ -128,7 +139,7 @@ SceneTrees build_scene_trees(const Scene& scene, LoadedBody& fixed, LoadedBody& 
     for (const LoadedBody* body : {&fixed, &held}) {
       notes.skip(fmt::format("{} tree", body->table),
                  outside_is_known ? "no effect needs contacts"
-                                  : "the outside is not known, so nothing pushes");
+                                  : "the outside is not known, so no contact is felt");
     }
   }
   if (needs.proximity) {

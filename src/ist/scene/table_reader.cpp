@@ -12,12 +12,7 @@
 namespace ist {
 namespace {
 
-std::string range_text(const NumberRange& range) {
-  return fmt::format("from {} to {}{}{}", range.least, range.most, range.unit.empty() ? "" : " ",
-                     range.unit);
-}
-
-// A value as people know it, for what is not as it should be.
+// The text of a value for messages.
 struct Shown {
   std::string operator()(const TomlDate&) const { return "a date or a time"; }
   std::string operator()(bool value) const { return value ? "true" : "false"; }
@@ -45,6 +40,10 @@ std::optional<double> as_number(const TomlValue& value) {
 }
 
 }  // namespace
+
+std::string NumberRange::text() const {
+  return fmt::format("from {} to {}{}{}", least, most, unit.empty() ? "" : " ", unit);
+}
 
 std::string TableReader::name() const {
   return path_.empty() ? "the file" : fmt::format("[{}]", path_);
@@ -81,16 +80,16 @@ bool TableReader::has(std::string_view key) { return find(key) != nullptr; }
 double TableReader::number_of(const TomlValue& value, std::string_view key,
                               const NumberRange& range) const {
   const std::optional<double> number = as_number(value);
-  if (!number || !(*number >= range.least && *number <= range.most)) {
+  if (!number || !range.holds(*number)) {
     fail_line(file_, value.line,
               fmt::format("'{}' in {} is {}", key, name(), std::visit(Shown(), value.content)),
-              "give a number " + range_text(range));
+              "give a number " + range.text());
   }
   return *number;
 }
 
 double TableReader::number(std::string_view key, const NumberRange& range) {
-  return number_of(required(key, "a number " + range_text(range)), key, range);
+  return number_of(required(key, "a number " + range.text()), key, range);
 }
 
 double TableReader::number(std::string_view key, const NumberRange& range, double otherwise) {
@@ -109,7 +108,7 @@ std::array<double, kCount> TableReader::numbers(std::string_view key, const Numb
 }
 
 Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& range) {
-  const auto [x, y, z] = numbers<3>(key, range, "[x, y, z], three numbers " + range_text(range));
+  const auto [x, y, z] = numbers<3>(key, range, "[x, y, z], three numbers " + range.text());
   return {x, y, z};
 }
 
@@ -119,13 +118,13 @@ Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& ran
 }
 
 Eigen::Matrix3d TableReader::rotation(std::string_view key) {
-  constexpr std::string_view kWhat = "[w, x, y, z], a quaternion: [1, 0, 0, 0] turns nothing";
+  constexpr std::string_view kWhat = "[w, x, y, z], a quaternion: [1, 0, 0, 0] is no turn";
   constexpr double kLeastSquare = 1e-12;
   if (!has(key)) return Eigen::Matrix3d::Identity();
   const auto [w, x, y, z] = numbers<4>(key, {-1e3, 1e3, ""}, kWhat);
   const double square = w * w + x * x + y * y + z * z;
   if (square < kLeastSquare) fail_value(key, kWhat);
-  // Divided by the square rather than by the length, it is of any length.
+  // Divided by the square instead of the length: the quaternion may have any length.
   const double s = 2 / square;
   Eigen::Matrix3d turn;
   turn << 1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
@@ -138,7 +137,7 @@ std::uint64_t TableReader::whole_number(std::string_view key, std::uint64_t othe
   const TomlValue* value = find(key);
   if (value == nullptr) return otherwise;
   const auto* integer = std::get_if<std::int64_t>(&value->content);
-  if (integer == nullptr || *integer < 0) fail_value(key, "a whole number from 0 on");
+  if (integer == nullptr || *integer < 0) fail_value(key, "a whole number of at least 0");
   return static_cast<std::uint64_t>(*integer);
 }
 
@@ -152,7 +151,7 @@ bool TableReader::flag(std::string_view key, bool otherwise) {
 
 std::string TableReader::text(std::string_view key, std::string_view what) {
   const auto* text = std::get_if<std::string>(&required(key, what).content);
-  // Where a name is handed to the system it would end at a byte of 0.
+  // The system would end a name at a byte of 0.
   if (text == nullptr || text->find('\0') != std::string::npos) fail_value(key, what);
   return *text;
 }

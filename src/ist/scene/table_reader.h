@@ -13,38 +13,43 @@
 
 namespace ist {
 
-/// What a number may be, ends included, and its unit. NaN and infinities are in no range.
+/// A closed range of numbers and their unit. NaN is in no range.
 struct NumberRange {
   double least, most;
   std::string_view unit;
+
+  [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
+  /// "from 1 to 2 mm"
+  [[nodiscard]] std::string text() const;
 };
 
-/// Reads one table of a file: values by key, each of the type and in the range that is asked for.
-/// Whatever else is there throws kInputInvalid with file, line and remedy. It notes what it is
-/// asked for, so that refuse_unknown() finds what nobody knows.
+/// Reads the values of one table by key. A value of another type or out of range throws
+/// kInputInvalid with file, line and remedy. The reader notes each key that it is asked for, by
+/// which refuse_unknown() finds the unknown ones.
 class TableReader {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive the reader.
   TableReader(const std::filesystem::path& file, TomlTable& table) : file_(file), table_(table) {}
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// As it stands in the file, for texts: "[effects.contact]", "the file" for the outermost one.
+  /// The table's name for messages: "[effects.contact]", or "the file" for the outermost one.
   [[nodiscard]] std::string name() const;
 
   [[nodiscard]] bool has(std::string_view key);
-  /// Without a value that stands for a missing one, the key must be there.
+  /// A number. Without `otherwise` the key is required.
   [[nodiscard]] double number(std::string_view key, const NumberRange& range);
   [[nodiscard]] double number(std::string_view key, const NumberRange& range, double otherwise);
   [[nodiscard]] Eigen::Vector3d vector(std::string_view key, const NumberRange& range);
   [[nodiscard]] Eigen::Vector3d vector(std::string_view key, const NumberRange& range,
                                        const Eigen::Vector3d& otherwise);
-  /// Of a quaternion [w, x, y, z] of any length but 0; no rotation where the key is missing.
+  /// The rotation of a quaternion [w, x, y, z] of any length but 0; the identity if the key is
+  /// missing.
   [[nodiscard]] Eigen::Matrix3d rotation(std::string_view key);
   [[nodiscard]] std::uint64_t whole_number(std::string_view key, std::uint64_t otherwise);
   [[nodiscard]] bool flag(std::string_view key, bool otherwise);
-  /// @param what may stand there, for people
+  /// A text. `what` describes it in messages.
   [[nodiscard]] std::string text(std::string_view key, std::string_view what);
-  /// What `find` knows by the name that stands there: it returns an optional.
+  /// The value of a name by `find`, which returns an optional. `names` lists the known names.
   template <typename Find>
   [[nodiscard]] auto choice(std::string_view key, const Find& find, std::string_view names) {
     const auto found = find(text(key, names));
@@ -56,12 +61,12 @@ class TableReader {
   /// An array of at least one table.
   [[nodiscard]] std::vector<TableReader> tables(std::string_view key);
 
-  /// What is wrong with a key, by the line where its value stands; without it by the table's.
+  /// Throws for a wrong value, at its line, or at the table's if the key is missing.
   [[noreturn]] void fail(std::string_view key, std::string_view wrong,
                          std::string_view remedy) const;
-  /// That a mandatory key is missing, or looks misspelt.
+  /// Throws for a missing key, or for a key that looks like a misspelling of it.
   [[noreturn]] void fail_missing(std::string_view key, std::string_view what) const;
-  /// Refuses what nobody asked for, here and in all that is below.
+  /// Throws if the table, or a table in it, has a key that was not asked for.
   void refuse_unknown() const;
 
  private:
@@ -83,7 +88,7 @@ class TableReader {
 
   const std::filesystem::path& file_;
   TomlTable& table_;
-  std::string path_;  // its keys from the outermost table on, joined by dots
+  std::string path_;  // keys from the outermost table, joined by dots
 };
 
 }  // namespace ist

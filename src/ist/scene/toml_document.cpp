@@ -6,20 +6,20 @@
 #include <utility>
 
 #include "ist/base/error.h"
-#include "ist/base/input_file.h"
+#include "ist/base/files.h"
 
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_MAX_NESTED_VALUES 8
-// Version 3.3 asserts of any input what it checks right after, as of the header "[!]": with
-// assertions that ends the program, and with NDEBUG some compilers are told that the check is idle.
-// Without either it is made, and the error returned.
+// Version 3.3 asserts conditions of the input that it checks right after, for example of the header
+// "[!]". An assertion would end the program, and NDEBUG turns it into an assumption that may remove
+// the check. Without either the check returns an error.
 #define TOML_ASSERT(condition) static_cast<void>(0)
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
-// It also says that its question whether a letter is a blank cannot be reached by most letters from
-// U+00A1 to U+0499. The answer is no.
+// It also marks its test for blanks as unreachable for most letters from U+00A1 to U+0499. They are
+// no blanks.
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
@@ -34,9 +34,9 @@ namespace {
 
 constexpr std::size_t kDeepest = TOML_MAX_NESTED_VALUES;
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-// A key of many parts, a.b.c…, is as many tables in each other, which are made and freed by
-// recursion: the parser sets no limit, and a long enough key would be the end of the stack. A key
-// stands in one line, so that this and the limit of nested values bound the parser's depth.
+// The parser makes and frees the tables of a dotted key, a.b.c…, by recursion without a limit, so
+// that a long key would overflow the stack. A key stands in one line: this limit and the limit of
+// nested values bound the depth.
 constexpr std::size_t kMostBytesOfLine = 1000;
 
 void check_lines(std::string_view text, const std::filesystem::path& file) {
@@ -45,13 +45,13 @@ void check_lines(std::string_view text, const std::filesystem::path& file) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     if (end - begin > kMostBytesOfLine) {
       fail_line(file, line, fmt::format("a line of more than {} bytes", kMostBytesOfLine),
-                "break it: an array may go over several lines");
+                "break the line: an array may span several");
     }
     begin = end + 1;
   }
 }
 
-// Turns what the parser made into what this house reads.
+// Converts the parser's tables.
 class Conversion {
  public:
   explicit Conversion(const std::filesystem::path& file) : file_(file) {}
@@ -69,8 +69,8 @@ class Conversion {
   [[nodiscard]] TomlValue value(const toml::node& from, std::size_t depth) const {
     TomlValue value{from.source().begin.line, TomlDate{}};
     if (depth > kDeepest) {
-      fail_line(file_, value.line, fmt::format("more than {} values in each other", kDeepest),
-                "a scene needs no more: take them out");
+      fail_line(file_, value.line, fmt::format("more than {} nested values", kDeepest),
+                "take the inner ones out: a scene needs none");
     }
     if (const auto* truth = from.as_boolean()) {
       value.content = truth->get();
@@ -105,14 +105,14 @@ TomlTable read_toml(const std::filesystem::path& file) {
   InputFile input(file);
   if (input.size() > kMostBytes) {
     fail_line(file, 1, fmt::format("the file has {} bytes, more than 1 MB", input.size()),
-              "a scene is a short text that names its meshes: give that file");
+              "give the scene, a short text that names its meshes");
   }
   const std::string text = input.read_rest();
   check_lines(text, file);
   const toml::parse_result parsed = toml::parse(std::string_view(text));
   if (!parsed) {
     fail_line(file, parsed.error().source().begin.line, parsed.error().description(),
-              "write it as TOML 1.0 has it");
+              "write it in TOML 1.0");
   }
   return Conversion(file).table(parsed.table(), 0);
 }

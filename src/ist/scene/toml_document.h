@@ -9,8 +9,7 @@
 
 namespace ist {
 
-/// Throws kInputInvalid for a place in a text file: its name and the line (from 1), what is wrong
-/// there, and what to do about it.
+/// Throws kInputInvalid with a file, a line (from 1), a cause and a remedy.
 [[noreturn]] void fail_line(const std::filesystem::path& file, std::size_t line,
                             std::string_view wrong, std::string_view remedy);
 
@@ -18,13 +17,12 @@ struct TomlEntry;
 struct TomlValue;
 
 struct TomlTable {
-  std::size_t line =
-      1;  ///< where it is opened; of tables that are only implied, where they first are
+  std::size_t line = 1;            ///< of its header; of an implied table, of its first key
   std::vector<TomlEntry> entries;  ///< by key
-  std::vector<std::string> asked;  ///< keys that a reader knows: what else is there has no meaning
+  std::vector<std::string> asked;  ///< the keys that a reader knows
 };
 
-/// A date, a time or both, for which a scene has no use.
+/// A date, a time or both; no key of a scene has one.
 struct TomlDate {};
 
 struct TomlValue {
@@ -38,9 +36,9 @@ struct TomlEntry {
   TomlValue value;
 };
 
-/// What a TOML 1.0 file holds, with lines: UTF-8, with or without a byte order mark, lines ended by
-/// \n or \r\n. At most 1 MB, 1000 bytes a line and 8 values in each other.
-/// Throws kFileUnreadable, and kInputInvalid for what is no such file.
+/// Reads a TOML 1.0 file: UTF-8, with or without a byte order mark, lines ended by \n or \r\n. At
+/// most 1 MB, 1000 bytes a line and 8 nested values. Throws kFileUnreadable; kInputInvalid for any
+/// other content.
 [[nodiscard]] TomlTable read_toml(const std::filesystem::path& file);
 
 }  // namespace ist

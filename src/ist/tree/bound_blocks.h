@@ -5,8 +5,8 @@
 
 namespace ist {
 
-/// A node's saved ball, in units of 2^-16 of its parent cube's edge: the centre from the parent
-/// cube's centre, and the radius.
+/// A node's saved ball: the centre relative to the parent cube's centre, and the radius, in units
+/// of 2^-16 of the parent cube's edge.
 struct PackedBall {
   static constexpr double kUnit = 0x1p-16;  ///< of the parent cube's edge
   std::int16_t x, y, z;
@@ -16,9 +16,9 @@ struct PackedBall {
 };
 static_assert(sizeof(PackedBall) == 8);
 
-/// A node's saved slab, the points x with |n · (x - c) - offset| <= half, where c is the centre of
-/// the node's saved ball. The normal is in units of 2^-7 and no longer than 1, offset and half
-/// width in units of 2^-8 of the node's own cube's edge, which is 128 of the ball's units.
+/// A node's saved slab: the points x with |n · (x - c) - offset| <= half, where c is the centre of
+/// the node's saved ball. The normal, in units of 2^-7, has length at most 1. Offset and half width
+/// are in units of 2^-8 of the node's own cube's edge, which is 128 of the ball's units.
 struct PackedSlab {
   static constexpr double kNormalUnit = 0x1p-7;
   static constexpr double kUnit = 0x1p-8;  ///< of the cube's edge
@@ -29,8 +29,8 @@ struct PackedSlab {
 };
 static_assert(sizeof(PackedSlab) == 5);
 
-/// The balls of one parent's children, a cache line: slot j is the j-th child that is there, and
-/// slots beyond the last one are zero.
+/// The balls of one parent's children in one cache line: slot j holds the j-th child that exists,
+/// and the slots beyond the last child are zero.
 struct alignas(64) BallBlock {
   std::int16_t x[8], y[8], z[8];
   std::uint16_t r[8];
@@ -47,7 +47,7 @@ struct alignas(64) BallBlock {
 };
 static_assert(sizeof(BallBlock) == 64);
 
-/// The slabs of one parent's children, in the slots of their balls.
+/// The slabs of one parent's children, in the same slots as their balls.
 struct SlabBlock {
   std::int8_t nx[8], ny[8], nz[8], offset[8];
   std::uint8_t half[8];
@@ -65,12 +65,12 @@ struct SlabBlock {
 };
 static_assert(sizeof(SlabBlock) == 40);
 
-/// What a tree saves: `balls[L][p]` and `slabs[L][p]` bound the children, at level L, of parent p
-/// at level L + 1. At L = depth the parent is the root's (LinearOctree::nodes), and slot 0 the
-/// root.
+/// The saved bounds of a tree, as a bounding volume hierarchy (BVH): `balls[L][p]` and
+/// `slabs[L][p]` bound the children, at level L, of parent p at level L + 1. At L = depth the
+/// parent is the root's parent (LinearOctree::nodes), and slot 0 holds the root.
 struct BoundBlocks {
-  std::vector<std::vector<BallBlock>> balls;  ///< one array a level, leaves first; or none
-  std::vector<std::vector<SlabBlock>> slabs;  ///< likewise; only where there are balls
+  std::vector<std::vector<BallBlock>> balls;  ///< one array a level, leaves first; or empty
+  std::vector<std::vector<SlabBlock>> slabs;  ///< in the same layout; empty if `balls` is
 };
 
 }  // namespace ist

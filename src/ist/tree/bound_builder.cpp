@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kNodesARange = 512;
 constexpr std::size_t kParentsARange = 128;
 
-// The bounds of one level's nodes, in lattice units.
+// Fits the bounds of one level's nodes, in lattice units.
 class LevelBuilder {
  public:
   LevelBuilder(const LatticeMesh& mesh, const VoxelSet& voxels, const LinearOctree& octree,
@@ -30,8 +30,8 @@ class LevelBuilder {
         octree_(octree),
         level_(level),
         edge_(static_cast<double>(std::uint64_t{1} << level)) {
-    // Lattice coordinates and the corners of clipped pieces are right to sixteen 2⁻⁵³ of the grid's
-    // extent: two roundings for a coordinate, and three or four for each of three cuts.
+    // Lattice coordinates and the corners of clipped pieces err by at most sixteen 2⁻⁵³ of the
+    // grid's extent: two roundings for a coordinate, and three or four for each of three cuts.
     payload_.slack = 0x1p-48 * (2 * voxels.lattice.root_centre());
   }
 
@@ -62,7 +62,7 @@ class LevelBuilder {
     return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   }
 
-  // What the triangles have in the cube, or by it.
+  // Gathers the triangles' parts in the cube; for a triangle with no such part, its nearest point.
   void gather(const Vector3d& centre, std::span<const std::uint32_t> triangles) {
     const Vector3d reach = Vector3d::Constant(0.5 * edge_ + voxels_.lattice.pad());
     const Vector3d low = centre - reach, high = centre + reach;
@@ -91,7 +91,7 @@ class LevelBuilder {
   ClippedTriangle clipped_;
 };
 
-// The triangles of each node, from those of its children.
+// Merges the triangle lists of each node's children.
 TriangleLists merge_lists(const TriangleLists& children, const LinearOctree& octree, int level) {
   const std::size_t nodes = octree.node_count(level);
   std::vector<std::vector<std::uint32_t>> parts((nodes + kNodesARange - 1) / kNodesARange);

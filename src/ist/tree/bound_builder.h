@@ -1,21 +1,22 @@
 #pragma once
 
 #include "ist/base/progress.h"
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 #include "ist/tree/bound_blocks.h"
+#include "ist/tree/implicit_ball.h"
 #include "ist/tree/linear_octree.h"
-#include "ist/tree/sphere_policy.h"
 #include "ist/voxel/voxel_set.h"
 
 namespace ist {
 
-/// For each node the ball round the triangles clipped to its cube grown by the lattice's pad, and
-/// where nothing is left of a triangle, round its point nearest to the cube's centre; with `slab`,
-/// a thin slab round them too. So each bound holds a surface point, and all geometry of its node.
+/// Fits the bounds of each node: a bounding sphere of its triangles clipped to its cube grown by
+/// the lattice's pad, and, with `slab`, a thin slab round the same geometry. Of a triangle with no
+/// part in that cube, the point nearest to the cube's centre counts. So each bound holds a surface
+/// point and all geometry of its node.
 ///
-/// A ball's radius is at most 1 % above the smallest for its payload, and what rounding costs:
-/// 3 · 2⁻¹⁶ of the parent cube's edge, and twice the pad (pack_ball). A slab is no thinner than
-/// 2⁻⁸ of its cube's edge.
+/// A ball's radius exceeds the smallest of its payload by at most 1 % and the rounding: 3 · 2⁻¹⁶ of
+/// the parent cube's edge, and twice the pad (pack_ball). A slab is no thinner than 2⁻⁸ of its
+/// cube's edge.
 ///
 /// @param policy kTight or kSlab
 /// @param voxels with their triangles, as the octree's leaves

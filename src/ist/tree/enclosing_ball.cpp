@@ -20,7 +20,7 @@ struct Farthest {
   double distance2;
 };
 
-// `centre` is seen from `origin`.
+// Returns the point farthest from `centre`, which is relative to `origin`.
 Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& origin,
                        const Vector3d& centre) noexcept {
   Farthest farthest{0, -1};
@@ -31,8 +31,8 @@ Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& origin,
   return farthest;
 }
 
-// The smallest ball through `count` points, 2 to 4. Its centre is not finite where they are
-// degenerate; no ball then holds the others, and the caller passes on.
+// Returns the centre of the smallest ball through `count` points, 2 to 4. The centre of degenerate
+// points is not finite; its ball holds no other point, so the caller skips it.
 Vector3d circumcentre(const Vector3d* const points[4], int count) noexcept {
   const Vector3d& p = *points[0];
   const Vector3d a = *points[1] - p;
@@ -46,7 +46,7 @@ Vector3d circumcentre(const Vector3d* const points[4], int count) noexcept {
   return p + (square(a) * b.cross(c) + square(b) * c.cross(a) + square(c) * ab) / (2 * ab.dot(c));
 }
 
-// The points that a ball rests on, and that ball.
+// The support points of a ball, and the ball.
 struct Basis {
   Vector3d points[4];
   int count = 0;
@@ -54,8 +54,9 @@ struct Basis {
   double radius2 = 0;
 };
 
-// The smallest ball of the basis and one more point, which lies outside and so on its surface.
-// Tries each set that the new point is of, smallest sets first. False when rounding hides it.
+// Replaces the basis by that of the smallest ball of the basis and `point`, which lies outside and
+// so becomes a support point. Tries each set with `point`, smallest sets first. Returns false if
+// rounding hides the ball.
 bool take_in(Basis& basis, const Vector3d& point) noexcept {
   constexpr double kSlack = 1 + 1e-12;
   Basis best;
@@ -92,7 +93,8 @@ bool take_in(Basis& basis, const Vector3d& point) noexcept {
 
 Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept {
   IST_ASSERT(!points.empty());
-  // All is seen from one of the points, so that a small ball far out rounds like one at the origin.
+  // Coordinates are relative to one of the points, so that a small ball far out rounds like one at
+  // the origin.
   const Vector3d& origin = points[0];
   const Vector3d zero = Vector3d::Zero();
   Basis basis;

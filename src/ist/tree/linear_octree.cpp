@@ -29,7 +29,7 @@ Masks fold(std::span<const std::uint64_t> leaf_codes, int depth) {
   return masks;
 }
 
-// Appends the nodes below `parents`, each with its centre; `half` is half their edge.
+// Appends the children of `parents`, each with its centre; `half` is half the children's edge.
 void place_children(std::span<const OctreeNode> parents, std::span<const std::uint8_t> masks,
                     float half, std::vector<OctreeNode>& nodes) {
   for (std::size_t parent = 0; parent < masks.size(); ++parent) {

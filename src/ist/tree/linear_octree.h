@@ -4,34 +4,33 @@
 #include <span>
 #include <vector>
 
-#include "ist/base/api.h"
-
 namespace ist {
 
-/// A node above the leaves, as a search reads it.
+/// A node above the leaves, in the layout for searches.
 struct OctreeNode {
-  float centre[3];            ///< of its cube, in leaf edges from the root cube's centre: exact
-  std::uint32_t first_child;  ///< an index at the level below
+  float centre[3];  ///< centre of the cube, in leaf edges from the root cube's centre: exact
+  std::uint32_t first_child;  ///< the first child's index at the level below
 };
 static_assert(sizeof(OctreeNode) == 16);
 
-/// An octree flattened into one array a level, in Morton order. A node at level L >= 1 is an
-/// occupancy mask, its cube's centre and the index, at level L - 1, of its first child; siblings
-/// are contiguous. There is no node for empty space, and a leaf (level 0) is nothing but its index.
+/// A linear octree: one array a level, in Morton order. A node at level L >= 1 is an occupancy
+/// mask, its cube's centre and the index, at level L - 1, of its first child; siblings are
+/// contiguous. Empty space has no node, and a leaf (level 0) is only its index.
 ///
-/// 17 bytes a node above the leaves: 6 bytes a leaf on a surface.
-class IST_API LinearOctree {
+/// Memory: 17 bytes a node above the leaves, 6 bytes a leaf on a surface.
+class LinearOctree {
  public:
-  /// Folds leaves upwards. `leaf_codes` are Morton codes, ascending, below 8^depth, at least one
-  /// and fewer than 2^32. Cost: O(leaves).
+  /// Builds the octree from its leaves upwards. `leaf_codes` are Morton codes, ascending, below
+  /// 8^depth, at least one and fewer than 2^32.
+  /// Cost: O(leaves).
   LinearOctree(std::span<const std::uint64_t> leaf_codes, int depth);
 
-  /// From the masks alone, `of_levels[L - 1]` those of level L; `depth` is their number. They must
-  /// describe a tree: is_tree(of_levels).
+  /// Builds the octree from its masks, `of_levels[L - 1]` for level L; their number is the depth.
+  /// Precondition: is_tree(of_levels).
   explicit LinearOctree(std::vector<std::vector<std::uint8_t>> of_levels);
 
-  /// Whether each mask holds a child, the top level is one node, and each level has as many nodes
-  /// as the level above has children, fewer than 2^32.
+  /// Whether the masks describe a tree: each mask holds a child, the top level is one node, and
+  /// each level has as many nodes as the level above has children, fewer than 2^32.
   [[nodiscard]] static bool is_tree(std::span<const std::vector<std::uint8_t>> masks) noexcept;
 
   [[nodiscard]] int depth() const noexcept { return static_cast<int>(masks_.size()); }
@@ -40,25 +39,26 @@ class IST_API LinearOctree {
     return level == 0 ? leaf_count() : static_cast<std::uint32_t>(masks_[index(level)].size());
   }
 
-  /// Nodes of all levels, leaves included.
+  /// The number of nodes of all levels, leaves included.
   [[nodiscard]] std::uint64_t node_count() const noexcept;
 
-  /// The nodes at `level`, 1 … depth, and one more, whose first child is where the last one's
-  /// children end. At level depth + 1 stands the root's parent, whose only child is the root, and
-  /// whose cube has the root's centre and twice its edge.
+  /// The nodes at `level`, 1 … depth, and an end node, whose first child is where the last node's
+  /// children end. Level depth + 1 holds the root's parent, whose only child is the root, and whose
+  /// cube has the root's centre and twice its edge.
   [[nodiscard]] std::span<const OctreeNode> nodes(int level) const noexcept {
     return nodes_[index(level)];
   }
-  /// Of a node at `level`, 1 … depth + 1.
+  /// The number of children of a node at `level`, 1 … depth + 1.
   [[nodiscard]] int child_count(int level, std::uint32_t node) const noexcept {
     const std::span<const OctreeNode> here = nodes(level);
     return static_cast<int>(here[node + 1].first_child - here[node].first_child);
   }
-  /// Of a node at `level` >= 1: bit k says that child k is there.
+  /// The occupancy mask of a node at `level` >= 1: bit k is set if child k exists.
   [[nodiscard]] std::uint8_t mask(int level, std::uint32_t node) const noexcept {
     return masks_[index(level)][node];
   }
-  /// Of a node at `level` >= 1. Child k has the index first_child + popcount(mask below k).
+  /// The index of the first child of a node at `level` >= 1. Child k has the index first_child +
+  /// popcount(mask below k).
   [[nodiscard]] std::uint32_t first_child(int level, std::uint32_t node) const noexcept {
     return nodes_[index(level)][node].first_child;
   }
@@ -66,10 +66,11 @@ class IST_API LinearOctree {
     return masks_[index(level)];
   }
 
-  /// The Morton codes of the nodes at `level`, ascending. Cost: O(nodes above and at the level).
+  /// Returns the Morton codes of the nodes at `level`, ascending. Cost: O(nodes above and at the
+  /// level).
   [[nodiscard]] std::vector<std::uint64_t> codes(int level) const;
 
-  /// Bytes in memory.
+  /// The size in memory, bytes.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:

@@ -1,5 +1,9 @@
 #include "ist/tree/lookup_table.h"
 
+#include <bit>
+
+#include "ist/tree/lookup_table_search.h"
+
 namespace ist {
 namespace {
 
@@ -8,18 +12,24 @@ using lookup_table_detail::corners_of;
 using lookup_table_detail::distance_squared;
 using lookup_table_detail::Point;
 
-constexpr TableBall entry(int mask) { return kLookupTable[static_cast<std::size_t>(mask)]; }
+constexpr LookupTable kTable = lookup_table_detail::make_lookup_table();
+
+constexpr TableBall entry(int mask) { return kTable[static_cast<std::size_t>(mask)]; }
 constexpr Point centre(int mask) { return {entry(mask).x, entry(mask).y, entry(mask).z}; }
 
-constexpr bool every_ball_holds_its_cubes() {
-  for (int mask = 1; mask < 256; ++mask) {
-    for (int i = 0; i < 27; ++i) {
-      if ((corners_of(mask) >> i & 1) != 0 &&
-          distance_squared(corner(i), centre(mask)) > entry(mask).radius_squared) {
-        return false;
-      }
-    }
-  }
+// Whether `holds(mask)` for every node with children.
+template <class Predicate>
+constexpr bool for_all_masks(Predicate holds) {
+  for (int mask = 1; mask < 256; ++mask)
+    if (!holds(mask)) return false;
+  return true;
+}
+
+constexpr bool holds_its_cubes(int mask) {
+  for (int i = 0; i < 27; ++i)
+    if ((corners_of(mask) >> i & 1) != 0 &&
+        distance_squared(corner(i), centre(mask)) > entry(mask).radius_squared)
+      return false;
   return true;
 }
 
@@ -30,7 +40,7 @@ constexpr Point cross(Point p, Point q) {
 constexpr int dot(Point p, Point q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
 constexpr int determinant(Point p, Point q, Point r) { return dot(cross(p, q), r); }
 
-// Whether the origin lies between, within the triangle or the tetrahedron of the points.
+// Whether the origin lies in the convex hull of the points: a segment, a triangle or a tetrahedron.
 constexpr bool surround(Point p, Point q) {
   const Point normal = cross(p, q);
   return dot(normal, normal) == 0 && dot(p, q) < 0;
@@ -48,8 +58,9 @@ constexpr bool surround(Point p, Point q, Point r, Point s) {
   return (a >= 0 && b >= 0 && c >= 0 && d >= 0) || (a <= 0 && b <= 0 && c <= 0 && d <= 0);
 }
 
-// A ball that holds points is the smallest exactly if its centre lies in the convex hull of those
-// on its surface; by Carathéodory's theorem, then in that of two, three or four of them.
+// A bounding ball of points is the smallest exactly if its centre lies in the convex hull of the
+// points on its surface; by Carathéodory's theorem, then in the hull of two, three or four of these
+// points.
 constexpr bool is_minimal(int mask) {
   Point support[27] = {};
   int n = 0;
@@ -73,14 +84,8 @@ constexpr bool is_minimal(int mask) {
   return false;
 }
 
-constexpr bool every_ball_is_minimal() {
-  for (int mask = 1; mask < 256; ++mask) {
-    if (!is_minimal(mask)) return false;
-  }
-  return true;
-}
-
-// Isometry 0 … 47 of the cube: one of six orders of the axes, then one of eight mirrorings.
+// Applies isometry 0 … 47 of the cube: one of six orders of the axes, then one of eight
+// reflections.
 constexpr Point transform(int isometry, Point p) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   const int coordinates[3] = {p.x, p.y, p.z};
@@ -102,17 +107,12 @@ constexpr int transform_mask(int isometry, int mask) {
   return moved;
 }
 
-constexpr bool has_the_symmetries_of_the_cube() {
+constexpr bool has_the_symmetries_of_the_cube(int mask) {
   for (int isometry = 0; isometry < 48; ++isometry) {
-    for (int mask = 1; mask < 256; ++mask) {
-      const Point moved = transform(isometry, centre(mask));
-      const int moved_mask = transform_mask(isometry, mask);
-      if (minus(moved, centre(moved_mask)).x != 0 || minus(moved, centre(moved_mask)).y != 0 ||
-          minus(moved, centre(moved_mask)).z != 0 ||
-          entry(mask).radius_squared != entry(moved_mask).radius_squared) {
-        return false;
-      }
-    }
+    const int moved = transform_mask(isometry, mask);
+    if (transform(isometry, centre(mask)) != centre(moved) ||
+        entry(mask).radius_squared != entry(moved).radius_squared)
+      return false;
   }
   return true;
 }
@@ -120,30 +120,43 @@ constexpr bool has_the_symmetries_of_the_cube() {
 constexpr int smaller_than_the_circumsphere(int fewest_children, int most_children) {
   int count = 0;
   for (int mask = 1; mask < 256; ++mask) {
-    int children = 0;
-    for (int octant = 0; octant < 8; ++octant) children += mask >> octant & 1;
+    const int children = std::popcount(static_cast<unsigned>(mask));
     count += children >= fewest_children && children <= most_children &&
              entry(mask).radius_squared < 108;
   }
   return count;
 }
 
-constexpr bool has_five_radii() {
-  for (int mask = 1; mask < 256; ++mask) {
-    const int r2 = entry(mask).radius_squared;
-    if (r2 != 27 && r2 != 54 && r2 != 81 && r2 != 96 && r2 != 108) return false;
-  }
-  return true;
-}
-
-static_assert(every_ball_holds_its_cubes());
-static_assert(every_ball_is_minimal());
-static_assert(has_the_symmetries_of_the_cube());
-static_assert(has_five_radii());
+static_assert(for_all_masks(holds_its_cubes));
+static_assert(for_all_masks(is_minimal));
+static_assert(for_all_masks(has_the_symmetries_of_the_cube));
+static_assert(for_all_masks([](int mask) {
+  const int r2 = entry(mask).radius_squared;
+  return r2 == 27 || r2 == 54 || r2 == 81 || r2 == 96 || r2 == 108;
+}));
 static_assert(smaller_than_the_circumsphere(1, 8) == 78);
 static_assert(smaller_than_the_circumsphere(5, 8) == 0);
 static_assert(entry(255) == TableBall{0, 0, 0, 108});
 static_assert(entry(1) == TableBall{-3, -3, -3, 27});
 
+constexpr std::array<float, 256> kRadii = [] {
+  std::array<float, 256> radii{};
+  for (std::size_t mask = 0; mask < 256; ++mask) {
+    const double radius = kTableRadii[kTable[mask].radius_squared];
+    radii[mask] = static_cast<float>(radius * (1 + 0x1p-23));
+  }
+  return radii;
+}();
+static_assert([] {  // six times a float, and its square, are exact in double
+  for (std::size_t mask = 0; mask < 256; ++mask) {
+    const double sixths = 6.0 * kRadii[mask];
+    if (sixths * sixths < kTable[mask].radius_squared) return false;
+  }
+  return true;
+}());
+
 }  // namespace
+constinit const LookupTable kLookupTable = kTable;
+constinit const std::array<float, 256> kMaskRadii = kRadii;
+
 }  // namespace ist

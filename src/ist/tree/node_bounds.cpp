@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ist/base/assert.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/tree/enclosing_ball.h"
 #include "ist/tree/symmetric_eigen.h"
 
@@ -13,12 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What the ball's centre spends of the 1 %.
+// The part of the 1 % that the ball's centre may use.
 constexpr double kTolerance = 0.008;
-
-double dot(const Vector3d& a, const Vector3d& b) noexcept {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
 
 double nearest(double value) noexcept { return std::floor(value + 0.5); }
 
@@ -36,24 +33,25 @@ Vector3d least_spread(std::span<const Vector3d> points) noexcept {
   return symmetric_eigen(spread).vectors.col(0);
 }
 
-// How far points reach along a normal as it is packed.
+// The extent of points along a packed normal.
 struct Reach {
-  PackedSlab normal;  // and nothing else of it
+  PackedSlab normal;  // only the normal is set
   double least, greatest;
 };
 
-// `axis` is of length 1, to a few roundings: 126 times it, rounded, is no longer than 128.
+// Rounds `axis` to a packed normal and measures along it. The axis has length 1 to a few roundings,
+// so 126 times the axis, rounded, is no longer than 128.
 Reach reach_along(const Vector3d& axis, std::span<const Vector3d> points,
                   const Vector3d& from) noexcept {
   const Vector3d rounded(nearest(126 * axis[0]), nearest(126 * axis[1]), nearest(126 * axis[2]));
   const Vector3d normal = PackedSlab::kNormalUnit * rounded;
-  const double first = dot(normal, points[0] - from);
+  const double first = dot_in_order(normal, points[0] - from);
   Reach reach{{static_cast<std::int8_t>(rounded[0]), static_cast<std::int8_t>(rounded[1]),
                static_cast<std::int8_t>(rounded[2]), 0, 0},
               first,
               first};
   for (const Vector3d& p : points.subspan(1)) {
-    const double height = dot(normal, p - from);
+    const double height = dot_in_order(normal, p - from);
     reach.least = std::min(reach.least, height);
     reach.greatest = std::max(reach.greatest, height);
   }
@@ -75,9 +73,9 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
   double farthest2 = 0;
   for (const Vector3d& p : payload.points) {
     const Vector3d d = p - rounded;
-    farthest2 = std::max(farthest2, dot(d, d));
+    farthest2 = std::max(farthest2, dot_in_order(d, d));
   }
-  // A distance errs by a few 2⁻⁵³ of itself.
+  // A distance has a relative error of a few 2⁻⁵³.
   const double units = std::ceil((std::sqrt(farthest2) + payload.slack) / unit);
   IST_ASSERT(units >= 1 && units <= 65535);
   ball.r = static_cast<std::uint16_t>(units);
@@ -93,7 +91,7 @@ Vector3d centre_of(const PackedBall& ball, const Vector3d& parent_centre,
 
 PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge) noexcept {
   Reach reach = reach_along(least_spread(payload.points), payload.points, centre);
-  const double area = std::sqrt(dot(payload.area, payload.area));
+  const double area = std::sqrt(dot_in_order(payload.area, payload.area));
   if (area > 0) {
     const Reach other = reach_along(payload.area / area, payload.points, centre);
     if (other.greatest - other.least < reach.greatest - reach.least) reach = other;
@@ -102,10 +100,10 @@ PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge
   const double offset =
       std::clamp(nearest(0.5 * (reach.least + reach.greatest) / unit), -127.0, 127.0);
   const double half = std::max(reach.greatest - unit * offset, unit * offset - reach.least);
-  // Heights err by a dozen 2⁻⁵³ of the cube's edge.
+  // Heights have an error of a dozen 2⁻⁵³ of the cube's edge.
   const double units = std::ceil((half + payload.slack) / unit);
-  // Where the centre lies among the points, no height is over 0.87 edges and no offset over half of
-  // that, and all fits. Where it does not, this is a slab that holds everything.
+  // If the centre lies among the points, heights are at most 0.87 edges and offsets at most half of
+  // that, and all numbers fit. Otherwise this slab holds everything.
   if (units > 255) return {0, 0, 0, 0, 255};
   PackedSlab slab = reach.normal;
   slab.offset = static_cast<std::int8_t>(offset);

@@ -7,30 +7,30 @@
 
 namespace ist {
 
-/// What a node's bounds must hold, in lattice units.
+/// The geometry that a node's bounds must hold, in lattice units.
 struct Payload {
-  std::vector<Eigen::Vector3d> points;  ///< whose convex hull it lies in; at least one
-  Eigen::Vector3d area;                 ///< of its pieces together, a vector along their normals
-  /// No point is farther from the truth, and half of it is kept for the arithmetic here.
+  std::vector<Eigen::Vector3d> points;  ///< their convex hull holds the geometry; at least one
+  Eigen::Vector3d area;                 ///< sum of the pieces' vector areas, up to a factor
+  /// A bound of the points' errors, half of it reserved for the arithmetic of these functions.
   double slack;
 };
 
-/// The ball round a payload, its centre moved to the lattice of its block and its radius measured
-/// from there, rounded up. At most 1 % above the smallest radius, and what the rounding costs: 3
-/// units, and twice what the payload sticks out of the parent's cube.
+/// Packs a ball round a payload: rounds the centre to the lattice of its block, and measures the
+/// radius from there, rounded up. The radius exceeds the smallest by at most 1 % and the rounding:
+/// 3 units, and twice the distance by which the payload leaves the parent's cube.
 ///
 /// @param parent_centre, parent_edge of the parent's cube, lattice units
 [[nodiscard]] PackedBall pack_ball(const Payload& payload, const Eigen::Vector3d& parent_centre,
                                    double parent_edge) noexcept;
 
-/// The centre of a packed ball, exact.
+/// Returns the centre of a packed ball, exact.
 [[nodiscard]] Eigen::Vector3d centre_of(const PackedBall& ball,
                                         const Eigen::Vector3d& parent_centre,
                                         double parent_edge) noexcept;
 
-/// A thin slab round a payload: its normal is the axis along which the points spread least or that
-/// of the payload's area, whichever gives the thinner one, rounded to its block; its width is
-/// measured along the rounded normal, and rounded up.
+/// Packs a thin slab round a payload. The normal is the axis of the points' least spread or the
+/// direction of the payload's area, whichever gives the thinner slab, rounded to its block; the
+/// width is measured along the rounded normal, and rounded up.
 ///
 /// @param centre of the node's packed ball
 /// @param edge   of the node's cube, lattice units

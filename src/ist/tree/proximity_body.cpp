@@ -5,21 +5,23 @@
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
 #include "ist/tree/bound_builder.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/morton.h"
 
 namespace ist {
 namespace {
 
-// The lattice of the cells, whose first is kMargin below the surface's.
+// Returns the lattice of the proximity cells, which begins kMargin cells below the surface's
+// lattice.
 Lattice lattice_of_cells(const SphereTree& tree) {
-  Lattice lattice = tree.lattice();
+  Lattice lattice = tree.parts().lattice;
   for (double& corner : lattice.corner) corner -= ProximityTree::kMargin * lattice.voxel_size;
   lattice.cells += 2 * ProximityTree::kMargin;
-  lattice.depth = tree.proximity()->octree.depth();
+  lattice.depth = tree.parts().proximity->octree.depth();
   return lattice;
 }
 
-// Each cell with its centre: a triangle whose corners are one.
+// Gives each cell a degenerate triangle at its centre.
 TriangleMesh centres_of(VoxelSet& voxels) {
   TriangleMesh mesh;
   const double size = voxels.lattice.voxel_size;
@@ -42,8 +44,8 @@ TriangleMesh centres_of(VoxelSet& voxels) {
 
 SphereTree proximity_body(const SphereTree& tree) {
   const ScopedFloatEnvironment environment;
-  IST_ASSERT(tree.proximity().has_value());
-  const LinearOctree& octree = tree.proximity()->octree;
+  IST_ASSERT(tree.has_proximity());
+  const LinearOctree& octree = tree.parts().proximity->octree;
   VoxelSet voxels{
       lattice_of_cells(tree), octree.codes(0), std::vector<PackedNormal>(octree.leaf_count()), {}};
   const TriangleMesh centres = centres_of(voxels);

@@ -1,6 +1,26 @@
 #include "ist/tree/saved_spheres.h"
 
+#include <chrono>
+
+#include "ist/base/float_environment.h"
+#include "ist/tree/tree_parts.h"
+
 namespace ist {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+
+LevelSpheres make(const SphereTree& tree, SpherePolicy policy, int level) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<Ball> spheres = level_spheres(tree, policy, level);
+  const auto end = std::chrono::steady_clock::now();
+  double cubes = 0;
+  for (const Ball& ball : spheres) cubes += ball.radius * ball.radius * ball.radius;
+  return {policy, 4 * kPi / 3 * cubes,
+          std::chrono::duration<double, std::milli>(end - begin).count()};
+}
+
+}  // namespace
 
 Eigen::Vector3d cube_centre(const Lattice& lattice, int level, std::uint64_t code) noexcept {
   const Cell cell = morton_decode(code);
@@ -10,19 +30,19 @@ Eigen::Vector3d cube_centre(const Lattice& lattice, int level, std::uint64_t cod
 }
 
 std::vector<Ball> level_spheres(const SphereTree& tree, SpherePolicy policy, int level) {
-  const LinearOctree& octree = tree.octree();
+  const LinearOctree& octree = tree.parts().octree;
   std::vector<Ball> spheres;
   spheres.reserve(octree.node_count(level));
   if (is_implicit(policy)) {
     for (const std::uint64_t code : octree.codes(level)) {
-      spheres.push_back(tree.ball(policy, level, static_cast<std::uint32_t>(spheres.size()),
-                                  cube_centre(tree.lattice(), level, code)));
+      spheres.push_back(tree.parts().ball(policy, level, static_cast<std::uint32_t>(spheres.size()),
+                                          cube_centre(tree.parts().lattice, level, code)));
     }
     return spheres;
   }
-  for (std::uint32_t parent = 0; parent < tree.balls(level).size(); ++parent) {
+  for (std::uint32_t parent = 0; parent < tree.parts().balls(level).size(); ++parent) {
     for (int slot = 0; slot < octree.child_count(level + 1, parent); ++slot) {
-      spheres.push_back(tree.saved_ball(level, parent, slot));
+      spheres.push_back(tree.parts().saved_ball(level, parent, slot));
     }
   }
   return spheres;
@@ -34,6 +54,23 @@ SavedSpheres save_spheres(const SphereTree& tree, SpherePolicy policy) {
     saved[static_cast<std::size_t>(level)] = level_spheres(tree, policy, level);
   }
   return saved;
+}
+
+double unit_ball_volume(double voxel_size) noexcept {
+  return kSqrt3 / 2 * kPi * voxel_size * voxel_size * voxel_size;
+}
+
+std::vector<LevelStatistics> level_statistics(const SphereTree& tree) {
+  const ScopedFloatEnvironment environment;
+  std::vector<LevelStatistics> levels;
+  for (int level = 0; level <= tree.depth(); ++level) {
+    LevelStatistics& statistics = levels.emplace_back(LevelStatistics{
+        level, tree.parts().lattice.edge(level), tree.parts().octree.node_count(level), {}});
+    for (const SpherePolicy policy : kSpherePolicies) {
+      if (tree.has(policy)) statistics.spheres.push_back(make(tree, policy, level));
+    }
+  }
+  return levels;
 }
 
 }  // namespace ist

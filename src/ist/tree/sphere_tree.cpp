@@ -8,17 +8,18 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
+#include "ist/base/float_environment.h"
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
 
-// In half edges of the root, rounded up. A ball of the table reaches at most (√12 + √96)/6 half
-// edges from its node's centre, for three children of which no two share a face; a node's own
-// centre is at most √3 half edges of the root from the root's, less √3 of its own. So the root's
-// ball reaches farthest.
-constexpr double kImplicitReach = 2.21034343104508;
+// The bounding radius of implicit balls in half edges of the root, (√12 + √96)/6 rounded up: the
+// table's root ball extends farthest (docs/guarantees.md, Bounding radius).
+constexpr double kImplicitBoundingRadius = 2.21034343104508;
 
-// Whether there are none, or a block for each parent of each level.
+// Whether `blocks` is empty or has a block for each parent of each level.
 template <typename Block>
 [[maybe_unused]] bool fit(const std::vector<std::vector<Block>>& blocks,
                           const LinearOctree& octree) {
@@ -29,29 +30,63 @@ template <typename Block>
   return fit;
 }
 
-}  // namespace
-
-SphereTree::SphereTree(Parts parts) : parts_(std::move(parts)) {
-  IST_ASSERT(parts_.octree.depth() == parts_.lattice.depth);
-  IST_ASSERT(parts_.normals.size() == parts_.octree.leaf_count());
-  IST_ASSERT(fit(parts_.bounds.balls, parts_.octree) && fit(parts_.bounds.slabs, parts_.octree));
-  IST_ASSERT(parts_.bounds.slabs.empty() || !parts_.bounds.balls.empty());
-  IST_ASSERT(!parts_.triangles || parts_.triangles->lists.size() == parts_.octree.leaf_count());
-  reach_ = kImplicitReach * 0.5 * parts_.lattice.edge(parts_.lattice.depth);
-  if (!has(SpherePolicy::kTight)) return;
-  for (int level = 0; level <= depth(); ++level) {
+TreeParts measured(TreeParts parts) {
+  IST_ASSERT(parts.octree.depth() == parts.lattice.depth);
+  IST_ASSERT(parts.normals.size() == parts.octree.leaf_count());
+  IST_ASSERT(fit(parts.bounds.balls, parts.octree) && fit(parts.bounds.slabs, parts.octree));
+  IST_ASSERT(parts.bounds.slabs.empty() || !parts.bounds.balls.empty());
+  IST_ASSERT(!parts.triangles || parts.triangles->lists.size() == parts.octree.leaf_count());
+  parts.bounding_radius = kImplicitBoundingRadius * 0.5 * parts.lattice.edge(parts.lattice.depth);
+  if (parts.bounds.balls.empty()) return parts;
+  for (int level = 0; level <= parts.octree.depth(); ++level) {
     double largest = 0, farthest2 = 0;
-    for (std::uint32_t parent = 0; parent < balls(level).size(); ++parent) {
-      for (int slot = 0; slot < parts_.octree.child_count(level + 1, parent); ++slot) {
-        const Ball ball = saved_ball(level, parent, slot);
+    for (std::uint32_t parent = 0; parent < parts.balls(level).size(); ++parent) {
+      for (int slot = 0; slot < parts.octree.child_count(level + 1, parent); ++slot) {
+        const Ball ball = parts.saved_ball(level, parent, slot);
         largest = std::max(largest, ball.radius);
         farthest2 = std::max(farthest2, ball.centre.squaredNorm());
       }
     }
-    if (level == 0) largest_saved_leaf_ = largest;
-    // Largest radius and farthest centre of a level: no less than the true reach, and cheap.
-    reach_ = std::max(reach_, (std::sqrt(farthest2) + largest) * (1 + 0x1p-50));
+    if (level == 0) parts.largest_saved_leaf = largest;
+    // The largest radius plus the farthest centre of a level: a cheap upper bound.
+    parts.bounding_radius =
+        std::max(parts.bounding_radius, (std::sqrt(farthest2) + largest) * (1 + 0x1p-50));
   }
+  return parts;
+}
+
+}  // namespace
+
+SphereTree::SphereTree(TreeParts parts)
+    : parts_(std::make_unique<const TreeParts>(measured(std::move(parts)))) {}
+SphereTree::~SphereTree() = default;
+SphereTree::SphereTree(SphereTree&&) noexcept = default;
+SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
+
+double SphereTree::voxel_size() const noexcept { return parts_->lattice.voxel_size; }
+std::uint32_t SphereTree::leaf_count() const noexcept { return parts_->octree.leaf_count(); }
+int SphereTree::depth() const noexcept { return parts_->octree.depth(); }
+Orientation SphereTree::orientation() const noexcept { return parts_->orientation; }
+bool SphereTree::has_proximity() const noexcept { return parts_->proximity.has_value(); }
+Eigen::Vector3d SphereTree::origin() const noexcept { return parts_->lattice.origin(); }
+double SphereTree::bounding_radius() const noexcept { return parts_->bounding_radius; }
+const TriangleMesh* SphereTree::triangles() const noexcept {
+  return parts_->triangles ? &parts_->triangles->mesh : nullptr;
+}
+
+std::vector<Eigen::Vector3d> SphereTree::leaf_centres() const {
+  const ScopedFloatEnvironment environment;
+  std::vector<Eigen::Vector3d> centres;
+  centres.reserve(leaf_count());
+  for (const std::uint64_t code : parts_->octree.codes(0)) {
+    centres.push_back(origin() + voxel_size() * cube_centre(parts_->lattice, 0, code));
+  }
+  return centres;
+}
+
+SpherePolicy SphereTree::tightest() const noexcept {
+  if (!parts_->bounds.slabs.empty()) return SpherePolicy::kSlab;
+  return parts_->bounds.balls.empty() ? SpherePolicy::kTable : SpherePolicy::kTight;
 }
 
 void SphereTree::require(SpherePolicy policy, std::string_view body) const {
@@ -64,19 +99,20 @@ void SphereTree::require(SpherePolicy policy, std::string_view body) const {
 }
 
 double SphereTree::largest_leaf_radius(SpherePolicy policy) const noexcept {
-  return is_implicit(policy) ? 0.5 * parts_.lattice.voxel_size * kSqrt3 : largest_saved_leaf_;
+  return is_implicit(policy) ? 0.5 * voxel_size() * kSqrt3 : parts_->largest_saved_leaf;
 }
 
 std::uint64_t SphereTree::bytes() const noexcept {
   const auto size = [](const auto& vector) { return vector.capacity() * sizeof(*vector.data()); };
-  std::uint64_t bytes = sizeof(*this) + parts_.octree.bytes() + size(parts_.normals);
-  for (const auto& level : parts_.bounds.balls) bytes += size(level);
-  for (const auto& level : parts_.bounds.slabs) bytes += size(level);
-  if (parts_.triangles) {
-    bytes += size(parts_.triangles->mesh.vertices) + size(parts_.triangles->mesh.triangles) +
-             size(parts_.triangles->lists.first) + size(parts_.triangles->lists.ids);
+  std::uint64_t bytes =
+      sizeof(*this) + sizeof(*parts_) + parts_->octree.bytes() + size(parts_->normals);
+  for (const auto& level : parts_->bounds.balls) bytes += size(level);
+  for (const auto& level : parts_->bounds.slabs) bytes += size(level);
+  if (parts_->triangles) {
+    bytes += size(parts_->triangles->mesh.vertices) + size(parts_->triangles->mesh.triangles) +
+             size(parts_->triangles->lists.first) + size(parts_->triangles->lists.ids);
   }
-  if (parts_.proximity) bytes += parts_.proximity->octree.bytes();
+  if (parts_->proximity) bytes += parts_->proximity->octree.bytes();
   return bytes;
 }
 

@@ -6,11 +6,11 @@
 namespace ist {
 namespace {
 
-// Sweeps converge quadratically: three or four do, whatever the matrix.
+// Sweeps converge quadratically: three or four suffice for any matrix.
 constexpr int kMaxSweeps = 16;
 
-// Turns the plane of axes p and q so that element (p, q) of the matrix becomes zero. False where it
-// is already, but for a rounding of the diagonal.
+// Applies a Jacobi rotation in the plane of axes p and q that makes element (p, q) of the matrix
+// zero. Returns false if the element is zero to within a rounding of the diagonal.
 bool rotate(Eigen::Matrix3d& a, Eigen::Matrix3d& vectors, int p, int q) noexcept {
   const double off = a(p, q);
   if (std::abs(off) <= 0x1p-54 * (std::abs(a(p, p)) + std::abs(a(q, q)))) return false;

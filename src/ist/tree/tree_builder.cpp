@@ -1,18 +1,19 @@
-#include "ist/tree/tree_builder.h"
-
 #include <bit>
 #include <chrono>
 #include <optional>
 
 #include "ist/base/float_environment.h"
+#include "ist/mesh/mesh.h"
 #include "ist/tree/bound_builder.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
 
 namespace ist {
 namespace {
 
-// Bytes a leaf of what is built on the voxels, each for a parent: on a surface there is one for
-// every three leaves, all levels together, and three for every eight are counted.
+// Returns the bytes a leaf of a structure with `bytes_a_parent`. A surface has one parent for every
+// three leaves, all levels together; three for every eight leaves are counted.
 constexpr std::uint64_t bytes_a_leaf(std::uint64_t bytes_a_parent) {
   return (3 * bytes_a_parent + 7) / 8;
 }
@@ -20,8 +21,8 @@ constexpr std::uint64_t kOctreeBytes = bytes_a_leaf(sizeof(OctreeNode) + 1);
 constexpr std::uint64_t kBallBytes = bytes_a_leaf(sizeof(BallBlock));
 constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock));
 
-// A surface voxel has two to three proximity voxels, whose codes are there twice while joined. A
-// triangle has its normals, half a corner's, three sides while they are sorted, and some bins.
+// A surface voxel has two to three proximity voxels, whose codes are stored twice while joined. A
+// triangle has its normals, half a corner's, three sides while sides are sorted, and some bins.
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
 
@@ -32,7 +33,7 @@ VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   if (saved) {
     voxelizer.bytes_per_voxel += kBallBytes;
     if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
-    // The lists of two levels and the parts of one, while they are merged.
+    // The lists of two levels and the parts of one, while lists are merged.
     voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
   }
   if (options.proximity) {
@@ -42,7 +43,7 @@ VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   return voxelizer;
 }
 
-// Nothing where there are no such voxels: a mesh without area has no outside.
+// Returns nullopt without proximity voxels: a mesh without area has no outside.
 std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
                                                  const VoxelSet& surface) {
   const std::vector<std::uint64_t> codes = proximity_voxels(mesh, surface);
@@ -51,54 +52,44 @@ std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
   return ProximityTree{LinearOctree(codes, static_cast<int>(std::bit_width(cells - 1)))};
 }
 
-class StageTimes {
- public:
-  explicit StageTimes(BuildReport* report) : report_(report) {}
-  void end(const char* name) {
-    const auto now = std::chrono::steady_clock::now();
-    if (report_ != nullptr) {
-      report_->stages.push_back(
-          {name, std::chrono::duration<double, std::milli>(now - begin_).count()});
-    }
-    begin_ = std::chrono::steady_clock::now();
-  }
-
- private:
-  BuildReport* report_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
 }  // namespace
 
 SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildReport* report,
                       Progress* progress) {
   const ScopedFloatEnvironment environment;
-  StageTimes times(report);
+  auto begin = std::chrono::steady_clock::now();
+  const auto end_stage = [&](const char* name) {
+    const auto now = std::chrono::steady_clock::now();
+    if (report != nullptr)
+      report->stages.push_back(
+          {name, std::chrono::duration<double, std::milli>(now - begin).count()});
+    begin = std::chrono::steady_clock::now();
+  };
   const OrientationResult oriented = orient_outward(mesh);
   if (report != nullptr) report->turned_components = oriented.turned_components;
-  times.end("orientation");
+  end_stage("orientation");
 
   VoxelSet voxels = voxelize(mesh, voxelizer_options(options), progress);
-  times.end("voxels");
+  end_stage("voxels");
 
   if (progress != nullptr) progress->begin_stage("folding the octree", 0);
-  SphereTree::Parts parts{voxels.lattice,
-                          LinearOctree(voxels.codes, voxels.lattice.depth),
-                          oriented.orientation,
-                          std::move(voxels.normals),
-                          {},
-                          std::nullopt,
-                          std::nullopt};
-  times.end("octree");
+  TreeParts parts{voxels.lattice,
+                  LinearOctree(voxels.codes, voxels.lattice.depth),
+                  oriented.orientation,
+                  std::move(voxels.normals),
+                  {},
+                  std::nullopt,
+                  std::nullopt};
+  end_stage("octree");
 
   if (!is_implicit(options.spheres)) {
     parts.bounds = build_bounds(options.spheres, mesh, voxels, parts.octree, progress);
-    times.end("bounds");
+    end_stage("bounds");
   }
   if (options.proximity) {
     if (progress != nullptr) progress->begin_stage("finding proximity voxels", 0);
     parts.proximity = make_proximity_tree(mesh, voxels);
-    times.end("proximity voxels");
+    end_stage("proximity voxels");
   }
   if (options.keep_triangles) {
     parts.triangles = LeafTriangles{std::move(mesh), std::move(voxels.triangles)};

@@ -5,13 +5,13 @@
 
 #include <bit>
 
-#include "ist/tree/tree_io.h"
+#include "ist/tree/sphere_tree.h"
 
 namespace ist {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "arrays are written as they lie in memory");
+              "arrays are written in their memory layout");
 
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
@@ -57,11 +57,12 @@ TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(f
   Preamble preamble;
   const std::size_t got = file_.read(&preamble, sizeof(preamble));
   if (got < sizeof(kTreeFileMagic) || preamble.magic != kTreeFileMagic) {
-    fail(ErrorCode::kNotATree, "it is no tree file: make one with ist build");
+    fail(ErrorCode::kNotATree, "it is not a tree file: make one with ist build");
   }
   if (got < sizeof(preamble)) truncated();
   if (preamble.byte_order != kByteOrder) {
-    fail(ErrorCode::kNotATree, "it was written in another byte order: build it again here");
+    fail(ErrorCode::kNotATree,
+         "it was written in another byte order: build it again on this machine");
   }
   if (preamble.version != kTreeFileVersion) {
     fail(ErrorCode::kTreeVersion,
@@ -78,7 +79,7 @@ TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(f
 }
 
 void TreeReader::verify_checksum() const {
-  if (left_ != 0) corrupt("there is more in it than it lists");
+  if (left_ != 0) corrupt("it has more bytes than its sections");
   if (checksum_.value() != expected_) corrupt("its checksum does not match its content");
 }
 

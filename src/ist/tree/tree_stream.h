@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <ranges>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "ist/base/error.h"
-#include "ist/base/input_file.h"
-#include "ist/base/output_file.h"
+#include "ist/base/files.h"
 
 struct XXH3_state_s;
 
@@ -21,7 +21,7 @@ namespace ist {
 inline constexpr std::array<unsigned char, 8> kTreeFileMagic = {0x89, 'I',  'S',  'T',
                                                                 0x0D, 0x0A, 0x1A, 0x0A};
 
-/// XXH3-64 of all that is added.
+/// Computes the XXH3-64 of all bytes added.
 class Checksum {
  public:
   Checksum();
@@ -35,26 +35,24 @@ class Checksum {
   std::unique_ptr<XXH3_state_s, Free> state_;
 };
 
-/// Writes a tree file's preamble and what follows it, as it lies in memory. Throws kFileUnwritable.
+/// Writes a tree file: its preamble, then values and arrays in their memory layout. Throws
+/// kFileUnwritable.
 class TreeWriter {
  public:
   explicit TreeWriter(const std::filesystem::path& file);
 
   template <typename T>
   void value(const T& value) {
-    array(std::span<const T>(&value, 1));
+    array(std::span(&value, 1));
   }
-  template <typename T>
-  void array(std::span<const T> values) {
+  template <std::ranges::contiguous_range Values>
+  void array(const Values& values) {
+    using T = std::ranges::range_value_t<Values>;
     static_assert(std::is_trivially_copyable_v<T>);
-    bytes(values.data(), values.size_bytes());
-  }
-  template <typename T>
-  void array(const std::vector<T>& values) {
-    array(std::span<const T>(values));
+    bytes(std::ranges::data(values), std::ranges::size(values) * sizeof(T));
   }
 
-  /// The file is there from now on. Returns its bytes.
+  /// Completes the file under its own name. Returns the file's size, bytes.
   std::uint64_t commit();
 
  private:
@@ -65,9 +63,9 @@ class TreeWriter {
   std::uint64_t bytes_ = 0;
 };
 
-/// Reads a tree file straight into the arrays that the tree will own. A count is believed only as
-/// far as the file is long; what the arrays hold is believed only after verify_checksum(). Throws
-/// kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated, kTreeCorrupt.
+/// Reads a tree file straight into the arrays of the tree. Each count is checked against the bytes
+/// left in the file; the arrays' content may be trusted only after verify_checksum().
+/// Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated, kTreeCorrupt.
 class TreeReader {
  public:
   explicit TreeReader(const std::filesystem::path& file);

@@ -10,6 +10,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/parallel.h"
+#include "ist/mesh/components.h"
 #include "ist/voxel/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 
@@ -20,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double kRange = 2;  // voxel edges
 
-// The angle whose cosine this is, to 7e-5, without libm, whose bits depend on the processor.
+// Returns the arc cosine to 7e-5, without libm, whose bits depend on the processor.
 // Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 4.4.45.
 double arc_cosine(double cosine) {
   constexpr double kPi = 3.141592653589793;
@@ -35,8 +36,8 @@ Vector3d unit_or_zero(const Vector3d& v) {
   return length > 0 ? Vector3d(v / length) : Vector3d(Vector3d::Zero());
 }
 
-// The outward direction at every corner, edge and face. Only signs of dot products are taken, so
-// none but the faces' is of unit length.
+// The pseudonormals of all corners, edges and faces. Only the signs of dot products are used, so
+// only the faces' normals have unit length.
 class PseudoNormals {
  public:
   explicit PseudoNormals(const TriangleMesh& mesh)
@@ -44,11 +45,6 @@ class PseudoNormals {
         vertices_(mesh.vertices.size(), Vector3d::Zero()),
         edges_(mesh.triangles.size()),
         triangles_(mesh.triangles) {
-    struct Side {
-      std::uint64_t edge;
-      std::uint32_t triangle, which;
-    };
-    std::vector<Side> sides;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const Triangle& corners = mesh.triangles[t];
       const auto vertex = [&](std::uint32_t i) { return mesh.vertices[corners[i % 3]]; };
@@ -57,20 +53,19 @@ class PseudoNormals {
         const Vector3d to_next = unit_or_zero(vertex(i + 1) - vertex(i));
         const Vector3d to_last = unit_or_zero(vertex(i + 2) - vertex(i));
         vertices_[corners[i]] += arc_cosine(to_next.dot(to_last)) * faces_[t];
-        const std::uint64_t a = corners[i], b = corners[(i + 1) % 3];
-        sides.push_back({std::min(a, b) << 32 | std::max(a, b), t, i});
       }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
-      return p.edge != q.edge ? p.edge < q.edge : p.triangle < q.triangle;
-    });
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
       Vector3d sum = Vector3d::Zero();
-      for (end = begin; end < sides.size() && sides[end].edge == sides[begin].edge; ++end) {
-        sum += faces_[sides[end].triangle];
+      for (const EdgeUse& use : edge) sum += faces_[use.triangle];
+      for (const EdgeUse& use : edge) {
+        const Triangle& corners = mesh.triangles[use.triangle];
+        std::size_t side = 0;
+        while (corners[side] != (use.forward ? use.low : use.high)) ++side;
+        edges_[use.triangle][side] = sum;
       }
-      for (std::size_t i = begin; i < end; ++i) edges_[sides[i].triangle][sides[i].which] = sum;
-    }
+    });
   }
 
   [[nodiscard]] const Vector3d& at(std::uint32_t triangle, int feature) const {
@@ -88,7 +83,7 @@ class PseudoNormals {
   const std::vector<Triangle>& triangles_;
 };
 
-// The side of the nearest triangle for each cell of one block.
+// Finds the cells of one block that lie on the outer side of their nearest triangle.
 class BlockClassifier {
  public:
   BlockClassifier(const LatticeMesh& mesh, const PseudoNormals& normals, const VoxelSet& surface)
@@ -117,31 +112,17 @@ class BlockClassifier {
 
   void take_in(std::uint32_t t, const Cell& block) {
     const auto corners = mesh_.corners(t);
-    Cell first, last;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto axis = static_cast<Eigen::Index>(i);
-      const double begin = block[i] * TriangleBins::kEdge;
-      const auto [least, greatest] =
-          std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-      const double low = std::max(begin, std::ceil(least - kRange - 0.5));
-      const double high =
-          std::min(begin + TriangleBins::kEdge - 1, std::floor(greatest + kRange - 0.5));
-      if (low > high) return;
-      first[i] = static_cast<std::uint32_t>(low);
-      last[i] = static_cast<std::uint32_t>(high);
-    }
-    for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
-      for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
-        for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
-          const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
-          const NearestPoint nearest = nearest_on_triangle(corners, centre);
-          const Vector3d away = centre - nearest.point;
-          Nearest& known = nearest_[morton_encode({x, y, z}) % TriangleBins::kBlockCells];
-          if (away.squaredNorm() >= known.distance2) continue;
-          known = {away.squaredNorm(), away.dot(normals_.at(t, nearest.feature)) > 0};
-        }
-      }
-    }
+    const auto& [a, b, c] = corners;
+    const Vector3d low = a.cwiseMin(b).cwiseMin(c).array() - kRange - 0.5;
+    const Vector3d high = a.cwiseMax(b).cwiseMax(c).array() + kRange - 0.5;
+    for_each_cell(block, low, high, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+      const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
+      const NearestPoint nearest = nearest_on_triangle(corners, centre);
+      const Vector3d away = centre - nearest.point;
+      Nearest& known = nearest_[morton_encode({x, y, z}) % TriangleBins::kBlockCells];
+      if (away.squaredNorm() >= known.distance2) return;
+      known = {away.squaredNorm(), away.dot(normals_.at(t, nearest.feature)) > 0};
+    });
   }
 
   [[nodiscard]] bool is_surface(Cell cell) const {
@@ -164,11 +145,10 @@ class BlockClassifier {
 std::vector<std::uint64_t> proximity_voxels(const TriangleMesh& mesh, const VoxelSet& surface) {
   const std::uint32_t cells = surface.lattice.cells + 2 * kProximityMargin;
   if (cells > Lattice::kMaxCells) {
-    throw Error(
-        ErrorCode::kVoxelSizeTooSmall,
-        fmt::format("proximity voxels need a margin of {} voxels on each side, {} an axis, and "
-                    "{} is the most: use a slightly larger voxel size",
-                    kProximityMargin, cells, Lattice::kMaxCells));
+    throw Error(ErrorCode::kVoxelSizeTooSmall,
+                fmt::format("proximity voxels need a margin of {} voxels on each side, {} voxels "
+                            "an axis, and the limit is {}: use a slightly larger voxel size",
+                            kProximityMargin, cells, Lattice::kMaxCells));
   }
   const LatticeMesh lattice_mesh(mesh, surface.lattice, kProximityMargin);
   const PseudoNormals normals(mesh);

@@ -15,7 +15,7 @@ namespace ist {
 
 namespace {
 
-// Not std::stod, which reads numbers as the host's locale has them.
+// Parses a number in any locale of the host, unlike std::stod.
 double number(std::string_view text) {
   double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -64,7 +64,7 @@ std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::V
   if (!(cells <= Lattice::kMaxCells)) {
     return Error(ErrorCode::kVoxelSizeTooSmall,
                  fmt::format("voxel size {} needs {:.0f} voxels along the largest extent of {} "
-                             "units, and {} is the most: the smallest size for this mesh is {}",
+                             "units, and the limit is {}: the smallest size for this mesh is {}",
                              voxel_size, cells, extent, Lattice::kMaxCells,
                              round_up_for_people(extent / Lattice::kMaxCells)));
   }

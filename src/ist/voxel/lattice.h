@@ -10,19 +10,20 @@
 
 namespace ist {
 
-/// The grid of voxels of one body and the octree's cubes over it.
+/// The voxel grid of one body and the octree's cubes over it.
 ///
-/// Lattice units put the grid's corner at 0 and make a voxel's edge 1, so that every box is a pair
-/// of integers and a scene scaled by a power of two gives the same numbers. The tree's frame has
-/// the axes and units of the mesh and its origin at the root cube's centre.
+/// In lattice units the grid's corner is at 0 and a voxel's edge is 1, so every box is a pair of
+/// integers, and a scene scaled by a power of two gives the same numbers. The tree's frame has the
+/// axes and units of the mesh and its origin at the root cube's centre.
 struct Lattice {
   static constexpr std::uint32_t kMaxCells = 1u << 16;
-  /// The relative pad of the build: geometry this close to a cube, as a part of the grid's extent,
-  /// counts as inside. Covers the rounding of lattice coordinates (2⁻⁵² of the extent) many times.
+  /// The relative pad of the build: geometry this close to a cube, as a fraction of the grid's
+  /// extent, counts as inside. Exceeds the rounding of lattice coordinates (2⁻⁵² of the extent)
+  /// many times.
   static constexpr double kPad = 1e-9;
 
-  /// A voxel may be this many times larger than the mesh: more, and the mesh is lost in the
-  /// rounding of its own tree's frame.
+  /// The largest voxel size, as a multiple of the mesh's extent. With larger voxels the mesh would
+  /// be lost in the rounding of its own tree's frame.
   static constexpr double kMaxRelativeSize = 1000;
 
   std::array<double, 3> corner{};  ///< minimum of the mesh's bounding box, mesh units
@@ -57,19 +58,20 @@ struct Lattice {
   }
 };
 
-/// The lattice over a box of mesh units: cells = max(1, ceil(largest extent / voxel_size)).
+/// Returns the lattice over a box in mesh units: cells = max(1, ceil(largest extent / voxel_size)).
 ///
-/// Throws kVoxelSizeInvalid when the size is not positive and finite or over 1,000 times the
-/// extent, kMeshExtent when the largest extent is zero or outside [1e-12, 1e15], kVoxelSizeTooSmall
-/// when it would need more than 2^16 voxels an axis, with the smallest size that would do.
+/// Throws kVoxelSizeInvalid if the size is not positive and finite or is over 1,000 times the
+/// extent, kMeshExtent if the largest extent is zero or outside [1e-12, 1e15], and
+/// kVoxelSizeTooSmall, with the smallest valid size, if the grid would need more than 2^16 voxels
+/// an axis.
 [[nodiscard]] Lattice make_lattice(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,
                                    double voxel_size);
 
-/// What make_lattice would throw; nothing where it would not.
+/// Returns the error that make_lattice would throw, or nullopt.
 [[nodiscard]] std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min,
                                                 const Eigen::Vector3d& box_max, double voxel_size);
 
-/// `size` rounded up to three significant digits, to be named in a remedy.
+/// Returns `size` rounded up to three significant digits, for the remedy in an error text.
 [[nodiscard]] double round_up_for_people(double size);
 
 }  // namespace ist

@@ -18,7 +18,7 @@ using Cell = std::array<std::uint32_t, 3>;
   return v;
 }
 
-/// Gathers every third bit of `v`, 16 of them: undoes spread_bits.
+/// Gathers 16 bits of `v`, every third one: the inverse of spread_bits.
 [[nodiscard]] constexpr std::uint32_t gather_bits(std::uint64_t v) noexcept {
   v &= 0x1249'2492'4924'9249;
   v = (v | v >> 2) & 0x10C3'0C30'C30C'30C3;
@@ -28,9 +28,9 @@ using Cell = std::array<std::uint32_t, 3>;
   return static_cast<std::uint32_t>(v);
 }
 
-/// The Morton code of a cell, each index below 2^16: x in bits 0, 3, 6 …, y in 1, 4, 7 …, z in 2,
-/// 5, 8 …. Codes in ascending order visit octant 0 … 7 of each octree node in turn, and
-/// `code >> 3` is the parent's code.
+/// Returns the Morton code of a cell, each index below 2^16: x in bits 0, 3, 6 …, y in 1, 4, 7 …, z
+/// in 2, 5, 8 …. Codes in ascending order visit octant 0 … 7 of each octree node in turn. The
+/// parent's code is `code >> 3`.
 ///
 /// Source: G. M. Morton, A computer oriented geodetic data base, IBM, 1966.
 [[nodiscard]] constexpr std::uint64_t morton_encode(const Cell& cell) noexcept {

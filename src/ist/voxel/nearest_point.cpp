@@ -6,8 +6,8 @@
 namespace ist {
 namespace {
 
-// Where the weights of the corners would be rounding: the nearest of the three edges, or the foot
-// of the perpendicular, while there is a plane to speak of.
+// Handles a sliver, whose corner weights would be mostly rounding: returns the nearest point of its
+// three edges, or the foot of the perpendicular if the sliver has a plane.
 NearestPoint nearest_on_sliver(const std::array<Eigen::Vector3d, 3>& triangle,
                                const Eigen::Vector3d& normal, bool has_plane,
                                const Eigen::Vector3d& point) noexcept {
@@ -44,8 +44,8 @@ NearestPoint nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const Eigen::Vector3d& point) noexcept {
   const Eigen::Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = point - a;
-  // The squared sine of the corner at a. The weights below lose as many digits as it has zeros; the
-  // plane itself, half as many.
+  // area2 / sides2 is the squared sine of the angle at a. The weights below lose as many digits as
+  // it has zeros, the plane's normal half as many.
   const Eigen::Vector3d normal = ab.cross(ac);
   const double area2 = normal.squaredNorm(), sides2 = ab.squaredNorm() * ac.squaredNorm();
   if (!(area2 > 1e-6 * sides2)) {

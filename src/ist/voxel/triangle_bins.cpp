@@ -17,8 +17,8 @@ constexpr int kTriangleBits = 28;  // the other 36 hold a block's code: 4,096 bl
 static_assert(kMaxTriangles < std::size_t{1} << kTriangleBits);
 constexpr std::size_t kTrianglesARange = 4096;
 
-// Visits the blocks below one cube of the octree that a triangle meets. A triangle that spans the
-// grid is found in time that grows with its area, not with its bounding box.
+// Finds the blocks in one octree cube that a triangle intersects. For a triangle that spans the
+// grid, the time grows with its area, not with its bounding box.
 class BlockFinder {
  public:
   BlockFinder(const TriangleBox& triangle, double pad, std::uint32_t blocks,
@@ -54,7 +54,7 @@ void find_blocks(const TriangleBox& triangle, std::uint32_t cells, double pad, s
                  std::vector<std::uint64_t>& found) {
   const std::uint32_t blocks = (cells + TriangleBins::kEdge - 1) / TriangleBins::kEdge;
   BlockFinder finder(triangle, pad, blocks, found, id);
-  // Begin with cubes as large as the triangle: it meets three of them on an axis at the most.
+  // Begins with cubes as large as the triangle, which intersects at most three of them on an axis.
   Cell first, last;
   std::uint32_t widest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ void find_blocks(const TriangleBox& triangle, std::uint32_t cells, double pad, s
       const double index = std::floor(x / TriangleBins::kEdge);
       return static_cast<std::uint32_t>(std::clamp(index, 0.0, static_cast<double>(blocks - 1)));
     };
-    // A block whose closed cube only touches the triangle from above begins at its maximum.
+    // Blocks are closed: a block that ends at the minimum or begins at the maximum counts, too.
     first[i] = block(triangle.min()[axis] - pad - 0.5);
     last[i] = block(triangle.max()[axis] + pad);
     widest = std::max(widest, last[i] - first[i]);
@@ -114,9 +114,9 @@ TriangleBins bin_triangles(const LatticeMesh& mesh, std::uint32_t cells, double 
   std::size_t count = 0;
   for (const auto& part : parts) count += part.size();
   if (count > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(
-        ErrorCode::kMemoryLimit,
-        "the mesh has too many triangles for this voxel size: simplify it, or use a larger one");
+    throw Error(ErrorCode::kMemoryLimit,
+                "the mesh has too many triangles for this voxel size: simplify the mesh, or use a "
+                "larger voxel size");
   }
   std::vector<std::uint64_t> pairs;
   pairs.reserve(count);

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 #include "ist/voxel/lattice.h"
 #include "ist/voxel/triangle_box.h"
 #include "ist/voxel/voxel_set.h"
 
 namespace ist {
 
-/// A mesh in lattice units, moved by `offset` cells along each axis.
+/// A mesh in lattice units, shifted by `offset` cells along each axis.
 class LatticeMesh {
  public:
   LatticeMesh(const TriangleMesh& mesh, const Lattice& lattice, double offset = 0);
@@ -26,33 +28,55 @@ class LatticeMesh {
   }
 
  private:
-  const std::vector<Triangle>* triangles_;  // the mesh's own; it outlives this
+  const std::vector<Triangle>* triangles_;  // of the mesh, which must outlive this object
   std::vector<Eigen::Vector3d> vertices_;
 };
 
-/// Cubes of 16³ voxels, each with the triangles that meet it: the pieces in which voxels are made.
-/// A block's voxels are the 4,096 Morton codes that follow `code << 12`.
+/// Blocks of 16³ voxels, each with the triangles that intersect it: the work items of the
+/// voxelization. A block's voxels have the 4,096 Morton codes from `code << 12` on.
 struct TriangleBins {
   static constexpr int kLevel = 4;
   static constexpr std::uint32_t kEdge = 1u << kLevel;
   static constexpr std::size_t kBlockCells = 1u << 3 * kLevel;
-  static constexpr std::size_t kBlocksARange = 16;  ///< that one worker takes at a time
+  static constexpr std::size_t kBlocksARange = 16;  ///< blocks of one parallel range
 
-  std::vector<std::uint64_t> codes;  ///< Morton codes of the blocks that hold something, ascending
+  std::vector<std::uint64_t> codes;  ///< Morton codes of the non-empty blocks, ascending
   TriangleLists triangles;           ///< one list a block
 };
 
-/// What `bin_triangles` is expected to need: over all places of the grid, a convex flat piece meets
-/// on average (area of its three projections)/s² + (its three extents)/s + 1 cubes of edge s.
+/// Calls visit(x, y, z) for each cell of a block whose indices are in [low, high], in order of z,
+/// then y, then x.
+template <typename Visit>
+void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                   const Visit& visit) {
+  Cell first, last;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double begin = block[i] * TriangleBins::kEdge;
+    const double from = std::max(begin, std::ceil(low[axis]));
+    const double to = std::min(begin + TriangleBins::kEdge - 1, std::floor(high[axis]));
+    if (from > to) return;
+    first[i] = static_cast<std::uint32_t>(from);
+    last[i] = static_cast<std::uint32_t>(to);
+  }
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z)
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y)
+      for (std::uint32_t x = first[0]; x <= last[0]; ++x) visit(x, y, z);
+}
+
+/// Returns the expected number of pairs of triangle and cube. Averaged over all positions of the
+/// grid, a convex flat polygon intersects (area of its three projections)/s² + (its three
+/// extents)/s + 1 cubes of edge s.
 ///
 /// Source: Steiner's formula; L. A. Santaló, Integral Geometry and Geometric Probability, 1976.
 [[nodiscard]] double expected_pairs(const TriangleMesh& mesh, double cube_edge);
 
-/// The most triangles that a mesh may have to be sorted into blocks.
+/// The largest number of triangles of a mesh that bin_triangles accepts.
 inline constexpr std::size_t kMaxTriangles = (std::size_t{1} << 28) - 1;
 
-/// Sorts the triangles of a mesh into blocks; padded and non-strict, as the voxels are.
-/// Precondition: at most kMaxTriangles of them. Cost: O(pairs · log pairs).
+/// Sorts the triangles of a mesh into blocks; blocks are padded and closed, as voxels are.
+/// Precondition: at most kMaxTriangles triangles.
+/// Cost: O(pairs · log pairs).
 ///
 /// @param cells blocks cover this many cells along each axis, from 0
 /// @param pad   blocks are grown by this much, in cells

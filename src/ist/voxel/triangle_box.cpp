@@ -8,7 +8,8 @@
 namespace ist {
 namespace {
 
-// a·d - b·c, right to the last bit but one. A plain difference loses a sliver's normal.
+// Returns a·d - b·c, right to the last bit but one; a plain difference would lose a sliver's
+// normal.
 double determinant(double a, double b, double c, double d) noexcept {
   CompensatedSum sum;
   sum.add_product(a, d);

@@ -7,9 +7,9 @@
 namespace ist {
 namespace {
 
-// Cuts away what lies above (kAbove) or below `plane` on an axis. A triangle cut by six planes has
-// nine corners at most, but rounding can bend a nearly straight run of corners to and fro across a
-// plane; past the last place such a pair is dropped, for it lies on an edge that is kept.
+// Cuts away the part above (kAbove) or below `plane` on an axis. Six planes leave a triangle at
+// most nine corners, but rounding can bend a nearly straight run of corners to and fro across a
+// plane. Corners beyond kMaxCorners are dropped, because such a pair lies on an edge that is kept.
 template <int kAxis, bool kAbove>
 void cut(const ClippedTriangle& in, double plane, ClippedTriangle& out) noexcept {
   constexpr int kNext = (kAxis + 1) % 3, kLast = (kAxis + 2) % 3;
@@ -28,7 +28,8 @@ void cut(const ClippedTriangle& in, double plane, ClippedTriangle& out) noexcept
     const Eigen::Vector3d* to = &in.corners[static_cast<std::size_t>(i)];
     const double to_beyond = beyond(*to);
     if ((from_beyond > 0) != (to_beyond > 0)) {
-      // From the end that is kept, so that an edge is cut at the same point from both its sides.
+      // Interpolates from the kept end, so that an edge is cut at the same point from both its
+      // sides.
       const bool leaving = to_beyond > 0;
       const Eigen::Vector3d &kept = leaving ? *from : *to, &lost = leaving ? *to : *from;
       const double kept_beyond = leaving ? from_beyond : to_beyond;

@@ -9,7 +9,7 @@
 
 namespace ist {
 
-/// For each of a run of cubes, the triangles that meet it, ascending.
+/// The triangles that intersect each cube of a sequence, ascending.
 struct TriangleLists {
   std::vector<std::uint32_t> first;  ///< cube i owns ids[first[i]] … ids[first[i + 1] - 1]
   std::vector<std::uint32_t> ids;
@@ -21,12 +21,12 @@ struct TriangleLists {
   }
 };
 
-/// The surface voxels of a mesh, sparse: each closed cube that meets a triangle, and no other.
+/// The surface voxels of a mesh, stored sparsely: the closed cubes that intersect a triangle.
 struct VoxelSet {
   Lattice lattice;
   std::vector<std::uint64_t> codes;   ///< Morton codes, ascending
   std::vector<PackedNormal> normals;  ///< one a voxel
-  TriangleLists triangles;            ///< one list a voxel, or empty when not asked for
+  TriangleLists triangles;            ///< one list a voxel; empty without keep_triangles
 };
 
 }  // namespace ist

@@ -20,13 +20,14 @@
 namespace ist {
 namespace {
 
-constexpr double kMaxCount = 4294967294.0;  // of voxels and of pairs: indices have 32 bits
+constexpr double kMaxCount = 4294967294.0;  // limit of voxels and of pairs: indices have 32 bits
 
-// A voxel in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11. Ascending, they run along x.
+// A voxel's position in its block: x in bits 0 to 3, y in 4 to 7, z in 8 to 11; ascending along x
+// first.
 using BlockCell = std::uint16_t;
 
 std::size_t morton_in_block(BlockCell cell) {
-  // Spread bits of 0 … 15: a cell's code is three look-ups.
+  // The spread bits of 0 … 15 reduce a cell's code to three look-ups.
   static constexpr std::array<std::uint16_t, TriangleBins::kEdge> kSpread = [] {
     std::array<std::uint16_t, TriangleBins::kEdge> spread{};
     for (std::uint32_t i = 0; i < spread.size(); ++i) {
@@ -38,61 +39,46 @@ std::size_t morton_in_block(BlockCell cell) {
                                   kSpread[cell >> 8] << 2);
 }
 
-// What is meant by "the grown cube": a little less than the pad that is promised, so that rounding
-// cannot make it more.
+// Returns the pad of the tests: a little less than the guaranteed pad, so that rounding cannot
+// exceed the guarantee.
 double inner_pad(const Lattice& lattice) { return lattice.pad() * (1 - 1.0 / 1024); }
 
-// Calls visit(cell) for each voxel of the block that meets the triangle, ascending.
+// Calls visit(cell) for each voxel of the block that intersects the triangle, ascending.
 template <typename Visit>
 void for_each_voxel(const TriangleBox& triangle, const Cell& block, const Lattice& lattice,
                     const Visit& visit) {
   const double pad = inner_pad(lattice);
-  Cell first, last;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const double begin = block[i] * TriangleBins::kEdge;
-    const double end = std::min<double>(begin + TriangleBins::kEdge, lattice.cells) - 1;
-    const double low = std::max(begin, std::ceil(triangle.min()[axis] - 1 - pad));
-    const double high = std::min(end, std::floor(triangle.max()[axis] + pad));
-    if (low > high) return;
-    first[i] = static_cast<std::uint32_t>(low);
-    last[i] = static_cast<std::uint32_t>(high);
-  }
-  for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
-    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
-      for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
-        if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad)) {
-          visit(static_cast<BlockCell>((x & 15) | (y & 15) << 4 | (z & 15) << 8));
-        }
-      }
-    }
-  }
+  const Eigen::Vector3d low = triangle.min().array() - 1 - pad;
+  const Eigen::Vector3d high = (triangle.max().array() + pad).min(lattice.cells - 1.0);
+  for_each_cell(block, low, high, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    if (triangle.meets_within_bounds(x + 0.5, y + 0.5, z + 0.5, 0.5 + pad))
+      visit(static_cast<BlockCell>((x & 15) | (y & 15) << 4 | (z & 15) << 8));
+  });
 }
 
-// One block: which of its voxels are occupied, and by which of its triangles.
+// The occupied voxels of one block and the triangles in them.
 struct BlockSurvey {
   std::array<std::uint64_t, TriangleBins::kBlockCells / 64>
-      occupied{};  // by the last bits of the Morton code
-  std::vector<BlockCell>
-      cells;  // of the first triangle, the second …: pairs, before they have a place
-  std::vector<std::uint16_t> cells_of;  // how many each triangle has
+      occupied{};                       // bit by Morton code in the block
+  std::vector<BlockCell> cells;         // voxels of the first triangle, of the second …
+  std::vector<std::uint16_t> cells_of;  // number of voxels of each triangle
 };
 
-// A block's own bytes: its survey and its places in the sums.
+// The bytes of one block: its survey and its entries in the prefix sums.
 constexpr double kBlockBytes = sizeof(BlockSurvey) + 2 * sizeof(std::uint64_t);
 
-// All voxels and pairs, before anything is made of them.
+// All voxels and pairs of voxel and triangle, before any result is allocated.
 struct Survey {
   TriangleBins bins;
-  std::size_t triangles;  // of the mesh
+  std::size_t triangles;  // number in the mesh
   std::vector<BlockSurvey> blocks;
-  std::vector<std::uint64_t> first_voxel;  // of each block, and the total
-  std::vector<std::uint64_t> first_pair;   // likewise, of voxel and triangle
+  std::vector<std::uint64_t> first_voxel;  // index of each block's first voxel, and the total
+  std::vector<std::uint64_t> first_pair;   // index of each block's first pair, and the total
   [[nodiscard]] std::uint64_t voxels() const { return first_voxel.back(); }
   [[nodiscard]] std::uint64_t pairs() const { return first_pair.back(); }
 };
 
-// Nothing where the blocks alone need more than `max_bytes`.
+// Finds all voxels and pairs. Returns nullopt if the blocks alone need more than `max_bytes`.
 std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, double max_bytes,
                              Progress& progress) {
   progress.begin_stage("sorting triangles into blocks", 0);
@@ -149,14 +135,14 @@ double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
          static_cast<double>(survey.triangles) * static_cast<double>(options.bytes_per_triangle);
 }
 
-// The survey's own need, known before it is made: keys of the bins, twice while they are joined,
-// and a cell for each pair.
+// Estimates the survey's memory, before the survey is made: keys of the bins, stored twice while
+// they are joined, and a cell for each pair.
 double survey_bytes(const TriangleMesh& mesh, double voxel_size) {
   return 3 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge) +
          sizeof(BlockCell) * expected_pairs(mesh, voxel_size);
 }
 
-// The survey at one voxel size, or nothing where the voxels would not fit.
+// Returns the survey at one voxel size, or nullopt if the voxels would not fit.
 std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& lattice,
                                      const VoxelizerOptions& options, Progress& progress) {
   const auto limit = static_cast<double>(options.max_memory);
@@ -167,25 +153,22 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
   return result;
 }
 
-[[noreturn]] void refuse(const TriangleMesh& mesh, const Eigen::Vector3d& low,
-                         const Eigen::Vector3d& high, const VoxelizerOptions& options,
-                         Progress& progress) {
+[[noreturn]] void refuse(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box,
+                         const VoxelizerOptions& options, Progress& progress) {
   const auto fits = [&](double size) {
-    const Lattice lattice = make_lattice(low, high, size);
+    const Lattice lattice = make_lattice(box.min(), box.max(), size);
     return fitting_survey(mesh, lattice, options, progress).has_value();
   };
   const std::string limit = fmt::format(
-      "voxel size {} needs more than the {} bytes of memory allowed, or more than 2^32 voxels or "
-      "pairs "
-      "of voxel and triangle",
+      "voxel size {} needs more than the allowed {} bytes of memory, or more than 2^32 voxels or "
+      "pairs of voxel and triangle",
       options.voxel_size, options.max_memory);
-  const double one_voxel = (high - low).maxCoeff();
+  const double one_voxel = box.sizes().maxCoeff();
   double too_small = options.voxel_size, enough = too_small;
   while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
   if (!fits(enough)) {
-    throw Error(
-        ErrorCode::kMemoryLimit,
-        limit + ", and so does any other: allow more memory, or use a mesh of fewer triangles");
+    throw Error(ErrorCode::kMemoryLimit,
+                limit + ", and so does every other size: allow more memory, or simplify the mesh");
   }
   for (int step = 0; step < 6; ++step) {
     const double middle = std::sqrt(too_small * enough);
@@ -193,11 +176,12 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
   }
   double named = round_up_for_people(enough);
   while (!fits(named)) named = round_up_for_people(1.01 * named);
-  throw Error(ErrorCode::kMemoryLimit,
-              fmt::format("{}: allow more, or use a voxel size of {} or larger", limit, named));
+  throw Error(
+      ErrorCode::kMemoryLimit,
+      fmt::format("{}: allow more memory, or use a voxel size of {} or larger", limit, named));
 }
 
-// Sums up what lies in the voxels of one block, and writes the voxels to their places.
+// Sums the normals in the voxels of one block, and writes the voxels to their places.
 class BlockWriter {
  public:
   BlockWriter(const LatticeMesh& mesh, const Survey& survey, VoxelSet& set)
@@ -237,7 +221,8 @@ class BlockWriter {
   };
 
   void add(std::uint32_t t, const Cell& block, std::span<const BlockCell> cells) {
-    // A triangle that only touches a voxel counts too, but less than any that enters it.
+    // The minimum weight, so that a triangle with no area in the voxel counts, but less than any
+    // other.
     constexpr double kTouch = 1e-6;
     const auto corners = mesh_.corners(t);
     const std::optional<Eigen::Vector3d> normal = unit_normal(corners);
@@ -284,7 +269,7 @@ class BlockWriter {
     const Eigen::Vector3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
     const Eigen::Vector3d twice_area = ab.cross(ac);
     const double square = twice_area.squaredNorm();
-    // Free of scale: the area against the longest edge, whose square bounds it.
+    // Scale-free: compares the area with the square of the longest edge, an upper bound.
     const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
     if (!(square > 1e-24 * longest * longest)) return std::nullopt;
     return twice_area / std::sqrt(square);
@@ -293,9 +278,8 @@ class BlockWriter {
   const LatticeMesh& mesh_;
   const Survey& survey_;
   VoxelSet& set_;
-  std::array<std::uint16_t, TriangleBins::kBlockCells>
-      rank_{};                        // of a voxel among those of its block
-  std::vector<std::uint16_t> ranks_;  // of each pair of the block
+  std::array<std::uint16_t, TriangleBins::kBlockCells> rank_{};  // rank of each voxel in its block
+  std::vector<std::uint16_t> ranks_;                             // rank of each pair's voxel
   std::vector<Sum> sums_;
 };
 
@@ -320,13 +304,13 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
   const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (mesh.triangles.size() > kMaxTriangles) {
     throw Error(ErrorCode::kMemoryLimit,
-                fmt::format("the mesh has {} triangles, and {} is the most: simplify it",
+                fmt::format("the mesh has {} triangles, and the limit is {}: simplify the mesh",
                             mesh.triangles.size(), kMaxTriangles));
   }
   VoxelSet set;
   set.lattice = make_lattice(box.min(), box.max(), options.voxel_size);
   const std::optional<Survey> found = fitting_survey(mesh, set.lattice, options, shown);
-  if (!found) refuse(mesh, box.min(), box.max(), options, shown);
+  if (!found) refuse(mesh, box, options, shown);
 
   const LatticeMesh lattice_mesh(mesh, set.lattice);
   const std::size_t blocks = found->bins.codes.size();

@@ -312,16 +312,16 @@ TEST(HandDevice, RefusesSettingsWithoutSenseNamingThem) {
     change(s);
     const auto error = error_of([&] { const HandDevice hand(s); });
     if (!error) return std::string("fine");
-    EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+    EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
     return std::string(error->what());
   };
   EXPECT_EQ(refusal([](HandSettings&) {}), "fine");
   EXPECT_EQ(refusal([](HandSettings& s) { s.mechanics.delay = HandDevice::kLongestDelay; }),
             "fine");
   EXPECT_EQ(refusal([](HandSettings& s) { s.mass = 0; }),
-            "hand: mass is 0: give one from 1e-09 to 1000000000");
+            "HandSettings: mass is 0: give a number from 1e-09 to 1000000000");
   EXPECT_EQ(refusal([](HandSettings& s) { s.mechanics.delay = 0.011; }),
-            "hand: delay is 0.011: give one from 0 to 0.01");
+            "HandSettings: delay is 0.011: give a number from 0 to 0.01");
   double HandSettings::*const others[] = {
       &HandSettings::inertia,           &HandSettings::arm_stiffness,
       &HandSettings::arm_damping,       &HandSettings::arm_angular_stiffness,
@@ -338,7 +338,7 @@ TEST(HandDevice, RefusesSettingsWithoutSenseNamingThem) {
     EXPECT_NE(refusal([&](HandSettings& s) { s.mechanics.*member = std::nan(""); }), "fine");
   }
   EXPECT_EQ(refusal([](HandSettings& s) { s.plan.clear(); }),
-            "plan: it has no waypoint: give at least one, at time 0");
+            "the plan has no waypoint: give at least one, at time 0");
 }
 
 }  // namespace

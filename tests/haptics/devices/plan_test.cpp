@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "ist/haptics/devices/null_device.h"
+#include "ist/haptics/devices/device.h"
 #include "support/errors.h"
 #include "support/seeded.h"
 
@@ -115,7 +115,7 @@ TEST(Plan, OfOneWaypointStaysThere) {
 std::string refusal(std::vector<Waypoint> waypoints) {
   const auto error = error_of([&] { const Plan plan(std::move(waypoints)); });
   if (!error) return "fine";
-  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+  EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
   return error->what();
 }
 
@@ -128,7 +128,7 @@ TEST(Plan, RefusesWhatIsNoneAndSaysWhereAndWhy) {
   const Placement round = placement(2.2, {1, 1, 0}, {0, 0, 0});
   const Placement half = placement(std::numbers::pi, {0, 0, 1}, {0, 0, 0});
   const Placement third = placement(2 * std::numbers::pi / 3, {0, 1, 0}, {0, 0, 0});
-  EXPECT_EQ(refusal({}), "plan: it has no waypoint: give at least one, at time 0");
+  EXPECT_EQ(refusal({}), "the plan has no waypoint: give at least one, at time 0");
   const struct {
     std::vector<Waypoint> waypoints;
     const char* says;
@@ -141,8 +141,10 @@ TEST(Plan, RefusesWhatIsNoneAndSaysWhereAndWhy) {
       {{{0, still}, {INFINITY, still}}, "waypoint 1 (from 0): the time is inf s"},
       {{{0, lost}}, "waypoint 0 (from 0): the pose is no rigid motion"},
       {{{0, still}, {1, skewed}}, "waypoint 1 (from 0): the pose is no rigid motion"},
-      {{{0, still}, {1, round}}, "waypoint 1 (from 0): it turns by more than a third"},
-      {{{0, still}, {1, half}}, "waypoint 1 (from 0): it turns by more than a third"},
+      {{{0, still}, {1, round}},
+       "waypoint 1 (from 0): the turn from the waypoint before is more than a third"},
+      {{{0, still}, {1, half}},
+       "waypoint 1 (from 0): the turn from the waypoint before is more than a third"},
   };
   for (const auto& c : cases) {
     EXPECT_NE(refusal(c.waypoints).find(c.says), std::string::npos)
@@ -153,14 +155,15 @@ TEST(Plan, RefusesWhatIsNoneAndSaysWhereAndWhy) {
 
 TEST(NullDevice, StaysWhateverItIsTold) {
   const Placement pose = placement(1, {0, 0, 1}, {0.1, 0.2, 0.3});
-  NullDevice device(pose, {.damping = 2, .angular_damping = 0.1, .delay = 1e-3});
-  EXPECT_EQ(device.mechanics().damping, 2);
+  const std::unique_ptr<Device> device =
+      make_null_device(pose, {.damping = 2, .angular_damping = 0.1, .delay = 1e-3});
+  EXPECT_EQ(device->mechanics().damping, 2);
   for (int tick = 0; tick < 10; ++tick) {
-    const std::optional<Placement> seen = device.read();
+    const std::optional<Placement> seen = device->read();
     ASSERT_TRUE(seen);
     EXPECT_EQ(distance(*seen, pose), 0);
-    device.write(Vector6::Constant(100), 1e-3);
-    EXPECT_FALSE(device.done());
+    device->write(Vector6::Constant(100), 1e-3);
+    EXPECT_FALSE(device->done());
   }
 }
 

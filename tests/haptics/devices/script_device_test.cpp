@@ -80,9 +80,9 @@ TEST(ReadScript, RefusesBadLinesNamingFileLineAndRemedy) {
       {"time,x,y,z,qx,qy,qz,qw\n" + first, "line 1: 'time,x,y,z,qx,qy,qz,qw' is not the header"},
       {kHeader, "line 1: no waypoint follows the header: give at least one, at time 0"},
       {kHeader + "\n\n", "no waypoint follows the header"},
-      {kHeader + "0,0,0,0,1,0,0\n", "line 2: it has 7 columns: give the eight of time,x"},
-      {kHeader + "0,0,0,0,1,0,0,0,0\n", "line 2: it has 9 columns"},
-      {kHeader + "0,0,0,0,1,0,0,0,\n", "line 2: it has 9 columns"},
+      {kHeader + "0,0,0,0,1,0,0\n", "line 2: the line has 7 columns: give the eight of time,x"},
+      {kHeader + "0,0,0,0,1,0,0,0,0\n", "line 2: the line has 9 columns"},
+      {kHeader + "0,0,0,0,1,0,0,0,\n", "line 2: the line has 9 columns"},
       {kHeader + first + "\n1;0;0;0;1;0;0;0\n", "line 4: '1;0;0;0;1;0;0;0' is no finite number"},
       {kHeader + "0,0,0,,1,0,0,0\n", "line 2: '' is no finite number: write it as 12.5 or 1.25e1"},
       {kHeader + "0,0,0,x,1,0,0,0\n", "line 2: 'x' is no finite number"},
@@ -96,7 +96,8 @@ TEST(ReadScript, RefusesBadLinesNamingFileLineAndRemedy) {
       {kHeader + first + first, "line 3: the time 0 s does not come after 0 s: let times ascend"},
       {kHeader + first + "2,0,0,0,1,0,0,0\r\n1,0,0,0,1,0,0,0\r\n", "line 4: the time 1 s does not"},
       {kHeader + first + "-1,0,0,0,1,0,0,0\n", "line 3: the time -1 s does not come after 0 s"},
-      {kHeader + first + "1,0,0,0,0,1,0,0\n", "line 3: it turns by more than a third of a circle"},
+      {kHeader + first + "1,0,0,0,0,1,0,0\n",
+       "line 3: the turn from the waypoint before is more than a third of a circle"},
   };
   for (const auto& c : cases) {
     const TempDir folder;
@@ -129,8 +130,8 @@ TEST(ReadScript, RefusesFilesThatAreNotThereOrTooLarge) {
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
   EXPECT_EQ(std::string(error->what()),
             file.string() +
-                ": it has 67108865 bytes, more than 67108864: give fewer waypoints, "
-                "what lies between is interpolated");
+                ": it has 67108865 bytes, more than 67108864: give fewer waypoints; "
+                "the motion between them is interpolated");
 }
 
 TEST(ScriptDevice, GoesThroughItsPlanByTheTicksItIsTold) {
@@ -152,7 +153,7 @@ TEST(ScriptDevice, GoesThroughItsPlanByTheTicksItIsTold) {
 }
 
 TEST(ScriptDevice, RefusesWaypointsThatAreNoPlan) {
-  EXPECT_EQ(error_name([] { const ScriptDevice device({}); }), "input-invalid");
+  EXPECT_EQ(error_name([] { const ScriptDevice device({}); }), "argument-invalid");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(ProximityEffect, NeedsProximityVoxelsAndVelocityAndNoContacts) {
 TEST(DampingEffect, HoldsBackWhatApproachesAndNothingElse) {
   EffectCase c;
   c.dt = 1e-4;
-  c.touch({{0.01, 0.02, 0}, {0, 0, 1}, 1e-4, 0.5});
+  c.add_contact({{0.01, 0.02, 0}, {0, 0, 1}, 1e-4, 0.5});
   // 10 µm a tick of 0.1 ms: 0.1 m/s. What goes along with it counts for nothing.
   const double force = kDamping * 0.5 * 0.1;
   const Vector6 expected = six({0, 0, force}, {0.02 * force, -0.01 * force, 0});
@@ -48,9 +48,9 @@ TEST(DampingEffect, HoldsBackWhatApproachesAndNothingElse) {
 TEST(DampingEffect, IsTheSameAtAnyOverlapAndFadesWithTheShare) {
   const Vector6 motion = six({0, 0, -1e-5}, {0, 0, 0});
   EffectCase whole, thin, faint;
-  whole.touch({{0, 0, 0}, {0, 0, 1}, 1e-4, 1});
-  thin.touch({{0, 0, 0}, {0, 0, 1}, 0, 1});
-  faint.touch({{0, 0, 0}, {0, 0, 1}, 1e-4, 1e-6});
+  whole.add_contact({{0, 0, 0}, {0, 0, 1}, 1e-4, 1});
+  thin.add_contact({{0, 0, 0}, {0, 0, 1}, 0, 1});
+  faint.add_contact({{0, 0, 0}, {0, 0, 1}, 1e-4, 1e-6});
   EXPECT_EQ(respond(kDamper, whole, motion).wrench, respond(kDamper, thin, motion).wrench);
   EXPECT_NEAR(respond(kDamper, faint, motion).wrench[2],
               1e-6 * respond(kDamper, whole, motion).wrench[2], 1e-20);
@@ -62,7 +62,7 @@ TEST(ProximityEffect, IsTheLawOfDampingAtThePlacesNearBy) {
   for (int i = 0; i < 100; ++i) {
     EffectCase near = random_case(seeded, 4), touching = near;
     touching.contacts.clear();
-    for (const TouchPoint& point : near.proximity.points()) touching.contacts.add(point);
+    for (const ToolContact& point : near.proximity.points()) touching.contacts.add(point);
     near.contacts.clear();
     touching.proximity.clear();
     const Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
@@ -83,7 +83,7 @@ TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
     const Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
     // Where no place is about to turn from coming to going.
     bool smooth = true, approaches = false;
-    for (const TouchPoint& point : c.contacts.points()) {
+    for (const ToolContact& point : c.contacts.points()) {
       const double approach = -point.normal.dot(point.moved(motion));
       smooth = smooth && std::abs(approach) > 3e-8;
       approaches = approaches || approach > 0;
@@ -110,7 +110,7 @@ TEST(DampingEffect, IsContinuousWhereApproachTurnsToDeparture) {
   for (int i = 0; i < 200; ++i) {
     const EffectCase c = random_case(seeded, 6);
     Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
-    const TouchPoint& point = c.contacts.points()[0];
+    const ToolContact& point = c.contacts.points()[0];
     motion.head<3>() -= point.normal.dot(point.moved(motion)) * point.normal;  // only along
     const Vector6 small = six(1e-13 * point.normal, Vector3d::Zero());
     // 2 N s/m, 1e-3 s, six places: at most 12 kN/m times 0.2 pm.

@@ -20,7 +20,7 @@ TEST(ContactEffect, NeedsNormalsAndDepth) {
 
 TEST(ContactEffect, IsASpringAlongTheNormalWithItsTorque) {
   EffectCase c;
-  c.touch({{0.01, 0.02, 0}, {0, 0, 1}, 1e-4, 0.5});
+  c.add_contact({{0.01, 0.02, 0}, {0, 0, 1}, 1e-4, 0.5});
   const double at_rest = kStiffness * 0.5 * 1e-4;
   Vector6 expected = six({0, 0, at_rest}, {0.02 * at_rest, -0.01 * at_rest, 0});
   EXPECT_LE((respond(kContact, c).wrench - expected).norm(), 1e-16);
@@ -40,7 +40,7 @@ TEST(ContactEffect, IsASpringAlongTheNormalWithItsTorque) {
 
 TEST(ContactEffect, NeverPulls) {
   EffectCase c;
-  c.touch({{0.01, 0, 0}, {0, 1, 0}, 1e-4, 1});
+  c.add_contact({{0.01, 0, 0}, {0, 1, 0}, 1e-4, 1});
   const Response off = respond(kContact, c, six({0, 2e-4, 0}, {0, 0, 0}));
   EXPECT_LE(off.wrench.norm(), 1e-16);
   EXPECT_EQ(off.stiffness, Matrix6::Zero());
@@ -88,7 +88,7 @@ TEST(Response, TurnsAForceAndItsChangeIntoThoseOfTheTool) {
     response.add(arm, force, change);
     EXPECT_EQ(response.wrench, six(force, arm.cross(force)));
     // The stiffness is the map from a motion to the way of the place, to its force, to a wrench.
-    const TouchPoint point{arm, Vector3d::UnitX(), 0, 1};
+    const ToolContact point{arm, Vector3d::UnitX(), 0, 1};
     for (int k = 0; k < 6; ++k) {
       const Vector3d less = change * point.moved(Vector6::Unit(k));
       ASSERT_LE((response.stiffness.col(k) - six(less, arm.cross(less))).norm(), 1e-14);

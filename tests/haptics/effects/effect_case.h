@@ -16,16 +16,16 @@ inline Vector6 six(const Eigen::Vector3d& translation, const Eigen::Vector3d& ro
 /// What an effect is asked about; owns what its input refers to.
 struct EffectCase {
   Placement tool;
-  TouchSet contacts, proximity;
+  ToolContacts contacts, proximity;
   double dt = 1e-3;
 
   [[nodiscard]] EffectInput input() const { return {tool, contacts, proximity, dt}; }
   /// A contact of one point for each leaf pair.
-  void touch(const TouchPoint& point) {
+  void add_contact(const ToolContact& point) {
     contacts.add(point);
     contacts.spring +=
-        point.share * point.overlap * six(point.normal, point.arm.cross(point.normal));
-    contacts.count += point.share;
+        point.stiffness_fraction * point.depth * six(point.normal, point.arm.cross(point.normal));
+    contacts.count += point.stiffness_fraction;
   }
 };
 
@@ -34,9 +34,9 @@ inline EffectCase random_case(Seeded& seeded, int points) {
   EffectCase c;
   c.tool = Placement{}.moved(six(seeded.point(-1, 1), seeded.point(-1, 1)));
   for (int i = 0; i < points; ++i) {
-    const double overlap = seeded.between(2e-5, 1e-4), share = seeded.between(0.1, 1);
-    c.touch({seeded.point(-0.02, 0.02), seeded.direction(), overlap, share});
-    c.proximity.add({seeded.point(-0.02, 0.02), seeded.direction(), 0, share});
+    const double depth = seeded.between(2e-5, 1e-4), fraction = seeded.between(0.1, 1);
+    c.add_contact({seeded.point(-0.02, 0.02), seeded.direction(), depth, fraction});
+    c.proximity.add({seeded.point(-0.02, 0.02), seeded.direction(), 0, fraction});
   }
   return c;
 }

@@ -131,8 +131,8 @@ TEST(FrictionEffect, WeighsPointsByTheirShares) {
   const ContactEffect contact({kPressStiffness, 0.5});
   FrictionEffect friction(kGrip, contact);
   EffectCase c;  // loads of 2 and 0.25 N
-  c.touch({{0.01, 0, 0}, {0, 0, 1}, 2e-3, 1});
-  c.touch({{-0.01, 0, 0}, {0, 0, 1}, 1e-3, 0.25});
+  c.add_contact({{0.01, 0, 0}, {0, 0, 1}, 2e-3, 1});
+  c.add_contact({{-0.01, 0, 0}, {0, 0, 1}, 1e-3, 0.25});
   const double stuck = 5e-4, torn = 5e-3;
   const Vector6 held = respond(friction, c, six({0, stuck, 0}, {0, 0, 0})).wrench;
   EXPECT_LE((held - six({0, -1.25 * kAcross * stuck, 0}, {0, 0, -0.0075 * kAcross * stuck})).norm(),

@@ -25,7 +25,7 @@ class PressedTool {
     at_.contacts.clear();
     for (const Eigen::Vector3d& foot : feet_) {
       const double each = load / (kPressStiffness * static_cast<double>(feet_.size()));
-      at_.touch({at_.tool.rotation * foot, {0, 0, 1}, each, 1});
+      at_.add_contact({at_.tool.rotation * foot, {0, 0, 1}, each, 1});
     }
   }
   void lift() { at_.contacts.clear(); }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ist/scene/scene_builder.h"
+#include "ist/scene.h"
 
 namespace ist::test {
 

@@ -26,7 +26,7 @@ struct Seen {
     force = std::max(force, tick.wrench.norm());
     held += tick.held;
     faults += tick.fault;
-    proximity += tick.proximity && tick.proximity->contacts > 0;
+    proximity += tick.proximity && tick.proximity->leaf_pairs > 0;
   }
   [[nodiscard]] bool all() const noexcept {
     return leaf_pairs > 5 && force > 0.5 && held > 5 && faults > 0 && proximity > 50;
@@ -38,9 +38,9 @@ Seen run(BuiltScene& scene, TickRing<TickRecord>& ring, Snapshot<TickRecord>& sn
   Seen seen;
   for (int i = 0; i < kTicks; ++i) {
     TickBudget budget;
-    if (i % 50 == 7) budget.contacts.sphere_tests = 20;
+    if (i % 50 == 7) budget.contacts.tests = 20;
     if (i % 50 == 9) budget.contacts.deadline = Budget::Clock::now();
-    if (i % 50 == 11) budget.proximity.sphere_tests = 2;
+    if (i % 50 == 11) budget.proximity.tests = 2;
     const std::optional<Placement> at = i % 400 == 390 ? std::nullopt : scene.device->read();
     const Tick tick = scene.simulation->tick(at, budget);
     scene.device->write(tick.wrench, scene.simulation->dt());
@@ -70,7 +70,7 @@ TEST(QuietTick, NorDoesTheLoop) {
     BuiltScene scene = build_scene(scene_with_all_effects());
     TickRing<TickRecord> ring(1 << 10);
     const std::atomic<bool> stop{false};
-    const ServoOptions options{.ticks = ticks, .paced = false, .real_time = {}};
+    const ServoOptions options{.ticks = ticks, .paced = false};
     const std::uint64_t before = allocations();
     const ServoReport report =
         run_servo_loop(*scene.simulation, *scene.device, options, {&ring, nullptr}, stop);

@@ -1,5 +1,5 @@
-/* The same for C11: a box beside itself, whose contacts are counted by hand. */
-#include <ist/capi/ist.h>
+/* The same for C11: counts the leaf pairs of two boxes by hand. */
+#include <ist/capi/ist_c.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -19,7 +19,7 @@ static int on_surface(const int cell[3]) {
 }
 
 /* Pairs of surface voxels whose centres are no farther apart than the square root of 3. */
-static uint64_t touching(int shift) {
+static uint64_t overlapping(int shift) {
   enum { COUNT = CELLS * CELLS * CELLS };
   uint64_t count = 0;
   for (int i = 0; i < COUNT * COUNT; ++i) {
@@ -50,9 +50,9 @@ int main(void) {
   for (int shift = 0; shift <= CELLS + 2; ++shift) {
     const double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, shift, 0, 0, 1};
     ist_query_result result = {.struct_size = sizeof result};
-    require(ist_query_collide(query, pose, NULL, 0, &result) == IST_OK, "no answer");
-    require(result.contacts == touching(shift), "another count of contacts");
-    printf("shift %d: %llu contacts\n", shift, (unsigned long long)result.contacts);
+    require(ist_query_leaf_pairs(query, pose, NULL, NULL, 0, &result) == IST_OK, "no answer");
+    require(result.leaf_pairs == overlapping(shift), "another count of leaf pairs");
+    printf("shift %d: %llu leaf pairs\n", shift, (unsigned long long)result.leaf_pairs);
   }
   require(ist_tree_load("no/such/file.ist", &tree) == IST_FILE_UNREADABLE, "another error");
   printf("error: %s\n", ist_last_error_message());

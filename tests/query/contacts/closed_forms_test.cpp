@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "ist/tree/implicit_ball.h"
 #include "query/contacts/form_errors.h"
 
 namespace ist::test {

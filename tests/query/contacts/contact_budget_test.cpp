@@ -6,33 +6,33 @@
 #include <cmath>
 
 #include "query/contacts/contact_cases.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 
 namespace ist::test {
 namespace {
 
 constexpr std::array kPolicies = {SpherePolicy::kTable, SpherePolicy::kSlab};
 
-Touched touched_within(CollisionQuery& query, ContactPoints& points, const Eigen::Isometry3d& pose,
-                       const Budget& budget) {
-  const QueryResult result = query.contact_points(pose, points, budget);
+FoundContacts find_contacts_within(Query& query, ContactManifold& points,
+                                   const Eigen::Isometry3d& pose, const Budget& budget) {
+  const QueryResult result = query.contacts(pose, points, budget);
   return {points.sums(), {points.points().begin(), points.points().end()}, result};
 }
 
 TEST(ContactsWithinABudget, WithoutEndAreThoseOfThePlainQuery) {
-  for (const Scene& scene : {solids()[0], solids()[1], solids()[2], shells()}) {
+  for (const Scene& scene : Scenes{solids()[0], solids()[1], solids()[2], shells()}) {
     for (const SpherePolicy policy : kPolicies) {
-      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
-      ContactPoints points(scene.fixed, scene.moving, policy);
-      const Touched plain = touched(query, points, scene.pose);
+      Query query(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold points(scene.fixed, scene.moving, policy);
+      const FoundContacts plain = find_contacts(query, points, scene.pose);
       ASSERT_GT(plain.points.size(), 8u) << scene.name;
       {
         SCOPED_TRACE(scene.name);
-        const Touched found = touched_within(query, points, scene.pose, {});
+        const FoundContacts found = find_contacts_within(query, points, scene.pose, {});
         EXPECT_TRUE(same(found, plain));
         EXPECT_TRUE(found.result.complete);
         EXPECT_EQ(found.result.level, 0);
-        EXPECT_EQ(found.result.contacts, plain.result.contacts);
+        EXPECT_EQ(found.result.leaf_pairs, plain.result.leaf_pairs);
         EXPECT_EQ(found.result.sphere_tests, plain.result.sphere_tests);
         EXPECT_EQ(found.result.pad, plain.result.pad);
       }
@@ -43,27 +43,28 @@ TEST(ContactsWithinABudget, WithoutEndAreThoseOfThePlainQuery) {
 // What a stopped query spent stops the next one at the same place: so a recording is made again.
 TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
   int stopped = 0, with_points = 0;
-  for (const Scene& scene : {solids()[0], solids()[2], shells()}) {
+  for (const Scene& scene : Scenes{solids()[0], solids()[2], shells()}) {
     for (const SpherePolicy policy : kPolicies) {
-      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
-      CollisionQuery other(scene.fixed, scene.moving, options_of(policy));
-      ContactPoints points(scene.fixed, scene.moving, policy);
-      ContactPoints others(scene.fixed, scene.moving, policy);
-      const std::uint64_t all = query.contact_points(scene.pose, points).sphere_tests;
+      Query query(scene.fixed, scene.moving, options_of(policy));
+      Query other(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold points(scene.fixed, scene.moving, policy);
+      ContactManifold others(scene.fixed, scene.moving, policy);
+      const std::uint64_t all = query.contacts(scene.pose, points).sphere_tests;
       {
         for (std::uint64_t tests = 1; tests < 2 * all; tests = tests * 7 / 4 + 1) {
           SCOPED_TRACE(scene.name + ", " + std::to_string(tests) + " tests");
-          const Touched first = touched_within(query, points, scene.pose, {.sphere_tests = tests});
-          const Touched again = touched_within(other, others, scene.pose,
-                                               {.sphere_tests = first.result.sphere_tests});
+          const FoundContacts first =
+              find_contacts_within(query, points, scene.pose, {.tests = tests});
+          const FoundContacts again =
+              find_contacts_within(other, others, scene.pose, {.tests = first.result.sphere_tests});
           EXPECT_TRUE(same(first, again));
           EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
           EXPECT_EQ(again.result.complete, first.result.complete);
           EXPECT_EQ(again.result.level, first.result.level);
-          EXPECT_EQ(again.result.contacts, first.result.contacts);
-          EXPECT_EQ(again.result.gap->lower, first.result.gap->lower);
-          EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
-          EXPECT_LE(first.result.contacts, query.contact_points(scene.pose, points).contacts);
+          EXPECT_EQ(again.result.leaf_pairs, first.result.leaf_pairs);
+          EXPECT_EQ(again.result.distance->lower, first.result.distance->lower);
+          EXPECT_EQ(again.result.distance->upper, first.result.distance->upper);
+          EXPECT_LE(first.result.leaf_pairs, query.contacts(scene.pose, points).leaf_pairs);
           EXPECT_TRUE(first.result.complete || tests < all);
           stopped += first.result.complete ? 0 : 1;
           with_points += !first.result.complete && !first.points.empty() ? 1 : 0;
@@ -79,19 +80,20 @@ TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
 TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
   const Scene& scene = jaws();
   int stopped = 0;
-  CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
   {
     for (int i = 0; i < 40; ++i) {
       const auto deadline = Budget::Clock::now() + std::chrono::microseconds(5 * i);
-      const Touched first = touched_within(query, points, scene.pose, {.deadline = deadline});
-      const Touched again =
-          touched_within(query, points, scene.pose, {.sphere_tests = first.result.sphere_tests});
+      const FoundContacts first =
+          find_contacts_within(query, points, scene.pose, {.deadline = deadline});
+      const FoundContacts again =
+          find_contacts_within(query, points, scene.pose, {.tests = first.result.sphere_tests});
       EXPECT_TRUE(same(first, again)) << i;
       EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
       EXPECT_EQ(again.result.complete, first.result.complete);
       EXPECT_EQ(again.result.level, first.result.level);
-      EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
+      EXPECT_EQ(again.result.distance->upper, first.result.distance->upper);
       stopped += first.result.complete ? 0 : 1;
     }
   }
@@ -102,33 +104,34 @@ TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
 // change, and is the same with a budget of so many tests.
 TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
   const Scene& scene = jaws();
-  CollisionOptions options = options_of(SpherePolicy::kSlab);
-  CollisionQuery one(scene.fixed, scene.moving, options);
+  QueryOptions options = options_of(SpherePolicy::kSlab);
+  Query one(scene.fixed, scene.moving, options);
   options.workers = 2;
   options.period = std::chrono::nanoseconds(0);
-  CollisionQuery two(scene.fixed, scene.moving, options);
-  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
-  const Touched whole = touched_within(one, points, scene.pose, {});
-  ASSERT_GT(whole.result.contacts, 1000u);
+  Query two(scene.fixed, scene.moving, options);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  const FoundContacts whole = find_contacts_within(one, points, scene.pose, {});
+  ASSERT_GT(whole.result.leaf_pairs, 1000u);
   int stopped = 0;
   const auto give_up = Budget::Clock::now() + std::chrono::minutes(5);
   for (int i = 0; i < 400 || (two.sharing().chunks < 20 && Budget::Clock::now() < give_up); ++i) {
     const auto deadline =
         Budget::Clock::now() + std::chrono::microseconds(i < 200 ? 2 * i : 10'000'000);
-    const Touched first = touched_within(two, points, scene.pose, {.deadline = deadline});
+    const FoundContacts first =
+        find_contacts_within(two, points, scene.pose, {.deadline = deadline});
     if (first.result.complete) {
       EXPECT_TRUE(same(first, whole)) << i;
-      EXPECT_EQ(first.result.contacts, whole.result.contacts);
+      EXPECT_EQ(first.result.leaf_pairs, whole.result.leaf_pairs);
       EXPECT_EQ(first.result.sphere_tests, whole.result.sphere_tests);
     }
-    const Touched again =
-        touched_within(two, points, scene.pose, {.sphere_tests = first.result.sphere_tests});
+    const FoundContacts again =
+        find_contacts_within(two, points, scene.pose, {.tests = first.result.sphere_tests});
     EXPECT_EQ(again.result.complete, first.result.complete) << i;
     EXPECT_EQ(again.result.sphere_tests, first.result.sphere_tests);
-    EXPECT_EQ(again.result.contacts, first.result.contacts);
+    EXPECT_EQ(again.result.leaf_pairs, first.result.leaf_pairs);
     EXPECT_EQ(again.result.level, first.result.level);
-    EXPECT_EQ(again.result.gap->lower, first.result.gap->lower);
-    EXPECT_EQ(again.result.gap->upper, first.result.gap->upper);
+    EXPECT_EQ(again.result.distance->lower, first.result.distance->lower);
+    EXPECT_EQ(again.result.distance->upper, first.result.distance->upper);
     stopped += first.result.complete ? 0 : 1;
   }
   EXPECT_GT(stopped, 5);
@@ -139,21 +142,21 @@ TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
 TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
   {
     const Scene& scene = solids()[0];
-    CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-    ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
-    const Touched found =
-        touched_within(query, points, scene.pose, {.deadline = Budget::Clock::now()});
+    Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+    ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+    const FoundContacts found =
+        find_contacts_within(query, points, scene.pose, {.deadline = Budget::Clock::now()});
     EXPECT_FALSE(found.result.complete);
     EXPECT_EQ(found.result.sphere_tests, 1u);
-    EXPECT_EQ(found.result.contacts, 0u);
+    EXPECT_EQ(found.result.leaf_pairs, 0u);
     EXPECT_EQ(found.result.level, std::max(scene.fixed.depth(), scene.moving.depth()));
     EXPECT_TRUE(found.points.empty());
     EXPECT_EQ(found.sums.weight, 0);
     // Roots that are apart need no time.
-    const Touched apart =
-        touched_within(query, points, shift({9, 0, 0}), {.deadline = Budget::Clock::now()});
+    const FoundContacts apart =
+        find_contacts_within(query, points, shift({9, 0, 0}), {.deadline = Budget::Clock::now()});
     EXPECT_TRUE(apart.result.complete);
-    EXPECT_GT(apart.result.gap->lower, 5);
+    EXPECT_GT(apart.result.distance->lower, 5);
   }
 }
 
@@ -162,18 +165,17 @@ TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
 TEST(ContactsWithinABudget, TellATrueGap) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kPolicies) {
-    CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
-    ContactPoints points(scene.fixed, scene.moving, policy);
+    Query query(scene.fixed, scene.moving, options_of(policy));
+    ContactManifold points(scene.fixed, scene.moving, policy);
     for (const double distance : {1.0, 0.3, 0.05, 0.002}) {
       const Eigen::Isometry3d pose = shift({1.9 + distance, 0, 0});
-      GapInterval before{0, HUGE_VAL};
+      DistanceInterval before{0, HUGE_VAL};
       for (const std::uint64_t tests : {0u, 1u, 30u, 400u, 3'000u, 50'000u, 10'000'000u}) {
         SCOPED_TRACE(std::to_string(distance) + " apart, " + std::to_string(tests) + " tests");
-        const GapInterval wide = *query.contact_points(pose, points, {.sphere_tests = tests}).gap;
-        const QueryResult result =
-            query.collide(pose, std::span<Contact>(), {.sphere_tests = tests});
-        const GapInterval narrow = *result.gap;
-        for (const GapInterval& gap : {wide, narrow}) {
+        const DistanceInterval wide = *query.contacts(pose, points, {.tests = tests}).distance;
+        const QueryResult result = query.leaf_pairs(pose, std::span<LeafPair>(), {.tests = tests});
+        const DistanceInterval narrow = *result.distance;
+        for (const DistanceInterval& gap : {wide, narrow}) {
           EXPECT_LE(gap.lower, distance + 1e-9);
           EXPECT_GE(gap.upper, distance - 1e-9);
         }
@@ -182,8 +184,8 @@ TEST(ContactsWithinABudget, TellATrueGap) {
         EXPECT_GE(narrow.lower, before.lower);
         EXPECT_LE(narrow.upper, before.upper);
         before = narrow;
-        EXPECT_TRUE(result.contacts == 0 || tests < 10'000'000 ||
-                    wide.upper <= query.resolution(result));
+        EXPECT_TRUE(result.leaf_pairs == 0 || tests < 10'000'000 ||
+                    wide.upper <= result.resolution);
       }
     }
   }
@@ -191,13 +193,13 @@ TEST(ContactsWithinABudget, TellATrueGap) {
 
 TEST(ContactsWithinABudget, OfNoRigidMotionAreNone) {
   const Scene& scene = solids()[0];
-  CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-  ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
   Eigen::Isometry3d bad = scene.pose;
   bad.linear() *= 2;
   {
-    EXPECT_TRUE(touched_within(query, points, scene.pose, {}).result.complete);
-    const Touched none = touched_within(query, points, bad, {});
+    EXPECT_TRUE(find_contacts_within(query, points, scene.pose, {}).result.complete);
+    const FoundContacts none = find_contacts_within(query, points, bad, {});
     EXPECT_EQ(none.result.status, QueryStatus::kInvalidPose);
     EXPECT_FALSE(none.result.complete);
     EXPECT_TRUE(none.points.empty());

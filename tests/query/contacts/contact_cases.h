@@ -4,42 +4,42 @@
 #include <cmath>
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "query/query_cases.h"
 
 namespace ist::test {
 
 /// What one query found, kept.
-struct Touched {
+struct FoundContacts {
   ContactSums sums;
-  std::vector<ContactPoint> points;
+  std::vector<Contact> points;
   QueryResult result;
 };
 
-[[nodiscard]] inline Touched touched(CollisionQuery& query, ContactPoints& points,
-                                     const Eigen::Isometry3d& pose) {
-  const QueryResult result = query.contact_points(pose, points);
+[[nodiscard]] inline FoundContacts find_contacts(Query& query, ContactManifold& points,
+                                                 const Eigen::Isometry3d& pose) {
+  const QueryResult result = query.contacts(pose, points);
   return {points.sums(), {points.points().begin(), points.points().end()}, result};
 }
 
 /// Everything of one pose, at most so many points.
-[[nodiscard]] inline Touched touched(const SphereTree& fixed, const SphereTree& moving,
-                                     SpherePolicy policy, const Eigen::Isometry3d& pose,
-                                     std::size_t most = 1 << 14) {
-  CollisionOptions options;
+[[nodiscard]] inline FoundContacts find_contacts(const SphereTree& fixed, const SphereTree& moving,
+                                                 SpherePolicy policy, const Eigen::Isometry3d& pose,
+                                                 std::size_t most = 1 << 14) {
+  QueryOptions options;
   options.policy = policy;
-  CollisionQuery query(fixed, moving, options);
-  ContactPoints points(fixed, moving, policy, {most, std::size_t{1} << 20});
-  return touched(query, points, pose);
+  Query query(fixed, moving, options);
+  ContactManifold points(fixed, moving, policy, {most, std::size_t{1} << 20});
+  return find_contacts(query, points, pose);
 }
 
-/// Whether all of it is numbers, and within what ContactPoint states; `size` is s.
-[[nodiscard]] inline bool is_sound(const Touched& touched, double size) {
+/// Whether all of it is numbers, and within what Contact states; `size` is s.
+[[nodiscard]] inline bool is_sound(const FoundContacts& touched, double size) {
   constexpr double kRounded = 1 + 1e-9;
   const auto finite = [](const Wrench& w) { return w.force.allFinite() && w.torque.allFinite(); };
   const ContactSums& sums = touched.sums;
   return std::isfinite(sums.weight) && finite(sums.pressure) && finite(sums.spring) &&
-         std::all_of(touched.points.begin(), touched.points.end(), [&](const ContactPoint& p) {
+         std::all_of(touched.points.begin(), touched.points.end(), [&](const Contact& p) {
            return p.position.allFinite() && std::abs(p.normal.norm() - 1) < 1e-9 &&
                   p.depth >= -2 * size * kRounded && p.depth <= size * kRounded && p.weight > 0 &&
                   std::isfinite(p.weight);
@@ -54,14 +54,14 @@ struct Touched {
   return a.weight == b.weight && a.pairs == b.pairs && a.about == b.about &&
          same(a.pressure, b.pressure) && same(a.spring, b.spring);
 }
-[[nodiscard]] inline bool same(const ContactPoint& a, const ContactPoint& b) {
+[[nodiscard]] inline bool same(const Contact& a, const Contact& b) {
   return a.position == b.position && a.normal == b.normal && a.depth == b.depth &&
          a.weight == b.weight;
 }
-[[nodiscard]] inline bool same(const Touched& a, const Touched& b) {
+[[nodiscard]] inline bool same(const FoundContacts& a, const FoundContacts& b) {
   return same(a.sums, b.sums) &&
          std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
-                    [](const ContactPoint& p, const ContactPoint& q) { return same(p, q); });
+                    [](const Contact& p, const Contact& q) { return same(p, q); });
 }
 
 }  // namespace ist::test

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/tree/tree_builder.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/contacts/contact_cases.h"
 
 namespace ist::test {
@@ -28,10 +28,10 @@ SphereTree tree_of_solid(const Solid& solid, double voxel_size) {
 FormErrors form_errors(const ClosedForm& form, const SphereTree& fixed, const SphereTree& moving,
                        SpherePolicy policy, double depth, std::size_t most) {
   constexpr double kDegrees = 57.29577951308232;
-  const double s = fixed.lattice().voxel_size;
+  const double s = fixed.voxel_size();
   const Eigen::Isometry3d pose = form.pose(depth * s);
   FormErrors errors;
-  for (const ContactPoint& p : touched(fixed, moving, policy, pose, most).points) {
+  for (const Contact& p : find_contacts(fixed, moving, policy, pose, most).points) {
     ++errors.points;
     errors.finite = errors.finite && p.position.allFinite() && p.normal.allFinite() &&
                     std::isfinite(p.depth) && std::isfinite(p.weight);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "ist/query/contacts/contact_rates.h"
+#include "ist/query/contacts/contact_reducer.h"
 #include "query/contacts/contact_cases.h"
 #include "support/shapes.h"
 
@@ -47,7 +48,7 @@ struct Steepness {
 
 // A way of the moving body: steps of 1e-4 mm, or turns about the origin of its tree's frame by as
 // much at the lever.
-struct Way {
+struct AxisDirection {
   const char* name;
   Isometry3d from;
   Vector3d along = Vector3d::Zero();  // of unit length, or nothing
@@ -70,7 +71,7 @@ struct Way {
 struct Bodies {
   const char* name;
   SphereTree fixed, moving;
-  std::vector<Way> ways;
+  std::vector<AxisDirection> ways;
 };
 
 // Millimetres; voxels of 0.5 mm and coarser, so that 1e-4 mm is little.
@@ -109,7 +110,7 @@ class Lipschitz : public ::testing::TestWithParam<SpherePolicy> {
   // pairs.
   void check_sums(double least_depth, double near);
   void check_pairs(double least_depth, double near);
-  CollisionOptions options_;
+  QueryOptions options_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Policies, Lipschitz, ::testing::ValuesIn(kSpherePolicies),
@@ -119,17 +120,17 @@ INSTANTIATE_TEST_SUITE_P(Policies, Lipschitz, ::testing::ValuesIn(kSpherePolicie
 void Lipschitz::check_sums(double least_depth, double near) {
   Steepness steepest;
   for (const Bodies& b : all_bodies()) {
-    CollisionQuery query(b.fixed, b.moving, options_);
-    ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
-    for (const Way& way : b.ways) {
+    Query query(b.fixed, b.moving, options_);
+    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
+    for (const AxisDirection& way : b.ways) {
       SCOPED_TRACE(std::string(b.name) + ", " + way.name);
       const double lever = points.rates().lever;
-      const Vector3d centre = b.moving.lattice().origin();
+      const Vector3d centre = b.moving.origin();
       Steepness found;
       ContactSums before;
       std::uint64_t most = 0;
       for (int step = 0; step <= way.steps; ++step) {
-        static_cast<void>(query.contact_points(way.at(step, lever, centre), points));
+        static_cast<void>(query.contacts(way.at(step, lever, centre), points));
         const ContactSums& sums = points.sums();
         most = std::max(most, sums.pairs);
         if (step > 0 && sums.pairs + before.pairs > 0) {
@@ -152,21 +153,21 @@ void Lipschitz::check_pairs(double least_depth, double near) {
   Steepness steepest;
   std::size_t faded = 0;
   for (const Bodies& b : all_bodies()) {
-    CollisionQuery query(b.fixed, b.moving, options_);
-    ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
+    Query query(b.fixed, b.moving, options_);
+    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
     const auto pairs_at = [&](const Isometry3d& pose) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSums> sums;
-      for (const Contact& contact : ask(query, pose).contacts) {
-        EXPECT_TRUE(points.begin(pose));
-        points.take({&contact, 1});
-        if (points.sums().pairs > 0) sums[{contact.fixed, contact.moving}] = points.sums();
+      for (const LeafPair& leaf_pair : ask(query, pose).leaf_pairs) {
+        EXPECT_TRUE(points.reducer().begin(pose));
+        points.reducer().take({&leaf_pair, 1});
+        if (points.sums().pairs > 0) sums[{leaf_pair.fixed, leaf_pair.moving}] = points.sums();
       }
       return sums;
     };
-    for (const Way& way : b.ways) {
+    for (const AxisDirection& way : b.ways) {
       SCOPED_TRACE(std::string(b.name) + ", " + way.name);
       const double lever = points.rates().lever;
-      const Vector3d centre = b.moving.lattice().origin();
+      const Vector3d centre = b.moving.origin();
       Steepness found;
       for (int start = 0; start < way.steps; start += 29) {  // two steps in a row here and there
         const auto before = pairs_at(way.at(start, lever, centre)),
@@ -206,26 +207,26 @@ TEST_P(Lipschitz, LoadsChangeNoFasterThanTheirRates) {
 TEST_P(Lipschitz, NothingIsLeftOfAPairThatLeaves) {
   std::size_t leaving = 0, by_ancestors = 0;
   for (const Bodies& b : all_bodies()) {
-    CollisionOptions options;
+    QueryOptions options;
     options.policy = GetParam();
-    CollisionQuery query(b.fixed, b.moving, options);
-    ContactPoints points(b.fixed, b.moving, GetParam(), {0, 0});
+    Query query(b.fixed, b.moving, options);
+    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0});
     const double lever = points.rates().lever;
-    const Vector3d centre = b.moving.lattice().origin();
-    for (const Way& way : b.ways) {
+    const Vector3d centre = b.moving.origin();
+    for (const AxisDirection& way : b.ways) {
       SCOPED_TRACE(std::string(b.name) + ", " + way.name);
-      std::vector<Contact> before, changed;
+      std::vector<LeafPair> before, changed;
       double most = 0;
       for (int step = 0; step <= way.steps; ++step) {
-        const std::vector<Contact> now = ask(query, way.at(step, lever, centre)).contacts;
+        const std::vector<LeafPair> now = ask(query, way.at(step, lever, centre)).leaf_pairs;
         for (const int side : {0, 1}) {  // what left, and what came
           const auto &a = side == 0 ? before : now, &c = side == 0 ? now : before;
           changed.clear();
           std::set_difference(a.begin(), a.end(), c.begin(), c.end(), std::back_inserter(changed));
           if (step == 0 || changed.empty()) continue;
-          for (const Contact& contact : changed) {
-            ASSERT_TRUE(points.begin(way.at(side == 0 ? step - 1 : step, lever, centre)));
-            points.take({&contact, 1});
+          for (const LeafPair& leaf_pair : changed) {
+            ASSERT_TRUE(points.reducer().begin(way.at(side == 0 ? step - 1 : step, lever, centre)));
+            points.reducer().take({&leaf_pair, 1});
             most = std::max(most, points.sums().weight / (points.rates().weight * way.motion()));
           }
           leaving += changed.size();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ist/tree/saved_spheres.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::test {
 namespace {
@@ -28,7 +29,7 @@ struct Body {
 Body body_of(const SphereTree& tree, SpherePolicy policy, const Eigen::Isometry3d& pose) {
   Body body;
   const SavedSpheres spheres = save_spheres(tree, policy);
-  const Vector3d origin = tree.lattice().origin();
+  const Vector3d origin = tree.origin();
   std::vector<std::vector<std::uint32_t>> parents;
   for (int level = 0; level <= tree.depth(); ++level) {
     auto& nodes = body.nodes.emplace_back();
@@ -36,10 +37,11 @@ Body body_of(const SphereTree& tree, SpherePolicy policy, const Eigen::Isometry3
       nodes.push_back({pose * (origin + ball.centre), ball.radius});
     }
     auto& up = parents.emplace_back();
-    for (std::uint32_t parent = 0; parent + 1 < tree.octree().nodes(level + 1).size(); ++parent) {
-      for (int slot = 0; slot < tree.octree().child_count(level + 1, parent); ++slot) {
+    for (std::uint32_t parent = 0; parent + 1 < tree.parts().octree.nodes(level + 1).size();
+         ++parent) {
+      for (int slot = 0; slot < tree.parts().octree.child_count(level + 1, parent); ++slot) {
         if (policy == SpherePolicy::kSlab) {
-          const Slab slab = tree.saved_slab(level, parent, slot);
+          const Slab slab = tree.parts().saved_slab(level, parent, slot);
           Node& node = nodes[up.size()];
           node.normal = pose.linear() * slab.normal;
           node.offset = slab.offset;
@@ -49,7 +51,7 @@ Body body_of(const SphereTree& tree, SpherePolicy policy, const Eigen::Isometry3
       }
     }
   }
-  for (std::uint32_t leaf = 0; leaf < tree.octree().leaf_count(); ++leaf) {
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
     auto& line = body.ancestors.emplace_back(1, leaf);
     for (std::size_t level = 0; level + 1 < parents.size(); ++level) {
       line.push_back(parents[level][line.back()]);
@@ -58,8 +60,8 @@ Body body_of(const SphereTree& tree, SpherePolicy policy, const Eigen::Isometry3
     const double length = node.normal.norm();
     body.points.push_back(node.centre);
     if (length > 0) body.points.back() += node.offset / length * (node.normal / length);
-    body.normals.push_back(tree.normals()[leaf].coherence() *
-                           (pose.linear() * tree.normals()[leaf].direction()));
+    body.normals.push_back(tree.parts().normals[leaf].coherence() *
+                           (pose.linear() * tree.parts().normals[leaf].direction()));
   }
   return body;
 }
@@ -82,8 +84,8 @@ double least_overlap(const SphereTree& fixed, const SphereTree& moving, const Bo
     if (!leaves) least = std::min(least, x.radius + y.radius - (x.centre - y.centre).norm());
     if (slabs) least = std::min(least, slabs_overlap(x, y));
     if (leaves) return least;
-    const double ratio = std::ldexp(fixed.lattice().voxel_size, static_cast<int>(i)) /
-                         std::ldexp(moving.lattice().voxel_size, static_cast<int>(j));
+    const double ratio = std::ldexp(fixed.voxel_size(), static_cast<int>(i)) /
+                         std::ldexp(moving.voxel_size(), static_cast<int>(j));
     const bool open_i = i > 0 && (j == 0 || ratio >= std::sqrt(0.5));
     const bool open_j = j > 0 && (i == 0 || ratio <= std::sqrt(2.0));
     i -= open_i ? 1 : 0;
@@ -97,7 +99,7 @@ std::vector<PlainPair> plain_pairs(const SphereTree& fixed, const SphereTree& mo
                                    SpherePolicy policy, const Eigen::Isometry3d& pose) {
   const Body a = body_of(fixed, policy, Eigen::Isometry3d::Identity());
   const Body b = body_of(moving, policy, pose);
-  const double s_a = fixed.lattice().voxel_size, s_b = moving.lattice().voxel_size;
+  const double s_a = fixed.voxel_size(), s_b = moving.voxel_size();
   const double s = 0.5 * (s_a + s_b), farthest = 0.5 * std::sqrt(3.0) * (s_a + s_b);
   std::vector<PlainPair> pairs;
   for (std::uint32_t f = 0; f < a.points.size(); ++f) {
@@ -136,11 +138,11 @@ ContactSums plain_sums(const std::vector<PlainPair>& pairs, double voxel_size,
   return sums;
 }
 
-std::map<std::uint32_t, ContactPoint> plain_points(const std::vector<PlainPair>& pairs) {
-  std::map<std::uint32_t, ContactPoint> points;
+std::map<std::uint32_t, Contact> plain_points(const std::vector<PlainPair>& pairs) {
+  std::map<std::uint32_t, Contact> points;
   for (const PlainPair& pair : pairs) {
-    ContactPoint& point =
-        points.try_emplace(pair.moving, ContactPoint{Vector3d::Zero(), Vector3d::Zero(), 0, 0})
+    Contact& point =
+        points.try_emplace(pair.moving, Contact{Vector3d::Zero(), Vector3d::Zero(), 0, 0})
             .first->second;
     point.position += pair.weight * pair.position;
     point.normal += pair.weight * pair.normal;

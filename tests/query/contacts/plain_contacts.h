@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "ist/query/contacts/contact_point.h"
+#include "ist/query/manifold.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::test {
@@ -18,7 +18,7 @@ struct PlainPair {
 };
 
 /// Every pair of leaves that has a weight, found without any search and worked out from what the
-/// header promises: all leaves against all leaves, each with all its ancestors.
+/// header guarantees: all leaves against all leaves, each with all its ancestors.
 [[nodiscard]] std::vector<PlainPair> plain_pairs(const SphereTree& fixed, const SphereTree& moving,
                                                  SpherePolicy policy,
                                                  const Eigen::Isometry3d& pose);
@@ -27,7 +27,6 @@ struct PlainPair {
                                      const Eigen::Vector3d& about);
 
 /// One contact a moving leaf.
-[[nodiscard]] std::map<std::uint32_t, ContactPoint> plain_points(
-    const std::vector<PlainPair>& pairs);
+[[nodiscard]] std::map<std::uint32_t, Contact> plain_points(const std::vector<PlainPair>& pairs);
 
 }  // namespace ist::test

@@ -5,11 +5,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "ist/mesh/mesh_io.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/tree/sphere_tree.h"
 #include "query/contacts/closed_forms.h"
 #include "query/contacts/contact_cases.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "support/data_dir.h"
 #include "support/skip.h"
 
@@ -37,39 +38,39 @@ void expect_near(const Wrench& a, const Wrench& b, double part, double lever) {
 // wrenches are opposite.
 void expect_mirrored(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                      const Isometry3d& pose) {
-  CollisionOptions options;
+  QueryOptions options;
   options.policy = policy;
-  CollisionQuery there(fixed, moving, options), back(moving, fixed, options);
-  std::vector<Contact> pairs = ask(there, pose).contacts,
-                       others = ask(back, pose.inverse()).contacts;
-  for (Contact& contact : others) std::swap(contact.fixed, contact.moving);
+  Query there(fixed, moving, options), back(moving, fixed, options);
+  std::vector<LeafPair> pairs = ask(there, pose).leaf_pairs,
+                        others = ask(back, pose.inverse()).leaf_pairs;
+  for (LeafPair& leaf_pair : others) std::swap(leaf_pair.fixed, leaf_pair.moving);
   std::sort(others.begin(), others.end());
-  std::vector<Contact> differ;
+  std::vector<LeafPair> differ;
   std::set_symmetric_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
                                 std::back_inserter(differ));
   EXPECT_LE(differ.size(), 2 + pairs.size() / 200);
 
-  ContactPoints points(fixed, moving, policy), swapped(moving, fixed, policy);
-  const ContactSums a = touched(there, points, pose).sums,
-                    b = touched(back, swapped, pose.inverse()).sums;
+  ContactManifold points(fixed, moving, policy), swapped(moving, fixed, policy);
+  const ContactSums a = find_contacts(there, points, pose).sums,
+                    b = find_contacts(back, swapped, pose.inverse()).sums;
   if (!differ.empty()) {  // those that only one of them has are as good as none
-    ASSERT_TRUE(points.begin(pose));
-    std::vector<Contact> of_first;
+    ASSERT_TRUE(points.reducer().begin(pose));
+    std::vector<LeafPair> of_first;
     std::set_difference(pairs.begin(), pairs.end(), others.begin(), others.end(),
                         std::back_inserter(of_first));
-    points.take(of_first);
+    points.reducer().take(of_first);
     EXPECT_LE(points.sums().weight, 1e-5 * a.weight);
   }
-  // Far less than the 2 % that are promised: a pair is the same seen from either side.
+  // Far less than the 2 % that are guaranteed: a pair is the same seen from either side.
   constexpr double kPart = 1e-6;
   EXPECT_NEAR(a.weight, b.weight, kPart * b.weight);
-  const double lever = moving.reach();
+  const double lever = moving.bounding_radius();
   expect_near(mirrored(a.pressure, pose, a.about, b.about), b.pressure, kPart, lever);
   expect_near(mirrored(a.spring, pose, a.about, b.about), b.spring, kPart, lever);
 }
 
 TEST(SwappedBodies, FeelTheOpposite) {
-  for (const Scene& scene : {solids()[0], solids()[1], solids()[2], jaws()}) {
+  for (const Scene& scene : Scenes{solids()[0], solids()[1], solids()[2], jaws()}) {
     for (const SpherePolicy policy : kSpherePolicies) {
       SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
       expect_mirrored(scene.fixed, scene.moving, policy, scene.pose);
@@ -107,12 +108,12 @@ TEST(SwappedBodies, FeelTheOppositeInAHumanJaw) {
     std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
       SCOPED_TRACE(item["label"].get<std::string>() + ", " + std::string(to_string(policy)));
-      const Touched found = touched(fixed, moving, policy, pose, 32);
+      const FoundContacts found = find_contacts(fixed, moving, policy, pose, 32);
       if (found.sums.pairs == 0) continue;
       ++touching;
       expect_mirrored(fixed, moving, policy, pose);
       EXPECT_LE(found.points.size(), 32u);
-      for (const ContactPoint& p : found.points) {
+      for (const Contact& p : found.points) {
         EXPECT_NEAR(p.normal.norm(), 1, 1e-12);
         EXPECT_GE(p.depth, -1.6 - 1e-9);
         EXPECT_LE(p.depth, 0.8 + 1e-9);

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "ist/query/collision_query.h"
-#include "ist/query/inside.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/query/query.h"
+#include "ist/tree/sphere_tree.h"
 
 namespace ist::test {
 namespace {
@@ -26,19 +25,19 @@ TEST(Conformal, TheGapIsKnownAtAnyTime) {
   for (const ConformalPair& pair : conformal_pairs(3, 4, 0.3)) {
     SCOPED_TRACE(pair.name);
     const SphereTree fixed = exact_tree_of(pair.fixed), moving = exact_tree_of(pair.moving);
-    CollisionQuery query(fixed, moving);
+    Query query(fixed, moving);
     const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    const GapResult gap = query.gap(pose, 0);
-    EXPECT_NEAR(gap.gap.lower, pair.gap, 0.01 * pair.gap);
-    EXPECT_NEAR(gap.gap.upper, pair.gap, 0.01 * pair.gap);
-    EXPECT_EQ(query.touches(pose), Touch::kNo);
+    const DistanceResult gap = query.distance(pose, 0);
+    EXPECT_NEAR(gap.distance.lower, pair.gap, 0.01 * pair.gap);
+    EXPECT_NEAR(gap.distance.upper, pair.gap, 0.01 * pair.gap);
+    EXPECT_EQ(query.intersects(pose).answer, ist::Answer::kNo);
     EXPECT_EQ(InsideTest(pair.fixed, pair.moving).at(pose),
               pair.name == "shells" || pair.name == "inside" ? Inside::kMoving : Inside::kNone);
-    std::vector<Contact> contacts(1 << 20);
+    std::vector<LeafPair> leaf_pairs(1 << 20);
     for (const std::uint64_t tests : {1u, 100u, 10'000u, 100'000'000u}) {
-      const QueryResult result = query.collide(pose, contacts, {.sphere_tests = tests});
-      EXPECT_LE(result.gap->lower, 1.01 * pair.gap);
-      EXPECT_GE(result.gap->upper, 0.99 * pair.gap);
+      const QueryResult result = query.leaf_pairs(pose, leaf_pairs, {.tests = tests});
+      EXPECT_LE(result.distance->lower, 1.01 * pair.gap);
+      EXPECT_GE(result.distance->upper, 0.99 * pair.gap);
     }
   }
 }

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/tree/tree_builder.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 
 namespace ist::test {
@@ -23,8 +24,8 @@ namespace ist::test {
 
 /// The same tree without its triangles: as it would have been built.
 [[nodiscard]] inline SphereTree without_triangles(const SphereTree& tree) {
-  return SphereTree({tree.lattice(), tree.octree(), tree.orientation(), tree.normals(),
-                     tree.bounds(), std::nullopt, std::nullopt});
+  return SphereTree({tree.parts().lattice, tree.parts().octree, tree.orientation(),
+                     tree.parts().normals, tree.parts().bounds, std::nullopt, std::nullopt});
 }
 
 }  // namespace ist::test

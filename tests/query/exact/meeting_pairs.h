@@ -4,20 +4,21 @@
 #include <vector>
 
 #include "ist/base/pose.h"
-#include "ist/query/contact.h"
+#include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 #include "support/exact_polygon.h"
 
 namespace ist::test {
 
-/// All pairs of triangles that meet, sorted, each decided in rational numbers of what is promised
+/// All pairs of triangles that meet, sorted, each decided in rational numbers of what is guaranteed
 /// to be the moved vertices. Both trees must have triangles.
 [[nodiscard]] inline std::vector<TrianglePair> meeting_pairs(const SphereTree& fixed,
                                                              const SphereTree& moving,
                                                              const Eigen::Isometry3d& pose) {
   const auto m = project_to_rigid(pose)->matrix();
-  const TriangleMesh& a = fixed.triangles()->mesh;
-  TriangleMesh b = moving.triangles()->mesh;
+  const TriangleMesh& a = fixed.parts().triangles->mesh;
+  TriangleMesh b = moving.parts().triangles->mesh;
   for (Eigen::Vector3d& v : b.vertices) {
     const Eigen::Vector3d x = v;
     for (Eigen::Index i = 0; i < 3; ++i) {

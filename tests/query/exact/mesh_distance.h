@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
-#include "ist/query/contact.h"
+#include "ist/mesh/mesh.h"
 #include "ist/query/exact/triangle_distance.h"
+#include "ist/query/results.h"
 
 namespace ist::test {
 
@@ -43,7 +43,7 @@ namespace ist::test {
 }
 
 /// How far a distance is outside an interval that should hold it; 0 where it is not.
-[[nodiscard]] inline double outside(const GapInterval& gap, double distance) {
+[[nodiscard]] inline double outside(const DistanceInterval& gap, double distance) {
   return std::max({0.0, gap.lower - distance, distance - gap.upper});
 }
 

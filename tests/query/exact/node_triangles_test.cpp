@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/float_box.h"
 #include "support/shapes.h"
@@ -16,8 +17,8 @@ namespace {
 // Every triangle once, under its own corners; each of its points in the cube of a node that has it.
 void expect_whole(const SphereTree& tree) {
   const NodeTriangles nodes(tree);
-  const TriangleMesh& mesh = tree.triangles()->mesh;
-  const std::uint32_t node_count = tree.octree().node_count(nodes.level());
+  const TriangleMesh& mesh = tree.parts().triangles->mesh;
+  const std::uint32_t node_count = tree.parts().octree.node_count(nodes.level());
   std::set<std::uint32_t> indices;
   std::vector<std::vector<std::uint32_t>> nodes_of(nodes.count());
   for (std::uint32_t node = 0; node < node_count; ++node) {
@@ -39,7 +40,7 @@ void expect_whole(const SphereTree& tree) {
       const Eigen::Vector3d p =
           corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
       EXPECT_TRUE(std::any_of(nodes_of[i].begin(), nodes_of[i].end(), [&](std::uint32_t node) {
-        return holds(nodes.cube(node), p - tree.lattice().origin());
+        return holds(nodes.cube(node), p - tree.origin());
       }));
     }
   }

@@ -9,8 +9,8 @@
 #include "ist/query/exact/triangle_distance.h"
 #include "query/exact/float_box.h"
 #include "query/query_cases.h"
-#include "query/search/guarded.h"
-#include "query/search/targets.h"
+#include "simd/guarded.h"
+#include "simd/targets.h"
 
 namespace ist::test {
 namespace {
@@ -108,7 +108,7 @@ class FindNearKernel : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Targets, FindNearKernel, ::testing::ValuesIn(vector_targets()), name_of);
 
 TEST_P(FindNearKernel, FindsWhatTheScalarFormFinds) {
-  const FindNearFunction find_near = find_kernels(GetParam()).find_near;
+  const FindNearFunction find_near = select_kernels(GetParam()).find_near;
   Random random(3);
   std::size_t all = 0;
   for (std::size_t lanes = 0; lanes <= TriangleLanes::kSize; ++lanes) {

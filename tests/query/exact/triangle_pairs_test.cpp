@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <vector>
 
-#include "ist/query/collision_query.h"
+#include "ist/query/query.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/meeting_pairs.h"
-#include "query/search/guarded.h"
-#include "query/search/targets.h"
+#include "simd/guarded.h"
+#include "simd/targets.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry3d& pose) {
+std::vector<TrianglePair> ask_exact(Query& query, const Eigen::Isometry3d& pose) {
   std::vector<TrianglePair> pairs(1 << 16);
-  const ExactResult result = query.collide_exact(pose, pairs);
+  const TrianglePairsResult result = query.triangle_pairs(pose, pairs);
   EXPECT_EQ(result.status, QueryStatus::kDone);
   EXPECT_FALSE(result.truncated);
   EXPECT_GE(result.sphere_tests, 1u);
@@ -26,12 +26,13 @@ std::vector<TrianglePair> ask_exact(CollisionQuery& query, const Eigen::Isometry
 void expect_exact(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& pose,
                   std::size_t& touching) {
   const std::vector<TrianglePair> wanted = meeting_pairs(fixed, moving, pose);
-  const auto expect = [&](const CollisionOptions& options) {
-    CollisionQuery query(fixed, moving, options);
+  const auto expect = [&](const QueryOptions& options) {
+    Query query(fixed, moving, options);
     EXPECT_EQ(ask_exact(query, pose), wanted) << query.target();
-    EXPECT_EQ(query.touches(pose), wanted.empty() ? Touch::kNo : Touch::kYes) << query.target();
+    EXPECT_EQ(query.intersects(pose).answer, wanted.empty() ? ist::Answer::kNo : ist::Answer::kYes)
+        << query.target();
   };
-  CollisionOptions options;
+  QueryOptions options;
   for (const SpherePolicy policy : kSpherePolicies) {
     SCOPED_TRACE(to_string(policy));
     options.policy = policy;
@@ -107,12 +108,12 @@ TEST(TrianglePairs, FarFromTheOrigin) {
 // Two bodies that touch in many triangles.
 class ManyPairs : public ::testing::Test {
  protected:
-  CollisionQuery query_with(std::size_t triangle_pairs, int workers = 1) const {
-    CollisionOptions options;
+  Query query_with(std::size_t triangle_pairs, int workers = 1) const {
+    QueryOptions options;
     options.triangle_pairs = triangle_pairs;
     options.workers = workers;
     options.period = std::chrono::nanoseconds(0);
-    return CollisionQuery(tree_, tree_, options);
+    return Query(tree_, tree_, options);
   }
   const SphereTree tree_ = exact_tree(icosphere(2, 1), 20);
   const Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
@@ -123,20 +124,20 @@ TEST_F(ManyPairs, WithMemoryOfAnySize) {
   ASSERT_GT(wanted_.size(), 500u);
   for (const std::size_t memory : {1u, 6000u, 1u << 20}) {
     for (const int workers : {1, 2}) {
-      CollisionQuery query = query_with(memory, workers);
+      Query query = query_with(memory, workers);
       EXPECT_EQ(ask_exact(query, pose_), wanted_) << memory;
-      EXPECT_EQ(query.touches(pose_), Touch::kYes);
-      EXPECT_EQ(query.touches(shift({3, 0, 0})), Touch::kNo);
+      EXPECT_EQ(query.intersects(pose_).answer, ist::Answer::kYes);
+      EXPECT_EQ(query.intersects(shift({3, 0, 0})).answer, ist::Answer::kNo);
     }
   }
 }
 
 TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
   for (const std::size_t memory : {1u, 1u << 16}) {
-    CollisionQuery query = query_with(memory);
+    Query query = query_with(memory);
     for (std::size_t length = 0; length < wanted_.size() + 40; length += length < 20 ? 1 : 211) {
       Guarded<TrianglePair> out(length, length % 8);
-      const ExactResult result = query.collide_exact(pose_, out.span());
+      const TrianglePairsResult result = query.triangle_pairs(pose_, out.span());
       ASSERT_EQ(result.triangle_pairs, wanted_.size());
       ASSERT_EQ(result.truncated, length < wanted_.size());
       const auto count = static_cast<std::ptrdiff_t>(std::min(length, wanted_.size()));
@@ -148,12 +149,12 @@ TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
 
 // A pose that is none has no pairs; nor do bodies whose roots are apart, in one test.
 TEST_F(ManyPairs, OfWhatDoesNotTouchAreNone) {
-  CollisionQuery query = query_with(1 << 16);
+  Query query = query_with(1 << 16);
   std::vector<TrianglePair> pairs(10);
   Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
   bad.matrix()(0, 0) = 2;
-  EXPECT_EQ(query.collide_exact(bad, pairs).status, QueryStatus::kInvalidPose);
-  const ExactResult far = query.collide_exact(shift({1e9, 0, 0}), pairs);
+  EXPECT_EQ(query.triangle_pairs(bad, pairs).status, QueryStatus::kInvalidPose);
+  const TrianglePairsResult far = query.triangle_pairs(shift({1e9, 0, 0}), pairs);
   EXPECT_EQ(far.status, QueryStatus::kDone);
   EXPECT_EQ(far.triangle_pairs, 0u);
   EXPECT_EQ(far.sphere_tests, 1u);
@@ -171,20 +172,20 @@ TEST(TrianglePairs, OfAFewThatAreNearMany) {
 TEST(TrianglePairs, WithoutTrianglesAreAStatus) {
   const SphereTree tree = tree_of(icosphere(1, 1), 9), exact = exact_tree(icosphere(1, 1), 9);
   std::vector<TrianglePair> pairs(10);
-  EXPECT_EQ(CollisionQuery(tree, exact).collide_exact(shift({0, 0, 0}), pairs).status,
+  EXPECT_EQ(Query(tree, exact).triangle_pairs(shift({0, 0, 0}), pairs).status,
             QueryStatus::kNoTriangles);
 }
 
 TEST(Touches, WithoutTrianglesIsAtMostPossible) {
   const SphereTree tree = tree_of(icosphere(1, 1), 9), exact = exact_tree(icosphere(1, 1), 9);
-  CollisionQuery query(tree, exact);
-  EXPECT_FALSE(query.is_exact());
-  EXPECT_EQ(query.touches(shift({0.1, 0, 0})), Touch::kPossible);
-  EXPECT_EQ(query.touches(shift({3, 0, 0})), Touch::kNo);
+  Query query(tree, exact);
+  EXPECT_FALSE(query.has_triangles());
+  EXPECT_EQ(query.intersects(shift({0.1, 0, 0})).answer, ist::Answer::kNear);
+  EXPECT_EQ(query.intersects(shift({3, 0, 0})).answer, ist::Answer::kNo);
   Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
   bad.matrix()(0, 0) = 2;
-  EXPECT_EQ(query.touches(bad), Touch::kInvalidPose);
-  EXPECT_EQ(CollisionQuery(exact, exact).touches(bad), Touch::kInvalidPose);
+  EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(Query(exact, exact).intersects(bad).status, QueryStatus::kInvalidPose);
 }
 
 }  // namespace

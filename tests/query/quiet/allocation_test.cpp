@@ -3,10 +3,10 @@
 #include <chrono>
 #include <new>
 
-#include "ist/query/reference.h"
+#include "ist/query/reference/reference_query.h"
 #include "query/exact/exact_tree.h"
 #include "query/quiet/allocations.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -37,7 +37,7 @@ TEST(Allocations, AreCountedHoweverMemoryIsAskedFor) {
 TEST(Allocations, TheReferenceMakesSome) {
   const Scene& scene = solids()[0];
   ReferenceQuery query(scene.fixed, scene.moving, SpherePolicy::kTight);
-  EXPECT_GT(allocations_of([&] { static_cast<void>(query.collide(scene.pose, {})); }), 0u);
+  EXPECT_GT(allocations_of([&] { static_cast<void>(query.leaf_pairs(scene.pose, {})); }), 0u);
 }
 
 // From the very first query on: all was reserved by the constructor. Nor does the worker make any.
@@ -45,13 +45,13 @@ TEST(Allocations, AQueryMakesNone) {
   for (const Scene& scene : solids()) {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const int workers : {1, 2}) {
-        std::vector<Contact> out(1 << 16);
-        CollisionQuery query(scene.fixed, scene.moving, options_of(policy, "", workers));
+        std::vector<LeafPair> out(1 << 16);
+        Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
         EXPECT_EQ(allocations_of([&] {
                     for (int i = 0; i < 400; ++i) {
                       Eigen::Isometry3d pose = scene.pose;
                       pose.translation()[2] += 0.01 * (i % 100);
-                      static_cast<void>(query.collide(pose, out));
+                      static_cast<void>(query.leaf_pairs(pose, out));
                     }
                   }),
                   0u)
@@ -63,12 +63,12 @@ TEST(Allocations, AQueryMakesNone) {
 
 TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
   const Scene& scene = jaws();
-  std::vector<Contact> out(1 << 16);
-  CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
+  std::vector<LeafPair> out(1 << 16);
+  Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
   EXPECT_EQ(allocations_of([&] {
               for (const auto give_up = Clock::now() + 60s;
                    Clock::now() < give_up && query.sharing().chunks < 200;) {
-                static_cast<void>(query.collide(scene.pose, out));
+                static_cast<void>(query.leaf_pairs(scene.pose, out));
               }
             }),
             0u);
@@ -80,14 +80,14 @@ TEST(Allocations, ContactPointsMakeNone) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
     for (const std::size_t room : {std::size_t{10}, std::size_t{1} << 15}) {
-      CollisionQuery query(scene.fixed, scene.moving, options_of(policy));
-      ContactPoints points(scene.fixed, scene.moving, policy, {32, room});
+      Query query(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold points(scene.fixed, scene.moving, policy, {32, room});
       std::size_t found = 0;
       EXPECT_EQ(allocations_of([&] {
                   for (int i = 0; i < 100; ++i) {
                     Eigen::Isometry3d pose = scene.pose;
                     pose.translation()[2] += 0.01 * i;
-                    static_cast<void>(query.contact_points(pose, points));
+                    static_cast<void>(query.contacts(pose, points));
                     found += points.points().size();
                   }
                 }),
@@ -101,20 +101,20 @@ TEST(Allocations, ContactPointsMakeNone) {
 TEST(Allocations, CertifiedAnswersMakeNone) {
   const SphereTree tree = exact_tree(icosphere(3, 1), 20);
   for (const std::size_t triangle_pairs : {1u << 12, 1u << 18}) {
-    CollisionOptions options;
+    QueryOptions options;
     options.triangle_pairs = triangle_pairs;
-    CollisionQuery query(tree, tree, options);
-    std::vector<Contact> contacts(1 << 17);
+    Query query(tree, tree, options);
+    std::vector<LeafPair> leaf_pairs(1 << 17);
     std::vector<TrianglePair> pairs(1 << 16);
     std::uint64_t triangles = 0;
     EXPECT_EQ(allocations_of([&] {
                 for (int i = 0; i < 100; ++i) {
                   // The first lies on itself: whole numbers decide.
                   const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
-                  triangles += query.collide_exact(pose, pairs).triangle_pairs;
-                  static_cast<void>(query.touches(pose));
-                  static_cast<void>(query.gap(pose, 0.01));
-                  static_cast<void>(query.collide(pose, contacts, {1000}));
+                  triangles += query.triangle_pairs(pose, pairs).triangle_pairs;
+                  static_cast<void>(query.intersects(pose).answer);
+                  static_cast<void>(query.distance(pose, 0.01));
+                  static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {1000}));
                 }
               }),
               0u);

@@ -4,7 +4,7 @@
 #include <csignal>
 
 #include "query/exact/exact_tree.h"
-#include "query/search/scenes.h"
+#include "query/scenes.h"
 #include "support/shapes.h"
 #include "support/skip.h"
 #include "support/system_calls.h"
@@ -27,21 +27,21 @@ class SystemCalls : public ::testing::Test {
 // Queries along the scene's closing, before and after the call is forbidden, and at the end
 // whether the second worker, where there is one, did its part.
 void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
-  std::vector<Contact> out(1 << 16);
-  CollisionQuery query(scene.fixed, scene.moving, options_of(policy, "", workers));
+  std::vector<LeafPair> out(1 << 16);
+  Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
   const auto enough = [&](std::uint64_t helped) {
     return workers == 1 || query.sharing().chunks >= helped;
   };
   const auto give_up = Clock::now() + 60s;
   while (!enough(1) && Clock::now() < give_up) {  // it is there
-    static_cast<void>(query.collide(scene.pose, out));
+    static_cast<void>(query.leaf_pairs(scene.pose, out));
   }
   const std::uint64_t helped = query.sharing().chunks + 100;
   forbid_system_calls();
   for (int i = 0; i < 1000 || (!enough(helped) && Clock::now() < give_up); ++i) {
     Eigen::Isometry3d pose = scene.pose;
     pose.translation()[2] += 0.01 * (i % 100);
-    static_cast<void>(query.collide(pose, out));
+    static_cast<void>(query.leaf_pairs(pose, out));
   }
   end_process(enough(helped) ? 0 : 1);
 }
@@ -73,13 +73,13 @@ TEST_F(SystemCalls, ContactPointsMakeNone) {
   EXPECT_EXIT(
       {
         const Scene& scene = jaws();
-        CollisionQuery query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-        ContactPoints points(scene.fixed, scene.moving, SpherePolicy::kSlab, {32, 100});
+        Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
+        ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {32, 100});
         forbid_system_calls();
         for (int i = 0; i < 100; ++i) {
           Eigen::Isometry3d pose = scene.pose;
           pose.translation()[2] += 0.01 * i;
-          static_cast<void>(query.contact_points(pose, points));
+          static_cast<void>(query.contacts(pose, points));
         }
         end_process(points.points().size() > 8 ? 0 : 1);
       },
@@ -90,19 +90,19 @@ TEST_F(SystemCalls, CertifiedAnswersMakeNone) {
   EXPECT_EXIT(
       {
         const SphereTree tree = exact_tree(icosphere(3, 1), 20);
-        CollisionQuery query(tree, tree);
-        std::vector<Contact> contacts(1 << 16);
+        Query query(tree, tree);
+        std::vector<LeafPair> leaf_pairs(1 << 16);
         std::vector<TrianglePair> pairs(1 << 16);
         std::uint64_t triangles = 0;
         forbid_system_calls();
         for (int i = 0; i < 100; ++i) {
           const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
-          triangles += query.collide_exact(pose, pairs).triangle_pairs;
-          triangles += query.touches(pose) == Touch::kYes ? 1U : 0U;
-          static_cast<void>(query.gap(pose, 0.01));
-          static_cast<void>(query.collide(pose, contacts, {.sphere_tests = 1000}));
+          triangles += query.triangle_pairs(pose, pairs).triangle_pairs;
+          triangles += query.intersects(pose).answer == ist::Answer::kYes ? 1U : 0U;
+          static_cast<void>(query.distance(pose, 0.01));
+          static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {.tests = 1000}));
           const auto deadline = Budget::Clock::now() + std::chrono::microseconds(20);
-          static_cast<void>(query.collide(pose, contacts, {.deadline = deadline}));
+          static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {.deadline = deadline}));
         }
         end_process(triangles > 1000 ? 0 : 1);
       },

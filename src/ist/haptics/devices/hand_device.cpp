@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ist/base/assert.h"
 #include "ist/base/error.h"
 
 namespace ist {
@@ -17,8 +16,9 @@ constexpr int kFewestSteps = 16;        // a tick
 
 void check(const char* name, double value, double least, double most) {
   if (value >= least && value <= most) return;
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("hand: {} is {}: give one from {} to {}", name, value, least, most));
+  throw Error(
+      ErrorCode::kArgumentInvalid,
+      fmt::format("HandSettings: {} is {}: give a number from {} to {}", name, value, least, most));
 }
 
 HandSettings checked(HandSettings settings) {
@@ -37,12 +37,12 @@ HandSettings checked(HandSettings settings) {
   return settings;
 }
 
-// What moves in translation, or what turns.
+// One degree of freedom: translation or rotation.
 struct Oscillator {
   double mass, stiffness, arm_damping, device_damping;
 
-  // The velocity halfway through a step, which is also the step's mean: `error` and `plan` are the
-  // way to the plan from where the step begins and the plan's velocity.
+  // The velocity at the middle of a step, which is also the step's mean. `error` is the motion from
+  // the body to the plan at the beginning of the step, `plan` the plan's velocity.
   [[nodiscard]] Eigen::Vector3d midpoint(const Eigen::Vector3d& velocity,
                                          const Eigen::Vector3d& error, const Eigen::Vector3d& plan,
                                          const Eigen::Vector3d& force, double h) const noexcept {
@@ -53,12 +53,12 @@ struct Oscillator {
   }
 };
 
-// The cosine of half the turn that motion_between tells.
+// The cosine of half a turn of motion_between.
 double half_cosine(const Eigen::Vector3d& turn) noexcept {
   return 1 / std::sqrt(1 + 0.25 * turn.squaredNorm());
 }
 
-// Down to whole steps.
+// Rounds down to whole steps.
 Eigen::Vector3d quantised(const Eigen::Vector3d& exact, double step) noexcept {
   return {std::floor(exact.x() / step) * step, std::floor(exact.y() / step) * step,
           std::floor(exact.z() / step) * step};
@@ -87,7 +87,9 @@ std::optional<Placement> HandDevice::read() noexcept {
 }
 
 void HandDevice::write(const Vector6& wrench, double dt) noexcept {
-  IST_ASSERT(waiting_ < kMostWritten);
+  constexpr double kRounding = 1 + 1e-9;
+  if (!(dt * kRounding >= kShortestTick && dt <= kRounding * kLongestTick) || !wrench.allFinite())
+    return;
   written_[(first_ + waiting_++) % kMostWritten] = {time_ + settings_.mechanics.delay, wrench};
   const double end = time_ + dt;
   const double longest = std::min(kLongestStep, dt / kFewestSteps);
@@ -96,7 +98,7 @@ void HandDevice::write(const Vector6& wrench, double dt) noexcept {
       felt_ = written_[first_].wrench;
       first_ = (first_ + 1) % kMostWritten;
     }
-    // No step goes over the time at which the wrench changes.
+    // No step crosses a change of the wrench.
     const double until = waiting_ > 0 ? std::min(end, written_[first_].time) : end;
     const double begin = time_;
     const double steps = std::ceil((until - begin) / longest);
@@ -117,8 +119,9 @@ void HandDevice::step(double h) noexcept {
   const Oscillator body{settings_.mass, settings_.arm_stiffness, settings_.arm_damping,
                         settings_.mechanics.damping};
   // The spring's torque is 2k sin(turn/2), and `error` is twice a tangent. With this stiffness the
-  // midpoint's torque times the turn is what the spring gives: with q the turn's quaternion and s
-  // the half angle's tangent of the step, U - U' = 2s · 2k (q_v - q_0 s/(1 + n))/n, n² = 1 + s².
+  // midpoint's torque times the turn is the energy released by the spring: with the turn's
+  // quaternion q and the half angle's tangent s of the step,
+  // U - U' = 2s · 2k (q_v - q_0 s/(1 + n))/n, n² = 1 + s².
   const Oscillator turning{settings_.inertia,
                            settings_.arm_angular_stiffness * half_cosine(error.tail<3>()),
                            settings_.arm_angular_damping, settings_.mechanics.angular_damping};
@@ -128,7 +131,7 @@ void HandDevice::step(double h) noexcept {
       turning.midpoint(velocity_.tail<3>(), error.tail<3>(), plan.velocity.tail<3>(),
                        felt_.tail<3>(), h);
   const Vector6 motion = h * middle;
-  pose_ = pose_.nudged(motion);
+  pose_ = pose_.integrated_fast(motion);
   velocity_ = 2 * middle - velocity_;
   work_ += felt_.dot(motion);
   damped_ += h * (settings_.mechanics.damping * middle.head<3>().squaredNorm() +
@@ -138,7 +141,7 @@ void HandDevice::step(double h) noexcept {
 double HandDevice::energy() const noexcept {
   const Vector6 error = motion_between(pose_, planned_);
   const double cosine = half_cosine(error.tail<3>());
-  // 4k (1 - cosine), by what does not cancel.
+  // 4k (1 - cosine) without cancellation.
   const double turned = 2 * error.tail<3>().squaredNorm() * cosine * cosine / (1 + cosine);
   return 0.5 * (settings_.mass * velocity_.head<3>().squaredNorm() +
                 settings_.inertia * velocity_.tail<3>().squaredNorm() +

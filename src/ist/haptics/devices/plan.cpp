@@ -27,8 +27,8 @@ std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint) {
   constexpr double kRounding = 1e-4;
   if (before != nullptr &&
       (waypoint.pose.rotation * before->pose.rotation.transpose()).trace() < -kRounding) {
-    return "it turns by more than a third of a circle from the waypoint before: put one between, "
-           "so that the way round is clear";
+    return "the turn from the waypoint before is more than a third of a circle: add a waypoint "
+           "between them, so that its sense is clear";
   }
   return {};
 }
@@ -36,13 +36,14 @@ std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint) {
 Plan::Plan(std::vector<Waypoint> waypoints) : waypoints_(std::move(waypoints)) {
   const ScopedFloatEnvironment environment;
   if (waypoints_.empty()) {
-    throw Error(ErrorCode::kInputInvalid, "plan: it has no waypoint: give at least one, at time 0");
+    throw Error(ErrorCode::kArgumentInvalid,
+                "the plan has no waypoint: give at least one, at time 0");
   }
   const Waypoint* before = nullptr;
   for (Waypoint& waypoint : waypoints_) {
     const std::string flaw = waypoint_flaw(before, waypoint);
     if (!flaw.empty()) {
-      throw Error(ErrorCode::kInputInvalid,
+      throw Error(ErrorCode::kArgumentInvalid,
                   fmt::format("plan: waypoint {} (from 0): {}", &waypoint - &waypoints_[0], flaw));
     }
     waypoint.pose = *Placement::from(waypoint.pose.isometry());
@@ -64,7 +65,7 @@ PlanPoint Plan::at(double time) noexcept {
   const double duration = waypoints_[now_ + 1].time - from.time;
   const double part = (time - from.time) / duration;
   const double c = leg.half_cosine;
-  // (1 - part) (1, 0) + part (c, c motion/2) is the quaternion; its square is needed for its speed.
+  // The quaternion is (1 - part) (1, 0) + part (c, c motion/2); its square gives the speed.
   const double square = 1 - 2 * part * (1 - part) * (1 - c);
   Vector6 motion, velocity;
   motion << part * leg.motion.head<3>(), part * c / (1 - part + part * c) * leg.motion.tail<3>();

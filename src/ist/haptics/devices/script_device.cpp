@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "ist/base/error.h"
+#include "ist/base/files.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/input_file.h"
 
 namespace ist {
 namespace {
@@ -21,9 +21,9 @@ namespace {
 constexpr std::string_view kHeader = "time,x,y,z,qw,qx,qy,qz";
 constexpr std::size_t kColumns = 8;
 constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put it first
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // written by spreadsheets
 
-// Up to the separator, both taken from the text; all of it where there is none.
+// Takes the text up to the separator, or all of it, and the separator.
 std::string_view take(std::string_view& text, char separator) {
   const std::size_t end = text.find(separator);
   const std::string_view taken = text.substr(0, end);
@@ -38,7 +38,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
-// Long words are cut in messages: the file may be no text at all.
+// Cuts long words for messages: the file may be binary.
 std::string_view shown(std::string_view word) { return word.substr(0, 40); }
 
 class ScriptReader {
@@ -65,7 +65,7 @@ class ScriptReader {
   }
 
  private:
-  // The next line that is not empty; empty at the end of the text.
+  // Takes the next line that is not empty; empty at the end of the text.
   std::string_view next_line() {
     while (!text_.empty()) {
       ++line_;
@@ -84,7 +84,7 @@ class ScriptReader {
       if (columns < kColumns) numbers[columns] = number_of(word);
     }
     if (columns != kColumns) {
-      fail(fmt::format("it has {} columns: give the eight of {}", columns, kHeader));
+      fail(fmt::format("the line has {} columns: give the eight of {}", columns, kHeader));
     }
     return numbers;
   }
@@ -101,8 +101,8 @@ class ScriptReader {
   Waypoint waypoint_of(const std::array<double, kColumns>& n) const {
     const double largest = std::max(std::max(std::abs(n[4]), std::abs(n[5])),
                                     std::max(std::abs(n[6]), std::abs(n[7])));
-    if (largest == 0) fail("the quaternion is 0: give qw = 1 where nothing turns");
-    // First by the largest, so that no square is too large or too small for a double.
+    if (largest == 0) fail("the quaternion is 0: give qw = 1 for no turn");
+    // Scaled by the largest first, so that no square overflows or underflows.
     Eigen::Quaterniond turn(n[4] / largest, n[5] / largest, n[6] / largest, n[7] / largest);
     turn.normalize();
     return {n[0], {turn.toRotationMatrix(), metres_ * Eigen::Vector3d(n[1], n[2], n[3])}};
@@ -113,7 +113,7 @@ class ScriptReader {
                 fmt::format("{}: line {}: {}", file_, std::max(line_, std::size_t{1}), what));
   }
 
-  std::string_view text_;  // what is not read yet
+  std::string_view text_;  // the rest of the text
   std::string file_;
   double metres_;
   std::size_t line_ = 0;
@@ -126,11 +126,15 @@ ScriptDevice::ScriptDevice(std::vector<Waypoint> waypoints, const DeviceMechanic
 
 std::vector<Waypoint> read_script(const std::filesystem::path& file, double metres) {
   const ScopedFloatEnvironment environment;
+  if (!(std::isfinite(metres) && metres > 0)) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("the unit of a script is {} m: give its length in metres", metres));
+  }
   InputFile input(file);
   if (input.size() > kMostBytes) {
     throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: it has {} bytes, more than {}: give fewer waypoints, what lies "
-                            "between is interpolated",
+                fmt::format("{}: it has {} bytes, more than {}: give fewer waypoints; the motion "
+                            "between them is interpolated",
                             file.string(), input.size(), kMostBytes));
   }
   std::string text(input.size(), '\0');

@@ -4,18 +4,18 @@
 
 namespace ist {
 
-double ContactEffect::force(const TouchPoint& point, const Vector6& motion) const noexcept {
-  const double overlap = point.overlap - point.normal.dot(point.moved(motion));
-  return settings_.stiffness * point.share * std::max(0.0, overlap);
+double ContactEffect::force(const ToolContact& point, const Vector6& motion) const noexcept {
+  const double depth = point.depth - point.normal.dot(point.moved(motion));
+  return settings_.stiffness * point.stiffness_fraction * std::max(0.0, depth);
 }
 
 void ContactEffect::respond(const EffectInput& input, const Vector6& motion,
                             Response& response) const noexcept {
   response.wrench += settings_.stiffness * input.contacts.spring;
-  for (const TouchPoint& point : input.contacts.points()) {
-    const double before = settings_.stiffness * point.share * point.overlap;
+  for (const ToolContact& point : input.contacts.points()) {
+    const double before = settings_.stiffness * point.stiffness_fraction * point.depth;
     const double after = force(point, kLead * motion);
-    const double slope = after > 0 ? kLead * settings_.stiffness * point.share : 0;
+    const double slope = after > 0 ? kLead * settings_.stiffness * point.stiffness_fraction : 0;
     response.add(point.arm, (after - before) * point.normal,
                  slope * (point.normal * point.normal.transpose()));
   }

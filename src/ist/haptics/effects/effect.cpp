@@ -6,7 +6,7 @@ void Response::add(const Eigen::Vector3d& arm, const Eigen::Vector3d& force,
                    const Eigen::Matrix3d& change) noexcept {
   wrench.head<3>() += force;
   wrench.tail<3>() += arm.cross(force);
-  // The place moves by t + w × arm = t - [arm] w, and the force's torque is [arm] f.
+  // The point moves by t + w × arm = t - [arm] w, and the torque of the force f is [arm] f.
   Eigen::Matrix3d cross;
   cross << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
   const Eigen::Matrix3d turned = cross * change;

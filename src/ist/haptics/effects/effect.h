@@ -1,14 +1,65 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string_view>
 
 #include "ist/base/api.h"
 #include "ist/haptics/placement.h"
-#include "ist/haptics/touch_set.h"
 
 namespace ist {
 
-/// What an effect must know. The union over the effects of a scene decides what is built and asked.
+/// A contact point of the tool: metres, scene axes.
+struct ToolContact {
+  Eigen::Vector3d arm;     ///< from the tool's origin to the point
+  Eigen::Vector3d normal;  ///< of unit length, from the fixed body to the tool
+  double depth;            ///< at least 0, measured from the depth at which contacts begin
+  /// The point's fraction of a contact's stiffness. A point of one whole leaf pair has 1. More than
+  /// 10 whole pairs share the stiffness of 10, so that a broad contact is no stiffer than the loop
+  /// can bear (McNeely et al. 1999, section 4.4).
+  double stiffness_fraction;
+
+  /// The displacement of the point for a small motion of the tool, metres.
+  [[nodiscard]] Eigen::Vector3d moved(const Vector6& motion) const noexcept {
+    return motion.head<3>() + motion.tail<3>().cross(arm);
+  }
+};
+
+/// All contacts of the tool at one pose.
+class ToolContacts {
+ public:
+  static constexpr std::size_t kMost = 32;
+
+  /// The sum over all leaf pairs, none merged, of stiffness_fraction · depth · normal, and its
+  /// torque: the wrench of a contact with a stiffness of 1 N/m.
+  Vector6 spring = Vector6::Zero();
+  /// The number of leaf pairs, by weight.
+  double count = 0;
+
+  [[nodiscard]] std::span<const ToolContact> points() const noexcept {
+    return {points_.data(), size_};
+  }
+  void clear() noexcept {
+    spring.setZero();
+    count = 0;
+    size_ = 0;
+  }
+  /// Adds a point. Returns false, and adds none, if there are kMost points.
+  bool add(const ToolContact& point) noexcept {
+    if (size_ == kMost) return false;
+    points_[size_++] = point;
+    return true;
+  }
+
+ private:
+  std::array<ToolContact, kMost> points_;
+  std::size_t size_ = 0;
+};
+
+/// The inputs of an effect. The union over all effects of a scene decides which trees are built and
+/// which queries a tick makes.
 struct EffectNeeds {
   bool normals = false;    ///< of contacts
   bool depth = false;      ///< of contacts
@@ -16,7 +67,7 @@ struct EffectNeeds {
   bool proximity = false;  ///< proximity voxels of the fixed body
   bool triangles = false;  ///< kept in the trees
 
-  /// Whether bodies must be voxelised and searched at all.
+  /// Whether the bodies must be voxelised and searched.
   [[nodiscard]] bool contacts() const noexcept { return normals || depth || triangles; }
   EffectNeeds& operator|=(const EffectNeeds& other) noexcept {
     normals |= other.normals;
@@ -28,44 +79,84 @@ struct EffectNeeds {
   }
 };
 
-/// What effects know at a tick, before the tool moves: SI, axes of the scene.
+/// The input of effects at a tick, before the tool moves: SI, scene axes.
 struct EffectInput {
-  const Placement& tool;      ///< where the contacts below were found
-  const TouchSet& contacts;   ///< empty where no effect needs them
-  const TouchSet& proximity;  ///< likewise: places near the fixed body; overlaps mean nothing there
-  double dt;                  ///< the tick's nominal length, s
+  const Placement& tool;         ///< the pose at which the contacts were found
+  const ToolContacts& contacts;  ///< empty if no effect needs contacts
+  /// Points near the fixed body, without a depth; empty if no effect needs proximity.
+  const ToolContacts& proximity;
+  double dt;  ///< the nominal length of the tick, s
 };
 
-/// What all effects together do to the tool for a motion from EffectInput::tool.
+/// The sum of all effects on the tool after a motion from EffectInput::tool.
 struct IST_API Response {
   Vector6 wrench = Vector6::Zero();  ///< about the tool's origin
   /// -d wrench / d motion, or a symmetric, positive semidefinite matrix near it.
   Matrix6 stiffness = Matrix6::Zero();
 
-  /// A force at a place, and how it changes as the place moves: `stiffness` is N/m.
+  /// Adds a force at a point, N, and -d force / d point, N/m.
   void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& force,
            const Eigen::Matrix3d& change) noexcept;
 };
 
-/// One thing that a hand may feel. Effects are named in a scene; what is not named is not there.
-///
-/// The tool's motion of a tick is found by a few Newton steps, each of which asks every effect what
-/// it does for the motion so far; then each is told the motion that was made. Neither allocates,
-/// locks or throws. All are deterministic and use + - * / and square roots only.
+/// A force on the tool. Each tick solves for the tool's motion by a few Newton steps, which call
+/// respond() for the motion so far; advance() is called once for the final motion. Effects of a
+/// caller's own are added by build_scene(). No function but the destructor may allocate, lock or
+/// throw. The effects of the library are deterministic: they use + - * / and square roots only.
 class IST_API Effect {
  public:
   virtual ~Effect() = default;
-  /// As the scene names it.
+  /// The effect's table in a scene. The text must live as long as the effect.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   [[nodiscard]] virtual EffectNeeds needs() const noexcept = 0;
 
-  /// Adds what it does after `motion`.
+  /// Adds the effect's wrench and stiffness after `motion`.
   virtual void respond(const EffectInput& input, const Vector6& motion,
                        Response& response) const noexcept = 0;
-  /// The tool goes by `motion`: for effects that remember.
+  /// Moves the state of an effect that has one: the tool has moved by `motion`.
   virtual void advance(const EffectInput&, const Vector6& /*motion*/) noexcept {}
-  /// Forgets all ticks before.
+  /// Forgets all earlier ticks.
   virtual void reset() noexcept {}
+};
+
+/// `contact`: springs push the surfaces apart.
+struct ContactSettings {
+  double stiffness = 2000;  ///< of one whole leaf pair, N/m; a contact has at most 10 times as much
+  double margin = 0.25;     ///< distance at which springs begin, in voxels, from 0 to 0.5
+};
+
+/// `damping`: surfaces in contact lose energy as they approach.
+struct DampingSettings {
+  double damping = 1;  ///< of one whole leaf pair, N s/m; a contact has at most 10 times as much
+};
+
+/// `friction`: surfaces in contact stick, then slide.
+struct FrictionSettings {
+  double static_coefficient = 0.3;   ///< µ_s: the largest ratio of tangential to normal force
+  double dynamic_coefficient = 0.2;  ///< µ_d <= µ_s: that ratio while the contact slides
+  double stiffness = 1000;           ///< tangential, of one whole leaf pair that sticks, N/m
+};
+
+/// `proximity`: the tool is slowed before the surfaces meet.
+struct ProximitySettings {
+  double distance = 0;  ///< from the fixed surface, m: two proximity voxels
+  double damping = 2;   ///< of one whole leaf pair, N s/m; all pairs have at most 10 times as much
+};
+
+/// `gravity`: the weight of the held body.
+struct GravitySettings {
+  double mass = 0;                                   ///< kg
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of mass, in the tool's frame, m
+  Eigen::Vector3d acceleration = {0, 0, -9.81};      ///< m/s², scene axes
+};
+
+/// `snap`: the tool is drawn to a stored pose.
+struct SnapSettings {
+  Placement pose = {};
+  double stiffness = 200;          ///< N/m
+  double angular_stiffness = 0.2;  ///< N m/rad
+  double radius = 0;               ///< of attraction, m
+  double angle = 0.2;              ///< of attraction: 2 tan(turn/2), as in motion_between
 };
 
 }  // namespace ist

@@ -3,28 +3,29 @@
 namespace ist {
 namespace {
 
-// The part of a limit within which a pull is the limit. Sliding ends with a pull of just that; what
-// rounding adds to it must not keep a tool that rests from sticking. At a stretch of 10 µm and 1
-// kHz the band is 1e-11 m/s wide.
+// The relative band about the limit that counts as the limit. Sliding ends with a pull equal to the
+// limit, and rounding must not keep a resting tool from sticking. At a stretch of 10 µm and 1 kHz
+// the band is 1e-11 m/s wide.
 constexpr double kRest = 1e-9;
 
-// How far places of the tool are from where they were under the anchor.
+// The displacements of contact points since the anchor.
 class Stretch {
  public:
-  // `found` is the pose at which arms are given, `now` where the tool is.
+  // Arms belong to the pose `found`; `now` is the tool's pose.
   Stretch(const Placement& anchor, const Placement& found, const Placement& now) noexcept
       : shift_(now.translation - anchor.translation),
         turn_((now.rotation - anchor.rotation) * found.rotation.transpose()) {}
 
-  // Across the normal, after one more motion.
-  [[nodiscard]] Eigen::Vector3d at(const TouchPoint& point, const Vector6& motion) const noexcept {
+  // The displacement across the normal, after one more motion.
+  [[nodiscard]] Eigen::Vector3d at(const ToolContact& point, const Vector6& motion) const noexcept {
     const Eigen::Vector3d way = shift_ + turn_ * point.arm + point.moved(motion);
     return way - point.normal.dot(way) * point.normal;
   }
-  // Of all points, by their shares.
-  [[nodiscard]] double sum(const TouchSet& contacts, const Vector6& motion) const noexcept {
+  // The sum over all points, by stiffness fraction.
+  [[nodiscard]] double sum(const ToolContacts& contacts, const Vector6& motion) const noexcept {
     double sum = 0;
-    for (const TouchPoint& point : contacts.points()) sum += point.share * at(point, motion).norm();
+    for (const ToolContact& point : contacts.points())
+      sum += point.stiffness_fraction * at(point, motion).norm();
     return sum;
   }
 
@@ -39,10 +40,10 @@ double FrictionEffect::limit(double normal_force) const noexcept {
   return (sliding_ ? settings_.dynamic_coefficient : settings_.static_coefficient) * normal_force;
 }
 
-double FrictionEffect::normal_force(const TouchSet& contacts,
+double FrictionEffect::normal_force(const ToolContacts& contacts,
                                     const Vector6& motion) const noexcept {
   double sum = 0;
-  for (const TouchPoint& point : contacts.points()) sum += contact_.force(point, motion);
+  for (const ToolContact& point : contacts.points()) sum += contact_.force(point, motion);
   return sum;
 }
 
@@ -52,8 +53,8 @@ void FrictionEffect::respond(const EffectInput& input, const Vector6& motion,
   const double pull = settings_.stiffness * stretch.sum(input.contacts, motion);
   const double most = limit(normal_force(input.contacts, motion));
   const double part = pull > most ? most / pull : 1;
-  for (const TouchPoint& point : input.contacts.points()) {
-    const double stiffness = part * settings_.stiffness * point.share;
+  for (const ToolContact& point : input.contacts.points()) {
+    const double stiffness = part * settings_.stiffness * point.stiffness_fraction;
     const Eigen::Matrix3d across =
         Eigen::Matrix3d::Identity() - point.normal * point.normal.transpose();
     response.add(point.arm, -stiffness * stretch.at(point, motion), stiffness * across);

@@ -5,8 +5,8 @@ namespace {
 
 double cube(double x) noexcept { return x * x * x; }
 
-// What one kind of motion is drawn with, over how far it has to go: `own` is its stiffness, `other`
-// that of the other kind in its unit; s and t say how far both have to go.
+// The secant stiffness of one kind of motion: `own` is its stiffness, `other` the stiffness of the
+// other kind in the same unit; s and t are the squares of both distances over their windows.
 double pull(double own, double other, double s, double t) noexcept {
   const double narrow = 1 - s, broad = 1 - s * s;
   return own * narrow * narrow * cube(1 - t * t) + 2 * other * s * broad * broad * cube(1 - t);

@@ -8,7 +8,8 @@
 
 namespace ist {
 
-static_assert(std::endian::native == std::endian::little, "both formats are written as they lie");
+static_assert(std::endian::native == std::endian::little,
+              "both formats are written in the machine's byte order");
 
 namespace {
 
@@ -21,23 +22,8 @@ void append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-StlContent::StlContent() : bytes_(kStlCountEnd, '\0') {}
-
-void StlContent::add_facet(const std::array<float, 9>& vertices) {
-  append(bytes_, std::array<float, 3>{});  // normals are computed from the winding, never read
-  append(bytes_, vertices);
-  append(bytes_, std::uint16_t{0});
-  ++facets_;
-}
-
-CheckedContent StlContent::finish() {
-  const auto count = static_cast<std::uint32_t>(facets_);
-  std::memcpy(bytes_.data() + kStlHeaderBytes, &count, sizeof count);
-  return {"stl", std::move(bytes_), facets_};
-}
-
-// assimp 5.2 takes a first byte of 0x0A after the header for the rest of a line end. So vertex 0 is
-// one at the origin that no face names, and the others are counted from 1.
+// assimp 5.2 skips a first byte of 0x0A after the header as part of a line end. So vertex 0 is an
+// unused one at the origin, and the file's vertices count from 1.
 PlyContent::PlyContent() { add_vertex({0, 0, 0}); }
 
 void PlyContent::add_vertex(const std::array<float, 3>& vertex) { append(vertices_, vertex); }

@@ -8,39 +8,26 @@
 
 namespace ist {
 
-/// A mesh file that passed its checks, in the form that assimp is given: binary STL, or binary PLY
-/// with float coordinates and lists of indices, and nothing else in it. Text is rewritten because
-/// assimp 5.2 misreads some of it without a word (its numbers keep 15 decimals and are rounded
-/// twice; a line that begins with a blank is passed over) and runs past the end of other.
+/// A checked mesh file, re-encoded for assimp as binary STL, or as binary PLY with float
+/// coordinates and index lists only. Text is re-encoded because assimp 5.2 silently misreads some
+/// of it (it keeps 15 decimals of a number and rounds twice; it skips a line that begins with a
+/// blank) and reads past the end of other text.
 struct CheckedContent {
   const char* format = "";  ///< assimp's name of the format
   std::string bytes;
-  std::size_t faces = 0;  ///< what assimp must find
+  std::size_t faces = 0;  ///< the number of faces that assimp must find
 };
 
-/// Writes binary STL, facet by facet.
-class StlContent {
- public:
-  StlContent();
-  void add_facet(const std::array<float, 9>& vertices);
-  /// The content; leaves this object empty.
-  [[nodiscard]] CheckedContent finish();
-
- private:
-  std::string bytes_;
-  std::size_t facets_ = 0;
-};
-
-/// Writes binary PLY: all vertices and faces, in any order of calls.
+/// Writes binary PLY. Vertices and faces may be added in any order.
 class PlyContent {
  public:
   PlyContent();
   void add_vertex(const std::array<float, 3>& vertex);
-  /// The corners are indices of vertices, checked by the caller.
+  /// Adds a face. Precondition: `corners` are indices of vertices.
   void add_face(std::span<const std::uint32_t> corners);
   [[nodiscard]] std::size_t vertices() const { return vertices_.size() / 12 - 1; }
   [[nodiscard]] std::size_t faces() const { return face_count_; }
-  /// The content; leaves this object empty.
+  /// Returns the content and leaves this object empty.
   [[nodiscard]] CheckedContent finish();
 
  private:

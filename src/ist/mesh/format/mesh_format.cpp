@@ -9,7 +9,7 @@ namespace ist {
 namespace {
 
 bool is_text(std::string_view content) {
-  // A NUL or Ctrl-Z at the end is what some programs close a text with.
+  // Some programs end a text with NUL or Ctrl-Z.
   const std::size_t last = content.find_last_not_of(std::string_view("\0\x1A", 2));
   return std::all_of(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(last + 1),
                      [](char c) {
@@ -18,7 +18,8 @@ bool is_text(std::string_view content) {
                      });
 }
 
-// Whether the first line that says anything, past comments and lone words, is one of an OBJ.
+// Whether the first line of more than one word, comments skipped, is one of an OBJ; every lone word
+// before it must be, too.
 bool begins_like_obj(std::string_view content, std::string_view file) {
   TextReader reader(content, file, TextReader::LineEnd::kContinuedByBackslash);
   while (reader.next_line()) {
@@ -49,8 +50,8 @@ CheckedContent check_content(std::string content, const std::filesystem::path& f
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
       return check_obj(content, name);
   }
-  // What remains is no mesh, or one that was cut early, or a binary STL of the wrong size. A text
-  // of several lines, or one that is longer than a header of STL, is none of these.
+  // The rest is no mesh, a mesh that was cut early, or a binary STL of the wrong size. A text of
+  // several lines, or one longer than an STL header, is neither of the last two.
   const bool could_be_cut = std::string_view("solid").starts_with(content) ||
                             std::string_view("ply").starts_with(content) ||
                             same_word(extension, ".stl");
@@ -60,7 +61,7 @@ CheckedContent check_content(std::string content, const std::filesystem::path& f
                        : could_be_cut || begins_like_binary_stl(content))
     return check_binary_stl(std::move(content), name);
   fail_mesh(ErrorCode::kNotAMesh, name, "",
-            "its content is in no format that is read here: STL (binary or text), PLY (binary or "
+            "the content is in no supported format: STL (binary or text), PLY (binary or "
             "text) or OBJ; convert the mesh to one of them");
 }
 

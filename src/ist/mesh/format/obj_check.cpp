@@ -37,7 +37,8 @@ class ObjReader {
   }
 
  private:
-  // The next word of the line, up to a comment; "1.#IND" is a number that is none.
+  // Returns the next word of the line, up to a comment. The '#' of "1.#IND", a printed NaN, begins
+  // no comment.
   std::string_view word() {
     const std::string_view found = reader_.word();
     const std::size_t comment = found.find('#');
@@ -46,7 +47,7 @@ class ObjReader {
     return found.substr(0, comment);
   }
 
-  // What follows the three coordinates, a weight or a colour, is no part of the surface.
+  // Ignores a weight or a colour after the three coordinates.
   void read_vertex() {
     std::array<float, 3> vertex{};
     for (float& coordinate : vertex) coordinate = reader_.coordinate(word());
@@ -67,7 +68,8 @@ class ObjReader {
     content_.add_face(corners_);
   }
 
-  // Counts from 1, or from the last vertex so far with -1. A vertex may follow the face.
+  // Indices count from 1, or backwards from the last vertex so far, which is -1. A vertex may
+  // follow the face.
   std::uint32_t read_corner(std::string_view digits) {
     const std::int64_t named = reader_.integer(digits);
     const auto so_far = static_cast<std::int64_t>(content_.vertices());
@@ -84,27 +86,26 @@ class ObjReader {
   [[noreturn]] void bad_index(std::int64_t named, std::size_t line) const {
     fail_mesh(
         ErrorCode::kMeshBadIndex, file_, fmt::format("line {}", line),
-        fmt::format("a face names vertex {}, which is not there; export the mesh again", named));
+        fmt::format("a face names vertex {}, which does not exist; export the mesh again", named));
   }
 
   [[noreturn]] void fail_without_faces(bool statement_seen, bool other_seen) const {
     if (content_.vertices() > 0)
       fail_mesh(ErrorCode::kMeshPointsOnly, file_, "",
-                fmt::format("it has {} vertices, but no face; export the surface as polygons",
+                fmt::format("the file has {} vertices, but no face; export the surface as polygons",
                             content_.vertices()));
     if (other_seen && !statement_seen)
       fail_mesh(ErrorCode::kNotAMesh, file_, "",
-                "it is named as an OBJ, but no line of it is one of an OBJ; export the mesh again");
-    fail_mesh(ErrorCode::kMeshEmpty, file_, "",
-              "it is an OBJ without a vertex; export the mesh again");
+                "the name ends in .obj, but no line is an OBJ statement; export the mesh again");
+    fail_mesh(ErrorCode::kMeshEmpty, file_, "", "the OBJ has no vertex; export the mesh again");
   }
 
   TextReader reader_;
   std::string_view file_;
   PlyContent content_;
   std::vector<std::uint32_t> corners_;
-  std::int64_t highest_ = 0;      // the highest index that a face names
-  std::size_t highest_line_ = 0;  // and where
+  std::int64_t highest_ = 0;      // the highest index in a face
+  std::size_t highest_line_ = 0;  // the line of that face
 };
 
 }  // namespace

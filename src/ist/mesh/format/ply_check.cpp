@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,7 +14,7 @@
 namespace ist {
 namespace {
 
-// The values after a header, one after the other, from text: a line for each vertex or face.
+// Reads the values after a text header: one line for each vertex or face.
 class TextBody {
  public:
   explicit TextBody(TextReader reader) : reader_(reader) {}
@@ -32,16 +29,16 @@ class TextBody {
   void end() {
     if (!reader_.word().empty())
       reader_.fail(ErrorCode::kNotAMesh,
-                   "there are more values than the header declares; export the mesh again");
+                   "the line has more values than the header declares; export the mesh again");
   }
   void finish() {
     if (reader_.next_line())
       reader_.fail(ErrorCode::kNotAMesh,
-                   "there are more elements than the header counts; export the mesh again");
+                   "the file has more elements than the header counts; export the mesh again");
   }
-  float coordinate(PlyType) { return reader_.coordinate(reader_.word()); }
-  std::int64_t integer(PlyType) { return reader_.integer(reader_.word()); }
-  void skip(PlyType) {
+  float coordinate(const PlyType*) { return reader_.coordinate(reader_.word()); }
+  std::int64_t integer(const PlyType*) { return reader_.integer(reader_.word()); }
+  void skip(const PlyType*) {
     if (reader_.word().empty()) reader_.fail_malformed("a value is missing; export the mesh again");
   }
   [[noreturn]] void fail(ErrorCode code, std::string_view cause) const {
@@ -52,7 +49,7 @@ class TextBody {
   TextReader reader_;
 };
 
-// The same from bytes.
+// Reads the values after a binary header.
 class BinaryBody {
  public:
   BinaryBody(std::string_view content, std::size_t offset, bool big_endian, std::string_view file)
@@ -69,15 +66,15 @@ class BinaryBody {
       fail_mesh(ErrorCode::kNotAMesh, file_, fmt::format("byte {}", offset_),
                 "bytes follow the elements that the header counts; export the mesh again");
   }
-  float coordinate(PlyType type) {
+  float coordinate(const PlyType* type) {
     const auto value = static_cast<float>(number(type));
     if (!std::isfinite(value))
       fail(ErrorCode::kMeshNotFinite,
-           "a coordinate is not finite as a float; mend the mesh where it was made");
+           "a coordinate is not finite as a float; repair the mesh where it was made");
     return value;
   }
-  std::int64_t integer(PlyType type) { return static_cast<std::int64_t>(number(type)); }
-  void skip(PlyType type) { static_cast<void>(take(size_of(type))); }
+  std::int64_t integer(const PlyType* type) { return static_cast<std::int64_t>(number(type)); }
+  void skip(const PlyType* type) { static_cast<void>(take(type->size)); }
   [[noreturn]] void fail(ErrorCode code, std::string_view cause) const {
     fail_mesh(code, file_, fmt::format("{} {}", element_->name, index_), cause);
   }
@@ -92,38 +89,15 @@ class BinaryBody {
     return content_.substr(std::exchange(offset_, offset_ + size), size);
   }
 
-  template <class T>
-  double value() {
-    std::array<char, sizeof(T)> raw;
-    const std::string_view bytes = take(sizeof(T));
-    std::copy(bytes.begin(), bytes.end(), raw.begin());
-    if (big_endian_) std::reverse(raw.begin(), raw.end());
-    T value;
-    std::memcpy(&value, raw.data(), sizeof(T));
-    return static_cast<double>(value);
-  }
-
-  // Every type of a PLY is exact in double.
-  double number(PlyType type) {
-    switch (type) {
-      case PlyType::kInt8:
-        return value<std::int8_t>();
-      case PlyType::kUint8:
-        return value<std::uint8_t>();
-      case PlyType::kInt16:
-        return value<std::int16_t>();
-      case PlyType::kUint16:
-        return value<std::uint16_t>();
-      case PlyType::kInt32:
-        return value<std::int32_t>();
-      case PlyType::kUint32:
-        return value<std::uint32_t>();
-      case PlyType::kFloat32:
-        return value<float>();
-      case PlyType::kFloat64:
-        return value<double>();
+  double number(const PlyType* type) {
+    std::array<char, sizeof(double)> raw;
+    const std::string_view bytes = take(type->size);
+    if (big_endian_) {
+      std::reverse_copy(bytes.begin(), bytes.end(), raw.begin());
+    } else {
+      std::copy(bytes.begin(), bytes.end(), raw.begin());
     }
-    return 0;
+    return type->number(raw.data());
   }
 
   std::string_view content_;
@@ -156,29 +130,19 @@ void read_corners(Body& body, std::int64_t count, const PlyProperty& property,
   }
 }
 
-// Reads one vertex, face or other element; keeps what belongs to the surface.
+// Reads one vertex, face or other element; keeps coordinates and corners.
 template <class Body>
 void read_instance(Body& body, const PlyElement& element, std::uint64_t vertices,
                    std::vector<std::uint32_t>& corners, PlyContent& content) {
   std::array<float, 3> vertex{};
   for (const PlyProperty& property : element.properties) {
-    switch (property.role) {
-      case PlyRole::kX:
-        vertex[0] = body.coordinate(property.type);
-        break;
-      case PlyRole::kY:
-        vertex[1] = body.coordinate(property.type);
-        break;
-      case PlyRole::kZ:
-        vertex[2] = body.coordinate(property.type);
-        break;
-      case PlyRole::kCorners:
-        read_corners(body, body.integer(*property.count_type), property, vertices, corners);
-        break;
-      case PlyRole::kOther: {
-        const std::int64_t count = property.count_type ? body.integer(*property.count_type) : 1;
-        for (std::int64_t i = 0; i < count; ++i) body.skip(property.type);
-      }
+    if (property.role == PlyRole::kCorners) {
+      read_corners(body, body.integer(property.count_type), property, vertices, corners);
+    } else if (property.role == PlyRole::kOther) {
+      const std::int64_t count = property.count_type ? body.integer(property.count_type) : 1;
+      for (std::int64_t i = 0; i < count; ++i) body.skip(property.type);
+    } else {
+      vertex[static_cast<std::size_t>(property.role)] = body.coordinate(property.type);
     }
   }
   if (element.name == "vertex") content.add_vertex(vertex);
@@ -193,7 +157,7 @@ CheckedContent read_elements(Body body, const PlyHeader& header, std::string_vie
   PlyContent content;
   std::vector<std::uint32_t> corners;
   for (const PlyElement& element : header.elements) {
-    if (element.properties.empty()) continue;  // takes no place in the file, whatever its count
+    if (element.properties.empty()) continue;  // takes no bytes in the file, for any count
     for (std::uint64_t i = 0; i < element.count; ++i) {
       body.begin(element, i);
       read_instance(body, element, vertices, corners, content);
@@ -202,11 +166,10 @@ CheckedContent read_elements(Body body, const PlyHeader& header, std::string_vie
   }
   body.finish();
   if (content.faces() == 0 && content.vertices() == 0)
-    fail_mesh(ErrorCode::kMeshEmpty, file, "",
-              "it is a PLY without a vertex; export the mesh again");
+    fail_mesh(ErrorCode::kMeshEmpty, file, "", "the PLY has no vertex; export the mesh again");
   if (content.faces() == 0)
     fail_mesh(ErrorCode::kMeshPointsOnly, file, "",
-              fmt::format("it has {} vertices, but no face; export the surface as polygons",
+              fmt::format("the file has {} vertices, but no face; export the surface as polygons",
                           content.vertices()));
   return content.finish();
 }

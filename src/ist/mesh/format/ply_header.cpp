@@ -3,40 +3,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
+#include <cstring>
+#include <type_traits>
 
 namespace ist {
 namespace {
 
-struct TypeName {
-  std::string_view name;
-  PlyType type;
-};
+template <class T>
+constexpr PlyType type_named(std::string_view name) {
+  return {name, sizeof(T), std::is_integral_v<T>, [](const char* raw) {
+            T value;
+            std::memcpy(&value, raw, sizeof(T));
+            return static_cast<double>(value);
+          }};
+}
 
-constexpr std::array<TypeName, 16> kTypeNames = {{{"char", PlyType::kInt8},
-                                                  {"int8", PlyType::kInt8},
-                                                  {"uchar", PlyType::kUint8},
-                                                  {"uint8", PlyType::kUint8},
-                                                  {"short", PlyType::kInt16},
-                                                  {"int16", PlyType::kInt16},
-                                                  {"ushort", PlyType::kUint16},
-                                                  {"uint16", PlyType::kUint16},
-                                                  {"int", PlyType::kInt32},
-                                                  {"int32", PlyType::kInt32},
-                                                  {"uint", PlyType::kUint32},
-                                                  {"uint32", PlyType::kUint32},
-                                                  {"float", PlyType::kFloat32},
-                                                  {"float32", PlyType::kFloat32},
-                                                  {"double", PlyType::kFloat64},
-                                                  {"float64", PlyType::kFloat64}}};
+constexpr PlyType kTypes[] = {
+    type_named<std::int8_t>("char"),     type_named<std::int8_t>("int8"),
+    type_named<std::uint8_t>("uchar"),   type_named<std::uint8_t>("uint8"),
+    type_named<std::int16_t>("short"),   type_named<std::int16_t>("int16"),
+    type_named<std::uint16_t>("ushort"), type_named<std::uint16_t>("uint16"),
+    type_named<std::int32_t>("int"),     type_named<std::int32_t>("int32"),
+    type_named<std::uint32_t>("uint"),   type_named<std::uint32_t>("uint32"),
+    type_named<float>("float"),          type_named<float>("float32"),
+    type_named<double>("double"),        type_named<double>("float64")};
 
-PlyType read_type(TextReader& reader) {
+const PlyType* read_type(TextReader& reader) {
   const std::string_view name = reader.word();
-  for (const TypeName& known : kTypeNames)
-    if (known.name == name) return known.type;
+  for (const PlyType& type : kTypes)
+    if (type.name == name) return &type;
   reader.fail_malformed(
-      fmt::format("'{}' is no type of a PLY property; export the mesh again", name.substr(0, 40)));
+      fmt::format("'{}' is not a PLY property type; export the mesh again", name.substr(0, 40)));
 }
 
 PlyEncoding read_encoding(TextReader& reader) {
@@ -45,7 +42,7 @@ PlyEncoding read_encoding(TextReader& reader) {
   if (encoding == "binary_little_endian") return PlyEncoding::kLittleEndian;
   if (encoding == "binary_big_endian") return PlyEncoding::kBigEndian;
   reader.fail_malformed(
-      fmt::format("'{}' is no encoding of a PLY; export the mesh again", encoding.substr(0, 40)));
+      fmt::format("'{}' is not a PLY encoding; export the mesh again", encoding.substr(0, 40)));
 }
 
 PlyElement read_element(TextReader& reader) {
@@ -79,75 +76,50 @@ PlyProperty read_property(TextReader& reader, std::string_view element) {
   const std::string_view name = reader.word();
   if (name.empty()) reader.fail_malformed("a property has no name; export the mesh again");
   if (element == "vertex" && role_of("face", name) == PlyRole::kCorners)
-    // Blender 2.7 leaves out the element 'face' where there is none, but not its list.
-    reader.fail(ErrorCode::kMeshPointsOnly,
-                "the corners of faces are declared, but no element 'face'; export the surface as "
-                "polygons");
+    // Blender 2.7 omits the element 'face' of a mesh without faces, but not its list.
+    reader.fail(
+        ErrorCode::kMeshPointsOnly,
+        "the header declares corners of faces, but no element 'face'; export the surface as "
+        "polygons");
   property.role = role_of(element, name);
   const bool list_expected = property.role == PlyRole::kCorners;
-  const bool right = property.count_type.has_value() == list_expected &&
-                     (!list_expected || is_integer(property.type));
+  const bool right = (property.count_type != nullptr) == list_expected &&
+                     (!list_expected || property.type->is_integer);
   if (property.role != PlyRole::kOther && !right)
     reader.fail(ErrorCode::kNotAMesh,
                 fmt::format("the property '{}' is not {}; export the mesh again", name,
                             list_expected ? "a list of integers" : "one number"));
-  if (property.count_type && !is_integer(*property.count_type))
+  if (property.count_type != nullptr && !property.count_type->is_integer)
     reader.fail(ErrorCode::kNotAMesh,
-                "the length of a list is declared as no integer; export the mesh again");
+                "the length of a list is not declared as an integer; export the mesh again");
   return property;
 }
 
-std::size_t roles(const PlyElement& element, PlyRole role) {
-  return static_cast<std::size_t>(
-      std::count_if(element.properties.begin(), element.properties.end(),
-                    [role](const PlyProperty& property) { return property.role == role; }));
+bool has_one(const PlyElement& element, PlyRole role) {
+  return std::ranges::count(element.properties, role, &PlyProperty::role) == 1;
 }
 
 void check_elements(const TextReader& reader, const PlyHeader& header) {
-  std::size_t vertex_elements = 0, face_elements = 0;
+  const auto refuse = [&reader](std::string_view cause) {
+    reader.fail(ErrorCode::kNotAMesh, cause);
+  };
   for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex") {
-      ++vertex_elements;
-      for (const PlyRole role : {PlyRole::kX, PlyRole::kY, PlyRole::kZ})
-        if (element.count > 0 && roles(element, role) != 1)
-          reader.fail(ErrorCode::kNotAMesh,
-                      "a vertex does not have one each of x, y and z; export the mesh again");
-    } else if (element.name == "face") {
-      ++face_elements;
-      if (element.count > 0 && roles(element, PlyRole::kCorners) != 1)
-        reader.fail(ErrorCode::kNotAMesh,
-                    "a face does not have one list 'vertex_indices'; export the mesh again");
-    } else if (element.name == "tristrips" && element.count > 0) {
-      reader.fail(ErrorCode::kNotAMesh,
-                  "its surface is in triangle strips, which are not read; export it as faces");
-    }
+    if (element.count == 0) continue;
+    if (element.name == "vertex" &&
+        !(has_one(element, PlyRole::kX) && has_one(element, PlyRole::kY) &&
+          has_one(element, PlyRole::kZ)))
+      refuse("a vertex does not have one each of x, y and z; export the mesh again");
+    if (element.name == "face" && !has_one(element, PlyRole::kCorners))
+      refuse("a face does not have one list 'vertex_indices'; export the mesh again");
+    if (element.name == "tristrips")
+      refuse("the surface is in triangle strips, which are not supported; export it as faces");
   }
-  if (vertex_elements > 1 || face_elements > 1)
-    reader.fail(ErrorCode::kNotAMesh,
-                "an element is declared more than once; export the mesh again");
+  for (const std::string_view name : {"vertex", "face"})
+    if (std::ranges::count(header.elements, name, &PlyElement::name) > 1)
+      refuse("an element is declared more than once; export the mesh again");
 }
 
 }  // namespace
-
-std::size_t size_of(PlyType type) {
-  switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8:
-      return 1;
-    case PlyType::kInt16:
-    case PlyType::kUint16:
-      return 2;
-    case PlyType::kInt32:
-    case PlyType::kUint32:
-    case PlyType::kFloat32:
-      return 4;
-    case PlyType::kFloat64:
-      return 8;
-  }
-  return 0;
-}
-
-bool is_integer(PlyType type) { return type != PlyType::kFloat32 && type != PlyType::kFloat64; }
 
 PlyHeader read_ply_header(TextReader& reader) {
   PlyHeader header;
@@ -157,7 +129,8 @@ PlyHeader read_ply_header(TextReader& reader) {
     if (first && word == "ply") continue;
     if (word == "comment" || word == "obj_info") continue;
     if (word == "end_header") {
-      if (!encoding_seen) reader.fail(ErrorCode::kNotAMesh, "the header names no encoding");
+      if (!encoding_seen)
+        reader.fail(ErrorCode::kNotAMesh, "the header names no encoding; export the mesh again");
       check_elements(reader, header);
       return header;
     }

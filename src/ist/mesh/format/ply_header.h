@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,31 +11,25 @@ namespace ist {
 
 enum class PlyEncoding : std::uint8_t { kText, kLittleEndian, kBigEndian };
 
-enum class PlyType : std::uint8_t {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kFloat32,
-  kFloat64
+/// The type of a property's numbers.
+struct PlyType {
+  std::string_view name;
+  std::size_t size;  ///< bytes in a binary file
+  bool is_integer;
+  double (*number)(const char* raw);  ///< reads `size` bytes in the machine's byte order: exact
 };
 
-[[nodiscard]] std::size_t size_of(PlyType type);
-[[nodiscard]] bool is_integer(PlyType type);
-
-/// What a property is to a surface.
+/// The role of a property in the surface; the first three are a vertex's axes.
 enum class PlyRole : std::uint8_t { kX, kY, kZ, kCorners, kOther };
 
 struct PlyProperty {
   PlyRole role = PlyRole::kOther;
-  std::optional<PlyType> count_type;  ///< of a list only
-  PlyType type = PlyType::kFloat32;
+  const PlyType* count_type = nullptr;  ///< for a list only
+  const PlyType* type = nullptr;
 };
 
 struct PlyElement {
-  std::string_view name;    ///< lies in the content
+  std::string_view name;    ///< a view of the content
   std::uint64_t count = 0;  ///< as declared: any number
   std::vector<PlyProperty> properties;
 };
@@ -46,8 +39,9 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-/// Reads the header of a PLY, and leaves the reader on its last line. There is at most one element
-/// `vertex`, with x, y and z, and at most one `face`, with one list of integer corners.
+/// Reads the header of a PLY and leaves the reader on the header's last line. The result has at
+/// most one element `vertex`, with x, y and z, and at most one `face`, with one list of integer
+/// corners.
 /// Errors: kNotAMesh, kMeshTruncated.
 [[nodiscard]] PlyHeader read_ply_header(TextReader& reader);
 

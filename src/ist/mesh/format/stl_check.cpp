@@ -12,7 +12,9 @@
 namespace ist {
 namespace {
 
-// Facets that the header counts; the content holds the count.
+constexpr std::size_t kNormalBytes = 12;
+
+// Returns the header's facet count. Precondition: the content holds the header and the count.
 std::size_t facet_count(std::string_view content) {
   std::uint32_t count = 0;
   std::memcpy(&count, content.data() + kStlHeaderBytes, sizeof count);
@@ -23,10 +25,9 @@ std::size_t whole_facets(std::string_view content) {
   return (content.size() - kStlCountEnd) / kStlFacetBytes;
 }
 
-// The first facet of the first n that has a vertex which is not finite, or n.
+// Returns the first of n facets with a vertex that is not finite, or n.
 std::size_t first_not_finite(std::string_view content, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
-    constexpr std::size_t kNormalBytes = 12;
     std::array<float, 9> vertices;
     std::memcpy(vertices.data(), content.data() + kStlCountEnd + i * kStlFacetBytes + kNormalBytes,
                 sizeof vertices);
@@ -52,17 +53,18 @@ class TextStl {
       reader_.skip_line();
     }
     if (facets == 0)
-      fail_mesh(ErrorCode::kMeshEmpty, file_, "",
-                "it is an STL file without a facet; export the mesh again");
-    return content_.finish();
+      fail_mesh(ErrorCode::kMeshEmpty, file_, "", "the STL has no facet; export the mesh again");
+    const auto count = static_cast<std::uint32_t>(facets);
+    std::memcpy(bytes_.data() + kStlHeaderBytes, &count, sizeof count);
+    return {"stl", std::move(bytes_), facets};
   }
 
  private:
   std::string_view next() { return reader_.word_of_any_line(); }
 
   [[noreturn]] void unexpected(std::string_view word, std::string_view expected) const {
-    reader_.fail_malformed(fmt::format("'{}' is expected where '{}' stands; export the mesh again",
-                                       expected, word.substr(0, 40)));
+    reader_.fail_malformed(fmt::format("expected '{}', found '{}'; export the mesh again", expected,
+                                       word.substr(0, 40)));
   }
 
   void expect(std::string_view expected) {
@@ -71,7 +73,7 @@ class TextStl {
   }
 
   void read_facet() {
-    // The normal is passed over whatever it is: exporters write NaN for slivers.
+    // Skips the normal: exporters write NaN for slivers.
     std::string_view word = reader_.word();
     while (!word.empty() && !same_word(word, "outer")) word = reader_.word();
     if (word.empty()) expect("outer");
@@ -83,12 +85,14 @@ class TextStl {
     }
     expect("endloop");
     expect("endfacet");
-    content_.add_facet(vertices);
+    char facet[kStlFacetBytes] = {};  // normals are computed from the winding, never read
+    std::memcpy(facet + kNormalBytes, vertices.data(), sizeof vertices);
+    bytes_.append(facet, sizeof facet);
   }
 
   TextReader reader_;
   std::string_view file_;
-  StlContent content_;
+  std::string bytes_ = std::string(kStlCountEnd, '\0');  // re-encoded
 };
 
 }  // namespace
@@ -115,19 +119,18 @@ CheckedContent check_binary_stl(std::string content, std::string_view file) {
               fmt::format("the file ends after {} of the {} facets that its header counts; copy or "
                           "export it again",
                           whole_facets(content), facets));
-  // Padding is harmless. Anything else after the last facet means that the count may be wrong, and
-  // an error is better than a jaw with a part missing.
+  // Padding is harmless. Other bytes after the last facet mean that the count may be wrong, and an
+  // error is better than a jaw with a part missing.
   if (content.find_first_not_of(std::string_view(" \t\r\n\0", 5), size) != std::string::npos)
     fail_mesh(ErrorCode::kNotAMesh, file, fmt::format("byte {}", size),
               fmt::format("{} bytes follow the {} facets that its header counts; export it again",
                           content.size() - size, facets));
   if (facets == 0)
-    fail_mesh(ErrorCode::kMeshEmpty, file, "",
-              "it is an STL file without a facet; export the mesh again");
+    fail_mesh(ErrorCode::kMeshEmpty, file, "", "the STL has no facet; export the mesh again");
   if (const std::size_t bad = first_not_finite(content, facets); bad < facets)
     fail_mesh(ErrorCode::kMeshNotFinite, file, fmt::format("facet {}", bad),
-              "a vertex is not finite; mend the mesh where it was made");
-  // assimp looks for byte order marks and colours in the header.
+              "a vertex is not finite; repair the mesh where it was made");
+  // Clears the header, where assimp looks for byte order marks and colours.
   std::fill_n(content.begin(), kStlHeaderBytes, '\0');
   content.resize(size);
   return {"stl", std::move(content), facets};

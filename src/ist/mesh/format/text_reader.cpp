@@ -12,7 +12,7 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Long words are cut in messages: the file may be no text at all.
+// Cuts long words in messages: the file may not be text at all.
 std::string_view shown(std::string_view word) { return word.substr(0, 40); }
 
 }  // namespace
@@ -67,17 +67,17 @@ std::string_view TextReader::word_of_any_line() {
 float TextReader::coordinate(std::string_view word) const {
   if (word.empty()) fail_malformed("a coordinate is missing; export the mesh again");
   const auto not_finite = [&] {
-    fail(
-        ErrorCode::kMeshNotFinite,
-        fmt::format("the coordinate '{}' is not finite as a float; mend the mesh where it was made",
-                    shown(word)));
+    fail(ErrorCode::kMeshNotFinite,
+         fmt::format(
+             "the coordinate '{}' is not finite as a float; repair the mesh where it was made",
+             shown(word)));
   };
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
   float value = 0;
   auto [stop, error] = std::from_chars(digits.data(), end, value);
   if (error == std::errc::result_out_of_range) {
-    // Too near to zero for a float is zero; only too far from it is an error.
+    // A number too small for a float becomes zero; only one too large is an error.
     double wide = 0;
     const std::errc wide_error = std::from_chars(digits.data(), end, wide).ec;
     const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
@@ -85,7 +85,7 @@ float TextReader::coordinate(std::string_view word) const {
     if (!tiny) not_finite();
     value = 0;
   } else if (error != std::errc() || stop != end) {
-    // "1.#QNAN" and "-1.#IND" are what older Windows runtimes print for NaN.
+    // Older Windows runtimes print NaN as "1.#QNAN" or "-1.#IND".
     if (stop != end && *stop == '#') not_finite();
     if (error == std::errc() && !std::isfinite(value)) not_finite();
     fail_malformed(fmt::format("'{}' is not a number; export the mesh again", shown(word)));

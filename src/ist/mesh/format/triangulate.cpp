@@ -7,8 +7,8 @@
 namespace ist {
 namespace {
 
-// The polygon's vector area, twice: its direction is the normal. Relative to the first corner, so
-// that the place of the polygon does not blur it.
+// Returns twice the polygon's vector area; its direction is the normal. Works relative to the first
+// corner, so that the polygon's distance from the origin adds no rounding error.
 Eigen::Vector3d newell_normal(std::span<const std::uint32_t> corners,
                               std::span<const Eigen::Vector3d> vertices) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -27,7 +27,7 @@ class Polygon {
 
   [[nodiscard]] std::size_t size() const { return left_.size(); }
 
-  // More than zero where the path a, b, c turns left as seen against the normal.
+  // Returns a positive number if the path a, b, c turns left, seen against the normal.
   [[nodiscard]] double turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[b]).dot(normal_);
   }
@@ -76,7 +76,7 @@ void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::
   while (polygon.size() > 3 && !polygon.is_convex()) {
     std::size_t ear = 0;
     while (ear < polygon.size() && !polygon.is_ear(ear)) ++ear;
-    if (ear == polygon.size()) break;  // it crosses itself: there is no right answer
+    if (ear == polygon.size()) break;  // self-intersecting: no triangulation is right
     out.push_back(polygon.corner(ear));
     polygon.clip(ear);
   }

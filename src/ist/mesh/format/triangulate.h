@@ -4,16 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "ist/mesh/triangle_mesh.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 
-/// Cuts a polygon of n corners into n - 2 triangles of the same orientation, appended to `out`:
-/// round the first corner where it is convex, by clipping ears where it is not. A polygon that is
-/// not plane is cut as it looks along its normal (Newell's); one that crosses itself gets triangles
-/// all the same. `corners` are indices of `vertices`.
+/// Triangulates a polygon of n corners into n - 2 triangles of the same orientation, appended to
+/// `out`: as a fan if convex, by ear clipping if not. A polygon that is not plane is cut as seen
+/// along its normal (Newell's); a self-intersecting one gets n - 2 triangles too. `corners` are
+/// indices of `vertices`.
 ///
-/// Cost: O(n) where convex, O(n^2) by habit and O(n^3) at worst where not.
+/// Cost: O(n) if convex; else mostly O(n^2), at worst O(n^3).
 /// Source: G. H. Meisters, Polygons Have Ears, 1975.
 void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices,
                  std::vector<Triangle>& out);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ist/query/query_rules.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
@@ -22,15 +23,15 @@ AncestorShare::AncestorShare(const SphereTree& fixed, const SphereTree& moving, 
       fixed_parents_(fixed_parents),
       moving_parents_(moving_parents),
       width_(scale.width),
-      grow_(scale.grow) {
+      margin_(scale.margin) {
   int a = fixed.depth(), b = moving.depth();
   while (a > 0 || b > 0) {
     Step& step = steps_.emplace_back();
     step.fixed_level = a;
     step.moving_level = b;
     step.bound_of = kNoBound;
-    const double edge_a = fixed.lattice().edge(a), edge_b = moving.lattice().edge(b);
-    const bool open_a = opens(a, edge_a, b, edge_b), open_b = opens(b, edge_b, a, edge_a);
+    const double edge_a = fixed.parts().lattice.edge(a), edge_b = moving.parts().lattice.edge(b);
+    const bool open_a = descends(a, edge_a, b, edge_b), open_b = descends(b, edge_b, a, edge_a);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
   }
@@ -40,7 +41,7 @@ AncestorShare::AncestorShare(const SphereTree& fixed, const SphereTree& moving, 
 void AncestorShare::begin(const RelativePose& pose) noexcept {
   pose_ = &pose;
   if (++query_ != 0) return;
-  query_ = 1;  // after 2^32 queries; what is known could be of one of them
+  query_ = 1;  // after 2^32 queries a cache entry could match by chance
   for (Step& step : steps_) {
     step.known.fill({});
     step.moved.fill({});
@@ -69,7 +70,7 @@ double AncestorShare::own(Step& step, std::uint32_t fixed, std::uint32_t moving)
     step.bound_of = fixed;
     step.bound = read_bound(fixed_, policy_, step.fixed_level, fixed,
                             fixed_parents_.of(step.fixed_level, fixed))
-                     .grown(grow_);
+                     .inflated(margin_);
   }
   const NodeBound &a = step.bound, &b = moved(step, moving);
   const Eigen::Vector3d between = difference(b.centre, a.centre);
@@ -88,7 +89,7 @@ const NodeBound& AncestorShare::moved(Step& step, std::uint32_t moving) noexcept
     moved.node = moving;
     moved.bound = read_bound(moving_, policy_, step.moving_level, moving,
                              moving_parents_.of(step.moving_level, moving))
-                      .grown(grow_)
+                      .inflated(margin_)
                       .in(*pose_);
   }
   return moved.bound;

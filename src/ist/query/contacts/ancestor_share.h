@@ -9,26 +9,26 @@
 
 namespace ist {
 
-/// The part of a leaf pair's weight that its ancestors leave it, 0 … 1.
+/// The factor of a leaf pair's weight, 0 … 1, that comes from its ancestors.
 ///
-/// Bounds are not nested: two leaves whose own bounds overlap are no contact where those of two of
-/// their ancestors come apart. A weight that knew the leaves alone would jump there. So the least
-/// overlap of all pairs of ancestors that the search tests, in parts of the width over which a
-/// weight fades, is a factor of it.
+/// Bounds are not nested: two leaves whose own bounds overlap leave the answer where the bounds of
+/// two of their ancestors come apart. A weight of the leaves alone would jump there. So the weight
+/// has as a factor the least overlap of all pairs of ancestors that the search tests, in parts of
+/// the width over which weights fade.
 ///
-/// Contacts come in the order of the fixed tree, so that the same ancestors are asked for again and
-/// again: the last answers are kept, and the last bounds, a few of each step of the search. Cost: 3
-/// ns for a pair that is known, 20 ns for one that is not.
+/// Leaf pairs come in the order of the fixed tree, so the same ancestors recur: each step of the
+/// search keeps its last factors and its last bounds. Cost: 3 ns for a pair in the cache, 20 ns for
+/// another.
 class AncestorShare {
  public:
   AncestorShare(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                 const NodeParents& fixed_parents, const NodeParents& moving_parents,
                 const ContactScale& scale);
 
-  /// Begins a query; `pose` must last as long.
+  /// Begins a query; `pose` must outlive it.
   void begin(const RelativePose& pose) noexcept;
 
-  /// Of two leaves.
+  /// Returns the factor of two leaves.
   [[nodiscard]] double of(std::uint32_t fixed, std::uint32_t moving) noexcept {
     if (steps_.empty()) return 1;
     const Step& first = steps_[0];
@@ -51,10 +51,10 @@ class AncestorShare {
     std::uint32_t node;
     NodeBound bound;
   };
-  static constexpr std::size_t kKnown = 256;  // a step; a power of two
+  static constexpr std::size_t kKnown = 256;  // entries a step; a power of two
   struct Step {
     int fixed_level, moving_level;
-    std::uint32_t bound_of;  // a fixed node, whose bound is here
+    std::uint32_t bound_of;  // the fixed node that `bound` belongs to
     NodeBound bound;
     std::array<MovedBound, kKnown> moved;  // moving nodes, by their last bits
     std::array<Known, kKnown> known;       // pairs, by the last bits of the moving node
@@ -64,7 +64,7 @@ class AncestorShare {
                         std::uint32_t moving) const noexcept {
     return known.query == query_ && known.fixed == fixed && known.moving == moving;
   }
-  // Of a pair of nodes of a step and of all pairs above it.
+  // Returns the factor of a pair of nodes of a step and of all pairs of their ancestors.
   [[nodiscard]] double find(std::size_t step, std::uint32_t fixed, std::uint32_t moving) noexcept;
   [[nodiscard]] double own(Step& step, std::uint32_t fixed, std::uint32_t moving) noexcept;
   [[nodiscard]] const NodeBound& moved(Step& step, std::uint32_t moving) noexcept;
@@ -74,10 +74,10 @@ class AncestorShare {
   SpherePolicy policy_;
   const NodeParents& fixed_parents_;
   const NodeParents& moving_parents_;
-  double width_, grow_;
+  double width_, margin_;
   const RelativePose* pose_ = nullptr;
   std::uint32_t query_ = 0;
-  std::vector<Step> steps_;  // the search's, from the last but one to the roots
+  std::vector<Step> steps_;  // the search's steps, from the last but one to the roots
 };
 
 }  // namespace ist

@@ -7,19 +7,19 @@
 namespace ist {
 namespace {
 
-// Normals that cancel to less than this part of their weight have no direction in common.
+// Normals whose sum is shorter than this part of their weight have no common direction.
 constexpr double kCancelled = 1e-6;
 constexpr std::size_t kMarked = 7;  // the deepest and six extremes
 
-// In the fixed tree's frame.
-ContactPoint point_of(const TouchedNode& node) noexcept {
+// Returns the contact of a node, in the fixed tree's frame.
+Contact point_of(const LeafSum& node) noexcept {
   const double length = std::sqrt(dot_in_order(node.normal, node.normal));
   const bool cancelled = length <= kCancelled * node.weight;
   return {node.position / node.weight, cancelled ? node.deepest_normal : node.normal / length,
           node.depth / node.weight, node.weight};
 }
 
-// The places of those that stand on their own, each once.
+// The places of the nodes that stay apart, each once.
 struct Marks {
   std::array<std::size_t, kMarked> places;
   std::size_t count = 0;
@@ -30,12 +30,12 @@ struct Marks {
   }
 };
 
-// Of equals the first.
-Marks find_marks(std::span<const TouchedNode> nodes) noexcept {
+// Of equal nodes the first is marked.
+Marks find_marks(std::span<const LeafSum> nodes) noexcept {
   std::array<std::size_t, kMarked> best{};
   std::array<double, kMarked> most{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const TouchedNode& node = nodes[i];
+    const LeafSum& node = nodes[i];
     const Eigen::Vector3d p = node.position / node.weight;
     const std::array<double, kMarked> of{
         node.depth / node.weight, -p[0], p[0], -p[1], p[1], -p[2], p[2]};
@@ -52,11 +52,11 @@ Marks find_marks(std::span<const TouchedNode> nodes) noexcept {
 
 }  // namespace
 
-std::size_t cluster(TouchedLeaves& touched, const Eigen::Vector3d& origin,
-                    std::span<ContactPoint> out) noexcept {
+std::size_t cluster(LeafSums& touched, const Eigen::Vector3d& origin,
+                    std::span<Contact> out) noexcept {
   if (touched.nodes().empty() || out.empty()) return 0;
   Marks marks = find_marks(touched.nodes());
-  const ContactPoint deepest = point_of(touched.nodes()[marks.places[0]]);
+  const Contact deepest = point_of(touched.nodes()[marks.places[0]]);
   if (touched.nodes().size() > out.size()) marks.count = std::min(marks.count, out.size() - 1);
 
   std::size_t count = 0;
@@ -64,13 +64,13 @@ std::size_t cluster(TouchedLeaves& touched, const Eigen::Vector3d& origin,
   for (const std::size_t place : marked) out[count++] = point_of(touched.nodes()[place]);
   touched.take_out(marked);
   while (touched.nodes().size() > out.size() - count) touched.coarsen();
-  for (const TouchedNode& node : touched.nodes()) out[count++] = point_of(node);
+  for (const LeafSum& node : touched.nodes()) out[count++] = point_of(node);
   if (out.size() == 1) {
     const double weight = out[0].weight;
     out[0] = deepest;
     out[0].weight = weight;
   }
-  for (ContactPoint& point : out.first(count)) point.position += origin;
+  for (Contact& point : out.first(count)) point.position += origin;
   return count;
 }
 

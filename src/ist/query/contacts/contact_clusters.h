@@ -2,23 +2,24 @@
 
 #include <span>
 
-#include "ist/query/contacts/contact_point.h"
-#include "ist/query/contacts/touched_leaves.h"
+#include "ist/query/contacts/leaf_sums.h"
+#include "ist/query/manifold.h"
 
 namespace ist {
 
-/// Contact points of what was touched, at most as many as `out` has room for, in fixed mesh
-/// coordinates; `origin` is that of the fixed tree's frame. Returns how many there are.
+/// Reduces leaf sums to contacts, at most as many as `out` has room for, in fixed mesh coordinates;
+/// `origin` is that of the fixed tree's frame. Returns their number.
 ///
-/// Where all fit, one a touched node. Else the deepest, and those with the least and greatest x, y
-/// and z, stand on their own, as many of these seven as leave one place free; the others are joined
-/// with those that share an octree ancestor, at the finest level at which they fit. A single place
-/// is the deepest's, with the weight of all. The weights' sum is that of all.
+/// If they fit, there is one contact for each node. Otherwise the deepest node and the extreme ones
+/// along x, y and z stay apart, as many of these seven as leave one place free; the others are
+/// merged by common octree ancestor, at the finest level at which they fit. A single contact is the
+/// deepest node's, with the weight of all. The contacts' weights always add up to the weight of all
+/// nodes.
 ///
-/// The deepest is the first, then come the six extremes that are not among those before, then the
-/// others in the order in which they were first touched. `touched` is used up. Cost: 15 ns a
-/// touched node; no allocation.
-[[nodiscard]] std::size_t cluster(TouchedLeaves& touched, const Eigen::Vector3d& origin,
-                                  std::span<ContactPoint> out) noexcept;
+/// The order: the deepest, the six extreme ones, each node once, then the others in the order in
+/// which they were first added. The nodes of `touched` are consumed. Cost: 15 ns a node; no
+/// allocation.
+[[nodiscard]] std::size_t cluster(LeafSums& touched, const Eigen::Vector3d& origin,
+                                  std::span<Contact> out) noexcept;
 
 }  // namespace ist

@@ -5,54 +5,55 @@
 #include <cmath>
 
 #include "ist/query/contacts/contact_leaf.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
 
-/// What the numbers of a pair of leaves are measured in. The same whichever body is the fixed one.
+/// The units and ranges of a leaf pair's numbers; the same whichever body is the fixed one.
 struct ContactScale {
   double size;         ///< the mean of the two voxel sizes, mesh units: s
-  double area;         ///< their product: no pair weighs more
-  double reach;        ///< of two leaves' circumspheres: √3 s
-  double width;        ///< overlap of two bounds over which a weight goes from 0 to what it is: s/2
-  double least_depth;  ///< a contact's; the greatest is `size`
-  double fade;         ///< depth over which a weight grows from 0 at the least; 0: at once
-  double grow;         ///< how far apart bounds may be that touch
+  double area;         ///< the product of the two sizes, mesh units²: the greatest weight
+  double radius_sum;   ///< of two leaves' circumspheres, mesh units: √3 s
+  double width;        ///< overlap of two bounds over which a weight fades in, mesh units: s/2
+  double least_depth;  ///< least depth of a leaf pair, mesh units; the greatest is `size`
+  double fade;         ///< depth above the least over which a weight fades in; 0: at once
+  double margin;       ///< greatest distance at which bounds count as overlapping, mesh units
 
-  /// The least depth and the growth in parts of s. From -2 on all leaf pairs are contacts; with a
-  /// greater one only those that are deeper, and they begin with weight 0.
+  /// Takes the least depth and the margin in parts of s. With a least depth of -2 every leaf pair
+  /// counts; with a greater one only deeper pairs, and their weight begins at 0.
   ContactScale(const SphereTree& fixed, const SphereTree& moving, double least = -2,
-               double growth = 0) noexcept
-      : size(0.5 * (fixed.lattice().voxel_size + moving.lattice().voxel_size)),
-        area(fixed.lattice().voxel_size * moving.lattice().voxel_size),
-        reach(kSqrt3 * size),
+               double margin_sizes = 0) noexcept
+      : size(0.5 * (fixed.voxel_size() + moving.voxel_size())),
+        area(fixed.voxel_size() * moving.voxel_size()),
+        radius_sum(kSqrt3 * size),
         width(0.5 * size),
         least_depth(least * size),
         fade(least > -2 ? 0.25 * size : 0),
-        grow(growth * size) {}
+        margin(margin_sizes * size) {}
 };
 
-/// What one pair of leaves comes to, in the fixed tree's frame.
+/// The terms of one leaf pair in ContactSums, in the fixed tree's frame, mesh units.
 struct PairTerms {
-  double weight;  ///< 0 where it is none; then nothing else need be known
+  double weight;  ///< 0 where the pair does not count; then the others are undefined
   double depth;
   Eigen::Vector3d position, normal;
 };
 
-/// The part of a weight that says how far two leaves' balls overlap, 0 … 1.
+/// Returns the factor of a weight, 0 … 1, that comes from the overlap of two leaves' balls.
 [[nodiscard]] inline double ball_share(const NodeBound& a, const NodeBound& b,
                                        const ContactScale& scale) noexcept {
   const Eigen::Vector3d between = difference(b.centre, a.centre);
   const double touching = a.radius + b.radius;
   const double left = touching * touching - dot_in_order(between, between);
-  return std::clamp(left / (scale.reach * scale.reach), 0.0, 1.0);
+  return std::clamp(left / (scale.radius_sum * scale.radius_sum), 0.0, 1.0);
 }
 
-/// The rest of a pair of leaves, both in the fixed tree's frame; its weight is in parts of what its
-/// bounds and its ancestors' leave it.
+/// Computes the terms of a leaf pair, both leaves in the fixed tree's frame. The weight lacks the
+/// factors of the bounds, of the ancestors and of the area.
 ///
-/// The mean of the fixed normal and of the moving one turned round, each as long as it is coherent,
-/// is the direction; its length is a part of the weight, so that a weight is 0 where the direction
-/// is none. All is the same, but turned round, where the bodies are swapped.
+/// The direction is the mean of the fixed normal and of the reversed moving normal, each as long as
+/// it is coherent. The length of that mean is a factor of the weight, so the weight is 0 where
+/// normals cancel. Swapping the bodies reverses the direction and changes nothing else.
 [[nodiscard]] inline PairTerms pair_terms(const ContactLeaf& fixed, const ContactLeaf& moving,
                                           const ContactScale& scale) noexcept {
   const Eigen::Vector3d mean = scaled(0.5, difference(fixed.normal, moving.normal));

@@ -7,17 +7,17 @@
 
 namespace ist {
 
-/// Who the parent of each node is: an octree names only its nodes' children.
+/// The parent of each node; an octree itself stores only the children.
 class NodeParents {
  public:
-  /// Cost: 4 bytes a node, and 1 ns.
+  /// Finds all parents. Cost: 4 bytes and 1 ns a node.
   explicit NodeParents(const LinearOctree& octree);
 
-  /// The parent, at level + 1, of a node at `level`, 0 … depth.
+  /// Returns the parent, at level + 1, of a node at `level`, 0 … depth.
   [[nodiscard]] std::uint32_t of(int level, std::uint32_t node) const noexcept {
     return parents_[static_cast<std::size_t>(level)][node];
   }
-  /// The ancestor at `level` of a leaf.
+  /// Returns the ancestor at `level` of a leaf.
   [[nodiscard]] std::uint32_t of_leaf(std::uint32_t leaf, int level) const noexcept {
     std::uint32_t node = leaf;
     for (int at = 0; at < level; ++at) node = of(at, node);

@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "ist/base/assert.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
 
-// Nodes that a triangle is in, on average.
+// The most nodes that a triangle lies in, on average.
 constexpr std::size_t kMostNodes = 12;
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -18,7 +19,7 @@ TriangleCorners corners_of(const TriangleMesh& mesh, std::uint32_t triangle) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
-// The lists of a level from those of the one below.
+// Merges the lists of a level into those of the level above.
 TriangleLists merged(const TriangleLists& below, std::span<const OctreeNode> nodes,
                      std::vector<std::uint32_t>& last_in) {
   TriangleLists lists;
@@ -40,14 +41,14 @@ TriangleLists merged(const TriangleLists& below, std::span<const OctreeNode> nod
 }  // namespace
 
 NodeTriangles::NodeTriangles(const SphereTree& tree) {
-  IST_ASSERT(tree.triangles().has_value());
-  const LeafTriangles& leaves = *tree.triangles();
+  IST_ASSERT(tree.triangles() != nullptr);
+  const LeafTriangles& leaves = *tree.parts().triangles;
   lists_ = leaves.lists;
   const std::size_t enough = kMostNodes * leaves.mesh.triangles.size();
   while (level_ < tree.depth() && (level_ == 0 || lists_.ids.size() > enough)) {
     std::vector<std::uint32_t> last_in(leaves.mesh.triangles.size(), kNone);
     ++level_;
-    lists_ = merged(lists_, tree.octree().nodes(level_), last_in);
+    lists_ = merged(lists_, tree.parts().octree.nodes(level_), last_in);
   }
   std::vector<std::uint32_t> numbers(leaves.mesh.triangles.size(), kNone);
   for (std::uint32_t& triangle : lists_.ids) {
@@ -59,11 +60,11 @@ NodeTriangles::NodeTriangles(const SphereTree& tree) {
     }
     triangle = number;
   }
-  const Lattice& lattice = tree.lattice();
-  nodes_ =
-      tree.octree().nodes(std::max(level_, 1));  // a root that is a leaf has its parent's centre
+  const Lattice& lattice = tree.parts().lattice;
+  nodes_ = tree.parts().octree.nodes(
+      std::max(level_, 1));  // a root that is a leaf has its parent's centre
   voxel_size_ = lattice.voxel_size;
-  // origin() is rounded, by up to half its last bit, and the triangles' boxes are seen from it.
+  // origin() is rounded by up to half its last bit, and the triangles' boxes are relative to it.
   const double rounding = 0x1p-52 * lattice.origin().cwiseAbs().maxCoeff();
   half_edge_ = 0.5 * lattice.edge(level_) + 4 * lattice.pad() * lattice.voxel_size + rounding;
 }

@@ -9,13 +9,13 @@ namespace ist {
 namespace {
 
 constexpr double kRounding = 0x1p-53;
-// Shewchuk's bounds are (7 + 56ε)ε and (3 + 16ε)ε of the sum of the products' sizes. Where that sum
-// is above kSmall, what is lost below the least double is a smaller part of it than is added here.
+// Shewchuk's bounds are (7 + 56ε)ε and (3 + 16ε)ε of the sum of the products' absolute values.
+// Where that sum is above kSmall, underflow loses less than is added here.
 constexpr double kBound3 = 8 * kRounding, kBound2 = 4 * kRounding, kSmall = 0x1p-600;
 
 int sign_of(double x) { return x > 0 ? 1 : -1; }
 
-// A double is 53 digits at one of 2046 exponents; those below 2^340 take 1415 bits: 23 limbs.
+// A double has 53 digits at one of 2046 exponents; those below 2^340 take 1415 bits: 23 limbs.
 constexpr std::size_t kLimbs = 23;
 using Coordinate = WholeNumber<kLimbs>;
 
@@ -69,8 +69,9 @@ int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen:
   return exact_orientation(a, b, c, d);
 }
 
-// The same determinant by its last row, -(d - a) · ((b - a) × (c - a)), so that the products of the
-// first two are made once. Shewchuk's bound holds for it too: it has the same form.
+// Evaluates the same determinant by its last row, -(d - a) · ((b - a) × (c - a)), so that the
+// products of the first two are computed once. Shewchuk's bound holds for it too: it has the same
+// form.
 OrientedPlane::OrientedPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                              const Eigen::Vector3d& c) noexcept
     : a_(a), b_(b), c_(c) {

@@ -6,16 +6,15 @@
 
 namespace ist {
 
-/// A set of pairs, of bounded size, that is emptied in the time of what is in it. Pairs with one
-/// first number and second ones near each other lie close together, so that it is fast where they
-/// are asked for together.
+/// A hash set of pairs, of bounded size, cleared in time proportional to its content. Pairs with
+/// the same first number and near second numbers lie close together in memory.
 class PairSet {
  public:
-  /// @param most pairs; 20 to 36 bytes are reserved for each
+  /// @param most pairs that fit; 20 to 36 bytes are reserved for each
   explicit PairSet(std::size_t most);
 
   enum class Insertion : std::uint8_t { kNew, kKnown, kFull };
-  /// Not both numbers are 2^32 - 1.
+  /// Inserts a pair. Precondition: not both numbers are 2^32 - 1.
   Insertion insert(std::uint32_t first, std::uint32_t second) noexcept {
     const std::uint64_t key = std::uint64_t{first} << 32 | second;
     std::size_t slot = (hash(key >> kNearBits) >> shift_) + (key & kNear);
@@ -37,7 +36,7 @@ class PairSet {
 
  private:
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  // Runs of so many second numbers lie in four cache lines; and runs far from each other.
+  // Runs of 2^kNearBits second numbers lie in four cache lines, and the runs far from each other.
   static constexpr int kNearBits = 5;
   static constexpr std::uint64_t kNear = (1 << kNearBits) - 1;
   [[nodiscard]] static std::uint64_t hash(std::uint64_t number) noexcept {

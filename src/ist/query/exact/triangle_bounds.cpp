@@ -7,14 +7,15 @@
 namespace ist {
 namespace {
 
-// Half of it pays for the rounding to float, half for that of a difference of doubles; and for
+// Half of kPart covers the rounding to float, half that of a difference of doubles; kLeast covers
 // denormals.
 constexpr double kPart = 0x1p-23, kLeast = 0x1p-148;
 
 float below(double x) { return static_cast<float>(x - (kPart * std::abs(x) + kLeast)); }
 float above(double x) { return static_cast<float>(x + (kPart * std::abs(x) + kLeast)); }
 
-// Of a unit vector along the normal, a little shorter, so that rounding does not make it longer.
+// Returns a vector along the normal, a little shorter than 1, so that rounding does not make it
+// longer.
 Eigen::Vector3d normal_of(const TriangleCorners& c) {
   const Eigen::Vector3d u = c[1] - c[0], v = c[2] - c[0];
   const Eigen::Vector3d n(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
@@ -47,9 +48,9 @@ TriangleBounds bounds_of(const TriangleCorners& corners, const Eigen::Vector3d& 
     bounds.normal[i] = static_cast<float>(normal[axis]);
     for (std::size_t k = 0; k < 3; ++k) bounds.corner[k][i] = static_cast<float>(c[k][axis]);
   }
-  // Any normal will do, as long as heights are measured along it as it is stored. The product and
-  // two sums of three err by 3u of the coordinates, the corner itself by u, and the two differences
-  // that the height then goes through by 2u, u = 2⁻²⁴; and by less than that in the doubles here.
+  // Any normal will do, as long as heights are measured along it as it is stored. A height errs by
+  // 3u of the coordinates (product and two sums), the corner by u, and the two differences after it
+  // by 2u, u = 2⁻²⁴; the doubles here by less.
   const auto height = [&](const Eigen::Vector3d& p) {
     return (bounds.normal[0] * p[0] + bounds.normal[1] * p[1]) + bounds.normal[2] * p[2];
   };
@@ -68,7 +69,7 @@ void TriangleLanes::add(const TriangleBounds& bounds) noexcept {
 
 namespace {
 
-// How far the corners of one are above the slab of the other, or below it.
+// Returns the distance of one triangle's corners from the other's slab, above or below it.
 float apart_along(const float (&normal)[3], float bottom, float top, const float (&corner)[3][3],
                   float slack) {
   float height[3];

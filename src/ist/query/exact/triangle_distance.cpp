@@ -12,9 +12,8 @@ using Vector = Eigen::Vector3d;
 double dot(const Vector& a, const Vector& b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 double squared(const Vector& a) { return dot(a, a); }
 
-// Edges that are more nearly parallel than this count as such: of two edges an end is then as near
-// as anything between the ends, and of a triangle an edge as its face, to within that part of an
-// edge.
+// Edges more nearly parallel than this count as parallel: the closest points of two such edges are
+// then found at an end, and of an edge and a face at an edge, to within that part of an edge.
 constexpr double kParallel = 0x1p-26;
 
 double to_segment(const Vector& p, const Vector& a, const Vector& b) {
@@ -24,8 +23,8 @@ double to_segment(const Vector& p, const Vector& a, const Vector& b) {
   return squared(ap - t * ab);
 }
 
-// Where the common perpendicular of two edges' lines meets both between their ends; else infinity:
-// then an end of one is nearest.
+// Returns the squared distance between two edges' lines if their common perpendicular meets both
+// edges, else infinity: then an end of one edge is a closest point.
 double between_edges(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
   const Vector u = b - a, v = d - c, w = c - a;
   const Vector n = u.cross(v);
@@ -37,7 +36,8 @@ double between_edges(const Vector& a, const Vector& b, const Vector& c, const Ve
   return height * height / nn;
 }
 
-// Where a corner's perpendicular on the other's plane ends inside it; else infinity.
+// Returns the squared distance of a corner from a face if its perpendicular meets the face, else
+// infinity.
 double to_face(const Vector& p, const TriangleCorners& t) {
   const Vector u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
   const double nn = squared(n);
@@ -79,7 +79,8 @@ double box_distance_squared(const TriangleCorners& a, const TriangleCorners& b) 
 bool surely_farther(const TriangleCorners& a, const TriangleCorners& b, double distance) noexcept {
   constexpr int kLooks = 4;
   constexpr double kRounding = 1 + 0x1p-40;
-  // Of the points of one triangle less those of the other, one, and the farthest against it.
+  // Returns the corner of a triangle that is farthest against `v`, a support point of the Minkowski
+  // difference.
   const auto farthest_against = [](const TriangleCorners& t, const Vector& v) {
     const double x = dot(t[0], v), y = dot(t[1], v), z = dot(t[2], v);
     return x <= y ? (x <= z ? t[0] : t[2]) : (y <= z ? t[1] : t[2]);
@@ -88,7 +89,8 @@ bool surely_farther(const TriangleCorners& a, const TriangleCorners& b, double d
   for (int look = 0; look < kLooks; ++look) {
     const Vector w = farthest_against(a, v) - farthest_against(b, -v);
     const double along = dot(v, w), length = squared(v);
-    // All differences are at least as far along v as w is: so is the nearest to the origin.
+    // Every difference of points is at least as far along v as w, and so is the one nearest to the
+    // origin.
     if (along > 0 && along * along > distance * distance * length * kRounding) return true;
     const Vector step = w - v;
     const double t = squared(step);

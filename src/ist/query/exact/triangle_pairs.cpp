@@ -8,10 +8,10 @@
 namespace ist {
 namespace {
 
-// Fewer would only make for more passes.
+// Fewer candidates would only cost more passes.
 constexpr std::size_t kFewest = 1 << 12;
 
-// Which of some passes a pair belongs to.
+// Returns a hash that assigns a pair to one of several passes.
 std::uint64_t part_of(std::uint32_t fixed, std::uint32_t moving) {
   const std::uint64_t mixed = fixed * 0x9E3779B97F4A7C15U + moving * 0xD6E8FEB86659FD93U;
   return mixed >> 32;
@@ -28,7 +28,8 @@ double longest_edge(const NodeTriangles& triangles) {
   return std::sqrt(squared);
 }
 
-// How far two boxes are apart along the axis on which they are most.
+// Returns the distance of two boxes along the axis that separates them most; negative where they
+// overlap.
 float apart(const FloatBox& a, const FloatBox& b) {
   float most = a.low[0] - b.high[0];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -37,7 +38,7 @@ float apart(const FloatBox& a, const FloatBox& b) {
   return most;
 }
 
-// So many moving triangles are held against the lanes at a time.
+// The number of moving triangles tested against the lanes at a time.
 constexpr std::size_t kAtATime = 64;
 
 }  // namespace
@@ -47,7 +48,7 @@ TrianglePairs::TrianglePairs(const SphereTree& fixed, const SphereTree& moving,
     : fixed_(fixed),
       moving_(moving),
       find_near_(find_near),
-      origin_(fixed.lattice().origin()),
+      origin_(fixed.origin()),
       seen_(std::max(candidates, kFewest)),
       moved_corners_(moving_.count()),
       moved_bounds_(moving_.count()),
@@ -91,13 +92,13 @@ void TrianglePairs::begin_nearest(const Eigen::Isometry3d& pose, double limit,
   begin(pose);
   wanted_ = Wanted::kNearest;
   nearest_ = limit;
-  tolerance_ = tolerance > 0 ? tolerance : 0;  // nor what is no number
+  tolerance_ = tolerance > 0 ? tolerance : 0;  // a NaN too
 }
 
 bool TrianglePairs::next_pass() noexcept {
   if (!full_) {
     if (++pass_ == passes_) return false;
-  } else {  // from the beginning, in more parts
+  } else {  // begin again, in more passes
     passes_ *= 2;
     pass_ = 0;
     count_ = 0;
@@ -107,14 +108,14 @@ bool TrianglePairs::next_pass() noexcept {
   return true;
 }
 
-bool TrianglePairs::take(std::span<const Contact> contacts) noexcept {
-  for (std::size_t i = 0; i < contacts.size();) {
-    const std::uint32_t node = contacts[i].fixed;
+bool TrianglePairs::take(std::span<const LeafPair> leaf_pairs) noexcept {
+  for (std::size_t i = 0; i < leaf_pairs.size();) {
+    const std::uint32_t node = leaf_pairs[i].fixed;
     const FloatBox cube = fixed_.cube(node);
     const float distance = reach();
     next_turn();
-    for (; i < contacts.size() && contacts[i].fixed == node; ++i) {
-      take_moving(contacts[i].moving, cube, distance);
+    for (; i < leaf_pairs.size() && leaf_pairs[i].fixed == node; ++i) {
+      take_moving(leaf_pairs[i].moving, cube, distance);
     }
     std::span<const std::uint32_t> fixed = fixed_[node];
     while (near_count_ > 0 && !fixed.empty()) {
@@ -126,7 +127,7 @@ bool TrianglePairs::take(std::span<const Contact> contacts) noexcept {
   return true;
 }
 
-// A turn that no triangle was looked at in; within a query, one after the other.
+// Begins a turn in which no triangle was seen yet; turns of a query are consecutive.
 void TrianglePairs::next_turn() noexcept {
   near_count_ = 0;
   if (++turn_ != 0) return;
@@ -135,8 +136,7 @@ void TrianglePairs::next_turn() noexcept {
   moved_count_ = 0;
 }
 
-// How far apart triangles may be that are looked for: rounded up, and by as much as differences of
-// floats err.
+// Returns the search distance, rounded up to float and by the rounding of differences of floats.
 float TrianglePairs::reach() const noexcept {
   return wanted_ == Wanted::kNearest ? static_cast<float>(within() * (1 + 0x1p-20)) : 0;
 }
@@ -157,9 +157,9 @@ void TrianglePairs::take_moving(std::uint32_t node, const FloatBox& cube, float 
   }
 }
 
-// All that is near against some triangles of a fixed node. Where triangles meet they do so in one
-// of the cubes of the fixed one, and so only what is in this cube is looked at. Whether more pairs
-// are wanted.
+// Tests some triangles of a fixed node against all that are near. Triangles that intersect do so in
+// one of the fixed triangle's cubes, so only the part inside this cube is tested. Returns whether
+// more pairs are wanted.
 bool TrianglePairs::try_lanes(std::span<const std::uint32_t> fixed, const FloatBox& cube) noexcept {
   lanes_.count = 0;
   for (const std::uint32_t triangle : fixed) {
@@ -181,7 +181,7 @@ bool TrianglePairs::try_lanes(std::span<const std::uint32_t> fixed, const FloatB
   return true;
 }
 
-// Of a fixed triangle, and a moving one in its place. Whether more pairs are wanted.
+// Tests a fixed triangle and the moving one at `place`. Returns whether more pairs are wanted.
 bool TrianglePairs::try_pair(std::uint32_t fixed, std::uint32_t place) noexcept {
   const std::uint32_t moving = moved_[place];
   if (passes_ > 1 && (part_of(fixed, moving) & (passes_ - 1)) != pass_) return true;
@@ -196,7 +196,7 @@ bool TrianglePairs::try_pair(std::uint32_t fixed, std::uint32_t place) noexcept 
   return wanted_ == Wanted::kAll;
 }
 
-// Whether a pair is new, as far as is known, and to be looked at.
+// Returns whether a pair must be tested: it is new, as far as the set remembers.
 bool TrianglePairs::remember(std::uint32_t fixed, std::uint32_t moving) noexcept {
   switch (seen_.insert(fixed, moving)) {
     case PairSet::Insertion::kNew:
@@ -207,7 +207,7 @@ bool TrianglePairs::remember(std::uint32_t fixed, std::uint32_t moving) noexcept
       break;
   }
   full_ = wanted_ == Wanted::kAll;
-  if (!full_) seen_.clear();  // looked at twice at worst
+  if (!full_) seen_.clear();  // at worst a pair is tested twice
   return !full_;
 }
 
@@ -223,7 +223,7 @@ TriangleCorners TrianglePairs::moved(const TriangleCorners& corners) const noexc
   return moved;
 }
 
-// Where the span is full it is a heap of the first pairs seen so far, the last of them on top.
+// A full span is a heap of the first pairs seen so far, with the last of them on top.
 void TrianglePairs::add(TrianglePair pair) noexcept {
   const std::uint64_t room = out_.size();
   if (count_ < room) {

@@ -10,8 +10,8 @@ namespace {
 
 using Points2 = std::span<const Eigen::Vector2d>;
 
-// Whether the line through u and v, an edge of one polygon, leaves that and the other on different
-// sides, and the other not on the line.
+// Returns whether the line through u and v, an edge of `own`, separates the two polygons, with no
+// point of `other` on it.
 bool edge_separates(const Eigen::Vector2d& u, const Eigen::Vector2d& v, Points2 own,
                     Points2 other) {
   const int side = orientation(u, v, other[0]);
@@ -30,8 +30,8 @@ bool an_edge_separates(Points2 a, Points2 b) {
   return false;
 }
 
-// Whether two points, segments or triangles of the plane, given by up to three corners, are apart.
-// A line along an axis separates collinear segments and points; else one along an edge does.
+// Returns whether two points, segments or triangles of the plane, given by up to three corners, are
+// separate. An axis separates collinear segments and points; otherwise the line of an edge does.
 bool apart(Points2 a, Points2 b) {
   for (const Eigen::Index axis : {0, 1}) {
     const auto less = [axis](const auto& p, const auto& q) { return p[axis] < q[axis]; };
@@ -42,8 +42,8 @@ bool apart(Points2 a, Points2 b) {
   return an_edge_separates(a, b) || an_edge_separates(b, a);
 }
 
-// Whether convex hulls of up to three points that lie in one plane meet: they do if all their
-// shadows along the axes meet, for at least one of these loses nothing.
+// Returns whether convex hulls of up to three points in one plane meet: they do if all their
+// projections along the axes meet, since at least one of these is injective.
 bool meet_in_a_plane(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const Eigen::Index u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -75,7 +75,8 @@ bool on_one_side(const Sides& sides) {
   return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
 }
 
-// Whether an edge of `a` meets `b`, which has area. `sides`: of a's corners and b's plane.
+// Returns whether an edge of `a` meets `b`, which has area. `sides` holds the sides of b's plane on
+// which a's corners lie.
 bool an_edge_meets(const TriangleCorners& a, const TriangleCorners& b, const Sides& sides) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
@@ -85,7 +86,7 @@ bool an_edge_meets(const TriangleCorners& a, const TriangleCorners& b, const Sid
       if (meet_in_a_plane(edge, b)) return true;
       continue;
     }
-    // The line pierces the plane: inside where it passes all edges on one side.
+    // The line pierces the plane; inside the triangle if it passes all edges on one side.
     const int first = orientation(a[i], a[j], b[0], b[1]);
     const int second = orientation(a[i], a[j], b[1], b[2]);
     if (first * second < 0) continue;
@@ -95,7 +96,7 @@ bool an_edge_meets(const TriangleCorners& a, const TriangleCorners& b, const Sid
   return false;
 }
 
-// Triangles without area are their edges.
+// Tests two triangles without area by their edges.
 bool edges_meet(const TriangleCorners& a, const TriangleCorners& b) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Eigen::Vector3d of_a[] = {a[i], a[(i + 1) % 3]};
@@ -116,7 +117,8 @@ bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept
   if (on_one_side(of_b)) return false;
   const Sides of_a = sides_of(a, b);
   if (on_one_side(of_a)) return false;
-  // Where they meet an edge of one meets the other. A plane that leaves a point aside is one.
+  // Where two triangles meet, an edge of one meets the other. A triangle whose plane leaves a point
+  // aside has area.
   constexpr Sides kNone = {0, 0, 0};
   const bool a_has_area = of_b != kNone || has_area(a), b_has_area = of_a != kNone || has_area(b);
   if (!a_has_area && !b_has_area) return edges_meet(a, b);

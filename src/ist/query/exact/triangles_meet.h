@@ -7,10 +7,11 @@ namespace ist {
 
 using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 
-/// Whether two closed triangles have a point in common, exactly: touching counts, and a triangle
-/// without area is the segment or the point that is left of it. Coordinates as for orientation.
+/// Tests whether two closed triangles have a point in common, exactly: a common boundary point
+/// counts, and a triangle without area is the segment or point that remains of it. Coordinates as
+/// for orientation.
 ///
-/// Cost: 20 ns where a plane separates them, 50 to 200 ns else, some µs where they lie in one
+/// Cost: 20 ns where a plane separates them, 50 to 200 ns otherwise, some µs where they lie in one
 /// plane. Allocates nothing.
 [[nodiscard]] bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 

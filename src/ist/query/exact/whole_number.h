@@ -11,14 +11,14 @@
 
 namespace ist {
 
-/// A whole number of at most N limbs, on the stack: what is needed of GMP's lowest layer, which
-/// allocates nothing, to find the sign of a small determinant.
+/// A whole number of at most N limbs, on the stack, over GMP's lowest layer, which allocates
+/// nothing: enough to find the sign of a small determinant.
 template <std::size_t N>
 class WholeNumber {
  public:
   WholeNumber() = default;
 
-  /// value · 2^-exponent. Precondition: it is whole, and short enough.
+  /// Makes value · 2^-exponent. Precondition: it is whole and fits.
   WholeNumber(double value, int exponent) noexcept {
     int shift = 0;
     auto digits = static_cast<std::uint64_t>(std::ldexp(std::frexp(std::abs(value), &shift), 53));
@@ -69,7 +69,7 @@ class WholeNumber {
   template <std::size_t M>
   [[nodiscard]] auto sum(const WholeNumber<M>& other, bool other_negative) const noexcept {
     WholeNumber<std::max(N, M) + 1> sum;
-    const mp_limb_t *a = limb_, *b = other.limb_;  // the larger and the smaller
+    const mp_limb_t *a = limb_, *b = other.limb_;  // the larger and the smaller by absolute value
     auto of_a = static_cast<mp_size_t>(size_), of_b = static_cast<mp_size_t>(other.size_);
     sum.negative_ = negative_;
     if (of_a < of_b || (of_a == of_b && of_a > 0 && mpn_cmp(a, b, of_a) < 0)) {
@@ -90,13 +90,13 @@ class WholeNumber {
     return sum;
   }
 
-  std::size_t size_ = 0;  // without zeros in front
+  std::size_t size_ = 0;  // without leading zeros
   bool negative_ = false;
-  mp_limb_t limb_[N];  // least first; from size_ on not set
+  mp_limb_t limb_[N];  // least first; undefined from size_ on
 };
 
-/// The exponent of a double's last digit that is not 0: value · 2^-exponent is whole and odd. For 0
-/// more than for any other.
+/// Returns the exponent of a double's last nonzero digit: value · 2^-exponent is whole and odd. For
+/// 0 it is greater than for any other.
 [[nodiscard]] inline int last_digit(double value) noexcept {
   if (value == 0) return 2000;
   int exponent = 0;

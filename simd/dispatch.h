@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ist/query/exact/triangle_bounds.h"
+#include "simd/step.h"
+
+namespace ist {
+
+/// The kernels of a query, for one instruction set.
+struct Kernels {
+  const char* target;  ///< `scalar`, `avx3`, …
+  AdvanceFunction advance;
+  WriteLeafPairsFunction write_leaf_pairs;
+  StepParts parts;
+  FindNearFunction find_near;
+};
+
+/// The scalar kernels, which every processor runs.
+extern const Kernels kScalarKernels;
+
+/// Returns the kernels of every instruction set that this build and this processor have, best
+/// first; the last is `scalar`.
+[[nodiscard]] std::span<const Kernels> all_kernels();
+
+/// Returns the kernels of an instruction set by its name. An empty name takes the environment's
+/// IST_TARGET, or the best where that is not set. Throws kTargetMissing, listing the names, for an
+/// unknown one.
+[[nodiscard]] const Kernels& select_kernels(std::string_view target);
+
+namespace simd {
+
+/// Returns the vector twins of kScalarKernels for each instruction set that this build and this
+/// processor have, best first: avx3, avx2, sse4, ssse3.
+[[nodiscard]] std::vector<Kernels> supported_kernels();
+
+}  // namespace simd
+}  // namespace ist

@@ -1,0 +1,197 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "ist/base/set_bits.h"
+#include "ist/tree/lookup_table.h"
+#include "simd/step.h"
+
+namespace ist {
+
+/// The numbers of a node's bound, one array each.
+enum Lane : std::size_t { kX, kY, kZ, kRadius, kNormalX, kNormalY, kNormalZ, kOffset, kHalf };
+inline constexpr std::size_t kLanes = 9;
+
+/// The factor by which normals, offsets and half widths are scaled in blocks, so that a normal is
+/// whole numbers, and in moving lanes.
+inline constexpr float kSlabScale = 128;
+
+/// The bounds of up to N nodes in their tree's frame, mesh units, side by side for vectors, and the
+/// ids that survivors get. Room for a vector lies behind them.
+template <std::size_t N>
+struct alignas(64) BoundLanes {
+  static constexpr std::size_t kSize = N;
+  float lane[kLanes][N + 16];
+  std::uint32_t id[N + 16];
+};
+
+/// The moving nodes of a batch of groups, one group after the other.
+using MovingLanes = BoundLanes<1024>;
+/// The children of one fixed node.
+using FixedLanes = BoundLanes<8>;
+
+/// The children of one fixed node in the moving tree's frame, mesh units, one array a number.
+/// Radius and half width include the pads.
+struct alignas(64) FixedRows {
+  float x[8], y[8], z[8], radius[8];
+  float normal_x[8], normal_y[8], normal_z[8], offset[8], half[8];
+  float scaled_radius[8];  ///< kSlabScale · (radius + slab_pad)
+};
+
+/// The scratch memory of a step. One object belongs to one thread.
+struct SearchScratch {
+  static constexpr std::size_t kGroups = 8;
+  MovingLanes moving;
+  FixedLanes fixed;
+  FixedRows rows[kGroups];
+};
+
+// The scalar forms, inline because the vector kernels share some of them. Each specifies its vector
+// twin, which does the same operations in the same order.
+
+/// Decodes the bound of the child in slot `slot` of a parent, from its blocks.
+template <std::size_t N>
+void decode_block(const SearchSide& side, std::uint32_t parent, std::uint32_t slot,
+                  BoundLanes<N>& out, std::size_t at) noexcept {
+  const OctreeNode& node = side.nodes[parent];
+  const BallBlock& ball = side.balls[parent];
+  const float unit = side.ball_unit;
+  out.lane[kX][at] = node.centre[0] * side.voxel_size + static_cast<float>(ball.x[slot]) * unit;
+  out.lane[kY][at] = node.centre[1] * side.voxel_size + static_cast<float>(ball.y[slot]) * unit;
+  out.lane[kZ][at] = node.centre[2] * side.voxel_size + static_cast<float>(ball.z[slot]) * unit;
+  out.lane[kRadius][at] = static_cast<float>(ball.r[slot]) * unit;
+  if (side.slabs == nullptr) return;
+  const SlabBlock& slab = side.slabs[parent];
+  out.lane[kNormalX][at] = static_cast<float>(slab.nx[slot]);
+  out.lane[kNormalY][at] = static_cast<float>(slab.ny[slot]);
+  out.lane[kNormalZ][at] = static_cast<float>(slab.nz[slot]);
+  out.lane[kOffset][at] = static_cast<float>(slab.offset[slot]) * side.slab_unit;
+  out.lane[kHalf][at] = static_cast<float>(slab.half[slot]) * side.slab_unit;
+}
+
+/// Decodes the sphere of the child in slot `slot` of a parent, from the parent's occupancy mask and
+/// its own.
+template <std::size_t N>
+void decode_implicit(const SearchSide& side, std::uint32_t parent, std::uint32_t slot,
+                     BoundLanes<N>& out, std::size_t at) noexcept {
+  const OctreeNode& node = side.nodes[parent];
+  const unsigned octant = kSetBits[side.masks[parent]][slot];
+  const float offset = side.octant_offset, half = side.half_edge;
+  float x = node.centre[0] * side.voxel_size + ((octant & 1) != 0 ? offset : -offset);
+  float y = node.centre[1] * side.voxel_size + ((octant & 2) != 0 ? offset : -offset);
+  float z = node.centre[2] * side.voxel_size + ((octant & 4) != 0 ? offset : -offset);
+  float radius = kMaskRadii[255] * half;
+  if (side.child_masks != nullptr) {
+    const std::uint8_t mask = side.child_masks[node.first_child + slot];
+    const TableBall& ball = kLookupTable[mask];
+    const float sixth = half * (1.0F / 6);
+    x += static_cast<float>(ball.x) * sixth;
+    y += static_cast<float>(ball.y) * sixth;
+    z += static_cast<float>(ball.z) * sixth;
+    radius = kMaskRadii[mask] * half;
+  }
+  out.lane[kX][at] = x;
+  out.lane[kY][at] = y;
+  out.lane[kZ][at] = z;
+  out.lane[kRadius][at] = radius;
+}
+
+[[nodiscard]] inline std::uint32_t child_count(const SearchSide& side,
+                                               std::uint32_t parent) noexcept {
+  return side.nodes[parent + 1].first_child - side.nodes[parent].first_child;
+}
+
+/// Decodes the children of a frontier's `node` into lanes from `at` on, or the node itself where
+/// the side does not descend. Returns the number of lanes, at most 8.
+template <std::size_t N>
+std::uint32_t decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& out,
+                     std::size_t at) noexcept {
+  const std::uint32_t parent = side.descends ? node : node / 8;
+  const std::uint32_t slot = side.descends ? 0 : node % 8;
+  const std::uint32_t count = side.descends ? child_count(side, node) : 1;
+  const std::uint32_t name = !side.descends     ? node
+                             : side.emits_slots ? 8 * node
+                                                : side.nodes[node].first_child;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (side.balls != nullptr) {
+      decode_block(side, parent, slot + i, out, at + i);
+    } else {
+      decode_implicit(side, parent, slot + i, out, at + i);
+    }
+    out.id[at + i] = name + i;
+  }
+  return count;
+}
+
+/// Turns the fixed node in lane `at` into the moving tree's frame, as a row.
+inline void turn(const SearchPose& pose, bool slabs, const FixedLanes& fixed, std::size_t at,
+                 FixedRows& rows) noexcept {
+  const float* r = pose.rotation;
+  const float x = fixed.lane[kX][at], y = fixed.lane[kY][at], z = fixed.lane[kZ][at];
+  rows.x[at] = ((r[0] * x + r[1] * y) + r[2] * z) + pose.translation[0];
+  rows.y[at] = ((r[3] * x + r[4] * y) + r[5] * z) + pose.translation[1];
+  rows.z[at] = ((r[6] * x + r[7] * y) + r[8] * z) + pose.translation[2];
+  rows.radius[at] = fixed.lane[kRadius][at] + pose.ball_pad;
+  if (!slabs) return;
+  constexpr float kUnscale = 1 / kSlabScale;
+  const float nx = fixed.lane[kNormalX][at] * kUnscale, ny = fixed.lane[kNormalY][at] * kUnscale,
+              nz = fixed.lane[kNormalZ][at] * kUnscale;
+  rows.normal_x[at] = (r[0] * nx + r[1] * ny) + r[2] * nz;
+  rows.normal_y[at] = (r[3] * nx + r[4] * ny) + r[5] * nz;
+  rows.normal_z[at] = (r[6] * nx + r[7] * ny) + r[8] * nz;
+  rows.offset[at] = fixed.lane[kOffset][at] * kUnscale;
+  rows.half[at] = fixed.lane[kHalf][at] * kUnscale + pose.slab_pad;
+  rows.scaled_radius[at] = (fixed.lane[kRadius][at] + pose.slab_pad) * kSlabScale;
+}
+
+/// Tests whether the bounds of a row and of a moving node overlap, with slabs by separating planes.
+/// Rejects by `>`, so that a NaN keeps the pair.
+template <std::size_t N>
+[[nodiscard]] bool overlap(const FixedRows& f, std::size_t row, const BoundLanes<N>& m,
+                           std::size_t at, bool slabs) noexcept {
+  const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
+              dz = m.lane[kZ][at] - f.z[row];
+  const float reach = m.lane[kRadius][at] + f.radius[row];
+  if ((dx * dx + dy * dy) + dz * dz > reach * reach) return false;
+  if (!slabs) return true;
+  const float above_fixed =
+      ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
+  if (std::abs(above_fixed) > m.lane[kRadius][at] + f.half[row]) return false;
+  const float above_moving =
+      ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
+      m.lane[kOffset][at];
+  return !(std::abs(above_moving) > m.lane[kHalf][at] + f.scaled_radius[row]);
+}
+
+/// Tests like overlap(), and updates `measure` by the pair. The distance of a pair that slabs
+/// separate is the largest of its three separations.
+template <std::size_t N>
+[[nodiscard]] bool measure(const FixedRows& f, std::size_t row, const BoundLanes<N>& m,
+                           std::size_t at, bool slabs, DistanceBounds& measure) noexcept {
+  const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
+              dz = m.lane[kZ][at] - f.z[row];
+  const float reach = m.lane[kRadius][at] + f.radius[row];
+  const float distance = std::sqrt((dx * dx + dy * dy) + dz * dz);
+  float apart = distance - reach;
+  if (slabs) {
+    const float above_fixed =
+        ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
+    const float above_moving =
+        ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
+        m.lane[kOffset][at];
+    apart = std::max(apart, std::abs(above_fixed) - (m.lane[kRadius][at] + f.half[row]));
+    apart = std::max(apart, (std::abs(above_moving) - (m.lane[kHalf][at] + f.scaled_radius[row])) *
+                                (1 / kSlabScale));
+  }
+  const bool touching = overlap(f, row, m, at, slabs);
+  float& least = touching ? measure.min_overlapping : measure.min_pruned;
+  least = std::min(least, apart);
+  measure.upper = std::min(measure.upper, distance + reach);
+  return touching;
+}
+
+}  // namespace ist

@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "advise/calibration.h"
+#include "cli/bodies.h"
+#include "cli/commands/advise_report.h"
+#include "cli/commands/commands.h"
+#include "cli/poses.h"
+#include "cli/progress_bar.h"
+#include "cli/query_options.h"
+#include "ist/base/error.h"
+#include "ist/mesh/bounding_box.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/voxel/voxelizer.h"
+#include "simd/dispatch.h"
+
+namespace ist::cli {
+namespace {
+
+// Voxel size of the trees for exact queries, as a fraction of the body's extent.
+constexpr double kExact = 1.0 / 200;
+
+struct AdviseArguments {
+  std::filesystem::path fixed, moving, poses;
+  std::optional<double> budget, error;
+  std::string axis;
+  CalibrationOptions calibration;
+  bool json = false;
+};
+
+void check(const AdviseArguments& options) {
+  refuse_if(options.budget.has_value() == options.error.has_value(), "--budget-us, --error",
+            "give one of them");
+  const auto positive = [](const char* name, const std::optional<double>& value, const char* unit) {
+    refuse_if(value && !(*value > 0 && std::isfinite(*value)), name,
+              fmt::format("give a positive number of {}", unit));
+  };
+  positive("--budget-us", options.budget, "microseconds");
+  positive("--error", options.error, "mesh units");
+  refuse_if(!options.poses.empty() && !options.axis.empty(), "--axis",
+            "contradicts --poses, which give the poses to measure");
+  static_cast<void>(select_kernels(options.calibration.target));  // before anything is built
+  for (const std::filesystem::path& file : {options.fixed, options.moving}) {
+    refuse_if(is_tree_file(file), file.string(),
+              "it is a tree, whose voxel size is fixed already: name the mesh that it was built "
+              "from");
+  }
+}
+
+double extent_of(const TriangleMesh& mesh) { return bounding_box(mesh).diagonal().maxCoeff(); }
+
+CheckedMesh load(const std::filesystem::path& file) {
+  constexpr double kAny = 1;
+  CheckedMesh checked = load_mesh(file);
+  const std::optional<Error> flaw = lattice_flaw(checked.mesh, kAny);
+  if (flaw && flaw->code() == ErrorCode::kMeshExtent) {  // at any voxel size
+    throw Error(flaw->code(), fmt::format("{}: {}", file.string(), flaw->what()));
+  }
+  return checked;
+}
+
+SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving,
+                    const AdviseArguments& options) {
+  const double of_fixed = extent_of(fixed), of_moving = extent_of(moving);
+  if (const auto range = sizes_between(of_fixed, of_moving)) return *range;
+  const bool fixed_is_larger = of_fixed > of_moving;
+  const std::filesystem::path& larger = fixed_is_larger ? options.fixed : options.moving;
+  const std::filesystem::path& smaller = fixed_is_larger ? options.moving : options.fixed;
+  throw Error(
+      ErrorCode::kMeshExtent,
+      fmt::format("{}: {:.1e} times as large as {}, so no voxel size suits both: give only "
+                  "the part of it that can be in contact",
+                  larger.string(), std::max(of_fixed, of_moving) / std::min(of_fixed, of_moving),
+                  smaller.string()));
+}
+
+// Builds a tree for exact queries. Its voxel size affects time alone, so voxels are enlarged until
+// they fit the memory.
+SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
+                      std::uint64_t max_memory) {
+  const double extent = extent_of(checked.mesh);
+  BuildOptions build;
+  build.voxel_size = kExact * extent;
+  build.keep_triangles = true;
+  build.max_memory = max_memory;
+  while (build.voxel_size < extent && !can_build_tree(checked.mesh, build)) build.voxel_size *= 2;
+  SphereTree tree =
+      build_with_progress(file.string(), std::move(checked.mesh), build, checked.warnings);
+  print_warnings(checked.warnings);
+  return tree;
+}
+
+std::string name_of(AxisDirection direction) {
+  return fmt::format("{}{}", direction.sign < 0 ? "-" : "", "xyz"[direction.axis]);
+}
+
+AxisDirection named_direction(const std::string& name) {
+  return {name.back() - 'x', name.size() > 1 ? -1 : +1};
+}
+
+ClosingPath find_path(ExactBodies& bodies, const std::string& axis) {
+  const AxisDirection direction =
+      axis.empty() ? shortest_open_direction(bodies.fixed_box(), bodies.moving_box())
+                   : named_direction(axis);
+  const std::optional<ClosingPath> path = find_closing_path(bodies, direction);
+  if (!path) {
+    throw CLI::ValidationError(
+        "--poses", fmt::format("needed, because the bodies do not touch where they are stored, nor "
+                               "when the moving one goes from there along {}: give poses at which "
+                               "they do, or another --axis",
+                               name_of({direction.axis, -direction.sign})));
+  }
+  fmt::print(stderr,
+             "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
+             Calibration::kPoses, name_of(direction), path->begin, path->end, path->first_contact);
+  return *path;
+}
+
+void run(const AdviseArguments& options) {
+  check(options);
+  std::vector<Eigen::Isometry3d> poses;
+  if (!options.poses.empty()) {
+    poses = read_poses(options.poses);
+    fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
+  }
+  CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
+  const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);
+  const std::uint64_t max_memory = options.calibration.max_memory;
+  const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);
+  const SphereTree moving = load_exact(options.moving, std::move(moving_mesh), max_memory);
+  ExactBodies bodies(fixed, moving);
+  Calibration calibration =
+      poses.empty() ? Calibration(bodies, find_path(bodies, options.axis), options.calibration)
+                    : Calibration(bodies, std::move(poses), options.calibration);
+
+  const AdviceGoal goal = options.budget
+                              ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfGoal * *options.budget}
+                              : AdviceGoal{AdviceGoal::Of::kError, kOfGoal * *options.error};
+  const VoxelAdvice advice = [&] {
+    ProgressBar progress;
+    return advise_voxel_size(goal, range, [&](double voxel_size) {
+      const std::optional<SizeMeasure> measured = calibration.measure(voxel_size, &progress);
+      // Coarse voxels overlap first, and are tried first.
+      if (options.budget && measured && measured->max_leaf_pairs == 0) {
+        throw Error(ErrorCode::kInputInvalid,
+                    fmt::format("{}: at no pose do voxels of {:g} touch, so no query takes time: "
+                                "add the poses with most contact",
+                                options.poses.string(), voxel_size));
+      }
+      return measured;
+    });
+  }();
+  if (options.error && !options.poses.empty() && !advice.measured.empty() &&
+      std::all_of(advice.measured.begin(), advice.measured.end(),
+                  [](const SizeMeasure& size) { return size.error == 0; })) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: no pose shows an error, because at each the surfaces touch or the "
+                            "voxels do not: add poses shortly before the bodies touch",
+                            options.poses.string()));
+  }
+  options.json ? print_json(advice) : print_table(advice);
+  if (!advice.recommended) throw std::runtime_error(why_none(advice, goal));
+  if (!options.json) {
+    print_build_commands(advice.measured[*advice.recommended].voxel_size, options.fixed,
+                         options.moving, max_memory);
+  }
+  const bool is_last = *advice.recommended + 1 == advice.measured.size();
+  if (options.budget && is_last && advice.too_fine) {
+    fmt::print(
+        stderr,
+        "note: {:g} needs more memory than --max-memory allows, or is too fine for a lattice\n",
+        *advice.too_fine);
+  }
+}
+
+}  // namespace
+
+void add_advise(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "advise", "Recommend a voxel size for a time or an error, measured on your own meshes");
+  const auto options = std::make_shared<AdviseArguments>();
+  command->add_option("FIXED", options->fixed, "mesh of the body that stays")->required();
+  command->add_option("MOVING", options->moving, "mesh of the body that is moved")->required();
+  command->add_option("--budget-us", options->budget,
+                      "microseconds for a query of all leaf pairs: recommends the smallest voxels "
+                      "whose slowest pose takes at most 80 % of them");
+  command->add_option("--error", options->error,
+                      "largest distance between surfaces whose voxels touch, in mesh units: "
+                      "recommends the largest voxels with which at most 80 % of it was measured");
+  command->add_option(
+      "--poses", options->poses,
+      "JSON: an array of objects with \"pose\", 16 numbers, column-major; by default a straight "
+      "closing path to the stored pose, or from there to first contact");
+  command
+      ->add_option("--axis", options->axis,
+                   "direction in which the moving body leaves the fixed one; by default the "
+                   "direction in which its bounding box leaves soonest")
+      ->check(CLI::IsMember({"x", "-x", "y", "-y", "z", "-z"}));
+  command->add_option("--workers", options->calibration.workers, "threads of a query")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  command->add_option("--target", options->calibration.target,
+                      fmt::format("instruction set: {} on this processor; by default IST_TARGET of "
+                                  "the environment, or the first",
+                                  target_names()));
+  add_max_memory(*command, options->calibration.max_memory);
+  command->add_flag("--json", options->json, "print one JSON object a line");
+  add_example(*command,
+              "Each voxel size is built and timed, so let nothing else run: the printed time is "
+              "the median of the slowest pose.\n"
+              "The error is measured against triangles, on tilted paths too; the bound beside it "
+              "is certain for any pose.\n"
+              "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/bodies.h"
+#include "cli/commands/commands.h"
+#include "cli/query_options.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist::cli {
+namespace {
+
+struct BuildArguments {
+  std::filesystem::path mesh, output;
+  BuildOptions build;
+  std::string spheres{to_string(BuildOptions{}.spheres)};
+  std::vector<std::string> classes{"surface"};
+  bool json = false;
+};
+
+void run(BuildArguments options) {
+  options.build.spheres = *sphere_policy(options.spheres);
+  const auto names = [&](const char* name) {
+    return std::find(options.classes.begin(), options.classes.end(), name) != options.classes.end();
+  };
+  refuse_if(!names("surface"), "--classes",
+            "surface voxels are always made: give surface,proximity");
+  options.build.proximity = names("proximity");
+  refuse_to_overwrite(options.output, {options.mesh});
+  CheckedMesh checked = load_mesh(options.mesh);
+  const std::size_t triangles = checked.mesh.triangles.size();
+  BuildReport report;
+  const SphereTree tree = build_with_progress(options.mesh.string(), std::move(checked.mesh),
+                                              options.build, checked.warnings, &report);
+  print_warnings(checked.warnings);
+  const std::uint64_t bytes = write_tree(tree, options.output);
+
+  const LinearOctree& octree = tree.parts().octree;
+  if (options.json) {
+    nlohmann::ordered_json line{{"file", options.output.string()}, {"triangles", triangles},
+                                {"voxel_size", tree.voxel_size()}, {"spheres", options.spheres},
+                                {"voxels", octree.leaf_count()},   {"nodes", octree.node_count()},
+                                {"depth", octree.depth()},         {"bytes", bytes},
+                                {"memory", tree.bytes()}};
+    if (tree.parts().proximity)
+      line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
+    for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
+    line["warnings"] = checked.warnings;
+    fmt::print("{}\n", line.dump());
+    return;
+  }
+  fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),
+             octree.leaf_count(), octree.node_count(), octree.depth(),
+             static_cast<double>(bytes) / 1e6);
+  if (tree.parts().proximity) {
+    fmt::print("proximity voxels: {}\n", tree.parts().proximity->octree.leaf_count());
+  }
+  for (const auto& stage : report.stages) {
+    fmt::print("  {:<18} {:8.1f} ms\n", stage.name, stage.milliseconds);
+  }
+}
+
+}  // namespace
+
+void add_build(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
+  const auto options = std::make_shared<BuildArguments>();
+  command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
+      ->required();
+  command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();
+  command->add_option("--voxel-size", options->build.voxel_size, "edge of a voxel, in mesh units")
+      ->required();
+  command
+      ->add_option("--spheres", options->spheres,
+                   "bounds to save beside simple and table, which need no saving")
+      ->check(CLI::IsMember(policy_names()))
+      ->capture_default_str();
+  command->add_flag("--exact", options->build.keep_triangles, "keep each voxel's triangles");
+  command
+      ->add_option("--classes", options->classes,
+                   "classes of voxels: surface, or surface,proximity")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"surface", "proximity"}))
+      ->capture_default_str();
+  add_max_memory(*command, options->build.max_memory);
+  command->add_flag("--json", options->json, "print one JSON object");
+  add_example(*command, "Example: ist build jaw.stl -o jaw.ist --voxel-size 0.2");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// The subcommands, one file each. Each function adds a subcommand's options and action to `app`.
+/// Data goes to stdout, everything else to stderr; a failure is an ist::Error or a CLI::Error,
+/// caught in main alone.
+namespace ist::cli {
+
+void add_demo(CLI::App& app);
+void add_build(CLI::App& app);
+void add_info(CLI::App& app);
+void add_export(CLI::App& app);
+void add_collide(CLI::App& app);
+void add_close(CLI::App& app);
+void add_run(CLI::App& app);
+void add_advise(CLI::App& app);
+void add_table(CLI::App& app);
+
+}  // namespace ist::cli

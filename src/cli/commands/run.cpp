@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <future>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/bodies.h"
+#include "cli/commands/commands.h"
+#include "cli/commands/run_report.h"
+#include "cli/commands/tick_lines.h"
+#include "cli/exit_code.h"
+#include "cli/interruption.h"
+#include "cli/progress_bar.h"
+#include "cli/query_options.h"
+#include "ist/haptics/servo_loop.h"
+#include "ist/scene.h"
+
+namespace ist::cli {
+namespace {
+
+// Capacity of the ring: enough for some seconds in which the disk does not answer.
+constexpr std::size_t kRingTicks = 1 << 14;
+constexpr std::size_t kTicksAtOnce = 256;
+constexpr std::chrono::milliseconds kNap{5};
+
+struct RunArguments {
+  std::filesystem::path scene, record, replay;
+  bool check = false, explain = false, unpaced = false, json = false;
+  std::optional<double> rate, seconds;
+  std::optional<int> cpu;
+  std::uint64_t allow_missed = 0;
+  std::uint64_t max_memory = BuildOptions{}.max_memory;
+};
+
+// Runs an action if an exception ends its scope.
+template <typename Action>
+class OnException {
+ public:
+  explicit OnException(Action action) : action_(std::move(action)) {}
+  ~OnException() {
+    if (std::uncaught_exceptions() > before_) action_();
+  }
+  OnException(const OnException&) = delete;
+  OnException& operator=(const OnException&) = delete;
+
+ private:
+  Action action_;
+  int before_ = std::uncaught_exceptions();
+};
+
+// Writes ticks from the ring until it is empty and `last` is set. On failure, asks the loop to stop
+// and closes the ring, so that the loop does not wait for room.
+void write_ticks(TickRing<TickRecord>& ring, TickWriter& writer, const std::atomic<bool>& last,
+                 StopOnInterruption& stop) {
+  const OnException give_up([&] {
+    ring.close();
+    stop.ask();
+  });
+  std::vector<TickRecord> ticks(kTicksAtOnce);
+  while (true) {
+    const bool was_last = last.load(std::memory_order_acquire);
+    const std::size_t count = ring.pop(ticks);
+    for (std::size_t i = 0; i < count; ++i) writer.write(ticks[i]);
+    if (count == 0 && was_last) return;
+    if (count == 0) std::this_thread::sleep_for(kNap);
+  }
+}
+
+ServoReport run_recorded(BuiltScene& built, const ServoOptions& servo,
+                         const std::filesystem::path& file) {
+  StopOnInterruption stop;
+  ProgressBar progress;
+  ServoOutputs outputs;
+  outputs.progress = &progress;
+  const auto run = [&] {
+    return run_servo_loop(*built.simulation, *built.device, servo, outputs, stop.asked());
+  };
+  if (file.empty()) return run();
+  TickWriter writer(file);
+  TickRing<TickRecord> ring(kRingTicks);
+  outputs.records = &ring;
+  std::atomic<bool> last{false};
+  // get() rethrows the exceptions of the thread.
+  std::future<void> written =
+      std::async(std::launch::async, [&] { write_ticks(ring, writer, last, stop); });
+  // Ends the thread if the loop throws.
+  const OnException end([&] { last.store(true, std::memory_order_release); });
+  ServoReport report = run();
+  last.store(true, std::memory_order_release);
+  written.get();
+  writer.commit();
+  return report;
+}
+
+void replay_ticks(BuiltScene& built, const RunArguments& options) {
+  TickReader reader(options.replay, built.simulation->dt());
+  std::optional<TickWriter> writer;
+  if (!options.record.empty()) writer.emplace(options.record);
+  ProgressBar progress;
+  progress.begin_stage("replaying ticks", reader.bytes());
+  std::uint64_t ticks = 0, read = 0;
+  while (const std::optional<RecordedTick> recorded = reader.next()) {
+    const TickRecord record = replay(*recorded, *built.simulation);
+    if (writer) writer->write(record);
+    progress.add(reader.bytes_read() - read);
+    read = reader.bytes_read();
+    ++ticks;
+  }
+  if (ticks == 0) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: it holds no tick: give a file that --record wrote",
+                            options.replay.string()));
+  }
+  if (writer) writer->commit();
+  fmt::print(stderr, "replayed {} ticks\n", ticks);
+}
+
+void run(const RunArguments& options) {
+  // NaN passes every range check.
+  refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
+  refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
+  refuse_to_overwrite(options.record, {options.scene, options.replay});
+  Scene scene = read_scene(options.scene);
+  for (const SceneBody* body : {&scene.fixed, &scene.held}) {
+    const auto* file = std::get_if<std::filesystem::path>(&body->source);
+    if (file != nullptr) refuse_to_overwrite(options.record, {*file});
+  }
+  if (const auto* script = std::get_if<ScriptSettings>(&scene.device)) {
+    refuse_to_overwrite(options.record, {script->file});
+  }
+  scene.rate = options.rate.value_or(scene.rate);
+  scene.seconds = options.seconds.value_or(scene.seconds);
+  BuiltScene built = [&] {
+    ProgressBar progress;
+    return build_scene(scene, {}, options.max_memory, &progress);
+  }();
+  print_warnings(built.warnings);
+  if (options.explain) return print_notes(built.notes, options.json);
+  if (options.check) return;
+  if (!options.replay.empty()) return replay_ticks(built, options);
+
+  ServoOptions servo;
+  servo.ticks = static_cast<std::uint64_t>(scene.rate * scene.seconds + 0.5);
+  servo.paced = !options.unpaced;
+  servo.real_time.cpu = options.cpu;
+  const ServoReport report = run_recorded(built, servo, options.record);
+  print_report(report, scene, *built.simulation, options.json);
+  if (report.lost_records > 0) {
+    throw std::runtime_error(
+        fmt::format("{} ticks were not recorded: the disk is slower than the loop: record to "
+                    "another disk, or at a lower --rate",
+                    report.lost_records));
+  }
+  if (report.missed > options.allow_missed) {
+    throw Failure(
+        kDeadlinesMissed,
+        fmt::format(
+            "{} deadlines were missed, and {} are allowed: use larger voxels or a lower --rate, or "
+            "allow more with --allow-missed",
+            report.missed, options.allow_missed));
+  }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "run", "Run the servo loop of a scene: the forces on a hand, tick by tick");
+  const auto options = std::make_shared<RunArguments>();
+  command->add_option("SCENE", options->scene, "the scene, a TOML file")->required();
+  auto* check =
+      command->add_flag("--check", options->check,
+                        "read and build the scene, print its errors and warnings, and end");
+  auto* explain = command->add_flag("--explain", options->explain,
+                                    "print the built and the skipped parts with reasons, and end");
+  check->excludes(explain);
+  command->add_option("--rate", options->rate, "ticks a second, instead of the scene's")
+      ->check(CLI::Range(1.0, 10000.0));
+  auto* seconds =
+      command
+          ->add_option("--seconds", options->seconds, "duration in seconds, instead of the scene's")
+          ->check(CLI::Range(1e-3, 1e6));
+  auto* allow_missed =
+      command->add_option("--allow-missed", options->allow_missed, "deadlines that may be missed")
+          ->check(whole_number("the number of deadlines"));
+  auto* record =
+      command->add_option("--record", options->record,
+                          "write every tick to this file: JSON lines, or CSV if it ends in .csv");
+  auto* unpaced = command->add_flag(
+      "--unpaced", options->unpaced,
+      "one tick after the other, without waiting and without deadlines; the same on every machine");
+  auto* replay = command->add_option(
+      "--replay", options->replay,
+      "replay the ticks of a JSON recording of this scene: the same numbers except for times");
+  auto* cpu =
+      command->add_option("--cpu", options->cpu, "the processor for the loop alone, counted from 0")
+          ->check(CLI::NonNegativeNumber);
+  // An option without effect is refused as a mistake.
+  for (CLI::Option* no_run : {check, explain}) {
+    for (CLI::Option* of_a_run : {seconds, allow_missed, record, unpaced, replay, cpu}) {
+      no_run->excludes(of_a_run);
+    }
+  }
+  for (CLI::Option* of_the_clock : {allow_missed, cpu}) of_the_clock->excludes(unpaced);
+  for (CLI::Option* of_a_loop : {seconds, allow_missed, unpaced, cpu}) replay->excludes(of_a_loop);
+  add_max_memory(*command, options->max_memory);
+  command->add_flag("--json", options->json, "print one JSON object a line");
+  add_example(
+      *command,
+      "Prints how late ticks began, how long they took, and the time of each effect.\n"
+      "Ctrl-C reduces the force to zero and completes the recording.\n"
+      "Lengths of a recording are metres; gap_lower and gap_upper are in mesh units. README.md\n"
+      "lists the keys of a scene and of a recording; tests/data/scenes has scenes to try.\n"
+      "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

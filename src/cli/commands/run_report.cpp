@@ -1,0 +1,120 @@
+#include "cli/commands/run_report.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace ist::cli {
+namespace {
+
+constexpr std::pair<const char*, double> kQuantiles[] = {
+    {"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"p99.99", 0.9999}};
+
+double microseconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
+
+nlohmann::ordered_json as_json(const LatencyHistogram& times) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, part] : kQuantiles) json[name] = microseconds(times.quantile(part));
+  json["max"] = microseconds(times.max());
+  return json;
+}
+
+void print_row(const char* name, const LatencyHistogram& times) {
+  fmt::print("{:<12}", name);
+  for (const auto& [label, part] : kQuantiles) {
+    fmt::print("{:>10.1f}", microseconds(times.quantile(part)));
+  }
+  fmt::print("{:>10.1f}\n", microseconds(times.max()));
+}
+
+// Prints the counts by octaves of microseconds as bars: the longest has 40 marks, and every count
+// above 0 at least one.
+void print_bars(const LatencyHistogram& times) {
+  constexpr double kLongest = 40;
+  std::vector<std::uint64_t> octaves;
+  std::uint64_t before = 0, most = 0;
+  for (std::int64_t end = 1000; before < times.count(); end *= 2) {
+    const std::uint64_t upto = times.count_upto(std::chrono::nanoseconds(end));
+    octaves.push_back(upto - before);
+    most = std::max(most, octaves.back());
+    before = upto;
+  }
+  bool begun = false;
+  for (std::size_t i = 0; i < octaves.size(); ++i) {
+    begun = begun || octaves[i] > 0;
+    if (!begun) continue;
+    const double length =
+        kLongest * static_cast<double>(octaves[i]) / static_cast<double>(most) + 0.999;
+    fmt::print("  up to {:>7} µs {:>9} {}\n", std::uint64_t{1} << i, octaves[i],
+               std::string(static_cast<std::size_t>(length), '#'));
+  }
+}
+
+}  // namespace
+
+void print_notes(const std::vector<BuildNote>& notes, bool json) {
+  for (const BuildNote& note : notes) {
+    if (json) {
+      const nlohmann::ordered_json line{{"what", note.what},
+                                        {"built", note.built},
+                                        {"why", note.why},
+                                        {"milliseconds", note.milliseconds},
+                                        {"bytes", note.bytes}};
+      fmt::print("{}\n", line.dump());
+    } else if (note.built) {
+      fmt::print("built    {:<18} {:>8.1f} ms {:>8.1f} MB  {}\n", note.what, note.milliseconds,
+                 1e-6 * static_cast<double>(note.bytes), note.why);
+    } else {
+      fmt::print("skipped  {:<18} {:>24}  {}\n", note.what, "", note.why);
+    }
+  }
+}
+
+void print_report(const ServoReport& report, const Scene& scene, const Simulation& simulation,
+                  bool json) {
+  const double ticks = static_cast<double>(std::max<std::uint64_t>(report.ticks, 1));
+  if (json) {
+    nlohmann::ordered_json line{{"ticks", report.ticks},
+                                {"rate", scene.rate},
+                                {"missed", report.missed},
+                                {"held", report.held},
+                                {"faults", report.faults},
+                                {"late_microseconds", as_json(report.late)},
+                                {"microseconds", as_json(report.execution)},
+                                {"cpu_microseconds", as_json(report.cpu)},
+                                {"worst_cpu_microseconds", microseconds(report.worst_cpu)},
+                                {"worst_effects_microseconds", microseconds(report.worst_effects)},
+                                {"effects", nlohmann::ordered_json::object()},
+                                {"notes", report.notes}};
+    for (const EffectTime& effect : simulation.effects()) {
+      line["effects"][std::string(effect.name)] = microseconds(effect.time) / ticks;
+    }
+    fmt::print("{}\n", line.dump());
+    return;
+  }
+  for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print("{} ticks of {:.4g} µs: {} deadlines missed, {} answers incomplete, {} faults\n\n",
+             report.ticks, 1e6 / scene.rate, report.missed, report.held, report.faults);
+  fmt::print("{:<12}", "µs");
+  for (const auto& [name, part] : kQuantiles) fmt::print("{:>10}", name);
+  fmt::print("{:>10}\n", "max");
+  print_row("began late", report.late);
+  print_row("took", report.execution);
+  print_row("processor", report.cpu);
+  fmt::print("\nticks by duration\n");
+  print_bars(report.execution);
+  for (const EffectTime& effect : simulation.effects()) {
+    fmt::print("{}{} {:.2f} µs",
+               &effect == simulation.effects().data() ? "\neffects, a tick: " : ", ", effect.name,
+               microseconds(effect.time) / ticks);
+  }
+  if (simulation.effects().empty()) return;
+  fmt::print("\nthe tick with the most processor time: {:.1f} µs, of which effects {:.1f} µs\n",
+             microseconds(report.worst_cpu), microseconds(report.worst_effects));
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,171 @@
+#include "cli/commands/tick_lines.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "ist/base/error.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr std::size_t kFlush = 1 << 16;  // bytes
+
+constexpr const char* kCsvHeader =
+    "tick,dt,device_known,device_x,device_y,device_z,device_xx,device_xy,device_xz,device_yx,"
+    "device_yy,device_yz,device_zx,device_zy,device_zz,tool_x,tool_y,tool_z,tool_xx,tool_xy,"
+    "tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,force_x,force_y,force_z,torque_x,"
+    "torque_y,torque_z,contacts,leaf_pairs,gap_lower,gap_upper,level,complete,sphere_tests,"
+    "proximity_tests,held,fault,late_microseconds,microseconds,cpu_microseconds\n";
+
+double microseconds(std::int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
+
+// Calls `use` with name and value of each number of a tick behind its wrench; a value is empty if
+// its query was not made.
+template <typename Use>
+void for_each_number(const TickRecord& record, const Use& use) {
+  const auto of = [](const auto* result, auto member) {
+    return result != nullptr ? std::optional(result->*member) : std::nullopt;
+  };
+  const auto* contacts = record.contacts ? &*record.contacts : nullptr;
+  const auto* proximity = record.proximity ? &*record.proximity : nullptr;
+  const auto* gap = contacts != nullptr && contacts->distance ? &*contacts->distance : nullptr;
+  use("contacts", of(contacts, &QueryResult::leaf_pairs));
+  use("leaf_pairs", std::optional(record.leaf_pairs));
+  use("gap_lower", of(gap, &DistanceInterval::lower));
+  use("gap_upper", of(gap, &DistanceInterval::upper));
+  use("level", of(contacts, &QueryResult::level));
+  use("complete", of(contacts, &QueryResult::complete));
+  use("sphere_tests", of(contacts, &QueryResult::sphere_tests));
+  use("proximity_tests", of(proximity, &QueryResult::sphere_tests));
+  use("held", std::optional(record.held));
+  use("fault", std::optional(record.fault));
+  use("late_microseconds", std::optional(microseconds(record.late_ns)));
+  use("microseconds", std::optional(microseconds(record.execution_ns)));
+  use("cpu_microseconds", std::optional(microseconds(record.cpu_ns)));
+}
+
+void append_json(const TickRecord& record, std::string& lines) {
+  const auto end = std::back_inserter(lines);
+  fmt::format_to(end, "{{\"tick\":{},\"dt\":{},\"device\":", record.tick, record.dt);
+  if (record.device_known) {
+    fmt::format_to(end, "[{}]", fmt::join(record.device, ","));
+  } else {
+    lines += "null";
+  }
+  fmt::format_to(end, ",\"tool\":[{}],\"wrench\":[{}]", fmt::join(record.tool, ","),
+                 fmt::join(record.wrench, ","));
+  for_each_number(record, [&](const char* name, const auto& value) {
+    fmt::format_to(end, ",\"{}\":", name);
+    if (value) {
+      fmt::format_to(end, "{}", *value);
+    } else {
+      lines += "null";
+    }
+  });
+  lines += "}\n";
+}
+
+void append_csv(const TickRecord& record, std::string& lines) {
+  const auto end = std::back_inserter(lines);
+  fmt::format_to(end, "{},{},{},{},{},{}", record.tick, record.dt, record.device_known ? 1 : 0,
+                 fmt::join(record.device, ","), fmt::join(record.tool, ","),
+                 fmt::join(record.wrench, ","));
+  for_each_number(record, [&](const char*, const auto& value) {
+    lines += ',';
+    if (value) fmt::format_to(end, "{}", +*value);  // + makes a flag 0 or 1
+  });
+  lines += '\n';
+}
+
+}  // namespace
+
+TickWriter::TickWriter(const std::filesystem::path& file)
+    : file_(file), csv_(file.extension() == ".csv") {
+  if (csv_) lines_ += kCsvHeader;
+}
+
+void TickWriter::write(const TickRecord& record) {
+  csv_ ? append_csv(record, lines_) : append_json(record, lines_);
+  if (lines_.size() >= kFlush) flush();
+}
+
+void TickWriter::commit() {
+  flush();
+  file_.commit();
+}
+
+void TickWriter::flush() {
+  file_.write(lines_.data(), lines_.size());
+  lines_.clear();
+}
+
+TickReader::TickReader(std::filesystem::path file, double dt)
+    : file_(std::move(file)), dt_(dt), in_(file_) {
+  if (!in_) {
+    throw Error(ErrorCode::kFileUnreadable,
+                fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+  }
+  std::error_code none;  // a pipe has no size
+  const std::uintmax_t size = std::filesystem::file_size(file_, none);
+  if (!none) bytes_ = size;
+}
+
+void TickReader::refuse(const std::string& what) const {
+  throw Error(ErrorCode::kInputInvalid,
+              fmt::format("{}:{}: {}: give a file that --record wrote as JSON lines",
+                          file_.string(), line_, what));
+}
+
+std::optional<RecordedTick> TickReader::next() {
+  std::string text;
+  if (!std::getline(in_, text)) {
+    if (in_.bad()) refuse("cannot be read");
+    return std::nullopt;
+  }
+  ++line_;
+  bytes_read_ += text.size() + 1;
+  const nlohmann::json line = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!line.is_object()) refuse("not a JSON object");
+  RecordedTick tick{};
+  const auto count = [&](const char* key) -> std::optional<std::uint64_t> {
+    const auto found = line.find(key);
+    if (found == line.end()) refuse(fmt::format("no key '{}'", key));
+    if (found->is_null()) return std::nullopt;
+    if (!found->is_number_unsigned()) refuse(fmt::format("'{}' is not a whole number", key));
+    return found->get<std::uint64_t>();
+  };
+  const std::optional<std::uint64_t> number = count("tick");
+  if (!number) refuse("'tick' is null");
+  tick.tick = *number;
+  if (const auto tests = count("sphere_tests")) tick.budget.contacts.tests = *tests;
+  if (const auto tests = count("proximity_tests")) tick.budget.proximity.tests = *tests;
+
+  const auto dt = line.find("dt");
+  if (dt == line.end() || !dt->is_number()) refuse("no number 'dt'");
+  if (dt->get<double>() != dt_) {
+    throw Error(
+        ErrorCode::kInputInvalid,
+        fmt::format(
+            "{}:{}: it was recorded at {:.6g} Hz, and the scene runs at {:.6g}: give --rate {:.6g}",
+            file_.string(), line_, 1 / dt->get<double>(), 1 / dt_, 1 / dt->get<double>()));
+  }
+  const auto device = line.find("device");
+  if (device == line.end()) refuse("no key 'device'");
+  if (device->is_null()) return tick;
+  TickRecord::Pose pose;
+  if (!device->is_array() || device->size() != pose.size())
+    refuse("'device' is not an array of 12 numbers");
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    if (!(*device)[i].is_number()) refuse("'device' is not an array of 12 numbers");
+    pose[i] = (*device)[i].get<double>();
+  }
+  tick.device = to_placement(pose);
+  if (!tick.device) refuse("'device' is not a rigid motion");
+  return tick;
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "ist/base/files.h"
+#include "ist/haptics/recording.h"
+
+namespace ist::cli {
+
+/// Writes ticks, one a line: JSON objects, or CSV with a header if the file's name ends in .csv.
+/// Times come last, so lines of equal ticks differ only at their end. The file appears, complete,
+/// after commit().
+class TickWriter {
+ public:
+  explicit TickWriter(const std::filesystem::path& file);
+
+  void write(const TickRecord& record);
+  void commit();
+
+ private:
+  void flush();
+
+  OutputFile file_;
+  bool csv_;
+  std::string lines_;  // not yet written
+};
+
+/// Reads the JSON lines of a TickWriter, tick by tick.
+class TickReader {
+ public:
+  /// Opens the file. Throws kFileUnreadable.
+  /// @param dt time step of the replay, s
+  TickReader(std::filesystem::path file, double dt);
+
+  /// Returns the next tick, or nothing at the end. Throws kInputInvalid, naming file, line and
+  /// remedy, for a line that is no tick or has another time step.
+  [[nodiscard]] std::optional<RecordedTick> next();
+
+  /// The size of the file when it was opened, and the bytes read so far.
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  std::filesystem::path file_;
+  double dt_;
+  std::ifstream in_;
+  std::uint64_t line_ = 0, bytes_ = 0, bytes_read_ = 0;
+};
+
+}  // namespace ist::cli

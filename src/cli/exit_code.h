@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace ist::cli {
+
+/// The exit codes of the command, besides 0.
+enum ExitCode : int { kFailed = 1, kUsage, kBadInput, kDeadlinesMissed, kGuaranteeBroken };
+
+/// A failure with an exit code of its own: a result that breaks the guarantee, or more missed
+/// deadlines than --allow-missed.
+struct Failure : std::runtime_error {
+  Failure(ExitCode code, const std::string& what) : std::runtime_error(what), exit_code(code) {}
+
+  ExitCode exit_code;
+};
+
+}  // namespace ist::cli

@@ -1,0 +1,177 @@
+#include "ist/base/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "ist/base/error.h"
+
+namespace ist {
+namespace {
+
+// All temporary files of the process. A file is created and removed only under the lock, so the
+// list is complete for whoever holds the lock.
+struct Temporaries {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+
+  // Never destroyed: a thread may still write while the process ends.
+  static Temporaries& all() {
+    static auto& temporaries = *new Temporaries;
+    return temporaries;
+  }
+};
+
+}  // namespace
+
+InputFile::InputFile(std::filesystem::path file) : path_(std::move(file)) {
+  // With O_NONBLOCK a pipe without a writer does not block open(); the pipe is refused below.
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor_ < 0) fail(std::strerror(errno));
+  struct stat status {};
+  const bool known = ::fstat(descriptor_, &status) == 0;
+  if (!known || !S_ISREG(status.st_mode)) {
+    ::close(std::exchange(descriptor_, -1));
+    fail(known ? (S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file")
+               : std::strerror(errno));
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t InputFile::read(void* data, std::size_t bytes) {
+  char* next = static_cast<char*>(data);
+  std::size_t left = bytes;
+  while (left > 0) {
+    const ssize_t got = ::read(descriptor_, next, left);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(std::strerror(errno));
+    if (got == 0) break;
+    next += got;
+    left -= static_cast<std::size_t>(got);
+  }
+  return bytes - left;
+}
+
+std::string InputFile::read_rest() {
+  std::string bytes;
+  std::size_t filled = 0, ask = size_ + 1;
+  while (true) {
+    bytes.resize(filled + ask);
+    const std::size_t got = read(bytes.data() + filled, ask);
+    filled += got;
+    if (got < ask) break;
+    ask = filled;
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+void InputFile::fail(const char* cause) const {
+  throw Error(ErrorCode::kFileUnreadable,
+              fmt::format("{}: cannot read the file: {}: check the name and its permissions",
+                          path_.string(), cause));
+}
+
+OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(target_, ignored);
+  const bool direct = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  if (direct) {
+    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    // Writing to a link must not replace the link.
+    const auto real = std::filesystem::canonical(target_, ignored);
+    if (!ignored) target_ = real;
+    auto& [mutex, paths] = Temporaries::all();
+    const std::lock_guard lock(mutex);
+    for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
+      temporary_ = target_;
+      temporary_ += fmt::format(".{}-{}.tmp", ::getpid(), attempt);
+      const auto [listed, is_new] = paths.insert(temporary_);
+      if (!is_new) continue;
+      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ >= 0) break;
+      const int cause = errno;
+      paths.erase(listed);
+      errno = cause;
+      if (cause != EEXIST) break;
+    }
+  }
+  if (descriptor_ < 0) {
+    temporary_.clear();
+    fail("create");
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (temporary_.empty()) return;
+  auto& [mutex, paths] = Temporaries::all();
+  const std::lock_guard lock(mutex);
+  ::unlink(temporary_.c_str());
+  paths.erase(temporary_);
+}
+
+void OutputFile::write(const void* data, std::size_t bytes) {
+  const char* next = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t written = ::write(descriptor_, next, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write");
+    next += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void OutputFile::write_at(std::size_t offset, const void* data, std::size_t bytes) {
+  const char* next = static_cast<const char*>(data);
+  auto at = static_cast<off_t>(offset);
+  while (bytes > 0) {
+    const ssize_t written = ::pwrite(descriptor_, next, bytes, at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write");
+    next += written;
+    at += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void OutputFile::commit() {
+  // fsync reports a full disk before an older file is replaced.
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail("write");
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0) fail("close");
+  if (temporary_.empty()) return;
+  auto& [mutex, paths] = Temporaries::all();
+  const std::lock_guard lock(mutex);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename");
+  paths.erase(temporary_);
+  temporary_.clear();
+}
+
+void OutputFile::fail(const char* doing) const {
+  throw Error(ErrorCode::kFileUnwritable,
+              fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
+                          "space on the disk",
+                          target_.string(), doing, std::strerror(errno)));
+}
+
+void abandon_output_files() noexcept {
+  auto& [mutex, paths] = Temporaries::all();
+  mutex.lock();  // never unlocked: the process is ending
+  for (const std::filesystem::path& path : paths) ::unlink(path.c_str());
+}
+
+}  // namespace ist

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace ist {
+
+/// Reads a regular file from front to back. Every function throws kFileUnreadable with the file and
+/// the cause.
+class InputFile {
+ public:
+  explicit InputFile(std::filesystem::path file);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  /// The size of the file when it was opened, bytes.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+  /// Reads up to `bytes` bytes, fewer only at the end of the file. Returns the number read.
+  std::size_t read(void* data, std::size_t bytes);
+
+  /// Reads the rest of the file at its current length, which may differ from size().
+  [[nodiscard]] std::string read_rest();
+
+ private:
+  [[noreturn]] void fail(const char* cause) const;
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+/// Writes a file whole or not at all: under a temporary name in the same folder until commit()
+/// renames it. Without commit() the destructor removes the temporary file, and an older file of the
+/// same name stays unchanged. A target that is not a regular file, such as /dev/stdout, is written
+/// directly.
+///
+/// Every function throws kFileUnwritable with the file and the cause. An OutputFile belongs to one
+/// thread at a time.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path target);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(const void* data, std::size_t bytes);
+  /// Overwrites `bytes` bytes from `offset` on, for a header that is known last.
+  void write_at(std::size_t offset, const void* data, std::size_t bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* doing) const;
+
+  std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
+  int descriptor_ = -1;
+};
+
+/// Removes the temporary files of all OutputFiles, for a process that a signal ends without their
+/// destructors. A thread that creates, commits or destroys an OutputFile afterwards blocks for
+/// ever. Not for signal handlers, because it takes a lock.
+void abandon_output_files() noexcept;
+
+}  // namespace ist

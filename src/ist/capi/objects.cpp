@@ -1,0 +1,29 @@
+#include "ist/capi/objects.h"
+
+namespace ist::capi {
+
+Eigen::Isometry3d to_isometry(const double pose[16]) noexcept {
+  Eigen::Isometry3d isometry;
+  isometry.matrix() = Eigen::Map<const Eigen::Matrix4d>(pose);
+  return isometry;
+}
+
+ist_status status_of(const Call& call, QueryStatus status) {
+  switch (status) {
+    case QueryStatus::kDone:
+      return IST_OK;
+    case QueryStatus::kInvalidPose:
+      return call.fail(
+          IST_POSE_INVALID,
+          "pose is not a rigid motion: pass 16 finite numbers in column-major order, with 0 0 "
+          "0 1 as the last row and a rotation that is orthonormal to 1e-5");
+    case QueryStatus::kNoTriangles:
+      return call.fail(IST_TRIANGLES_MISSING,
+                       "a tree has no triangles: build both trees with keep_triangles = 1");
+    case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
+      break;
+  }
+  return call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");
+}
+
+}  // namespace ist::capi

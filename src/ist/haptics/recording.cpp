@@ -1,0 +1,55 @@
+#include "ist/haptics/recording.h"
+
+#include <fmt/format.h>
+
+#include "ist/base/error.h"
+
+namespace ist {
+
+TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
+                     bool device_known) noexcept {
+  TickRecord record{};
+  record.tick = number;
+  record.dt = dt;
+  record.device = to_numbers(tick.device);
+  record.tool = to_numbers(tick.tool);
+  std::copy_n(tick.wrench.data(), 6, record.wrench.begin());
+  record.device_known = device_known;
+  record.fault = tick.fault;
+  record.held = tick.held;
+  record.contacts = tick.contacts;
+  record.proximity = tick.proximity;
+  record.leaf_pairs = tick.leaf_pairs;
+  return record;
+}
+
+TickRecord replay(const RecordedTick& recorded, Simulation& simulation) noexcept {
+  return record_of(recorded.tick, simulation.dt(),
+                   simulation.tick(recorded.device, recorded.budget), recorded.device.has_value());
+}
+
+TickRecord::Pose to_numbers(const Placement& placement) noexcept {
+  TickRecord::Pose numbers;
+  std::copy_n(placement.translation.data(), 3, numbers.begin());
+  std::copy_n(placement.rotation.data(), 9, numbers.begin() + 3);
+  return numbers;
+}
+
+std::optional<Placement> to_placement(const TickRecord::Pose& numbers) noexcept {
+  Placement placement;
+  std::copy_n(numbers.begin(), 3, placement.translation.data());
+  std::copy_n(numbers.begin() + 3, 9, placement.rotation.data());
+  if (!Placement::from(placement.isometry())) return std::nullopt;
+  return placement;
+}
+
+std::size_t detail::ring_capacity(std::size_t asked) {
+  constexpr std::size_t kMost = std::size_t{1} << 32;
+  if (asked == 0 || asked > kMost) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("a ring for {} records: give a capacity from 1 to {}", asked, kMost));
+  }
+  return std::bit_ceil(asked);
+}
+
+}  // namespace ist

@@ -1,0 +1,81 @@
+#include "ist/haptics/tool_contact_query.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ist {
+namespace {
+
+// The most whole leaf pairs that have their full stiffness each (ToolContact::stiffness_fraction).
+constexpr double kFullPairs = 10;
+
+}  // namespace
+
+Eigen::Isometry3d BodyFrames::query_pose(const Placement& tool) const noexcept {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const Eigen::Matrix3d to_fixed = fixed.rotation.transpose();
+  pose.linear() = to_fixed * tool.rotation;
+  pose.translation() =
+      to_fixed * ((tool.translation - fixed.translation) / unit - tool.rotation * tool_origin);
+  return pose;
+}
+
+Eigen::Vector3d BodyFrames::to_scene(const Eigen::Vector3d& point) const noexcept {
+  return fixed.rotation * (unit * point) + fixed.translation;
+}
+
+ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& held,
+                                   const BodyFrames& frames, const ToolContactOptions& options)
+    : frames_(frames),
+      area_(fixed.voxel_size() * held.voxel_size()),
+      query_(fixed, held,
+             {.policy = options.policy, .workers = options.workers, .period = options.period}),
+      least_depth_(options.least_depth * 0.5 * (fixed.voxel_size() + held.voxel_size())),
+      manifold_(fixed, held, options.policy,
+                {.points = ToolContacts::kMost,
+                 .least_depth = options.least_depth,
+                 .margin = options.margin}) {}
+
+QueryResult ToolContactQuery::find(const Placement& tool, const Budget& budget,
+                                   ToolContacts& contacts) noexcept {
+  const Eigen::Isometry3d pose = frames_.query_pose(tool);
+  QueryResult result = query_.contacts(pose, manifold_, budget);
+  if (result.status != QueryStatus::kDone || !result.complete) return result;
+  reduce(tool, contacts);
+  return result;
+}
+
+void ToolContactQuery::measure_distance(const Placement& tool, const Budget& budget,
+                                        QueryResult& result) noexcept {
+  if (result.leaf_pairs > 0) return;
+  Budget left = budget;
+  // A search measures the distance only under a limit, even one that is never reached.
+  left.tests = std::min(left.tests, std::numeric_limits<std::uint64_t>::max() - 1);
+  left.tests -= std::min(left.tests, result.sphere_tests);
+  const QueryResult measured =
+      query_.leaf_pairs(frames_.query_pose(tool), std::span<LeafPair>(), left);
+  result.distance = measured.distance;
+  result.sphere_tests += measured.sphere_tests;
+}
+
+void ToolContactQuery::reduce(const Placement& tool, ToolContacts& contacts) const noexcept {
+  const ContactSums& sums = manifold_.sums();
+  contacts.clear();
+  contacts.count = sums.weight / area_;
+  const double fraction = 1 / (area_ * std::max(1.0, contacts.count / kFullPairs));
+
+  const Eigen::Matrix3d& turn = frames_.fixed.rotation;
+  const Eigen::Vector3d arm = frames_.to_scene(sums.about) - tool.translation;
+  const Eigen::Vector3d force = turn * ((fraction * frames_.unit) * sums.spring.force);
+  contacts.spring.head<3>() = force;
+  contacts.spring.tail<3>() =
+      turn * ((fraction * frames_.unit * frames_.unit) * sums.spring.torque) + arm.cross(force);
+
+  for (const Contact& point : manifold_.points()) {
+    contacts.add({frames_.to_scene(point.position) - tool.translation, turn * point.normal,
+                  frames_.unit * std::max(0.0, point.depth - least_depth_),
+                  fraction * point.weight});
+  }
+}
+
+}  // namespace ist

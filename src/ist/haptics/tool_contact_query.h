@@ -1,0 +1,59 @@
+#pragma once
+
+#include <chrono>
+
+#include "ist/haptics/effects/effect.h"
+#include "ist/query/query.h"
+
+namespace ist {
+
+/// Maps between mesh coordinates and the scene.
+struct BodyFrames {
+  double unit;                  ///< metres in a mesh unit, of both bodies
+  Placement fixed;              ///< from the fixed mesh, in metres, to the scene
+  Eigen::Vector3d tool_origin;  ///< the tool's origin in held mesh coordinates, mesh units
+
+  /// Maps held mesh coordinates to fixed mesh coordinates, mesh units.
+  [[nodiscard]] Eigen::Isometry3d query_pose(const Placement& tool) const noexcept;
+  /// Maps a point in fixed mesh coordinates to the scene.
+  [[nodiscard]] Eigen::Vector3d to_scene(const Eigen::Vector3d& point) const noexcept;
+};
+
+/// Options of a ToolContactQuery. Depths are in voxels; see ManifoldOptions.
+struct ToolContactOptions {
+  SpherePolicy policy = SpherePolicy::kTable;
+  double least_depth = -0.25;  ///< the depth at which contacts begin
+  double margin = 0.375;       ///< the detection margin
+  int workers = 1;             ///< 2: a second thread helps the search
+  std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one query to the next
+};
+
+/// Finds the contacts of the tool in scene terms. Holds references to both trees. Memory: a Query
+/// and a ContactManifold.
+class ToolContactQuery {
+ public:
+  /// Throws as Query and ContactManifold do.
+  ToolContactQuery(const SphereTree& fixed, const SphereTree& held, const BodyFrames& frames,
+                   const ToolContactOptions& options);
+
+  /// Finds the contacts at a pose of the tool. Leaves `contacts` unchanged unless the result is
+  /// complete.
+  [[nodiscard]] QueryResult find(const Placement& tool, const Budget& budget,
+                                 ToolContacts& contacts) noexcept;
+  /// If `result` has no leaf pairs, measures the distance within the rest of the budget. Its tests
+  /// are added to the result.
+  void measure_distance(const Placement& tool, const Budget& budget, QueryResult& result) noexcept;
+
+  [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + manifold_.bytes(); }
+
+ private:
+  void reduce(const Placement& tool, ToolContacts& contacts) const noexcept;
+
+  BodyFrames frames_;
+  double area_;  // of a whole leaf pair, mesh units squared
+  Query query_;
+  double least_depth_;  // mesh units
+  ContactManifold manifold_;
+};
+
+}  // namespace ist

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ist/base/api.h"
+
+namespace ist {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+// Vector3d must be three plain doubles for every instruction set of the including code.
+static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) &&
+              alignof(Eigen::Vector3d) == alignof(double));
+
+/// Says how the outer side of a mesh is known.
+enum class Orientation : std::uint8_t {
+  kOutward,  ///< every component is closed and consistent: the outside is known
+  kAssumed,  ///< some component is not: the file's winding is trusted
+};
+
+/// A surface of indexed triangles. Coordinates are in mesh units (millimetres by habit), in the
+/// body's own frame. A triangle's vertices run counterclockwise as seen from its outer side.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;  ///< each index is below vertices.size()
+};
+
+/// Reads a mesh from STL (binary or text), PLY (binary or text) or OBJ. The content decides the
+/// format; the file's name helps only for an OBJ. Several solids or groups become one mesh,
+/// polygons become triangles, and vertices at the same position become one. Vertices are floats, in
+/// the order in which the faces first use them. Unused vertices and the file's normals, colours and
+/// materials are dropped. The file is read once.
+///
+/// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, some eight times the file.
+/// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
+/// kMeshNotFinite, kMeshExtent; the text names the file and the place in it.
+[[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding. The
+/// file appears whole or not at all: it is written under a temporary name in the same folder and
+/// then renamed.
+///
+/// Errors: kFileUnwritable, and kMeshNotFinite for a coordinate beyond float.
+IST_API void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file);
+
+/// The counts of a mesh's elements and defects. Vertices count as one only if they share an index,
+/// even where their positions are equal.
+///
+/// A triangle with two equal indices has no sides: it is degenerate, and no other defect counts it.
+struct MeshReport {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::size_t edges = 0;
+  std::size_t boundary_edges = 0;       ///< edges of only one triangle
+  std::size_t non_manifold_edges = 0;   ///< edges of more than two triangles
+  std::size_t inconsistent_edges = 0;   ///< edges that two triangles traverse in the same direction
+  std::size_t duplicate_triangles = 0;  ///< same vertices as an earlier one, in any order
+  /// Triangles with two equal indices, or no area: |cross product| at most 1e-12 of the longest
+  /// side squared.
+  std::size_t degenerate_triangles = 0;
+  std::size_t components = 0;       ///< sets of triangles connected by vertices
+  std::size_t open_components = 0;  ///< components with a boundary edge
+  bool closed = false;              ///< every edge belongs to exactly two triangles
+  bool consistent = false;          ///< no edge is inconsistent; says nothing about `closed`
+  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< bounding box of all vertices, mesh units
+  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
+  double signed_volume = 0;  ///< mesh units cubed; positive if outward; means little if not closed
+};
+
+/// Checks the topology of a mesh. Does not search for self-intersections.
+/// Cost: O(t log t), some 40 ms for 100,000 triangles.
+[[nodiscard]] IST_API MeshReport check_mesh(const TriangleMesh& mesh);
+
+/// Returns a sentence for people for each kind of defect; empty for a mesh without defects.
+[[nodiscard]] IST_API std::vector<std::string> warnings(const MeshReport& report);
+
+struct OrientationResult {
+  Orientation orientation = Orientation::kAssumed;
+  std::size_t turned_components = 0;  ///< components turned outward; worth a warning
+};
+
+/// Turns inside-out components outward, so that their normals can be trusted.
+///
+/// A component is a set of triangles connected by edges. It is closed and consistent if each of its
+/// edges is shared by exactly two triangles that traverse it in opposite directions. Such a
+/// component of negative volume is turned unless it lies inside another one, where it bounds a
+/// cavity and is right as it is. (Inside: by the other's winding number round one vertex, from a
+/// ray; if the other is open, by the ray's crossings.) Components that are not closed and
+/// consistent, or whose volume has no certain sign, stay as they are and make the result
+/// `kAssumed`. Triangles with two equal indices are ignored.
+///
+/// Neither the unit nor the position of the mesh matters. Cost: O(t), some 20 ms for 100,000
+/// triangles; in addition, O(triangles of the surrounding components) for each component of
+/// negative volume.
+[[nodiscard]] IST_API OrientationResult orient_outward(TriangleMesh& mesh);
+
+}  // namespace ist

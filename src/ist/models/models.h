@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "ist/base/api.h"
+#include "ist/mesh/mesh.h"
+
+namespace ist {
+
+enum class Jaw { kLower, kUpper };
+
+/// Makes a human jaw with its teeth, the stand-in for a scan in the demo and the tests.
+///
+/// Millimetres; x left to right, y from the incisors (-48) back to the condyles (+37), z up, the
+/// teeth meeting at z = 48. Both jaws share the frame. As made they are in full occlusion, with
+/// molars and canines about 1 mm too close, for any two seeds; moving the lower jaw by dz = -2
+/// separates them, and with most seeds dz = -1.5 does.
+///
+/// @param seed varies size, position, rotation and wear of the teeth, and the bone's surface
+///
+/// The surface is closed, of genus 0, and faces outward. The lower jaw has 119,096 triangles, the
+/// upper one 106,676. Coordinates are floats held as doubles. Only + - * / and sqrt are used, so
+/// one seed gives the same bytes on every machine. Cost: some 5 ms, one thread.
+IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
+
+/// Basic shapes: closed, of genus 0, facing outward, in mesh units. They use only + - * / and
+/// square roots, so their bits are the same on every machine.
+
+/// Makes a box of 12 triangles between two opposite corners. Precondition: min < max on every axis.
+[[nodiscard]] IST_API TriangleMesh make_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max);
+
+/// Makes an icosahedron subdivided `level` times, with its vertices on the sphere round the origin:
+/// 20 * 4^level triangles, with edges of at most 1.33 * radius / 2^level.
+/// Precondition: level from 0 to 12.
+[[nodiscard]] IST_API TriangleMesh make_icosphere(int level, double radius);
+
+/// Makes a cylinder round the z axis, from z = 0 up, of 4 * `quarter` sides with corners on the
+/// circle: 16 * `quarter` triangles. Precondition: quarter from 1 to 2^24.
+[[nodiscard]] IST_API TriangleMesh make_cylinder(int quarter, double radius, double height);
+
+}  // namespace ist

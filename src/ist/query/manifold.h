@@ -1,0 +1,128 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "ist/base/api.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+namespace detail {
+class ContactReducer;
+}
+
+/// A place where a hand feels the other body, in fixed mesh coordinates: the mean, by weight, of
+/// the leaf pairs of one moving leaf, or of a few leaves together. Lengths are in mesh units.
+struct Contact {
+  Eigen::Vector3d position;  ///< half way between the two surfaces
+  Eigen::Vector3d normal;    ///< of unit length, from the fixed body to the moving one
+  /// The overlap along the normal, negative where the surfaces are apart; from -2s to s, with s the
+  /// mean of the two voxel sizes. It is no measure of how deep the bodies are in each other.
+  double depth;
+  /// An area, mesh units²: it grows with the surface in contact, and falls to 0 where a contact
+  /// ends.
+  double weight;
+};
+
+/// A force and its torque about a named point.
+struct Wrench {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+
+  /// Returns the wrench about another point, `by` away from the one before.
+  [[nodiscard]] Wrench about(const Eigen::Vector3d& by) const noexcept {
+    return {force, torque - by.cross(force)};
+  }
+};
+
+/// The sums over all leaf pairs of one answer, none merged or left out, that act on the moving
+/// body. A pair has a weight w (mesh units²), a unit normal n, a depth d and a position p (mesh
+/// units); d0 is the least depth (ManifoldOptions). The sums are Lipschitz in the pose, so that
+/// forces made of them do not jump; docs/guarantees.md gives the rates.
+struct ContactSums {
+  double weight = 0;  ///< Σ w, mesh units²
+  Wrench pressure;    ///< Σ w n, mesh units², and Σ p × w n, mesh units³
+  Wrench spring;      ///< Σ w (d - d0) n, mesh units³, and Σ p × w (d - d0) n, mesh units⁴
+  std::uint64_t pairs = 0;  ///< leaf pairs with a weight above 0
+  /// The point that torques are about: the origin of the fixed tree's frame, fixed mesh
+  /// coordinates.
+  Eigen::Vector3d about = Eigen::Vector3d::Zero();
+};
+
+/// The Lipschitz constants of one leaf pair's terms in ContactSums: |change| <= rate · motion. A
+/// sum changes by at most rate · motion · (pairs with a weight before + pairs with a weight after).
+///
+/// The motion from one pose to another, mesh units, is the distance that the origin of the moving
+/// tree's frame moves + lever · |angle in radians|. The rates are derived in docs/guarantees.md,
+/// Rates of the contact sums.
+struct ContactRates {
+  double lever;  ///< radius round the moving frame's origin of every point that counts, mesh units
+  double weight, pressure_force, pressure_torque, spring_force, spring_torque;
+};
+
+/// The options of a ContactManifold. Depths are in mean voxel sizes of the two trees.
+struct ManifoldOptions {
+  /// The most contacts; 0: the sums alone, which take less time and memory.
+  std::size_t points = 32;
+  /// The most moving leaves to keep apart, 104 bytes each. Beyond it, leaves are joined by their
+  /// ancestors in the octree.
+  std::size_t max_leaves = 1 << 15;
+  /// The depth at which springs begin: pairs that are less deep weigh nothing. From -2, where every
+  /// leaf pair counts, to below 1; 0 is where surfaces meet.
+  double least_depth = -2;
+  /// The detection margin, from 0 to 1: leaf pairs count whose bounds are no farther apart. Without
+  /// it, pairs appear and vanish as tight bounds cross; load-bearing contacts need every pair
+  /// within this distance of the surface.
+  double margin = 0;
+};
+
+/// All contacts of two bodies at one pose: sums that forces are made of, and a few points. Filled
+/// by Query::contacts for the same trees and the same policy.
+///
+/// The constructor reserves all memory: 5.4 bytes a leaf of either tree, half a megabyte to a
+/// megabyte of caches, and the points. Holds references to both trees, which must outlive it. One
+/// manifold belongs to one thread at a time.
+class IST_API ContactManifold {
+ public:
+  /// Throws kPolicyMissing; kArgumentInvalid for an option out of range; std::bad_alloc.
+  ContactManifold(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                  const ManifoldOptions& options = {});
+  ContactManifold(const SphereTree&&, const SphereTree&, SpherePolicy,
+                  const ManifoldOptions& = {}) = delete;
+  ContactManifold(const SphereTree&, const SphereTree&&, SpherePolicy,
+                  const ManifoldOptions& = {}) = delete;
+  ContactManifold(const SphereTree&&, const SphereTree&&, SpherePolicy,
+                  const ManifoldOptions& = {}) = delete;
+  ~ContactManifold();
+  ContactManifold(ContactManifold&&) noexcept;
+  ContactManifold& operator=(ContactManifold&&) noexcept;
+
+  /// The contacts of the last query: the deepest first, then the extreme ones along x, y and z,
+  /// then the others. Empty where that query had a status other than kDone.
+  [[nodiscard]] std::span<const Contact> points() const noexcept;
+  /// The sums of the last query.
+  [[nodiscard]] const ContactSums& sums() const noexcept;
+  /// The wrench that springs of one stiffness exert on the moving body: stiffness · sums().spring,
+  /// about sums().about. With meshes in millimetres and a stiffness in N/mm³ the force is in N and
+  /// the torque in N mm. Springs begin at ManifoldOptions::least_depth.
+  [[nodiscard]] Wrench wrench(double stiffness) const noexcept;
+
+  /// The rates at which the sums can change with the pose.
+  [[nodiscard]] const ContactRates& rates() const noexcept;
+  [[nodiscard]] SpherePolicy policy() const noexcept;
+  /// Bytes reserved.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+  /// Returns the reducer that fills the manifold. For the library's own code: no installed header
+  /// defines it.
+  [[nodiscard]] detail::ContactReducer& reducer() noexcept { return *reducer_; }
+
+ private:
+  std::unique_ptr<detail::ContactReducer> reducer_;
+};
+
+}  // namespace ist

@@ -1,0 +1,171 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ist/base/api.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/manifold.h"
+#include "ist/query/results.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+namespace detail {
+struct QueryState;
+struct InsideState;
+}  // namespace detail
+
+struct QueryOptions {
+  /// How bounds are read; by default the tightest policy that both trees have.
+  std::optional<SpherePolicy> policy = std::nullopt;
+  /// The instruction set: `avx3`, `avx2`, `sse4`, `ssse3` or `scalar`; by default the environment's
+  /// IST_TARGET, or the best one. The answer does not depend on it.
+  std::string target = {};
+  /// The most pairs of nodes of one level in memory, 12 bytes each, a level and worker. The answer
+  /// does not depend on it. With the default a level stays in a core's own cache; a quarter of it
+  /// costs a tenth of the time more where jaws are closed, four times as many gain nothing.
+  std::size_t frontier_pairs = 1 << 16;
+  /// 1: the calling thread does all work. 2: a resident thread helps where it can.
+  int workers = 1;
+  /// With two workers: the time from the beginning of one query to the beginning of the next; 0
+  /// where queries follow each other at once.
+  std::chrono::nanoseconds period = std::chrono::milliseconds(1);
+  /// The most pairs of triangles in memory, 20 to 36 bytes each. With more pairs near each other
+  /// the search is repeated for each part of them.
+  std::size_t triangle_pairs = 1 << 18;
+};
+
+/// Finds where two rigid bodies are near each other, intersect and push each other, and how far
+/// apart they are: a breadth-first traversal of two bounding volume hierarchies, in batches of
+/// spheres.
+///
+/// `pose` maps moving mesh coordinates to fixed mesh coordinates; a pose that is no rigid motion
+/// gives kInvalidPose. Lengths are in mesh units. For one pair of trees and one pose every answer
+/// is the same, bit by bit, on every instruction set, with one worker or two, and whatever the
+/// options for memory.
+///
+/// The constructor reserves all memory and makes the first call of the kernels. A verb allocates
+/// nothing, locks nothing and makes no system call. A query holds references to both trees, which
+/// must outlive it and stay where they are. Any number of threads may share a tree; one query
+/// belongs to one thread at a time.
+class IST_API Query {
+ public:
+  /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
+  /// other than 1 or 2; std::bad_alloc.
+  Query(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options = {});
+  Query(const SphereTree&&, const SphereTree&, const QueryOptions& = {}) = delete;
+  Query(const SphereTree&, const SphereTree&&, const QueryOptions& = {}) = delete;
+  Query(const SphereTree&&, const SphereTree&&, const QueryOptions& = {}) = delete;
+  ~Query();
+  Query(Query&&) noexcept;
+  Query& operator=(Query&&) noexcept;
+
+  /// Tests whether the bodies intersect. Ends at the first certain answer: exact where both trees
+  /// have triangles, else kNo or kNear. Cost: at most that of triangle_pairs(), or of leaf_pairs().
+  [[nodiscard]] IntersectionResult intersects(const Eigen::Isometry3d& pose) noexcept;
+
+  /// Finds all pairs of leaves whose bounds overlap.
+  ///
+  /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
+  ///               the first of them. Elements behind the last pair may be overwritten
+  /// @param budget ends the search early: the result then holds the first pairs, and the distance
+  ///               as far as it is known. The limit of tests is never exceeded; a deadline by some
+  ///               500 tests or 4096 leaf pairs. With a budget the calling thread works alone
+  ///
+  /// Cost: 1 to 3 ns a test of two bounds, 20 to 40 ns a pair of nodes.
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out,
+                                       const Budget& budget = {}) noexcept;
+
+  /// Streams every leaf pair to `stream`, in the same order, instead of storing them. If take()
+  /// returns false the search stops and the result is incomplete; its counts then depend on memory
+  /// and workers.
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose,
+                                       LeafPairStream& stream) noexcept;
+
+  /// Reduces all leaf pairs to contacts and to the sums that forces are made of. The distance is
+  /// that of the roots' bounds, and no more than the resolution where there are pairs.
+  ///
+  /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
+  ///                 status is another than kDone
+  /// @param budget   ends the search early: then neither result nor manifold is complete, and no
+  ///                 force should be made of it. May be exceeded by some 1,000 tests or 512 leaf
+  ///                 pairs, or one long row of them; with two workers, which share only a search
+  ///                 with a deadline, by 3,000 tests or 20 µs. A budget of as many tests as a
+  ///                 deadline allowed ends the search at the same place
+  ///
+  /// Cost: that of leaf_pairs(), and 50 to 120 ns a leaf pair.
+  [[nodiscard]] QueryResult contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,
+                                     const Budget& budget = {}) noexcept;
+
+  /// Bounds the distance between the surfaces by an interval no wider than `tolerance`, or without
+  /// triangles down to the leaves. A tolerance that is NaN or negative counts as 0.
+  ///
+  /// The interval holds the true distance; without triangles it is no wider than `tolerance` or
+  /// twice the resolution, whichever is more; `complete` says whether the tolerance was reached. It
+  /// is 0 where triangle_pairs() finds any. docs/guarantees.md gives the rounding of each bound and
+  /// how fast the distance can change with the pose. Cost: 0.2 to 0.7 ms for jaws that are apart,
+  /// 0.02 to 0.3 ms where they meet.
+  [[nodiscard]] DistanceResult distance(const Eigen::Isometry3d& pose, double tolerance) noexcept;
+
+  /// Returns whether both trees have triangles.
+  [[nodiscard]] bool has_triangles() const noexcept;
+
+  /// Finds all pairs of triangles that have a point in common, exactly, in the calling thread
+  /// alone. A moved vertex is rounded to double first. kNoTriangles where has_triangles() is false.
+  ///
+  /// @param out takes the pairs, sorted by fixed and then by moving triangle; where it is too
+  ///            short, the first of them
+  ///
+  /// Cost: some 1.2 µs a pair that meets, of jaws that are closed, with voxels no larger than
+  /// triangles; much more with larger voxels.
+  [[nodiscard]] TrianglePairsResult triangle_pairs(const Eigen::Isometry3d& pose,
+                                                   std::span<TrianglePair> out) noexcept;
+
+  [[nodiscard]] SpherePolicy policy() const noexcept;
+  /// The instruction set in use.
+  [[nodiscard]] const char* target() const noexcept;
+  [[nodiscard]] int workers() const noexcept;
+  /// Bytes reserved.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+  /// How often the second worker helped; all zero with one worker.
+  [[nodiscard]] Sharing sharing() const noexcept;
+
+ private:
+  std::unique_ptr<detail::QueryState> state_;
+};
+
+/// The one of two bodies that lies inside the other; their surfaces do not intersect.
+enum class Inside : std::uint8_t { kNone, kFixed, kMoving };
+[[nodiscard]] IST_API const char* to_string(Inside inside) noexcept;
+
+/// Finds which body lies inside the other: by a point of each component of one body, and the
+/// winding number of the other body round that point. Both meshes must outlive the test.
+class IST_API InsideTest {
+ public:
+  InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
+  InsideTest(const TriangleMesh&&, const TriangleMesh&) = delete;
+  InsideTest(const TriangleMesh&, const TriangleMesh&&) = delete;
+  InsideTest(const TriangleMesh&&, const TriangleMesh&&) = delete;
+  ~InsideTest();
+  InsideTest(InsideTest&&) noexcept;
+  InsideTest& operator=(InsideTest&&) noexcept;
+
+  /// Returns the body of which all components lie inside the other. Precondition: `pose` is rigid,
+  /// and the surfaces do not intersect. Cost: 5 ns a triangle of one body for each component of the
+  /// other that lies in its bounding box.
+  [[nodiscard]] Inside at(const Eigen::Isometry3d& pose) const noexcept;
+
+ private:
+  std::unique_ptr<const detail::InsideState> state_;
+};
+
+}  // namespace ist

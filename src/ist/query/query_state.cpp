@@ -1,0 +1,126 @@
+#include "ist/query/query_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ist/base/error.h"
+#include "ist/query/query_rules.h"
+#include "ist/query/relative_pose.h"
+#include "ist/query/traversal/search_pose.h"
+#include "ist/tree/tree_parts.h"
+#include "simd/dispatch.h"
+
+namespace ist::detail {
+namespace {
+
+// The most leaf pairs that a stream is given at once.
+constexpr std::size_t kWindow = 1 << 12;
+
+int one_or_two(int workers) {
+  if (workers == 1 || workers == 2) return workers;
+  throw Error(ErrorCode::kArgumentInvalid,
+              fmt::format("query option workers is {}: give 1 or 2", workers));
+}
+
+// Returns the largest coordinate, without its sign, of a vertex in use; other vertices may lie
+// anywhere.
+double largest_coordinate_of(const TriangleMesh& mesh) {
+  double largest = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      largest = std::max(largest, mesh.vertices[v].cwiseAbs().maxCoeff());
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
+                       const QueryOptions& options, const ScopedFloatEnvironment&)
+    : fixed(fixed_tree),
+      moving(moving_tree),
+      policy(options.policy.value_or(std::min(fixed.tightest(), moving.tightest()))),
+      kernels(select_kernels(options.target)),
+      plan(fixed, moving, policy) {
+  if (one_or_two(options.workers) == 2) {
+    searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
+  } else {
+    searches.emplace<Search>(plan, kernels, options.frontier_pairs);
+  }
+  window.resize(kWindow + kLeafPairSpare);
+  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
+    exact.emplace(fixed, moving, policy, kernels, options.triangle_pairs);
+    largest_coordinate = largest_coordinate_of(*moving.triangles());
+  }
+  LeafPairSink none(std::span<LeafPair>{});
+  static_cast<void>(search(Eigen::Isometry3d::Identity(), none));
+}
+
+double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {
+  // Bounds are inflated by the rounding error of a moved vertex, so that triangles which intersect
+  // only after rounding are found (docs/guarantees.md, Triangles moved in double).
+  return exact ? 0x1p-48 * (largest_coordinate + pose.translation().cwiseAbs().maxCoeff()) : 0;
+}
+
+std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,
+                                             double margin) const noexcept {
+  const auto relative = relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
+  if (!relative) return std::nullopt;
+  return Approach{*relative, test_roots(fixed, moving, policy, *relative, margin), margin};
+}
+
+SearchPose QueryState::to_float(const Approach& approach, double margin) const noexcept {
+  return ist::to_float(approach.relative, fixed.bounding_radius() + moving.bounding_radius(),
+                       approach.margin + margin);
+}
+
+double QueryState::pad_of(const SearchPose& pose) const noexcept {
+  return policy == SpherePolicy::kSlab ? pose.slab_pad : pose.ball_pad;
+}
+
+Search& QueryState::serial() noexcept {
+  auto* shared = std::get_if<SharedSearch>(&searches);
+  return shared != nullptr ? shared->serial() : *std::get_if<Search>(&searches);
+}
+
+void QueryState::set_pad(double pad, QueryResult& result) const noexcept {
+  result.pad = pad;
+  result.resolution =
+      2 * (fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)) + pad;
+}
+
+void QueryState::set_steps(std::size_t made, QueryResult& result) const noexcept {
+  const std::size_t left = plan.steps().size() - made;
+  result.complete = left == 0;
+  result.level = static_cast<int>(left);
+}
+
+QueryResult QueryState::root_result(const RootTest& roots) const noexcept {
+  QueryResult result;
+  result.sphere_tests = 1;
+  set_pad(2 * roots.pad, result);
+  if (!roots.overlap) result.distance = roots.distance;
+  return result;
+}
+
+QueryResult QueryState::search(const Eigen::Isometry3d& pose, LeafPairSink& sink) noexcept {
+  const std::optional<Approach> bodies = approach(pose);
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  QueryResult result = root_result(bodies->roots);
+  if (!bodies->roots.overlap) return result;
+  const SearchPose from = to_float(*bodies);
+  set_pad(2 * pad_of(from), result);
+  if (auto* shared = std::get_if<SharedSearch>(&searches)) {
+    result.sphere_tests += shared->run(from, sink);
+  } else {
+    result.sphere_tests += serial().run(from, sink);
+  }
+  result.leaf_pairs = sink.count();
+  result.truncated = sink.truncated();
+  result.complete = !sink.stopped();
+  return result;
+}
+
+}  // namespace ist::detail

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "ist/base/float_environment.h"
+#include "ist/query/exact/exact_search.h"
+#include "ist/query/query.h"
+#include "ist/query/traversal/root_test.h"
+#include "ist/query/workers/shared_search.h"
+
+namespace ist::detail {
+
+/// The two bodies at one pose.
+struct Approach {
+  RelativePose relative;
+  RootTest roots;
+  double margin;  ///< added to the radius sum of every test
+};
+
+/// The memory of a Query, and the steps that its verbs share.
+struct QueryState {
+  QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
+             const QueryOptions& options, const ScopedFloatEnvironment& environment);
+
+  /// Composes the relative pose and tests the roots. Returns nothing where `pose` is no rigid
+  /// motion.
+  [[nodiscard]] std::optional<Approach> approach(const Eigen::Isometry3d& pose,
+                                                 double margin = 0) const noexcept;
+  /// Returns the rounding error of a triangle that is moved in double, mesh units; 0 where a tree
+  /// has no triangles.
+  [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
+  [[nodiscard]] SearchPose to_float(const Approach& approach, double margin = 0) const noexcept;
+  [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
+  /// Returns the search of the calling thread alone.
+  [[nodiscard]] Search& serial() noexcept;
+  /// Searches without a budget, with all workers.
+  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, LeafPairSink& sink) noexcept;
+  /// Returns the result that the root test alone gives.
+  [[nodiscard]] QueryResult root_result(const RootTest& roots) const noexcept;
+  void set_pad(double pad, QueryResult& result) const noexcept;
+  void set_steps(std::size_t made, QueryResult& result) const noexcept;
+  /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
+  void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;
+
+  const SphereTree& fixed;
+  const SphereTree& moving;
+  SpherePolicy policy;
+  const Kernels& kernels;
+  SearchPlan plan;
+  std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
+  std::optional<ExactSearch> exact;
+  double largest_coordinate = 0;  // the largest of a moving vertex, without its sign
+  std::vector<LeafPair> window;   // the leaf pairs that a stream is given at once
+};
+
+}  // namespace ist::detail

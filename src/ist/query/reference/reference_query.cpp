@@ -1,0 +1,213 @@
+#include "ist/query/reference/reference_query.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "ist/base/float_environment.h"
+#include "ist/query/query_rules.h"
+#include "ist/query/relative_pose.h"
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist {
+namespace {
+
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+// Returns whether a ball lies outside a slab; `centre` is the ball's centre, relative to the centre
+// of the slab's own ball.
+bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noexcept {
+  return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
+}
+
+}  // namespace
+
+namespace detail {
+
+struct ReferenceState {
+  ReferenceState(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                 SphereSource source)
+      : fixed_(fixed), moving_(moving), policy_(policy) {
+    fixed.require(policy, "fixed");
+    moving.require(policy, "moving");
+    const ScopedFloatEnvironment environment;
+    if (source == SphereSource::kSaved) {
+      saved_fixed_ = save_spheres(fixed, policy);
+      saved_moving_ = save_spheres(moving, policy);
+    }
+  }
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
+
+  struct Node {
+    int level;
+    std::uint32_t index;
+    Eigen::Vector3d cube_centre;  // in voxel edges from the root cube's centre
+    Ball ball;                    // in the fixed tree's frame
+    Slab slab;                    // in the fixed tree's frame; with kSlab alone
+  };
+  struct Children {
+    int count;
+    Node nodes[8];
+  };
+
+  // Reads the bounds of the node in child `slot` of `parent`.
+  void bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent, int slot,
+             Node& node) const;
+  [[nodiscard]] Node root(const SphereTree& tree, const SavedSpheres& saved) const;
+  void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
+            Children& children) const;
+  void to_fixed_frame(Node& node) const noexcept;
+  [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept;
+  void descend(const Node& a, const Node& b);
+
+  const SphereTree& fixed_;
+  const SphereTree& moving_;
+  SpherePolicy policy_;
+  SavedSpheres saved_fixed_, saved_moving_;  // empty with kOnTheFly
+  RelativePose pose_;
+  double pad_ = 0;  // added to every sum of radii, mesh units (pad_in_double)
+  std::uint64_t tests_ = 0;
+  std::vector<LeafPair> found_;
+};
+
+QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
+  const ScopedFloatEnvironment environment;
+  QueryResult result;
+  const std::optional<RelativePose> relative =
+      relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
+  if (!relative) {
+    result.status = QueryStatus::kInvalidPose;
+    result.complete = false;
+    return result;
+  }
+  pose_ = *relative;
+  const double reach = fixed_.bounding_radius() + moving_.bounding_radius();
+  const double farthest = pose_.translation.cwiseAbs().maxCoeff();
+  pad_ = pad_in_double(reach, farthest);
+  tests_ = 0;
+  found_.clear();
+
+  const Node a = root(fixed_, saved_fixed_);
+  Node b = root(moving_, saved_moving_);
+  to_fixed_frame(b);
+  // Far apart, one coordinate decides, because the square of the distance overflows.
+  if (overlap(a, b) && farthest <= reach + pad_) descend(a, b);
+
+  // Pairs of one fixed leaf were found in order, because moving nodes are descended in order.
+  std::stable_sort(found_.begin(), found_.end(),
+                   [](const LeafPair& x, const LeafPair& y) { return x.fixed < y.fixed; });
+  std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
+  result.leaf_pairs = found_.size();
+  result.truncated = found_.size() > out.size();
+  result.sphere_tests = tests_;
+  result.pad = 2 * pad_;
+  result.resolution = resolution_of(result, fixed_, moving_, policy_);
+  return result;
+}
+
+void ReferenceState::bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent,
+                           int slot, Node& node) const {
+  if (!saved.empty()) {
+    node.ball = saved[static_cast<std::size_t>(node.level)][node.index];
+  } else if (is_implicit(policy_)) {
+    node.ball = tree.parts().ball(policy_, node.level, node.index, node.cube_centre);
+  } else {
+    node.ball = tree.parts().saved_ball(node.level, parent, slot);
+  }
+  if (policy_ == SpherePolicy::kSlab) node.slab = tree.parts().saved_slab(node.level, parent, slot);
+}
+
+ReferenceState::Node ReferenceState::root(const SphereTree& tree, const SavedSpheres& saved) const {
+  Node node{tree.depth(), 0, Eigen::Vector3d::Zero(), {}, {}};
+  bound(tree, saved, 0, 0, node);
+  return node;
+}
+
+void ReferenceState::open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
+                          Children& children) const {
+  const LinearOctree& octree = tree.parts().octree;
+  const double half = 0.5 * static_cast<double>(std::uint64_t{1} << (node.level - 1));
+  children.count = 0;
+  std::uint32_t index = octree.first_child(node.level, node.index);
+  for (unsigned bits = octree.mask(node.level, node.index); bits != 0; bits &= bits - 1) {
+    const int k = std::countr_zero(bits);
+    const int slot = children.count++;
+    Node& child = children.nodes[slot];
+    child.level = node.level - 1;
+    child.index = index++;
+    child.cube_centre = {node.cube_centre[0] + ((k & 1) != 0 ? half : -half),
+                         node.cube_centre[1] + ((k & 2) != 0 ? half : -half),
+                         node.cube_centre[2] + ((k & 4) != 0 ? half : -half)};
+    bound(tree, saved, node.index, slot, child);
+  }
+}
+
+void ReferenceState::to_fixed_frame(Node& node) const noexcept {
+  const Eigen::Matrix3d& r = pose_.rotation;
+  const auto turned = [&r](const Eigen::Vector3d& v) {
+    return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
+                           (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
+                           (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
+  };
+  node.ball.centre = turned(node.ball.centre) + pose_.translation;
+  if (policy_ == SpherePolicy::kSlab) node.slab.normal = turned(node.slab.normal);
+}
+
+// Rejects by >, so that a NaN keeps the pair.
+bool ReferenceState::overlap(const Node& a, const Node& b) noexcept {
+  ++tests_;
+  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+  const double reach = (a.ball.radius + b.ball.radius) + pad_;
+  if (dot(apart, apart) > reach * reach) return false;
+  return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + pad_) ||
+                                             beyond(b.slab, -apart, a.ball.radius + pad_));
+}
+
+void ReferenceState::descend(const Node& a, const Node& b) {
+  if (a.level == 0 && b.level == 0) {
+    found_.push_back({a.index, b.index});
+    return;
+  }
+  const double edge_a = fixed_.parts().lattice.edge(a.level),
+               edge_b = moving_.parts().lattice.edge(b.level);
+  const bool open_a = descends(a.level, edge_a, b.level, edge_b);
+  const bool open_b = descends(b.level, edge_b, a.level, edge_a);
+  Children of_a, of_b;
+  if (open_a) {
+    open(fixed_, saved_fixed_, a, of_a);
+  } else {
+    of_a.count = 1;
+    of_a.nodes[0] = a;
+  }
+  if (open_b) {
+    open(moving_, saved_moving_, b, of_b);
+    for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.nodes[j]);
+  } else {
+    of_b.count = 1;
+    of_b.nodes[0] = b;
+  }
+  for (int i = 0; i < of_a.count; ++i) {
+    for (int j = 0; j < of_b.count; ++j) {
+      if (overlap(of_a.nodes[i], of_b.nodes[j])) descend(of_a.nodes[i], of_b.nodes[j]);
+    }
+  }
+}
+
+}  // namespace detail
+
+ReferenceQuery::ReferenceQuery(const SphereTree& fixed, const SphereTree& moving,
+                               SpherePolicy policy, SphereSource source)
+    : state_(std::make_unique<detail::ReferenceState>(fixed, moving, policy, source)) {}
+ReferenceQuery::~ReferenceQuery() = default;
+ReferenceQuery::ReferenceQuery(ReferenceQuery&&) noexcept = default;
+ReferenceQuery& ReferenceQuery::operator=(ReferenceQuery&&) noexcept = default;
+
+QueryResult ReferenceQuery::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
+  return state_->leaf_pairs(pose, out);
+}
+
+}  // namespace ist

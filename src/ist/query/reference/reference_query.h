@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <span>
+
+#include "ist/base/api.h"
+#include "ist/query/results.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+namespace detail {
+struct ReferenceState;
+}
+
+/// The source of the reference query's spheres.
+enum class SphereSource : std::uint8_t {
+  kOnTheFly,  ///< derived from the octree, or unpacked, at each visit: as published
+  kSaved,     ///< made once, at construction: the article's first proposal. Slabs are unpacked at
+              ///< each visit all the same
+};
+
+/// The published query, plain and in double: a depth-first traversal of both trees at once, which
+/// tests each overlapping pair of nodes child by child. It specifies the answer of every faster
+/// query.
+///
+/// It departs from the publication in three things. Leaf pairs are sorted at the end, so that every
+/// engine has one order. Where one cube has over √2 times the other's edge, only the larger is
+/// descended; with equal voxel sizes both always are, as published. With kSlab, a pair whose balls
+/// overlap is rejected all the same where one ball lies outside the other's slab.
+///
+/// Holds references to both trees, which must outlive it. One object belongs to one thread. Source:
+/// E. Ruffaldi et al., The implicit sphere tree, World Haptics 2005, section II.E.
+class IST_API ReferenceQuery {
+ public:
+  /// Throws kPolicyMissing. Cost: none with kOnTheFly; with kSaved 32 bytes a node.
+  ReferenceQuery(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                 SphereSource source = SphereSource::kOnTheFly);
+  ReferenceQuery(const SphereTree&&, const SphereTree&, SpherePolicy, SphereSource = {}) = delete;
+  ReferenceQuery(const SphereTree&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
+  ReferenceQuery(const SphereTree&&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
+  ~ReferenceQuery();
+  ReferenceQuery(ReferenceQuery&&) noexcept;
+  ReferenceQuery& operator=(ReferenceQuery&&) noexcept;
+
+  /// Finds all pairs of leaves whose bounds overlap.
+  ///
+  /// @param pose maps moving mesh coordinates to fixed mesh coordinates
+  /// @param out  takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
+  ///             the first of them
+  ///
+  /// Cost: 5 to 20 ns a sphere test, 10 ns a pair for the order. Allocates where a pose has more
+  /// pairs than any before, and can throw std::bad_alloc: it is the specification, not the fast
+  /// path.
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
+
+ private:
+  std::unique_ptr<detail::ReferenceState> state_;
+};
+
+}  // namespace ist

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "ist/base/api.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+/// The limits of one query. With a limit of tests alone the answer is the same on every machine and
+/// in every run. Each verb that takes a budget states by how much it may overspend it.
+struct Budget {
+  using Clock = std::chrono::steady_clock;
+
+  /// The most pairs of bounds to test.
+  std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
+  Clock::time_point deadline = Clock::time_point::max();
+
+  [[nodiscard]] bool has_tests() const noexcept {
+    return tests != std::numeric_limits<std::uint64_t>::max();
+  }
+  [[nodiscard]] bool has_deadline() const noexcept { return deadline != Clock::time_point::max(); }
+  /// Returns whether the deadline has passed. Reads the clock only where there is a deadline.
+  [[nodiscard]] bool is_past() const noexcept { return has_deadline() && Clock::now() >= deadline; }
+};
+
+/// The distance between two surfaces lies in [lower, upper], mesh units. Both ends are finite: a
+/// distance that no double holds counts as the largest double.
+struct DistanceInterval {
+  double lower, upper;
+};
+
+enum class QueryStatus : std::uint8_t {
+  kDone,
+  kInvalidPose,       ///< the pose is no rigid motion; nothing was searched
+  kNoTriangles,       ///< the question needs triangles, and a tree was built without them
+  kManifoldMismatch,  ///< the manifold was made for other trees or another policy
+};
+[[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;
+
+/// The answer of Query::leaf_pairs and Query::contacts.
+struct QueryResult {
+  QueryStatus status = QueryStatus::kDone;
+  bool complete = true;            ///< the search went down to the leaves, to the end
+  bool truncated = false;          ///< the span was too short and holds the first pairs
+  int level = 0;                   ///< steps above the leaves at which the search ended
+  std::uint64_t leaf_pairs = 0;    ///< all pairs that were found, in the span or not
+  std::uint64_t sphere_tests = 0;  ///< pairs of bounds that were tested
+  /// The distance between the surfaces, as far as the tests bound it. Absent where a search without
+  /// a budget found the roots' bounds to overlap.
+  std::optional<DistanceInterval> distance = std::nullopt;
+  /// The surfaces in a leaf pair are no farther apart than this, mesh units: 2 (rA + rB) + pad,
+  /// with rA and rB the radii of the largest leaves.
+  double resolution = 0;
+  /// The bounds of a leaf pair are no farther apart than this, mesh units: the margin asked for,
+  /// and the rounding error that the tests allow for.
+  double pad = 0;
+};
+
+/// A pair of triangles that have a point in common, by their indices in the two meshes.
+struct TrianglePair {
+  std::uint32_t fixed, moving;
+
+  friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+/// The answer of Query::triangle_pairs.
+struct TrianglePairsResult {
+  QueryStatus status = QueryStatus::kDone;
+  bool truncated = false;            ///< the span was too short and holds the first pairs
+  std::uint64_t triangle_pairs = 0;  ///< all pairs that intersect, in the span or not
+  std::uint64_t sphere_tests = 0;
+};
+
+/// The answer of Query::distance.
+struct DistanceResult {
+  QueryStatus status = QueryStatus::kDone;
+  /// The interval is no wider than the tolerance, but for the rounding of a distance of triangles.
+  bool complete = false;
+  DistanceInterval distance{};
+  std::uint64_t sphere_tests = 0;
+};
+
+/// Whether two bodies intersect.
+enum class Answer : std::uint8_t {
+  kNo,
+  kNear,  ///< bounds of leaves overlap, and there are no triangles to decide by
+  kYes,
+};
+
+/// The answer of Query::intersects.
+struct IntersectionResult {
+  QueryStatus status = QueryStatus::kDone;
+  Answer answer = Answer::kNo;  ///< exact where both trees have triangles; kNo after an error
+  double resolution = 0;        ///< with kNear: the surfaces are no farther apart, mesh units
+};
+
+/// How often the second worker of a query helped, since the query was made.
+struct Sharing {
+  std::uint64_t queries = 0;  ///< all queries
+  std::uint64_t worth = 0;    ///< queries with enough work to share
+  std::uint64_t shared = 0;   ///< queries that the worker took up
+  std::uint64_t chunks = 0;   ///< chunks of work that it did in them
+  std::uint64_t dropped = 0;  ///< chunks that it did too late, or had no room for
+};
+
+/// Takes leaf pairs in order, many at a time, while a query finds them.
+class IST_API LeafPairStream {
+ public:
+  /// @return whether more pairs are wanted
+  virtual bool take(std::span<const LeafPair> pairs) noexcept = 0;
+
+ protected:
+  ~LeafPairStream() = default;
+};
+
+}  // namespace ist

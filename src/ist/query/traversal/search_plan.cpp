@@ -1,0 +1,92 @@
+#include "ist/query/traversal/search_plan.h"
+
+#include <fmt/format.h>
+
+#include "ist/base/error.h"
+#include "ist/query/query_rules.h"
+#include "ist/tree/tree_parts.h"
+#include "simd/lanes.h"
+
+namespace ist {
+namespace {
+
+// The most parents of a level, so that 8 · parent + slot fits 32 bits.
+constexpr std::uint32_t kMostParents = 1U << 29;
+constexpr std::uint8_t kRootMask = 1;  // the root's parent has one child
+
+void require_addresses(const SphereTree& tree, const char* body) {
+  if (tree.depth() == 0 || tree.parts().octree.node_count(1) < kMostParents) return;
+  throw Error(ErrorCode::kMemoryLimit,
+              fmt::format("{}: a tree of {} leaves is too large to be searched: use larger voxels",
+                          body, tree.leaf_count()));
+}
+
+// Makes the view of the children at `level` that a step reads.
+SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level) {
+  const LinearOctree& octree = tree.parts().octree;
+  const bool is_root = level == tree.depth();
+  const double edge = tree.parts().lattice.edge(level);
+  SearchSide side{};
+  side.nodes = octree.nodes(level + 1).data();
+  side.masks = is_root ? &kRootMask : octree.masks(level + 1).data();
+  side.voxel_size = static_cast<float>(tree.voxel_size());
+  side.half_edge = static_cast<float>(0.5 * edge);
+  if (is_implicit(policy)) {
+    side.octant_offset = is_root ? 0 : side.half_edge;
+    side.child_masks =
+        policy == SpherePolicy::kTable && level > 0 ? octree.masks(level).data() : nullptr;
+    return side;
+  }
+  side.balls = tree.parts().balls(level).data();
+  side.ball_unit = static_cast<float>(2 * edge * PackedBall::kUnit);
+  if (policy == SpherePolicy::kSlab) {
+    side.slabs = tree.parts().slabs(level).data();
+    side.slab_unit = static_cast<float>(edge * PackedSlab::kUnit * kSlabScale);
+  }
+  return side;
+}
+
+}  // namespace
+
+SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
+                       SearchLevels last) {
+  fixed.require(policy, "fixed");
+  moving.require(policy, "moving");
+  require_addresses(fixed, "fixed");
+  require_addresses(moving, "moving");
+  int a = fixed.depth(), b = moving.depth();
+  while (a > last.fixed || b > last.moving || steps_.empty()) {  // two leaves alone take a step
+    const double edge_a = fixed.parts().lattice.edge(a), edge_b = moving.parts().lattice.edge(b);
+    const int left_a = a - last.fixed, left_b = b - last.moving;
+    const bool open_a = descends(left_a, edge_a, left_b, edge_b),
+               open_b = descends(left_b, edge_b, left_a, edge_a);
+    const std::size_t before =
+        std::size_t{fixed.parts().octree.node_count(a)} * moving.parts().octree.node_count(b);
+    a -= open_a ? 1 : 0;
+    b -= open_b ? 1 : 0;
+    SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b)};
+    step.fixed.descends = open_a;
+    step.moving.descends = open_b;
+    step.fixed.emits_slots = a == last.fixed && b > last.moving;
+    step.moving.emits_slots = b == last.moving && a > last.fixed;
+    steps_.push_back(step);
+    sizes_.push_back(
+        {moving.parts().octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
+  }
+  if (!steps_.back().fixed.descends) fixed_leaves_ = steps_.back().fixed.nodes;
+  if (!steps_.back().moving.descends) moving_leaves_ = steps_.back().moving.nodes;
+}
+
+void SearchPlan::resolve(std::span<LeafPair> leaf_pairs) const noexcept {
+  const auto index = [](const OctreeNode* parents, std::uint32_t address) {
+    return parents[address / 8].first_child + address % 8;
+  };
+  if (fixed_leaves_ != nullptr) {
+    for (LeafPair& pair : leaf_pairs) pair.fixed = index(fixed_leaves_, pair.fixed);
+  }
+  if (moving_leaves_ != nullptr) {
+    for (LeafPair& pair : leaf_pairs) pair.moving = index(moving_leaves_, pair.moving);
+  }
+}
+
+}  // namespace ist

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "ist/query/traversal/search.h"
+#include "ist/query/workers/resident_worker.h"
+#include "ist/query/workers/split_queue.h"
+
+namespace ist {
+
+/// A search that the resident worker helps with when it is awake and the work is worth it. The
+/// caller searches the first levels; when there are enough pairs it cuts them into chunks, by the
+/// pairs alone. The caller does the chunks from the front, right into its sink, and the worker from
+/// the back, into its own memory, from which they are copied in order. So the answer is that of one
+/// worker.
+///
+/// The worker reads a copy, which stays unchanged while the worker is in it. A worker that is late
+/// when the caller has returned is dropped, and until it is back the caller searches alone.
+class SharedSearch {
+ public:
+  /// Reserves twice the memory of a Search and 2.6 MB. @param period as for ResidentWorker::tick
+  SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs,
+               std::chrono::nanoseconds period);
+  ~SharedSearch();
+  SharedSearch(const SharedSearch&) = delete;
+  SharedSearch& operator=(const SharedSearch&) = delete;
+
+  /// Searches like Search::run.
+  std::uint64_t run(const SearchPose& pose, LeafPairSink& sink) noexcept {
+    return run_until({}, pose, sink).tests;
+  }
+  /// Searches like Search::run_until, but always searches the first levels until there are 512
+  /// pairs, some 3,000 tests, and may wait 20 µs for the worker. With a limit of tests the caller
+  /// searches alone. If a deadline interrupts shared work, only the levels above the split are
+  /// reported, because which thread did which chunk is not repeatable; running again with `tests`
+  /// set to the reported count stops there too.
+  [[nodiscard]] Search::Stopped run_until(const Budget& budget, const SearchPose& pose,
+                                          LeafPairSink& sink) noexcept;
+
+  /// Returns the caller's own search, for work that is not shared.
+  [[nodiscard]] Search& serial() noexcept { return caller_; }
+
+  /// Returns how often the worker helped; chunks are counted only for searches that were completed.
+  [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
+
+  [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  struct Part {  // the worker's result for a chunk
+    std::size_t begin, count;
+    std::uint64_t tests;
+    bool whole;  // false if there was no room for all leaf pairs
+  };
+  // The data that the worker reads; the caller writes it only while the worker is not in it.
+  struct Shared {
+    SearchPose pose;
+    std::size_t step = 0;
+    std::uint64_t epoch = 0;
+    std::vector<SearchGroup> groups;
+    std::vector<std::uint32_t> moving;
+    std::vector<std::size_t> chunk_ends;  // the group after the last one of each chunk
+    Frontier frontier{};
+  };
+
+  void share(const SearchPose& pose, std::size_t step, const Frontier& frontier) noexcept;
+  [[nodiscard]] Frontier chunk(std::size_t index, std::size_t& first) const noexcept;
+  // Does all chunks together with the worker. Returns false where there was no time for all.
+  [[nodiscard]] bool do_chunks(const Budget& budget, LeafPairSink& sink,
+                               std::uint64_t& tests) noexcept;
+  void help() noexcept;
+
+  const SearchPlan& plan_;
+  Search caller_, helper_;
+  std::chrono::nanoseconds period_;
+  Shared shared_;
+  Sharing sharing_;
+  std::size_t chunk_count_ = 0;
+  SplitQueue queue_;
+  std::vector<Part> parts_;
+  std::vector<LeafPair> found_;  // leaf pairs of the worker
+  Job job_;
+  ResidentWorker worker_;
+};
+
+}  // namespace ist

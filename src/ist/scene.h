@@ -1,0 +1,154 @@
+#pragma once
+
+#include "ist/base/api.h"
+
+#if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ist/base/progress.h"
+#include "ist/haptics/devices/device.h"
+#include "ist/haptics/effects/effect.h"
+#include "ist/haptics/simulation.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+namespace detail {
+class SceneLines;
+}
+
+/// A shape that needs no file. Boxes, spheres and cylinders have their centre at 0, cylinders their
+/// axis along z; jaws are placed as by make_jaw().
+struct BuiltInShape {
+  enum class Kind { kUpperJaw, kLowerJaw, kBox, kSphere, kCylinder };
+  Kind kind = Kind::kBox;
+  std::uint64_t seed = 1;                          ///< of a jaw
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< of a box, mesh units
+  double radius = 1, height = 1;                   ///< of a sphere or a cylinder, mesh units
+};
+
+/// Makes the mesh of a shape: closed, facing outward, in the scene's unit, with the same bits on
+/// every machine. Spheres (20,480 triangles) and cylinders (1,024) lie within their surface, no
+/// farther from it than 3e-4 of their radius. Throws kArgumentInvalid for a length outside 1e-12 to
+/// 1e12.
+[[nodiscard]] IST_API TriangleMesh make_shape(const BuiltInShape& shape);
+
+/// A body of a scene. Lengths are in the scene's unit.
+struct SceneBody {
+  /// A mesh file, a tree file or a shape.
+  std::variant<std::filesystem::path, BuiltInShape> source = {};
+  std::optional<double> voxel_size = {};     ///< required unless the source is a tree
+  std::optional<SpherePolicy> spheres = {};  ///< by default the tightest that both bodies have
+  bool trust_normals = false;  ///< contact forces even if the mesh is not closed and consistent
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from mesh to scene
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+};
+
+/// GravitySettings, with the centre of mass in mesh coordinates: the tool's frame is known only
+/// when the held body is built.
+struct SceneGravity {
+  double mass = 0;  ///< of the held body, kg
+  /// The centre of mass, mesh units; by default the tool's origin.
+  std::optional<Eigen::Vector3d> centre = {};
+  Eigen::Vector3d acceleration = {0, 0, -9.81};  ///< m/s², scene axes
+};
+
+/// A device that rests at the start.
+struct NullSettings {
+  DeviceMechanics mechanics = {};
+};
+/// A device that follows a plan whatever the wrench.
+struct ScriptSettings {
+  DeviceMechanics mechanics = {};
+  std::filesystem::path file = {};
+  std::vector<Waypoint> plan = {};
+};
+
+/// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
+/// tool are motions of the held body from its place in the scene: a turn about the centre of its
+/// grid, then a translation along scene axes.
+struct Scene {
+  std::filesystem::path file = {};                       ///< for messages
+  std::shared_ptr<const detail::SceneLines> lines = {};  ///< of keys in `file`; null without a file
+  double unit = 0;      ///< metres in the unit of lengths; required
+  double rate = 1000;   ///< ticks a second, 1 to 10,000
+  double seconds = 10;  ///< length of a run
+  int workers = 1;      ///< threads that search for contacts, 1 or 2
+  SceneBody fixed = {}, held = {};
+  /// The axis, of unit length, along which the held body is moved until it is free.
+  std::optional<Eigen::Vector3d> open = {};
+  std::variant<NullSettings, ScriptSettings, HandSettings> device = {};
+  CouplingSettings coupling = {};
+  SafetySettings safety = {};
+
+  std::optional<ContactSettings> contact = {};
+  std::optional<FrictionSettings> friction = {};  ///< acts at contacts, as damping does
+  std::optional<DampingSettings> damping = {};
+  std::optional<ProximitySettings> proximity = {};
+  std::optional<SceneGravity> gravity = {};
+  std::optional<SnapSettings> snap = {};  ///< its pose is a motion
+};
+
+/// Reads a scene file (TOML; the README lists the keys). Relative paths start at the file's folder.
+/// Throws kInputInvalid, naming file, line and remedy, for a file that is no TOML, an unknown or
+/// missing key, a value of the wrong kind or out of range, and a missing file.
+[[nodiscard]] IST_API Scene read_scene(const std::filesystem::path& file);
+
+/// The trees of a scene.
+struct SceneTrees {
+  std::unique_ptr<const SphereTree> fixed = {}, held = {};  ///< null if no effect needs contacts
+  /// The proximity voxels of the fixed body, and the held body in voxels of that size; null if no
+  /// effect needs proximity.
+  std::unique_ptr<const SphereTree> near_fixed = {}, near_held = {};
+};
+
+/// A stage of build_scene(), built or skipped.
+struct BuildNote {
+  std::string what;
+  bool built = false;
+  std::string why;
+  double milliseconds = 0;
+  std::uint64_t bytes = 0;
+};
+
+/// A scene ready to run, with the trees and queries that its effects need.
+struct BuiltScene {
+  SceneTrees trees = {};
+  std::unique_ptr<Simulation> simulation = {};  ///< refers to the trees
+  std::unique_ptr<Device> device = {};
+  double step_limit = 0;  ///< bound on the displacement of the tool's surface in a tick, m
+  std::vector<BuildNote> notes = {};       ///< in the order of building
+  std::vector<std::string> warnings = {};  ///< sentences for people
+};
+
+/// Reads or makes the bodies, builds what the effects need, and places the tool. The tool starts at
+/// the beginning of the device's plan; if the bodies intersect there, or one is inside the other,
+/// it is moved along Scene::open until they are free. If no effect needs contacts, nothing is
+/// searched.
+///
+/// The coupling is clamped to the stability border of the device in Scene::device. To run another
+/// device, put its mechanics there: `scene.device = NullSettings{mechanics}`.
+///
+/// Effects of the caller's `own` are called after the scene's, and their needs() join the needs of
+/// the scene's. If the outside of a body is not known, effects that need normals, depth or
+/// proximity are left out, with a warning. `max_memory` is in bytes, for each tree.
+///
+/// Throws the errors of reading a mesh or a tree; kArgumentInvalid for a null effect or a shape
+/// without extent; kInputInvalid, with the scene's file, line and remedy, for missing trees or
+/// meshes, voxels that are too small, a start that is not free, and, in a scene made by a program,
+/// a value out of range.
+[[nodiscard]] IST_API BuiltScene build_scene(const Scene& scene,
+                                             std::vector<std::unique_ptr<Effect>> own = {},
+                                             std::uint64_t max_memory = BuildOptions{}.max_memory,
+                                             Progress* progress = nullptr);
+
+}  // namespace ist
+#endif

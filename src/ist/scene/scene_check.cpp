@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ist/scene/ranges.h"
+#include "ist/scene/scene_lines.h"
+#include "ist/scene/scene_parts.h"
+
+namespace ist {
+namespace {
+
+class Check {
+ public:
+  explicit Check(const Scene& scene) : scene_(scene) {}
+
+  void number(const char* key, double value, const NumberRange& range) const {
+    if (!range.holds(value)) {
+      fail_at(scene_, key, fmt::format("it is {}: give a number {}", value, range.text()));
+    }
+  }
+  // A length in metres, which was one in the scene's unit.
+  void length(const char* key, double value) const {
+    if (!(value > 0 && std::isfinite(value))) {
+      fail_at(scene_, key, fmt::format("it is {} m: give a positive length", value));
+    }
+  }
+  void body(const std::string& table, const SceneBody& body) const {
+    if (std::holds_alternative<BuiltInShape>(body.source) && !body.voxel_size) {
+      fail_at(scene_, table + ".voxel_size", "a shape has no voxels: give their size");
+    }
+    if (!Placement::from(Placement{body.rotation}.isometry()) || !body.translation.allFinite()) {
+      fail_at(scene_, table + ".quaternion",
+              "the pose of the body is no rigid motion: give finite numbers and a rotation");
+    }
+  }
+
+ private:
+  const Scene& scene_;
+};
+
+void check_coupling(const Check& check, const CouplingSettings& coupling,
+                    const SafetySettings& safety) {
+  check.number("coupling.stiffness", coupling.stiffness, kStiffness);
+  check.number("coupling.damping", coupling.damping, kDamping);
+  check.number("coupling.angular_stiffness", coupling.angular_stiffness, kAngularStiffness);
+  check.number("coupling.angular_damping", coupling.angular_damping, kAngularDamping);
+  check.number("coupling.max_force", coupling.max_force, kForce);
+  check.number("coupling.max_torque", coupling.max_torque, kTorque);
+  check.number("safety.max_force", safety.max_force, kForce);
+  check.number("safety.max_torque", safety.max_torque, kTorque);
+  check.number("safety.force_slew", safety.force_slew, kForceSlew);
+  check.number("safety.torque_slew", safety.torque_slew, kTorqueSlew);
+  check.number("safety.soft_start", safety.soft_start, kSoftStart);
+}
+
+void check_effects(const Check& check, const Scene& scene) {
+  if (!scene.contact && (scene.friction || scene.damping)) {
+    const char* effect = scene.friction ? "friction" : "damping";
+    fail_at(scene, fmt::format("effects.{}", effect),
+            fmt::format("[effects.{}] acts at contacts: add the table [effects.contact], or take "
+                        "this one out",
+                        effect));
+  }
+  if (scene.contact) {
+    check.number("effects.contact.stiffness", scene.contact->stiffness, kStiffness);
+    check.number("effects.contact.margin", scene.contact->margin, kMargin);
+  }
+  if (scene.friction) {
+    check.number("effects.friction.static", scene.friction->static_coefficient, kFriction);
+    check.number("effects.friction.dynamic", scene.friction->dynamic_coefficient, kFriction);
+    check.number("effects.friction.stiffness", scene.friction->stiffness, kStiffness);
+  }
+  if (scene.damping) check.number("effects.damping.damping", scene.damping->damping, kDamping);
+  if (scene.proximity) {
+    check.length("effects.proximity.distance", scene.proximity->distance);
+    check.number("effects.proximity.damping", scene.proximity->damping, kDamping);
+  }
+  if (scene.gravity) check.number("effects.gravity.mass", scene.gravity->mass, kMass);
+  if (scene.snap) {
+    check.length("effects.snap.radius", scene.snap->radius);
+    check.number("effects.snap.angle", scene.snap->angle, kAngle);
+    check.number("effects.snap.stiffness", scene.snap->stiffness, kStiffness);
+    check.number("effects.snap.angular_stiffness", scene.snap->angular_stiffness,
+                 kAngularStiffness);
+  }
+}
+
+const DeviceMechanics& mechanics_of(const Scene& scene) {
+  return std::visit(
+      [](const auto& device) -> const auto& { return device.mechanics; }, scene.device);
+}
+
+void check_plan(const Scene& scene) {
+  const auto* script = std::get_if<ScriptSettings>(&scene.device);
+  const auto* hand = std::get_if<HandSettings>(&scene.device);
+  if ((script != nullptr && script->plan.empty()) || (hand != nullptr && hand->plan.empty())) {
+    fail_at(scene, "device.plan", "the plan has no waypoint: give at least one, at time 0");
+  }
+}
+
+}  // namespace
+
+void check_scene(const Scene& scene) {
+  const Check check(scene);
+  check.length("unit", scene.unit);
+  check.number("rate", scene.rate, kRate);
+  if (scene.workers != 1 && scene.workers != 2) {
+    fail_at(scene, "workers", fmt::format("it is {}: give 1 or 2", scene.workers));
+  }
+  check.body("fixed", scene.fixed);
+  check.body("held", scene.held);
+  const DeviceMechanics& mechanics = mechanics_of(scene);
+  check.number("device.damping", mechanics.damping, kDamping);
+  check.number("device.angular_damping", mechanics.angular_damping, kAngularDamping);
+  check.number("device.delay", mechanics.delay, kDelay);
+  check_plan(scene);
+  check_coupling(check, scene.coupling, scene.safety);
+  check_effects(check, scene);
+}
+
+}  // namespace ist

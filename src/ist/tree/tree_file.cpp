@@ -1,0 +1,292 @@
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ist/base/float_environment.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+#include "ist/tree/tree_stream.h"
+
+// The tree file, `.ist`, version 2. Little-endian, packed, in this order:
+//
+//     8 bytes   magic 89 49 53 54 0D 0A 1A 0A
+//     u32       version
+//     u32       0x01020304, which shows another byte order
+//     u64       bytes in the file
+//     u64       XXH3-64 of all bytes that follow
+//     f64 × 3   the grid's corner      f64  voxel size
+//     u32       cells an axis          u32  depth
+//     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
+//     u32 × depth, u32                 nodes at levels 1 … depth; leaves
+//     u8 …      masks of level 1, 2 … depth
+//     u32 …     normals, one a leaf (PackedNormal)
+//     balls:      i16 × 3, u16 …       centre, radius, of the nodes of level 0, 1 … depth
+//     slabs:      i8 × 4, u8 …         normal, offset, half width, in the order of the balls
+//     triangles:  u64 × 3              vertices, triangles, list entries
+//                 f64 × 3 …, u32 × 3 … vertices, triangles
+//                 u32 …, u32 …         the lists' beginnings (leaves + 1), their entries
+//     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
+//
+// Children's indices and cubes are not stored: they follow from the masks. Balls and slabs hold the
+// numbers of PackedBall and PackedSlab.
+namespace ist {
+namespace {
+
+enum Section : std::uint32_t {
+  kBallsSection = 1,
+  kTrianglesSection = 2,
+  kProximitySection = 4,
+  kSlabsSection = 8
+};
+
+struct Header {
+  std::array<double, 3> corner;
+  double voxel_size;
+  std::uint32_t cells, depth, orientation, sections;
+};
+static_assert(sizeof(Header) == 48);
+
+void write_octree(TreeWriter& writer, const LinearOctree& octree) {
+  for (int level = 1; level <= octree.depth(); ++level) writer.value(octree.node_count(level));
+  writer.value(octree.leaf_count());
+  for (int level = 1; level <= octree.depth(); ++level) writer.array(octree.masks(level));
+}
+
+// Writes one bound a node, in the order of the nodes, without the blocks' empty slots.
+template <typename Packed, typename Block>
+void write_bounds(TreeWriter& writer, const LinearOctree& octree,
+                  const std::vector<std::vector<Block>>& blocks) {
+  for (int level = 0; level <= octree.depth(); ++level) {
+    const std::vector<Block>& here = blocks[static_cast<std::size_t>(level)];
+    std::vector<Packed> packed;
+    packed.reserve(octree.node_count(level));
+    for (std::uint32_t parent = 0; parent < here.size(); ++parent) {
+      for (int slot = 0; slot < octree.child_count(level + 1, parent); ++slot) {
+        packed.push_back(here[parent][slot]);
+      }
+    }
+    writer.array(packed);
+  }
+}
+
+using Masks = std::vector<std::vector<std::uint8_t>>;
+
+struct StoredOctree {
+  std::vector<std::uint32_t> nodes;  // at levels 1 … depth
+  std::uint32_t leaves;
+  Masks masks;
+};
+
+StoredOctree read_octree(TreeReader& reader, std::uint32_t depth) {
+  constexpr std::uint32_t kMaxDepth = 17;  // 2^16 cells and a margin round the cells
+  reader.require(depth <= kMaxDepth, "its depth is out of range");
+  StoredOctree stored{reader.array<std::uint32_t>(depth), reader.value<std::uint32_t>(), {}};
+  for (const std::uint32_t count : stored.nodes) {
+    stored.masks.push_back(reader.array<std::uint8_t>(count));
+  }
+  return stored;
+}
+
+LinearOctree verified(const TreeReader& reader, StoredOctree stored) {
+  reader.require(LinearOctree::is_tree(stored.masks), "its levels do not form a tree");
+  LinearOctree octree(std::move(stored.masks));
+  reader.require(octree.leaf_count() == stored.leaves, "its leaf count does not match its masks");
+  return octree;
+}
+
+template <typename Float>
+bool all_finite(const Float* values, std::size_t count) {
+  unsigned bad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bad |= static_cast<unsigned>(!(std::abs(values[i]) <= std::numeric_limits<Float>::max()));
+  }
+  return bad == 0;
+}
+
+void verify_lattice(const TreeReader& reader, const Lattice& lattice) {
+  reader.require(all_finite(lattice.corner.data(), 3), "the grid's corner is not finite");
+  reader.require(lattice.voxel_size > 0 && std::isfinite(lattice.voxel_size),
+                 "the voxel size is not a positive number");
+  reader.require(lattice.cells >= 1 && lattice.cells <= Lattice::kMaxCells,
+                 "the number of voxels an axis is out of range");
+  constexpr double kLargestExtent = 1e15;
+  reader.require(lattice.voxel_size * lattice.cells <= Lattice::kMaxRelativeSize * kLargestExtent,
+                 "the grid is larger than any mesh may be");
+  constexpr double kSmallestExtent = 1e-12;  // half, because cells times size may round down
+  reader.require(lattice.voxel_size * lattice.cells >= 0.5 * kSmallestExtent,
+                 "the grid is smaller than any mesh may be");
+  reader.require(lattice.depth == static_cast<int>(std::bit_width(lattice.cells - 1)),
+                 "its depth does not fit its voxels");
+}
+
+bool is_valid(const PackedBall& ball) { return ball.r > 0; }
+
+bool is_valid(const PackedSlab& slab) {
+  const int x = slab.nx, y = slab.ny, z = slab.nz;
+  return std::abs(x) <= 126 && std::abs(y) <= 126 && std::abs(z) <= 126 &&
+         x * x + y * y + z * z <= 128 * 128 && slab.offset >= -127 && slab.half > 0;
+}
+
+template <typename Packed>
+using Levels = std::vector<std::vector<Packed>>;
+
+template <typename Packed>
+Levels<Packed> read_bounds(TreeReader& reader, const StoredOctree& stored) {
+  Levels<Packed> levels{reader.array<Packed>(stored.leaves)};
+  for (const std::uint32_t nodes : stored.nodes) levels.push_back(reader.array<Packed>(nodes));
+  return levels;
+}
+
+template <typename Block, typename Packed>
+std::vector<std::vector<Block>> verified(const TreeReader& reader, const LinearOctree& octree,
+                                         Levels<Packed> levels, const char* otherwise) {
+  std::vector<std::vector<Block>> blocks(levels.size());
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const int above = static_cast<int>(level) + 1;
+    blocks[level].resize(octree.nodes(above).size() - 1);
+    auto packed = levels[level].begin();
+    for (std::uint32_t parent = 0; parent < blocks[level].size(); ++parent) {
+      for (int slot = 0; slot < octree.child_count(above, parent); ++slot, ++packed) {
+        reader.require(is_valid(*packed), otherwise);
+        blocks[level][parent].set(slot, *packed);
+      }
+    }
+    levels[level] = {};
+  }
+  return blocks;
+}
+
+// A grid of make_lattice holds its mesh exactly, because both functions round alike.
+bool is_in_grid(const Lattice& lattice, const Eigen::Vector3d& vertex) {
+  const Eigen::Vector3d place = lattice.to_lattice(vertex);
+  return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;
+}
+
+void verify_triangles(const TreeReader& reader, const Lattice& lattice,
+                      const LeafTriangles& leaves) {
+  const auto& [mesh, lists] = leaves;
+  reader.require(
+      mesh.vertices.empty() || all_finite(mesh.vertices.front().data(), 3 * mesh.vertices.size()),
+      "a vertex is not finite");
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      reader.require(vertex < mesh.vertices.size(),
+                     "a triangle refers to a vertex that does not exist");
+      reader.require(is_in_grid(lattice, mesh.vertices[vertex]), "a triangle leaves the grid");
+    }
+  }
+  reader.require(lists.first.front() == 0 && lists.first.back() == lists.ids.size(),
+                 "the triangle lists do not cover their entries");
+  for (std::size_t leaf = 0; leaf < lists.size(); ++leaf) {
+    reader.require(
+        lists.first[leaf] < lists.first[leaf + 1] && lists.first[leaf + 1] <= lists.ids.size(),
+        "a leaf's triangle list is out of range");
+    for (std::uint32_t i = lists.first[leaf]; i < lists.first[leaf + 1]; ++i) {
+      reader.require(lists.ids[i] < mesh.triangles.size(),
+                     "a leaf refers to a triangle that does not exist");
+      reader.require(i == lists.first[leaf] || lists.ids[i - 1] < lists.ids[i],
+                     "a leaf's triangles are not in order");
+    }
+  }
+}
+
+}  // namespace
+
+std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
+  const Lattice& lattice = tree.parts().lattice;
+  TreeWriter writer(file);
+  const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
+                                 (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
+                                 (tree.triangles() ? kTrianglesSection : 0u) |
+                                 (tree.parts().proximity ? kProximitySection : 0u);
+  writer.value(Header{lattice.corner, lattice.voxel_size, lattice.cells,
+                      static_cast<std::uint32_t>(lattice.depth),
+                      static_cast<std::uint32_t>(tree.orientation()), sections});
+  write_octree(writer, tree.parts().octree);
+  writer.array(tree.parts().normals);
+  if (tree.has(SpherePolicy::kTight)) {
+    write_bounds<PackedBall>(writer, tree.parts().octree, tree.parts().bounds.balls);
+  }
+  if (tree.has(SpherePolicy::kSlab)) {
+    write_bounds<PackedSlab>(writer, tree.parts().octree, tree.parts().bounds.slabs);
+  }
+  if (tree.triangles()) {
+    const auto& [mesh, lists] = *tree.parts().triangles;
+    writer.value(std::uint64_t{mesh.vertices.size()});
+    writer.value(std::uint64_t{mesh.triangles.size()});
+    writer.value(std::uint64_t{lists.ids.size()});
+    writer.array(
+        std::span(reinterpret_cast<const double*>(mesh.vertices.data()), 3 * mesh.vertices.size()));
+    writer.array(mesh.triangles);
+    writer.array(lists.first);
+    writer.array(lists.ids);
+  }
+  if (tree.parts().proximity) {
+    writer.value(static_cast<std::uint32_t>(tree.parts().proximity->octree.depth()));
+    write_octree(writer, tree.parts().proximity->octree);
+  }
+  return writer.commit();
+}
+
+SphereTree read_tree(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;
+  TreeReader reader(file);
+  const auto [corner, voxel_size, cells, depth, orientation, sections] = reader.value<Header>();
+  const Lattice lattice{corner, voxel_size, cells, static_cast<int>(depth)};
+  StoredOctree stored = read_octree(reader, depth);
+  std::vector<PackedNormal> normals = reader.array<PackedNormal>(stored.leaves);
+
+  Levels<PackedBall> balls;
+  if ((sections & kBallsSection) != 0) balls = read_bounds<PackedBall>(reader, stored);
+  Levels<PackedSlab> slabs;
+  if ((sections & kSlabsSection) != 0) slabs = read_bounds<PackedSlab>(reader, stored);
+  std::optional<LeafTriangles> triangles;
+  if ((sections & kTrianglesSection) != 0) {
+    const auto counts = reader.value<std::array<std::uint64_t, 3>>();
+    triangles.emplace();
+    const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
+    for (const auto& [x, y, z] : coordinates) triangles->mesh.vertices.emplace_back(x, y, z);
+    triangles->mesh.triangles = reader.array<Triangle>(counts[1]);
+    triangles->lists.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
+    triangles->lists.ids = reader.array<std::uint32_t>(counts[2]);
+  }
+  std::optional<StoredOctree> proximity;
+  if ((sections & kProximitySection) != 0) {
+    const auto proximity_depth = reader.value<std::uint32_t>();
+    proximity = read_octree(reader, proximity_depth);
+  }
+
+  reader.verify_checksum();
+  reader.require(sections <= 15, "it lists an unknown section");
+  reader.require(slabs.empty() || !balls.empty(), "it has slabs without balls");
+  reader.require(orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
+                 "its orientation is unknown");
+  verify_lattice(reader, lattice);
+  if (triangles) verify_triangles(reader, lattice, *triangles);
+  TreeParts parts{lattice,
+                  verified(reader, std::move(stored)),
+                  static_cast<Orientation>(orientation),
+                  std::move(normals),
+                  {},
+                  std::move(triangles),
+                  std::nullopt};
+  parts.bounds.balls =
+      verified<BallBlock>(reader, parts.octree, std::move(balls), "a ball has no radius");
+  parts.bounds.slabs = verified<SlabBlock>(reader, parts.octree, std::move(slabs),
+                                           "a slab's numbers are out of range");
+  if (proximity) parts.proximity = ProximityTree{verified(reader, std::move(*proximity))};
+  return SphereTree(std::move(parts));
+}
+
+bool is_tree_file(const std::filesystem::path& file) {
+  InputFile input(file);
+  std::array<unsigned char, kTreeFileMagic.size()> magic{};
+  return input.read(magic.data(), magic.size()) == magic.size() && magic == kTreeFileMagic;
+}
+
+}  // namespace ist

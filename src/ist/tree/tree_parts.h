@@ -1,0 +1,94 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ist/mesh/mesh.h"
+#include "ist/tree/bound_blocks.h"
+#include "ist/tree/bounds.h"
+#include "ist/tree/implicit_ball.h"
+#include "ist/tree/linear_octree.h"
+#include "ist/voxel/classify.h"
+#include "ist/voxel/lattice.h"
+#include "ist/voxel/packed_normal.h"
+#include "ist/voxel/voxel_set.h"
+
+namespace ist {
+
+/// The triangles of a tree built with keep_triangles.
+struct LeafTriangles {
+  TriangleMesh mesh;    ///< as oriented at build, mesh frame
+  TriangleLists lists;  ///< one list a leaf
+};
+
+/// The proximity voxels, cells near the outside of the surface, on the lattice of the surface
+/// voxels.
+struct ProximityTree {
+  /// Cell (0, 0, 0) of the octree is cell (-kMargin, -kMargin, -kMargin) of the lattice.
+  static constexpr std::uint32_t kMargin = kProximityMargin;
+  LinearOctree octree;
+};
+
+namespace detail {
+
+/// The content of a SphereTree, for the library's own code. The code that makes a TreeParts must
+/// make its members fit each other.
+struct TreeParts {
+  Lattice lattice;
+  LinearOctree octree;
+  Orientation orientation = Orientation::kAssumed;
+  std::vector<PackedNormal> normals;       ///< one a leaf
+  BoundBlocks bounds;                      ///< empty if not built
+  std::optional<LeafTriangles> triangles;  ///< only with keep_triangles
+  std::optional<ProximityTree> proximity;  ///< only if requested and not empty
+  /// The largest radius of a saved leaf ball, mesh units; set by SphereTree's constructor.
+  double largest_saved_leaf = 0;
+  /// The bounding radius of all spheres round the tree's origin, mesh units; set by SphereTree's
+  /// constructor.
+  double bounding_radius = 0;
+
+  /// The saved bounds of the nodes at `level`, 0 … depth, one block for each parent, a node of
+  /// octree.nodes(level + 1). Precondition: has(kTight), or has(kSlab) for the slabs.
+  [[nodiscard]] std::span<const BallBlock> balls(int level) const noexcept {
+    return bounds.balls[static_cast<std::size_t>(level)];
+  }
+  [[nodiscard]] std::span<const SlabBlock> slabs(int level) const noexcept {
+    return bounds.slabs[static_cast<std::size_t>(level)];
+  }
+  /// Returns the sphere of a node in the tree's frame; `cube_centre` as for implicit_ball.
+  /// Precondition: is_implicit(policy).
+  [[nodiscard]] Ball ball(SpherePolicy policy, int level, std::uint32_t node,
+                          const Eigen::Vector3d& cube_centre) const noexcept {
+    return implicit_ball(policy, lattice, level, cube_centre,
+                         level == 0 ? std::uint8_t{0} : octree.mask(level, node));
+  }
+
+  /// Returns the saved ball of child `slot` of `parent`, a node at `level`, in the tree's frame;
+  /// each number is rounded once. Precondition: has(kTight).
+  [[nodiscard]] Ball saved_ball(int level, std::uint32_t parent, int slot) const noexcept {
+    const PackedBall ball = balls(level)[parent][slot];
+    const float(&from)[3] = octree.nodes(level + 1)[parent].centre;
+    const double unit = PackedBall::kUnit * static_cast<double>(std::uint64_t{2} << level);
+    const double s = lattice.voxel_size;
+    return {{s * (double{from[0]} + unit * ball.x), s * (double{from[1]} + unit * ball.y),
+             s * (double{from[2]} + unit * ball.z)},
+            s * (unit * ball.r)};
+  }
+  /// Returns the saved slab of child `slot` of `parent`, a node at `level`; the normal is exact.
+  /// Precondition: has(kSlab).
+  [[nodiscard]] Slab saved_slab(int level, std::uint32_t parent, int slot) const noexcept {
+    constexpr double kNormal = PackedSlab::kNormalUnit;
+    const PackedSlab slab = slabs(level)[parent][slot];
+    const double unit = PackedSlab::kUnit * lattice.edge(level);
+    return {{kNormal * slab.nx, kNormal * slab.ny, kNormal * slab.nz},
+            unit * slab.offset,
+            unit * slab.half};
+  }
+};
+
+}  // namespace detail
+
+using detail::TreeParts;
+
+}  // namespace ist

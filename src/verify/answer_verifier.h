@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ist/query/relative_pose.h"
+#include "ist/query/results.h"
+#include "ist/tree/sphere_tree.h"
+#include "verify/leaf_grid.h"
+#include "verify/read_bounds.h"
+
+namespace ist {
+
+/// The answer of an engine with all its leaf pairs.
+struct GivenAnswer {
+  QueryResult result;
+  std::span<const LeafPair> leaf_pairs;
+};
+
+/// A violation of the guarantee by an answer.
+struct Violation {
+  std::size_t answer;  ///< index into the checked answers
+  std::string detail;  ///< names the leaf pair, if any, and the violation
+};
+
+/// Checks answers against the guarantee of every query,
+///
+///   {leaf pairs whose geometry intersects} ⊆ answer ⊆ {leaf pairs whose bounds overlap, within the
+///   pad},
+///
+/// sorted, without duplicates, as many as counted. Finds near leaves by a hash of their cells
+/// instead of the trees, and computes in double.
+///
+/// Requires certain intersections only, so there are no false alarms: of cubes shrunk by
+/// CubeAxes::kShrink, and of triangles that still cross if each corner moves by `tolerance` of all
+/// lengths. Triangles that only touch or are coplanar are not required. If the policy bounds
+/// triangles and the trees hold none, it compares the answers instead: they may differ only in
+/// pairs whose bounds, or the bounds of a pair of their ancestors, overlap by no more than the
+/// pads.
+class AnswerVerifier {
+ public:
+  /// The tolerance relative to the bounding radii of both trees plus their distance: 2⁻⁴⁰.
+  static constexpr double kTolerance = 0x1p-40;
+
+  /// Prepares the checks. Both trees must have `policy` and outlive the verifier. Cost: 0.2 µs a
+  /// leaf.
+  AnswerVerifier(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy);
+
+  /// Returns whether the geometry in the leaves is known: cubes always are, triangles if both trees
+  /// hold them.
+  [[nodiscard]] bool knows_geometry() const noexcept { return knows_geometry_; }
+
+  /// Returns the first violation in the answers of several engines at one pose. Cost: 1 µs a moving
+  /// leaf near the fixed body, and 0.2 µs a leaf pair.
+  [[nodiscard]] std::optional<Violation> check(const Eigen::Isometry3d& pose,
+                                               std::span<const GivenAnswer> answers) const;
+
+ private:
+  using Found = std::optional<std::string>;
+  [[nodiscard]] Found check_list(const GivenAnswer& answer) const;
+  [[nodiscard]] Found check_bounds(const RelativePose& pose, double tolerance,
+                                   const GivenAnswer& answer) const;
+  [[nodiscard]] std::optional<Violation> find_missing(const RelativePose& pose, double tolerance,
+                                                      std::span<const GivenAnswer> answers) const;
+  [[nodiscard]] std::optional<Violation> compare(const RelativePose& pose, double tolerance,
+                                                 std::span<const GivenAnswer> answers) const;
+  [[nodiscard]] bool ancestors_overlap(const RelativePose& pose, LeafPair pair, double doubt) const;
+  [[nodiscard]] Bounds leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
+                                   std::uint32_t leaf) const;
+
+  const SphereTree& fixed_;
+  const SphereTree& moving_;
+  SpherePolicy policy_;
+  bool knows_geometry_;
+  double moving_radius_;  // circumradius of a moving leaf's cube, mesh units
+  LeafGrid grid_;         // the fixed leaves
+  std::vector<std::uint64_t> moving_codes_;
+};
+
+}  // namespace ist

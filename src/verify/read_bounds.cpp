@@ -1,0 +1,46 @@
+#include "verify/read_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "ist/tree/tree_parts.h"
+
+namespace ist {
+
+std::uint32_t parent_of(const LinearOctree& octree, int level, std::uint32_t node) noexcept {
+  const std::span<const OctreeNode> parents = octree.nodes(level + 1);
+  const auto after =
+      std::upper_bound(parents.begin(), parents.end(), node,
+                       [](std::uint32_t n, const OctreeNode& p) { return n < p.first_child; });
+  return static_cast<std::uint32_t>(after - parents.begin() - 1);
+}
+
+Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, int level,
+                   std::uint32_t node) noexcept {
+  const std::uint32_t parent = parent_of(tree.parts().octree, level, node);
+  const auto slot =
+      static_cast<int>(node - tree.parts().octree.nodes(level + 1)[parent].first_child);
+  Bounds bounds{tree.parts().saved_ball(level, parent, slot), {}};
+  if (policy == SpherePolicy::kSlab) bounds.slab = tree.parts().saved_slab(level, parent, slot);
+  return bounds;
+}
+
+Bounds moved(const RelativePose& pose, Bounds bounds) noexcept {
+  bounds.ball.centre = pose.rotation * bounds.ball.centre + pose.translation;
+  bounds.slab.normal = pose.rotation * bounds.slab.normal;
+  return bounds;
+}
+
+double overlap(SpherePolicy policy, const Bounds& a, const Bounds& b) noexcept {
+  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+  double least = a.ball.radius + b.ball.radius - apart.norm();
+  if (policy != SpherePolicy::kSlab) return least;
+  const auto into = [](const Slab& slab, const Eigen::Vector3d& centre, double radius) {
+    return slab.half + radius - std::abs(slab.normal.dot(centre) - slab.offset);
+  };
+  least = std::min(least, into(a.slab, apart, b.ball.radius));
+  return std::min(least, into(b.slab, -apart, a.ball.radius));
+}
+
+}  // namespace ist

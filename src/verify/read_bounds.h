@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "ist/query/relative_pose.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist {
+
+/// The bounds of a node in double, in a tree's frame.
+struct Bounds {
+  Ball ball;
+  Slab slab;  ///< of policy slab
+};
+
+/// Returns the parent, at `level` + 1, of a node at `level`. Cost: O(log nodes).
+[[nodiscard]] std::uint32_t parent_of(const LinearOctree& octree, int level,
+                                      std::uint32_t node) noexcept;
+
+/// Reads the saved bounds of a node. Precondition: tree.has(policy), and the policy is not
+/// implicit.
+[[nodiscard]] Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, int level,
+                                 std::uint32_t node) noexcept;
+
+/// Returns the bounds mapped by a pose.
+[[nodiscard]] Bounds moved(const RelativePose& pose, Bounds bounds) noexcept;
+
+/// Returns the overlap of two bounds in one frame, mesh units, by the test that finds least; below
+/// 0 if they are apart.
+[[nodiscard]] double overlap(SpherePolicy policy, const Bounds& a, const Bounds& b) noexcept;
+
+}  // namespace ist

@@ -1,0 +1,149 @@
+// The options of C queries, meshes of floats, and the geometry that answers count.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "capi/c_bodies.h"
+#include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
+#include "ist/tree/saved_spheres.h"
+#include "ist/tree/sphere_tree.h"
+#include "query/query_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr double kVoxel = 0.07;
+
+// Without triangles, leaves alone decide: the answer may stay open, and a small tolerance out of
+// reach.
+TEST(CAnswer, MayStayOpenWithoutTriangles) {
+  ist_query* query = c_query(c_tree(icosphere(2, 1), 0.2, false));
+  std::int32_t answer = -1;
+  ASSERT_EQ(name(ist_query_intersects(query, c_shift(1.8, 0, 0).data(), &answer)), "ok");
+  EXPECT_EQ(answer, IST_ANSWER_NEAR);
+  ASSERT_EQ(name(ist_query_intersects(query, c_shift(9, 0, 0).data(), &answer)), "ok");
+  EXPECT_EQ(answer, IST_ANSWER_NO);
+  auto c = sized<ist_triangle_pairs_result>();
+  c.pairs = 7;
+  EXPECT_EQ(name(ist_query_triangle_pairs(query, c_shift(1.8, 0, 0).data(), nullptr, 0, &c)),
+            "triangles-missing");
+  EXPECT_EQ(c.pairs, 0u);
+
+  auto distance = sized<ist_distance_result>();
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 1e-6, &distance)), "ok");
+  EXPECT_EQ(distance.complete, 0);
+  EXPECT_GT(distance.upper - distance.lower, 1e-6);
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 10, &distance)), "ok");
+  EXPECT_EQ(distance.complete, 1);
+  EXPECT_LE(distance.upper - distance.lower, 10);
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+}
+
+TEST(CAnswer, FollowsTheOptions) {
+  ist_tree* tree = c_tree(icosphere(2, 1), 0.2);
+  auto options = sized<ist_query_options>();
+  options.spheres = IST_SPHERES_TABLE;
+  options.workers = 2;
+  options.period_ns = -1;
+  options.contacts = 5;
+  options.target = "scalar";
+  ist_query* query = nullptr;
+  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &query)), "ok");
+  auto info = sized<ist_query_info>();
+  ASSERT_EQ(name(ist_query_get_info(query, &info)), "ok");
+  EXPECT_EQ(info.spheres, IST_SPHERES_TABLE);
+  EXPECT_EQ(info.workers, 2);
+  EXPECT_EQ(info.contacts, 5u);
+  EXPECT_EQ(info.has_triangles, 1);
+  EXPECT_STREQ(info.target, "scalar");
+  EXPECT_GT(info.bytes, 100'000u);
+  auto result = sized<ist_query_result>();
+  std::vector<ist_contact> contacts(8);
+  ASSERT_EQ(name(ist_query_contacts(query, c_shift(1.8, 0, 0).data(), nullptr, contacts.data(), 8,
+                                    nullptr, &result)),
+            "ok");
+  EXPECT_EQ(result.contacts, 5u);
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+
+  options.contacts = -1;
+  ASSERT_EQ(name(ist_query_create(tree, tree, &options, &query)), "ok");
+  auto sums = sized<ist_contact_sums>();
+  sums.weight = 7;
+  EXPECT_EQ(name(ist_query_contacts(query, c_shift(1.8, 0, 0).data(), nullptr, contacts.data(), 8,
+                                    &sums, &result)),
+            "not-prepared");
+  EXPECT_EQ(sums.weight, 0);
+  EXPECT_EQ(result.leaf_pairs + result.contacts, 0u);
+  ASSERT_EQ(name(ist_query_get_info(query, &info)), "ok");
+  EXPECT_EQ(info.contacts, 0u);
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+}
+
+// A mesh of floats has the same coordinates in double.
+TEST(CMesh, IsTheSameOfFloats) {
+  const std::array<float, 9> floats = {0.1F, 0, 0, 1.3F, 0.2F, 0, 0, 2.7F, 0.4F};
+  const std::array<std::uint32_t, 3> triangle = {0, 1, 2};
+  ist_mesh* mesh = nullptr;
+  ASSERT_EQ(name(ist_mesh_create_float(floats.data(), 3, triangle.data(), 1, &mesh)), "ok");
+  auto info = sized<ist_mesh_info>();
+  ASSERT_EQ(name(ist_mesh_get_info(mesh, &info)), "ok");
+  EXPECT_EQ(info.box_max[0], double{1.3F});
+  EXPECT_EQ(info.box_max[1], double{2.7F});
+  EXPECT_EQ(info.box_max[2], double{0.4F});
+  EXPECT_EQ(info.closed, 0);
+  EXPECT_EQ(info.boundary_edges, 3u);
+  EXPECT_EQ(info.components, 1u);
+  EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
+}
+
+// The copies have the order of the indices in answers.
+TEST(CGeometry, HasTheOrderOfAnswers) {
+  const TriangleMesh mesh = icosphere(2, 1);
+  ist_mesh* c = c_mesh(mesh);
+  std::vector<double> vertices(3 * mesh.vertices.size() + 1, 7);
+  std::vector<std::uint32_t> triangles(3 * mesh.triangles.size() + 1, 7);
+  ASSERT_EQ(name(ist_mesh_copy(c, vertices.data(), mesh.vertices.size(), triangles.data(),
+                               mesh.triangles.size())),
+            "ok");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(vertices[3 * i + static_cast<std::size_t>(axis)], mesh.vertices[i][axis]);
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(triangles[3 * i + k], mesh.triangles[i][k]);
+  }
+  EXPECT_EQ(vertices.back(), 7);
+  EXPECT_EQ(triangles.back(), 7u);
+  // A short array, and a longer one than the mesh.
+  std::vector<double> two(7, 5);
+  ASSERT_EQ(name(ist_mesh_copy(c, two.data(), 2, nullptr, 0)), "ok");
+  EXPECT_TRUE(std::equal(two.begin(), two.end() - 1, vertices.begin()));
+  EXPECT_EQ(two.back(), 5);
+  EXPECT_EQ(name(ist_mesh_free(c)), "ok");
+
+  BuildOptions options;
+  options.voxel_size = kVoxel;
+  const SphereTree tree = build_tree(mesh, options);
+  ist_tree* c_built = c_tree(mesh, kVoxel);
+  const std::vector<Ball> cubes = level_spheres(tree, SpherePolicy::kSimple, 0);
+  std::vector<double> centres(3 * cubes.size() + 3, 7);
+  ASSERT_EQ(name(ist_tree_copy_leaf_centres(c_built, centres.data(), cubes.size() + 1)), "ok");
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
+    const Eigen::Vector3d centre = tree.origin() + cubes[i].centre;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(centres[3 * i + static_cast<std::size_t>(axis)], centre[axis], 1e-15);
+    }
+  }
+  EXPECT_EQ(centres[3 * cubes.size()], 7);
+  EXPECT_EQ(name(ist_tree_free(c_built)), "ok");
+}
+
+}  // namespace
+}  // namespace ist::test

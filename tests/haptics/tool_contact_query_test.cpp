@@ -1,0 +1,214 @@
+#include "ist/haptics/tool_contact_query.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "haptics/effects/effect_case.h"
+#include "ist/tree/sphere_tree.h"
+#include "query/query_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// Millimetres. The box's upper face is z = 0 of its mesh.
+constexpr double kUnit = 1e-3, kRadius = 5, kVoxel = 0.5;
+
+SphereTree voxels_of(const TriangleMesh& mesh) {
+  BuildOptions options;
+  options.voxel_size = kVoxel;
+  return build_tree(mesh, options);
+}
+
+const SphereTree& block() {
+  static const SphereTree tree = voxels_of(box({-10, -10, -4}, {10, 10, 0}));
+  return tree;
+}
+// Its centre is not that of its grid, which the tool's origin is.
+const SphereTree& ball() {
+  static const SphereTree tree = voxels_of(moved(icosphere(4, kRadius), {7, 8, 9}));
+  return tree;
+}
+const Vector3d kCentre(7, 8, 9);  // of the ball, in its mesh
+
+// Where the ball's mesh is, in the box's mesh, when it is pressed by `depth`, mesh units.
+Placement pressed(double depth, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+  return {turn, Vector3d(0.1, -0.2, kRadius - depth) - turn * kCentre};
+}
+
+struct Scenery {
+  Placement fixed;  // SI
+  BodyFrames frames{kUnit, fixed, ball().origin()};
+
+  // Of the tool in the scene, where the held mesh is at `held` in the fixed one, mesh units.
+  [[nodiscard]] Placement tool(const Placement& held) const {
+    const Vector3d origin = held.rotation * frames.tool_origin + held.translation;
+    return {fixed.rotation * held.rotation, fixed.rotation * (kUnit * origin) + fixed.translation};
+  }
+  [[nodiscard]] ToolContacts contacts(const Placement& held, double least_depth = -0.5) const {
+    ToolContactQuery query(block(), ball(), frames, {SpherePolicy::kSlab, least_depth});
+    ToolContacts contacts;
+    EXPECT_TRUE(query.find(tool(held), {}, contacts).complete);
+    return contacts;
+  }
+};
+
+std::vector<Placement> placements() {
+  Random random(3);
+  std::vector<Placement> all{Placement()};
+  for (int i = 0; i < 6; ++i) all.push_back({random.rotation(), random.point(-0.3, 0.3)});
+  return all;
+}
+
+TEST(BodyFrames, PutThePoseAndItsPointsWhereTheyAreInTheScene) {
+  Random random(4);
+  for (const Placement& fixed : placements()) {
+    const Scenery scenery{fixed};
+    const Placement tool{random.rotation(), random.point(-0.2, 0.2)};
+    const Eigen::Isometry3d pose = scenery.frames.query_pose(tool);
+    for (int i = 0; i < 10; ++i) {
+      const Vector3d point = random.point(-10, 10);  // of the held mesh
+      const Vector3d in_scene =
+          tool.rotation * (kUnit * (point - scenery.frames.tool_origin)) + tool.translation;
+      EXPECT_LT((scenery.frames.to_scene(pose * point) - in_scene).norm(), 1e-15);
+    }
+  }
+}
+
+// A ball of radius R pressed by d into a plane: the deepest place is below its centre, all are
+// within sqrt(2 R d) of it, each normal is the plane's, and no force has a torque about the centre.
+TEST(ToolContactQuery, OfABallOnABoxIsItsClosedForm) {
+  for (const double depth : {0.1, 0.3, 0.5}) {
+    for (const Placement& fixed : placements()) {
+      const Scenery scenery{fixed};
+      const Placement held = pressed(depth);
+      const ToolContacts contacts = scenery.contacts(held);
+      const Vector3d up = fixed.rotation * Vector3d::UnitZ();
+      const Vector3d centre =  // of the ball, from the tool's origin
+          scenery.tool(held).rotation * (kUnit * (kCentre - scenery.frames.tool_origin));
+      // Springs begin half a voxel before the surfaces meet.
+      const double overlap = kUnit * (depth + 0.5 * kVoxel);
+      const double wide = std::sqrt(2 * kUnit * kRadius * overlap) + kUnit * kVoxel;
+      double deepest = 0;
+      ASSERT_GT(contacts.points().size(), 4u);
+      for (const ToolContact& point : contacts.points()) {
+        EXPECT_NEAR(point.normal.norm(), 1, 1e-12);
+        EXPECT_GT(point.normal.dot(up), 0.9);
+        const Vector3d from = point.arm - centre;
+        EXPECT_NEAR(from.dot(up), kUnit * (depth - kRadius), kUnit * kVoxel);  // the plane
+        EXPECT_LT((from - from.dot(up) * up).norm(), wide);
+        deepest = std::max(deepest, point.depth);
+      }
+      EXPECT_NEAR(deepest, overlap, 0.5 * kUnit * kVoxel);
+      const Vector3d force = contacts.spring.head<3>(), torque = contacts.spring.tail<3>();
+      EXPECT_GT(force.dot(up), 0);
+      EXPECT_LT((force - force.dot(up) * up).norm(), 0.03 * force.norm());
+      EXPECT_LT((torque - centre.cross(force)).norm(), 0.03 * kUnit * kRadius * force.norm());
+    }
+  }
+}
+
+// The same pose of the bodies to each other is the same touch, wherever the scene has them.
+TEST(ToolContactQuery, TurnsWithTheScene) {
+  Random random(8);
+  for (int i = 0; i < 8; ++i) {
+    const Placement held = pressed(0.4, random.rotation());
+    const Scenery plain{Placement()};
+    const ToolContacts expected = plain.contacts(held);
+    for (const Placement& fixed : placements()) {
+      const ToolContacts found = Scenery{fixed}.contacts(held);
+      EXPECT_NEAR(found.count, expected.count, 1e-9 * expected.count);
+      const Vector3d force = fixed.rotation * expected.spring.head<3>();
+      const Vector3d torque = fixed.rotation * expected.spring.tail<3>();
+      EXPECT_LT((found.spring.head<3>() - force).norm(), 1e-9 * force.norm());
+      EXPECT_LT((found.spring.tail<3>() - torque).norm(), 1e-9 * kUnit * kRadius * force.norm());
+    }
+  }
+}
+
+// Points are merged pairs, so what they come to differs from the sum over pairs: here by 0.5 % of
+// the force, and 0.7 % of the torque that it has at the ball's radius, at most.
+TEST(ToolContactQuery, ItsPointsComeToTheWrenchOfAllPairs) {
+  Random random(9);
+  double worst_force = 0, worst_torque = 0;
+  for (int i = 0; i < 30; ++i) {
+    const ToolContacts contacts = Scenery{placements()[static_cast<std::size_t>(i % 7)]}.contacts(
+        pressed(random.uniform(0.05, 0.5), random.rotation()));
+    Vector6 sum = Vector6::Zero();
+    double shares = 0;
+    for (const ToolContact& point : contacts.points()) {
+      sum +=
+          point.stiffness_fraction * point.depth * six(point.normal, point.arm.cross(point.normal));
+      shares += point.stiffness_fraction;
+    }
+    const double force = contacts.spring.head<3>().norm();
+    worst_force = std::max(worst_force, (sum - contacts.spring).head<3>().norm() / force);
+    worst_torque = std::max(worst_torque,
+                            (sum - contacts.spring).tail<3>().norm() / (kUnit * kRadius * force));
+    // Ten pairs' stiffness at most.
+    EXPECT_NEAR(shares, std::min(contacts.count, 10.0), 1e-9 * contacts.count);
+  }
+  RecordProperty("worst_force", std::to_string(worst_force));
+  RecordProperty("worst_torque", std::to_string(worst_torque));
+  EXPECT_LT(worst_force, 0.01);
+  EXPECT_LT(worst_torque, 0.02);
+}
+
+TEST(ToolContactQuery, KeepsWhatItKnewWhereTheAnswerIsNotComplete) {
+  const Scenery scenery{Placement()};
+  ToolContactQuery query(block(), ball(), scenery.frames, {SpherePolicy::kSlab});
+  ToolContacts contacts;
+  ASSERT_TRUE(query.find(scenery.tool(pressed(0.3)), {}, contacts).complete);
+  const ToolContacts before = contacts;
+  Budget none;
+  none.tests = 10;
+  EXPECT_FALSE(query.find(scenery.tool(pressed(0.5)), none, contacts).complete);
+  EXPECT_EQ(contacts.spring, before.spring);
+  EXPECT_EQ(contacts.count, before.count);
+  EXPECT_EQ(contacts.points().size(), before.points().size());
+  EXPECT_TRUE(query.find(scenery.tool(pressed(-2)), {}, contacts).complete);
+  EXPECT_EQ(contacts.count, 0);
+  EXPECT_TRUE(contacts.points().empty());
+  EXPECT_EQ(contacts.spring, Vector6(Vector6::Zero()));
+}
+
+// The gap takes what is left of the budget: it never keeps contacts from being known.
+TEST(ToolContactQuery, MeasuresTheGapByWhatIsLeft) {
+  const Scenery scenery{Placement()};
+  const Placement near = scenery.tool(pressed(-0.9));
+  ToolContacts contacts;
+  ToolContactQuery query(block(), ball(), scenery.frames, {.policy = SpherePolicy::kSlab});
+  const QueryResult plain = query.find(near, {}, contacts);
+  ASSERT_EQ(plain.leaf_pairs, 0u);
+  const auto find = [&](const Budget& budget) {
+    QueryResult result = query.find(near, budget, contacts);
+    query.measure_distance(near, budget, result);
+    return result;
+  };
+  const QueryResult whole = find({});
+  EXPECT_LE(whole.distance->lower, 0.9 + 0.01);  // the facets lie inside the ball
+  EXPECT_GE(whole.distance->upper, 0.9);
+  EXPECT_LT(whole.distance->upper - whole.distance->lower,
+            plain.distance->upper - plain.distance->lower);
+  EXPECT_GT(whole.sphere_tests, plain.sphere_tests);
+  for (std::uint64_t tests = plain.sphere_tests; tests <= whole.sphere_tests; tests += 5) {
+    Budget budget;
+    budget.tests = tests;
+    const QueryResult result = find(budget);
+    ASSERT_TRUE(result.complete) << tests;
+    EXPECT_LE(result.distance->lower, 0.9 + 0.01);
+    EXPECT_GE(result.distance->upper, 0.9);
+    // As many again stop it at the same place.
+    budget.tests = result.sphere_tests;
+    const QueryResult again = find(budget);
+    EXPECT_EQ(again.sphere_tests, result.sphere_tests);
+    EXPECT_EQ(again.distance->upper, result.distance->upper);
+    EXPECT_EQ(again.distance->lower, result.distance->lower);
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

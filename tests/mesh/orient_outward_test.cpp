@@ -1,0 +1,131 @@
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "ist/mesh/mesh.h"
+#include "support/data_dir.h"
+#include "support/shapes.h"
+#include "support/skip.h"
+
+namespace ist {
+namespace {
+
+const TriangleMesh kBall = test::icosphere(1, 1);
+
+// Orients the mesh, which must come out as expected.
+void expect_oriented(TriangleMesh mesh, const TriangleMesh& expected, Orientation orientation,
+                     std::size_t turned) {
+  const OrientationResult result = orient_outward(mesh);
+  EXPECT_EQ(mesh.triangles, expected.triangles);
+  EXPECT_EQ(result.orientation, orientation);
+  EXPECT_EQ(result.turned_components, turned);
+}
+
+TEST(OrientOutward, TurnsWhatIsInsideOut) {
+  expect_oriented(kBall, kBall, Orientation::kOutward, 0);
+  expect_oriented(test::inside_out(kBall), kBall, Orientation::kOutward, 1);
+  const TriangleMesh far = test::moved(kBall, {10, 0, 0});
+  expect_oriented(test::joined(test::inside_out(kBall), far), test::joined(kBall, far),
+                  Orientation::kOutward, 1);
+}
+
+TEST(OrientOutward, LeavesCavities) {
+  const TriangleMesh shell = test::joined(test::icosphere(1, 5), test::inside_out(kBall));
+  expect_oriented(shell, shell, Orientation::kOutward, 0);
+  // A stone in the cavity of a shell is right as it is, too.
+  const TriangleMesh stone = test::joined(shell, test::icosphere(0, 0.1));
+  expect_oriented(stone, stone, Orientation::kOutward, 0);
+  // Only the outermost component is turned, whatever it holds.
+  const TriangleMesh wrong = test::joined(test::inside_out(test::icosphere(1, 5)), kBall);
+  expect_oriented(wrong, test::joined(test::icosphere(1, 5), kBall), Orientation::kOutward, 1);
+}
+
+TEST(OrientOutward, IsNotFooledByABoxRoundTheOther) {
+  // The ball lies in the bounding box of the ring of boxes and of each diagonal bar, but outside.
+  TriangleMesh bar = test::box({-10, -1, -1}, {10, 1, 1});
+  for (Eigen::Vector3d& v : bar.vertices) v = Eigen::Vector3d(v.x() - v.y(), v.x() + v.y(), v.z());
+  const TriangleMesh small = test::moved(test::icosphere(0, 0.5), {5, -5, 0});
+  expect_oriented(test::joined(bar, test::inside_out(small)), test::joined(bar, small),
+                  Orientation::kOutward, 1);
+}
+
+TEST(OrientOutward, NeitherUnitNorPlaceMatters) {
+  for (const double s : {1e-12, 1.0, 1e15}) {
+    for (const double place : {0.0, 1e3, 1e6}) {
+      TriangleMesh shell = test::joined(test::icosphere(1, 5), test::inside_out(kBall));
+      shell = test::moved(shell, {place, -place, place});
+      for (Eigen::Vector3d& v : shell.vertices) v *= s;
+      expect_oriented(shell, shell, Orientation::kOutward, 0);
+      expect_oriented(test::inside_out(shell), test::joined(test::icosphere(1, 5), kBall),
+                      Orientation::kOutward, 1);
+    }
+  }
+}
+
+TEST(OrientOutward, RaysMayMeetEdges) {
+  // Cubes on a lattice, one in the other: their centres and corners line up with the edges.
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    const TriangleMesh outer = test::box({-4, -4, -4}, {4, 4, 4});
+    const TriangleMesh cavity =
+        test::inside_out(test::box({x - 1, x - 1, x - 1}, {x + 1, x + 1, x + 1}));
+    const TriangleMesh both = test::joined(outer, cavity);
+    expect_oriented(both, both, Orientation::kOutward, 0);
+  }
+}
+
+TEST(OrientOutward, AssumesWhereItCannotTell) {
+  const TriangleMesh strip = test::open_strip(3);
+  expect_oriented(strip, strip, Orientation::kAssumed, 0);
+  expect_oriented({}, {}, Orientation::kAssumed, 0);
+
+  TriangleMesh one_turned = test::inside_out(kBall);
+  std::swap(one_turned.triangles[0][1], one_turned.triangles[0][2]);
+  expect_oriented(one_turned, one_turned, Orientation::kAssumed, 0);
+
+  TriangleMesh twice = test::inside_out(kBall);
+  twice.triangles.push_back(twice.triangles[0]);
+  expect_oriented(twice, twice, Orientation::kAssumed, 0);
+
+  // Two sheets back to back hold no volume.
+  TriangleMesh sheet = test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  sheet.triangles.push_back({0, 2, 1});
+  expect_oriented(sheet, sheet, Orientation::kAssumed, 0);
+
+  // What is closed is turned all the same.
+  const TriangleMesh far = test::moved(strip, {9, 0, 0});
+  expect_oriented(test::joined(test::inside_out(kBall), far), test::joined(kBall, far),
+                  Orientation::kAssumed, 1);
+}
+
+TEST(OrientOutward, BelievesTheCavitiesOfADirtyShell) {
+  // One triangle is there twice, so that the shell is not closed; its cavity must stay a cavity.
+  TriangleMesh shell = test::icosphere(1, 5);
+  shell.triangles.push_back(shell.triangles[0]);
+  const TriangleMesh dirty = test::joined(shell, test::inside_out(kBall));
+  expect_oriented(dirty, dirty, Orientation::kAssumed, 0);
+}
+
+TEST(OrientOutward, TrianglesWithEqualIndicesHaveNoSay) {
+  TriangleMesh mesh = test::inside_out(kBall);
+  mesh.triangles.push_back({3, 3, 4});
+  TriangleMesh expected = kBall;
+  expected.triangles.push_back({3, 3, 4});
+  expect_oriented(mesh, expected, Orientation::kOutward, 1);
+}
+
+TEST(OrientOutward, LeavesTheJawsAsTheyAre) {
+  if (!std::filesystem::is_directory(test::data_dir()))
+    IST_SKIP("no folder of real meshes at " << test::data_dir());
+  for (const char* name :
+       {"human_mandible.stl", "human_maxilla.stl", "spl_mandible.stl", "spl_cranium_face.stl"}) {
+    const TriangleMesh mesh = read_mesh(test::data_dir() / name);
+    expect_oriented(mesh, mesh, Orientation::kOutward, 0);
+    TriangleMesh wrong = test::inside_out(mesh);
+    EXPECT_EQ(orient_outward(wrong).turned_components, 1u) << name;
+    EXPECT_EQ(check_mesh(wrong).signed_volume, check_mesh(mesh).signed_volume) << name;
+  }
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ist/mesh/mesh.h"
+#include "ist/models/models.h"
+
+namespace ist::test {
+namespace {
+
+void expect_sound(const TriangleMesh& mesh, std::size_t triangles) {
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.triangles, triangles);
+  EXPECT_EQ(report.vertices, 2 + triangles / 2) << "not of genus 0";
+  EXPECT_TRUE(report.closed && report.consistent);
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_EQ(report.degenerate_triangles, 0u);
+  EXPECT_GT(report.signed_volume, 0);
+}
+
+double longest_edge(const TriangleMesh& mesh) {
+  double longest = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      longest = std::max(longest, (mesh.vertices[to] - mesh.vertices[from]).norm());
+    }
+  }
+  return longest;
+}
+
+TEST(ShapeModel, MakesABoxBetweenItsCorners) {
+  const TriangleMesh mesh = make_box({-1, 0, 2}, {1, 4, 3});
+  expect_sound(mesh, 12);
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.box_min, Eigen::Vector3d(-1, 0, 2));
+  EXPECT_EQ(report.box_max, Eigen::Vector3d(1, 4, 3));
+  EXPECT_NEAR(report.signed_volume, 8, 1e-14);
+}
+
+TEST(ShapeModel, MakesSpheresWithEdgesAsShortAsIsGuaranteed) {
+  std::size_t triangles = 20;
+  for (int level = 0; level <= 5; ++level, triangles *= 4) {
+    const TriangleMesh mesh = make_icosphere(level, 3);
+    expect_sound(mesh, triangles);
+    for (const Eigen::Vector3d& vertex : mesh.vertices) EXPECT_NEAR(vertex.norm(), 3, 1e-14);
+    const double edge = longest_edge(mesh) * std::pow(2, level) / 3;
+    EXPECT_LT(edge, 1.33) << level;
+    EXPECT_GT(edge, 1.05) << level;
+  }
+}
+
+TEST(ShapeModel, MakesCylindersFromZeroUp) {
+  for (const int quarter : {1, 2, 16}) {
+    const TriangleMesh mesh = make_cylinder(quarter, 2, 5);
+    expect_sound(mesh, static_cast<std::size_t>(16 * quarter));
+    const MeshReport report = check_mesh(mesh);
+    EXPECT_EQ(report.box_min, Eigen::Vector3d(-2, -2, 0));
+    EXPECT_EQ(report.box_max, Eigen::Vector3d(2, 2, 5));
+    // Between the cylinder's and that of the smallest angle between neighbours' inner circle.
+    EXPECT_LE(report.signed_volume, M_PI * 4 * 5);
+    EXPECT_GE(report.signed_volume, M_PI * 4 * 5 * std::pow(std::cos(1.0 / quarter), 2));
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include <array>
+
+#include "query/scenes.h"
+#include "simd/targets.h"
+
+namespace ist::test {
+namespace {
+
+// By policy.
+using Hashes = std::array<std::uint64_t, 4>;
+constexpr Hashes kGoldenJaws = {0x9b68127037f06f96, 0x18c7e1cd83cf7b99, 0xcf9ee847f3591b44,
+                                0x8adeaedf99ab487e};
+constexpr Hashes kGoldenSolids[3] = {
+    {
+        0x1d333c6a0c3550e7,
+        0x2273845ef4955865,
+        0x5bceb196845ba30e,
+        0xa8ec4b7c0a60d678,
+    },
+    {
+        0x91e1c3add1ddd5e9,
+        0x2e9d355d9b6fc12a,
+        0xb3b77ace34ae806d,
+        0xe5f7e5b7aafdc9d9,
+    },
+    {
+        0x8ca386835396f93c,
+        0x150c26b0ad4b90a5,
+        0x43f689f384faabe2,
+        0xec43dd9d31435a78,
+    },
+};
+
+std::uint64_t hash_of(const FoundPairs& answer) {
+  const std::array<std::uint64_t, 3> numbers = {
+      answer.result.leaf_pairs, answer.result.sphere_tests,
+      XXH3_64bits(answer.leaf_pairs.data(), answer.leaf_pairs.size() * sizeof(LeafPair))};
+  return XXH3_64bits(numbers.data(), sizeof(numbers));
+}
+
+// One answer for every instruction set, for one worker and for two, in every build, always.
+class Golden : public ::testing::TestWithParam<std::string> {
+ protected:
+  static void expect(const Scene& scene, const Hashes& golden) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      for (const int workers : {1, 2}) {
+        Query query(scene.fixed, scene.moving, options_of(policy, GetParam(), workers));
+        FoundPairs answer = ask(query, scene.pose);
+        for (int repeat = 0; repeat < 250; ++repeat) {
+          answer.result = query.leaf_pairs(scene.pose, answer.leaf_pairs);
+          const std::uint64_t hash = hash_of(answer);
+          ASSERT_EQ(hash, golden[static_cast<std::size_t>(policy)])
+              << scene.name << ", " << to_string(policy) << ", " << workers << " workers, repeat "
+              << repeat << ": 0x" << std::hex << hash;
+        }
+      }
+    }
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Targets, Golden, ::testing::ValuesIn(all_targets()), name_of);
+
+TEST_P(Golden, JawsGiveTheSameBytesEverywhere) { expect(jaws(), kGoldenJaws); }
+
+TEST_P(Golden, SolidsGiveTheSameBytesEverywhere) {
+  ASSERT_EQ(solids().size(), std::size(kGoldenSolids));
+  for (std::size_t i = 0; i < solids().size(); ++i) expect(solids()[i], kGoldenSolids[i]);
+}
+
+}  // namespace
+}  // namespace ist::test

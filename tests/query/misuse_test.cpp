@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "query/query_cases.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+SphereTree ball(double voxel_size, bool triangles = false) {
+  return build_tree(icosphere(2, 2), {.voxel_size = voxel_size, .keep_triangles = triangles});
+}
+
+// The text of the kArgumentInvalid that `action` throws.
+template <typename Action>
+std::string refusal(const Action& action) {
+  const std::optional<Error> error = error_of(action);
+  EXPECT_TRUE(error && error->code() == ErrorCode::kArgumentInvalid);
+  return error ? error->what() : "";
+}
+
+class Misuse : public ::testing::Test {
+ protected:
+  const SphereTree tree_ = ball(0.25), other_ = ball(0.5);
+  const Eigen::Isometry3d pose_ = shift({3.5, 0, 0});
+};
+
+TEST_F(Misuse, OfWorkersThrows) {
+  for (const int workers : {-1, 0, 3, 7}) {
+    const std::string text = refusal([&] { Query(tree_, tree_, {.workers = workers}); });
+    EXPECT_NE(text.find(std::to_string(workers)), std::string::npos) << text;
+    EXPECT_NE(text.find("give 1 or 2"), std::string::npos) << text;
+  }
+}
+
+TEST_F(Misuse, OfManifoldOptionsThrows) {
+  const auto made = [&](const ManifoldOptions& options) {
+    return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });
+  };
+  for (const double depth : {-2.1, 1.0, 7.0, kNan, -HUGE_VAL}) {
+    EXPECT_NE(made({.least_depth = depth}).find("least_depth"), std::string::npos) << depth;
+  }
+  for (const double margin : {-0.1, 1.1, kNan, HUGE_VAL}) {
+    EXPECT_NE(made({.margin = margin}).find("margin"), std::string::npos) << margin;
+  }
+}
+
+TEST_F(Misuse, OfAManifoldMadeForOthersIsAStatus) {
+  Query query(tree_, other_, {.policy = SpherePolicy::kSlab});
+  ContactManifold right(tree_, other_, SpherePolicy::kSlab);
+  ContactManifold swapped(other_, tree_, SpherePolicy::kSlab),
+      loose(tree_, other_, SpherePolicy::kTight);
+  ASSERT_EQ(query.contacts(pose_, right).status, QueryStatus::kDone);
+  ASSERT_FALSE(right.points().empty());
+  // It is emptied, whatever it held before.
+  Query of_swapped(other_, tree_);
+  ASSERT_EQ(of_swapped.contacts(pose_, swapped).status, QueryStatus::kDone);
+  ASSERT_FALSE(swapped.points().empty());
+  for (ContactManifold* wrong : {&swapped, &loose}) {
+    const QueryResult result = query.contacts(pose_, *wrong);
+    EXPECT_EQ(result.status, QueryStatus::kManifoldMismatch);
+    EXPECT_FALSE(result.complete);
+    EXPECT_TRUE(wrong->points().empty());
+    EXPECT_EQ(wrong->sums().pairs, 0u);
+    EXPECT_TRUE(wrong->wrench(1).force.isZero(0));
+  }
+}
+
+TEST_F(Misuse, OfTrianglesThatAreNotThereIsAStatus) {
+  const SphereTree exact = ball(0.25, true);
+  for (const auto& [fixed, moving] : {std::pair{&tree_, &exact}, {&exact, &tree_}}) {
+    Query query(*fixed, *moving);
+    EXPECT_FALSE(query.has_triangles());
+    EXPECT_EQ(query.triangle_pairs(pose_, {}).status, QueryStatus::kNoTriangles);
+    EXPECT_EQ(query.intersects(pose_).answer, Answer::kNear);
+  }
+}
+
+TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
+  const SphereTree exact = ball(0.25, true);
+  Query query(exact, exact);
+  ContactManifold manifold(exact, exact, query.policy());
+  Eigen::Isometry3d bad = pose_;
+  bad.translation().x() = kNan;
+  EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.leaf_pairs(bad, {}).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.leaf_pairs(bad, {}, {.tests = 10}).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.contacts(bad, manifold).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
+  EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
+}
+
+TEST_F(Misuse, OfAToleranceCountsAsZero) {
+  const SphereTree exact = ball(0.25, true);
+  Query query(exact, exact);
+  const DistanceResult zero = query.distance(shift({5, 0, 0}), 0);
+  for (const double tolerance : {-1.0, kNan, -HUGE_VAL}) {
+    const DistanceResult found = query.distance(shift({5, 0, 0}), tolerance);
+    EXPECT_EQ(found.distance.lower, zero.distance.lower) << tolerance;
+    EXPECT_EQ(found.distance.upper, zero.distance.upper) << tolerance;
+  }
+}
+
+TEST(DistanceResult, SaysWhetherTheToleranceWasReached) {
+  const SphereTree plain = ball(0.25), exact = ball(0.25, true);
+  Query of_plain(plain, plain), of_exact(exact, exact);
+  EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 0.01).complete);
+  EXPECT_FALSE(of_plain.distance(shift({5, 0, 0}), 1e-6).complete);
+  EXPECT_TRUE(of_plain.distance(shift({5, 0, 0}), 10).complete);
+  // So far apart that floats cannot tell the leaves from each other.
+  EXPECT_FALSE(of_exact.distance(shift({1e12, 0, 0}), 1e-3).complete);
+}
+
+TEST(Query, MovesWithItsAnswers) {
+  static_assert(std::is_nothrow_move_constructible_v<Query> &&
+                std::is_nothrow_move_assignable_v<Query> && !std::is_copy_constructible_v<Query>);
+  static_assert(std::is_nothrow_move_constructible_v<ContactManifold> &&
+                std::is_nothrow_move_constructible_v<ReferenceQuery> &&
+                std::is_nothrow_move_constructible_v<SphereTree>);
+  const SphereTree tree = ball(0.25);
+  const Eigen::Isometry3d pose = shift({3.5, 0, 0});
+  Query first(tree, tree, {.workers = 2});
+  const std::uint64_t expected = first.leaf_pairs(pose, {}).leaf_pairs;
+  ASSERT_GT(expected, 0u);
+  Query second = std::move(first);
+  EXPECT_EQ(second.leaf_pairs(pose, {}).leaf_pairs, expected);
+  first = Query(tree, tree);
+  EXPECT_EQ(first.leaf_pairs(pose, {}).leaf_pairs, expected);
+}
+
+TEST(ContactManifold, GivesTheWrenchOfAStiffness) {
+  const SphereTree tree = ball(0.25);
+  Query query(tree, tree);
+  ContactManifold near(tree, tree, query.policy()),
+      deep(tree, tree, query.policy(), {.least_depth = 0});
+  ASSERT_EQ(query.contacts(shift({3.9, 0, 0}), near).status, QueryStatus::kDone);
+  ASSERT_EQ(query.contacts(shift({3.9, 0, 0}), deep).status, QueryStatus::kDone);
+  const Wrench wrench = near.wrench(2);
+  EXPECT_EQ(wrench.force, Eigen::Vector3d(2 * near.sums().spring.force));
+  EXPECT_EQ(wrench.torque, Eigen::Vector3d(2 * near.sums().spring.torque));
+  EXPECT_GT(wrench.force.x(), 0);
+  // Springs that begin where surfaces meet push less than those that begin before.
+  EXPECT_GT(deep.wrench(2).force.x(), 0);
+  EXPECT_LT(deep.wrench(2).force.x(), wrench.force.x());
+}
+
+}  // namespace
+}  // namespace ist::test

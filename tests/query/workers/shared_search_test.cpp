@@ -1,0 +1,192 @@
+#include "ist/query/workers/shared_search.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "ist/tree/sphere_tree.h"
+#include "query/scenes.h"
+#include "query/workers/stall.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
+                                   HandOver::kWorked};
+
+// A query with two workers, and the answer of one.
+class SharedSearchThread : public ::testing::Test {
+ protected:
+  // Until `done`, or for five minutes: a machine that is busy is no failure.
+  bool ask_until(Query& query, const std::function<bool()>& done) const {
+    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+      if (!same(ask(query, scene_.pose), expected_)) return false;
+      if (done()) return true;
+    }
+    return false;
+  }
+  bool ask_until_helped(Query& query) const {
+    const std::uint64_t before = query.sharing().chunks;
+    return ask_until(query, [&] { return query.sharing().chunks > before; });
+  }
+
+  const Scene& scene_ = shells();
+  const QueryOptions alone_ = options_of(SpherePolicy::kSlab);
+  const QueryOptions shared_ = options_of(SpherePolicy::kSlab, "", 2);
+  const FoundPairs expected_ = [this] {
+    Query query(scene_.fixed, scene_.moving, alone_);
+    return ask(query, scene_.pose);
+  }();
+};
+
+TEST_F(SharedSearchThread, GivesTheAnswerOfOneWorker) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  int queries = 0;
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
+  std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
+}
+
+TEST_F(SharedSearchThread, DoesWithoutAWorkerThatStalls) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  for (const HandOver point : kHandOvers) {
+    SCOPED_TRACE(static_cast<int>(point));
+    {
+      const Stall stall(point);
+      ASSERT_TRUE(ask_until(query, Stall::reached));
+      const std::uint64_t helped = query.sharing().chunks;
+      for (int later = 0; later < 10; ++later) {
+        ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
+      }
+      EXPECT_EQ(query.sharing().chunks, helped);
+    }
+    ASSERT_TRUE(ask_until_helped(query));  // it works again
+  }
+}
+
+// Each time it stalls it is let go on in the midst of later queries.
+TEST_F(SharedSearchThread, ForgetsAWorkerThatIsLate) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  for (int round = 0; round < 8; ++round) {
+    const Stall stall(kHandOvers[round % 4]);
+    ASSERT_TRUE(ask_until(query, Stall::reached));
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(round * 50us);
+      Stall::release();
+    });
+    for (int later = 0; later < 6; ++later) {
+      ASSERT_TRUE(same(ask(query, scene_.pose), expected_));
+    }
+  }
+}
+
+TEST_F(SharedSearchThread, IsNotDestroyedUnderAWorkerThatIsLate) {
+  for (const HandOver point : kHandOvers) {
+    std::optional<Query> query(std::in_place, scene_.fixed, scene_.moving, shared_);
+    const Stall stall(point);
+    ASSERT_TRUE(ask_until(*query, Stall::reached));
+    std::atomic<bool> destroyed{false};
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(20ms);
+      // Only a worker that has entered the search is waited for.
+      EXPECT_TRUE(point == HandOver::kSeen || !destroyed);
+      Stall::release();
+    });
+    query.reset();
+    destroyed = true;
+  }
+}
+
+TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
+  std::atomic<std::uint64_t> helped{0};
+  std::vector<std::jthread> owners;
+  for (int owner = 0; owner < 3; ++owner) {
+    owners.emplace_back([this, &helped] {
+      Query query(scene_.fixed, scene_.moving, shared_);
+      EXPECT_TRUE(ask_until(query, [&] { return query.sharing().chunks > 10; }));
+      helped += query.sharing().chunks;
+    });
+  }
+  owners.clear();
+  EXPECT_GT(helped, 30u);
+}
+
+TEST_F(SharedSearchThread, WhatADeadlineCutsShortSpoilsNothing) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab);
+  int turn = 0, cut = 0;
+  std::uint64_t helped = 0;  // where there was a deadline
+  EXPECT_TRUE(ask_until(query, [&] {
+    const std::uint64_t before = query.sharing().chunks;
+    // Every other one has time enough, however slow the machine is.
+    const auto time = turn % 2 == 0 ? Clock::duration((turn % 40) * 20us) : Clock::duration(60s);
+    const Budget budget{.deadline = Clock::now() + time};
+    cut += query.contacts(scene_.pose, points, budget).complete ? 0 : 1;
+    helped += query.sharing().chunks - before;
+    return ++turn >= 100 && helped > 20;
+  }));
+  EXPECT_GT(cut, 0);
+}
+
+// In turn with poses that have nothing to share, and none at all.
+TEST_F(SharedSearchThread, PosesOfAnySizeFollowEachOther) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  Query single(scene_.fixed, scene_.moving, alone_);
+  std::vector<std::pair<Eigen::Isometry3d, FoundPairs>> cases;
+  for (const double dz : {0.0, -0.5, -1.5, -2.0, -3.0, -200.0}) {
+    const Eigen::Isometry3d pose = shift({0, 0, dz});
+    cases.emplace_back(pose, ask(single, pose));
+  }
+  EXPECT_GT(cases.front().second.result.leaf_pairs, 1000u);
+  EXPECT_EQ(cases.back().second.result.sphere_tests, 1u);
+  int turn = 0;
+  EXPECT_TRUE(ask_until(query, [&] {
+    for (const auto& [pose, answer] : cases) EXPECT_TRUE(same(ask(query, pose), answer));
+    return HasFailure() || (++turn >= 20 && query.sharing().chunks > 10);
+  }));
+}
+
+// More contacts than the worker has room for: it leaves some chunks to the caller.
+// Too many contacts for ThreadSanitizer's patience.
+class SharedSearch : public SharedSearchThread {};
+
+TEST_F(SharedSearch, MoreContactsThanTheWorkerHasRoomFor) {
+  BuildOptions build;
+  build.voxel_size = 2.0 / 150;
+  build.spheres = SpherePolicy::kSimple;
+  const SphereTree ball = build_tree(icosphere(4, 1), build);
+  const Eigen::Isometry3d pose = shift({build.voxel_size / 4, 0, 0});
+  Query query(ball, ball, options_of(SpherePolicy::kSimple, "", 2));
+  Query single(ball, ball, options_of(SpherePolicy::kSimple));
+  const FoundPairs expected = ask(single, pose);
+  EXPECT_GT(expected.result.leaf_pairs, 1u << 20);
+  FoundPairs answer = expected;
+  const auto give_up = Clock::now() + 300s;
+  for (int repeat = 0; repeat < 10 || (query.sharing().chunks == 0 && Clock::now() < give_up);
+       ++repeat) {
+    answer.leaf_pairs.assign(answer.leaf_pairs.size(), {});
+    answer.result = query.leaf_pairs(pose, answer.leaf_pairs);
+    ASSERT_TRUE(same(answer, expected));
+  }
+  EXPECT_GT(query.sharing().chunks, 0u);
+  // A short span takes the first of them, whoever found them.
+  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, expected.leaf_pairs.size() / 2,
+                                   expected.leaf_pairs.size() - 1}) {
+    std::vector<LeafPair> first(length);
+    const QueryResult result = query.leaf_pairs(pose, first);
+    EXPECT_TRUE(result.truncated);
+    EXPECT_EQ(result.leaf_pairs, expected.leaf_pairs.size());
+    EXPECT_TRUE(std::equal(first.begin(), first.end(), expected.leaf_pairs.begin()));
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

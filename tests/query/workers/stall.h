@@ -1,0 +1,43 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "ist/query/workers/resident_worker.h"
+
+namespace ist::test {
+
+/// Stalls the resident worker wherever it comes to `point`, until it is released or destroyed.
+class Stall {
+ public:
+  explicit Stall(HandOver point) {
+    point_ = point;
+    reached_ = released_ = false;
+    hand_over_hook = [](HandOver at) noexcept {
+      ++inside_;
+      if (at == point_ && !released_) {
+        reached_ = true;
+        while (!released_) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      }
+      --inside_;
+    };
+  }
+  ~Stall() {
+    hand_over_hook = nullptr;
+    release();
+    while (inside_ > 0) std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  Stall(const Stall&) = delete;
+  Stall& operator=(const Stall&) = delete;
+
+  [[nodiscard]] static bool reached() { return reached_; }
+  static void release() { released_ = true; }
+
+ private:
+  static inline std::atomic<HandOver> point_;
+  static inline std::atomic<bool> reached_, released_;
+  static inline std::atomic<int> inside_{0};
+};
+
+}  // namespace ist::test

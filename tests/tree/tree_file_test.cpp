@@ -1,0 +1,126 @@
+#include "support/tree_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+#include "support/temp_dir.h"
+
+namespace ist {
+namespace {
+
+template <typename T>
+void expect_same_bytes(std::span<const T> a, std::span<const T> b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+void expect_equal(const LinearOctree& a, const LinearOctree& b) {
+  ASSERT_EQ(a.depth(), b.depth());
+  EXPECT_EQ(a.leaf_count(), b.leaf_count());
+  for (int level = 0; level <= a.depth(); ++level) {
+    ASSERT_EQ(a.codes(level), b.codes(level));
+    for (std::uint32_t node = 0; level > 0 && node < a.node_count(level); ++node) {
+      ASSERT_EQ(a.mask(level, node), b.mask(level, node));
+      ASSERT_EQ(a.first_child(level, node), b.first_child(level, node));
+    }
+  }
+}
+
+void expect_equal(const SphereTree& a, const SphereTree& b) {
+  EXPECT_EQ(a.parts().lattice, b.parts().lattice);
+  EXPECT_EQ(a.orientation(), b.orientation());
+  EXPECT_EQ(a.bounding_radius(), b.bounding_radius());
+  expect_equal(a.parts().octree, b.parts().octree);
+  expect_same_bytes(std::span(a.parts().normals), std::span(b.parts().normals));
+  ASSERT_EQ(a.tightest(), b.tightest());
+  for (int level = 0; level <= a.depth(); ++level) {
+    if (a.has(SpherePolicy::kTight))
+      expect_same_bytes(a.parts().balls(level), b.parts().balls(level));
+    if (a.has(SpherePolicy::kSlab))
+      expect_same_bytes(a.parts().slabs(level), b.parts().slabs(level));
+  }
+  EXPECT_EQ(a.largest_leaf_radius(a.tightest()), b.largest_leaf_radius(b.tightest()));
+  ASSERT_EQ(a.triangles() != nullptr, b.triangles() != nullptr);
+  if (a.triangles()) {
+    EXPECT_EQ(a.parts().triangles->mesh.vertices, b.parts().triangles->mesh.vertices);
+    EXPECT_EQ(a.parts().triangles->mesh.triangles, b.parts().triangles->mesh.triangles);
+    EXPECT_EQ(a.parts().triangles->lists.first, b.parts().triangles->lists.first);
+    EXPECT_EQ(a.parts().triangles->lists.ids, b.parts().triangles->lists.ids);
+  }
+  ASSERT_EQ(a.has_proximity(), b.has_proximity());
+  if (a.parts().proximity) expect_equal(a.parts().proximity->octree, b.parts().proximity->octree);
+}
+
+SphereTree tree_of(const TriangleMesh& mesh, double voxel_size, unsigned sections) {
+  BuildOptions options;
+  options.voxel_size = voxel_size;
+  options.spheres = (sections & 8) != 0   ? SpherePolicy::kSlab
+                    : (sections & 1) != 0 ? SpherePolicy::kTight
+                                          : SpherePolicy::kTable;
+  options.keep_triangles = (sections & 2) != 0;
+  options.proximity = (sections & 4) != 0;
+  return build_tree(mesh, options);
+}
+
+TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
+  for (const auto& [mesh, voxel_size] :
+       {std::pair(test::icosphere(2, 1), 0.2), std::pair(test::open_strip(3), 0.4),
+        std::pair(test::icosphere(1, 1), 10.0)}) {
+    for (unsigned sections = 0; sections < 16; ++sections) {
+      const SphereTree tree = tree_of(mesh, voxel_size, sections);
+      const std::string bytes = test::file_of(tree);
+      const SphereTree back = test::tree_of_bytes(bytes);
+      expect_equal(tree, back);
+      EXPECT_EQ(test::file_of(back), bytes);
+    }
+  }
+}
+
+TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
+  const test::TempDir folder;
+  const auto file = folder.path() / "tree.ist";
+  const std::uint64_t written = write_tree(tree_of(test::icosphere(1, 1), 0.3, 15), file);
+  EXPECT_EQ(written, std::filesystem::file_size(file));
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(test::error_name([&] {
+              (void)write_tree(tree_of(test::icosphere(1, 1), 0.3, 0), folder.path() / "no" / "t");
+            }),
+            "file-unwritable");
+}
+
+TEST(TreeFile, BeginsAsItsDescriptionSays) {
+  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 15));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\2\0\0\0\4\3\2\1", 16));
+}
+
+TEST(TreeFile, IsKnownByItsBeginning) {
+  const test::TempDir folder;
+  const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 0));
+  EXPECT_TRUE(is_tree_file(folder.write("a", bytes)));
+  EXPECT_TRUE(is_tree_file(folder.write("b", bytes.substr(0, 8))));
+  EXPECT_FALSE(is_tree_file(folder.write("c", bytes.substr(0, 7))));
+  EXPECT_FALSE(is_tree_file(folder.write("d", "solid")));
+  EXPECT_FALSE(is_tree_file(folder.write("e", "")));
+  EXPECT_EQ(test::error_name([&] { (void)is_tree_file(folder.path() / "missing"); }),
+            "file-unreadable");
+}
+
+TEST(TreeFile, ErrorsNameTheFile) {
+  const test::TempDir folder;
+  const auto file = folder.write("broken.ist", "no tree at all, but long enough to be one");
+  const auto error = test::error_of([&] { (void)read_tree(file); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kNotATree);
+  EXPECT_NE(std::string(error->what()).find("broken.ist"), std::string::npos);
+  EXPECT_EQ(test::error_name([&] { (void)read_tree(folder.path() / "missing"); }),
+            "file-unreadable");
+}
+
+}  // namespace
+}  // namespace ist

@@ -1,0 +1,200 @@
+#include "verify/answer_verifier.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ist/query/query.h"
+#include "ist/query/reference/reference_query.h"
+#include "ist/tree/sphere_tree.h"
+#include "query/query_cases.h"
+#include "support/exact_query.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+SphereTree tree_with_triangles(const TriangleMesh& mesh, double cells) {
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) bounds.extend(vertex);
+  BuildOptions options;
+  options.voxel_size = bounds.sizes().maxCoeff() / cells;
+  options.spheres = SpherePolicy::kSlab;
+  options.keep_triangles = true;
+  return build_tree(mesh, options);
+}
+
+// Two balls that cross in a ring, one turned.
+class Guarantee : public ::testing::TestWithParam<SpherePolicy> {
+ protected:
+  [[nodiscard]] FoundPairs right_answer() const {
+    ReferenceQuery query(fixed_, moving_, GetParam());
+    return ask(query, pose_);
+  }
+  [[nodiscard]] std::optional<Violation> check(const FoundPairs& answer) const {
+    return check_.check(pose_, std::vector{GivenAnswer{answer.result, answer.leaf_pairs}});
+  }
+  // The answer is wrong, and the check says so in these words.
+  void refuses(const FoundPairs& answer, const std::string& words) const {
+    const std::optional<Violation> violation = check(answer);
+    ASSERT_TRUE(violation) << words;
+    EXPECT_NE(violation->detail.find(words), std::string::npos) << violation->detail;
+  }
+
+  Random random_{7};
+  const TriangleMesh fixed_mesh_ = icosphere(1, 1), moving_mesh_ = icosphere(2, 0.9);
+  const SphereTree fixed_ = tree_with_triangles(fixed_mesh_, 9),
+                   moving_ = tree_with_triangles(moving_mesh_, 7);
+  const Eigen::Isometry3d pose_ = pose_of(random_.rotation(), {1.1, 0.4, 0.3});
+  const AnswerVerifier check_{fixed_, moving_, GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(EachPolicy, Guarantee, ::testing::ValuesIn(kSpherePolicies),
+                         [](const auto& policy) { return std::string(to_string(policy.param)); });
+
+TEST_P(Guarantee, WhatGoesMissingIsFound) {
+  const FoundPairs whole = right_answer();
+  ASSERT_GT(whole.leaf_pairs.size(), 50u);
+  EXPECT_FALSE(check(whole));
+  const ExactBody fixed(fixed_mesh_, fixed_), moving(moving_mesh_, moving_);
+  const ExactPair exact(fixed, moving, pose_);
+  std::size_t meet = 0, found = 0;
+  for (std::size_t i = 0; i < whole.leaf_pairs.size(); ++i) {
+    FoundPairs lacking = whole;
+    lacking.leaf_pairs.erase(lacking.leaf_pairs.begin() + static_cast<std::ptrdiff_t>(i));
+    --lacking.result.leaf_pairs;
+    const LeafPair pair = whole.leaf_pairs[i];
+    const bool geometry_meets = exact.geometry_meets(GetParam(), pair.fixed, pair.moving);
+    meet += geometry_meets ? 1 : 0;
+    if (const std::optional<Violation> violation = check(lacking)) {
+      ++found;
+      EXPECT_TRUE(geometry_meets) << violation->detail;
+      EXPECT_NE(violation->detail.find(std::to_string(pair.fixed) + " and moving leaf " +
+                                       std::to_string(pair.moving) + " is not in"),
+                std::string::npos)
+          << violation->detail;
+    }
+  }
+  EXPECT_GT(meet, 10u);
+  EXPECT_EQ(found, meet);
+}
+
+TEST_P(Guarantee, WhatDoesNotBelongIsFound) {
+  const FoundPairs right = right_answer();
+  const ExactBody fixed(fixed_mesh_, fixed_), moving(moving_mesh_, moving_);
+  const ExactPair exact(fixed, moving, pose_);
+  std::size_t apart = 0;
+  for (int i = 0; i < 500; ++i) {
+    const LeafPair pair{static_cast<std::uint32_t>(random_.below(fixed_.leaf_count())),
+                        static_cast<std::uint32_t>(random_.below(moving_.leaf_count()))};
+    FoundPairs more = right;
+    const auto at = std::lower_bound(more.leaf_pairs.begin(), more.leaf_pairs.end(), pair);
+    if (at != more.leaf_pairs.end() && *at == pair) continue;
+    more.leaf_pairs.insert(at, pair);
+    ++more.result.leaf_pairs;
+    const bool belongs = exact.bounds_meet(GetParam(), pair.fixed, pair.moving, right.result.pad);
+    apart += belongs ? 0 : 1;
+    if (belongs) {
+      EXPECT_FALSE(check(more));
+    } else {
+      refuses(more, "is in the answer, but its bounds are");
+    }
+  }
+  EXPECT_GT(apart, 100u);
+}
+
+TEST_P(Guarantee, TheListIsWhatItSays) {
+  const FoundPairs right = right_answer();
+  FoundPairs wrong = right;
+  ++wrong.result.leaf_pairs;
+  refuses(wrong, "it counts");
+  wrong = right;
+  std::swap(wrong.leaf_pairs[3], wrong.leaf_pairs[4]);
+  refuses(wrong, "out of order, or twice");
+  wrong = right;
+  wrong.leaf_pairs[4] = wrong.leaf_pairs[3];
+  refuses(wrong, "out of order, or twice");
+  wrong = right;
+  wrong.leaf_pairs.back().moving = moving_.leaf_count();
+  refuses(wrong, "there is no such leaf");
+  wrong = right;
+  wrong.result.status = QueryStatus::kInvalidPose;
+  refuses(wrong, "rigid");
+}
+
+// Where what the spheres stand for is not known, answers are held against each other.
+TEST_P(Guarantee, EnginesAreComparedWhereThereAreNoTriangles) {
+  if (is_implicit(GetParam())) return;
+  const SphereTree fixed = tree_of(fixed_mesh_, 9), moving = tree_of(moving_mesh_, 7);
+  const AnswerVerifier check(fixed, moving, GetParam());
+  EXPECT_TRUE(check_.knows_geometry());
+  EXPECT_FALSE(check.knows_geometry());
+  ReferenceQuery reference(fixed, moving, GetParam());
+  QueryOptions options;
+  options.policy = GetParam();
+  Query query(fixed, moving, options);
+  const FoundPairs one = ask(reference, pose_), other = ask(query, pose_);
+  const std::vector<GivenAnswer> both{{one.result, one.leaf_pairs},
+                                      {other.result, other.leaf_pairs}};
+  EXPECT_FALSE(check.check(pose_, both));
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < one.leaf_pairs.size(); ++i) {
+    FoundPairs lacking = one;
+    lacking.leaf_pairs.erase(lacking.leaf_pairs.begin() + static_cast<std::ptrdiff_t>(i));
+    --lacking.result.leaf_pairs;
+    const GivenAnswer given{lacking.result, lacking.leaf_pairs};
+    EXPECT_FALSE(check.check(pose_, std::vector{given}));
+    if (const auto violation = check.check(pose_, std::vector{given, both[1]})) {
+      ++found;
+      EXPECT_EQ(violation->answer, 0u);
+      EXPECT_NE(violation->detail.find("in another engine's answer"), std::string::npos);
+    }
+  }
+  EXPECT_GT(found, one.leaf_pairs.size() / 2);
+}
+
+TEST_P(Guarantee, NoFalseAlarm) {
+  std::size_t leaf_pairs = 0;
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const SphereTree a = tree_with_triangles(random_mesh(random_), random_.uniform(1, 12));
+    const SphereTree b = tree_with_triangles(random_mesh(random_), random_.uniform(1, 12));
+    const AnswerVerifier check(a, b, GetParam());
+    ReferenceQuery reference(a, b, GetParam());
+    QueryOptions options;
+    options.policy = GetParam();
+    Query query(a, b, options);
+    for (int j = 0; j < 10; ++j) {
+      // Every other one on planes that both lattices may share, and far from the origin.
+      const Eigen::Matrix3d rotation =
+          j % 2 == 0 ? random_.rotation() : quarter_turns()[random_.below(24)];
+      const Eigen::Vector3d near = random_.point(-3, 3);
+      const Eigen::Isometry3d pose =
+          pose_of(rotation, j % 2 == 0 ? near : Eigen::Vector3d(near.array().round()));
+      const FoundPairs one = ask(reference, pose), other = ask(query, pose);
+      const std::vector<GivenAnswer> both{{one.result, one.leaf_pairs},
+                                          {other.result, other.leaf_pairs}};
+      const std::optional<Violation> violation = check.check(pose, both);
+      EXPECT_FALSE(violation) << violation->answer << ": " << violation->detail;
+      leaf_pairs += one.leaf_pairs.size();
+    }
+  }
+  EXPECT_GT(leaf_pairs, 1000u);
+}
+
+TEST_P(Guarantee, APoseThatIsNone) {
+  Eigen::Isometry3d none = pose_;
+  none.matrix()(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  ReferenceQuery query(fixed_, moving_, GetParam());
+  FoundPairs answer = ask(query, none);
+  const auto given = [&answer] {
+    return std::vector{GivenAnswer{answer.result, answer.leaf_pairs}};
+  };
+  EXPECT_FALSE(check_.check(none, given()));
+  answer.result.status = QueryStatus::kDone;
+  EXPECT_TRUE(check_.check(none, given()));
+}
+
+}  // namespace
+}  // namespace ist::test
