@@ -15,6 +15,7 @@
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/query_options.h"
+#include "ist/base/error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
 

@@ -11,6 +11,3 @@
 /// Marks each class and function of the public interface: the shared library exports it, and
 /// nothing else of namespace ist.
 #define IST_API __attribute__((visibility("default")))
-
-/// Marks a private member of such a class: not exported.
-#define IST_LOCAL __attribute__((visibility("hidden")))
