@@ -21,6 +21,13 @@ for i in "${!layers[@]}"; do
 done
 found=$(grep -rnE '#include "ist/models/' src/ist/voxel src/ist/tree simd src/ist/query || true)
 [ -z "$found" ] || breach "built-in models are for scenes and tools alone: $found"
+# Headers of users gather several layers, and angle brackets and paths upwards would hide one.
+found=$(grep -rnE '#include "ist/(ist|haptics|scene)\.h"' src/ist simd | grep -vE '^src/ist/((ist|haptics|scene)\.h|scene/|capi/)' || true)
+[ -z "$found" ] || breach "a layer includes a header of users: $found"
+found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' src/ist simd src/cli src/verify src/advise || true)
+[ -z "$found" ] || breach "an include that hides its layer: $found"
+found=$(grep -rnE '#include "(cli|advise)/' src/verify src/hardware; grep -rnE '#include "(cli|verify)/' src/advise || true)
+[ -z "$found" ] || breach "tools know the library, not each other: $found"
 found=$(grep -rnE '#include "(cli|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
 [ -z "$found" ] || breach "the library sees no tool: $found"
 found=$(grep -rnE '#include "ist/' src/hardware | grep -vE '"ist/(base|mesh|voxel|tree|hardware)/' || true)
@@ -54,6 +61,8 @@ wide=$(find src simd -name '*.h' -o -name '*.cpp' | sed 's/\.[a-z]*$//' | sort -
 # Sentences: subject, verb, object; the field's nouns (docs/glossary.md).
 found=$(grep -rnE '\bLikewise\b|\bis none\b|/// What\b' src simd --include='*.h' --include='*.cpp' --include='*.md' || true)
 [ -z "$found" ] || breach "a sentence that leans on another one, or on a bare word: $found"
+found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth' src simd --include='*.h' --include='*.cpp' || true)
+[ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
 # Words of the first version that wait for the work that deletes them. A word that is gone leaves this
 # list; none may come back elsewhere.
 waiting_words() {  # word, where it may stand

@@ -135,9 +135,9 @@ HWY_INLINE std::size_t OverlapRow(const FixedRows& f, std::size_t row, const Mov
     const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
     const auto dx = hn::Sub(load(kX), x), dy = hn::Sub(load(kY), y), dz = hn::Sub(load(kZ), z);
     const auto r = load(kRadius);
-    const auto reach = hn::Add(r, radius);
+    const auto radius_sum = hn::Add(r, radius);
     const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    auto apart = hn::Gt(squared, hn::Mul(reach, reach));
+    auto apart = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));
     if constexpr (kSlabs) {
       const auto above_fixed =
           hn::Sub(hn::Add(hn::Add(hn::Mul(dx, nx), hn::Mul(dy, ny)), hn::Mul(dz, nz)), offset);
@@ -148,8 +148,8 @@ HWY_INLINE std::size_t OverlapRow(const FixedRows& f, std::size_t row, const Mov
                   load(kOffset));
       apart = hn::Or(apart, hn::Gt(hn::Abs(above_moving), hn::Add(load(kHalf), scaled_radius)));
     }
-    const auto touching = hn::AndNot(apart, hn::FirstN(d, end - i));
-    count += StoreSelected(d, touching, hn::Load(du, m.id + i), out + count);
+    const auto overlapping = hn::AndNot(apart, hn::FirstN(d, end - i));
+    count += StoreSelected(d, overlapping, hn::Load(du, m.id + i), out + count);
   }
   return count;
 }
@@ -164,7 +164,7 @@ HWY_INLINE std::size_t MeasureRow(const FixedRows& f, std::size_t row, const Mov
   const hn::RebindToUnsigned<Full> du;
   const auto set = [&](const float* numbers) { return hn::Set(d, numbers[row]); };
   const auto none = hn::Set(d, std::numeric_limits<float>::infinity());
-  auto pruned = none, touching = none, farthest = none;
+  auto pruned = none, overlapping = none, farthest = none;
   std::size_t count = 0;
   for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
     const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
@@ -173,33 +173,33 @@ HWY_INLINE std::size_t MeasureRow(const FixedRows& f, std::size_t row, const Mov
     const auto dot = [&](hn::Vec<Full> x, hn::Vec<Full> y, hn::Vec<Full> z) {
       return hn::Add(hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)), hn::Mul(dz, z));
     };
-    const auto r = load(kRadius), reach = hn::Add(r, set(f.radius));
+    const auto r = load(kRadius), radius_sum = hn::Add(r, set(f.radius));
     const auto squared = dot(dx, dy, dz), distance = hn::Sqrt(squared);
-    auto separate = hn::Gt(squared, hn::Mul(reach, reach));
-    auto apart = hn::Sub(distance, reach);
+    auto separate = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));
+    auto apart = hn::Sub(distance, radius_sum);
     if constexpr (kSlabs) {
       const auto high =
           hn::Abs(hn::Sub(dot(set(f.normal_x), set(f.normal_y), set(f.normal_z)), set(f.offset)));
-      const auto high_reach = hn::Add(r, set(f.half));
-      separate = hn::Or(separate, hn::Gt(high, high_reach));
-      apart = hn::Max(hn::Sub(high, high_reach), apart);
+      const auto high_sum = hn::Add(r, set(f.half));
+      separate = hn::Or(separate, hn::Gt(high, high_sum));
+      apart = hn::Max(hn::Sub(high, high_sum), apart);
       const auto over =
           hn::Abs(hn::Add(dot(load(kNormalX), load(kNormalY), load(kNormalZ)), load(kOffset)));
-      const auto over_reach = hn::Add(load(kHalf), set(f.scaled_radius));
-      separate = hn::Or(separate, hn::Gt(over, over_reach));
-      apart = hn::Max(hn::Mul(hn::Sub(over, over_reach), hn::Set(d, 1 / kSlabScale)), apart);
+      const auto over_sum = hn::Add(load(kHalf), set(f.scaled_radius));
+      separate = hn::Or(separate, hn::Gt(over, over_sum));
+      apart = hn::Max(hn::Mul(hn::Sub(over, over_sum), hn::Set(d, 1 / kSlabScale)), apart);
     }
     const auto here = hn::FirstN(d, end - i);
     pruned = hn::Min(hn::IfThenElse(hn::And(here, separate), apart, none), pruned);
-    touching = hn::Min(hn::IfThenElse(hn::AndNot(separate, here), apart, none), touching);
-    farthest = hn::Min(hn::IfThenElse(here, hn::Add(distance, reach), none), farthest);
+    overlapping = hn::Min(hn::IfThenElse(hn::AndNot(separate, here), apart, none), overlapping);
+    farthest = hn::Min(hn::IfThenElse(here, hn::Add(distance, radius_sum), none), farthest);
     count += StoreSelected(d, hn::AndNot(separate, here), hn::Load(du, m.id + i), out + count);
   }
   const auto least = [&](float& so_far, hn::Vec<Full> v) {
     so_far = HWY_MIN(so_far, hn::GetLane(hn::MinOfLanes(d, v)));
   };
   least(measure.min_pruned, pruned);
-  least(measure.min_overlapping, touching);
+  least(measure.min_overlapping, overlapping);
   least(measure.upper, farthest);
   return count;
 }

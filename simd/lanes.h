@@ -155,8 +155,8 @@ template <std::size_t N>
                            std::size_t at, bool slabs) noexcept {
   const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
               dz = m.lane[kZ][at] - f.z[row];
-  const float reach = m.lane[kRadius][at] + f.radius[row];
-  if ((dx * dx + dy * dy) + dz * dz > reach * reach) return false;
+  const float radius_sum = m.lane[kRadius][at] + f.radius[row];
+  if ((dx * dx + dy * dy) + dz * dz > radius_sum * radius_sum) return false;
   if (!slabs) return true;
   const float above_fixed =
       ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
@@ -174,9 +174,9 @@ template <std::size_t N>
                            std::size_t at, bool slabs, DistanceBounds& measure) noexcept {
   const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
               dz = m.lane[kZ][at] - f.z[row];
-  const float reach = m.lane[kRadius][at] + f.radius[row];
+  const float radius_sum = m.lane[kRadius][at] + f.radius[row];
   const float distance = std::sqrt((dx * dx + dy * dy) + dz * dz);
-  float apart = distance - reach;
+  float apart = distance - radius_sum;
   if (slabs) {
     const float above_fixed =
         ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
@@ -187,11 +187,11 @@ template <std::size_t N>
     apart = std::max(apart, (std::abs(above_moving) - (m.lane[kHalf][at] + f.scaled_radius[row])) *
                                 (1 / kSlabScale));
   }
-  const bool touching = overlap(f, row, m, at, slabs);
-  float& least = touching ? measure.min_overlapping : measure.min_pruned;
+  const bool overlapping = overlap(f, row, m, at, slabs);
+  float& least = overlapping ? measure.min_overlapping : measure.min_pruned;
   least = std::min(least, apart);
-  measure.upper = std::min(measure.upper, distance + reach);
-  return touching;
+  measure.upper = std::min(measure.upper, distance + radius_sum);
+  return overlapping;
 }
 
 }  // namespace ist

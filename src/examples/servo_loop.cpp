@@ -15,7 +15,9 @@ class Probe final : public ist::Device {
  public:
   explicit Probe(const ist::Placement& start) : pose_(start) {}
   // The values of [device] in the scene, by which build_scene() keeps the coupling stable.
-  ist::DeviceMechanics mechanics() const noexcept override { return {.damping = 2}; }
+  ist::DeviceMechanics mechanics() const noexcept override {
+    return {.damping = 2, .angular_damping = 2e-3};
+  }
   // Returns the pose of the encoders; std::nullopt if it is unknown, and the force is then zero.
   std::optional<ist::Placement> read() noexcept override { return pose_; }
   // Sends the wrench to the motors. This device feels nothing, and sinks by 4 mm/s.

@@ -4,6 +4,7 @@
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed
+#include "ist/base/error.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/latency_histogram.h"

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "ist/base/error.h"
 #include "ist/base/progress.h"
 #include "ist/haptics/devices/device.h"
 #include "ist/haptics/effects/effect.h"
@@ -74,7 +75,7 @@ struct ScriptSettings {
 
 /// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
 /// tool are motions of the held body from its place in the scene: a turn about the centre of its
-/// grid, then a translation along scene axes.
+/// root cube, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::shared_ptr<const detail::SceneLines> lines = {};  ///< of keys in `file`; null without a file

@@ -85,7 +85,7 @@ CubeAxes::CubeAxes(double first_edge, double second_edge, const Eigen::Matrix3d&
 
 bool CubeAxes::surely_meet(const Vector3d& apart) const noexcept {
   return std::all_of(axes_.begin(), axes_.end(), [&](const Axis& axis) {
-    return std::abs(axis.direction.dot(apart)) <= axis.reach;
+    return std::abs(axis.direction.dot(apart)) <= axis.extent;
   });
 }
 

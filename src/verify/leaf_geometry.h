@@ -26,7 +26,7 @@ class CubeAxes {
  private:
   struct Axis {
     Eigen::Vector3d direction;
-    double reach;  // sum of both cubes' half extents along `direction`
+    double extent;  // sum of both cubes' half extents along `direction`
   };
   std::vector<Axis> axes_;
 };

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -111,12 +112,64 @@ TEST_F(Misuse, OfAToleranceCountsAsZero) {
   }
 }
 
+TEST_F(Misuse, OfMemoryThrows) {
+  constexpr std::size_t kHuge = std::numeric_limits<std::size_t>::max();
+  const SphereTree exact = ball(0.25, true);
+  for (const std::size_t many : {kHuge, kMostItems + 1}) {
+    EXPECT_NE(
+        refusal([&] { Query(exact, exact, {.triangle_pairs = many}); }).find("triangle_pairs"),
+        std::string::npos);
+    EXPECT_NE(refusal([&] {
+                ContactManifold(tree_, tree_, SpherePolicy::kSlab, {.points = many});
+              }).find("points"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Misuse, OfAMeshIsAnErrorOfTheBuild) {
+  TriangleMesh mesh = icosphere(1, 1);
+  const auto build = [&] { static_cast<void>(build_tree(mesh, {.voxel_size = 0.1})); };
+  mesh.triangles[3][1] = 100'000'000;
+  EXPECT_EQ(error_name(build), "mesh-bad-index");
+  mesh = icosphere(1, 1);
+  mesh.vertices[5].y() = kNan;
+  EXPECT_EQ(error_name(build), "mesh-not-finite");
+  mesh.vertices.clear();
+  mesh.triangles.clear();
+  EXPECT_EQ(error_name(build), "mesh-empty");
+}
+
+// Queries share a tree's content: it may move, and go away.
+TEST(Query, OutlivesItsTrees) {
+  const Eigen::Isometry3d pose = shift({3.5, 0, 0});
+  auto tree = std::make_unique<SphereTree>(ball(0.25, true));
+  Query query(*tree, *tree);
+  ReferenceQuery reference(*tree, *tree, SpherePolicy::kTable);
+  ContactManifold manifold(*tree, *tree, query.policy());
+  const std::uint64_t pairs = query.leaf_pairs(pose, {}).leaf_pairs;
+  const std::uint64_t published = reference.leaf_pairs(pose, {}).leaf_pairs;
+  ASSERT_GT(pairs, 0u);
+  ASSERT_EQ(query.contacts(pose, manifold).status, QueryStatus::kDone);
+  const double weight = manifold.sums().weight;
+  const SphereTree moved = std::move(*tree);
+  tree.reset();
+  EXPECT_EQ(query.leaf_pairs(pose, {}).leaf_pairs, pairs);
+  EXPECT_EQ(reference.leaf_pairs(pose, {}).leaf_pairs, published);
+  ASSERT_EQ(query.contacts(pose, manifold).status, QueryStatus::kDone);
+  EXPECT_EQ(manifold.sums().weight, weight);
+  // A manifold of the same content fits, wherever its tree lies.
+  ContactManifold again(moved, moved, query.policy());
+  EXPECT_EQ(query.contacts(pose, again).status, QueryStatus::kDone);
+  EXPECT_EQ(query.intersects(pose).answer, Answer::kYes);
+}
+
 TEST(DistanceResult, SaysWhetherTheToleranceWasReached) {
   const SphereTree plain = ball(0.25), exact = ball(0.25, true);
   Query of_plain(plain, plain), of_exact(exact, exact);
   EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 0.01).complete);
   EXPECT_FALSE(of_plain.distance(shift({5, 0, 0}), 1e-6).complete);
   EXPECT_TRUE(of_plain.distance(shift({5, 0, 0}), 10).complete);
+  EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 0).complete);  // but for rounding
   // So far apart that floats cannot tell the leaves from each other.
   EXPECT_FALSE(of_exact.distance(shift({1e12, 0, 0}), 1e-3).complete);
 }

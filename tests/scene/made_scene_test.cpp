@@ -158,6 +158,16 @@ TEST(MadeScene, ValuesOutOfRangeAreRefused) {
            [](Scene& s) { s.friction = FrictionSettings{}; },
            [](Scene& s) { s.proximity = ProximitySettings{}; },
            [](Scene& s) { s.gravity = SceneGravity{}; },
+           [](Scene& s) {
+             s.contact = ContactSettings{};
+             s.friction = FrictionSettings{.static_coefficient = 0.1, .dynamic_coefficient = 0.2};
+           },
+           [](Scene& s) {
+             s.gravity = SceneGravity{.mass = 1};
+             s.gravity->acceleration = {0, std::nan(""), 0};
+           },
+           [](Scene& s) { s.open = Eigen::Vector3d::Zero(); },
+           [](Scene& s) { s.open = Eigen::Vector3d(0, 0, std::nan("")); },
            [](Scene& s) { s.snap = SnapSettings{}; }}) {
     EXPECT_TRUE(refusal(change).starts_with("the scene's ")) << refusal(change);
   }

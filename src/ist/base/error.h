@@ -35,8 +35,8 @@ enum class ErrorCode {
   kFixedPointRange,    ///< a number does not fit the hardware's fixed-point format
 };
 
-/// The only exception of the library. `what()` names the place, the cause and the remedy.
-/// Building and loading throw it; queries never do.
+/// The exception of the library, beside std::bad_alloc. `what()` names the place, the cause and the
+/// remedy. Building and loading throw it; queries never do.
 class IST_API Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& detail) : std::runtime_error(detail), code_(code) {}

@@ -208,7 +208,7 @@ typedef struct ist_tree_info {
   int32_t has_proximity;      /* 1: the tree has the voxels near the outside */
   int32_t outward;            /* 1: the mesh is closed and consistent, outside is known */
   int32_t reserved;           /* zero */
-  double origin[3];           /* of the tree's frame: the grid's centre, mesh coordinates */
+  double origin[3];           /* of the tree's frame: the root cube's centre, mesh coordinates */
   double bounding_radius;     /* around the origin; contains every sphere */
   double largest_leaf_radius; /* of the tightest spheres */
 } ist_tree_info;

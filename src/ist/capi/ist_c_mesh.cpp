@@ -32,39 +32,6 @@ ist_status check_counts(const Call& call, const MeshArrays<Number>& arrays) {
   return wrong ? wrong : call.need_array("triangles", arrays.triangles, arrays.triangle_count);
 }
 
-template <typename Number>
-ist_status take_vertices(const Call& call, const MeshArrays<Number>& arrays, TriangleMesh& mesh) {
-  mesh.vertices.reserve(arrays.vertex_count);
-  for (std::size_t i = 0; i < arrays.vertex_count; ++i) {
-    const Number* at = arrays.vertices + 3 * i;
-    const Eigen::Vector3d vertex(at[0], at[1], at[2]);
-    if (!(std::isfinite(vertex[0]) && std::isfinite(vertex[1]) && std::isfinite(vertex[2]))) {
-      return call.fail(IST_MESH_NOT_FINITE, "vertex {} is ({}, {}, {}): pass finite numbers", i,
-                       vertex[0], vertex[1], vertex[2]);
-    }
-    mesh.vertices.push_back(vertex);
-  }
-  return IST_OK;
-}
-
-ist_status take_triangles(const Call& call, std::span<const std::uint32_t> indices,
-                          TriangleMesh& mesh) {
-  mesh.triangles.reserve(indices.size() / 3);
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const Triangle triangle = {indices[i], indices[i + 1], indices[i + 2]};
-    for (const std::uint32_t vertex : triangle) {
-      if (vertex >= mesh.vertices.size()) {
-        return call.fail(
-            IST_MESH_BAD_INDEX,
-            "triangle {} has the vertex index {}, but there are {} vertices: count from 0", i / 3,
-            vertex, mesh.vertices.size());
-      }
-    }
-    mesh.triangles.push_back(triangle);
-  }
-  return IST_OK;
-}
-
 ist_mesh_info mesh_info_of(const Mesh& mesh) {
   const MeshReport report = check_mesh(mesh.mesh);
   ist_mesh_info info{};
@@ -88,17 +55,14 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
     if (const ist_status missing = call.need({{"mesh", out}})) return missing;
     *out = nullptr;
     if (const ist_status wrong = check_counts(call, arrays)) return wrong;
-    if (arrays.triangle_count == 0) {
-      return arrays.vertex_count == 0
-                 ? call.fail(IST_MESH_EMPTY, "the mesh has no vertices and no triangles: pass some")
-                 : call.fail(IST_MESH_POINTS_ONLY,
-                             "the mesh has {} vertices, but no triangles: pass some",
-                             arrays.vertex_count);
-    }
     auto mesh = std::make_unique<Mesh>();
-    if (const ist_status wrong = take_vertices(call, arrays, mesh->mesh)) return wrong;
-    const std::span indices(arrays.triangles, 3 * arrays.triangle_count);
-    if (const ist_status wrong = take_triangles(call, indices, mesh->mesh)) return wrong;
+    mesh->mesh.vertices.resize(arrays.vertex_count);
+    std::copy_n(arrays.vertices, 3 * arrays.vertex_count,
+                reinterpret_cast<double*>(mesh->mesh.vertices.data()));
+    mesh->mesh.triangles.resize(arrays.triangle_count);
+    std::copy_n(arrays.triangles, 3 * arrays.triangle_count,
+                reinterpret_cast<std::uint32_t*>(mesh->mesh.triangles.data()));
+    ist::require_valid(mesh->mesh);
     return give(call, std::move(mesh), out);
   });
 }

@@ -7,7 +7,7 @@
  *
  * The caller chooses metres or millimetres for poses. Forces are in N and torques in N m about the
  * tool's origin, both along the scene's axes. The tool's frame has the held mesh's axes; its origin
- * is the centre of the held body's grid. Poses map the tool's frame to the scene.
+ * is the root cube's centre of the held body. Poses map the tool's frame to the scene.
  */
 
 #include "ist/capi/ist_c.h"

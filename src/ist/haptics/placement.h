@@ -16,7 +16,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
 /// The pose of the tool: a map from the tool's frame to the scene's, both in metres. The tool's
-/// origin is the centre of the held body's grid.
+/// origin is the root cube's centre of the held body.
 struct IST_API Placement {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();

@@ -32,7 +32,7 @@ enum class ServoTick {
 /// and sends the returned force to the motors. run_servo_loop() is the library's own loop.
 ///
 /// Poses are 16 doubles in column-major order; they map the tool's frame to the scene's. The tool's
-/// origin is the centre of the held body's grid, its axes are the held mesh's, and torques are
+/// origin is the root cube's centre of the held body, its axes are the held mesh's, and torques are
 /// about that origin.
 ///
 /// Call on_tick() every Simulation::dt() seconds; each call counts as a tick of that length. One

@@ -2,9 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string_view>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
@@ -74,6 +76,34 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+void require_valid(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) {
+    throw mesh.vertices.empty()
+        ? Error(ErrorCode::kMeshEmpty, "the mesh has no vertices and no triangles: pass some")
+        : Error(ErrorCode::kMeshPointsOnly,
+                fmt::format("the mesh has {} vertices, but no triangles: pass some",
+                            mesh.vertices.size()));
+  }
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3d& v = mesh.vertices[i];
+    if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]))) {
+      throw Error(
+          ErrorCode::kMeshNotFinite,
+          fmt::format("vertex {} is ({}, {}, {}): pass finite numbers", i, v[0], v[1], v[2]));
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : mesh.triangles[i]) {
+      if (vertex < mesh.vertices.size()) continue;
+      throw Error(
+          ErrorCode::kMeshBadIndex,
+          fmt::format("triangle {} has the vertex index {}, but there are {} vertices: count "
+                      "from 0",
+                      i, vertex, mesh.vertices.size()));
+    }
+  }
+}
 
 MeshReport check_mesh(const TriangleMesh& mesh) {
   const ScopedFloatEnvironment environment;

@@ -24,8 +24,7 @@ enum class Jaw { kLower, kUpper };
 /// one seed gives the same bytes on every machine. Cost: some 5 ms, one thread.
 IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 
-/// Basic shapes: closed, of genus 0, facing outward, in mesh units. They use only + - * / and
-/// square roots, so their bits are the same on every machine.
+// Basic shapes: closed, of genus 0, facing outward, mesh units, the same bits on every machine.
 
 /// Makes a box of 12 triangles between two opposite corners. Precondition: min < max on every axis.
 [[nodiscard]] IST_API TriangleMesh make_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max);

@@ -42,7 +42,8 @@ struct InsideState {
 
 const char* to_string(Inside inside) noexcept {
   constexpr std::array kNames = {"none", "fixed", "moving"};
-  return kNames[static_cast<std::size_t>(inside)];
+  const auto at = static_cast<std::size_t>(inside);
+  return at < kNames.size() ? kNames[at] : "unknown";
 }
 
 InsideTest::InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving)

@@ -64,6 +64,9 @@ struct ContactRates {
   double weight, pressure_force, pressure_torque, spring_force, spring_torque;
 };
 
+/// The most that an option of memory takes: kArgumentInvalid beyond it.
+inline constexpr std::size_t kMostItems = std::size_t{1} << 26;
+
 /// The options of a ContactManifold. Depths are in mean voxel sizes of the two trees.
 struct ManifoldOptions {
   /// The most contacts; 0: the sums alone, which take less time and memory.
@@ -84,7 +87,7 @@ struct ManifoldOptions {
 /// by Query::contacts for the same trees and the same policy.
 ///
 /// The constructor reserves all memory: 5.4 bytes a leaf of either tree, half a megabyte to a
-/// megabyte of caches, and the points. Holds references to both trees, which must outlive it. One
+/// megabyte of caches, and the points. It shares the content of both trees. One
 /// manifold belongs to one thread at a time.
 class IST_API ContactManifold {
  public:

@@ -53,9 +53,9 @@ struct QueryOptions {
 /// options for memory.
 ///
 /// The constructor reserves all memory and makes the first call of the kernels. A verb allocates
-/// nothing, locks nothing and makes no system call. A query holds references to both trees, which
-/// must outlive it and stay where they are. Any number of threads may share a tree; one query
-/// belongs to one thread at a time.
+/// nothing, locks nothing and makes no system call. A query shares
+/// the content of both trees; a temporary tree does not compile. Any number of threads may share a
+/// tree; one query belongs to one thread at a time.
 class IST_API Query {
  public:
   /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
@@ -77,8 +77,9 @@ class IST_API Query {
   /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
   ///               the first of them. Elements behind the last pair may be overwritten
   /// @param budget ends the search early: the result then holds the first pairs, and the distance
-  ///               as far as it is known. The limit of tests is never exceeded; a deadline by some
-  ///               500 tests or 4096 leaf pairs. With a budget the calling thread works alone
+  ///               as far as it is known. The limit of tests is never exceeded, but by the test of
+  ///               the roots; a deadline by some 500 tests or 4096 leaf pairs. With a budget the
+  ///               calling thread works alone
   ///
   /// Cost: 1 to 3 ns a test of two bounds, 20 to 40 ns a pair of nodes.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out,
@@ -97,9 +98,9 @@ class IST_API Query {
   ///                 status is another than kDone
   /// @param budget   ends the search early: then neither result nor manifold is complete, and no
   ///                 force should be made of it. May be exceeded by some 1,000 tests or 512 leaf
-  ///                 pairs, or one long row of them; with two workers, which share only a search
-  ///                 with a deadline, by 3,000 tests or 20 µs. A budget of as many tests as a
-  ///                 deadline allowed ends the search at the same place
+  ///                 pairs, or one long row of them; with two workers, which do not share a limit
+  ///                 of tests, by 3,000 tests or 20 µs. A budget of as many tests as a deadline
+  ///                 allowed ends the search at the same place
   ///
   /// Cost: that of leaf_pairs(), and 50 to 120 ns a leaf pair.
   [[nodiscard]] QueryResult contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,
@@ -109,10 +110,12 @@ class IST_API Query {
   /// triangles down to the leaves. A tolerance that is NaN or negative counts as 0.
   ///
   /// The interval holds the true distance; without triangles it is no wider than `tolerance` or
-  /// twice the resolution, whichever is more; `complete` says whether the tolerance was reached. It
-  /// is 0 where triangle_pairs() finds any. docs/guarantees.md gives the rounding of each bound and
-  /// how fast the distance can change with the pose. Cost: 0.2 to 0.7 ms for jaws that are apart,
-  /// 0.02 to 0.3 ms where they meet.
+  /// twice the resolution, whichever is more; `complete` says whether the tolerance was reached,
+  /// but for the rounding of a distance of triangles. Bodies so far apart that float cannot tell
+  /// their leaves from each other keep the interval of their roots. It is 0 where triangle_pairs()
+  /// finds any. docs/guarantees.md gives the rounding of each bound and how fast the distance can
+  /// change with the pose. Cost: 0.2 to 0.7 ms for jaws that are apart, 0.02 to 0.3 ms where they
+  /// meet.
   [[nodiscard]] DistanceResult distance(const Eigen::Isometry3d& pose, double tolerance) noexcept;
 
   /// Returns whether both trees have triangles.

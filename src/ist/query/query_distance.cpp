@@ -38,7 +38,7 @@ DistanceResult Query::distance(const Eigen::Isometry3d& pose, double tolerance) 
       const double off = nearest.upper > 0 ? bodies->margin : 0;
       result.distance = {std::max(lower, nearest.lower - off), nearest.upper + off};
       result.sphere_tests += s.exact->tests();
-      result.complete = true;
+      result.complete = true;  // as far as distances of triangles are rounded
     } else {
       s.nearest_leaves(*bodies, tolerance, result);
       result.complete = upper - lower <= (tolerance > 0 ? tolerance : 0);

@@ -10,13 +10,13 @@ namespace ist {
 /// Returns the pad of a test of two bounds in double, mesh units: an upper bound of its rounding
 /// error, which is added to the sum of radii (docs/guarantees.md, Search in double).
 ///
-/// @param reaches  the bounding radii of both trees, added
+/// @param bounding_radii  the bounding radii of both trees, added
 /// @param farthest the largest coordinate, without its sign, of the translation between their
 ///                 frames
-[[nodiscard]] inline double pad_in_double(double reaches, double farthest) noexcept {
+[[nodiscard]] inline double pad_in_double(double bounding_radii, double farthest) noexcept {
   // Derived: 22u of each bounding radius and 11u of the translation, u = 2⁻⁵³.
   constexpr double kRounding = 24 * 0x1p-53;
-  return kRounding * reaches + kRounding * kSqrt3 * farthest;
+  return kRounding * bounding_radii + kRounding * kSqrt3 * farthest;
 }
 
 /// Returns whether a traversal descends into the nodes of a tree at `level`, with cubes of edge

@@ -25,6 +25,12 @@ int one_or_two(int workers) {
 
 // Returns the largest coordinate, without its sign, of a vertex in use; other vertices may lie
 // anywhere.
+std::size_t within_limit(const char* option, std::size_t value) {
+  if (value <= kMostItems) return value;
+  throw Error(ErrorCode::kArgumentInvalid,
+              fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
+}
+
 double largest_coordinate_of(const TriangleMesh& mesh) {
   double largest = 0;
   for (const Triangle& triangle : mesh.triangles) {
@@ -51,7 +57,8 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    exact.emplace(fixed, moving, policy, kernels, options.triangle_pairs);
+    exact.emplace(fixed, moving, policy, kernels,
+                  within_limit("triangle_pairs", options.triangle_pairs));
     largest_coordinate = largest_coordinate_of(*moving.triangles());
   }
   LeafPairSink none(std::span<LeafPair>{});

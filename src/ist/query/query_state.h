@@ -45,8 +45,7 @@ struct QueryState {
   /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
   void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;
 
-  const SphereTree& fixed;
-  const SphereTree& moving;
+  const SphereTree fixed, moving;  // which share the content
   SpherePolicy policy;
   const Kernels& kernels;
   SearchPlan plan;

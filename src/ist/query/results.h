@@ -51,8 +51,8 @@ struct QueryResult {
   int level = 0;                   ///< steps above the leaves at which the search ended
   std::uint64_t leaf_pairs = 0;    ///< all pairs that were found, in the span or not
   std::uint64_t sphere_tests = 0;  ///< pairs of bounds that were tested
-  /// The distance between the surfaces, as far as the tests bound it. Absent where a search without
-  /// a budget found the roots' bounds to overlap.
+  /// The distance between the surfaces, as far as the tests tell it. Absent after an error, and
+  /// where leaf_pairs() without a budget found the bounds of the roots to overlap.
   std::optional<DistanceInterval> distance = std::nullopt;
   /// The surfaces in a leaf pair are no farther apart than this, mesh units: 2 (rA + rB) + pad,
   /// with rA and rB the radii of the largest leaves.

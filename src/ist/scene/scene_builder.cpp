@@ -9,13 +9,11 @@
 #include "ist/haptics/simulation_parts.h"
 #include "ist/haptics/stability_border.h"
 #include "ist/haptics/tool.h"
-#include "ist/scene/build_notes.h"
 #include "ist/scene/free_start.h"
 #include "ist/scene/load_body.h"
 #include "ist/scene/make_effects.h"
 #include "ist/scene/scene_lines.h"
 #include "ist/scene/scene_parts.h"
-#include "ist/scene/scene_trees.h"
 
 namespace ist {
 namespace {

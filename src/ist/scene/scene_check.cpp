@@ -69,14 +69,26 @@ void check_effects(const Check& check, const Scene& scene) {
     check.number("effects.friction.static", scene.friction->static_coefficient, kFriction);
     check.number("effects.friction.dynamic", scene.friction->dynamic_coefficient, kFriction);
     check.number("effects.friction.stiffness", scene.friction->stiffness, kStiffness);
+    if (scene.friction->dynamic_coefficient > scene.friction->static_coefficient) {
+      fail_at(scene, "effects.friction.dynamic", "it is more than the static one: lower it");
+    }
   }
   if (scene.damping) check.number("effects.damping.damping", scene.damping->damping, kDamping);
   if (scene.proximity) {
     check.length("effects.proximity.distance", scene.proximity->distance);
     check.number("effects.proximity.damping", scene.proximity->damping, kDamping);
   }
-  if (scene.gravity) check.number("effects.gravity.mass", scene.gravity->mass, kMass);
+  if (scene.gravity) {
+    check.number("effects.gravity.mass", scene.gravity->mass, kMass);
+    if (!scene.gravity->acceleration.allFinite() ||
+        !scene.gravity->centre.value_or(Eigen::Vector3d::Zero()).allFinite()) {
+      fail_at(scene, "effects.gravity", "a number is not finite: give finite ones");
+    }
+  }
   if (scene.snap) {
+    if (!Placement::from(scene.snap->pose.isometry())) {
+      fail_at(scene, "effects.snap", "its pose is no rigid motion: give a rotation");
+    }
     check.length("effects.snap.radius", scene.snap->radius);
     check.number("effects.snap.angle", scene.snap->angle, kAngle);
     check.number("effects.snap.stiffness", scene.snap->stiffness, kStiffness);
@@ -114,6 +126,9 @@ void check_scene(const Scene& scene) {
   check.number("device.angular_damping", mechanics.angular_damping, kAngularDamping);
   check.number("device.delay", mechanics.delay, kDelay);
   check_plan(scene);
+  if (scene.open && !(std::abs(scene.open->norm() - 1) < 1e-6)) {
+    fail_at(scene, "held.open", "it is no direction: give an axis of unit length");
+  }
   check_coupling(check, scene.coupling, scene.safety);
   check_effects(check, scene);
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <chrono>
+#include <utility>
+
 #include "ist/scene.h"
 #include "ist/scene/table_reader.h"
 
@@ -24,5 +27,37 @@ void read_effects(TableReader& scene, Scene& result);
 /// Checks the values of a scene that a program may have made: the conditions that read_scene()
 /// checks of a file, as far as the library depends on them. Throws kInputInvalid (fail_at).
 void check_scene(const Scene& scene);
+
+/// Collects a note for each stage, in the order of building.
+class BuildNotes {
+ public:
+  void skip(std::string what, std::string why) {
+    notes_.push_back({std::move(what), false, std::move(why), 0, 0});
+  }
+  /// Calls `make`, notes its time and the bytes() of its result, and returns the result, a pointer.
+  template <typename Make>
+  auto make(std::string what, std::string why, const Make& make) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto made = make();
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
+    notes_.push_back(
+        {std::move(what), true, std::move(why), time.count(), std::uint64_t{made->bytes()}});
+    return made;
+  }
+  [[nodiscard]] std::vector<BuildNote> take() { return std::move(notes_); }
+
+ private:
+  std::vector<BuildNote> notes_;
+};
+
+struct LoadedBody;
+
+/// Builds the trees that effects need, or takes them from the bodies.
+/// @param max_memory bytes, for each tree
+/// Throws kInputInvalid (fail_at): voxels too small for the mesh or the memory, a tree file without
+/// the required spheres or triangles, a fixed body without outside.
+[[nodiscard]] SceneTrees build_scene_trees(const Scene& scene, LoadedBody& fixed, LoadedBody& held,
+                                           const EffectNeeds& needs, std::uint64_t max_memory,
+                                           BuildNotes& notes, Progress* progress);
 
 }  // namespace ist

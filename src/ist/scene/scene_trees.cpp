@@ -1,11 +1,10 @@
-#include "ist/scene/scene_trees.h"
 
 #include <fmt/format.h>
 
 #include "ist/base/error.h"
-#include "ist/scene/build_notes.h"
 #include "ist/scene/load_body.h"
 #include "ist/scene/scene_lines.h"
+#include "ist/scene/scene_parts.h"
 #include "ist/tree/proximity_body.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"

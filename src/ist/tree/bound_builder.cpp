@@ -32,7 +32,7 @@ class LevelBuilder {
         edge_(static_cast<double>(std::uint64_t{1} << level)) {
     // Lattice coordinates and the corners of clipped pieces err by at most sixteen 2⁻⁵³ of the
     // grid's extent: two roundings for a coordinate, and three or four for each of three cuts.
-    payload_.slack = 0x1p-48 * (2 * voxels.lattice.root_centre());
+    payload_.pad = 0x1p-48 * (2 * voxels.lattice.root_centre());
   }
 
   void build(std::uint32_t parent, const TriangleLists& triangles, BallBlock& balls,

@@ -76,7 +76,7 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
     farthest2 = std::max(farthest2, dot_in_order(d, d));
   }
   // A distance has a relative error of a few 2⁻⁵³.
-  const double units = std::ceil((std::sqrt(farthest2) + payload.slack) / unit);
+  const double units = std::ceil((std::sqrt(farthest2) + payload.pad) / unit);
   IST_ASSERT(units >= 1 && units <= 65535);
   ball.r = static_cast<std::uint16_t>(units);
   return ball;
@@ -101,7 +101,7 @@ PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge
       std::clamp(nearest(0.5 * (reach.least + reach.greatest) / unit), -127.0, 127.0);
   const double half = std::max(reach.greatest - unit * offset, unit * offset - reach.least);
   // Heights have an error of a dozen 2⁻⁵³ of the cube's edge.
-  const double units = std::ceil((half + payload.slack) / unit);
+  const double units = std::ceil((half + payload.pad) / unit);
   // If the centre lies among the points, heights are at most 0.87 edges and offsets at most half of
   // that, and all numbers fit. Otherwise this slab holds everything.
   if (units > 255) return {0, 0, 0, 0, 255};

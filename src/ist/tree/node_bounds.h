@@ -12,7 +12,7 @@ struct Payload {
   std::vector<Eigen::Vector3d> points;  ///< their convex hull holds the geometry; at least one
   Eigen::Vector3d area;                 ///< sum of the pieces' vector areas, up to a factor
   /// A bound of the points' errors, half of it reserved for the arithmetic of these functions.
-  double slack;
+  double pad;
 };
 
 /// Packs a ball round a payload: rounds the centre to the lattice of its block, and measures the

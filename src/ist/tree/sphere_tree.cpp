@@ -58,10 +58,7 @@ TreeParts measured(TreeParts parts) {
 }  // namespace
 
 SphereTree::SphereTree(TreeParts parts)
-    : parts_(std::make_unique<const TreeParts>(measured(std::move(parts)))) {}
-SphereTree::~SphereTree() = default;
-SphereTree::SphereTree(SphereTree&&) noexcept = default;
-SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
+    : parts_(std::make_shared<const TreeParts>(measured(std::move(parts)))) {}
 
 double SphereTree::voxel_size() const noexcept { return parts_->lattice.voxel_size; }
 std::uint32_t SphereTree::leaf_count() const noexcept { return parts_->octree.leaf_count(); }

@@ -55,15 +55,13 @@ struct LeafPair {
 };
 static_assert(sizeof(LeafPair) == 8);
 
-/// A body made ready for queries: its voxels, folded into an octree of bounding spheres. It never
-/// changes after it was built, so any number of threads may read it. Queries refer to it, and go on
-/// doing so where it is moved; it must outlive them. Lengths are in mesh units.
+/// A body made ready for queries: its voxels, folded into an octree of bounding spheres. The
+/// content never changes after it was built. Copies share it, and so do queries: a tree may be
+/// moved, or go away, while a query uses it, and any number of threads may read it. A tree that was
+/// moved from may only be assigned to or destroyed. Lengths are in mesh units.
 class IST_API SphereTree {
  public:
   explicit SphereTree(detail::TreeParts parts);
-  ~SphereTree();
-  SphereTree(SphereTree&& other) noexcept;
-  SphereTree& operator=(SphereTree&& other) noexcept;
 
   /// The edge of a voxel.
   [[nodiscard]] double voxel_size() const noexcept;
@@ -102,12 +100,12 @@ class IST_API SphereTree {
   [[nodiscard]] const detail::TreeParts& parts() const noexcept { return *parts_; }
 
  private:
-  std::unique_ptr<const detail::TreeParts> parts_;
+  std::shared_ptr<const detail::TreeParts> parts_;
 };
 
 struct BuildOptions {
   double voxel_size = 0;                       ///< mesh units
-  SpherePolicy spheres = SpherePolicy::kSlab;  ///< what to save; the implicit ones cost nothing
+  SpherePolicy spheres = SpherePolicy::kSlab;  ///< the tightest to save; implicit ones cost nothing
   bool keep_triangles = false;                 ///< to answer exactly
   bool proximity = false;                      ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
@@ -128,7 +126,8 @@ struct BuildReport {
 /// @param report, progress filled in, if not null
 ///
 /// Cost: on two cores, for a jaw of 107,000 triangles and 1.76 million voxels, 0.5 s; with kTight
-/// 1.3 s more, with kSlab 2 s more. Errors: those of voxelize.
+/// 1.3 s more, with kSlab 2 s more. Throws kMeshEmpty, kMeshPointsOnly, kMeshNotFinite,
+/// kMeshBadIndex, kMeshExtent, kVoxelSizeInvalid, kVoxelSizeTooSmall, kMemoryLimit.
 [[nodiscard]] IST_API SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
                                             BuildReport* report = nullptr,
                                             Progress* progress = nullptr);

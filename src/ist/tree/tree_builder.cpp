@@ -57,6 +57,7 @@ std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
 SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildReport* report,
                       Progress* progress) {
   const ScopedFloatEnvironment environment;
+  require_valid(mesh);
   auto begin = std::chrono::steady_clock::now();
   const auto end_stage = [&](const char* name) {
     const auto now = std::chrono::steady_clock::now();

@@ -74,10 +74,10 @@ double AncestorShare::own(Step& step, std::uint32_t fixed, std::uint32_t moving)
   }
   const NodeBound &a = step.bound, &b = moved(step, moving);
   const Eigen::Vector3d between = difference(b.centre, a.centre);
-  const double squared = dot_in_order(between, between), reach = a.radius + b.radius;
-  const double near = reach - width_;
+  const double squared = dot_in_order(between, between), radius_sum = a.radius + b.radius;
+  const double near = radius_sum - width_;
   double overlap = width_;
-  if (!(near > 0 && squared <= near * near)) overlap = reach - std::sqrt(squared);
+  if (!(near > 0 && squared <= near * near)) overlap = radius_sum - std::sqrt(squared);
   if (policy_ == SpherePolicy::kSlab) overlap = std::min(overlap, slab_overlap(a, b));
   return std::clamp(overlap / width_, 0.0, 1.0);
 }

@@ -52,19 +52,19 @@ Marks find_marks(std::span<const LeafSum> nodes) noexcept {
 
 }  // namespace
 
-std::size_t cluster(LeafSums& touched, const Eigen::Vector3d& origin,
+std::size_t cluster(LeafSums& sums, const Eigen::Vector3d& origin,
                     std::span<Contact> out) noexcept {
-  if (touched.nodes().empty() || out.empty()) return 0;
-  Marks marks = find_marks(touched.nodes());
-  const Contact deepest = point_of(touched.nodes()[marks.places[0]]);
-  if (touched.nodes().size() > out.size()) marks.count = std::min(marks.count, out.size() - 1);
+  if (sums.nodes().empty() || out.empty()) return 0;
+  Marks marks = find_marks(sums.nodes());
+  const Contact deepest = point_of(sums.nodes()[marks.places[0]]);
+  if (sums.nodes().size() > out.size()) marks.count = std::min(marks.count, out.size() - 1);
 
   std::size_t count = 0;
   const auto marked = std::span(marks.places).first(marks.count);
-  for (const std::size_t place : marked) out[count++] = point_of(touched.nodes()[place]);
-  touched.take_out(marked);
-  while (touched.nodes().size() > out.size() - count) touched.coarsen();
-  for (const LeafSum& node : touched.nodes()) out[count++] = point_of(node);
+  for (const std::size_t place : marked) out[count++] = point_of(sums.nodes()[place]);
+  sums.take_out(marked);
+  while (sums.nodes().size() > out.size() - count) sums.coarsen();
+  for (const LeafSum& node : sums.nodes()) out[count++] = point_of(node);
   if (out.size() == 1) {
     const double weight = out[0].weight;
     out[0] = deepest;

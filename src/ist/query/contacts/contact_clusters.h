@@ -17,9 +17,9 @@ namespace ist {
 /// nodes.
 ///
 /// The order: the deepest, the six extreme ones, each node once, then the others in the order in
-/// which they were first added. The nodes of `touched` are consumed. Cost: 15 ns a node; no
+/// which they were first added. The nodes of `sums` are consumed. Cost: 15 ns a node; no
 /// allocation.
-[[nodiscard]] std::size_t cluster(LeafSums& touched, const Eigen::Vector3d& origin,
+[[nodiscard]] std::size_t cluster(LeafSums& sums, const Eigen::Vector3d& origin,
                                   std::span<Contact> out) noexcept;
 
 }  // namespace ist

@@ -40,11 +40,11 @@ struct PairTerms {
 };
 
 /// Returns the factor of a weight, 0 … 1, that comes from the overlap of two leaves' balls.
-[[nodiscard]] inline double ball_share(const NodeBound& a, const NodeBound& b,
-                                       const ContactScale& scale) noexcept {
+[[nodiscard]] inline double ball_weight(const NodeBound& a, const NodeBound& b,
+                                        const ContactScale& scale) noexcept {
   const Eigen::Vector3d between = difference(b.centre, a.centre);
-  const double touching = a.radius + b.radius;
-  const double left = touching * touching - dot_in_order(between, between);
+  const double radii = a.radius + b.radius;
+  const double left = radii * radii - dot_in_order(between, between);
   return std::clamp(left / (scale.radius_sum * scale.radius_sum), 0.0, 1.0);
 }
 

@@ -13,9 +13,9 @@ namespace ist {
   // The distance from a fixed ancestor's centre to a leaf of it is at most both radii.
   rates.lever = (fixed.bounding_radius() + moving.bounding_radius()) + (4 * s + scale.margin);
   const double far = fixed.bounding_radius() + (2.5 * s + scale.margin);
-  const double touching = 1.02 * scale.radius_sum + scale.margin;
+  const double radii = 1.02 * scale.radius_sum + scale.margin;
   const double share =
-      scale.area * (2 * touching / (scale.radius_sum * scale.radius_sum) + 1 / scale.width);
+      scale.area * (2 * radii / (scale.radius_sum * scale.radius_sum) + 1 / scale.width);
   const double depth = scale.area * (1 + (3.9 * s + 0.5 * scale.margin) / rates.lever);
   rates.weight = share + 0.5 * scale.area / rates.lever + (scale.fade > 0 ? depth / scale.fade : 0);
   rates.pressure_force = rates.weight;

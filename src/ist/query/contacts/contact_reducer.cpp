@@ -20,8 +20,8 @@ void require_in_range(const char* name, double value, double least, double most,
   if (value >= least && (value < most || (value == most && std::string_view(end) == "up to")))
     return;
   throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("manifold option {} is {}: give a number from {} {} {} mean voxel sizes",
-                          name, value, least, end, most));
+              fmt::format("manifold option {} is {}: give a number from {} {} {}", name, value,
+                          least, end, most));
 }
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {
@@ -32,6 +32,9 @@ const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* 
 ContactScale scale_of(const SphereTree& fixed, const SphereTree& moving,
                       const ManifoldOptions& options) {
   require_in_range("least_depth", options.least_depth, -2, 1, "below");
+  require_in_range("points", static_cast<double>(options.points), 0, double{kMostItems}, "up to");
+  require_in_range("max_leaves", static_cast<double>(options.max_leaves), 0, double{kMostItems},
+                   "up to");
   require_in_range("margin", options.margin, 0, 1, "up to");
   return ContactScale(fixed, moving, options.least_depth, options.margin);
 }
@@ -45,13 +48,13 @@ ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving
       moving_(with(moving, policy, "moving")),
       policy_(policy),
       scale_(scale_of(fixed, moving, options)),
-      rates_(contact_rates(fixed, moving, scale_)),
-      fixed_parents_(fixed.parts().octree),
-      moving_parents_(moving.parts().octree),
-      ancestors_(fixed, moving, policy, fixed_parents_, moving_parents_, scale_),
+      rates_(contact_rates(fixed_, moving_, scale_)),
+      fixed_parents_(fixed_.parts().octree),
+      moving_parents_(moving_.parts().octree),
+      ancestors_(fixed_, moving_, policy, fixed_parents_, moving_parents_, scale_),
       moved_(kMovedLeaves),
-      touched_(moving_parents_,
-               options.points > 0 ? std::max<std::size_t>(options.max_leaves, 1) : 0),
+      leaf_sums_(moving_parents_,
+                 options.points > 0 ? std::max<std::size_t>(options.max_leaves, 1) : 0),
       points_(options.points) {
   sums_.about = fixed.origin();
 }
@@ -59,7 +62,7 @@ ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving
 bool ContactReducer::begin(const Eigen::Isometry3d& pose) noexcept {
   const ScopedFloatEnvironment environment;
   count_ = 0;
-  touched_.clear();
+  leaf_sums_.clear();
   const Eigen::Vector3d about = sums_.about;
   sums_ = {};
   sums_.about = about;
@@ -96,9 +99,9 @@ void ContactReducer::move(std::uint32_t leaf, MovedLeaf& to) const noexcept {
 }
 
 // Returns the factor of the greatest weight that the bounds of a pair and of its ancestors give.
-inline double ContactReducer::share_of(const LeafPair& leaf_pair,
-                                       const NodeBound& moving) noexcept {
-  const double balls = ball_share(fixed_at_.bound, moving, scale_);
+inline double ContactReducer::bound_weight(const LeafPair& leaf_pair,
+                                           const NodeBound& moving) noexcept {
+  const double balls = ball_weight(fixed_at_.bound, moving, scale_);
   if (!(balls > 0)) return 0;
   double rest = 1;
   if (policy_ == SpherePolicy::kSlab) {
@@ -128,10 +131,10 @@ inline void ContactReducer::take(const LeafPair& leaf_pair) noexcept {
   const ContactLeaf& moving = moved(leaf_pair.moving);
   PairTerms pair = pair_terms(fixed_at_, moving, scale_);
   if (!(pair.weight > 0)) return;
-  pair.weight *= scale_.area * share_of(leaf_pair, moving.bound);
+  pair.weight *= scale_.area * bound_weight(leaf_pair, moving.bound);
   if (!(pair.weight > 0)) return;
   add(pair);
-  if (!points_.empty()) touched_.add(leaf_pair.moving, pair);
+  if (!points_.empty()) leaf_sums_.add(leaf_pair.moving, pair);
 }
 
 bool ContactReducer::take(std::span<const LeafPair> leaf_pairs) noexcept {
@@ -143,12 +146,12 @@ bool ContactReducer::take(std::span<const LeafPair> leaf_pairs) noexcept {
 
 void ContactReducer::finish() noexcept {
   const ScopedFloatEnvironment environment;
-  count_ = cluster(touched_, sums_.about, points_);
+  count_ = cluster(leaf_sums_, sums_.about, points_);
 }
 
 std::size_t ContactReducer::bytes() const noexcept {
   return fixed_parents_.bytes() + moving_parents_.bytes() + ancestors_.bytes() +
-         moved_.size() * sizeof(MovedLeaf) + touched_.bytes() + points_.size() * sizeof(Contact);
+         moved_.size() * sizeof(MovedLeaf) + leaf_sums_.bytes() + points_.size() * sizeof(Contact);
 }
 
 }  // namespace ist::detail

@@ -17,7 +17,7 @@ namespace ist::detail {
 /// and to a few contacts (see cluster()).
 ///
 /// A pair weighs s_f s_m · u · b · |e|, with s_f and s_m the two voxel sizes, u the overlap of the
-/// two balls (ball_share), b the least overlap of both slabs and of all ancestors' bounds, and e
+/// two balls (ball_weight), b the least overlap of both slabs and of all ancestors' bounds, and e
 /// the mean of the two normals, each as long as it is coherent (pair_terms). Each factor falls to
 /// 0, with a bounded slope, where the pair leaves the answer or its normals cancel. With a least
 /// depth above -2 the weight also falls to 0 there, over a quarter of a voxel.
@@ -60,7 +60,8 @@ class ContactReducer final : public LeafPairStream {
   /// Returns whether leaf pairs of these trees under this policy may be reduced.
   [[nodiscard]] bool fits(const SphereTree& fixed, const SphereTree& moving,
                           SpherePolicy policy) const noexcept {
-    return &fixed == &fixed_ && &moving == &moving_ && policy == policy_;
+    return &fixed.parts() == &fixed_.parts() && &moving.parts() == &moving_.parts() &&
+           policy == policy_;
   }
   /// Returns the bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -75,20 +76,19 @@ class ContactReducer final : public LeafPairStream {
   void take(const LeafPair& leaf_pair) noexcept;
   [[nodiscard]] ContactLeaf leaf_of(const SphereTree& tree, std::uint32_t leaf,
                                     const NodeParents& parents) const noexcept;
-  [[nodiscard]] double share_of(const LeafPair& leaf_pair, const NodeBound& moving) noexcept;
+  [[nodiscard]] double bound_weight(const LeafPair& leaf_pair, const NodeBound& moving) noexcept;
   void add(const PairTerms& pair) noexcept;
   [[nodiscard]] const ContactLeaf& moved(std::uint32_t leaf) noexcept;
   void move(std::uint32_t leaf, MovedLeaf& to) const noexcept;
 
-  const SphereTree& fixed_;
-  const SphereTree& moving_;
+  const SphereTree fixed_, moving_;  // which share the content
   SpherePolicy policy_;
   ContactScale scale_;
   ContactRates rates_;
   NodeParents fixed_parents_, moving_parents_;
   AncestorShare ancestors_;
   std::vector<MovedLeaf> moved_;  // cached by the last bits of the leaf
-  LeafSums touched_;
+  LeafSums leaf_sums_;
   std::vector<Contact> points_;
 
   RelativePose pose_;

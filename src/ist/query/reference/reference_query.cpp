@@ -64,8 +64,7 @@ struct ReferenceState {
   [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept;
   void descend(const Node& a, const Node& b);
 
-  const SphereTree& fixed_;
-  const SphereTree& moving_;
+  const SphereTree fixed_, moving_;  // which share the content
   SpherePolicy policy_;
   SavedSpheres saved_fixed_, saved_moving_;  // empty with kOnTheFly
   RelativePose pose_;
@@ -85,9 +84,9 @@ QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<
     return result;
   }
   pose_ = *relative;
-  const double reach = fixed_.bounding_radius() + moving_.bounding_radius();
+  const double radius_sum = fixed_.bounding_radius() + moving_.bounding_radius();
   const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  pad_ = pad_in_double(reach, farthest);
+  pad_ = pad_in_double(radius_sum, farthest);
   tests_ = 0;
   found_.clear();
 
@@ -95,7 +94,7 @@ QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<
   Node b = root(moving_, saved_moving_);
   to_fixed_frame(b);
   // Far apart, one coordinate decides, because the square of the distance overflows.
-  if (overlap(a, b) && farthest <= reach + pad_) descend(a, b);
+  if (overlap(a, b) && farthest <= radius_sum + pad_) descend(a, b);
 
   // Pairs of one fixed leaf were found in order, because moving nodes are descended in order.
   std::stable_sort(found_.begin(), found_.end(),
@@ -161,8 +160,8 @@ void ReferenceState::to_fixed_frame(Node& node) const noexcept {
 bool ReferenceState::overlap(const Node& a, const Node& b) noexcept {
   ++tests_;
   const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
-  const double reach = (a.ball.radius + b.ball.radius) + pad_;
-  if (dot(apart, apart) > reach * reach) return false;
+  const double radius_sum = (a.ball.radius + b.ball.radius) + pad_;
+  if (dot(apart, apart) > radius_sum * radius_sum) return false;
   return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + pad_) ||
                                              beyond(b.slab, -apart, a.ball.radius + pad_));
 }

@@ -30,7 +30,7 @@ enum class SphereSource : std::uint8_t {
 /// descended; with equal voxel sizes both always are, as published. With kSlab, a pair whose balls
 /// overlap is rejected all the same where one ball lies outside the other's slab.
 ///
-/// Holds references to both trees, which must outlive it. One object belongs to one thread. Source:
+/// It shares the content of both trees. One object belongs to one thread. Source:
 /// E. Ruffaldi et al., The implicit sphere tree, World Haptics 2005, section II.E.
 class IST_API ReferenceQuery {
  public:
@@ -50,8 +50,8 @@ class IST_API ReferenceQuery {
   /// @param out  takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
   ///             the first of them
   ///
-  /// Cost: 5 to 20 ns a sphere test, 10 ns a pair for the order. Allocates where a pose has more
-  /// pairs than any before, and can throw std::bad_alloc: it is the specification, not the fast
+  /// Cost: 5 to 20 ns a sphere test, 20 ns a pair for the order. Allocates, and can throw
+  /// std::bad_alloc: it is the specification, not the fast path.
   /// path.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
 

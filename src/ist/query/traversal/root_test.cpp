@@ -19,10 +19,10 @@ Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
 RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                     const RelativePose& pose, double margin) noexcept {
   const Ball a = root_ball(fixed, policy), b = root_ball(moving, policy);
-  const double reaches = fixed.bounding_radius() + moving.bounding_radius();
+  const double bounding_radii = fixed.bounding_radius() + moving.bounding_radius();
   const double farthest = pose.translation.cwiseAbs().maxCoeff();
   RootTest test{};
-  test.pad = pad_in_double(reaches, farthest) + margin;
+  test.pad = pad_in_double(bounding_radii, farthest) + margin;
   Eigen::Vector3d apart;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double moved = ((pose.rotation(i, 0) * b.centre[0] + pose.rotation(i, 1) * b.centre[1]) +
@@ -33,7 +33,7 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   const double radius_sum = (a.radius + b.radius) + test.pad;
   const double squared = (apart[0] * apart[0] + apart[1] * apart[1]) + apart[2] * apart[2];
   // Far apart, one coordinate decides, because the square of the distance overflows.
-  test.overlap = !(farthest > reaches + test.pad) && !(squared > radius_sum * radius_sum);
+  test.overlap = !(farthest > bounding_radii + test.pad) && !(squared > radius_sum * radius_sum);
   const double largest = apart.cwiseAbs().maxCoeff();
   const double between = largest > 0 ? largest * (apart / largest).norm() : 0;
   constexpr double kLargest = std::numeric_limits<double>::max();

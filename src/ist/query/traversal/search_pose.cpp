@@ -20,7 +20,7 @@ float round_up(double value) noexcept {
 
 }  // namespace
 
-SearchPose to_float(const RelativePose& pose, double reaches, double margin) noexcept {
+SearchPose to_float(const RelativePose& pose, double bounding_radii, double margin) noexcept {
   SearchPose narrow{};
   for (Eigen::Index i = 0; i < 3; ++i) {
     double moved = 0;
@@ -31,7 +31,7 @@ SearchPose to_float(const RelativePose& pose, double reaches, double margin) noe
     narrow.translation[i] = static_cast<float>(moved);
   }
   const Eigen::Vector3d& t = pose.translation;
-  const double lengths = reaches + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
+  const double lengths = bounding_radii + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
   narrow.ball_pad = round_up(kBallRounding * lengths + kMarginRounding * margin);
   narrow.slab_pad = round_up(kSlabRounding * lengths + kMarginRounding * margin);
   return narrow;

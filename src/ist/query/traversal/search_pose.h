@@ -8,9 +8,9 @@ namespace ist {
 /// Narrows a motion to float, as the kernels read it, with pads that bound the rounding error of
 /// their tests: no pair whose bounds overlap is dropped.
 ///
-/// @param reaches the bounding radii of both trees, added (SphereTree::bounding_radius)
+/// @param bounding_radii the bounding radii of both trees, added (SphereTree::bounding_radius)
 /// @param margin  added to the pads, mesh units
-[[nodiscard]] SearchPose to_float(const RelativePose& pose, double reaches,
+[[nodiscard]] SearchPose to_float(const RelativePose& pose, double bounding_radii,
                                   double margin = 0) noexcept;
 
 /// Returns the pose with larger pads: bounds no farther apart than `by`, mesh units, count as
