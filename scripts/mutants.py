@@ -107,7 +107,7 @@ MUTANTS = [
     Mutant("gap-raised", "the lower end of a gap is four pads higher than float can tell",
            [("src/ist/query/query_distance.cpp", "within + known.leaves.min_overlapping - pad",
              "within + known.leaves.min_overlapping + 4 * pad")],
-           ["exact_test Gap*"]),
+           ["exact_test QueryDistance*"]),
     Mutant("budget-overdrawn", "a budget of tests is compared with what is spent alone",
            [("src/ist/query/traversal/spending.h", "tests > budget_.tests - tests_",
              "tests_ > budget_.tests")], ["search_test *Within*:Spending*"]),

@@ -176,7 +176,7 @@ TEST(ToolContactQuery, KeepsWhatItKnewWhereTheAnswerIsNotComplete) {
 }
 
 // The gap takes what is left of the budget: it never keeps contacts from being known.
-TEST(ToolContactQuery, MeasuresTheGapByWhatIsLeft) {
+TEST(ToolContactQuery, MeasuresTheDistanceByTheRestOfTheBudget) {
   const Scenery scenery{Placement()};
   const Placement near = scenery.tool(pressed(-0.9));
   ToolContacts contacts;

@@ -22,7 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Every target with every policy.
-class CollisionQueryTest : public ::testing::TestWithParam<std::string> {
+class QueryTest : public ::testing::TestWithParam<std::string> {
  protected:
   template <class Check>
   void for_each_policy(int workers, const Check& check) const {
@@ -35,9 +35,9 @@ class CollisionQueryTest : public ::testing::TestWithParam<std::string> {
   const Scene& scene_ = solids()[0];
 };
 
-INSTANTIATE_TEST_SUITE_P(Targets, CollisionQueryTest, ::testing::ValuesIn(all_targets()), name_of);
+INSTANTIATE_TEST_SUITE_P(Targets, QueryTest, ::testing::ValuesIn(all_targets()), name_of);
 
-TEST_P(CollisionQueryTest, SaysWhatItWasMadeOf) {
+TEST_P(QueryTest, SaysWhatItWasMadeOf) {
   for_each_policy(1, [](const Query& query) {
     EXPECT_EQ(query.target(), GetParam());
     EXPECT_EQ(query.workers(), 1);
@@ -46,7 +46,7 @@ TEST_P(CollisionQueryTest, SaysWhatItWasMadeOf) {
   for_each_policy(2, [](const Query& query) { EXPECT_EQ(query.workers(), 2); });
 }
 
-TEST_P(CollisionQueryTest, APoseThatIsNoRigidMotionIsAStatus) {
+TEST_P(QueryTest, APoseThatIsNoRigidMotionIsAStatus) {
   for_each_policy(1, [this](Query& query) {
     const FoundPairs before = ask(query, scene_.pose);
     for (Eigen::Index i = 0; i < 16; ++i) {
@@ -69,7 +69,7 @@ TEST_P(CollisionQueryTest, APoseThatIsNoRigidMotionIsAStatus) {
   });
 }
 
-TEST_P(CollisionQueryTest, FarApartIsOneTest) {
+TEST_P(QueryTest, FarApartIsOneTest) {
   for_each_policy(1, [](Query& query) {
     for (const double far : {10.0, 1e9, 1e26, 1e300, -1e308, std::numeric_limits<double>::max()}) {
       for (const Eigen::Vector3d& at :
@@ -87,7 +87,7 @@ TEST_P(CollisionQueryTest, FarApartIsOneTest) {
 }
 
 // A scene that is a power of two times as large gives the same numbers.
-TEST_P(CollisionQueryTest, DoesNotKnowTheUnit) {
+TEST_P(QueryTest, DoesNotKnowTheUnit) {
   const auto answer_at = [this](double unit, SpherePolicy policy) {
     TriangleMesh ball = icosphere(2, 1), block = box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8});
     for (Eigen::Vector3d& vertex : ball.vertices) vertex *= unit;
@@ -110,7 +110,7 @@ TEST_P(CollisionQueryTest, DoesNotKnowTheUnit) {
 }
 
 // A host may have set anything: the answer does not know it, and the host keeps it.
-TEST_P(CollisionQueryTest, KeepsTheFloatEnvironment) {
+TEST_P(QueryTest, KeepsTheFloatEnvironment) {
   constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x40, kMasked = 0x1F80;
   const unsigned before = _mm_getcsr();
   for (const int workers : {1, 2}) {
@@ -160,7 +160,7 @@ struct Taken final : LeafPairStream {
   std::vector<LeafPair> leaf_pairs;
 };
 
-TEST_P(CollisionQueryTest, AStreamGetsAllContactsInOrderUntilItHasEnough) {
+TEST_P(QueryTest, AStreamGetsAllContactsInOrderUntilItHasEnough) {
   for (const Scene& scene : {std::cref(scene_), std::cref(shells())}) {
     for (const int workers : {1, 2}) {
       for (const std::size_t pairs : {65536u, 100u}) {

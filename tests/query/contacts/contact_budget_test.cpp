@@ -162,7 +162,7 @@ TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
 
 // The ball of radius 1 beside the block's face at x = 0.9, so far apart along x: the gap holds it
 // whatever was spent, closer the more that was; and measured it is no wider than unmeasured.
-TEST(ContactsWithinABudget, TellATrueGap) {
+TEST(ContactsWithinABudget, TellATrueDistance) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kPolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));

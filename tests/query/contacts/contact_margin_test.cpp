@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 // A plate a little above another: what of it counts, and with which weight, by margin.
-TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheGrowth) {
+TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
   constexpr double kSize = 0.25;
   BuildOptions build;
   build.voxel_size = kSize;

@@ -15,7 +15,7 @@ namespace {
 // Doubles that are moved in another order.
 constexpr double kRounding = 1e-6;
 
-TEST(Gap, HoldsTheDistance) {
+TEST(QueryDistance, HoldsTheDistance) {
   int touching = 0, apart = 0;
   for (std::uint64_t seed = 0; seed < 40 && !::testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
@@ -57,7 +57,7 @@ TEST(Gap, HoldsTheDistance) {
 }
 
 // Errors margin with the farthest vertex, of those that are there.
-TEST(Gap, KnowsNothingOfAVertexThatNoTriangleNames) {
+TEST(QueryDistance, KnowsNothingOfAVertexThatNoTriangleNames) {
   TriangleMesh block = box({0, 0, 0}, {1, 1, 1});
   const SphereTree plain = tree_with_triangles(block, 0.25);
   block.vertices.emplace_back(1e300, -1e300, 1e300);
@@ -73,7 +73,7 @@ TEST(Gap, KnowsNothingOfAVertexThatNoTriangleNames) {
 
 // Two rough spheres, one in the other, which are nearly as near to each other in many places: so
 // that the nearest is found late, and far from where the search began.
-TEST(Gap, OfShellsThatAreNearInManyPlaces) {
+TEST(QueryDistance, OfShellsThatAreNearInManyPlaces) {
   Random random(11);
   const auto rough = [&](double radius) {
     TriangleMesh mesh = icosphere(3, radius);
@@ -100,7 +100,7 @@ TEST(Gap, OfShellsThatAreNearInManyPlaces) {
 
 // Where nearest points are corners of cubes on one line through their centres, the spheres round
 // the cubes are as far apart as they are: nothing is left but the pad.
-TEST(Gap, OfCornersIsNoneTheLess) {
+TEST(QueryDistance, OfCornersIsNoneTheLess) {
   const TriangleMesh mesh = joined(triangle({0, 0, 0}, {1, 0, 0.5}, {0, 0.5, 1}),
                                    triangle({1, 1, 1}, {0, 1, 0.5}, {1, 0.5, 0}));
   Random random(5);
@@ -126,13 +126,13 @@ TEST(Gap, OfCornersIsNoneTheLess) {
   }
 }
 
-class GapOfBalls : public ::testing::Test {
+class QueryDistanceOfBalls : public ::testing::Test {
  protected:
   const SphereTree tree_ = exact_tree(icosphere(3, 1), 20);
   Query query_{tree_, tree_};
 };
 
-TEST_F(GapOfBalls, FarAway) {
+TEST_F(QueryDistanceOfBalls, FarAway) {
   const double near = query_.distance(shift({3, 0, 0}), 0).distance.upper;
   for (const double away : {1e2, 1e4}) {
     const DistanceInterval gap = query_.distance(shift({away, 0, 0}), 0).distance;
@@ -148,13 +148,13 @@ TEST_F(GapOfBalls, FarAway) {
   }
 }
 
-TEST_F(GapOfBalls, OfATouchIsNothing) {
+TEST_F(QueryDistanceOfBalls, OfATouchIsNothing) {
   const DistanceInterval gap = query_.distance(shift({1.9, 0.1, 0}), 0).distance;
   EXPECT_EQ(gap.lower, 0);
   EXPECT_EQ(gap.upper, 0);
 }
 
-TEST_F(GapOfBalls, WithAToleranceThatIsNoneIsThatOfZero) {
+TEST_F(QueryDistanceOfBalls, WithAToleranceThatIsNoneIsThatOfZero) {
   const Eigen::Isometry3d pose = shift({2.5, 0.3, 0.1});
   const DistanceInterval wanted = query_.distance(pose, 0).distance;
   for (const double tolerance : {-1.0, -0.0, std::numeric_limits<double>::quiet_NaN()}) {
@@ -164,7 +164,7 @@ TEST_F(GapOfBalls, WithAToleranceThatIsNoneIsThatOfZero) {
   }
 }
 
-TEST_F(GapOfBalls, OfAnInvalidPoseIsAStatus) {
+TEST_F(QueryDistanceOfBalls, OfAnInvalidPoseIsAStatus) {
   Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
   bad.matrix()(1, 1) = -1;
   EXPECT_EQ(query_.distance(bad, 0).status, QueryStatus::kInvalidPose);
