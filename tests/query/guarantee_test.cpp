@@ -59,7 +59,7 @@ class Judged {
 
  private:
   SpherePolicy policy_;
-  ExactBodies bodies_;
+  RationalBodies bodies_;
   ReferenceQuery reference_;
   std::vector<std::unique_ptr<Query>> engines_;
 };

@@ -42,9 +42,9 @@ TriangleMesh rounded(TriangleMesh mesh, double scale, double step) {
 }
 
 // Two bodies with their triangles.
-struct Bodies : ExactBodies {
+struct Bodies : RationalBodies {
   Bodies(const TriangleMesh& a, double size_a, const TriangleMesh& b, double size_b)
-      : ExactBodies(a, tree_with_triangles(a, size_a), b, tree_with_triangles(b, size_b)) {}
+      : RationalBodies(a, tree_with_triangles(a, size_a), b, tree_with_triangles(b, size_b)) {}
   // The answer of all engines, held against the guarantee.
   FoundPairs check(AllEngines& engines, const Eigen::Isometry3d& pose, StabilityCase& wrong) const {
     const FoundPairs answer = engines(pose);

@@ -83,8 +83,8 @@ struct Cases {
 class Tangency : public ::testing::TestWithParam<SpherePolicy> {
  protected:
   // All engines at each of these places, against the guarantee.
-  void check(Cases& cases, const ExactBodies& bodies, AllEngines& engines, const AxisDirection& way,
-             const std::vector<double>& places) {
+  void check(Cases& cases, const RationalBodies& bodies, AllEngines& engines,
+             const AxisDirection& way, const std::vector<double>& places) {
     for (const double x : places) {
       const FoundPairs answer = engines(way.at(x));
       const ExactPair exact = bodies.at(way.at(x));
@@ -97,7 +97,7 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
   }
 
   // Where the last contact ends.
-  void check_last_contact(Cases& cases, const ExactBodies& bodies, AllEngines& engines,
+  void check_last_contact(Cases& cases, const RationalBodies& bodies, AllEngines& engines,
                           const AxisDirection& way) {
     const double last = last_touching(way.from, way.to, [&](double x) {
       return ask(engines.first(), way.at(x)).result.leaf_pairs > 0;
@@ -108,7 +108,7 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
 
   // Where the geometry of one pair ends to meet, which is in the answer until then, and where its
   // bounds part by more than the pad, from where on it is not. True where there is such a pair.
-  bool check_one_pair(Cases& cases, const ExactBodies& bodies, AllEngines& engines,
+  bool check_one_pair(Cases& cases, const RationalBodies& bodies, AllEngines& engines,
                       const AxisDirection& way, Random& random) {
     const SpherePolicy policy = GetParam();
     std::vector<LeafPair> meeting = engines(way.at(way.from)).leaf_pairs;
@@ -159,7 +159,7 @@ TEST_P(Tangency, IsDecidedToTheLastFloat) {
     const TriangleMesh b = kind == 0 ? block() : random_mesh(random);
     const double cells_a = kind == 0 ? 4 : kCells[random.below(6)];
     const double cells_b = kind == 0 ? 4 : kCells[random.below(6)];
-    const ExactBodies bodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b));
+    const RationalBodies bodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b));
     const Eigen::Matrix3d rotation =
         kind < 2 ? turns[random.below(turns.size())] : random.rotation();
     AllEngines engines(bodies.fixed, bodies.moving, GetParam());
@@ -174,7 +174,7 @@ TEST_P(Tangency, IsDecidedToTheLastFloat) {
 TEST_P(Tangency, IsDecidedAmidManyOthers) {
   Cases cases("amid many others", GetParam());
   const TriangleMesh ball = icosphere(2, 1);
-  const ExactBodies bodies(ball, tree_of(ball, 14), ball, tree_of(ball, 14));
+  const RationalBodies bodies(ball, tree_of(ball, 14), ball, tree_of(ball, 14));
   AllEngines engines(bodies.fixed, bodies.moving, GetParam(), 1 << 16);
   Random random(1);
   const AxisDirection way{Eigen::Matrix3d::Identity(), {0, 0.02, 0.005}, {1, 0, 0}, 0.01, 4};

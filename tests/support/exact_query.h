@@ -107,15 +107,15 @@ class ExactPair {
 };
 
 /// Two bodies by their trees and in rational numbers.
-struct ExactBodies {
-  ExactBodies(const TriangleMesh& a, SphereTree tree_of_a, const TriangleMesh& b,
-              SphereTree tree_of_b)
+struct RationalBodies {
+  RationalBodies(const TriangleMesh& a, SphereTree tree_of_a, const TriangleMesh& b,
+                 SphereTree tree_of_b)
       : fixed(std::move(tree_of_a)),
         moving(std::move(tree_of_b)),
         exact_fixed(a, fixed),
         exact_moving(b, moving) {}
-  ExactBodies(const ExactBodies&) = delete;
-  ExactBodies& operator=(const ExactBodies&) = delete;
+  RationalBodies(const RationalBodies&) = delete;
+  RationalBodies& operator=(const RationalBodies&) = delete;
 
   [[nodiscard]] ExactPair at(const Eigen::Isometry3d& pose) const {
     return {exact_fixed, exact_moving, pose};

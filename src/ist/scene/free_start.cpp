@@ -20,15 +20,15 @@ FreeStart::State FreeStart::at(const Eigen::Isometry3d& pose) noexcept {
   return State::kFree;
 }
 
-std::optional<double> FreeStart::opening(const Eigen::Isometry3d& pose,
-                                         const Eigen::Vector3d& axis) noexcept {
+std::optional<double> FreeStart::open_distance(const Eigen::Isometry3d& pose,
+                                               const Eigen::Vector3d& axis) noexcept {
   if (at(pose) == State::kFree) return 0;
   Eigen::Isometry3d moved = pose;
-  for (double way = voxel_; way <= farthest_; way += voxel_) {
-    moved.translation() = pose.translation() + way * axis;
+  for (double distance = voxel_; distance <= farthest_; distance += voxel_) {
+    moved.translation() = pose.translation() + distance * axis;
     if (at(moved) != State::kFree) continue;
-    moved.translation() = pose.translation() + (way + voxel_) * axis;
-    if (at(moved) == State::kFree) return way + voxel_;
+    moved.translation() = pose.translation() + (distance + voxel_) * axis;
+    if (at(moved) == State::kFree) return distance + voxel_;
   }
   return std::nullopt;
 }

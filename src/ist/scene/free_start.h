@@ -24,8 +24,8 @@ class FreeStart {
   /// coordinates, to be free, mesh units: 0, or the first multiple of a voxel at which it is free
   /// and one voxel more. Empty where none is within both bodies' extents. Cost: 20 to 300 µs a
   /// voxel.
-  [[nodiscard]] std::optional<double> opening(const Eigen::Isometry3d& pose,
-                                              const Eigen::Vector3d& axis) noexcept;
+  [[nodiscard]] std::optional<double> open_distance(const Eigen::Isometry3d& pose,
+                                                    const Eigen::Vector3d& axis) noexcept;
 
  private:
   Query query_;

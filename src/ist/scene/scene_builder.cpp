@@ -132,7 +132,7 @@ void Builder::place() {
                     how));
   }
   const std::optional<double> way =
-      start.opening(pose, scene_.fixed.rotation.transpose() * *scene_.open);
+      start.open_distance(pose, scene_.fixed.rotation.transpose() * *scene_.open);
   if (!way) {
     fail_at(scene_, "held.open",
             fmt::format("{} where the device starts, and all along the axis of held.open: name "

@@ -31,9 +31,9 @@ std::string name_of(const Engine& engine) {
 // Every policy, from both sources, against the oracle.
 class ReferenceOracle : public ::testing::TestWithParam<Engine> {
  protected:
-  struct Bodies : ExactBodies {
+  struct Bodies : RationalBodies {
     Bodies(const TriangleMesh& a, double cells_a, const TriangleMesh& b, double cells_b)
-        : ExactBodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b)) {}
+        : RationalBodies(a, tree_of(a, cells_a), b, tree_of(b, cells_b)) {}
   };
 
   [[nodiscard]] static ReferenceQuery query(const Bodies& bodies) {
