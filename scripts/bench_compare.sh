@@ -27,7 +27,7 @@ declare -A usual=(
   [query_bench]='^query/(0\.8/(table|slab)|0\.4/slab)/best/1/row/'
   [reference_bench]='^reference/0\.8/(table|slab)/on_the_fly/'
   [contact_bench]='^contact_points/0\.8/slab/32/'
-  [kernel_bench]='^(decode|turn|overlap_row|write_leaf_pairs)/(avx2|scalar)(/slab(/18|/1000)?)?$'
+  [kernel_bench]='^(advance|measure|write_leaf_pairs)/(avx2|scalar)(/slab/5|/table/5|/both)?$'
 )
 commits=() runs=7 filter=
 while [ $# -gt 0 ]; do

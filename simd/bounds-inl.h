@@ -110,97 +110,157 @@ HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows&
   }
 }
 
-// Vector twin of ist::overlap: tests one row against the moving lanes [begin, end), begin at a
-// multiple of the vector. Writes the ids of the overlapping lanes to `out` and returns their
-// number; needs a vector's worth of room behind them.
+// A row in vectors: each of its numbers in all lanes.
 template <bool kSlabs>
-HWY_INLINE std::size_t OverlapRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
-                                  std::size_t begin, std::size_t end,
-                                  std::uint32_t* HWY_RESTRICT out) {
-  const Full d;
-  const hn::RebindToUnsigned<Full> du;
-  const auto x = hn::Set(d, f.x[row]), y = hn::Set(d, f.y[row]), z = hn::Set(d, f.z[row]);
-  const auto radius = hn::Set(d, f.radius[row]);
-  hn::Vec<Full> nx, ny, nz, offset, half, scaled_radius;
-  if constexpr (kSlabs) {
-    nx = hn::Set(d, f.normal_x[row]);
-    ny = hn::Set(d, f.normal_y[row]);
-    nz = hn::Set(d, f.normal_z[row]);
-    offset = hn::Set(d, f.offset[row]);
-    half = hn::Set(d, f.half[row]);
-    scaled_radius = hn::Set(d, f.scaled_radius[row]);
-  }
-  std::size_t count = 0;
-  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
-    const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
-    const auto dx = hn::Sub(load(kX), x), dy = hn::Sub(load(kY), y), dz = hn::Sub(load(kZ), z);
-    const auto r = load(kRadius);
-    const auto radius_sum = hn::Add(r, radius);
-    const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    auto apart = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));
-    if constexpr (kSlabs) {
-      const auto above_fixed =
-          hn::Sub(hn::Add(hn::Add(hn::Mul(dx, nx), hn::Mul(dy, ny)), hn::Mul(dz, nz)), offset);
-      apart = hn::Or(apart, hn::Gt(hn::Abs(above_fixed), hn::Add(r, half)));
-      const auto above_moving =
-          hn::Add(hn::Add(hn::Add(hn::Mul(dx, load(kNormalX)), hn::Mul(dy, load(kNormalY))),
-                          hn::Mul(dz, load(kNormalZ))),
-                  load(kOffset));
-      apart = hn::Or(apart, hn::Gt(hn::Abs(above_moving), hn::Add(load(kHalf), scaled_radius)));
-    }
-    const auto overlapping = hn::AndNot(apart, hn::FirstN(d, end - i));
-    count += StoreSelected(d, overlapping, hn::Load(du, m.id + i), out + count);
-  }
-  return count;
-}
+struct RowVectors {
+  using V = hn::Vec<Full>;
+  V x, y, z, radius, normal_x, normal_y, normal_z, offset, half, scaled_radius;
 
-// Vector twin of ist::measure, for a row as in OverlapRow. Where a NaN cannot be compared, x86's
-// min takes its second operand, here the value so far.
+  HWY_INLINE RowVectors(const FixedRows& f, std::size_t row) {
+    const auto set = [](float number) { return hn::Set(Full(), number); };
+    x = set(f.x[row]);
+    y = set(f.y[row]);
+    z = set(f.z[row]);
+    radius = set(f.radius[row]);
+    if constexpr (kSlabs) {
+      normal_x = set(f.normal_x[row]);
+      normal_y = set(f.normal_y[row]);
+      normal_z = set(f.normal_z[row]);
+      offset = set(f.offset[row]);
+      half = set(f.half[row]);
+      scaled_radius = set(f.scaled_radius[row]);
+    }
+  }
+};
+
+// Vector twin of ist::PairTest, for a row and a vector of moving lanes.
 template <bool kSlabs>
-HWY_INLINE std::size_t MeasureRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
-                                  std::size_t begin, std::size_t end,
-                                  std::uint32_t* HWY_RESTRICT out, DistanceBounds& measure) {
-  const Full d;
-  const hn::RebindToUnsigned<Full> du;
-  const auto set = [&](const float* numbers) { return hn::Set(d, numbers[row]); };
-  const auto none = hn::Set(d, std::numeric_limits<float>::infinity());
-  auto pruned = none, overlapping = none, farthest = none;
-  std::size_t count = 0;
-  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
-    const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
-    const auto dx = hn::Sub(load(kX), set(f.x)), dy = hn::Sub(load(kY), set(f.y)),
-               dz = hn::Sub(load(kZ), set(f.z));
-    const auto dot = [&](hn::Vec<Full> x, hn::Vec<Full> y, hn::Vec<Full> z) {
+struct VectorTest {
+  using V = hn::Vec<Full>;
+  V squared, radius_sum, over_fixed, fixed_sum, over_moving, moving_sum;
+
+  HWY_INLINE VectorTest(const RowVectors<kSlabs>& f, const MovingLanes& m, std::size_t at) {
+    const Full d;
+    const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + at); };
+    const V dx = hn::Sub(load(kX), f.x), dy = hn::Sub(load(kY), f.y), dz = hn::Sub(load(kZ), f.z);
+    const auto dot = [&](V x, V y, V z) {
       return hn::Add(hn::Add(hn::Mul(dx, x), hn::Mul(dy, y)), hn::Mul(dz, z));
     };
-    const auto r = load(kRadius), radius_sum = hn::Add(r, set(f.radius));
-    const auto squared = dot(dx, dy, dz), distance = hn::Sqrt(squared);
-    auto separate = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));
-    auto apart = hn::Sub(distance, radius_sum);
+    const V radius = load(kRadius);
+    squared = dot(dx, dy, dz);
+    radius_sum = hn::Add(radius, f.radius);
     if constexpr (kSlabs) {
-      const auto high =
-          hn::Abs(hn::Sub(dot(set(f.normal_x), set(f.normal_y), set(f.normal_z)), set(f.offset)));
-      const auto high_sum = hn::Add(r, set(f.half));
-      separate = hn::Or(separate, hn::Gt(high, high_sum));
-      apart = hn::Max(hn::Sub(high, high_sum), apart);
-      const auto over =
+      over_fixed = hn::Abs(hn::Sub(dot(f.normal_x, f.normal_y, f.normal_z), f.offset));
+      fixed_sum = hn::Add(radius, f.half);
+      over_moving =
           hn::Abs(hn::Add(dot(load(kNormalX), load(kNormalY), load(kNormalZ)), load(kOffset)));
-      const auto over_sum = hn::Add(load(kHalf), set(f.scaled_radius));
-      separate = hn::Or(separate, hn::Gt(over, over_sum));
-      apart = hn::Max(hn::Mul(hn::Sub(over, over_sum), hn::Set(d, 1 / kSlabScale)), apart);
+      moving_sum = hn::Add(load(kHalf), f.scaled_radius);
     }
-    const auto here = hn::FirstN(d, end - i);
-    pruned = hn::Min(hn::IfThenElse(hn::And(here, separate), apart, none), pruned);
-    overlapping = hn::Min(hn::IfThenElse(hn::AndNot(separate, here), apart, none), overlapping);
-    farthest = hn::Min(hn::IfThenElse(here, hn::Add(distance, radius_sum), none), farthest);
-    count += StoreSelected(d, hn::AndNot(separate, here), hn::Load(du, m.id + i), out + count);
   }
-  const auto least = [&](float& so_far, hn::Vec<Full> v) {
-    so_far = HWY_MIN(so_far, hn::GetLane(hn::MinOfLanes(d, v)));
-  };
-  least(measure.min_pruned, pruned);
-  least(measure.min_overlapping, overlapping);
-  least(measure.upper, farthest);
+
+  [[nodiscard]] HWY_INLINE hn::Mask<Full> Separate() const {
+    auto separate = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));
+    if constexpr (kSlabs) {
+      separate = hn::Or(separate, hn::Gt(over_fixed, fixed_sum));
+      separate = hn::Or(separate, hn::Gt(over_moving, moving_sum));
+    }
+    return separate;
+  }
+
+  [[nodiscard]] HWY_INLINE V Apart(V distance) const {
+    const Full d;
+    V apart = hn::Sub(distance, radius_sum);
+    if constexpr (kSlabs) {
+      // Where a NaN cannot be compared, x86's max takes its second operand.
+      apart = hn::Max(hn::Sub(over_fixed, fixed_sum), apart);
+      apart = hn::Max(hn::Mul(hn::Sub(over_moving, moving_sum), hn::Set(d, 1 / kSlabScale)), apart);
+    }
+    return apart;
+  }
+};
+
+// Measures as ist::PairTest does. Few pairs improve a bound, so a root is taken only where squares,
+// with some last bits to spare, say that one may.
+template <bool kSlabs>
+class Measurer {
+ public:
+  using V = hn::Vec<Full>;
+
+  // `most_radii` is at least every sum of radii.
+  HWY_INLINE Measurer(DistanceBounds& bounds, float most_radii)
+      : bounds_(bounds), most_radii_(most_radii) {
+    Spare();
+  }
+
+  // `here` are the lanes in use, `ends` those of pairs that are not descended.
+  HWY_INLINE void Both(const VectorTest<kSlabs>& test, hn::Mask<Full> here, hn::Mask<Full> ends) {
+    auto improves = hn::And(ends, Below(test, hn::Add(lower_, test.radius_sum)));
+    if constexpr (kSlabs) {
+      improves = hn::AndNot(hn::Ge(hn::Sub(test.over_fixed, test.fixed_sum), lower_), improves);
+      improves =
+          hn::AndNot(hn::Ge(hn::Sub(test.over_moving, test.moving_sum), scaled_lower_), improves);
+    }
+    improves = hn::Or(improves, ImprovesUpper(test, here));
+    if (HWY_LIKELY(hn::AllFalse(Full(), improves))) return;
+    const V distance = hn::Sqrt(test.squared);
+    Least(bounds_.lower, ends, test.Apart(distance));
+    Least(bounds_.upper, here, hn::Add(distance, test.radius_sum));
+    Spare();
+  }
+  HWY_INLINE void Upper(const VectorTest<kSlabs>& test, hn::Mask<Full> overlapping) {
+    if (HWY_LIKELY(hn::AllFalse(Full(), ImprovesUpper(test, overlapping)))) return;
+    Least(bounds_.upper, overlapping, hn::Add(hn::Sqrt(test.squared), test.radius_sum));
+    Spare();
+  }
+
+ private:
+  HWY_INLINE static hn::Mask<Full> Below(const VectorTest<kSlabs>& test, V length) {
+    const V positive = hn::Max(length, hn::Zero(Full()));
+    return hn::Lt(test.squared, hn::Mul(positive, positive));
+  }
+  HWY_INLINE hn::Mask<Full> ImprovesUpper(const VectorTest<kSlabs>& test,
+                                          hn::Mask<Full> among) const {
+    return hn::And(among, Below(test, hn::Sub(upper_, test.radius_sum)));
+  }
+  HWY_INLINE void Spare() {
+    const float spare = 0x1p-20F;
+    scaled_lower_ = hn::Set(Full(), kSlabScale * bounds_.lower);
+    lower_ = hn::Set(Full(), bounds_.lower + spare * (most_radii_ + HWY_MAX(bounds_.lower, 0.0F)));
+    upper_ = hn::Set(Full(), bounds_.upper + spare * (most_radii_ + bounds_.upper));
+  }
+  HWY_INLINE static void Least(float& so_far, hn::Mask<Full> among, V v) {
+    const Full d;
+    const V none = hn::Set(d, DistanceBounds::kNone);
+    const V numbers = hn::IfThenElse(hn::And(among, hn::Lt(v, none)), v, none);
+    so_far = HWY_MIN(so_far, hn::GetLane(hn::MinOfLanes(d, numbers)));
+  }
+
+  DistanceBounds& bounds_;
+  float most_radii_;
+  V lower_, scaled_lower_, upper_;
+};
+
+// Tests one row against the moving lanes [begin, end), begin at a multiple of the vector. Writes
+// the ids of the overlapping lanes to `out` and returns their number; needs a vector's worth of
+// room behind them. `last` says that no overlapping pair is descended.
+template <bool kSlabs, Measured kMeasured>
+HWY_INLINE std::size_t TestRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
+                               std::size_t begin, std::size_t end, bool last,
+                               std::uint32_t* HWY_RESTRICT out, Measurer<kSlabs>& measurer) {
+  const Full d;
+  const hn::RebindToUnsigned<Full> du;
+  const RowVectors<kSlabs> fixed(f, row);
+  std::size_t count = 0;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    const VectorTest<kSlabs> test(fixed, m, i);
+    const auto here = hn::FirstN(d, end - i);
+    const auto overlapping = hn::AndNot(test.Separate(), here);
+    if constexpr (kMeasured == Measured::kUpper) measurer.Upper(test, overlapping);
+    if constexpr (kMeasured == Measured::kBoth) {
+      measurer.Both(test, here, last ? here : hn::AndNot(overlapping, here));
+    }
+    count += StoreSelected(d, overlapping, hn::Load(du, m.id + i), out + count);
+  }
   return count;
 }
 

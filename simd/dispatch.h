@@ -14,7 +14,6 @@ struct Kernels {
   const char* target;  ///< `scalar`, `avx3`, …
   AdvanceFunction advance;
   WriteLeafPairsFunction write_leaf_pairs;
-  StepParts parts;
   FindNearFunction find_near;
 };
 

@@ -105,6 +105,17 @@ void decode_implicit(const SearchSide& side, std::uint32_t parent, std::uint32_t
   return side.nodes[parent + 1].first_child - side.nodes[parent].first_child;
 }
 
+/// Returns the number of lanes that decode() makes of a frontier's `node`.
+[[nodiscard]] inline std::uint32_t opened(const SearchSide& side, std::uint32_t node) noexcept {
+  return side.descends ? child_count(side, node) : 1;
+}
+
+/// Returns a length, mesh units, that no radius of the side's nodes exceeds: a saved one is less
+/// than an edge of the parent's cube.
+[[nodiscard]] inline float largest_radius(const SearchSide& side) noexcept {
+  return 4 * side.half_edge;
+}
+
 /// Decodes the children of a frontier's `node` into lanes from `at` on, or the node itself where
 /// the side does not descend. Returns the number of lanes, at most 8.
 template <std::size_t N>
@@ -112,7 +123,7 @@ std::uint32_t decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& 
                      std::size_t at) noexcept {
   const std::uint32_t parent = side.descends ? node : node / 8;
   const std::uint32_t slot = side.descends ? 0 : node % 8;
-  const std::uint32_t count = side.descends ? child_count(side, node) : 1;
+  const std::uint32_t count = opened(side, node);
   const std::uint32_t name = !side.descends     ? node
                              : side.emits_slots ? 8 * node
                                                 : side.nodes[node].first_child;
@@ -148,50 +159,53 @@ inline void turn(const SearchPose& pose, bool slabs, const FixedLanes& fixed, st
   rows.scaled_radius[at] = (fixed.lane[kRadius][at] + pose.slab_pad) * kSlabScale;
 }
 
-/// Tests whether the bounds of a row and of a moving node overlap, with slabs by separating planes.
-/// Rejects by `>`, so that a NaN keeps the pair.
-template <std::size_t N>
-[[nodiscard]] bool overlap(const FixedRows& f, std::size_t row, const BoundLanes<N>& m,
-                           std::size_t at, bool slabs) noexcept {
-  const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
-              dz = m.lane[kZ][at] - f.z[row];
-  const float radius_sum = m.lane[kRadius][at] + f.radius[row];
-  if ((dx * dx + dy * dy) + dz * dz > radius_sum * radius_sum) return false;
-  if (!slabs) return true;
-  const float above_fixed =
-      ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
-  if (std::abs(above_fixed) > m.lane[kRadius][at] + f.half[row]) return false;
-  const float above_moving =
-      ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
-      m.lane[kOffset][at];
-  return !(std::abs(above_moving) > m.lane[kHalf][at] + f.scaled_radius[row]);
-}
+/// The numbers by which the bounds of a row and of a moving node are tested. The bounds overlap
+/// unless a number exceeds its limit: `squared` that of the balls, squared; the others exist with
+/// slabs alone.
+struct PairTest {
+  float squared, radius_sum;      ///< of the distance of the centres; `radius_sum` is not squared
+  float over_fixed, fixed_sum;    ///< height of the moving centre over the fixed slab's middle
+  float over_moving, moving_sum;  ///< of the fixed centre over the moving slab's, · kSlabScale
 
-/// Tests like overlap(), and updates `measure` by the pair. The distance of a pair that slabs
-/// separate is the largest of its three separations.
-template <std::size_t N>
-[[nodiscard]] bool measure(const FixedRows& f, std::size_t row, const BoundLanes<N>& m,
-                           std::size_t at, bool slabs, DistanceBounds& measure) noexcept {
-  const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
-              dz = m.lane[kZ][at] - f.z[row];
-  const float radius_sum = m.lane[kRadius][at] + f.radius[row];
-  const float distance = std::sqrt((dx * dx + dy * dy) + dz * dz);
-  float apart = distance - radius_sum;
-  if (slabs) {
-    const float above_fixed =
-        ((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) - f.offset[row];
-    const float above_moving =
+  template <std::size_t N>
+  PairTest(const FixedRows& f, std::size_t row, const BoundLanes<N>& m, std::size_t at,
+           bool slabs) noexcept
+      : over_fixed(0), fixed_sum(0), over_moving(0), moving_sum(0) {
+    const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
+                dz = m.lane[kZ][at] - f.z[row];
+    squared = (dx * dx + dy * dy) + dz * dz;
+    radius_sum = m.lane[kRadius][at] + f.radius[row];
+    if (!slabs) return;
+    over_fixed = std::abs(((dx * f.normal_x[row] + dy * f.normal_y[row]) + dz * f.normal_z[row]) -
+                          f.offset[row]);
+    fixed_sum = m.lane[kRadius][at] + f.half[row];
+    over_moving = std::abs(
         ((dx * m.lane[kNormalX][at] + dy * m.lane[kNormalY][at]) + dz * m.lane[kNormalZ][at]) +
-        m.lane[kOffset][at];
-    apart = std::max(apart, std::abs(above_fixed) - (m.lane[kRadius][at] + f.half[row]));
-    apart = std::max(apart, (std::abs(above_moving) - (m.lane[kHalf][at] + f.scaled_radius[row])) *
-                                (1 / kSlabScale));
+        m.lane[kOffset][at]);
+    moving_sum = m.lane[kHalf][at] + f.scaled_radius[row];
   }
-  const bool overlapping = overlap(f, row, m, at, slabs);
-  float& least = overlapping ? measure.min_overlapping : measure.min_pruned;
-  least = std::min(least, apart);
-  measure.upper = std::min(measure.upper, distance + radius_sum);
-  return overlapping;
-}
+
+  /// Rejects by `>`, so that a NaN keeps the pair.
+  [[nodiscard]] bool overlap() const noexcept {
+    return !(squared > radius_sum * radius_sum) && !(over_fixed > fixed_sum) &&
+           !(over_moving > moving_sum);
+  }
+
+  /// Updates the upper bound by the pair.
+  void measure_upper(DistanceBounds& bounds) const noexcept {
+    bounds.upper = std::min(bounds.upper, std::sqrt(squared) + radius_sum);
+  }
+  /// Updates the lower bound by a pair that is not descended. The distance of a pair that slabs
+  /// separate is the largest of its three separations.
+  void measure_lower(bool slabs, DistanceBounds& bounds) const noexcept {
+    const float distance = std::sqrt(squared);
+    float apart = distance - radius_sum;
+    if (slabs) {
+      apart = std::max(apart, over_fixed - fixed_sum);
+      apart = std::max(apart, (over_moving - moving_sum) * (1 / kSlabScale));
+    }
+    bounds.lower = std::min(bounds.lower, apart);
+  }
+};
 
 }  // namespace ist

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -36,6 +37,7 @@ struct SearchSide {
 /// next.
 struct SearchStep {
   SearchSide fixed, moving;
+  bool last;  ///< no step follows: rows may be cut
 };
 
 /// The motion from the fixed tree's frame to the moving one's, x = rotation · y + translation, and
@@ -73,6 +75,16 @@ inline constexpr std::size_t kFrontierSpare = 64;
           frontier.group_count + rows <= frontier.capacity);
 }
 
+/// Continues the row of a fixed node that the last call left unfinished, or begins it. Returns the
+/// place at which end_row() begins its group.
+[[nodiscard]] inline std::size_t begin_row(Frontier& frontier, std::uint32_t fixed) noexcept {
+  if (frontier.group_count == 0 || frontier.groups[frontier.group_count - 1].fixed != fixed) {
+    return frontier.moving_count;
+  }
+  --frontier.group_count;
+  return frontier.group_count == 0 ? 0 : frontier.groups[frontier.group_count - 1].end;
+}
+
 /// Makes a group of the moving nodes appended since there were `before`, if any.
 inline void end_row(Frontier& frontier, std::uint32_t fixed, std::size_t before) noexcept {
   frontier.groups[frontier.group_count] = {fixed,
@@ -80,32 +92,74 @@ inline void end_row(Frontier& frontier, std::uint32_t fixed, std::size_t before)
   frontier.group_count += frontier.moving_count != before ? 1 : 0;
 }
 
-/// The position in a frontier at which a step continues: a group, a child of its fixed node, and
-/// where rows may be cut one of its moving nodes.
+/// The position in a frontier at which a step continues: a group, a child of its fixed node (a
+/// row), and one of its moving nodes, where a row was left unfinished.
 struct SearchCursor {
   std::size_t group = 0;
   std::uint32_t row = 0;
   std::uint32_t moving = 0;  ///< counted from the group's first node
+
+  friend bool operator==(const SearchCursor&, const SearchCursor&) = default;
 };
 
-template <std::size_t N>
-struct BoundLanes;
-struct FixedRows;
+/// The most moving nodes of a group that are tested against one row at a time: a piece. Every form
+/// of a step stops between pieces alone, at the same ones.
+inline constexpr std::uint32_t kPieceNodes = 56;
+inline constexpr std::size_t kPieceTests = 8 * kPieceNodes;
+
+/// Returns the moving nodes for which a frontier needs room before a step tests a row's remaining
+/// `nodes`, or in the last step their next piece.
+[[nodiscard]] inline std::size_t room_of_row(const SearchStep& step, std::uint32_t nodes) noexcept {
+  const std::size_t piece = step.last && nodes > kPieceNodes ? kPieceNodes : nodes;
+  return step.moving.descends ? 8 * piece : piece;
+}
+
+/// The result of one call of a step.
+struct Advanced {
+  std::uint64_t tests;  ///< pairs of bounds that were tested
+  bool full;            ///< `out` had no room for more
+};
+
+/// The bounds of the distance between two bodies that tests give, mesh units; radii include pads.
+struct DistanceBounds {
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  /// The least signed distance of the pairs of bounds that are not descended: of those that do not
+  /// overlap, and in the last step of all.
+  float lower = kNone;
+  /// The least of the largest distances between points of two balls: of those that overlap, or
+  /// where `lower` is measured of all.
+  float upper = kNone;
+
+  void add(const DistanceBounds& other) noexcept {
+    lower = std::min(lower, other.lower);
+    upper = std::min(upper, other.upper);
+  }
+};
+
+/// The bounds that a search measures. Cost: a sixth of the search for the upper, half of it for
+/// both.
+enum class Measured : std::uint8_t { kNothing, kUpper, kBoth };
+
 struct SearchScratch;
 
 /// Tests the pairs of `in` from `cursor` on, and appends the overlapping ones to `out`, until all
-/// are tested or `out` has no room for another row (all moving nodes that overlap one fixed node).
-/// An empty `out` must have room for one row: all moving nodes of that level.
+/// are tested, `out` is full, or `most` tests are not enough: it stops before a group that would
+/// exceed them, and where that is the first, before such a piece. A row (all moving nodes that
+/// overlap one fixed node) begins only where `out` has room for the whole of it; in the last step,
+/// where it has room for the next piece. An empty `out` must have room for a row or, in the last
+/// step, for a piece. A row that was left unfinished continues in the same `out`.
 ///
-/// @return the number of pairs tested
-using AdvanceFunction = std::uint64_t (*)(const SearchStep& step, const SearchPose& pose,
-                                          const Frontier& in, SearchCursor& cursor, Frontier& out,
-                                          SearchScratch& scratch);
+/// Updates `bounds` by every pair that it tests, as `measured` says.
+using AdvanceFunction = Advanced (*)(const SearchStep& step, const SearchPose& pose,
+                                     const Frontier& in, SearchCursor& cursor, Frontier& out,
+                                     SearchScratch& scratch, std::uint64_t most, Measured measured,
+                                     DistanceBounds& bounds);
 
 /// Advances without vectors; it specifies the vector kernels, which test the same pairs in the same
 /// order by the same float operations. Cost: 10 to 20 ns a test.
-std::uint64_t advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                             SearchCursor& cursor, Frontier& out, SearchScratch& scratch);
+Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                        SearchCursor& cursor, Frontier& out, SearchScratch& scratch,
+                        std::uint64_t most, Measured measured, DistanceBounds& bounds);
 
 /// Writes the pairs of a frontier of leaves. `out` must have room for all of them and
 /// kLeafPairSpare more.
@@ -114,31 +168,5 @@ inline constexpr std::size_t kLeafPairSpare = 8;
 
 /// Writes leaf pairs without vectors. Cost: 1 ns a leaf pair.
 void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out);
-
-/// The bounds of the distance between two bodies that tests give, mesh units, pads included.
-struct DistanceBounds {
-  static constexpr float kNone = std::numeric_limits<float>::infinity();
-  float min_pruned = kNone;       ///< least distance of two bounds that do not overlap
-  float min_overlapping = kNone;  ///< least signed distance of two that do: negative
-  float upper = kNone;            ///< least of the largest distances of points of two balls
-};
-
-/// The parts of a step, each callable alone, for tests and benchmarks.
-struct StepParts {
-  /// Decodes a frontier's `node` into lanes from `at` on; see ist::decode.
-  std::uint32_t (*decode)(const SearchSide& side, std::uint32_t node, BoundLanes<1024>& out,
-                          std::size_t at);
-  /// Turns all eight rows; see ist::turn.
-  void (*turn)(const SearchPose& pose, bool slabs, const BoundLanes<8>& fixed, FixedRows& rows);
-  /// Tests one row against the lanes [begin, end), `begin` a multiple of 16; see ist::overlap.
-  /// Writes the ids of the overlapping lanes, with room for 16 more behind them, and returns their
-  /// number.
-  std::size_t (*overlap_row)(const FixedRows& rows, std::size_t row, const BoundLanes<1024>& moving,
-                             std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out);
-  /// Tests like overlap_row and bounds the distance by every pair; see ist::measure.
-  std::size_t (*measure_row)(const FixedRows& rows, std::size_t row, const BoundLanes<1024>& moving,
-                             std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out,
-                             DistanceBounds& measure);
-};
 
 }  // namespace ist

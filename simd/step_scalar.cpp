@@ -5,57 +5,69 @@
 namespace ist {
 namespace {
 
-void turn_rows(const SearchPose& pose, bool slabs, const FixedLanes& fixed, FixedRows& rows) {
-  for (std::size_t at = 0; at < FixedLanes::kSize; ++at) turn(pose, slabs, fixed, at, rows);
-}
-
-std::size_t overlap_row(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
-                        std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out) {
+// Decodes moving nodes [begin, end) of a frontier. Returns the number of lanes.
+std::size_t decode_piece(const SearchSide& side, const Frontier& in, std::uint32_t begin,
+                         std::uint32_t end, MovingLanes& lanes) {
   std::size_t count = 0;
-  for (std::size_t at = begin; at < end; ++at) {
-    if (overlap(rows, row, moving, at, slabs)) out[count++] = moving.id[at];
-  }
+  for (std::uint32_t i = begin; i < end; ++i) count += decode(side, in.moving[i], lanes, count);
   return count;
 }
 
-std::size_t measure_row(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
-                        std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out,
-                        DistanceBounds& measured) {
-  std::size_t count = 0;
-  for (std::size_t at = begin; at < end; ++at) {
-    if (measure(rows, row, moving, at, slabs, measured)) out[count++] = moving.id[at];
-  }
-  return count;
+// Returns the tests that a group makes.
+std::uint64_t group_tests(const SearchStep& step, const Frontier& in, const SearchGroup& group,
+                          std::uint32_t begin) {
+  std::uint64_t lanes = 0;
+  for (std::uint32_t i = begin; i < group.end; ++i) lanes += opened(step.moving, in.moving[i]);
+  return opened(step.fixed, group.fixed) * lanes;
 }
 
 }  // namespace
 
-std::uint64_t advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                             SearchCursor& cursor, Frontier& out, SearchScratch& scratch) {
+Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                        SearchCursor& cursor, Frontier& out, SearchScratch& scratch,
+                        std::uint64_t most, Measured measured, DistanceBounds& bounds) {
   const bool slabs = step.fixed.slabs != nullptr;
   FixedRows& rows = scratch.rows[0];
   std::uint64_t tests = 0;
   for (; cursor.group < in.group_count; ++cursor.group, cursor.row = 0) {
     const SearchGroup& group = in.groups[cursor.group];
     const std::uint32_t begin = cursor.group == 0 ? 0 : in.groups[cursor.group - 1].end;
-    const std::size_t most = std::size_t{group.end - begin} * (step.moving.descends ? 8 : 1);
+    if (tests > 0 && cursor.row == 0 && cursor.moving == 0 &&
+        group_tests(step, in, group, begin) > most - tests) {
+      break;
+    }
     const std::uint32_t row_count = decode(step.fixed, group.fixed, scratch.fixed, 0);
     for (std::size_t row = 0; row < row_count; ++row) turn(pose, slabs, scratch.fixed, row, rows);
-    for (; cursor.row < row_count; ++cursor.row) {
-      if (!has_room(out, 1, most)) return tests;
-      const std::size_t before = out.moving_count;
-      for (std::uint32_t i = begin; i < group.end; ++i) {
-        const std::uint32_t count = decode(step.moving, in.moving[i], scratch.moving, 0);
-        tests += count;
-        for (std::size_t at = 0; at < count; ++at) {
-          if (!overlap(rows, cursor.row, scratch.moving, at, slabs)) continue;
-          out.moving[out.moving_count++] = scratch.moving.id[at];
+    for (; cursor.row < row_count; ++cursor.row, cursor.moving = 0) {
+      const std::uint32_t fixed = scratch.fixed.id[cursor.row];
+      while (begin + cursor.moving < group.end) {
+        const std::uint32_t first = begin + cursor.moving;
+        if ((step.last || cursor.moving == 0) &&
+            !has_room(out, 1, room_of_row(step, group.end - first))) {
+          return {tests, true};
         }
+        const std::uint32_t end = std::min(first + kPieceNodes, group.end);
+        const std::size_t lanes = decode_piece(step.moving, in, first, end, scratch.moving);
+        if (lanes > most - tests) return {tests, false};
+        const std::size_t before = cursor.moving == 0 ? out.moving_count : begin_row(out, fixed);
+        for (std::size_t at = 0; at < lanes; ++at) {
+          const PairTest test(rows, cursor.row, scratch.moving, at, slabs);
+          const bool overlapping = test.overlap();
+          if (measured == Measured::kBoth || (measured == Measured::kUpper && overlapping)) {
+            test.measure_upper(bounds);
+          }
+          if (measured == Measured::kBoth && (step.last || !overlapping)) {
+            test.measure_lower(slabs, bounds);
+          }
+          if (overlapping) out.moving[out.moving_count++] = scratch.moving.id[at];
+        }
+        end_row(out, fixed, before);
+        tests += lanes;
+        cursor.moving = end - begin;
       }
-      end_row(out, scratch.fixed.id[cursor.row], before);
     }
   }
-  return tests;
+  return {tests, false};
 }
 
 void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
@@ -65,11 +77,7 @@ void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
   }
 }
 
-constinit const Kernels kScalarKernels{
-    "scalar",
-    advance_scalar,
-    write_leaf_pairs_scalar,
-    {decode<MovingLanes::kSize>, turn_rows, overlap_row, measure_row},
-    find_near_scalar};
+constinit const Kernels kScalarKernels{"scalar", advance_scalar, write_leaf_pairs_scalar,
+                                       find_near_scalar};
 
 }  // namespace ist

@@ -31,30 +31,44 @@ HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
   if constexpr (kSlabs) __builtin_prefetch(side.slabs + parent);
 }
 
-template <bool kSlabs>
+template <bool kSlabs, Measured kMeasured>
 class Advancer {
  public:
   Advancer(const SearchStep& step, const SearchPose& pose, const Frontier& in, Frontier& out,
-           SearchScratch& scratch)
-      : step_(step), pose_(pose), in_(in), out_(out), scratch_(scratch) {}
+           SearchScratch& scratch, std::uint64_t most, DistanceBounds& bounds)
+      : step_(step),
+        pose_(pose),
+        in_(in),
+        out_(out),
+        scratch_(scratch),
+        most_(most),
+        measurer_(bounds,
+                  largest_radius(step.fixed) + largest_radius(step.moving) + pose.ball_pad) {}
 
   // Decodes a batch of groups, then tests it. So a vector is loaded long after the narrower stores
   // that wrote it, and short loops of varying length do not delay each other.
-  std::uint64_t Run(SearchCursor& cursor) {
+  Advanced Run(SearchCursor& cursor) {
     while (cursor.group < in_.group_count) {
       Batch batch;
-      if (cursor.row == 0) Gather(cursor.group, batch);
+      if (cursor.row == 0 && cursor.moving == 0) Gather(cursor.group, batch);
       if (batch.groups == 0) {
-        if (!RowByRow(cursor)) break;
+        if (tests_ > 0 && cursor.row == 0 && cursor.moving == 0 &&
+            !Affordable(in_.groups[cursor.group], Begin(cursor.group), tests_)) {
+          break;
+        }
+        const Stop stop = RowByRow(cursor);
+        if (stop != Stop::kNot) return {tests_, stop == Stop::kFull};
       } else {
         Test(batch);
         cursor.group += batch.groups;
       }
     }
-    return tests_;
+    return {tests_, false};
   }
 
  private:
+  enum class Stop { kNot, kFull, kSpent };
+
   [[nodiscard]] std::uint32_t Begin(std::size_t group) const {
     return group == 0 ? 0 : in_.groups[group - 1].end;
   }
@@ -88,9 +102,20 @@ class Advancer {
     return count;
   }
 
-  // Gathers as many groups from `first` on as fit the scratch memory and, whatever overlaps, `out`.
+  // Returns whether the tests of a group stay within the limit.
+  [[nodiscard]] bool Affordable(const SearchGroup& group, std::uint32_t begin,
+                                std::uint64_t tests) const {
+    if (HWY_LIKELY(8 * MostLanes(group.end - begin) <= most_ - tests)) return true;
+    std::uint64_t lanes = 0;
+    for (std::uint32_t i = begin; i < group.end; ++i) lanes += opened(step_.moving, in_.moving[i]);
+    return opened(step_.fixed, group.fixed) * lanes <= most_ - tests;
+  }
+
+  // Gathers as many groups from `first` on as fit the scratch memory, the limit of tests and,
+  // whatever overlaps, `out`.
   void Gather(std::size_t first, Batch& batch) {
     std::size_t at = 0, rows = 0, most = 0;
+    std::uint64_t tests = tests_;
     std::uint32_t begin = Begin(first);
     while (batch.groups < SearchScratch::kGroups && first + batch.groups < in_.group_count) {
       const SearchGroup group = in_.groups[first + batch.groups];
@@ -98,12 +123,16 @@ class Advancer {
       const std::size_t lanes = MostLanes(group.end - begin);
       rows += 8;
       most += 8 * lanes;
-      if (at + lanes > MovingLanes::kSize || !has_room(out_, rows, most)) return;
+      if (at + lanes > MovingLanes::kSize || !has_room(out_, rows, most) ||
+          !Affordable(group, begin, tests)) {
+        return;
+      }
       const std::size_t g = batch.groups++;
       batch.begin[g] = at;
       batch.end[g] = at = DecodeMoving(begin, group.end, at);
       batch.rows[g] = DecodeFixed(first + g, scratch_.rows[g]);
       batch.id[g] = scratch_.fixed.id[0];
+      tests += batch.rows[g] * (batch.end[g] - batch.begin[g]);
       begin = group.end;
     }
   }
@@ -112,35 +141,49 @@ class Advancer {
     for (std::size_t g = 0; g < batch.groups; ++g) {
       for (std::uint32_t row = 0; row < batch.rows[g]; ++row) {
         const std::size_t before = out_.moving_count;
-        out_.moving_count += OverlapRow<kSlabs>(scratch_.rows[g], row, scratch_.moving,
-                                                batch.begin[g], batch.end[g], out_.moving + before);
+        TestLanes(scratch_.rows[g], row, batch.begin[g], batch.end[g]);
         end_row(out_, batch.id[g] + row, before);
       }
       tests_ += batch.rows[g] * (batch.end[g] - batch.begin[g]);
     }
   }
 
-  // Tests one group row by row: it has more moving nodes than the scratch memory holds, or `out` is
-  // nearly full. Returns false when `out` is full.
-  bool RowByRow(SearchCursor& cursor) {
+  HWY_INLINE void TestLanes(const FixedRows& rows, std::size_t row, std::size_t begin,
+                            std::size_t end) {
+    out_.moving_count +=
+        TestRow<kSlabs, kMeasured>(rows, row, scratch_.moving, begin, end, step_.last,
+                                   out_.moving + out_.moving_count, measurer_);
+  }
+
+  // Tests one group piece by piece: it has more moving nodes than the scratch memory holds, or
+  // `out` is nearly full, or the limit is near.
+  Stop RowByRow(SearchCursor& cursor) {
     const SearchGroup group = in_.groups[cursor.group];
     const std::uint32_t begin = Begin(cursor.group);
     const std::uint32_t rows = DecodeFixed(cursor.group, scratch_.rows[0]);
-    constexpr std::uint32_t kPiece = MovingLanes::kSize / 8;
-    for (; cursor.row < rows; ++cursor.row) {
-      if (!has_room(out_, 1, MostLanes(group.end - begin))) return false;
-      const std::size_t before = out_.moving_count;
-      for (std::uint32_t i = begin; i < group.end; i += kPiece) {
-        const std::size_t end = DecodeMoving(i, HWY_MIN(i + kPiece, group.end), 0);
-        out_.moving_count += OverlapRow<kSlabs>(scratch_.rows[0], cursor.row, scratch_.moving, 0,
-                                                end, out_.moving + out_.moving_count);
-        tests_ += end;
+    const bool whole = group.end - begin <= kPieceNodes;
+    std::size_t lanes = whole ? DecodeMoving(begin, group.end, 0) : 0;
+    for (; cursor.row < rows; ++cursor.row, cursor.moving = 0) {
+      const std::uint32_t fixed = scratch_.fixed.id[cursor.row];
+      while (begin + cursor.moving < group.end) {
+        const std::uint32_t first = begin + cursor.moving;
+        if ((step_.last || cursor.moving == 0) &&
+            !has_room(out_, 1, room_of_row(step_, group.end - first))) {
+          return Stop::kFull;
+        }
+        const std::uint32_t end = HWY_MIN(first + kPieceNodes, group.end);
+        if (!whole) lanes = DecodeMoving(first, end, 0);
+        if (lanes > most_ - tests_) return Stop::kSpent;
+        const std::size_t before = cursor.moving == 0 ? out_.moving_count : begin_row(out_, fixed);
+        TestLanes(scratch_.rows[0], cursor.row, 0, lanes);
+        tests_ += lanes;
+        end_row(out_, fixed, before);
+        cursor.moving = end - begin;
       }
-      end_row(out_, scratch_.fixed.id[cursor.row], before);
     }
     ++cursor.group;
     cursor.row = 0;
-    return true;
+    return Stop::kNot;
   }
 
   const SearchStep& step_;
@@ -148,17 +191,34 @@ class Advancer {
   const Frontier& in_;
   Frontier& out_;
   SearchScratch& scratch_;
+  const std::uint64_t most_;
+  Measurer<kSlabs> measurer_;
   std::uint64_t tests_ = 0;
 };
 
-std::uint64_t Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                      SearchCursor& cursor, Frontier& out, SearchScratch& scratch) {
-  Frontier next = out;  // a copy, so that the compiler may keep it in registers
-  const std::uint64_t tests = step.fixed.slabs != nullptr
-                                  ? Advancer<true>(step, pose, in, next, scratch).Run(cursor)
-                                  : Advancer<false>(step, pose, in, next, scratch).Run(cursor);
+Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                 SearchCursor& cursor, Frontier& out, SearchScratch& scratch, std::uint64_t most,
+                 Measured measured, DistanceBounds& bounds) {
+  Frontier next = out;  // copies, so that the compiler may keep them in registers
+  DistanceBounds known = bounds;
+  const auto run = [&]<bool kSlabs, Measured kMeasured>() {
+    return Advancer<kSlabs, kMeasured>(step, pose, in, next, scratch, most, known).Run(cursor);
+  };
+  const auto measure = [&]<bool kSlabs>() {
+    switch (measured) {
+      case Measured::kUpper:
+        return run.template operator()<kSlabs, Measured::kUpper>();
+      case Measured::kBoth:
+        return run.template operator()<kSlabs, Measured::kBoth>();
+      default:
+        return run.template operator()<kSlabs, Measured::kNothing>();
+    }
+  };
+  const Advanced advanced = step.fixed.slabs != nullptr ? measure.template operator()<true>()
+                                                        : measure.template operator()<false>();
   out = next;
-  return tests;
+  bounds = known;
+  return advanced;
 }
 
 // Vector twin of ist::write_leaf_pairs_scalar.
@@ -178,30 +238,6 @@ void WriteLeafPairs(const Frontier& leaves, LeafPair* HWY_RESTRICT out) {
   }
 }
 
-// The parts of a step, each callable alone.
-std::uint32_t DecodePart(const SearchSide& side, std::uint32_t node, MovingLanes& out,
-                         std::size_t at) {
-  return side.slabs != nullptr ? Decode<true>(side, node, out, at)
-                               : Decode<false>(side, node, out, at);
-}
-
-void TurnPart(const SearchPose& pose, bool slabs, const FixedLanes& fixed, FixedRows& rows) {
-  return slabs ? Turn<true>(pose, fixed, rows) : Turn<false>(pose, fixed, rows);
-}
-
-std::size_t OverlapRowPart(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
-                           std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out) {
-  return slabs ? OverlapRow<true>(rows, row, moving, begin, end, out)
-               : OverlapRow<false>(rows, row, moving, begin, end, out);
-}
-
-std::size_t MeasureRowPart(const FixedRows& rows, std::size_t row, const MovingLanes& moving,
-                           std::size_t begin, std::size_t end, bool slabs, std::uint32_t* out,
-                           DistanceBounds& measure) {
-  return slabs ? MeasureRow<true>(rows, row, moving, begin, end, out, measure)
-               : MeasureRow<false>(rows, row, moving, begin, end, out, measure);
-}
-
 }  // namespace ist::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -217,14 +253,12 @@ struct Compiled {
 };
 
 // One target's kernels, or null where this compiler does not make them.
-#define IST_KERNELS(NAME, TARGET)                                                     \
-  Compiled {                                                                          \
-    HWY_##TARGET, {                                                                   \
-      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs),        \
-          {HWY_CHOOSE_##TARGET(DecodePart), HWY_CHOOSE_##TARGET(TurnPart),            \
-           HWY_CHOOSE_##TARGET(OverlapRowPart), HWY_CHOOSE_##TARGET(MeasureRowPart)}, \
-          HWY_CHOOSE_##TARGET(FindNear)                                               \
-    }                                                                                 \
+#define IST_KERNELS(NAME, TARGET)                                              \
+  Compiled {                                                                   \
+    HWY_##TARGET, {                                                            \
+      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs), \
+          HWY_CHOOSE_##TARGET(FindNear)                                        \
+    }                                                                          \
   }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),

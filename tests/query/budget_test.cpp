@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "ist/query/relative_pose.h"
@@ -122,38 +125,91 @@ TEST(WithinABudget, ContactsAreTheFirst) {
   EXPECT_GT(some, 20u);
 }
 
-// Else many of them would be handed over after the time is over: 30 µs for 60,000.
-void expect_few_at_a_time(const SphereTree& fixed, const SphereTree& moving,
-                          const Eigen::Isometry3d& at) {
-  struct Taken final : LeafPairStream {
-    bool take(std::span<const LeafPair> some) noexcept override {
-      most = std::max(most, some.size());
-      leaf_pairs.insert(leaf_pairs.end(), some.begin(), some.end());
-      return true;
-    }
-    std::size_t most = 0;
-    std::vector<LeafPair> leaf_pairs;
-  } taken, all_taken;
+// A clock that stands still and counts how often it is read.
+struct FakeClock {
+  static Budget::Clock::time_point now() noexcept {
+    ++looks;
+    return {};
+  }
+  static inline std::uint64_t looks;
+};
+
+// Counts the tests and pairs from one look at the clock to the next.
+struct Watched : PairLister {
+  using PairLister::PairLister;
+  Advanced advance(const SearchBatch& batch) noexcept {
+    const std::uint64_t looks = FakeClock::looks;
+    const Advanced made = PairLister::advance(batch);
+    EXPECT_EQ(FakeClock::looks, looks + 1);
+    most_tests = std::max(most_tests, made.tests);
+    pairs = 0;
+    return made;
+  }
+  bool leaves(const Frontier& leaf_pairs) noexcept {
+    pairs += leaf_pairs.moving_count;
+    most_pairs = std::max(most_pairs, pairs);
+    return PairLister::leaves(leaf_pairs);
+  }
+  std::uint64_t most_tests = 0, pairs = 0, most_pairs = 0;
+};
+
+void expect_looks(const SphereTree& fixed, const SphereTree& moving, const Eigen::Isometry3d& at) {
   const SearchPlan plan(fixed, moving, SpherePolicy::kSlab);
   Search search(plan, select_kernels(""), 1 << 16);
   const auto relative = relative_pose(at, fixed.parts().lattice, moving.parts().lattice);
   const SearchPose pose =
       to_float(*relative, fixed.bounding_radius() + moving.bounding_radius(), 0);
-  std::vector<LeafPair> window(1 << 17);
-  LeafPairSink sink(window, taken), all(window, all_taken);
-  const Search::AnytimeResult known = search.run_within(kNoEnd, pose, sink);
-  EXPECT_GT(taken.leaf_pairs.size(), 4 * Search::kLeavesAtOnce);
-  EXPECT_LE(taken.most, Search::kLeavesAtOnce);
-  EXPECT_EQ(search.run(pose, all), known.tests);  // what follows is as it was
-  EXPECT_EQ(all_taken.leaf_pairs, taken.leaf_pairs);
-  EXPECT_GT(all_taken.most, Search::kLeavesAtOnce);
+  std::vector<LeafPair> out(1 << 20), all_out(1 << 20);
+  LeafPairSink sink(plan, select_kernels(""), out), all_sink(plan, select_kernels(""), all_out);
+  const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1)),
+                      .now = FakeClock::now};
+  Watched watched(pose, sink, BudgetMeter(budget));
+  EXPECT_EQ(search.run(watched), plan.steps().size());
+  EXPECT_LE(watched.most_tests, 500u);  // as Budget states
+  EXPECT_LE(watched.most_pairs, 512u);
+  EXPECT_GT(watched.most_tests, 250u);
+  EXPECT_GT(watched.most_pairs, 128u);
+  PairLister all(pose, all_sink);
+  search.run(all);
+  EXPECT_EQ(all.tests(), watched.tests());
+  EXPECT_EQ(all_sink.count(), sink.count());
+  EXPECT_EQ(all_out, out);
 }
 
-TEST(WithinABudget, ContactsAreHandedOverFewAtATime) {
-  expect_few_at_a_time(shells().fixed, shells().moving, shells().pose);
+TEST(WithinADeadline, TheClockIsReadOftenEnough) {
+  expect_looks(shells().fixed, shells().moving, shells().pose);
   // One leaf that all others touch.
-  expect_few_at_a_time(tree_of(box({-1, -1, -1}, {1, 1, 1}), 1), tree_of(icosphere(3, 1), 120),
-                       shift({0.1, 0, 0}));
+  expect_looks(tree_of(box({-1, -1, -1}, {1, 1, 1}), 1), tree_of(icosphere(3, 1), 120),
+               shift({0.1, 0, 0}));
+}
+
+// A clock that is late from one look on.
+struct LateClock {
+  static Budget::Clock::time_point now() noexcept {
+    return Budget::Clock::time_point(std::chrono::nanoseconds(looks++ < allowed ? 0 : 2));
+  }
+  static inline int looks, allowed;
+};
+
+TEST(WithinADeadline, TheSearchEndsAtTheFirstLookAfterIt) {
+  const Scene& scene = solids()[0];
+  for (const SpherePolicy policy : kSpherePolicies) {
+    Query query(scene.fixed, scene.moving, options_of(policy));
+    std::uint64_t before = 0;
+    for (int allowed = 0; allowed < 40; ++allowed) {
+      LateClock::looks = 0;
+      LateClock::allowed = allowed;
+      const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::nanoseconds(1)),
+                          .now = LateClock::now};
+      const FoundPairs stopped = ask_within(query, scene.pose, budget);
+      EXPECT_FALSE(stopped.result.complete);
+      EXPECT_EQ(LateClock::looks, allowed + 1);
+      EXPECT_LE(stopped.result.sphere_tests, before + BudgetMeter::kUnwatchedTests + 1);
+      EXPECT_TRUE(same_known(ask_within(query, scene.pose, {stopped.result.sphere_tests}), stopped))
+          << allowed;
+      before = stopped.result.sphere_tests;
+    }
+  }
 }
 
 TEST(WithinADeadline, ThatIsPastTheRootsAreKnown) {
@@ -174,19 +230,20 @@ TEST(WithinADeadline, ThatIsFarAllIsKnown) {
   EXPECT_TRUE(same(ask_within(query, scene.pose, hour), ask(query, scene.pose)));
 }
 
-TEST(Spending, LooksAtTheClockOftenEnoughAndStaysWithinItsTests) {
-  Spending spending({.tests = 1000});
-  EXPECT_TRUE(spending.spend(500));
-  EXPECT_TRUE(spending.spend(499));
-  EXPECT_FALSE(spending.spend(2));
-  EXPECT_FALSE(spending.spend(1));  // nothing more once it is over
-  EXPECT_EQ(spending.tests(), 999u);
-  Spending late({.deadline = Budget::Clock::now()});
-  EXPECT_FALSE(late.spend(0));
-  Spending soon({.deadline = Budget::Clock::now() + std::chrono::milliseconds(20)});
-  int times = 0;
-  while (soon.spend(Spending::kUnwatched)) ++times;
-  EXPECT_GT(times, 100);
+TEST(BudgetMeter, AllowsWhatIsLeft) {
+  EXPECT_EQ(BudgetMeter().allow(), std::numeric_limits<std::uint64_t>::max());
+  BudgetMeter meter({.tests = 1000}, 100);
+  EXPECT_EQ(meter.allow(), 900u);
+  meter.spend(899);
+  EXPECT_EQ(meter.allow(), 1u);
+  meter.spend(1);
+  EXPECT_EQ(meter.allow(), 0u);
+  EXPECT_EQ(meter.spent(), 1000u);
+  const auto start = Budget::Clock::now();
+  EXPECT_EQ(BudgetMeter({.deadline = start}).allow(), 0u);
+  EXPECT_EQ(BudgetMeter({.deadline = start + std::chrono::hours(1)}).allow(),
+            BudgetMeter::kUnwatchedTests);
+  EXPECT_EQ(BudgetMeter({.tests = 7, .deadline = start + std::chrono::hours(1)}).allow(), 7u);
 }
 
 TEST(WithinABudget, AnInvalidPoseIsAStatus) {

@@ -14,28 +14,40 @@ namespace {
 // Each vector kernel against the scalar form, which specifies it.
 class Advance : public ::testing::TestWithParam<std::string> {
  protected:
-  // Both go through `in` in frontiers of `room`, from the same places on to the same places.
-  // Returns how many pairs they found.
+  // Both go through `in` in frontiers of `room`, in calls of at most `most` tests, from the same
+  // places on to the same places. Returns how many pairs they found.
   std::size_t expect_same(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                          std::size_t room, std::size_t offset) {
-    GuardedFrontier wanted(room, 0), made(room, offset);
-    SearchCursor wanted_cursor, made_cursor;
+                          std::size_t room, std::size_t offset,
+                          std::uint64_t most = ~std::uint64_t{0}) {
     std::size_t found = 0;
-    while (wanted_cursor.group < in.group_count) {
-      wanted.clear();
-      made.clear();
-      const std::uint64_t wanted_tests =
-          advance_scalar(step, pose, in, wanted_cursor, wanted, *scratch_);
-      const std::uint64_t made_tests =
-          kernels_.advance(step, pose, in, made_cursor, made, *scratch_);
-      EXPECT_EQ(made_tests, wanted_tests);
-      EXPECT_EQ(made_cursor.group, wanted_cursor.group);
-      EXPECT_EQ(made_cursor.row, wanted_cursor.row);
-      EXPECT_TRUE(same_pairs(made, wanted));
-      EXPECT_TRUE(made.intact());
-      EXPECT_TRUE(wanted.intact());
-      if (HasFailure()) break;
-      found += wanted.moving_count;
+    for (const Measured measured : {Measured::kNothing, Measured::kUpper, Measured::kBoth}) {
+      GuardedFrontier wanted(room, 0), made(room, offset);
+      SearchCursor wanted_cursor, made_cursor;
+      DistanceBounds wanted_bounds, made_bounds;
+      found = 0;
+      while (wanted_cursor.group < in.group_count) {
+        wanted.clear();
+        made.clear();
+        Advanced of_wanted, of_made;
+        do {
+          of_wanted = advance_scalar(step, pose, in, wanted_cursor, wanted, *scratch_, most,
+                                     measured, wanted_bounds);
+          of_made = kernels_.advance(step, pose, in, made_cursor, made, *scratch_, most, measured,
+                                     made_bounds);
+          EXPECT_EQ(of_made.tests, of_wanted.tests);
+          EXPECT_EQ(of_made.full, of_wanted.full);
+          EXPECT_LE(of_wanted.tests, most);
+          EXPECT_EQ(made_cursor, wanted_cursor);
+          EXPECT_EQ(made_bounds.lower, wanted_bounds.lower);
+          EXPECT_EQ(made_bounds.upper, wanted_bounds.upper);
+          if (HasFailure()) return found;
+        } while (of_wanted.tests > 0 && !of_wanted.full && wanted_cursor.group < in.group_count);
+        EXPECT_TRUE(same_pairs(made, wanted));
+        EXPECT_TRUE(made.intact());
+        EXPECT_TRUE(wanted.intact());
+        if (HasFailure()) return found;
+        found += wanted.moving_count;
+      }
     }
     return found;
   }
@@ -100,10 +112,14 @@ TEST_P(Advance, IsTheScalarFormAllTheWayDown) {
       for (std::size_t step = 0; step < search->plan.steps().size(); ++step) {
         SCOPED_TRACE(std::string(to_string(search->policy)) + ", step " + std::to_string(step));
         const SearchStep& by = search->plan.steps()[step];
-        expect_same(by, pose, *in, search->plan.longest_row(step), i);
+        const std::size_t row = search->plan.longest_row(step);
+        expect_same(by, pose, *in, row, i);
+        expect_same(by, pose, *in, 8 * row, i, kPieceTests + random.below(500));
         auto out = std::make_unique<GuardedFrontier>(search->plan.most_pairs(step), 0);
         SearchCursor cursor;
-        advance_scalar(by, pose, *in, cursor, *out, *scratch_);
+        DistanceBounds none;
+        advance_scalar(by, pose, *in, cursor, *out, *scratch_, ~std::uint64_t{0},
+                       Measured::kNothing, none);
         in = std::move(out);
         if (HasFailure()) return;
       }

@@ -24,7 +24,9 @@ PlannedSearch::PlannedSearch(SphereTree a, SphereTree b, SpherePolicy with)
     all.moving.assign(pairs->moving, pairs->moving + pairs->groups[0].end);
     auto next = std::make_unique<GuardedFrontier>(plan.most_pairs(step), 0);
     SearchCursor cursor;
-    advance_scalar(plan.steps()[step], pose, *pairs, cursor, *next, *scratch);
+    DistanceBounds none;
+    advance_scalar(plan.steps()[step], pose, *pairs, cursor, *next, *scratch, ~std::uint64_t{0},
+                   Measured::kNothing, none);
     pairs = std::move(next);
   }
 }

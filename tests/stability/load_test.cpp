@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
                                "human_maxilla.stl",
                                "human_mandible.stl",
                                {0, -5, 45},
-                               {{{kFew, 0xb798eea057253b2}, {kThousandTimes, 0x55d954daaca40a15}}}},
+                               {{{kFew, 0xc61661673e3ebb14}, {kThousandTimes, 0x55d954daaca40a15}}}},
                       LoadPair{
                           "spl",
                           "spl_cranium_face.stl",

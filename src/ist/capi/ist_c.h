@@ -286,7 +286,10 @@ typedef struct ist_query_result {
   double resolution; /* greatest distance between the surfaces in a leaf pair */
 } ist_query_result;
 
-/* The limits of one query. A limit of tests alone gives the same answer in every run. */
+/* The limits of one query, with one contract for every function that takes them. A search never
+ * makes more tests than allowed, but for the test of the roots. With a limit of time it reads the
+ * clock at least every 500 tests and every 512 leaf pairs. A limit of tests alone gives the same
+ * answer in every run. */
 typedef struct ist_budget {
   size_t struct_size;
   uint64_t tests;       /* most pairs of bounds to test; 0: no limit */
@@ -295,8 +298,7 @@ typedef struct ist_budget {
 
 /* Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
  * `pairs` may be NULL where `capacity` is 0; the call then counts the pairs. `budget` may be NULL:
- * no limit. With a budget the distance is always known; the search never exceeds a limit of tests,
- * and a limit of time by about 500 tests or 4096 pairs. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns
+ * no limit. With a budget the distance is always known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns
  * per test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
@@ -325,8 +327,7 @@ typedef struct ist_contact_sums {
 } ist_contact_sums;
 
 /* Reduces all leaf pairs to a few contacts and to sums. `contacts` may be NULL where `capacity` is
- * 0; `sums` may be NULL; `budget` may be NULL: no limit. The search may exceed a budget by about
- * 1,000 tests or 512 pairs, with two workers by 3,000 tests or 20 us. Errors: IST_POSE_INVALID;
+ * 0; `sums` may be NULL; `budget` may be NULL: no limit. Errors: IST_POSE_INVALID;
  * IST_NOT_PREPARED where options->contacts was -1. Cost: as ist_query_leaf_pairs, plus 50 to 120 ns
  * per pair. [real time] */
 IST_C_API ist_status ist_query_contacts(ist_query* query, const double pose[16],

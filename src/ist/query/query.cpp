@@ -14,11 +14,19 @@ namespace {
 // Batch size, in fixed nodes, of a search that ends at its first leaf pair.
 constexpr std::size_t kFewGroups = 16;
 
-// The budget that is left after the root test.
-Budget minus_root_test(Budget budget) {
-  budget.tests -= budget.has_tests() && budget.tests > 0 ? 1U : 0U;
-  return budget;
-}
+// Ends at the first leaf pair.
+struct AnyLeafPair : VisitorBase {
+  const SearchPose& pose;
+  bool found = false;
+
+  explicit AnyLeafPair(const SearchPose& at) noexcept : pose(at) {}
+  Advanced advance(const SearchBatch& batch) noexcept { return batch.advance(pose); }
+  bool leaves(const Frontier& /*pairs*/) noexcept {
+    found = true;
+    return false;
+  }
+  static std::size_t most_groups() noexcept { return kFewGroups; }
+};
 
 }  // namespace
 
@@ -48,12 +56,9 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose) noexcept {
     if (s.exact->any(*project_to_rigid(pose), from)) result.answer = Answer::kYes;
     return result;
   }
-  struct First final : LeafPairStream {
-    bool take(std::span<const LeafPair>) noexcept override { return false; }
-  } first;
-  LeafPairSink sink(s.window, first);
-  static_cast<void>(s.serial().run_hurried(from, sink, kFewGroups));
-  if (sink.count() > 0) {
+  AnyLeafPair any(from);
+  s.serial().run(any);
+  if (any.found) {
     QueryResult of_pairs;
     s.set_pad(2 * s.pad_of(from), of_pairs);
     result.answer = Answer::kNear;
@@ -66,36 +71,15 @@ QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair>
                               const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
-  LeafPairSink sink(out);
-  if (!budget.has_tests() && !budget.has_deadline()) return s.search(pose, sink);
-  const std::optional<detail::Approach> bodies = s.approach(pose);
-  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
-  QueryResult result = s.root_result(bodies->roots);
-  result.distance = bodies->roots.distance;
-  if (!bodies->roots.overlap) return result;
-
-  const SearchPose from = s.to_float(*bodies);
-  const double pad = s.pad_of(from);
-  s.set_pad(2 * pad, result);
-  const Search::AnytimeResult known = s.serial().run_within(minus_root_test(budget), from, sink);
-  s.set_steps(known.steps, result);
-  result.sphere_tests += known.tests;
-  result.leaf_pairs = sink.count();
-  result.truncated = sink.truncated();
-  // Surfaces in a pair of nodes that was not descended may intersect.
-  const double apart = result.complete && result.leaf_pairs == 0
-                           ? std::min(known.inner.min_pruned, known.leaves.min_pruned)
-                           : 0;
-  const double upper = std::min(known.inner.upper, known.leaves.upper);
-  result.distance->lower = std::max(result.distance->lower, apart - pad);
-  result.distance->upper = std::min(result.distance->upper, upper + pad);
-  return result;
+  LeafPairSink sink(s.plan, s.kernels, out);
+  return s.list(pose, budget, sink);
 }
 
 QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, LeafPairStream& stream) noexcept {
   const ScopedFloatEnvironment environment;
-  LeafPairSink sink(state_->window, stream);
-  return state_->search(pose, sink);
+  detail::QueryState& s = *state_;
+  LeafPairSink sink(s.plan, s.kernels, s.window, stream);
+  return s.list(pose, {}, sink);
 }
 
 QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,
@@ -111,21 +95,14 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   const std::optional<detail::Approach> bodies = s.approach(pose, margin);
   if (!rigid || !bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
   QueryResult result = s.root_result(bodies->roots);
-  result.distance = bodies->roots.distance;
   if (bodies->roots.overlap) {
-    const SearchPose from = s.to_float(*bodies);
-    s.set_pad(2 * s.pad_of(from) - margin, result);
-    LeafPairSink sink(s.window, reducer);
-    const Budget left = minus_root_test(budget);
-    auto* shared = std::get_if<SharedSearch>(&s.searches);
-    const Search::Stopped stopped =
-        shared ? shared->run_until(left, from, sink) : s.serial().run_until(left, from, sink);
-    s.set_steps(stopped.steps, result);
-    result.sphere_tests += stopped.tests;
-    result.leaf_pairs = stopped.leaf_pairs;
-    if (result.leaf_pairs > 0) {
-      result.distance->upper = std::min(result.distance->upper, result.resolution);
-    }
+    LeafPairSink sink(s.plan, s.kernels, s.window, reducer);
+    // Only the end of a budget needs a bound: the upper one, because a pair of nodes is left.
+    s.search(*bodies, budget, budget.is_limited() ? Measured::kUpper : Measured::kNothing, sink,
+             result);
+    auto& [lower, upper] = *result.distance;
+    if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
+    if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, margin);
   }
   reducer.finish();
   return result;

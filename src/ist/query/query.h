@@ -77,9 +77,7 @@ class IST_API Query {
   /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
   ///               the first of them. Elements behind the last pair may be overwritten
   /// @param budget ends the search early: the result then holds the first pairs, and the distance
-  ///               as far as it is known. The limit of tests is never exceeded, but by the test of
-  ///               the roots; a deadline by some 500 tests or 4096 leaf pairs. With a budget the
-  ///               calling thread works alone
+  ///               as far as it is known. With a budget the distance is bounded in any case
   ///
   /// Cost: 1 to 3 ns a test of two bounds, 20 to 40 ns a pair of nodes.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out,
@@ -97,10 +95,7 @@ class IST_API Query {
   /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
   ///                 status is another than kDone
   /// @param budget   ends the search early: then neither result nor manifold is complete, and no
-  ///                 force should be made of it. May be exceeded by some 1,000 tests or 512 leaf
-  ///                 pairs, or one long row of them; with two workers, which do not share a limit
-  ///                 of tests, by 3,000 tests or 20 µs. A budget of as many tests as a deadline
-  ///                 allowed ends the search at the same place
+  ///                 force should be made of it
   ///
   /// Cost: that of leaf_pairs(), and 50 to 120 ns a leaf pair.
   [[nodiscard]] QueryResult contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,

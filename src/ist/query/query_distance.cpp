@@ -1,21 +1,52 @@
 #include <algorithm>
+#include <limits>
 
 #include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
 #include "ist/query/query_state.h"
+#include "ist/query/traversal/search_pose.h"
 
 namespace ist {
 namespace {
 
-// The radius of the first search for the nearest pair, in parts of the radius that suffices, and
-// the factor from one search to the next. A single search as far as the nearest pair known so far
-// could find far too many pairs.
-constexpr double kFirstLook = 0.125, kLookFarther = 1.25;
+// Bounds the distance by every pair that it tests, and leaves out those so far apart that they
+// cannot narrow the interval to `tolerance`.
+class NearestLeaves : public VisitorBase {
+ public:
+  NearestLeaves(const SearchPose& plain, double tolerance, DistanceInterval& distance) noexcept
+      : plain_(plain), tolerance_(tolerance > 0 ? tolerance : 0), distance_(distance) {}
 
-// The lower end at which the interval is narrow enough.
-double far_enough(const DistanceInterval& distance, double tolerance) {
-  return tolerance > 0 ? distance.upper - tolerance : distance.upper;
-}
+  Advanced advance(const SearchBatch& batch) noexcept {
+    // Enough: where the interval is narrow, nothing farther than its upper end is looked for.
+    const double within = std::max(0.0, distance_.upper - tolerance_);
+    DistanceBounds bounds{static_cast<float>(least_ - within),
+                          static_cast<float>(distance_.upper + within)};
+    const DistanceBounds before = bounds;
+    const Advanced made = batch.measure(Measured::kBoth, inflated(plain_, within), bounds);
+    if (bounds.lower < before.lower) least_ = std::min(least_, bounds.lower + within);
+    if (bounds.upper < before.upper) {
+      distance_.upper = std::min(distance_.upper, std::max(0.0, bounds.upper - within));
+    }
+    tests_ += made.tests;
+    return made;
+  }
+  static bool leaves(const Frontier& /*pairs*/) noexcept { return true; }
+  static std::size_t most_groups() noexcept { return kGroups; }
+
+  /// Returns a lower bound of the distance, once the search is over.
+  [[nodiscard]] double least() const noexcept { return least_; }
+  [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
+
+ private:
+  // The batch size, in fixed nodes: the sooner leaves are reached, the sooner the search narrows.
+  static constexpr std::size_t kGroups = 16;
+
+  const SearchPose& plain_;
+  double tolerance_;
+  DistanceInterval& distance_;
+  double least_ = std::numeric_limits<double>::infinity();
+  std::uint64_t tests_ = 0;
+};
 
 }  // namespace
 
@@ -51,24 +82,12 @@ void detail::QueryState::nearest_leaves(const Approach& bodies, double tolerance
                                         DistanceResult& result) noexcept {
   auto& [lower, upper] = result.distance;
   const SearchPose plain = to_float(bodies);
-  const double pad = pad_of(plain);
-  Search& search = serial();
-  const Dive near = search.dive(plain);
-  result.sphere_tests += near.tests;
-  upper = std::min(upper, near.farthest + pad);
-  for (double within = std::max(lower, kFirstLook * upper);
-       lower < far_enough(result.distance, tolerance); within *= kLookFarther) {
-    within = std::min(within, far_enough(result.distance, tolerance));
-    LeafPairSink sink(std::span<LeafPair>{});
-    const Search::AnytimeResult known = search.run_within({}, to_float(bodies, within), sink);
-    result.sphere_tests += known.tests;
-    upper = std::min(upper, std::min(known.inner.upper, known.leaves.upper) - within + pad);
-    if (sink.count() > 0) {  // the nearest leaf pair is among them
-      lower = std::max(lower, within + known.leaves.min_overlapping - pad);
-      break;
-    }
-    lower = std::max(lower, within);
-  }
+  const Search::Beam near = serial().beam(plain);
+  upper = std::min(upper, double{near.bounds.upper});
+  NearestLeaves nearest(plain, tolerance, result.distance);
+  serial().run(nearest);
+  result.sphere_tests += near.tests + nearest.tests();
+  lower = std::min(upper, std::max(lower, nearest.least()));
 }
 
 }  // namespace ist

@@ -61,8 +61,6 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
                   within_limit("triangle_pairs", options.triangle_pairs));
     largest_coordinate = largest_coordinate_of(*moving.triangles());
   }
-  LeafPairSink none(std::span<LeafPair>{});
-  static_cast<void>(search(Eigen::Isometry3d::Identity(), none));
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {
@@ -98,36 +96,54 @@ void QueryState::set_pad(double pad, QueryResult& result) const noexcept {
       2 * (fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)) + pad;
 }
 
-void QueryState::set_steps(std::size_t made, QueryResult& result) const noexcept {
-  const std::size_t left = plan.steps().size() - made;
-  result.complete = left == 0;
-  result.level = static_cast<int>(left);
-}
-
 QueryResult QueryState::root_result(const RootTest& roots) const noexcept {
   QueryResult result;
   result.sphere_tests = 1;
   set_pad(2 * roots.pad, result);
-  if (!roots.overlap) result.distance = roots.distance;
+  result.distance = roots.distance;
   return result;
 }
 
-QueryResult QueryState::search(const Eigen::Isometry3d& pose, LeafPairSink& sink) noexcept {
+QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget,
+                             LeafPairSink& sink) noexcept {
   const std::optional<Approach> bodies = approach(pose);
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
   QueryResult result = root_result(bodies->roots);
   if (!bodies->roots.overlap) return result;
-  const SearchPose from = to_float(*bodies);
-  set_pad(2 * pad_of(from), result);
-  if (auto* shared = std::get_if<SharedSearch>(&searches)) {
-    result.sphere_tests += shared->run(from, sink);
-  } else {
-    result.sphere_tests += serial().run(from, sink);
-  }
-  result.leaf_pairs = sink.count();
-  result.truncated = sink.truncated();
-  result.complete = !sink.stopped();
+  search(*bodies, budget, budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
+  if (!budget.is_limited()) result.distance.reset();  // nothing was measured
   return result;
+}
+
+void QueryState::search(const Approach& bodies, const Budget& budget, Measured measured,
+                        LeafPairSink& sink, QueryResult& result) noexcept {
+  const SearchPose from = to_float(bodies);
+  set_pad(2 * pad_of(from) - bodies.margin, result);
+  // The test of the roots is one of the budget's.
+  const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
+  SharedSearch::End end{};
+  if (auto* shared = std::get_if<SharedSearch>(&searches)) {
+    end = shared->run(from, sink, meter, measured);
+  } else {
+    PairLister lister(from, sink, meter, measured);
+    const std::size_t steps = serial().run(lister);
+    end = {steps, lister.tests(), sink.count(), lister.bounds()};
+  }
+  result.sphere_tests += end.tests - meter.spent();
+  result.leaf_pairs = end.leaf_pairs;
+  result.truncated = sink.truncated();
+  result.level = static_cast<int>(plan.steps().size() - end.steps);
+  result.complete = result.level == 0;
+  // Bounds are inflated by their pads, which cover the rounding of a test, and by the margin.
+  // Surfaces in a pair of nodes that was not descended may intersect.
+  auto& [lower, upper] = *result.distance;
+  if (result.complete && measured == Measured::kBoth) {
+    lower = std::max(lower, end.bounds.lower + bodies.margin);
+  }
+  // A complete result is the same with a budget that measures the upper end alone, and without.
+  if (!result.complete || measured == Measured::kBoth) {
+    upper = std::min(upper, end.bounds.upper - bodies.margin);
+  }
 }
 
 }  // namespace ist::detail

@@ -36,12 +36,16 @@ struct QueryState {
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
-  /// Searches without a budget, with all workers.
-  [[nodiscard]] QueryResult search(const Eigen::Isometry3d& pose, LeafPairSink& sink) noexcept;
+  /// Lists the leaf pairs of two bodies whose roots overlap, with all workers, and completes
+  /// `result`.
+  void search(const Approach& bodies, const Budget& budget, Measured measured, LeafPairSink& sink,
+              QueryResult& result) noexcept;
+  /// Lists all leaf pairs at a pose.
+  [[nodiscard]] QueryResult list(const Eigen::Isometry3d& pose, const Budget& budget,
+                                 LeafPairSink& sink) noexcept;
   /// Returns the result that the root test alone gives.
   [[nodiscard]] QueryResult root_result(const RootTest& roots) const noexcept;
   void set_pad(double pad, QueryResult& result) const noexcept;
-  void set_steps(std::size_t made, QueryResult& result) const noexcept;
   /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
   void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;
 

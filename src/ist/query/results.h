@@ -12,21 +12,30 @@
 
 namespace ist {
 
-/// The limits of one query. With a limit of tests alone the answer is the same on every machine and
-/// in every run. Each verb that takes a budget states by how much it may overspend it.
+/// The limits of one query: one contract for every verb that takes them.
+///
+/// A search never makes more tests than allowed, but for the test of the roots, which is always
+/// made. With a deadline it reads the clock at least every 500 tests and every 512 leaf pairs, and
+/// ends at the first look after the deadline. The result of a search that ended early states the
+/// level, and the interval of the distance that the tests so far tell. With a limit of tests alone
+/// the answer is the same on every machine and in every run; a limit of as many tests as a deadline
+/// allowed ends the search at the same place.
 struct Budget {
   using Clock = std::chrono::steady_clock;
 
   /// The most pairs of bounds to test.
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   Clock::time_point deadline = Clock::time_point::max();
+  /// The clock of the deadline.
+  Clock::time_point (*now)() noexcept = &Clock::now;
 
   [[nodiscard]] bool has_tests() const noexcept {
     return tests != std::numeric_limits<std::uint64_t>::max();
   }
   [[nodiscard]] bool has_deadline() const noexcept { return deadline != Clock::time_point::max(); }
+  [[nodiscard]] bool is_limited() const noexcept { return has_tests() || has_deadline(); }
   /// Returns whether the deadline has passed. Reads the clock only where there is a deadline.
-  [[nodiscard]] bool is_past() const noexcept { return has_deadline() && Clock::now() >= deadline; }
+  [[nodiscard]] bool is_past() const noexcept { return has_deadline() && now() >= deadline; }
 };
 
 /// The distance between two surfaces lies in [lower, upper], mesh units. Both ends are finite: a

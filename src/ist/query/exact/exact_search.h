@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "ist/query/dive.h"
 #include "ist/query/exact/triangle_pairs.h"
 #include "ist/query/traversal/search.h"
 
@@ -36,6 +35,7 @@ class ExactSearch {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  const Kernels& kernels_;
   TrianglePairs triangles_;
   SearchPlan plan_;
   Search search_;

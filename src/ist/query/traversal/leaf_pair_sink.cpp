@@ -50,9 +50,8 @@ class Writer {
 
 }  // namespace
 
-void LeafPairSink::append(const Frontier& leaves, const Kernels& kernels,
-                          const SearchPlan& plan) noexcept {
-  Writer writer(leaves, kernels, plan);
+void LeafPairSink::append(const Frontier& leaves) noexcept {
+  Writer writer(leaves, kernels_, plan_);
   if (stream_ == nullptr) {
     writer.write(out_.subspan(std::min<std::size_t>(count_, out_.size())));
     count_ += leaves.moving_count;

@@ -12,14 +12,16 @@ namespace ist {
 /// The destination of leaf pairs. All are counted; the first go into a span, or all go to a stream.
 class LeafPairSink {
  public:
-  explicit LeafPairSink(std::span<LeafPair> out) noexcept : out_(out) {}
+  LeafPairSink(const SearchPlan& plan, const Kernels& kernels, std::span<LeafPair> out) noexcept
+      : plan_(plan), kernels_(kernels), out_(out) {}
   /// Passes leaf pairs to the stream through `window`, which has room for more than kLeafPairSpare
   /// of them.
-  LeafPairSink(std::span<LeafPair> window, LeafPairStream& stream) noexcept
-      : out_(window), stream_(&stream) {}
+  LeafPairSink(const SearchPlan& plan, const Kernels& kernels, std::span<LeafPair> window,
+               LeafPairStream& stream) noexcept
+      : plan_(plan), kernels_(kernels), out_(window), stream_(&stream) {}
 
   /// Appends the pairs of a frontier of leaves.
-  void append(const Frontier& leaves, const Kernels& kernels, const SearchPlan& plan) noexcept;
+  void append(const Frontier& leaves) noexcept;
   /// Appends leaf pairs that another sink took.
   void append(std::span<const LeafPair> leaf_pairs) noexcept;
 
@@ -40,6 +42,8 @@ class LeafPairSink {
     stopped_ = !stream_->take(leaf_pairs);
   }
 
+  const SearchPlan& plan_;
+  const Kernels& kernels_;
   std::span<LeafPair> out_;
   LeafPairStream* stream_ = nullptr;
   std::uint64_t count_ = 0;

@@ -64,11 +64,12 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
         std::size_t{fixed.parts().octree.node_count(a)} * moving.parts().octree.node_count(b);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
-    SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b)};
+    SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b), false};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;
     step.moving.emits_slots = b == last.moving && a > last.fixed;
+    step.last = a <= last.fixed && b <= last.moving;
     steps_.push_back(step);
     sizes_.push_back(
         {moving.parts().octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});

@@ -15,11 +15,17 @@ constexpr std::size_t kChunkPairs = 24;
 constexpr std::chrono::microseconds kPatience{20};
 constexpr std::size_t kFoundContacts = 1 << 18;
 
+std::chrono::nanoseconds patience(const Budget& budget) noexcept {
+  if (!budget.has_deadline()) return kPatience;
+  return std::min<std::chrono::nanoseconds>(kPatience, budget.deadline - budget.now());
+}
+
 }  // namespace
 
 SharedSearch::SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs,
                            std::chrono::nanoseconds period)
     : plan_(plan),
+      kernels_(kernels),
       caller_(plan, kernels, pairs),
       helper_(plan, kernels, pairs),
       period_(period),
@@ -37,34 +43,54 @@ SharedSearch::~SharedSearch() {
   job_.wait_idle();
 }
 
-Search::Stopped SharedSearch::run_until(const Budget& budget, const SearchPose& pose,
-                                        LeafPairSink& sink) noexcept {
+SharedSearch::End SharedSearch::run(const SearchPose& pose, LeafPairSink& sink,
+                                    const BudgetMeter& meter, Measured measured) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
   ++sharing_.queries;
-  std::uint64_t tests = 0;
-  const std::size_t step = caller_.widen(pose, kFewestPairs, tests);
+  // Lists pairs, but stops at the first level with enough of them to share.
+  struct Widening : PairLister {
+    using PairLister::PairLister;
+    bool enter(std::size_t, const Frontier& pairs, bool whole) noexcept {
+      wide = !whole || pairs.moving_count >= kFewestPairs;
+      worth = whole && wide;
+      if (whole) above = {0, tests(), 0, bounds()};  // a step that is not whole is made again
+      return !wide;
+    }
+    bool wide = false, worth = false;
+    End above{};
+  } widening(pose, sink, meter, measured);
+  const std::size_t step = caller_.run(widening);
+  if (!widening.wide) return {step, widening.tests(), sink.count(), widening.bounds()};
+  End above = widening.above;
+  above.steps = step;
+  sharing_.worth += widening.worth ? 1U : 0U;
   const Frontier& pairs = caller_.frontier(step);
-  const bool worth = step < plan_.steps().size() && pairs.moving_count >= kFewestPairs;
-  sharing_.worth += worth ? 1U : 0U;
-  if (!worth || budget.has_tests() || job_.busy()) {
-    return caller_.descend_until(budget, tests, step, pairs, 0, pose, sink);
+  if (!widening.worth || meter.budget().has_tests() || job_.busy()) {
+    PairLister alone(pose, sink, BudgetMeter(meter.budget(), above.tests), measured);
+    const std::size_t steps = caller_.descend(step, pairs, 0, alone);
+    above.bounds.add(alone.bounds());
+    return {steps, alone.tests(), sink.count(), above.bounds};
   }
-  share(pose, step, pairs);
-  const Search::Stopped stopped{tests, step, 0};
-  if (!do_chunks(budget, sink, tests)) return stopped;
-  return {tests, plan_.steps().size(), sink.count()};
+  share(pose, measured, step, pairs);
+  End end{plan_.steps().size(), above.tests, 0, above.bounds};
+  if (!do_chunks(meter.budget(), sink, end)) {
+    if (sink.stopped()) above.leaf_pairs = sink.count();
+    return above;
+  }
+  end.leaf_pairs = sink.count();
+  return end;
 }
 
-bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink,
-                             std::uint64_t& tests) noexcept {
-  // Searches a chunk. Returns whether there was time for all of it.
+bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink, End& end) noexcept {
+  // Searches a chunk. Returns whether all of it was done.
   const auto search = [&](std::size_t index) {
     std::size_t first = 0;
     const Frontier part = chunk(index, first);
-    const Search::Stopped made =
-        caller_.descend_until(budget, 0, shared_.step, part, first, shared_.pose, sink);
-    tests += made.tests;
-    return made.steps == plan_.steps().size();
+    PairLister lister(shared_.pose, sink, BudgetMeter(budget), shared_.measured);
+    const std::size_t steps = caller_.descend(shared_.step, part, first, lister);
+    end.tests += lister.tests();
+    end.bounds.add(lister.bounds());
+    return steps == plan_.steps().size();
   };
   // With back-to-back long queries the worker starts polling in the middle of one, so the job is
   // offered before each chunk.
@@ -78,9 +104,11 @@ bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink,
     if (!taken) taken = worker_.offer(job_);
   }
   for (std::size_t index = queue_.close(); index < chunk_count_ && in_time; ++index) {
-    if (queue_.collect(index, kPatience) && parts_[index].whole) {
-      sink.append({found_.data() + parts_[index].begin, parts_[index].count});
-      tests += parts_[index].tests;
+    if (queue_.collect(index, patience(budget)) && parts_[index].whole) {
+      const Part& part = parts_[index];
+      sink.append({found_.data() + part.begin, part.count});
+      end.tests += part.tests;
+      end.bounds.add(part.bounds);
       ++sharing_.chunks;
       ++done;
       in_time = !budget.is_past();
@@ -94,9 +122,10 @@ bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink,
   return done == chunk_count_;
 }
 
-void SharedSearch::share(const SearchPose& pose, std::size_t step,
+void SharedSearch::share(const SearchPose& pose, Measured measured, std::size_t step,
                          const Frontier& frontier) noexcept {
   shared_.pose = pose;
+  shared_.measured = measured;
   shared_.step = step;
   std::copy_n(frontier.groups, frontier.group_count, shared_.groups.begin());
   std::copy_n(frontier.moving, frontier.moving_count, shared_.moving.begin());
@@ -123,12 +152,15 @@ void SharedSearch::help() noexcept {
   std::size_t used = 0;
   while (const auto index = queue_.claim_back(shared_.epoch)) {
     hand_over(HandOver::kClaimed);
-    LeafPairSink sink(std::span<LeafPair>(found_).subspan(used));
+    LeafPairSink sink(plan_, kernels_, std::span<LeafPair>(found_).subspan(used));
     std::size_t first = 0;
     const Frontier part = chunk(*index, first);
     Part& made = parts_[*index];
     made.begin = used;
-    made.tests = helper_.descend(shared_.step, part, first, shared_.pose, sink);
+    PairLister lister(shared_.pose, sink, {}, shared_.measured);
+    helper_.descend(shared_.step, part, first, lister);
+    made.tests = lister.tests();
+    made.bounds = lister.bounds();
     made.count = sink.count();
     made.whole = !sink.truncated();
     if (made.whole) used += made.count;

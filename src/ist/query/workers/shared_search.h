@@ -27,17 +27,19 @@ class SharedSearch {
   SharedSearch(const SharedSearch&) = delete;
   SharedSearch& operator=(const SharedSearch&) = delete;
 
-  /// Searches like Search::run.
-  std::uint64_t run(const SearchPose& pose, LeafPairSink& sink) noexcept {
-    return run_until({}, pose, sink).tests;
-  }
-  /// Searches like Search::run_until, but always searches the first levels until there are 512
-  /// pairs, some 3,000 tests, and may wait 20 µs for the worker. With a limit of tests the caller
-  /// searches alone. If a deadline interrupts shared work, only the levels above the split are
-  /// reported, because which thread did which chunk is not repeatable; running again with `tests`
-  /// set to the reported count stops there too.
-  [[nodiscard]] Search::Stopped run_until(const Budget& budget, const SearchPose& pose,
-                                          LeafPairSink& sink) noexcept;
+  /// The end of a search.
+  struct End {
+    std::size_t steps;  ///< whole steps: all, unless the budget or the sink ended the search
+    std::uint64_t tests, leaf_pairs;
+    DistanceBounds bounds;
+  };
+  /// Searches as a PairLister does, from the roots. With a limit of tests the caller searches
+  /// alone. May wait 20 µs for the worker, but not past a deadline. If a deadline interrupts shared
+  /// work, the result is that of the steps above the split, without leaf pairs, because which
+  /// thread did which chunk is not repeatable: a search with a limit of as many tests ends there
+  /// too.
+  [[nodiscard]] End run(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter = {},
+                        Measured measured = Measured::kNothing) noexcept;
 
   /// Returns the caller's own search, for work that is not shared.
   [[nodiscard]] Search& serial() noexcept { return caller_; }
@@ -51,11 +53,13 @@ class SharedSearch {
   struct Part {  // the worker's result for a chunk
     std::size_t begin, count;
     std::uint64_t tests;
+    DistanceBounds bounds;
     bool whole;  // false if there was no room for all leaf pairs
   };
   // The data that the worker reads; the caller writes it only while the worker is not in it.
   struct Shared {
     SearchPose pose;
+    Measured measured = Measured::kNothing;
     std::size_t step = 0;
     std::uint64_t epoch = 0;
     std::vector<SearchGroup> groups;
@@ -64,14 +68,16 @@ class SharedSearch {
     Frontier frontier{};
   };
 
-  void share(const SearchPose& pose, std::size_t step, const Frontier& frontier) noexcept;
+  void share(const SearchPose& pose, Measured measured, std::size_t step,
+             const Frontier& frontier) noexcept;
   [[nodiscard]] Frontier chunk(std::size_t index, std::size_t& first) const noexcept;
-  // Does all chunks together with the worker. Returns false where there was no time for all.
-  [[nodiscard]] bool do_chunks(const Budget& budget, LeafPairSink& sink,
-                               std::uint64_t& tests) noexcept;
+  // Does all chunks together with the worker, and adds their tests and bounds to `end`. Returns
+  // whether all were done.
+  [[nodiscard]] bool do_chunks(const Budget& budget, LeafPairSink& sink, End& end) noexcept;
   void help() noexcept;
 
   const SearchPlan& plan_;
+  const Kernels& kernels_;
   Search caller_, helper_;
   std::chrono::nanoseconds period_;
   Shared shared_;

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "ist/query/traversal/budget_meter.h"
+#include "ist/query/traversal/leaf_pair_sink.h"
+#include "simd/dispatch.h"
+
+namespace ist {
+
+/// One call of a step, complete but for the numbers that a visitor chooses.
+struct SearchBatch {
+  static constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+  const Kernels& kernels;
+  const SearchStep& step;
+  const Frontier& in;
+  SearchCursor& cursor;
+  Frontier& out;
+  SearchScratch& scratch;
+
+  /// Makes at most `most` tests.
+  Advanced advance(const SearchPose& pose, std::uint64_t most = kNoLimit) const noexcept {
+    DistanceBounds none;
+    return measure(Measured::kNothing, pose, none, most);
+  }
+  Advanced measure(Measured measured, const SearchPose& pose, DistanceBounds& bounds,
+                   std::uint64_t most = kNoLimit) const noexcept {
+    return kernels.advance(step, pose, in, cursor, out, scratch, most, measured, bounds);
+  }
+};
+
+/// The purpose of a search: it makes the steps and takes the leaf pairs. VisitorBase has the
+/// defaults of the last three.
+template <class V>
+concept SearchVisitor = requires(V visitor, const SearchBatch& batch, const Frontier& pairs,
+                                 std::size_t step) {
+  /// Makes one call of a step. The search ends where it makes no test though some are left.
+  { visitor.advance(batch) } -> std::same_as<Advanced>;
+  /// Takes the pairs of a frontier of leaves. Returns whether more are wanted.
+  { visitor.leaves(pairs) } -> std::same_as<bool>;
+  /// Decides whether to search on from the pairs before `step`; `whole` says that these are all
+  /// of them. The search ends where it returns false.
+  { visitor.enter(step, pairs, true) } -> std::same_as<bool>;
+  /// Returns the most fixed nodes of a level to search from at a time: with few, the first leaf
+  /// pairs come sooner, all of them later.
+  { visitor.most_groups() } -> std::same_as<std::size_t>;
+  /// Returns the most leaf pairs to take at a time, at least kPieceTests.
+  { visitor.most_leaves() } -> std::same_as<std::size_t>;
+};
+
+struct VisitorBase {
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+  static bool enter(std::size_t /*step*/, const Frontier& /*pairs*/, bool /*whole*/) noexcept {
+    return true;
+  }
+  static std::size_t most_groups() noexcept { return kAll; }
+  static std::size_t most_leaves() noexcept { return kAll; }
+};
+
+/// Passes all leaf pairs to a sink, within a budget. A budget that ends the search early leaves the
+/// first leaf pairs in the sink.
+class PairLister : public VisitorBase {
+ public:
+  PairLister(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter = {},
+             Measured measured = Measured::kNothing) noexcept
+      : pose_(pose), sink_(sink), meter_(meter), measured_(measured) {}
+
+  Advanced advance(const SearchBatch& batch) noexcept {
+    const Advanced made = batch.measure(measured_, pose_, bounds_, meter_.allow());
+    meter_.spend(made.tests);
+    return made;
+  }
+  bool leaves(const Frontier& pairs) noexcept {
+    sink_.append(pairs);
+    return !sink_.stopped();
+  }
+  [[nodiscard]] std::size_t most_leaves() const noexcept { return meter_.most_pairs(); }
+
+  /// Returns the tests made, with those that the meter began with.
+  [[nodiscard]] std::uint64_t tests() const noexcept { return meter_.spent(); }
+  [[nodiscard]] const DistanceBounds& bounds() const noexcept { return bounds_; }
+
+ private:
+  const SearchPose& pose_;
+  LeafPairSink& sink_;
+  BudgetMeter meter_;
+  Measured measured_;
+  DistanceBounds bounds_;
+};
+
+}  // namespace ist
