@@ -70,16 +70,6 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
   return child_count(side, parent);
 }
 
-// Returns whether the vector form applies: a side without blocks, or one that does not descend,
-// takes the scalar form.
-HWY_INLINE bool HasBlocks(const SearchSide& side) { return side.descends && side.balls != nullptr; }
-
-template <bool kSlabs, std::size_t N>
-HWY_INLINE std::uint32_t Decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& out,
-                                std::size_t at) {
-  return HasBlocks(side) ? DecodeBlock<kSlabs>(side, node, out, at) : decode(side, node, out, at);
-}
-
 // Vector twin of ist::turn, for all eight rows.
 template <bool kSlabs>
 HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows& rows) {

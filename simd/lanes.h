@@ -79,20 +79,19 @@ template <std::size_t N>
 void decode_implicit(const SearchSide& side, std::uint32_t parent, std::uint32_t slot,
                      BoundLanes<N>& out, std::size_t at) noexcept {
   const OctreeNode& node = side.nodes[parent];
+  const ImplicitLevel& level = *side.implicit;
   const unsigned octant = kSetBits[side.masks[parent]][slot];
-  const float offset = side.octant_offset, half = side.half_edge;
+  const float offset = side.octant_offset;
   float x = node.centre[0] * side.voxel_size + ((octant & 1) != 0 ? offset : -offset);
   float y = node.centre[1] * side.voxel_size + ((octant & 2) != 0 ? offset : -offset);
   float z = node.centre[2] * side.voxel_size + ((octant & 4) != 0 ? offset : -offset);
-  float radius = kMaskRadii[255] * half;
+  float radius = level.radius[kCircumsphereCode];
   if (side.child_masks != nullptr) {
-    const std::uint8_t mask = side.child_masks[node.first_child + slot];
-    const TableBall& ball = kLookupTable[mask];
-    const float sixth = half * (1.0F / 6);
-    x += static_cast<float>(ball.x) * sixth;
-    y += static_cast<float>(ball.y) * sixth;
-    z += static_cast<float>(ball.z) * sixth;
-    radius = kMaskRadii[mask] * half;
+    const std::uint32_t word = kTableWords[side.child_masks[node.first_child + slot]];
+    x += level.offset[word & 7];
+    y += level.offset[word >> 3 & 7];
+    z += level.offset[word >> 6 & 7];
+    radius = level.radius[word >> 9];
   }
   out.lane[kX][at] = x;
   out.lane[kY][at] = y;

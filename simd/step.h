@@ -11,6 +11,12 @@
 
 namespace ist {
 
+/// The lengths of one level's implicit balls, mesh units, by the codes of the lookup table's words.
+struct alignas(32) ImplicitLevel {
+  float offset[8];  ///< from the cube's centre along an axis, by the code of a coordinate
+  float radius[8];  ///< by radius code; the last three are 0
+};
+
 /// The view of one tree that a step of the breadth-first traversal reads: the nodes of one level,
 /// here called parents, and their children's blocks. Pointers into a tree; plain floats, so that
 /// vector code and its scalar twin see the same bits.
@@ -20,6 +26,7 @@ struct SearchSide {
   const SlabBlock* slabs;           ///< by parent; null where the policy has none
   const std::uint8_t* masks;        ///< occupancy masks of the parents
   const std::uint8_t* child_masks;  ///< occupancy masks of the children; null for circumspheres
+  const ImplicitLevel* implicit;    ///< of the children; null where there are blocks
 
   float voxel_size;     ///< mesh units to a voxel, the unit of node centres
   float ball_unit;      ///< mesh units to a unit of BallBlock

@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "simd/bounds-inl.h"
+#include "simd/implicit-inl.h"
 #include "simd/lanes.h"
 #include "simd/near-inl.h"
 
@@ -27,6 +28,10 @@ struct Batch {
 template <bool kSlabs>
 HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
   __builtin_prefetch(side.nodes + parent);
+  if (!kSlabs && side.balls == nullptr) {
+    __builtin_prefetch(side.masks + parent);
+    return;
+  }
   __builtin_prefetch(side.balls + parent);
   if constexpr (kSlabs) __builtin_prefetch(side.slabs + parent);
 }
@@ -79,14 +84,14 @@ class Advancer {
   HWY_INLINE std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
     const SearchSide side = step_.moving;  // a copy, which stores to lanes cannot alias
     const std::uint32_t* const ids = in_.moving;
-    if (!HasBlocks(side)) {
+    if (!HasVectorForm(side)) {
       for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
       return at;
     }
     const std::size_t last = in_.moving_count - 1;
     for (std::uint32_t i = begin; i < end; ++i) {
       Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
-      at += DecodeBlock<kSlabs>(side, ids[i], scratch_.moving, at);
+      at += Decode<kSlabs>(side, ids[i], scratch_.moving, at);
     }
     return at;
   }
@@ -94,7 +99,7 @@ class Advancer {
   HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, FixedRows& rows) {
     const SearchSide side = step_.fixed;
     const std::uint32_t node = in_.groups[group].fixed;
-    if (HasBlocks(side)) {
+    if (HasVectorForm(side)) {
       Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);
     }
     const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);

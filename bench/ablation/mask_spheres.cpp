@@ -17,7 +17,7 @@ namespace {
 constexpr double kSixth = 1.0 / 6;
 
 Ball in_half_edges(const TableBall& ball) {
-  return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[ball.radius_squared]};
+  return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[radius_code(ball)]};
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ constexpr double kOfRotation = 0x1p-17 + 0x1p-48, kOfFineRotation = 0x1p-29 + 0x
 constexpr std::array<int, 5> kOffsetSums = {9, 6, 3, 6, 0};
 
 constexpr bool offset_sums_hold() {
-  for (const std::uint16_t word : kTableWords) {
+  for (const std::uint16_t word : kRomWords) {
     int sum = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int x = rom_coordinate(word, axis);

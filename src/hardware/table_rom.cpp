@@ -5,12 +5,12 @@
 
 namespace ist {
 
-static_assert(kTableWords[0] == kNoRadius << 9);
-static_assert(kTableWords[1] == 0x1FF);  // centre -3, -3, -3, codes 7, 7, 7; radius code 0
-static_assert(kTableWords[255] == 4 << 9);
+static_assert(kRomWords[0] == kNoRadius << 9);
+static_assert(kRomWords[1] == 0x1FF);  // centre -3, -3, -3, codes 7, 7, 7; radius code 0
+static_assert(kRomWords[255] == 4 << 9);
 static_assert(kFixedRadii == std::array<std::uint16_t, 5>{1331, 1882, 2304, 2509, 2661});
 
-const std::array<std::uint16_t, 256>& table_rom() noexcept { return kTableWords; }
+const std::array<std::uint16_t, 256>& table_rom() noexcept { return kRomWords; }
 
 std::uint64_t table_checksum() {
   std::array<std::uint8_t, 2 * 256> bytes{};

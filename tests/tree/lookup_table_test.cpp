@@ -62,14 +62,14 @@ TEST(LookupTable, HasThirtyFiveBallsFiveRadiiAndSeventyEightSmallerThanTheCircum
 TEST(LookupTable, ANodeWithoutChildrenIsAPoint) { EXPECT_EQ(kLookupTable[0], TableBall{}); }
 
 TEST(TableRadii, AreTheSquareRootsRoundedUp) {
-  for (const int squared : {27, 54, 81, 96, 108}) {
-    const mpq_class expected(squared, 36);
-    const mpq_class radius(kTableRadii[squared]);
-    const mpq_class below(std::nextafter(kTableRadii[squared], 0.0));
-    EXPECT_GE(radius * radius, expected) << squared;
-    EXPECT_LT(below * below, expected) << squared;
+  for (std::size_t code = 0; code < kTableRadii.size(); ++code) {
+    const mpq_class expected(kTableSquares[code], 36);
+    const mpq_class radius(kTableRadii[code]);
+    const mpq_class below(std::nextafter(kTableRadii[code], 0.0));
+    EXPECT_GE(radius * radius, expected) << code;
+    EXPECT_LT(below * below, expected) << code;
   }
-  EXPECT_EQ(kTableRadii[108], kSqrt3);
+  EXPECT_EQ(kTableRadii[kCircumsphereCode], kSqrt3);
 }
 
 }  // namespace

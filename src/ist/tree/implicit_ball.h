@@ -20,7 +20,8 @@ namespace ist {
 ///
 /// @param cube_centre centre of the node's cube, in voxel edges from the root cube's centre: exact
 /// in double
-/// @param mask the node's occupancy mask; ignored for a leaf, whose sphere is the circumsphere
+/// @param mask the node's occupancy mask, not 0; ignored for a leaf, whose sphere is the
+/// circumsphere
 ///
 /// Source: the article that introduces the method, equation (3), and its lookup table; E. Ruffaldi
 /// et al., The implicit sphere tree, World Haptics 2005.
@@ -34,7 +35,7 @@ namespace ist {
   const double sixth = half / 6;
   return {{s * (cube_centre[0] + sixth * ball.x), s * (cube_centre[1] + sixth * ball.y),
            s * (cube_centre[2] + sixth * ball.z)},
-          s * (half * kTableRadii[ball.radius_squared])};
+          s * (half * kTableRadii[kTableWords[mask] >> 9])};
 }
 
 }  // namespace ist

@@ -23,7 +23,6 @@ Masks fold(std::span<const std::uint64_t> leaf_codes, int depth) {
       }
       level.back() = static_cast<std::uint8_t>(level.back() | 1u << (child & 7));
     }
-    level.shrink_to_fit();
     std::swap(below, parents);
   }
   return masks;
@@ -52,6 +51,10 @@ LinearOctree::LinearOctree(std::span<const std::uint64_t> leaf_codes, int depth)
 LinearOctree::LinearOctree(Masks of_levels)
     : masks_(std::move(of_levels)), nodes_(masks_.size() + 1) {
   IST_ASSERT(is_tree(masks_));
+  for (std::vector<std::uint8_t>& level : masks_) {
+    level.insert(level.end(), kMaskSpare, 0);
+    level.shrink_to_fit();
+  }
   nodes_.back() = {{{0, 0, 0}, 0}, {{0, 0, 0}, 1}};
   for (int level = depth(); level >= 1; --level) {
     std::vector<OctreeNode>& here = nodes_[index(level)];
@@ -89,7 +92,7 @@ bool LinearOctree::is_tree(std::span<const std::vector<std::uint8_t>> masks) noe
 
 std::uint64_t LinearOctree::node_count() const noexcept {
   std::uint64_t count = leaf_count();
-  for (const auto& level : masks_) count += level.size();
+  for (int level = 1; level <= depth(); ++level) count += node_count(level);
   return count;
 }
 

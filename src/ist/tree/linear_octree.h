@@ -36,7 +36,7 @@ class LinearOctree {
   [[nodiscard]] int depth() const noexcept { return static_cast<int>(masks_.size()); }
   [[nodiscard]] std::uint32_t leaf_count() const noexcept { return nodes_[0].back().first_child; }
   [[nodiscard]] std::uint32_t node_count(int level) const noexcept {
-    return level == 0 ? leaf_count() : static_cast<std::uint32_t>(masks_[index(level)].size());
+    return level == 0 ? leaf_count() : static_cast<std::uint32_t>(masks(level).size());
   }
 
   /// The number of nodes of all levels, leaves included.
@@ -62,9 +62,12 @@ class LinearOctree {
   [[nodiscard]] std::uint32_t first_child(int level, std::uint32_t node) const noexcept {
     return nodes_[index(level)][node].first_child;
   }
+  /// The masks of the nodes at `level` >= 1. kMaskSpare bytes behind them may be read, as the
+  /// vector form of a decode does.
   [[nodiscard]] std::span<const std::uint8_t> masks(int level) const noexcept {
-    return masks_[index(level)];
+    return std::span(masks_[index(level)]).first(masks_[index(level)].size() - kMaskSpare);
   }
+  static constexpr std::size_t kMaskSpare = 7;
 
   /// Returns the Morton codes of the nodes at `level`, ascending. Cost: O(nodes above and at the
   /// level).
@@ -76,7 +79,7 @@ class LinearOctree {
  private:
   static std::size_t index(int level) noexcept { return static_cast<std::size_t>(level - 1); }
 
-  std::vector<std::vector<std::uint8_t>> masks_;  // level 1 first
+  std::vector<std::vector<std::uint8_t>> masks_;  // level 1 first, kMaskSpare zeros behind each
   std::vector<std::vector<OctreeNode>> nodes_;    // level 1 first, the root's parent last
 };
 

@@ -130,33 +130,22 @@ constexpr int smaller_than_the_circumsphere(int fewest_children, int most_childr
 static_assert(for_all_masks(holds_its_cubes));
 static_assert(for_all_masks(is_minimal));
 static_assert(for_all_masks(has_the_symmetries_of_the_cube));
-static_assert(for_all_masks([](int mask) {
-  const int r2 = entry(mask).radius_squared;
-  return r2 == 27 || r2 == 54 || r2 == 81 || r2 == 96 || r2 == 108;
-}));
+static_assert(for_all_masks([](int mask) { return radius_code(entry(mask)) != kNoRadiusCode; }));
 static_assert(smaller_than_the_circumsphere(1, 8) == 78);
 static_assert(smaller_than_the_circumsphere(5, 8) == 0);
 static_assert(entry(255) == TableBall{0, 0, 0, 108});
 static_assert(entry(1) == TableBall{-3, -3, -3, 27});
 
-constexpr std::array<float, 256> kRadii = [] {
-  std::array<float, 256> radii{};
+constexpr std::array<std::uint32_t, 256> kWords = [] {
+  std::array<std::uint32_t, 256> words{};
   for (std::size_t mask = 0; mask < 256; ++mask) {
-    const double radius = kTableRadii[kTable[mask].radius_squared];
-    radii[mask] = static_cast<float>(radius * (1 + 0x1p-23));
+    words[mask] = lookup_table_detail::word_of(kTable[mask]);
   }
-  return radii;
+  return words;
 }();
-static_assert([] {  // six times a float, and its square, are exact in double
-  for (std::size_t mask = 0; mask < 256; ++mask) {
-    const double sixths = 6.0 * kRadii[mask];
-    if (sixths * sixths < kTable[mask].radius_squared) return false;
-  }
-  return true;
-}());
 
 }  // namespace
 constinit const LookupTable kLookupTable = kTable;
-constinit const std::array<float, 256> kMaskRadii = kRadii;
+constinit const std::array<std::uint32_t, 256> kTableWords = kWords;
 
 }  // namespace ist

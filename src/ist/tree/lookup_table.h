@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace ist {
@@ -23,28 +24,27 @@ using LookupTable = std::array<TableBall, 256>;
 /// cube.
 extern const LookupTable kLookupTable;
 
-/// The table's radii by occupancy mask, in half edges of the node, as floats rounded up.
-extern const std::array<float, 256> kMaskRadii;
+/// The lookup table in words, by occupancy mask: the codes of x, y and z in bits 2:0, 5:3 and 8:6,
+/// bit 2 of each the sign and bits 1:0 the magnitude 0, 2 or 3; the radius code in bits 11:9.
+extern const std::array<std::uint32_t, 256> kTableWords;
+
+/// The table's squared radii, by radius code. The code of mask 0 is kNoRadiusCode.
+inline constexpr std::array<int, 5> kTableSquares = {27, 54, 81, 96, 108};
+inline constexpr std::size_t kNoRadiusCode = 7, kCircumsphereCode = 4;
+
+[[nodiscard]] constexpr std::size_t radius_code(const TableBall& ball) noexcept {
+  for (std::size_t code = 0; code < kTableSquares.size(); ++code) {
+    if (kTableSquares[code] == ball.radius_squared) return code;
+  }
+  return kNoRadiusCode;
+}
 
 /// √3, rounded up: the circumradius of a cube over half its edge.
 inline constexpr double kSqrt3 = 1.7320508075688774;
 
-/// The square roots of TableBall::radius_squared / 36, rounded up: radii in half edges of the node.
-inline constexpr struct TableRadii {
-  [[nodiscard]] constexpr double operator[](int radius_squared) const noexcept {
-    switch (radius_squared) {
-      case 27:
-        return 0.8660254037844387;  // √3/2
-      case 54:
-        return 1.2247448713915892;  // √6/2
-      case 81:
-        return 1.5;
-      case 96:
-        return 1.632993161855452;  // √24/3
-      default:
-        return kSqrt3;
-    }
-  }
-} kTableRadii;
+/// The table's radii by radius code, in half edges of the node, rounded up: the roots of
+/// kTableSquares / 36, which are √3/2, √6/2, 3/2, √24/3 and √3.
+inline constexpr std::array<double, 5> kTableRadii = {0.8660254037844387, 1.2247448713915892, 1.5,
+                                                      1.632993161855452, kSqrt3};
 
 }  // namespace ist

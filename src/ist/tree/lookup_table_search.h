@@ -66,6 +66,16 @@ constexpr LookupTable make_lookup_table() {
   return table;
 }
 
+// Returns the code of a coordinate: a sign, then a magnitude of 0, 2 or 3.
+constexpr std::uint32_t code_of(int coordinate) {
+  return static_cast<std::uint32_t>(coordinate < 0 ? 4 - coordinate : coordinate);
+}
+
+constexpr std::uint32_t word_of(const TableBall& ball) {
+  return code_of(ball.x) | code_of(ball.y) << 3 | code_of(ball.z) << 6 |
+         static_cast<std::uint32_t>(radius_code(ball)) << 9;
+}
+
 }  // namespace lookup_table_detail
 
 }  // namespace ist

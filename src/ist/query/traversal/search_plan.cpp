@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "ist/base/error.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
@@ -21,8 +23,36 @@ void require_addresses(const SphereTree& tree, const char* body) {
                           body, tree.leaf_count()));
 }
 
+// Returns the least float that is no less.
+float least_float(double value) {
+  const auto nearest = static_cast<float>(value);
+  return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
+}
+
+ImplicitLevel lengths_of(const Lattice& lattice, int level) {
+  const double half = 0.5 * lattice.edge(level);
+  ImplicitLevel lengths{};
+  for (int code = 0; code < 8; ++code) {
+    const double length = half / 6 * (code & 3);
+    lengths.offset[code] = static_cast<float>((code & 4) != 0 ? -length : length);
+  }
+  for (std::size_t code = 0; code < kTableRadii.size(); ++code) {
+    lengths.radius[code] = least_float(half * kTableRadii[code]);
+  }
+  return lengths;
+}
+
+std::vector<ImplicitLevel> lengths_of(const SphereTree& tree, SpherePolicy policy) {
+  std::vector<ImplicitLevel> levels;
+  for (int level = 0; is_implicit(policy) && level <= tree.depth(); ++level) {
+    levels.push_back(lengths_of(tree.parts().lattice, level));
+  }
+  return levels;
+}
+
 // Makes the view of the children at `level` that a step reads.
-SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level) {
+SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
+                         const std::vector<ImplicitLevel>& lengths) {
   const LinearOctree& octree = tree.parts().octree;
   const bool is_root = level == tree.depth();
   const double edge = tree.parts().lattice.edge(level);
@@ -32,6 +62,7 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level)
   side.voxel_size = static_cast<float>(tree.voxel_size());
   side.half_edge = static_cast<float>(0.5 * edge);
   if (is_implicit(policy)) {
+    side.implicit = &lengths[static_cast<std::size_t>(level)];
     side.octant_offset = is_root ? 0 : side.half_edge;
     side.child_masks =
         policy == SpherePolicy::kTable && level > 0 ? octree.masks(level).data() : nullptr;
@@ -49,7 +80,8 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level)
 }  // namespace
 
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                       SearchLevels last) {
+                       SearchLevels last)
+    : fixed_lengths_(lengths_of(fixed, policy)), moving_lengths_(lengths_of(moving, policy)) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
   require_addresses(fixed, "fixed");
@@ -64,7 +96,8 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
         std::size_t{fixed.parts().octree.node_count(a)} * moving.parts().octree.node_count(b);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
-    SearchStep step{read_children(fixed, policy, a), read_children(moving, policy, b), false};
+    SearchStep step{read_children(fixed, policy, a, fixed_lengths_),
+                    read_children(moving, policy, b, moving_lengths_), false};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;

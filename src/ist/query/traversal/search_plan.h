@@ -28,6 +28,8 @@ class SearchPlan {
   SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
              SearchLevels last = {});
 
+  SearchPlan(const SearchPlan&) = delete;  // steps refer to the plan's own lengths
+
   [[nodiscard]] const std::vector<SearchStep>& steps() const noexcept { return steps_; }
 
   /// Returns the most moving nodes that can be paired with one fixed node after a step.
@@ -48,6 +50,7 @@ class SearchPlan {
   struct Sizes {
     std::size_t row, pairs;
   };
+  std::vector<ImplicitLevel> fixed_lengths_, moving_lengths_;  // by level; empty with saved bounds
   std::vector<SearchStep> steps_;
   std::vector<Sizes> sizes_;
   const OctreeNode* fixed_leaves_ = nullptr;  // the parents of leaves that have addresses
