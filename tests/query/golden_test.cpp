@@ -11,24 +11,24 @@ namespace {
 
 // By policy.
 using Hashes = std::array<std::uint64_t, 4>;
-constexpr Hashes kGoldenJaws = {0x9b68127037f06f96, 0x18c7e1cd83cf7b99, 0xcf9ee847f3591b44,
+constexpr Hashes kGoldenJaws = {0x9b68127037f06f96, 0x3f4747998843545b, 0xcf9ee847f3591b44,
                                 0x8adeaedf99ab487e};
 constexpr Hashes kGoldenSolids[3] = {
     {
         0x1d333c6a0c3550e7,
-        0x2273845ef4955865,
+        0x8fcd6e73e17653e9,
         0x5bceb196845ba30e,
         0xa8ec4b7c0a60d678,
     },
     {
         0x91e1c3add1ddd5e9,
-        0x2e9d355d9b6fc12a,
+        0x00b0a29b3dd5849c,
         0xb3b77ace34ae806d,
         0xe5f7e5b7aafdc9d9,
     },
     {
         0x8ca386835396f93c,
-        0x150c26b0ad4b90a5,
+        0x340be4a0ba779514,
         0x43f689f384faabe2,
         0xec43dd9d31435a78,
     },

@@ -56,7 +56,7 @@ class ExactBody {
 /// Two bodies at a pose: what is true of each pair of leaves, decided in rational numbers after a
 /// filter in double that never decides what is close.
 ///
-/// This is the oracle of every query. It knows nothing of inner nodes: their balls are not nested,
+/// This is the oracle of every query. It knows nothing of inner nodes: saved balls are not nested,
 /// and the guarantee is about leaves alone. The pose is that of project_to_rigid, number by number,
 /// so that its rotation is off orthonormal by what that leaves.
 class ExactPair {

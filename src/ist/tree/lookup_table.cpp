@@ -136,6 +136,61 @@ static_assert(smaller_than_the_circumsphere(5, 8) == 0);
 static_assert(entry(255) == TableBall{0, 0, 0, 108});
 static_assert(entry(1) == TableBall{-3, -3, -3, 27});
 
+// Returns the square root in units of 2⁻²⁴, rounded down. Precondition: 0 <= n < 2¹⁴.
+constexpr std::int64_t root(std::int64_t n) {
+  std::int64_t root = 0;
+  for (std::int64_t bit = std::int64_t{1} << 31; bit != 0; bit /= 2) {
+    if ((root + bit) * (root + bit) <= n << 48) root += bit;
+  }
+  return root;
+}
+
+// Whether √p + √q <= √r, and whether √p + √q <= √r + length / 10,000, where a root that is
+// rounded down may be larger by 1.
+constexpr bool roots_fit(std::int64_t p, std::int64_t q, std::int64_t r) {
+  return r >= p + q && 4 * p * q <= (r - p - q) * (r - p - q);
+}
+constexpr bool roots_fit(std::int64_t p, std::int64_t q, std::int64_t r, std::int64_t length) {
+  return (root(p) + 1 + root(q) + 1) * 10'000 <= root(r) * 10'000 + (length << 24);
+}
+
+// Whether the table ball of a node at `level`, 1 or 2, larger by `excess` in 1e-4 voxels, holds
+// the circumspheres of all leaves that there may be below the node. The unit is a twelfth of the
+// node's half edge, in which a voxel is 12 at level 1 and 6 at level 2, and centres are integers.
+constexpr bool holds_its_leaves(int mask, int level, int excess) {
+  const int voxel = level == 1 ? 12 : 6, cells = 24 / voxel;
+  const Point c = centre(mask);
+  for (int leaf = 0; leaf < cells * cells * cells; ++leaf) {
+    const int x = leaf % cells, y = leaf / cells % cells, z = leaf / cells / cells;
+    const int octant = 2 * x / cells + 2 * (2 * y / cells) + 4 * (2 * z / cells);
+    if ((mask >> octant & 1) == 0) continue;
+    const auto place = [=](int cell) { return voxel * cell + voxel / 2 - 12; };
+    const int distance2 =
+        distance_squared({place(x), place(y), place(z)}, {2 * c.x, 2 * c.y, 2 * c.z});
+    const int leaf_radius2 = 3 * voxel * voxel / 4, radius2 = 4 * entry(mask).radius_squared;
+    if (!roots_fit(distance2, leaf_radius2, radius2) &&
+        !roots_fit(distance2, leaf_radius2, radius2, voxel * excess))
+      return false;
+  }
+  return true;
+}
+
+constexpr bool exceeds(std::size_t code, int level, int excess) {
+  return !for_all_masks([=](int mask) {
+    return radius_code(entry(mask)) != code || holds_its_leaves(mask, level, excess);
+  });
+}
+static_assert([] {  // and with 1e-4 voxels less some mask's ball does not
+  for (const int level : {1, 2}) {
+    for (std::size_t code = 0; code < kTableSquares.size(); ++code) {
+      const int excess = kLeafExcess[level == 1 ? 0 : 1][code];
+      if (exceeds(code, level, excess)) return false;
+      if (excess > 0 && !exceeds(code, level, excess - 1)) return false;
+    }
+  }
+  return true;
+}());
+
 constexpr std::array<std::uint32_t, 256> kWords = [] {
   std::array<std::uint32_t, 256> words{};
   for (std::size_t mask = 0; mask < 256; ++mask) {

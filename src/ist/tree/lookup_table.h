@@ -47,4 +47,16 @@ inline constexpr double kSqrt3 = 1.7320508075688774;
 inline constexpr std::array<double, 5> kTableRadii = {0.8660254037844387, 1.2247448713915892, 1.5,
                                                       1.632993161855452, kSqrt3};
 
+/// How far the circumsphere of a leaf sticks out of the table ball of a node above it, at most, in
+/// 1e-4 voxels: by the node's level, 1 or 2, and radius code; above level 2 by no more than there.
+/// Proven at compile time in lookup_table.cpp; docs/guarantees.md, Nested bounds, says why it
+/// falls.
+inline constexpr std::array<std::array<int, 5>, 2> kLeafExcess = {
+    {{0, 1413, 732, 991, 0}, {0, 749, 455, 665, 0}}};
+
+/// Returns what a table ball lacks of the circumspheres of all leaves below its node, in voxels.
+[[nodiscard]] constexpr double leaf_excess(int level, std::size_t radius_code) noexcept {
+  return level == 0 ? 0 : 1e-4 * kLeafExcess[level == 1 ? 0 : 1][radius_code];
+}
+
 }  // namespace ist

@@ -15,9 +15,17 @@
 namespace ist {
 namespace {
 
-// The bounding radius of implicit balls in half edges of the root, (√12 + √96)/6 rounded up: the
-// table's root ball extends farthest (docs/guarantees.md, Bounding radius).
-constexpr double kImplicitBoundingRadius = 2.21034343104508;
+// How far a published table ball extends from its cube's centre at most, in half edges of the cube:
+// (√12 + √96)/6, rounded up, with the radius code 3.
+constexpr double kTableReach = 2.21034343104508;
+constexpr std::size_t kTableReachCode = 3;
+
+// The bounding radius of implicit balls: a nested root ball of the table extends farthest
+// (docs/guarantees.md, Bounding radius).
+double implicit_bounding_radius(const Lattice& lattice) {
+  return kTableReach * 0.5 * lattice.edge(lattice.depth) +
+         leaf_excess(lattice.depth, kTableReachCode) * lattice.voxel_size;
+}
 
 // Whether `blocks` is empty or has a block for each parent of each level.
 template <typename Block>
@@ -36,7 +44,7 @@ TreeParts measured(TreeParts parts) {
   IST_ASSERT(fit(parts.bounds.balls, parts.octree) && fit(parts.bounds.slabs, parts.octree));
   IST_ASSERT(parts.bounds.slabs.empty() || !parts.bounds.balls.empty());
   IST_ASSERT(!parts.triangles || parts.triangles->lists.size() == parts.octree.leaf_count());
-  parts.bounding_radius = kImplicitBoundingRadius * 0.5 * parts.lattice.edge(parts.lattice.depth);
+  parts.bounding_radius = implicit_bounding_radius(parts.lattice);
   if (parts.bounds.balls.empty()) return parts;
   for (int level = 0; level <= parts.octree.depth(); ++level) {
     double largest = 0, farthest2 = 0;

@@ -56,12 +56,19 @@ struct TreeParts {
   [[nodiscard]] std::span<const SlabBlock> slabs(int level) const noexcept {
     return bounds.slabs[static_cast<std::size_t>(level)];
   }
-  /// Returns the sphere of a node in the tree's frame; `cube_centre` as for implicit_ball.
+  /// Returns the published sphere of a node in the tree's frame; `cube_centre` as for
+  /// implicit_ball.
   /// Precondition: is_implicit(policy).
   [[nodiscard]] Ball ball(SpherePolicy policy, int level, std::uint32_t node,
                           const Eigen::Vector3d& cube_centre) const noexcept {
     return implicit_ball(policy, lattice, level, cube_centre,
                          level == 0 ? std::uint8_t{0} : octree.mask(level, node));
+  }
+  /// Returns the sphere that the traversal tests, which holds those of all leaves below the node.
+  [[nodiscard]] Ball nested_ball(SpherePolicy policy, int level, std::uint32_t node,
+                                 const Eigen::Vector3d& cube_centre) const noexcept {
+    return ist::nested_ball(policy, lattice, level, cube_centre,
+                            level == 0 ? std::uint8_t{0} : octree.mask(level, node));
   }
 
   /// Returns the saved ball of child `slot` of `parent`, a node at `level`, in the tree's frame;

@@ -30,6 +30,9 @@ enum class SphereSource : std::uint8_t {
 /// descended; with equal voxel sizes both always are, as published. With kSlab, a pair whose balls
 /// overlap is rejected all the same where one ball lies outside the other's slab.
 ///
+/// With kTable it tests the published balls, which are not nested: its answer lies inside that of
+/// Query, but for pairs within the pad, and lacks no pair whose geometry meets.
+///
 /// It shares the content of both trees. One object belongs to one thread. Source:
 /// E. Ruffaldi et al., The implicit sphere tree, World Haptics 2005, section II.E.
 class IST_API ReferenceQuery {

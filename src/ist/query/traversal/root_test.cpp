@@ -10,8 +10,9 @@ namespace ist {
 namespace {
 
 Ball root_ball(const SphereTree& tree, SpherePolicy policy) noexcept {
-  return is_implicit(policy) ? tree.parts().ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
-                             : tree.parts().saved_ball(tree.depth(), 0, 0);
+  return is_implicit(policy)
+             ? tree.parts().nested_ball(policy, tree.depth(), 0, Eigen::Vector3d::Zero())
+             : tree.parts().saved_ball(tree.depth(), 0, 0);
 }
 
 }  // namespace

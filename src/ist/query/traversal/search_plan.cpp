@@ -37,7 +37,7 @@ ImplicitLevel lengths_of(const Lattice& lattice, int level) {
     lengths.offset[code] = static_cast<float>((code & 4) != 0 ? -length : length);
   }
   for (std::size_t code = 0; code < kTableRadii.size(); ++code) {
-    lengths.radius[code] = least_float(half * kTableRadii[code]);
+    lengths.radius[code] = least_float(nested_radius(lattice, level, code));
   }
   return lengths;
 }
