@@ -35,7 +35,7 @@ HWY_INLINE std::uint32_t DecodeImplicit(const SearchSide& side, std::uint32_t pa
   const OctreeNode& node = side.nodes[parent];
   const ImplicitLevel& level = *side.implicit;
   const auto octants = hn::PromoteTo(du, hn::LoadU(bytes, kSetBits[side.masks[parent]].data()));
-  const auto offset = hn::Set(d, side.octant_offset);
+  const auto offset = hn::Set(d, level.octant_offset);
   // The octant's bit becomes the sign of what is subtracted: set for the upper half.
   const auto place = [&](int axis, auto bit) {
     return hn::Sub(hn::Set(d, node.centre[axis] * side.voxel_size),

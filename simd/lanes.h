@@ -81,7 +81,7 @@ void decode_implicit(const SearchSide& side, std::uint32_t parent, std::uint32_t
   const OctreeNode& node = side.nodes[parent];
   const ImplicitLevel& level = *side.implicit;
   const unsigned octant = kSetBits[side.masks[parent]][slot];
-  const float offset = side.octant_offset;
+  const float offset = level.octant_offset;
   float x = node.centre[0] * side.voxel_size + ((octant & 1) != 0 ? offset : -offset);
   float y = node.centre[1] * side.voxel_size + ((octant & 2) != 0 ? offset : -offset);
   float z = node.centre[2] * side.voxel_size + ((octant & 4) != 0 ? offset : -offset);
@@ -107,12 +107,6 @@ void decode_implicit(const SearchSide& side, std::uint32_t parent, std::uint32_t
 /// Returns the number of lanes that decode() makes of a frontier's `node`.
 [[nodiscard]] inline std::uint32_t opened(const SearchSide& side, std::uint32_t node) noexcept {
   return side.descends ? child_count(side, node) : 1;
-}
-
-/// Returns a length, mesh units, that no radius of the side's nodes exceeds: a saved one is less
-/// than an edge of the parent's cube.
-[[nodiscard]] inline float largest_radius(const SearchSide& side) noexcept {
-  return 4 * side.half_edge;
 }
 
 /// Decodes the children of a frontier's `node` into lanes from `at` on, or the node itself where

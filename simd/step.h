@@ -13,8 +13,9 @@ namespace ist {
 
 /// The lengths of one level's implicit balls, mesh units, by the codes of the lookup table's words.
 struct alignas(32) ImplicitLevel {
-  float offset[8];  ///< from the cube's centre along an axis, by the code of a coordinate
-  float radius[8];  ///< by radius code; the last three are 0
+  float offset[8];      ///< from a cube's centre along an axis, by the code of a coordinate
+  float radius[8];      ///< by radius code; the last three are 0
+  float octant_offset;  ///< from the parent's centre to a cube's along an axis; 0 for the root
 };
 
 /// The view of one tree that a step of the breadth-first traversal reads: the nodes of one level,
@@ -28,11 +29,9 @@ struct SearchSide {
   const std::uint8_t* child_masks;  ///< occupancy masks of the children; null for circumspheres
   const ImplicitLevel* implicit;    ///< of the children; null where there are blocks
 
-  float voxel_size;     ///< mesh units to a voxel, the unit of node centres
-  float ball_unit;      ///< mesh units to a unit of BallBlock
-  float slab_unit;      ///< mesh units to a unit of SlabBlock
-  float octant_offset;  ///< from a parent's centre to its children's along an axis, mesh units
-  float half_edge;      ///< of a child's cube, mesh units
+  float voxel_size;  ///< mesh units to a voxel, the unit of node centres
+  float ball_unit;   ///< mesh units to a unit of BallBlock
+  float slab_unit;   ///< mesh units to a unit of SlabBlock
 
   /// Whether the step tests the children of the frontier's nodes, or these nodes themselves. The id
   /// of a node that descends is its index; of one that does not, its address, 8 · parent + slot.
@@ -44,7 +43,8 @@ struct SearchSide {
 /// next.
 struct SearchStep {
   SearchSide fixed, moving;
-  bool last;  ///< no step follows: rows may be cut
+  bool last;           ///< no step follows: rows may be cut
+  float radius_limit;  ///< exceeds every sum of two radii, mesh units; without pads
 };
 
 /// The motion from the fixed tree's frame to the moving one's, x = rotation · y + translation, and

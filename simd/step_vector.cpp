@@ -47,8 +47,7 @@ class Advancer {
         out_(out),
         scratch_(scratch),
         most_(most),
-        measurer_(bounds,
-                  largest_radius(step.fixed) + largest_radius(step.moving) + pose.ball_pad) {}
+        measurer_(bounds, step.radius_limit + pose.ball_pad) {}
 
   // Decodes a batch of groups, then tests it. So a vector is loaded long after the narrower stores
   // that wrote it, and short loops of varying length do not delay each other.
@@ -82,7 +81,7 @@ class Advancer {
   }
 
   HWY_INLINE std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
-    const SearchSide side = step_.moving;  // a copy, which stores to lanes cannot alias
+    const SearchSide& side = step_.moving;
     const std::uint32_t* const ids = in_.moving;
     if (!HasVectorForm(side)) {
       for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
@@ -97,7 +96,7 @@ class Advancer {
   }
 
   HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, FixedRows& rows) {
-    const SearchSide side = step_.fixed;
+    const SearchSide& side = step_.fixed;
     const std::uint32_t node = in_.groups[group].fixed;
     if (HasVectorForm(side)) {
       Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);

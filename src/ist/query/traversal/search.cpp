@@ -10,7 +10,7 @@ namespace {
 // The most pairs from which a beam goes down.
 constexpr std::size_t kBeamPairs = 16;
 
-// Where even this part of a fixed node's half edge holds too many pairs, some of them are left out.
+// Where even this part of the widest beam holds too many pairs, some of them are left out.
 constexpr float kLeastWidth = 0x1p-6F;
 
 }  // namespace
@@ -58,10 +58,11 @@ Search::Beam Search::beam(const SearchPose& pose) noexcept {
     DistanceBounds all;
     test(pose, all);
     beam.bounds.upper = std::min(beam.bounds.upper, all.upper);
-    for (float width = step.fixed.half_edge;; width *= 0.5F) {
+    const float widest = 0.125F * step.radius_limit;
+    for (float width = widest;; width *= 0.5F) {
       DistanceBounds none;
       test(inflated(pose, all.lower + width), none);
-      if (out.moving_count <= kBeamPairs || width < kLeastWidth * step.fixed.half_edge) break;
+      if (out.moving_count <= kBeamPairs || width < kLeastWidth * widest) break;
     }
     in = out;
     // A frontier that begins with more pairs ends with the first of them.

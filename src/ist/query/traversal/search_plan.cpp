@@ -32,6 +32,7 @@ float least_float(double value) {
 ImplicitLevel lengths_of(const Lattice& lattice, int level) {
   const double half = 0.5 * lattice.edge(level);
   ImplicitLevel lengths{};
+  lengths.octant_offset = level == lattice.depth ? 0 : static_cast<float>(half);
   for (int code = 0; code < 8; ++code) {
     const double length = half / 6 * (code & 3);
     lengths.offset[code] = static_cast<float>((code & 4) != 0 ? -length : length);
@@ -60,10 +61,8 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
   side.nodes = octree.nodes(level + 1).data();
   side.masks = is_root ? &kRootMask : octree.masks(level + 1).data();
   side.voxel_size = static_cast<float>(tree.voxel_size());
-  side.half_edge = static_cast<float>(0.5 * edge);
   if (is_implicit(policy)) {
     side.implicit = &lengths[static_cast<std::size_t>(level)];
-    side.octant_offset = is_root ? 0 : side.half_edge;
     side.child_masks =
         policy == SpherePolicy::kTable && level > 0 ? octree.masks(level).data() : nullptr;
     return side;
@@ -97,12 +96,14 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
     SearchStep step{read_children(fixed, policy, a, fixed_lengths_),
-                    read_children(moving, policy, b, moving_lengths_), false};
+                    read_children(moving, policy, b, moving_lengths_), false, 0};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;
     step.moving.emits_slots = b == last.moving && a > last.fixed;
     step.last = a <= last.fixed && b <= last.moving;
+    step.radius_limit =
+        static_cast<float>(2 * (fixed.parts().lattice.edge(a) + moving.parts().lattice.edge(b)));
     steps_.push_back(step);
     sizes_.push_back(
         {moving.parts().octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
