@@ -88,9 +88,19 @@ class Advancer {
       return at;
     }
     const std::size_t last = in_.moving_count - 1;
+    if constexpr (kDecodesImplicit && !kSlabs) {
+      if (side.balls == nullptr) {
+        const ImplicitDecoder decoder(side);
+        for (std::uint32_t i = begin; i < end; ++i) {
+          Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
+          at += decoder.Decode(ids[i], scratch_.moving, at);
+        }
+        return at;
+      }
+    }
     for (std::uint32_t i = begin; i < end; ++i) {
       Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
-      at += Decode<kSlabs>(side, ids[i], scratch_.moving, at);
+      at += DecodeBlock<kSlabs>(side, ids[i], scratch_.moving, at);
     }
     return at;
   }
