@@ -115,6 +115,61 @@ TEST(ImplicitBall, OfALeafIsTheCircumsphereWhateverTheMask) {
   }
 }
 
+// How many leaves of a node at `level` were looked at: all, or above level 3 those in the corners
+// of its children's cubes. The circumsphere of each lies in the node's ball, to within `slack`.
+std::size_t expect_holds_its_leaves(const Lattice& lattice, SpherePolicy policy, int level,
+                                    std::uint64_t code, std::uint8_t mask, double slack) {
+  const Ball ball = nested_ball(policy, lattice, level, cube_centre(lattice, level, code), mask);
+  const std::uint64_t in_child = std::uint64_t{1} << 3 * (level - 1);
+  const std::uint64_t places = level <= 3 ? in_child : 8;
+  const std::uint64_t apart = level <= 3 ? 1 : (in_child - 1) / 7;
+  std::size_t leaves = 0;
+  for (std::uint64_t child = 0; child < 8; ++child) {
+    if ((mask >> child & 1) == 0) continue;
+    for (std::uint64_t place = 0; place < places; ++place, ++leaves) {
+      const std::uint64_t leaf = (code * 8 + child) * in_child + place * apart;
+      const Ball inner = nested_ball(policy, lattice, 0, cube_centre(lattice, 0, leaf), 0);
+      const mpq_class room = mpq_class(ball.radius) + mpq_class(slack) - mpq_class(inner.radius);
+      EXPECT_GE(room, 0);
+      EXPECT_LE(test::square(test::exact(inner.centre) - test::exact(ball.centre)), room * room)
+          << "leaf " << leaf << ", level " << level << ", mask " << int{mask};
+    }
+  }
+  return leaves;
+}
+
+TEST(NestedBall, OfEveryMaskHoldsTheCircumspheresOfAllLeaves) {
+  std::size_t leaves = 0;
+  for (unsigned mask = 1; mask < 256; ++mask) {
+    for (int level = 1; level <= 8; ++level) {
+      const Lattice lattice = lattice_of(level + 1, 0.3);
+      for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
+        leaves += expect_holds_its_leaves(lattice, policy, level, mask % 8,
+                                          static_cast<std::uint8_t>(mask),
+                                          0x1p-51 * lattice.edge(lattice.depth));
+      }
+    }
+  }
+  EXPECT_EQ(leaves, 2u * 128 * 8 * (1 + 8 + 64 + 5 * 8));
+}
+
+TEST(NestedBall, IsThePublishedOneWhereNoLeafSticksOut) {
+  const Lattice lattice = lattice_of(6, 0.25);
+  for (unsigned mask = 1; mask < 256; ++mask) {
+    for (int level = 0; level <= 6; ++level) {
+      const auto bits = static_cast<std::uint8_t>(mask);
+      const Eigen::Vector3d at = cube_centre(lattice, level, 0);
+      const Ball published = implicit_ball(SpherePolicy::kTable, lattice, level, at, bits),
+                 nested = nested_ball(SpherePolicy::kTable, lattice, level, at, bits);
+      const int squared = kLookupTable[mask].radius_squared;
+      const bool larger = level > 0 && squared != 27 && squared != 108;
+      EXPECT_EQ(nested.centre, published.centre);
+      EXPECT_EQ(nested.radius > published.radius, larger) << level << ' ' << mask;
+      EXPECT_LE(nested.radius, published.radius + 0.1413 * 0.25) << level << ' ' << mask;
+    }
+  }
+}
+
 TEST(SpherePolicy, HasNamesThatComeBack) {
   for (const SpherePolicy policy : kSpherePolicies) {
     EXPECT_EQ(sphere_policy(to_string(policy)), policy);

@@ -43,6 +43,9 @@ void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int dep
     for (const std::uint64_t code : below) parents.insert(code / 8);
     ASSERT_EQ(octree.node_count(level), parents.size());
     ASSERT_EQ(octree.masks(level).size(), parents.size());
+    for (std::size_t i = 0; i < LinearOctree::kMaskSpare; ++i) {
+      ASSERT_EQ(octree.masks(level).data()[parents.size() + i], 0);  // there, if no mask
+    }
     ASSERT_EQ(octree.codes(level), Codes(parents.begin(), parents.end()));
     ASSERT_EQ(octree.nodes(level).size(), parents.size() + 1);
     ASSERT_EQ(octree.nodes(level).back().first_child, below.size());

@@ -78,12 +78,48 @@ TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
           const mpq_class room = mpq_class(tree.bounding_radius()) - mpq_class(ball.radius);
           ASSERT_LE(test::square(test::exact(ball.centre)), room * room) << mask;
         }
+        for (int level = 0; level <= 3; ++level) {
+          const std::vector<std::uint64_t> codes = tree.parts().octree.codes(level);
+          for (std::uint32_t node = 0; node < codes.size(); ++node) {
+            const Eigen::Vector3d at = cube_centre(tree.parts().lattice, level, codes[node]);
+            const Ball ball = tree.parts().nested_ball(SpherePolicy::kTable, level, node, at);
+            ASSERT_LE(ball.centre.norm() + ball.radius, tree.bounding_radius() * (1 + 1e-15))
+                << mask << ' ' << level;
+          }
+        }
         for (const auto& ball : level_spheres(tree, SpherePolicy::kSimple, 0)) {
           ASSERT_LE(ball.centre.norm() + ball.radius, tree.bounding_radius() * (1 + 1e-15)) << mask;
         }
       }
     }
   }
+}
+
+// The ball that a search tests of each node holds those of all leaves below it.
+TEST(SphereTree, ImplicitBallsAreNested) {
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const SphereTree tree = tree_of(random_mesh(seed, 4), 0.11);
+    const TreeParts& parts = tree.parts();
+    const std::vector<std::uint64_t> leaves = parts.octree.codes(0);
+    for (const SpherePolicy policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
+      for (int level = 1; level <= tree.depth(); ++level) {
+        const std::vector<std::uint64_t> codes = parts.octree.codes(level);
+        std::uint32_t node = 0;
+        for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf, ++pairs) {
+          node += codes[node] != leaves[leaf] >> 3 * level;
+          const Ball outer = parts.nested_ball(policy, level, node,
+                                               cube_centre(parts.lattice, level, codes[node])),
+                     inner = parts.nested_ball(policy, 0, leaf,
+                                               cube_centre(parts.lattice, 0, leaves[leaf]));
+          ASSERT_LE((inner.centre - outer.centre).norm() + inner.radius,
+                    outer.radius + 1e-15 * tree.bounding_radius())
+              << to_string(policy) << ", level " << level << ", leaf " << leaf;
+        }
+      }
+    }
+  }
+  EXPECT_GT(pairs, 5'000u);
 }
 
 TEST(SphereTree, ItsLargestLeafRadiusIsThat) {
