@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
 
@@ -81,6 +86,46 @@ TEST_P(ImplicitPolicies, FindTheSameLeafPairsOfRandomBodies) {
   }
   EXPECT_GT(found, 10'000u);
   EXPECT_GT(lost, 10u);
+}
+
+SphereTree tree_of_masks(std::vector<std::vector<std::uint8_t>> masks) {
+  const int depth = static_cast<int>(masks.size());
+  LinearOctree octree(std::move(masks));
+  const std::size_t leaves = octree.leaf_count();
+  return SphereTree({Lattice{{0, 0, 0}, 0.3, 1U << depth, depth},
+                     std::move(octree),
+                     Orientation::kOutward,
+                     std::vector<PackedNormal>(leaves),
+                     {},
+                     std::nullopt,
+                     std::nullopt});
+}
+
+// A root of every mask, and a voxel outside it that only just touches one of its leaves: where that
+// sticks out of the root's published ball, the published query does not come to it.
+TEST_P(ImplicitPolicies, FindALeafOutsideThePublishedRootBall) {
+  const SphereTree voxel = tree_of_masks({});
+  std::size_t lost = 0;
+  for (unsigned mask = 1; mask < 256; ++mask) {
+    const SphereTree root = tree_of_masks({{static_cast<std::uint8_t>(mask)}});
+    const std::vector<Eigen::Vector3d> leaves = root.leaf_centres();
+    const Eigen::Vector3d centre =
+        root.origin() + root.parts().ball(SpherePolicy::kTable, 1, 0, {0, 0, 0}).centre;
+    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+      const Eigen::Vector3d out = leaves[leaf] - centre;
+      if (out.norm() < 0.1 * root.voxel_size()) continue;
+      const Eigen::Vector3d touching =
+          leaves[leaf] + 0.999 * kSqrt3 * root.voxel_size() * out.normalized();
+      const Eigen::Isometry3d pose = shift(touching - voxel.leaf_centres()[0]);
+      for (const bool fixed : {true, false}) {
+        Implicit bodies(fixed ? root : voxel, fixed ? voxel : root, GetParam());
+        bodies.check(fixed ? pose : pose.inverse());
+        EXPECT_GE(bodies.found, 1u) << "mask " << mask << ", leaf " << leaf;
+        lost += bodies.lost_by_published;
+      }
+    }
+  }
+  EXPECT_GT(lost, 100u);
 }
 
 }  // namespace
