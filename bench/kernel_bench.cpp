@@ -26,7 +26,7 @@ struct Data {
   Data(SpherePolicy with, std::uint32_t nodes)
       : plan(trees(0.4).first, trees(0.4).second, with), step(plan.steps().back()) {
     pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
-    pose.ball_pad = pose.slab_pad = 1e-4F;
+    pose.leaf = pose.inner = {1e-4F, 1e-4F, 1e-4F};
     decode(step.moving, 0, scratch->moving, 0);
     decode(step.fixed, 0, scratch->fixed, 0);
     for (const Lane lane : {kX, kY, kZ}) {

@@ -15,6 +15,7 @@ LANES = "simd/lanes.h"
 BOUNDS_INL = "simd/bounds-inl.h"
 SHARED = "src/ist/query/workers/shared_search.cpp"
 NODE_BOUNDS = "src/ist/tree/node_bounds.cpp"
+LEAF_SEARCH = "src/ist/tree/leaf_search.cpp"
 VOXELIZER = "src/ist/voxel/voxelizer.cpp"
 BINS = "src/ist/voxel/triangle_bins.cpp"
 BOX = "src/ist/voxel/triangle_box.h"
@@ -35,14 +36,13 @@ GUARANTEE = "search_test *Guarantee*-*Thread*"
 MUTANTS = [
     # What a query decides by.
     Mutant("ball-pad-dropped", "float's rounding is not added to the reach of two balls",
-           [(SEARCH_POSE, "round_up(kBallRounding * lengths + kMarginRounding * margin)",
-             "round_up(kMarginRounding * margin)")], [TANGENCY, GUARANTEE]),
+           [(SEARCH_POSE, "round_up(kLeafBall * lengths + kLeafMargin * margin)",
+             "round_up(kLeafMargin * margin)")], [TANGENCY, GUARANTEE]),
     Mutant("slab-pad-dropped", "nor to that of a ball and a slab",
-           [(SEARCH_POSE, "round_up(kSlabRounding * lengths + kMarginRounding * margin)",
-             "round_up(kMarginRounding * margin)")], [TANGENCY, GUARANTEE]),
+           [(SEARCH_POSE, "round_up(kLeafSlab * lengths + kLeafMargin * margin)",
+             "round_up(kLeafMargin * margin)")], [TANGENCY, GUARANTEE]),
     Mutant("pad-forgets-the-place", "the pad does not grow with the translation",
-           [(SEARCH_POSE, "bounding_radii + std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2])",
-             "bounding_radii + 0 * t[0]")], ["query_test SearchPose*"]),
+           [(SEARCH_POSE, "std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);", "0 * t[0];")], ["query_test SearchPose*"]),
     Mutant("touching-does-not-count", "`>=` for `>`: balls that are tangent to the last bit are apart",
            [(LANES, "return !(squared > radius_sum * radius_sum)", "return !(squared >= radius_sum * radius_sum)")],
            [KERNELS]),
@@ -135,11 +135,30 @@ MUTANTS = [
            [("src/ist/query/traversal/root_test.cpp", "tree.parts().nested_ball(", "tree.parts().ball(")],
            ["search_test *ImplicitPolicies*"]),
     Mutant("ball-rounded-down", "a saved radius is rounded down",
-           [(NODE_BOUNDS, "std::ceil((std::sqrt(farthest2) + payload.pad) / unit)",
-             "std::max(1.0, std::floor((std::sqrt(farthest2) + payload.pad) / unit))")], ["tree_test"]),
+           [(NODE_BOUNDS, "std::ceil(radius / (PackedBall::kUnit * parent_edge))",
+             "std::max(1.0, std::floor(radius / (PackedBall::kUnit * parent_edge)))")], ["tree_test"]),
     Mutant("slab-rounded-down", "a saved half-width is rounded down",
-           [(NODE_BOUNDS, "std::ceil((half + payload.pad) / unit)",
-             "std::max(1.0, std::floor((half + payload.pad) / unit))")], ["tree_test"]),
+           [(NODE_BOUNDS, "std::ceil((half + pad) / unit)",
+             "std::max(1.0, std::floor((half + pad) / unit))")], ["tree_test"]),
+    Mutant("leaf-passed-over", "a search among leaves leaves out nodes a little above what it has",
+           [(LEAF_SEARCH, "if (!(values[at] > greatest.value)) return;",
+             "if (!(values[at] > greatest.value + 0.01)) return;")], ["tree_test LeafSearch*:Nested*"]),
+    Mutant("nested-round-geometry", "inner slabs hold what leaves hold, whatever the partner's radius",
+           [(LEAF_SEARCH, "saved_slab(level, node, slot), kReach);", "saved_slab(level, node, slot), 0);"),
+            (LEAF_SEARCH, "length, from) - length * kReach;", "length, from);")], ["tree_test Nested*"]),
+    Mutant("short-normals-forgotten", "all of a reach is taken off, as if normals had length 1",
+           [(LEAF_SEARCH, "length, from) - length * kReach;", "length, from) - kReach;")],
+           ["tree_test Nested*"]),
+    Mutant("inner-pads-of-leaves", "nodes above leaves have the pads of leaves",
+           [("simd/step.h", "return step.leaves ? pose.leaf : pose.inner;", "return pose.leaf;")],
+           ["search_test *AllPairs*"]),
+    Mutant("roots-part-in-double", "a query ends at roots that are apart, although float would keep leaves",
+           [("src/ist/query/traversal/root_test.cpp",
+             "= inner_ball_pad(bounding_radii, farthest, margin);", "= test.pad;")],
+           ["search_test *AllPairs*"]),
+    Mutant("large-partners-forgotten", "slabs do not count as wider for larger partners",
+           [("src/ist/tree/nested_bounds.h", "return kReachRise * std::max", "return 0 * std::max")],
+           ["search_test *AllPairs*"]),
     Mutant("octants-swapped", "the x and y bits of an octant are swapped where children are placed",
            [("src/ist/tree/linear_octree.cpp",
              "{{from[0] + ((k & 1) != 0 ? half : -half), from[1] + ((k & 2) != 0 ? half : -half),",

@@ -72,7 +72,8 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
 
 // Vector twin of ist::turn, for all eight rows.
 template <bool kSlabs>
-HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows& rows) {
+HWY_INLINE void Turn(const SearchPose& pose, const Pads& pads, const FixedLanes& fixed,
+                     FixedRows& rows) {
   const Eight d;
   for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
     const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
@@ -85,17 +86,19 @@ HWY_INLINE void Turn(const SearchPose& pose, const FixedLanes& fixed, FixedRows&
     hn::StoreU(hn::Add(dot(0, x, y, z), hn::Set(d, pose.translation[0])), d, rows.x + k);
     hn::StoreU(hn::Add(dot(1, x, y, z), hn::Set(d, pose.translation[1])), d, rows.y + k);
     hn::StoreU(hn::Add(dot(2, x, y, z), hn::Set(d, pose.translation[2])), d, rows.z + k);
-    hn::StoreU(hn::Add(radius, hn::Set(d, pose.ball_pad)), d, rows.radius + k);
+    hn::StoreU(hn::Add(radius, hn::Set(d, pads.ball)), d, rows.radius + k);
     if constexpr (kSlabs) {
-      const auto unscale = hn::Set(d, 1 / kSlabScale), pad = hn::Set(d, pose.slab_pad);
+      const auto unscale = hn::Set(d, 1 / kSlabScale);
       const auto nx = hn::Mul(load(kNormalX), unscale), ny = hn::Mul(load(kNormalY), unscale),
                  nz = hn::Mul(load(kNormalZ), unscale);
       hn::StoreU(dot(0, nx, ny, nz), d, rows.normal_x + k);
       hn::StoreU(dot(1, nx, ny, nz), d, rows.normal_y + k);
       hn::StoreU(dot(2, nx, ny, nz), d, rows.normal_z + k);
       hn::StoreU(hn::Mul(load(kOffset), unscale), d, rows.offset + k);
-      hn::StoreU(hn::Add(hn::Mul(load(kHalf), unscale), pad), d, rows.half + k);
-      hn::StoreU(hn::Mul(hn::Add(radius, pad), hn::Set(d, kSlabScale)), d, rows.scaled_radius + k);
+      hn::StoreU(hn::Add(hn::Mul(load(kHalf), unscale), hn::Set(d, pads.slab_fixed)), d,
+                 rows.half + k);
+      hn::StoreU(hn::Mul(hn::Add(radius, hn::Set(d, pads.slab_moving)), hn::Set(d, kSlabScale)), d,
+                 rows.scaled_radius + k);
     }
   }
 }

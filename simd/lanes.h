@@ -39,7 +39,7 @@ using FixedLanes = BoundLanes<8>;
 struct alignas(64) FixedRows {
   float x[8], y[8], z[8], radius[8];
   float normal_x[8], normal_y[8], normal_z[8], offset[8], half[8];
-  float scaled_radius[8];  ///< kSlabScale · (radius + slab_pad)
+  float scaled_radius[8];  ///< kSlabScale · (radius + the moving slabs' pad)
 };
 
 /// The scratch memory of a step. One object belongs to one thread.
@@ -132,14 +132,14 @@ std::uint32_t decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& 
 }
 
 /// Turns the fixed node in lane `at` into the moving tree's frame, as a row.
-inline void turn(const SearchPose& pose, bool slabs, const FixedLanes& fixed, std::size_t at,
-                 FixedRows& rows) noexcept {
+inline void turn(const SearchPose& pose, const Pads& pads, bool slabs, const FixedLanes& fixed,
+                 std::size_t at, FixedRows& rows) noexcept {
   const float* r = pose.rotation;
   const float x = fixed.lane[kX][at], y = fixed.lane[kY][at], z = fixed.lane[kZ][at];
   rows.x[at] = ((r[0] * x + r[1] * y) + r[2] * z) + pose.translation[0];
   rows.y[at] = ((r[3] * x + r[4] * y) + r[5] * z) + pose.translation[1];
   rows.z[at] = ((r[6] * x + r[7] * y) + r[8] * z) + pose.translation[2];
-  rows.radius[at] = fixed.lane[kRadius][at] + pose.ball_pad;
+  rows.radius[at] = fixed.lane[kRadius][at] + pads.ball;
   if (!slabs) return;
   constexpr float kUnscale = 1 / kSlabScale;
   const float nx = fixed.lane[kNormalX][at] * kUnscale, ny = fixed.lane[kNormalY][at] * kUnscale,
@@ -148,8 +148,8 @@ inline void turn(const SearchPose& pose, bool slabs, const FixedLanes& fixed, st
   rows.normal_y[at] = (r[3] * nx + r[4] * ny) + r[5] * nz;
   rows.normal_z[at] = (r[6] * nx + r[7] * ny) + r[8] * nz;
   rows.offset[at] = fixed.lane[kOffset][at] * kUnscale;
-  rows.half[at] = fixed.lane[kHalf][at] * kUnscale + pose.slab_pad;
-  rows.scaled_radius[at] = (fixed.lane[kRadius][at] + pose.slab_pad) * kSlabScale;
+  rows.half[at] = fixed.lane[kHalf][at] * kUnscale + pads.slab_fixed;
+  rows.scaled_radius[at] = (fixed.lane[kRadius][at] + pads.slab_moving) * kSlabScale;
 }
 
 /// The numbers by which the bounds of a row and of a moving node are tested. The bounds overlap

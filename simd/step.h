@@ -44,16 +44,27 @@ struct SearchSide {
 struct SearchStep {
   SearchSide fixed, moving;
   bool last;           ///< no step follows: rows may be cut
+  bool leaves;         ///< whether both sides of the pairs that it tests are leaves
   float radius_limit;  ///< exceeds every sum of two radii, mesh units; without pads
 };
 
+/// The pads of one kind of step, mesh units: of the sum of radii, and of the fixed and of the
+/// moving nodes' slabs.
+struct Pads {
+  float ball, slab_fixed, slab_moving;
+};
+
 /// The motion from the fixed tree's frame to the moving one's, x = rotation · y + translation, and
-/// the pads of the tests, mesh units. The same for all steps of a query.
+/// the pads of the tests of leaves and of all others. The same for all steps of a query.
 struct SearchPose {
   float rotation[9];  ///< row by row
   float translation[3];
-  float ball_pad, slab_pad;
+  Pads leaf, inner;
 };
+
+[[nodiscard]] inline const Pads& pads_of(const SearchPose& pose, const SearchStep& step) noexcept {
+  return step.leaves ? pose.leaf : pose.inner;
+}
 
 /// The moving nodes that overlap one fixed node: from the previous group's end to `end`.
 struct SearchGroup {

@@ -27,6 +27,7 @@ Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Fr
                         SearchCursor& cursor, Frontier& out, SearchScratch& scratch,
                         std::uint64_t most, Measured measured, DistanceBounds& bounds) {
   const bool slabs = step.fixed.slabs != nullptr;
+  const Pads& pads = pads_of(pose, step);
   FixedRows& rows = scratch.rows[0];
   std::uint64_t tests = 0;
   for (; cursor.group < in.group_count; ++cursor.group, cursor.row = 0) {
@@ -37,7 +38,9 @@ Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Fr
       break;
     }
     const std::uint32_t row_count = decode(step.fixed, group.fixed, scratch.fixed, 0);
-    for (std::size_t row = 0; row < row_count; ++row) turn(pose, slabs, scratch.fixed, row, rows);
+    for (std::size_t row = 0; row < row_count; ++row) {
+      turn(pose, pads, slabs, scratch.fixed, row, rows);
+    }
     for (; cursor.row < row_count; ++cursor.row, cursor.moving = 0) {
       const std::uint32_t fixed = scratch.fixed.id[cursor.row];
       while (begin + cursor.moving < group.end) {

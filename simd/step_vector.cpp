@@ -47,7 +47,7 @@ class Advancer {
         out_(out),
         scratch_(scratch),
         most_(most),
-        measurer_(bounds, step.radius_limit + pose.ball_pad) {}
+        measurer_(bounds, step.radius_limit + pads_of(pose, step).ball) {}
 
   // Decodes a batch of groups, then tests it. So a vector is loaded long after the narrower stores
   // that wrote it, and short loops of varying length do not delay each other.
@@ -112,7 +112,7 @@ class Advancer {
       Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);
     }
     const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);
-    Turn<kSlabs>(pose_, scratch_.fixed, rows);
+    Turn<kSlabs>(pose_, pads_of(pose_, step_), scratch_.fixed, rows);
     return count;
   }
 

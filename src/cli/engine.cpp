@@ -10,6 +10,7 @@ Engine::Engine(std::string_view name, const SphereTree& fixed, const SphereTree&
                const EngineOptions& options) {
   if (name == kEngineNames.back()) {
     reference_.emplace(fixed, moving, options.policy);
+    nested_ = published_are_nested(options.policy);
     return;
   }
   options_ = options;

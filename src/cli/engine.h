@@ -44,6 +44,8 @@ class Engine {
 
   [[nodiscard]] std::string_view name() const { return kEngineNames[simd_ ? 0 : 1]; }
   [[nodiscard]] std::string_view target() const;
+  /// Returns whether the engine finds all pairs of leaves whose bounds overlap.
+  [[nodiscard]] bool nested() const { return nested_; }
   [[nodiscard]] int workers() const { return simd_ ? simd_->workers() : 1; }
   [[nodiscard]] Answer ask(const Eigen::Isometry3d& pose);
   /// Returns all leaf pairs of the last answer.
@@ -54,6 +56,7 @@ class Engine {
  private:
   std::optional<Query> simd_;
   std::optional<ReferenceQuery> reference_;  // exactly one of both
+  bool nested_ = true;
   EngineOptions options_;
   std::vector<LeafPair> leaf_pairs_ = std::vector<LeafPair>(1 << 16);
   std::vector<TrianglePair> pairs_;

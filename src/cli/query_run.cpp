@@ -168,7 +168,7 @@ void verify(Engines& engines, const Bodies& bodies, std::span<const Eigen::Isome
       std::vector<GivenAnswer> answers;
       for (Engine& engine : engines) {
         const QueryResult result = engine.ask(poses[i]).result;
-        answers.push_back({result, engine.leaf_pairs()});
+        answers.push_back({result, engine.leaf_pairs(), engine.nested()});
       }
       if (const std::optional<Violation> violation = check.check(poses[i], answers)) {
         throw Failure(
@@ -180,16 +180,16 @@ void verify(Engines& engines, const Bodies& bodies, std::span<const Eigen::Isome
       progress.add(1);
     }
   }
-  const std::string rest =
-      check.knows_geometry()
-          ? fmt::format(" and no pair of voxels whose {} is missing",
-                        is_implicit(bodies.policy) ? "cubes intersect" : "triangles cross")
-          : fmt::format(
-                "{} but a missing pair would not show: the trees hold no triangles: build "
-                "them with --exact, or name meshes",
-                engines.size() > 1 ? " and the engines agree," : "");
-  std::fprintf(stderr, "verified: at each of %zu poses, the bounds of every leaf pair overlap,%s\n",
-               poses.size(), rest.c_str());
+  const bool nested = std::all_of(engines.begin(), engines.end(),
+                                  [](const Engine& engine) { return engine.nested(); });
+  const bool by_triangles = !is_implicit(bodies.policy) && check.knows_geometry();
+  std::fprintf(stderr,
+               "verified: at each of %zu poses, the bounds of every leaf pair overlap, and no pair "
+               "of voxels whose %s is missing\n",
+               poses.size(),
+               !nested        ? "cubes intersect"
+               : by_triangles ? "bounds overlap or whose triangles cross"
+                              : "bounds overlap");
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ AnswerVerifier::AnswerVerifier(const SphereTree& fixed, const SphereTree& moving
       moving_(moving),
       policy_(policy),
       knows_geometry_(is_implicit(policy) || (fixed.triangles() && moving.triangles())),
-      moving_radius_(0.5 * kSqrt3 * moving.voxel_size()),
-      grid_(fixed, moving_radius_),
+      fixed_radius_(fixed.largest_leaf_radius(policy)),
+      grid_(fixed, fixed_radius_ + moving.largest_leaf_radius(policy)),
       moving_codes_(moving.parts().octree.codes(0)) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
@@ -66,8 +66,7 @@ std::optional<Violation> AnswerVerifier::check(const Eigen::Isometry3d& pose,
     if (!found) found = check_bounds(*relative, tolerance, answers[i]);
     if (found) return Violation{i, *found};
   }
-  return knows_geometry_ ? find_missing(*relative, tolerance, answers)
-                         : compare(*relative, tolerance, answers);
+  return find_missing(*relative, tolerance, answers);
 }
 
 AnswerVerifier::Found AnswerVerifier::check_list(const GivenAnswer& answer) const {
@@ -90,7 +89,7 @@ AnswerVerifier::Found AnswerVerifier::check_list(const GivenAnswer& answer) cons
 
 Bounds AnswerVerifier::leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
                                    std::uint32_t leaf) const {
-  if (!is_implicit(policy_)) return read_bounds(tree, policy_, 0, leaf);
+  if (!is_implicit(policy_)) return read_bounds(tree, policy_, leaf);
   const Lattice& lattice = tree.parts().lattice;
   return {implicit_ball(policy_, lattice, 0, cube_centre(lattice, 0, codes[leaf]), 0), {}};
 }
@@ -121,75 +120,39 @@ std::optional<Violation> AnswerVerifier::find_missing(const RelativePose& pose, 
     const Eigen::Vector3d centre =
         pose.rotation * (moving.voxel_size * cube_centre(moving, 0, moving_codes_[m])) +
         pose.translation;
-    bool polygons_made = false;
-    grid_.near(centre, moving_radius_, [&](std::uint32_t f) {
-      const auto lacking =
-          std::find_if(answers.begin(), answers.end(), [&](const GivenAnswer& answer) {
-            return answer.result.complete && !holds(answer, {f, m});
-          });
-      if (lacking == answers.end() || violation) return;
+    const Bounds own = moved(pose, leaf_bounds(moving_, moving_codes_, m));
+    // Why a pair must be in the answer, or null if it need not be.
+    const auto reason = [&](std::uint32_t f, bool nested) -> const char* {
+      if (nested && overlap(policy_, leaf_bounds(fixed_, grid_.codes(), f), own) > tolerance) {
+        return "bounds overlap";
+      }
+      if (!knows_geometry_) return nullptr;
       const std::uint64_t code = grid_.codes()[f];
       const Eigen::Vector3d apart = centre - fixed.voxel_size * cube_centre(fixed, 0, code);
-      if (!axes.surely_meet(apart)) return;  // then their contents do not surely intersect either
-      if (!is_implicit(policy_)) {
-        if (!polygons_made) {
-          moved_polygons = leaf_polygons(moving_, m, moving_codes_[m]);
-          for (ClippedTriangle& polygon : moved_polygons) {
-            for (Eigen::Vector3d& p : polygon.corners) p = pose.rotation * p + pose.translation;
-          }
-          polygons_made = true;
+      if (!axes.surely_meet(apart)) return nullptr;  // nor do their contents surely intersect
+      if (is_implicit(policy_)) return "cubes intersect";
+      if (moved_polygons.empty()) {
+        moved_polygons = leaf_polygons(moving_, m, moving_codes_[m]);
+        for (ClippedTriangle& polygon : moved_polygons) {
+          for (Eigen::Vector3d& p : polygon.corners) p = pose.rotation * p + pose.translation;
         }
-        if (!surely_cross(leaf_polygons(fixed_, f, code), moved_polygons, tolerance)) return;
       }
-      violation =
-          Violation{static_cast<std::size_t>(lacking - answers.begin()),
-                    fmt::format("{} is not in the answer, but its {}", name({f, m}),
-                                is_implicit(policy_) ? "cubes intersect" : "triangles cross")};
+      return surely_cross(leaf_polygons(fixed_, f, code), moved_polygons, tolerance)
+                 ? "triangles cross"
+                 : nullptr;
+    };
+    moved_polygons.clear();
+    grid_.near(own.ball.centre, fixed_radius_ + own.ball.radius, [&](std::uint32_t f) {
+      for (std::size_t i = 0; i < answers.size() && !violation; ++i) {
+        if (!answers[i].result.complete || holds(answers[i], {f, m})) continue;
+        if (const char* const why = reason(f, answers[i].nested)) {
+          violation =
+              Violation{i, fmt::format("{} is not in the answer, but its {}", name({f, m}), why)};
+        }
+      }
     });
   }
   return violation;
-}
-
-// Returns whether the bounds of a pair of leaves, and of all pairs of their ancestors, overlap by
-// more than the doubt: then every order of traversal reaches the leaves.
-bool AnswerVerifier::ancestors_overlap(const RelativePose& pose, LeafPair pair,
-                                       double doubt) const {
-  const auto path = [this](const SphereTree& tree, std::uint32_t node) {
-    std::vector<Bounds> bounds;
-    for (int level = 0; level <= tree.depth(); ++level) {
-      bounds.push_back(read_bounds(tree, policy_, level, node));
-      node = parent_of(tree.parts().octree, level, node);
-    }
-    return bounds;
-  };
-  const std::vector<Bounds> fixed = path(fixed_, pair.fixed);
-  for (const Bounds& own : path(moving_, pair.moving)) {
-    const Bounds other = moved(pose, own);
-    for (const Bounds& bounds : fixed) {
-      if (!(overlap(policy_, bounds, other) > doubt)) return false;
-    }
-  }
-  return true;
-}
-
-std::optional<Violation> AnswerVerifier::compare(const RelativePose& pose, double tolerance,
-                                                 std::span<const GivenAnswer> answers) const {
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const GivenAnswer& has = answers[i];
-    for (std::size_t j = 0; j < answers.size(); ++j) {
-      if (!answers[j].result.complete) continue;
-      for (const LeafPair& pair : has.leaf_pairs) {
-        if (holds(answers[j], pair)) continue;
-        const double doubt = has.result.pad + answers[j].result.pad + tolerance;
-        if (ancestors_overlap(pose, pair, doubt)) {
-          return Violation{j, name(pair) +
-                                  " is in another engine's answer and not in this one's, but "
-                                  "its bounds overlap"};
-        }
-      }
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace ist

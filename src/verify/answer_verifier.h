@@ -19,6 +19,7 @@ namespace ist {
 struct GivenAnswer {
   QueryResult result;
   std::span<const LeafPair> leaf_pairs;
+  bool nested = true;  ///< whether the tested bounds are nested: not the published ones of `table`
 };
 
 /// A violation of the guarantee by an answer.
@@ -29,18 +30,18 @@ struct Violation {
 
 /// Checks answers against the guarantee of every query,
 ///
-///   {leaf pairs whose geometry intersects} ⊆ answer ⊆ {leaf pairs whose bounds overlap, within the
+///   {leaf pairs whose bounds overlap} ⊆ answer ⊆ {leaf pairs whose bounds overlap, within the
 ///   pad},
 ///
-/// sorted, without duplicates, as many as counted. Finds near leaves by a hash of their cells
-/// instead of the trees, and computes in double.
+/// sorted, without duplicates, as many as counted; and against what it is for: an answer has every
+/// pair whose geometry intersects, as far as the trees hold it. Of an answer from bounds that are
+/// not nested, the second is required alone. Finds near leaves by a hash of their cells instead of
+/// the trees, and computes in double.
 ///
-/// Requires certain intersections only, so there are no false alarms: of cubes shrunk by
-/// CubeAxes::kShrink, and of triangles that still cross if each corner moves by `tolerance` of all
-/// lengths. Triangles that only touch or are coplanar are not required. If the policy bounds
-/// triangles and the trees hold none, it compares the answers instead: they may differ only in
-/// pairs whose bounds, or the bounds of a pair of their ancestors, overlap by no more than the
-/// pads.
+/// Requires certain pairs only, so there are no false alarms: bounds that overlap by more than
+/// `tolerance` of all lengths, cubes that intersect if shrunk by CubeAxes::kShrink, and triangles
+/// that still cross if each corner moves by the tolerance. Triangles that only touch or are
+/// coplanar are not required.
 class AnswerVerifier {
  public:
   /// The tolerance relative to the bounding radii of both trees plus their distance: 2⁻⁴⁰.
@@ -66,9 +67,6 @@ class AnswerVerifier {
                                    const GivenAnswer& answer) const;
   [[nodiscard]] std::optional<Violation> find_missing(const RelativePose& pose, double tolerance,
                                                       std::span<const GivenAnswer> answers) const;
-  [[nodiscard]] std::optional<Violation> compare(const RelativePose& pose, double tolerance,
-                                                 std::span<const GivenAnswer> answers) const;
-  [[nodiscard]] bool ancestors_overlap(const RelativePose& pose, LeafPair pair, double doubt) const;
   [[nodiscard]] Bounds leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
                                    std::uint32_t leaf) const;
 
@@ -76,8 +74,8 @@ class AnswerVerifier {
   const SphereTree& moving_;
   SpherePolicy policy_;
   bool knows_geometry_;
-  double moving_radius_;  // circumradius of a moving leaf's cube, mesh units
-  LeafGrid grid_;         // the fixed leaves
+  double fixed_radius_;  // of the largest fixed leaf, mesh units
+  LeafGrid grid_;        // the fixed leaves
   std::vector<std::uint64_t> moving_codes_;
 };
 

@@ -16,13 +16,11 @@ std::uint32_t parent_of(const LinearOctree& octree, int level, std::uint32_t nod
   return static_cast<std::uint32_t>(after - parents.begin() - 1);
 }
 
-Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, int level,
-                   std::uint32_t node) noexcept {
-  const std::uint32_t parent = parent_of(tree.parts().octree, level, node);
-  const auto slot =
-      static_cast<int>(node - tree.parts().octree.nodes(level + 1)[parent].first_child);
-  Bounds bounds{tree.parts().saved_ball(level, parent, slot), {}};
-  if (policy == SpherePolicy::kSlab) bounds.slab = tree.parts().saved_slab(level, parent, slot);
+Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf) noexcept {
+  const std::uint32_t parent = parent_of(tree.parts().octree, 0, leaf);
+  const auto slot = static_cast<int>(leaf - tree.parts().octree.nodes(1)[parent].first_child);
+  Bounds bounds{tree.parts().saved_ball(0, parent, slot), {}};
+  if (policy == SpherePolicy::kSlab) bounds.slab = tree.parts().saved_slab(0, parent, slot);
   return bounds;
 }
 

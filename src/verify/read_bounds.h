@@ -18,10 +18,10 @@ struct Bounds {
 [[nodiscard]] std::uint32_t parent_of(const LinearOctree& octree, int level,
                                       std::uint32_t node) noexcept;
 
-/// Reads the saved bounds of a node. Precondition: tree.has(policy), and the policy is not
+/// Reads the saved bounds of a leaf. Precondition: tree.has(policy), and the policy is not
 /// implicit.
-[[nodiscard]] Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, int level,
-                                 std::uint32_t node) noexcept;
+[[nodiscard]] Bounds read_bounds(const SphereTree& tree, SpherePolicy policy,
+                                 std::uint32_t leaf) noexcept;
 
 /// Returns the bounds mapped by a pose.
 [[nodiscard]] Bounds moved(const RelativePose& pose, Bounds bounds) noexcept;

@@ -120,6 +120,8 @@ TEST_F(Faults, MemoryThatEndsIsNamedWithTheRemedy) {
     const CommandResult result = ist_behind("ulimit -v " + std::to_string(mib * 1024) + " && exec",
                                             {"build", ball, "-o", tree, "--voxel-size", "0.05"});
     if (result.exit_code == 127) continue;  // not even its libraries could be loaded
+    // Nor had the C++ runtime the 73 kB from which it makes exceptions when memory has ended.
+    if (refused == 0 && result.err == "terminate called without an active exception\n") continue;
     if (result.exit_code == 0) {
       EXPECT_GT(read_tree(tree).leaf_count(), 1000u);
       EXPECT_EQ(dir_.entries(), before.size());

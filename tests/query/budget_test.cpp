@@ -157,8 +157,8 @@ void expect_looks(const SphereTree& fixed, const SphereTree& moving, const Eigen
   const SearchPlan plan(fixed, moving, SpherePolicy::kSlab);
   Search search(plan, select_kernels(""), 1 << 16);
   const auto relative = relative_pose(at, fixed.parts().lattice, moving.parts().lattice);
-  const SearchPose pose =
-      to_float(*relative, fixed.bounding_radius() + moving.bounding_radius(), 0);
+  const SearchPose pose = to_float(*relative, lengths_of(fixed, SpherePolicy::kSlab),
+                                   lengths_of(moving, SpherePolicy::kSlab));
   std::vector<LeafPair> out(1 << 20), all_out(1 << 20);
   LeafPairSink sink(plan, select_kernels(""), out), all_sink(plan, select_kernels(""), all_out);
   const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::seconds(1)),

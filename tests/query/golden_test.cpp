@@ -11,26 +11,26 @@ namespace {
 
 // By policy.
 using Hashes = std::array<std::uint64_t, 4>;
-constexpr Hashes kGoldenJaws = {0x9b68127037f06f96, 0x3f4747998843545b, 0xcf9ee847f3591b44,
-                                0x8adeaedf99ab487e};
+constexpr Hashes kGoldenJaws = {0x84188b65e9d43672, 0xba6c1db36d1f2b1a, 0x6255484a34863d2f,
+                                0xf4e238af84015924};
 constexpr Hashes kGoldenSolids[3] = {
     {
         0x1d333c6a0c3550e7,
         0x8fcd6e73e17653e9,
-        0x5bceb196845ba30e,
-        0xa8ec4b7c0a60d678,
+        0xdb5145f02d8d2e6e,
+        0x61d8f6ada9403259,
     },
     {
         0x91e1c3add1ddd5e9,
         0x00b0a29b3dd5849c,
-        0xb3b77ace34ae806d,
-        0xe5f7e5b7aafdc9d9,
+        0xc940ca98685ae848,
+        0x08114781fdae1de2,
     },
     {
         0x8ca386835396f93c,
         0x340be4a0ba779514,
-        0x43f689f384faabe2,
-        0xec43dd9d31435a78,
+        0xc38b63ee2aab44ba,
+        0xeb7c473aa8d81539,
     },
 };
 

@@ -10,6 +10,7 @@
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search.h"
 #include "ist/query/traversal/search_pose.h"
+#include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
 #include "simd/lanes.h"
 
@@ -21,14 +22,14 @@ struct Distances {
   double least, greatest;
 };
 
-Distances distances_of(const PairTest& test, const SearchPose& pose, bool slabs) {
+Distances distances_of(const PairTest& test, const Pads& pads, bool slabs) {
   const double distance = std::sqrt(double{test.squared});
-  const double radii = double{test.radius_sum} - pose.ball_pad;
+  const double radii = double{test.radius_sum} - pads.ball;
   Distances distances{distance - radii, distance + radii};
   if (slabs) {
-    const double fixed = double{test.over_fixed} - (double{test.fixed_sum} - pose.slab_pad);
+    const double fixed = double{test.over_fixed} - (double{test.fixed_sum} - pads.slab_fixed);
     const double moving =
-        (double{test.over_moving} - double{test.moving_sum}) / kSlabScale + pose.slab_pad;
+        (double{test.over_moving} - double{test.moving_sum}) / kSlabScale + pads.slab_moving;
     distances.least = std::max({distances.least, fixed, moving});
   }
   return distances;
@@ -51,13 +52,14 @@ class Listing : public PairLister {
       const std::uint32_t begin = from.group == 0 ? 0 : batch.in.groups[from.group - 1].end;
       const std::uint32_t rows = decode(batch.step.fixed, group.fixed, scratch_->fixed, 0);
       for (; from.row < rows && tests < made.tests; ++from.row, from.moving = 0) {
-        turn(pose_, slabs, scratch_->fixed, from.row, scratch_->rows[0]);
+        turn(pose_, pads_of(pose_, batch.step), slabs, scratch_->fixed, from.row,
+             scratch_->rows[0]);
         for (std::uint32_t i = begin + from.moving; i < group.end && tests < made.tests; ++i) {
           const std::uint32_t lanes =
               decode(batch.step.moving, batch.in.moving[i], scratch_->moving, 0);
           for (std::uint32_t at = 0; at < lanes; ++at) {
             const PairTest test(scratch_->rows[0], from.row, scratch_->moving, at, slabs);
-            const Distances distances = distances_of(test, pose_, slabs);
+            const Distances distances = distances_of(test, pads_of(pose_, batch.step), slabs);
             (test.overlap() ? live_ : pruned_).push_back(distances);
           }
           tests += lanes;
@@ -115,7 +117,7 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           if (told.sphere_tests == 1) continue;  // the roots are apart, or no test was left
           const SearchPose pose = to_float(
               *relative_pose(at, scene.fixed.parts().lattice, scene.moving.parts().lattice),
-              scene.fixed.bounding_radius() + scene.moving.bounding_radius());
+              lengths_of(scene.fixed, policy), lengths_of(scene.moving, policy));
           LeafPairSink sink(plan, kernels, {});
           Listing listing(pose, sink, BudgetMeter({.tests = tests}));
           const std::size_t steps = search.run(listing);
@@ -123,7 +125,9 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           EXPECT_EQ(listing.tests() + 1, told.sphere_tests);
           EXPECT_EQ(static_cast<int>(plan.steps().size() - steps), told.level);
           EXPECT_EQ(told.complete, told.level == 0);
-          const DistanceInterval formula = listing.formula(told.pad / 2);
+          const Pads& pads = pose.inner;  // no less than those of leaves
+          const DistanceInterval formula =
+              listing.formula(std::max({pads.ball, pads.slab_fixed, pads.slab_moving}));
           const double last_bits = 1e-6 * formula.upper;
           EXPECT_GE(told.distance->lower, formula.lower - last_bits);
           EXPECT_LE(told.distance->upper, formula.upper + last_bits);

@@ -110,16 +110,18 @@ TEST_P(Border, TheLastBitDecides) {
     SearchPose pose = random_pose(random, 0);
     decode(made.step.fixed, 0, scratch_->fixed, 0);
     decode(made.step.moving, 0, scratch_->moving, 0);
-    turn(pose, slabs, scratch_->fixed, 0, scratch_->rows[0]);
+    turn(pose, pose.leaf, slabs, scratch_->fixed, 0, scratch_->rows[0]);
     const PairTest test(scratch_->rows[0], 0, scratch_->moving, 0, slabs);
     const auto near = [&](float apart) {
       return apart * (1 + 0x1p-23F * (static_cast<float>(random.below(5)) - 2));
     };
-    pose.ball_pad = near(std::sqrt(test.squared) - test.radius_sum);
-    pose.slab_pad = near(random.below(2) == 0 ? test.over_fixed - test.fixed_sum
-                                              : (test.over_moving - test.moving_sum) / kSlabScale);
+    const float ball = near(std::sqrt(test.squared) - test.radius_sum);
+    const float slab =
+        near(random.below(2) == 0 ? test.over_fixed - test.fixed_sum
+                                  : (test.over_moving - test.moving_sum) / kSlabScale);
+    pose.leaf = pose.inner = {ball, slab, slab};
     expect_same(made, pose);
-    turn(pose, slabs, scratch_->fixed, 0, scratch_->rows[0]);
+    turn(pose, pose.leaf, slabs, scratch_->fixed, 0, scratch_->rows[0]);
     decode(made.step.moving, 0, scratch_->moving, 0);
     const bool overlap = PairTest(scratch_->rows[0], 0, scratch_->moving, 0, slabs).overlap();
     ++(overlap ? overlapping : separate);

@@ -108,11 +108,12 @@ TEST_P(ImplicitLanes, AreTheScalarFormOfEveryMask) {
         SearchPose pose = random_pose(random, 0);
         decode(step.fixed, 0, scratch->fixed, 0);
         decode(step.moving, parent, scratch->moving, 0);
-        turn(pose, false, scratch->fixed, 0, scratch->rows[0]);
+        turn(pose, pose.leaf, false, scratch->fixed, 0, scratch->rows[0]);
         const PairTest test(scratch->rows[0], 0, scratch->moving, child, false);
-        pose.ball_pad = (std::sqrt(test.squared) - test.radius_sum) *
-                        (1 + 0x1p-23F * (static_cast<float>(random.below(5)) - 2));
-        turn(pose, false, scratch->fixed, 0, scratch->rows[0]);
+        pose.leaf.ball = (std::sqrt(test.squared) - test.radius_sum) *
+                         (1 + 0x1p-23F * (static_cast<float>(random.below(5)) - 2));
+        pose.inner = pose.leaf;
+        turn(pose, pose.leaf, false, scratch->fixed, 0, scratch->rows[0]);
         const PairTest border(scratch->rows[0], 0, scratch->moving, child, false);
         ++(border.overlap() ? overlapping : separate);
         wanted.clear();

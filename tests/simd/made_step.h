@@ -17,7 +17,7 @@ class MadeStep {
       : fixed_(1), moving_(moving_parents), in_(moving_parents, 0) {
     fill(fixed_, 8, random);
     fill(moving_, 0, random);
-    step = {side(fixed_, slabs), side(moving_, slabs), random.below(2) == 0, 0x1p18F};
+    step = {side(fixed_, slabs), side(moving_, slabs), random.below(2) == 0, true, 0x1p18F};
     std::vector<std::uint32_t> all(moving_parents);
     for (std::uint32_t i = 0; i < moving_parents; ++i) all[i] = i;
     in_.append(0, all);

@@ -13,7 +13,8 @@ namespace ist::test {
 PlannedSearch::PlannedSearch(SphereTree a, SphereTree b, SpherePolicy with)
     : fixed(std::move(a)), moving(std::move(b)), policy(with), plan(fixed, moving, with) {
   SearchPose pose{};
-  pose.ball_pad = pose.slab_pad = std::numeric_limits<float>::infinity();
+  constexpr float kAll = std::numeric_limits<float>::infinity();
+  pose.leaf = pose.inner = {kAll, kAll, kAll};
   const auto scratch = std::make_unique<SearchScratch>();
   auto pairs = std::make_unique<GuardedFrontier>(1, 0);
   pairs->append(0, std::vector<std::uint32_t>{0});
@@ -60,8 +61,10 @@ SearchPose random_pose(Random& random, double most) {
     }
     pose.translation[i] = static_cast<float>(translation[i]);
   }
-  pose.ball_pad = static_cast<float>(random.uniform(0, most));
-  pose.slab_pad = static_cast<float>(random.uniform(0, most));
+  const auto pad = [&] { return static_cast<float>(random.uniform(0, most)); };
+  for (Pads* pads : {&pose.leaf, &pose.inner}) {
+    for (float* each : {&pads->ball, &pads->slab_fixed, &pads->slab_moving}) *each = pad();
+  }
   return pose;
 }
 

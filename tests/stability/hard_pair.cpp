@@ -129,8 +129,8 @@ void HardPair::check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eige
   cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.leaf_pairs.size(), 1),
                               kept ? apart : kInfinity, pad, kept.message());
   const FoundPairs reference = ask(asked.reference, pose);
-  const auto guaranteed =
-      keeps_guarantee(exact, asked.policy, reference.leaf_pairs, reference.result.pad);
+  const auto guaranteed = keeps_guarantee(exact, asked.policy, reference.leaf_pairs,
+                                          reference.result.pad, published_are_nested(asked.policy));
   cases.answers.sample(guaranteed ? 0 : 1, 0, guaranteed.message());
 }
 

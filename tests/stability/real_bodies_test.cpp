@@ -60,9 +60,10 @@ void check_answers(const SphereTree& fixed, const SphereTree& moving,
       const FoundContacts first = find_contacts(*engines.front(), points, pose);
       if (guarantee) {
         const FoundPairs plain = ask(reference, pose);
-        const auto violation =
-            check.check(pose, std::vector{GivenAnswer{answer.result, answer.leaf_pairs},
-                                          GivenAnswer{plain.result, plain.leaf_pairs}});
+        const auto violation = check.check(
+            pose,
+            std::vector{GivenAnswer{answer.result, answer.leaf_pairs},
+                        GivenAnswer{plain.result, plain.leaf_pairs, published_are_nested(policy)}});
         answers.sample(violation ? 1 : 0, 0, violation ? violation->detail : "");
       }
       answers.sample(is_sound(first, fixed.voxel_size()) ? 0 : 1, 0, "contact points");

@@ -45,6 +45,7 @@ double search_overlap(const SphereTree& fixed, const SphereTree& moving, SphereP
                       const Eigen::Isometry3d& pose, const LeafPair& pair) {
   const RelativePose relative =
       relative_pose(pose, fixed.parts().lattice, moving.parts().lattice).value();
+  if (policy != SpherePolicy::kTable) return leaf_overlap(fixed, moving, policy, relative, pair);
   const std::vector<NodeBound> a = bounds_over(fixed, policy, pair.fixed),
                                b = bounds_over(moving, policy, pair.moving);
   double least = HUGE_VAL;

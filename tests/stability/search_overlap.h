@@ -14,8 +14,8 @@ namespace ist::test {
                                   SpherePolicy policy, const RelativePose& pose,
                                   const LeafPair& pair);
 
-/// The least overlap of all pairs of nodes that a search tests on its way to two leaves, theirs
-/// included: the pair is in its answer while none of them is apart.
+/// The overlap that decides whether a search finds two leaves: theirs; with `table`, where bounds
+/// are not nested, the least of all pairs of nodes that it tests on its way, theirs included.
 [[nodiscard]] double search_overlap(const SphereTree& fixed, const SphereTree& moving,
                                     SpherePolicy policy, const Eigen::Isometry3d& pose,
                                     const LeafPair& pair);

@@ -45,11 +45,11 @@ struct MotionCases {
 
 /// Moves one body along paths and looks at what changes from each step to the next.
 ///
-/// What a leaf pair guarantees in motion: a search comes to it while each pair of nodes over it
-/// passes its test, and each test is whether two balls, or a ball and a slab, are near enough. So
-/// it enters and leaves where the least overlap of them all passes between 0 and the pad. Along a
-/// straight line that overlap is a concave function: the pair is there in one interval, and comes
-/// and goes only while the overlap is within the pad. A body that turns may come back.
+/// What a leaf pair guarantees in motion: it is in the answer while its bounds overlap, and each
+/// test is whether two balls, or a ball and a slab, are near enough. So it enters and leaves where
+/// the least overlap of them all passes between 0 and the pad. Along a straight line that overlap
+/// is a concave function: the pair is there in one interval, and comes and goes only while the
+/// overlap is within the pad. A body that turns may come back.
 class Sweep {
  public:
   /// Trees with triangles for `fixed` and `moving`, without for the plain ones; of one build.

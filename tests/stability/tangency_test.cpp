@@ -106,22 +106,22 @@ class Tangency : public ::testing::TestWithParam<SpherePolicy> {
     check(cases, bodies, engines, way, ulps_round(last));
   }
 
-  // Where the geometry of one pair ends to meet, which is in the answer until then, and where its
-  // bounds part by more than the pad, from where on it is not. True where there is such a pair.
+  // Where one pair need no longer be found, which is in the answer until then, and where its bounds
+  // part by more than the pad, from where on it is not. True where there is such a pair.
   bool check_one_pair(Cases& cases, const RationalBodies& bodies, AllEngines& engines,
                       const AxisDirection& way, Random& random) {
     const SpherePolicy policy = GetParam();
     std::vector<LeafPair> meeting = engines(way.at(way.from)).leaf_pairs;
     const ExactPair from = bodies.at(way.at(way.from));
     std::erase_if(meeting, [&](const LeafPair& pair) {
-      return !from.geometry_meets(policy, pair.fixed, pair.moving);
+      return !must_be_found(from, policy, pair.fixed, pair.moving);
     });
     if (meeting.empty()) return false;
     const LeafPair pair = meeting[random.below(meeting.size())];
     const double last = last_touching(way.from, way.to, [&](double x) {
-      return bodies.at(way.at(x)).geometry_meets(policy, pair.fixed, pair.moving);
+      return must_be_found(bodies.at(way.at(x)), policy, pair.fixed, pair.moving);
     });
-    cases.one_pair.sample(holds(engines(way.at(last)), pair) ? 0 : 1, 0, "its geometry meets");
+    cases.one_pair.sample(holds(engines(way.at(last)), pair) ? 0 : 1, 0, "it must be found");
     const double last_bounds = last_touching(last, way.to, [&](double x) {
       const double pad = ask(engines.first(), way.at(x)).result.pad;
       return bodies.at(way.at(x)).bounds_meet(policy, pair.fixed, pair.moving, pad);
@@ -189,7 +189,7 @@ TEST_P(Tangency, IsDecidedAmidManyOthers) {
       const FoundPairs answer = engines(way.at(places[k]));
       const ExactPair exact = bodies.at(way.at(places[k]));
       const bool there = holds(answer, pair);
-      const bool meets = exact.geometry_meets(GetParam(), pair.fixed, pair.moving);
+      const bool meets = must_be_found(exact, GetParam(), pair.fixed, pair.moving);
       cases.one_pair.sample(meets && !there ? 1 : 0, 0);
       const double pad = answer.result.pad;
       const bool apart = !exact.bounds_meet(GetParam(), pair.fixed, pair.moving, pad);

@@ -1,16 +1,17 @@
-// Saved bounds against their payload in exact arithmetic: the triangles of the node, clipped to its
-// grown cube. The blocks are unpacked here, from their description.
+// Saved bounds of leaves against their payload in exact arithmetic: the triangles of the leaf,
+// clipped to its grown cube. The blocks are unpacked here, from their description.
 
 #include "ist/tree/bound_builder.h"
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <set>
 
 #include "ist/base/parallel.h"
+#include "ist/models/models.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/exact.h"
 #include "support/seeded.h"
@@ -36,18 +37,13 @@ Built build(const TriangleMesh& mesh, double voxel_size,
   return {std::move(voxels), std::move(octree), std::move(bounds)};
 }
 
-// The payload of a node from its definition: the triangles that its leaves list, clipped.
-std::vector<ExactPoint> payload(const TriangleMesh& mesh, const VoxelSet& voxels, int level,
-                                std::uint64_t code) {
-  std::set<std::uint32_t> triangles;
-  for (std::size_t leaf = 0; leaf < voxels.codes.size(); ++leaf) {
-    if (voxels.codes[leaf] >> 3 * level != code) continue;
-    triangles.insert(voxels.triangles[leaf].begin(), voxels.triangles[leaf].end());
-  }
-  const test::ExactBox cube =
-      test::grown(test::node_cube(voxels.lattice, level, code), test::exact_pad(voxels.lattice));
+// The payload of a leaf from its definition: the triangles that it lists, clipped.
+std::vector<ExactPoint> payload(const TriangleMesh& mesh, const VoxelSet& voxels,
+                                std::size_t leaf) {
+  const test::ExactBox cube = test::grown(test::node_cube(voxels.lattice, 0, voxels.codes[leaf]),
+                                          test::exact_pad(voxels.lattice));
   std::vector<ExactPoint> points;
-  for (const std::uint32_t t : triangles) {
+  for (const std::uint32_t t : voxels.triangles[leaf]) {
     const test::ExactPolygon piece = test::clip(test::exact_triangle(mesh, t), cube);
     points.insert(points.end(), piece.begin(), piece.end());
   }
@@ -87,43 +83,37 @@ void expect_slab(const PackedSlab& slab, const ExactPoint& centre, const mpq_cla
 void expect_bounds(const TriangleMesh& mesh, double voxel_size) {
   const Built built = build(mesh, voxel_size);
   const Lattice& lattice = built.voxels.lattice;
-  const auto levels = static_cast<std::size_t>(lattice.depth) + 1;
-  ASSERT_EQ(built.bounds.balls.size(), levels);
-  ASSERT_EQ(built.bounds.slabs.size(), levels);
   const mpq_class pad = test::exact_pad(lattice);
-  for (int level = 0; level <= lattice.depth; ++level) {
-    const bool root = level == lattice.depth;
-    const std::vector<std::uint64_t> codes = built.octree.codes(level);
-    const auto& balls = built.bounds.balls[static_cast<std::size_t>(level)];
-    const auto& slabs = built.bounds.slabs[static_cast<std::size_t>(level)];
-    ASSERT_EQ(balls.size(), root ? 1 : built.octree.node_count(level + 1));
-    ASSERT_EQ(slabs.size(), balls.size());
-    std::size_t parent = 0;
-    int slot = -1;
-    for (std::size_t node = 0; node < codes.size(); ++node) {
-      SCOPED_TRACE("level " + std::to_string(level) + ", node " + std::to_string(node));
-      if (node > 0 && codes[node] >> 3 != codes[node - 1] >> 3) {
-        ++parent;
-        slot = -1;
-      }
-      ++slot;
-      const test::ExactBox cube = test::node_cube(lattice, level, codes[node]);
-      const test::ExactBox around =
-          root ? cube : test::node_cube(lattice, level + 1, codes[node] >> 3);
-      const ExactPoint from = mpq_class(1, 2) * (around.low + around.high);
-      const mpq_class edge = cube.high[0] - cube.low[0];
-      const std::vector<ExactPoint> points = payload(mesh, built.voxels, level, codes[node]);
-      ASSERT_FALSE(points.empty()) << "a node without a surface point";
-
-      const PackedBall ball = balls[parent][slot];
-      const mpq_class unit = 2 * edge / 65536;
-      const ExactPoint centre =
-          from + unit * ExactPoint{{mpq_class(ball.x), mpq_class(ball.y), mpq_class(ball.z)}};
-      ASSERT_NO_FATAL_FAILURE(expect_ball(ball, centre, unit, pad, points));
-      ASSERT_NO_FATAL_FAILURE(expect_slab(slabs[parent][slot], centre, edge / 256, points));
+  const std::vector<std::uint64_t>& codes = built.voxels.codes;
+  const auto& balls = built.bounds.balls[0];
+  const auto& slabs = built.bounds.slabs[0];
+  const bool root = lattice.depth == 0;
+  ASSERT_EQ(balls.size(), root ? 1 : built.octree.node_count(1));
+  ASSERT_EQ(slabs.size(), balls.size());
+  std::size_t parent = 0;
+  int slot = -1;
+  for (std::size_t leaf = 0; leaf < codes.size(); ++leaf) {
+    SCOPED_TRACE("leaf " + std::to_string(leaf));
+    if (leaf > 0 && codes[leaf] >> 3 != codes[leaf - 1] >> 3) {
+      ++parent;
+      slot = -1;
     }
-    ASSERT_EQ(parent + 1, balls.size());
+    ++slot;
+    const test::ExactBox cube = test::node_cube(lattice, 0, codes[leaf]);
+    const test::ExactBox around = root ? cube : test::node_cube(lattice, 1, codes[leaf] >> 3);
+    const ExactPoint from = mpq_class(1, 2) * (around.low + around.high);
+    const mpq_class edge = cube.high[0] - cube.low[0];
+    const std::vector<ExactPoint> points = payload(mesh, built.voxels, leaf);
+    ASSERT_FALSE(points.empty()) << "a leaf without a surface point";
+
+    const PackedBall ball = balls[parent][slot];
+    const mpq_class unit = 2 * edge / 65536;
+    const ExactPoint centre =
+        from + unit * ExactPoint{{mpq_class(ball.x), mpq_class(ball.y), mpq_class(ball.z)}};
+    ASSERT_NO_FATAL_FAILURE(expect_ball(ball, centre, unit, pad, points));
+    ASSERT_NO_FATAL_FAILURE(expect_slab(slabs[parent][slot], centre, edge / 256, points));
   }
+  ASSERT_EQ(parent + 1, balls.size());
 }
 
 TEST(Bounds, OfASphere) { expect_bounds(test::icosphere(2, 1), 0.21); }
@@ -180,12 +170,20 @@ TEST(Bounds, OnTheFinestGrid) {
 
 TEST(Bounds, OfAFlatPatchAreSlabsAsThinAsTheirUnit) {
   const Built built = build(test::open_strip(3), 0.3);
-  for (const auto& level : built.bounds.slabs) {
-    for (const SlabBlock& block : level) {
-      for (int slot = 0; slot < 8; ++slot) EXPECT_LE(block.half[slot], 2);
-      EXPECT_EQ(std::abs(block.nz[0]), 126);
-    }
+  for (const SlabBlock& block : built.bounds.slabs[0]) {
+    for (int slot = 0; slot < 8; ++slot) EXPECT_LE(block.half[slot], 2);
+    EXPECT_EQ(std::abs(block.nz[0]), 126);
   }
+}
+
+// The leaves alone decide every answer: their bytes are the same everywhere.
+TEST(Bounds, OfLeavesHaveTheSameBytesEverywhere) {
+  const Built built = build(make_jaw(Jaw::kUpper, 1), 0.5);
+  const auto hash = [](const auto& blocks) {
+    return XXH3_64bits(blocks.data(), blocks.size() * sizeof(blocks[0]));
+  };
+  EXPECT_EQ(hash(built.bounds.balls[0]), 0x3717a3ab942eedbf);
+  EXPECT_EQ(hash(built.bounds.slabs[0]), 0x31ad71e1c25b98ea);
 }
 
 bool is_zero(const void* bytes, std::size_t count) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -123,6 +124,72 @@ TEST(EnclosingBall, FarFromTheOriginAndAtAnyScale) {
     }
     expect_small_balls(points);
     expect_small_balls(far);
+  }
+}
+
+// The smallest ball round balls, taken in one by one as long as one is outside. Points of the balls
+// on the side away from its centre show that no ball that holds them is smaller.
+void expect_a_small_ball_round(const std::vector<Ball>& balls) {
+  Support<Ball> support{{balls[0]}, 1, balls[0].centre, balls[0].radius};
+  const auto reach = [&](const Ball& ball) {
+    return (ball.centre - support.centre).norm() + ball.radius;
+  };
+  const auto outermost = [&] {
+    return *std::max_element(balls.begin(), balls.end(),
+                             [&](const Ball& a, const Ball& b) { return reach(a) < reach(b); });
+  };
+  int rounds = 0;
+  while (reach(outermost()) > support.size * (1 + 1e-9)) {
+    const double before = support.size;
+    ASSERT_TRUE(take_in(support, outermost()));
+    ASSERT_GT(support.size, before);
+    ASSERT_LT(++rounds, 100);
+  }
+  ASSERT_GE(support.count, 1);
+  ASSERT_LE(support.count, 4);
+  std::vector<test::ExactPoint> points;
+  for (int i = 0; i < support.count; ++i) {
+    const Ball& ball = support.sites[i];
+    const Vector3d out = ball.centre - support.centre;
+    EXPECT_NEAR(reach(ball), support.size, 1e-9 * support.size);
+    if (support.count == 1) return;
+    points.push_back(test::exact(ball.centre + out * (ball.radius / out.norm())));
+  }
+  const double least = std::sqrt(test::smallest_ball(points).radius_squared.get_d());
+  EXPECT_LE(support.size, least * (1 + 1e-6));
+}
+
+TEST(SupportOfBalls, IsThatOfTheSmallestBallRoundThem) {
+  test::Seeded seeded(8);
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Ball> balls(1 + seeded.below(30));
+    const double largest = seeded.between(0, 2);
+    for (Ball& ball : balls) ball = {seeded.point(-1, 1), seeded.between(0, largest)};
+    ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(balls));
+  }
+}
+
+TEST(SupportOfBalls, OfOneThatHoldsTheOthersIsThatOne) {
+  const Ball small{{0.5, 0, 0}, 0.25}, large{{0, 0, 0}, 2};
+  Support<Ball> support{{small}, 1, small.centre, small.radius};
+  ASSERT_TRUE(take_in(support, large));
+  EXPECT_EQ(support.count, 1);
+  EXPECT_EQ(support.centre, large.centre);
+  EXPECT_EQ(support.size, 2);
+}
+
+// In a row and in a plane, with equal radii: the balls are those of their centres, and larger.
+TEST(SupportOfBalls, OfEqualBallsInARowOrInAPlane) {
+  test::Seeded seeded(9);
+  for (int round = 0; round < 100; ++round) {
+    const Vector3d u = seeded.direction(), v = seeded.direction();
+    std::vector<Ball> row(2 + seeded.below(8)), plane(row.size());
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] = {seeded.between(-1, 1) * u, 0.5};
+      plane[i] = {seeded.between(-1, 1) * u + seeded.between(-1, 1) * v, 0.5};
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(row));
+    ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(plane));
   }
 }
 

@@ -130,8 +130,8 @@ const std::vector<Damage>& damages() {
       put("BallRadiusZero", &F::balls, 6, std::uint16_t{0}),
       put("BallRadiusOfTheRootZero", &F::slabs, static_cast<std::size_t>(-2), std::uint16_t{0}),
       put("SlabNormalTooLong", &F::slabs, 0, std::array<std::int8_t, 3>{100, 100, 0}),
-      put("SlabNormalXTooLarge", &F::slabs, 0, std::array<std::int8_t, 3>{127, 0, 0}),
-      put("SlabNormalYTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{0, -127, 0}),
+      put("SlabNormalXTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{-128, 0, 0}),
+      put("SlabNormalYTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{0, -128, 0}),
       put("SlabNormalZTooSmall", &F::slabs, 0, std::array<std::int8_t, 3>{0, 0, -128}),
       put("SlabOffsetTooSmall", &F::slabs, 3, std::int8_t{-128}),
       put("SlabWithoutWidth", &F::slabs, 4, std::uint8_t{0}),
@@ -178,23 +178,25 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
     return error_of_bytes(file.bytes);
   };
   EXPECT_EQ(with(TreeFile::kMagic, 'x'), "not-a-tree");
-  EXPECT_EQ(with(TreeFile::kVersion, 3u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kVersion, 4u), "tree-version");
   EXPECT_EQ(with(TreeFile::kVersion, 0u), "tree-version");
   EXPECT_EQ(with(TreeFile::kByteOrder, 0x04030201u), "not-a-tree");
   EXPECT_EQ(with(TreeFile::kBytes, std::uint64_t{32}), "tree-truncated");
   EXPECT_EQ(with(TreeFile::kChecksum, std::uint64_t{0}), "tree-corrupt");
 }
 
-// Files of version 1 had other spheres.
-TEST(DamagedTree, OfVersion1IsRefusedWithTheRemedy) {
+// Files of version 2 look the same, but their inner bounds are not nested.
+TEST(DamagedTree, OfVersion2IsRefusedWithTheRemedy) {
   TreeFile file = small_file();
-  file.put(TreeFile::kVersion, 1u);
+  file.put(TreeFile::kVersion, 2u);
   const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kTreeVersion);
   const std::string what = error->what();
-  EXPECT_NE(what.find("it is of version 1, and this program reads version 2: build it again"),
-            std::string::npos)
+  EXPECT_NE(
+      what.find(
+          "it is of version 2, and this program reads version 3: build it again from the mesh"),
+      std::string::npos)
       << what;
 }
 

@@ -96,7 +96,7 @@ TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
 
 TEST(TreeFile, BeginsAsItsDescriptionSays) {
   const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 15));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\2\0\0\0\4\3\2\1", 16));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\3\0\0\0\4\3\2\1", 16));
 }
 
 TEST(TreeFile, IsKnownByItsBeginning) {

@@ -154,7 +154,7 @@ TEST(VoxelNormals, OfAMirroredMeshAreMirrored) {
 TEST(VoxelizerMemory, ARefusalNamesASizeThatFitsTheSameLimit) {
   const TriangleMesh mesh = test::icosphere(3, 1);
   for (const std::uint64_t limit : {100'000u, 1'000'000u, 3'000'000u}) {
-    const VoxelizerOptions options{0.002, true, limit, 20, 4};
+    const VoxelizerOptions options{0.002, true, limit, 26};
     const auto error = test::error_of([&] { (void)voxelize(mesh, options); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::kMemoryLimit);
@@ -164,22 +164,22 @@ TEST(VoxelizerMemory, ARefusalNamesASizeThatFitsTheSameLimit) {
     advised.voxel_size = std::stod(what.substr(what.find(before) + before.size()));
     const VoxelSet set = voxelize(mesh, advised);
     // Not a size much larger than need be: what it takes is near what is allowed.
-    EXPECT_GE(100 * (set.codes.size() * 40 + set.triangles.ids.size() * 10), limit);
-    EXPECT_LE(set.codes.size() * 36 + set.triangles.ids.size() * 10, limit);
+    EXPECT_GE(100 * (set.codes.size() * 46 + set.triangles.ids.size() * 6), limit);
+    EXPECT_LE(set.codes.size() * 42 + set.triangles.ids.size() * 6, limit);
   }
 }
 
 TEST(VoxelizerMemory, NothingIsRefusedThatFits) {
   const TriangleMesh mesh = test::icosphere(3, 1);
   EXPECT_EQ(test::error_name([&] {
-              (void)voxelize(mesh, {0.05, true, 64u << 20, 20, 4});
+              (void)voxelize(mesh, {0.05, true, 64u << 20, 24});
             }),
             "none");
 }
 
 TEST(VoxelizerMemory, WhereNoSizeFitsTheRefusalSaysSo) {
   const auto error = test::error_of([&] {
-    (void)voxelize(test::icosphere(3, 1), {0.05, true, 1000, 0, 0});
+    (void)voxelize(test::icosphere(3, 1), {0.05, true, 1000});
   });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kMemoryLimit);

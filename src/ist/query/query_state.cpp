@@ -77,12 +77,12 @@ std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,
 }
 
 SearchPose QueryState::to_float(const Approach& approach, double margin) const noexcept {
-  return ist::to_float(approach.relative, fixed.bounding_radius() + moving.bounding_radius(),
+  return ist::to_float(approach.relative, lengths_of(fixed, policy), lengths_of(moving, policy),
                        approach.margin + margin);
 }
 
 double QueryState::pad_of(const SearchPose& pose) const noexcept {
-  return policy == SpherePolicy::kSlab ? pose.slab_pad : pose.ball_pad;
+  return policy == SpherePolicy::kSlab ? pose.leaf.slab_fixed : pose.leaf.ball;
 }
 
 Search& QueryState::serial() noexcept {

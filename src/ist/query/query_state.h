@@ -33,6 +33,7 @@ struct QueryState {
   /// has no triangles.
   [[nodiscard]] double triangle_error(const Eigen::Isometry3d& pose) const noexcept;
   [[nodiscard]] SearchPose to_float(const Approach& approach, double margin = 0) const noexcept;
+  /// Returns the pad of leaves that a leaf pair may need, mesh units.
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;

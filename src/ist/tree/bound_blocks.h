@@ -17,8 +17,9 @@ struct PackedBall {
 static_assert(sizeof(PackedBall) == 8);
 
 /// A node's saved slab: the points x with |n · (x - c) - offset| <= half, where c is the centre of
-/// the node's saved ball. The normal, in units of 2^-7, has length at most 1. Offset and half width
-/// are in units of 2^-8 of the node's own cube's edge, which is 128 of the ball's units.
+/// the node's saved ball. The normal, in units of 2^-7, has length 0.977 to 1, or 0 where the slab
+/// holds everything. Offset and half width are in units of 2^-8 of the node's own cube's edge,
+/// which is 128 of the ball's units.
 struct PackedSlab {
   static constexpr double kNormalUnit = 0x1p-7;
   static constexpr double kUnit = 0x1p-8;  ///< of the cube's edge

@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "ist/base/assert.h"
+#include "ist/base/ordered_vector.h"
 
 namespace ist {
 namespace {
@@ -31,61 +33,93 @@ Farthest farthest_from(std::span<const Vector3d> points, const Vector3d& origin,
   return farthest;
 }
 
-// Returns the centre of the smallest ball through `count` points, 2 to 4. The centre of degenerate
-// points is not finite; its ball holds no other point, so the caller skips it.
-Vector3d circumcentre(const Vector3d* const points[4], int count) noexcept {
-  const Vector3d& p = *points[0];
-  const Vector3d a = *points[1] - p;
-  if (count == 2) return p + 0.5 * a;
-  const Vector3d b = *points[2] - p;
-  const Vector3d ab = a.cross(b);
-  if (count == 3) {
-    return p + (square(b) * ab.cross(a) + square(a) * b.cross(ab)) / (2 * square(ab));
-  }
-  const Vector3d c = *points[3] - p;
-  return p + (square(a) * b.cross(c) + square(b) * c.cross(a) + square(c) * ab) / (2 * ab.dot(c));
+// Returns the vector in the span of d[0] … d[n - 1], n at most 3, whose product with d[i] is r[i].
+// Not finite if they are dependent.
+Vector3d of_products(const Vector3d d[3], const double r[3], int n) noexcept {
+  if (n == 1) return d[0] * (r[0] / square(d[0]));
+  const Vector3d ab = d[0].cross(d[1]);
+  if (n == 2) return (r[1] * ab.cross(d[0]) + r[0] * d[1].cross(ab)) / square(ab);
+  return (r[0] * d[1].cross(d[2]) + r[1] * d[2].cross(d[0]) + r[2] * ab) / ab.dot(d[2]);
 }
 
-// The support points of a ball, and the ball.
-struct Basis {
-  Vector3d points[4];
-  int count = 0;
+// A ball by its centre and its size: the square of its radius round points, its radius round balls.
+struct Sized {
   Vector3d centre;
-  double radius2 = 0;
+  double size;
 };
+double size_to(const Vector3d& point, const Vector3d& centre) noexcept {
+  return square(point - centre);
+}
+double size_to(const Ball& ball, const Vector3d& centre) noexcept {
+  return std::sqrt(square(ball.centre - centre)) + ball.radius;
+}
 
-// Replaces the basis by that of the smallest ball of the basis and `point`, which lies outside and
-// so becomes a support point. Tries each set with `point`, smallest sets first. Returns false if
-// rounding hides the ball.
-bool take_in(Basis& basis, const Vector3d& point) noexcept {
+// Returns the smallest ball through `count` points, 2 to 4. That of degenerate points is not finite
+// and holds no other point, so the caller skips it.
+Sized touching(const Vector3d* const points[4], int count) noexcept {
+  const Vector3d& p = *points[0];
+  Vector3d d[3];
+  double squares[3];
+  for (int i = 1; i < count; ++i) {
+    d[i - 1] = *points[i] - p;
+    squares[i - 1] = square(d[i - 1]);
+  }
+  const Vector3d centre = p + 0.5 * of_products(d, squares, count - 1);
+  return {centre, square(p - centre)};
+}
+
+// Returns the smallest ball that `count` balls, 1 to 4, touch from inside. If no ball does, the
+// result is not finite or does not hold them. The centre is c + u - h v, with c the first ball's
+// centre and h the distance between the two.
+Sized touching(const Ball* const balls[4], int count) noexcept {
+  const Ball& ball = *balls[0];
+  if (count == 1) return {ball.centre, ball.radius};
+  Vector3d d[3];
+  double excess[3], squares[3];
+  for (int i = 1; i < count; ++i) {
+    d[i - 1] = balls[i]->centre - ball.centre;
+    excess[i - 1] = ball.radius - balls[i]->radius;
+    squares[i - 1] = square(d[i - 1]) - excess[i - 1] * excess[i - 1];
+  }
+  const Vector3d u = 0.5 * of_products(d, squares, count - 1);
+  const Vector3d v = of_products(d, excess, count - 1);
+  const double a = 1 - square(v), b = dot_in_order(u, v);
+  const double distance = (std::sqrt(b * b + a * square(u)) - b) / a;
+  return {ball.centre + (u - distance * v), ball.radius + distance};
+}
+
+// Replaces the support by that of the smallest ball round the support and `site`, which lies
+// outside and so becomes part of it. Tries each set with `site`, smallest sets first. Returns false
+// if rounding hides the ball.
+template <typename Site>
+bool extend(Support<Site>& support, const Site& site) noexcept {
   constexpr double kSlack = 1 + 1e-12;
-  Basis best;
-  best.radius2 = std::numeric_limits<double>::infinity();
-  for (int size = 1; size <= 3; ++size) {
-    for (unsigned chosen = 1; chosen < 1u << basis.count; ++chosen) {
-      if (__builtin_popcount(chosen) != size) continue;
-      const Vector3d* set[4] = {&point};
+  Support<Site> best;
+  best.size = std::numeric_limits<double>::infinity();
+  for (int others = std::is_same_v<Site, Ball> ? 0 : 1; others <= 3; ++others) {
+    for (unsigned chosen = 0; chosen < 1u << support.count; ++chosen) {
+      if (__builtin_popcount(chosen) != others) continue;
+      const Site* set[4] = {&site};
       int count = 1;
-      for (int i = 0; i < basis.count; ++i) {
-        if ((chosen >> i & 1) != 0) set[count++] = &basis.points[i];
+      for (int i = 0; i < support.count; ++i) {
+        if ((chosen >> i & 1) != 0) set[count++] = &support.sites[i];
       }
-      const Vector3d centre = circumcentre(set, count);
-      const double radius2 = square(point - centre);
-      if (!(radius2 < best.radius2)) continue;
+      const auto [centre, size] = touching(set, count);
+      if (!(size < best.size)) continue;
       bool holds_all = true;
-      for (int i = 0; i < basis.count && holds_all; ++i) {
-        holds_all = square(basis.points[i] - centre) <= radius2 * kSlack;
+      for (int i = 0; i < support.count && holds_all; ++i) {
+        holds_all = size_to(support.sites[i], centre) <= size * kSlack;
       }
       if (!holds_all) continue;
       best.centre = centre;
-      best.radius2 = radius2;
+      best.size = size;
       best.count = count;
-      for (int i = 0; i < count; ++i) best.points[i] = *set[i];
+      for (int i = 0; i < count; ++i) best.sites[i] = *set[i];
     }
-    if (best.count == 2) break;  // no ball through more points is smaller
+    if (best.count > 0 && others < 2) break;  // no ball that more of them touch is smaller
   }
   if (best.count == 0) return false;
-  basis = best;
+  support = best;
   return true;
 }
 
@@ -97,26 +131,28 @@ Ball enclosing_ball(std::span<const Vector3d> points, double tolerance) noexcept
   // the origin.
   const Vector3d& origin = points[0];
   const Vector3d zero = Vector3d::Zero();
-  Basis basis;
-  basis.points[0] = points[farthest_from(points, origin, zero).index] - origin;
-  basis.points[1] = points[farthest_from(points, origin, basis.points[0]).index] - origin;
-  basis.count = 2;
-  basis.centre = basis.points[0] + 0.5 * (basis.points[1] - basis.points[0]);
-  basis.radius2 = square(basis.points[0] - basis.centre);
-  Farthest outside = farthest_from(points, origin, basis.centre);
-  Vector3d centre = basis.centre;
+  Support<Vector3d> support;
+  support.sites[0] = points[farthest_from(points, origin, zero).index] - origin;
+  support.sites[1] = points[farthest_from(points, origin, support.sites[0]).index] - origin;
+  support.count = 2;
+  support.centre = support.sites[0] + 0.5 * (support.sites[1] - support.sites[0]);
+  support.size = square(support.sites[0] - support.centre);
+  Farthest outside = farthest_from(points, origin, support.centre);
+  Vector3d centre = support.centre;
   double least = outside.distance2;
   const double enough = (1 + tolerance) * (1 + tolerance);
-  for (int pass = 0; pass < kMaxPasses && outside.distance2 > basis.radius2 * enough; ++pass) {
-    if (!take_in(basis, points[outside.index] - origin)) break;
-    outside = farthest_from(points, origin, basis.centre);
+  for (int pass = 0; pass < kMaxPasses && outside.distance2 > support.size * enough; ++pass) {
+    if (!extend<Vector3d>(support, points[outside.index] - origin)) break;
+    outside = farthest_from(points, origin, support.centre);
     if (outside.distance2 < least) {
-      centre = basis.centre;
+      centre = support.centre;
       least = outside.distance2;
     }
   }
   centre += origin;
   return {centre, std::sqrt(farthest_from(points, centre, zero).distance2)};
 }
+
+bool take_in(Support<Ball>& support, const Ball& ball) noexcept { return extend(support, ball); }
 
 }  // namespace ist

@@ -20,4 +20,19 @@ namespace ist {
 [[nodiscard]] Ball enclosing_ball(std::span<const Eigen::Vector3d> points,
                                   double tolerance) noexcept;
 
+/// The smallest ball round a set of points or balls, and those of them that determine it.
+template <typename Site>
+struct Support {
+  Site sites[4];
+  int count = 0;
+  Eigen::Vector3d centre;
+  double size = 0;  ///< the square of the radius round points, the radius round balls
+};
+
+/// Replaces a support by that of the smallest ball round its sites and `ball`, which its ball does
+/// not hold. Returns false, and changes nothing, if rounding hides that ball. Cost: 0.1 to 0.5 µs.
+///
+/// Source: K. Fischer, B. Gärtner, The smallest enclosing ball of balls, SoCG 2003.
+[[nodiscard]] bool take_in(Support<Ball>& support, const Ball& ball) noexcept;
+
 }  // namespace ist

@@ -33,42 +33,60 @@ Vector3d least_spread(std::span<const Vector3d> points) noexcept {
   return symmetric_eigen(spread).vectors.col(0);
 }
 
-// The extent of points along a packed normal.
-struct Reach {
-  PackedSlab normal;  // only the normal is set
-  double least, greatest;
-};
-
 // Rounds `axis` to a packed normal and measures along it. The axis has length 1 to a few roundings,
 // so 126 times the axis, rounded, is no longer than 128.
-Reach reach_along(const Vector3d& axis, std::span<const Vector3d> points,
-                  const Vector3d& from) noexcept {
+Extent extent_along(const Vector3d& axis, std::span<const Vector3d> points,
+                    const Vector3d& from) noexcept {
   const Vector3d rounded(nearest(126 * axis[0]), nearest(126 * axis[1]), nearest(126 * axis[2]));
   const Vector3d normal = PackedSlab::kNormalUnit * rounded;
   const double first = dot_in_order(normal, points[0] - from);
-  Reach reach{{static_cast<std::int8_t>(rounded[0]), static_cast<std::int8_t>(rounded[1]),
-               static_cast<std::int8_t>(rounded[2]), 0, 0},
-              first,
-              first};
+  Extent extent{{static_cast<std::int8_t>(rounded[0]), static_cast<std::int8_t>(rounded[1]),
+                 static_cast<std::int8_t>(rounded[2]), 0, 0},
+                first,
+                first};
   for (const Vector3d& p : points.subspan(1)) {
     const double height = dot_in_order(normal, p - from);
-    reach.least = std::min(reach.least, height);
-    reach.greatest = std::max(reach.greatest, height);
+    extent.least = std::min(extent.least, height);
+    extent.greatest = std::max(extent.greatest, height);
   }
-  return reach;
+  return extent;
 }
 
 }  // namespace
 
-PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
-                     double parent_edge) noexcept {
-  const Vector3d centre = enclosing_ball(payload.points, kTolerance).centre;
+PackedBall pack_centre(const Vector3d& centre, const Vector3d& parent_centre,
+                       double parent_edge) noexcept {
   const double unit = PackedBall::kUnit * parent_edge;
   const auto packed = [&](Eigen::Index axis) {
     const double units = nearest((centre[axis] - parent_centre[axis]) / unit);
     return static_cast<std::int16_t>(std::clamp(units, -32768.0, 32767.0));
   };
-  PackedBall ball{packed(0), packed(1), packed(2), 0};
+  return {packed(0), packed(1), packed(2), 0};
+}
+
+std::uint16_t pack_radius(double radius, double parent_edge) noexcept {
+  const double units = std::ceil(radius / (PackedBall::kUnit * parent_edge));
+  IST_ASSERT(units >= 1 && units <= 65535);
+  return static_cast<std::uint16_t>(units);
+}
+
+PackedSlab pack_slab(const Extent& extent, double pad, double edge) noexcept {
+  const double unit = PackedSlab::kUnit * edge;
+  const double offset =
+      std::clamp(nearest(0.5 * (extent.least + extent.greatest) / unit), -127.0, 127.0);
+  const double half = std::max(extent.greatest - unit * offset, unit * offset - extent.least);
+  const double units = std::ceil((half + pad) / unit);
+  if (units > 255) return {0, 0, 0, 0, 255};
+  PackedSlab slab = extent.normal;
+  slab.offset = static_cast<std::int8_t>(offset);
+  slab.half = static_cast<std::uint8_t>(units);
+  return slab;
+}
+
+PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
+                     double parent_edge) noexcept {
+  const Vector3d centre = enclosing_ball(payload.points, kTolerance).centre;
+  PackedBall ball = pack_centre(centre, parent_centre, parent_edge);
   const Vector3d rounded = centre_of(ball, parent_centre, parent_edge);
   double farthest2 = 0;
   for (const Vector3d& p : payload.points) {
@@ -76,39 +94,19 @@ PackedBall pack_ball(const Payload& payload, const Vector3d& parent_centre,
     farthest2 = std::max(farthest2, dot_in_order(d, d));
   }
   // A distance has a relative error of a few 2⁻⁵³.
-  const double units = std::ceil((std::sqrt(farthest2) + payload.pad) / unit);
-  IST_ASSERT(units >= 1 && units <= 65535);
-  ball.r = static_cast<std::uint16_t>(units);
+  ball.r = pack_radius(std::sqrt(farthest2) + payload.pad, parent_edge);
   return ball;
 }
 
-Vector3d centre_of(const PackedBall& ball, const Vector3d& parent_centre,
-                   double parent_edge) noexcept {
-  const double unit = PackedBall::kUnit * parent_edge;
-  return {parent_centre[0] + unit * ball.x, parent_centre[1] + unit * ball.y,
-          parent_centre[2] + unit * ball.z};
-}
-
 PackedSlab pack_slab(const Payload& payload, const Vector3d& centre, double edge) noexcept {
-  Reach reach = reach_along(least_spread(payload.points), payload.points, centre);
+  Extent extent = extent_along(least_spread(payload.points), payload.points, centre);
   const double area = std::sqrt(dot_in_order(payload.area, payload.area));
   if (area > 0) {
-    const Reach other = reach_along(payload.area / area, payload.points, centre);
-    if (other.greatest - other.least < reach.greatest - reach.least) reach = other;
+    const Extent other = extent_along(payload.area / area, payload.points, centre);
+    if (other.greatest - other.least < extent.greatest - extent.least) extent = other;
   }
-  const double unit = PackedSlab::kUnit * edge;
-  const double offset =
-      std::clamp(nearest(0.5 * (reach.least + reach.greatest) / unit), -127.0, 127.0);
-  const double half = std::max(reach.greatest - unit * offset, unit * offset - reach.least);
   // Heights have an error of a dozen 2⁻⁵³ of the cube's edge.
-  const double units = std::ceil((half + payload.pad) / unit);
-  // If the centre lies among the points, heights are at most 0.87 edges and offsets at most half of
-  // that, and all numbers fit. Otherwise this slab holds everything.
-  if (units > 255) return {0, 0, 0, 0, 255};
-  PackedSlab slab = reach.normal;
-  slab.offset = static_cast<std::int8_t>(offset);
-  slab.half = static_cast<std::uint8_t>(units);
-  return slab;
+  return pack_slab(extent, payload.pad, edge);
 }
 
 }  // namespace ist

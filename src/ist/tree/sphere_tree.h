@@ -24,8 +24,10 @@ struct TreeParts;
 enum class SpherePolicy : std::uint8_t {
   kSimple,  ///< the circumsphere of the node's cube
   kTable,   ///< the smallest ball round the children's cubes, from the lookup table
-  kTight,   ///< the ball round the triangles clipped to the cube, saved with the tree
-  kSlab,    ///< the tight ball, cut by a thin slab round the same triangles, saved too
+  /// Saved with the tree: of a leaf the ball round the triangles clipped to its cube, of an inner
+  /// node a ball round its leaves' balls.
+  kTight,
+  kSlab,  ///< the tight ball, cut by a thin slab, saved too
 };
 
 /// All of them, from the loosest to the tightest.
@@ -138,14 +140,16 @@ struct BuildReport {
                                           Progress* progress = nullptr);
 
 /// The version of the tree file (`.ist`) that this library writes and reads.
-inline constexpr std::uint32_t kTreeFileVersion = 2;
+inline constexpr std::uint32_t kTreeFileVersion = 3;
 
 /// Writes the file whole or not at all. Throws kFileUnwritable. Cost: bound by the disk.
 /// Returns the bytes written.
 IST_API std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file);
 
 /// Reads a tree into memory of its own. The checksum and then every count, index and number is
-/// verified before the tree is made, so no file can make a query crash or never end.
+/// verified before the tree is made, so no file can make a query crash or never end. Whether bounds
+/// hold the triangles, or nodes their leaves, is not verified: a file that this library did not
+/// write may give an answer that lacks pairs.
 ///
 /// Cost: 1 ns a byte. Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated,
 /// kTreeCorrupt.

@@ -5,6 +5,7 @@
 #include "ist/base/float_environment.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/bound_builder.h"
+#include "ist/tree/nested_bounds.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/voxel/voxelizer.h"
@@ -19,7 +20,7 @@ constexpr std::uint64_t bytes_a_leaf(std::uint64_t bytes_a_parent) {
 }
 constexpr std::uint64_t kOctreeBytes = bytes_a_leaf(sizeof(OctreeNode) + 1);
 constexpr std::uint64_t kBallBytes = bytes_a_leaf(sizeof(BallBlock));
-constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock));
+constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock) + kNestingBytes);
 
 // A surface voxel has two to three proximity voxels, whose codes are stored twice while joined. A
 // triangle has its normals, half a corner's, three sides while sides are sorted, and some bins.
@@ -29,12 +30,10 @@ constexpr std::uint64_t kPseudoNormalBytes = 256;
 VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   const bool saved = !is_implicit(options.spheres);
   VoxelizerOptions voxelizer{options.voxel_size, saved || options.keep_triangles,
-                             options.max_memory, kOctreeBytes, 0};
+                             options.max_memory, kOctreeBytes};
   if (saved) {
     voxelizer.bytes_per_voxel += kBallBytes;
     if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
-    // The lists of two levels and the parts of one, while lists are merged.
-    voxelizer.bytes_per_pair += 3 * sizeof(std::uint32_t);
   }
   if (options.proximity) {
     voxelizer.bytes_per_voxel += kProximityBytes;

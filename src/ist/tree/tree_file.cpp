@@ -11,7 +11,7 @@
 #include "ist/tree/tree_parts.h"
 #include "ist/tree/tree_stream.h"
 
-// The tree file, `.ist`, version 2. Little-endian, packed, in this order:
+// The tree file, `.ist`, version 3. Little-endian, packed, in this order:
 //
 //     8 bytes   magic 89 49 53 54 0D 0A 1A 0A
 //     u32       version
@@ -32,7 +32,8 @@
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
 //
 // Children's indices and cubes are not stored: they follow from the masks. Balls and slabs hold the
-// numbers of PackedBall and PackedSlab.
+// numbers of PackedBall and PackedSlab. Files of version 2 look the same, but their inner bounds
+// are not nested.
 namespace ist {
 namespace {
 
@@ -127,8 +128,8 @@ bool is_valid(const PackedBall& ball) { return ball.r > 0; }
 
 bool is_valid(const PackedSlab& slab) {
   const int x = slab.nx, y = slab.ny, z = slab.nz;
-  return std::abs(x) <= 126 && std::abs(y) <= 126 && std::abs(z) <= 126 &&
-         x * x + y * y + z * z <= 128 * 128 && slab.offset >= -127 && slab.half > 0;
+  return x >= -127 && y >= -127 && z >= -127 && x * x + y * y + z * z <= 128 * 128 &&
+         slab.offset >= -127 && slab.half > 0;
 }
 
 template <typename Packed>

@@ -131,7 +131,7 @@ double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
   const double own_pairs = options.keep_triangles ? sizeof(std::uint32_t) : 0;
   return static_cast<double>(survey.blocks.size()) * kBlockBytes +
          voxels * (own + static_cast<double>(options.bytes_per_voxel)) +
-         pairs * (sizeof(BlockCell) + own_pairs + static_cast<double>(options.bytes_per_pair)) +
+         pairs * (sizeof(BlockCell) + own_pairs) +
          static_cast<double>(survey.triangles) * static_cast<double>(options.bytes_per_triangle);
 }
 

@@ -14,9 +14,8 @@ struct VoxelizerOptions {
   bool keep_triangles = false;  ///< whether to list the triangles of each voxel
   /// The most memory for the voxels and the caller's structures over them, bytes.
   std::uint64_t max_memory = std::numeric_limits<std::uint64_t>::max();
-  /// The memory of the caller's structures: bytes a voxel, a pair of voxel and triangle, and a
-  /// triangle.
-  std::uint64_t bytes_per_voxel = 0, bytes_per_pair = 0, bytes_per_triangle = 0;
+  /// The memory of the caller's structures: bytes a voxel and a triangle.
+  std::uint64_t bytes_per_voxel = 0, bytes_per_triangle = 0;
 };
 
 /// Voxelizes the surface of a mesh: finds every voxel whose closed cube intersects a triangle, and

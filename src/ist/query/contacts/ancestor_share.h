@@ -11,10 +11,10 @@ namespace ist {
 
 /// The factor of a leaf pair's weight, 0 … 1, that comes from its ancestors.
 ///
-/// Bounds are not nested: two leaves whose own bounds overlap leave the answer where the bounds of
-/// two of their ancestors come apart. A weight of the leaves alone would jump there. So the weight
-/// has as a factor the least overlap of all pairs of ancestors that the search tests, in parts of
-/// the width over which weights fade.
+/// The table's balls are not nested: two leaves whose own bounds overlap leave the answer where the
+/// bounds of two of their ancestors come apart. A weight of the leaves alone would jump there. So
+/// the weight has as a factor the least overlap of all pairs of ancestors that the search tests, in
+/// parts of the width over which weights fade.
 ///
 /// Leaf pairs come in the order of the fixed tree, so the same ancestors recur: each step of the
 /// search keeps its last factors and its last bounds. Cost: 3 ns for a pair in the cache, 20 ns for

@@ -8,6 +8,7 @@
 #include "ist/base/float_environment.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
+#include "ist/tree/nested_bounds.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
 
@@ -61,6 +62,7 @@ struct ReferenceState {
   void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
             Children& children) const;
   void to_fixed_frame(Node& node) const noexcept;
+  void set_pads(double pad) noexcept;
   [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept;
   void descend(const Node& a, const Node& b);
 
@@ -68,7 +70,12 @@ struct ReferenceState {
   SpherePolicy policy_;
   SavedSpheres saved_fixed_, saved_moving_;  // empty with kOnTheFly
   RelativePose pose_;
-  double pad_ = 0;  // added to every sum of radii, mesh units (pad_in_double)
+  // Added to sums of radii, mesh units: the error of a test of leaves (pad_in_double), and what
+  // nodes above a pair of leaves must allow for that is kept by it.
+  struct Pads {
+    double ball, fixed_slab, moving_slab;
+  };
+  Pads leaf_{}, inner_{};
   std::uint64_t tests_ = 0;
   std::vector<LeafPair> found_;
 };
@@ -86,7 +93,7 @@ QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<
   pose_ = *relative;
   const double radius_sum = fixed_.bounding_radius() + moving_.bounding_radius();
   const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  pad_ = pad_in_double(radius_sum, farthest);
+  set_pads(pad_in_double(radius_sum, farthest));
   tests_ = 0;
   found_.clear();
 
@@ -94,7 +101,7 @@ QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<
   Node b = root(moving_, saved_moving_);
   to_fixed_frame(b);
   // Far apart, one coordinate decides, because the square of the distance overflows.
-  if (overlap(a, b) && farthest <= radius_sum + pad_) descend(a, b);
+  if (overlap(a, b) && farthest <= radius_sum + inner_.ball) descend(a, b);
 
   // Pairs of one fixed leaf were found in order, because moving nodes are descended in order.
   std::stable_sort(found_.begin(), found_.end(),
@@ -103,7 +110,7 @@ QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<
   result.leaf_pairs = found_.size();
   result.truncated = found_.size() > out.size();
   result.sphere_tests = tests_;
-  result.pad = 2 * pad_;
+  result.pad = 2 * leaf_.ball;
   result.resolution = resolution_of(result, fixed_, moving_, policy_);
   return result;
 }
@@ -156,14 +163,25 @@ void ReferenceState::to_fixed_frame(Node& node) const noexcept {
   if (policy_ == SpherePolicy::kSlab) node.slab.normal = turned(node.slab.normal);
 }
 
+// A pair of leaves that is kept may be twice the pad apart; an inner test errs by one pad more.
+void ReferenceState::set_pads(double pad) noexcept {
+  const double fixed_leaf = fixed_.largest_leaf_radius(policy_),
+               moving_leaf = moving_.largest_leaf_radius(policy_);
+  leaf_ = {pad, pad, pad};
+  inner_ = {3 * pad, 3 * pad + slab_rise(fixed_.voxel_size(), moving_leaf + 2 * pad),
+            3 * pad + slab_rise(moving_.voxel_size(), fixed_leaf + 2 * pad)};
+}
+
 // Rejects by >, so that a NaN keeps the pair.
 bool ReferenceState::overlap(const Node& a, const Node& b) noexcept {
   ++tests_;
   const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
-  const double radius_sum = (a.ball.radius + b.ball.radius) + pad_;
+  const Pads& pads = a.level == 0 && b.level == 0 ? leaf_ : inner_;
+  const double radius_sum = (a.ball.radius + b.ball.radius) + pads.ball;
   if (dot(apart, apart) > radius_sum * radius_sum) return false;
-  return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + pad_) ||
-                                             beyond(b.slab, -apart, a.ball.radius + pad_));
+  return policy_ != SpherePolicy::kSlab ||
+         !(beyond(a.slab, apart, b.ball.radius + pads.fixed_slab) ||
+           beyond(b.slab, -apart, a.ball.radius + pads.moving_slab));
 }
 
 void ReferenceState::descend(const Node& a, const Node& b) {

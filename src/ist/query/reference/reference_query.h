@@ -21,6 +21,11 @@ enum class SphereSource : std::uint8_t {
               ///< each visit all the same
 };
 
+/// Returns whether the bounds that the published query tests are nested: the table's are not.
+[[nodiscard]] constexpr bool published_are_nested(SpherePolicy policy) noexcept {
+  return policy != SpherePolicy::kTable;
+}
+
 /// The published query, plain and in double: a depth-first traversal of both trees at once, which
 /// tests each overlapping pair of nodes child by child. It specifies the answer of every faster
 /// query.
@@ -55,7 +60,6 @@ class IST_API ReferenceQuery {
   ///
   /// Cost: 5 to 20 ns a sphere test, 20 ns a pair for the order. Allocates, and can throw
   /// std::bad_alloc: it is the specification, not the fast path.
-  /// path.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
 
  private:

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ist/query/query_rules.h"
+#include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist {
@@ -32,9 +33,13 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
     apart[i] = a.centre[i] - moved;
   }
   const double radius_sum = (a.radius + b.radius) + test.pad;
+  // What the float tests may keep must not end here.
+  const double inner_pad = inner_ball_pad(bounding_radii, farthest, margin);
+  const double farthest_sum = (a.radius + b.radius) + inner_pad;
   const double squared = (apart[0] * apart[0] + apart[1] * apart[1]) + apart[2] * apart[2];
   // Far apart, one coordinate decides, because the square of the distance overflows.
-  test.overlap = !(farthest > bounding_radii + test.pad) && !(squared > radius_sum * radius_sum);
+  test.overlap =
+      !(farthest > bounding_radii + inner_pad) && !(squared > farthest_sum * farthest_sum);
   const double largest = apart.cwiseAbs().maxCoeff();
   const double between = largest > 0 ? largest * (apart / largest).norm() : 0;
   constexpr double kLargest = std::numeric_limits<double>::max();

@@ -8,9 +8,9 @@ namespace ist {
 
 /// The test of the two root balls, in double, and the distance of the surfaces in them.
 struct RootTest {
-  bool overlap;
-  double
-      pad;  ///< rounding error of a test in double and the margin, added to the radii, mesh units
+  bool overlap;  ///< with the pad of inner nodes: no search in float would find a pair if not
+  /// The rounding error of a test in double and the margin, mesh units: the interval allows for it.
+  double pad;
   DistanceInterval distance;
 };
 

@@ -30,7 +30,8 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   // Makes the first dispatched calls. With infinite pads all bounds overlap, wherever the bodies
   // lie.
   SearchPose pose{};
-  pose.ball_pad = pose.slab_pad = std::numeric_limits<float>::infinity();
+  constexpr float kAll = std::numeric_limits<float>::infinity();
+  pose.leaf = pose.inner = {kAll, kAll, kAll};
   static_cast<void>(beam(pose));
 }
 

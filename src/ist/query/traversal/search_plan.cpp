@@ -29,7 +29,7 @@ float least_float(double value) {
   return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-ImplicitLevel lengths_of(const Lattice& lattice, int level) {
+ImplicitLevel implicit_levels(const Lattice& lattice, int level) {
   const double half = 0.5 * lattice.edge(level);
   ImplicitLevel lengths{};
   lengths.octant_offset = level == lattice.depth ? 0 : static_cast<float>(half);
@@ -43,10 +43,10 @@ ImplicitLevel lengths_of(const Lattice& lattice, int level) {
   return lengths;
 }
 
-std::vector<ImplicitLevel> lengths_of(const SphereTree& tree, SpherePolicy policy) {
+std::vector<ImplicitLevel> implicit_levels(const SphereTree& tree, SpherePolicy policy) {
   std::vector<ImplicitLevel> levels;
   for (int level = 0; is_implicit(policy) && level <= tree.depth(); ++level) {
-    levels.push_back(lengths_of(tree.parts().lattice, level));
+    levels.push_back(implicit_levels(tree.parts().lattice, level));
   }
   return levels;
 }
@@ -80,7 +80,8 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
 
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                        SearchLevels last)
-    : fixed_lengths_(lengths_of(fixed, policy)), moving_lengths_(lengths_of(moving, policy)) {
+    : fixed_lengths_(implicit_levels(fixed, policy)),
+      moving_lengths_(implicit_levels(moving, policy)) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
   require_addresses(fixed, "fixed");
@@ -96,7 +97,7 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
     SearchStep step{read_children(fixed, policy, a, fixed_lengths_),
-                    read_children(moving, policy, b, moving_lengths_), false, 0};
+                    read_children(moving, policy, b, moving_lengths_), false, a == 0 && b == 0, 0};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;
