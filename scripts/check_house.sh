@@ -72,9 +72,6 @@ waiting_words() {  # word, where it may stand
   found=$(echo "$found" | grep -vE "$2" || true)
   [ -z "$found" ] || breach "'$1' may stand in $2 alone, and is in: $found"
 }
-waiting_words 'AncestorShare' '^src/ist/query/contacts/'
-waiting_words 'NodeParents' '^src/ist/query/contacts/'
-waiting_words 'MovedLeaf' '^src/ist/query/contacts/'
 waiting_words 'FindNear|find_near_scalar' '^(simd|src/ist/query/exact)/'
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
 [ "$headers" -le 24 ] || breach "$headers headers are installed: 24 are the most"

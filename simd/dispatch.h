@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ist/query/exact/triangle_bounds.h"
+#include "simd/contact_step.h"
 #include "simd/step.h"
 
 namespace ist {
@@ -15,6 +16,8 @@ struct Kernels {
   AdvanceFunction advance;
   WriteLeafPairsFunction write_leaf_pairs;
   FindNearFunction find_near;
+  AdvanceContactsFunction advance_contacts;
+  AddContactsFunction add_contacts;
 };
 
 /// The scalar kernels, which every processor runs.

@@ -30,10 +30,10 @@ class ImplicitDecoder {
   HWY_INLINE explicit ImplicitDecoder(const SearchSide& side)
       : nodes_(side.nodes),
         masks_(side.masks),
-        child_masks_(side.child_masks),
+        child_masks_(side.implicit->masks),
         emits_slots_(side.emits_slots),
         voxel_size_(hn::Set(d, side.voxel_size)),
-        octant_offset_(hn::Set(d, side.implicit->octant_offset)),
+        octant_offset_(hn::Set(d, side.octant_offset)),
         circumradius_(hn::Set(d, side.implicit->radius[kCircumsphereCode])),
         offsets_(hn::Load(d, side.implicit->offset)),
         radii_(hn::Load(d, side.implicit->radius)) {}

@@ -8,36 +8,39 @@
 #include "ist/tree/bound_blocks.h"
 #include "ist/tree/linear_octree.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/voxel/packed_normal.h"
 
 namespace ist {
 
-/// The lengths of one level's implicit balls, mesh units, by the codes of the lookup table's words.
+/// One level's implicit balls, as a step decodes them: lengths in mesh units, by the codes of the
+/// lookup table's words.
 struct alignas(32) ImplicitLevel {
-  float offset[8];      ///< from a cube's centre along an axis, by the code of a coordinate
-  float radius[8];      ///< by radius code; the last three are 0
-  float octant_offset;  ///< from the parent's centre to a cube's along an axis; 0 for the root
+  float offset[8];            ///< from a cube's centre along an axis, by the code of a coordinate
+  float radius[8];            ///< by radius code; the last three are 0
+  const std::uint8_t* masks;  ///< occupancy masks; null where all balls are circumspheres
 };
 
 /// The view of one tree that a step of the breadth-first traversal reads: the nodes of one level,
 /// here called parents, and their children's blocks. Pointers into a tree; plain floats, so that
 /// vector code and its scalar twin see the same bits.
 struct SearchSide {
-  const OctreeNode* nodes;          ///< the parents, and one more as an end
-  const BallBlock* balls;           ///< by parent; null where the octree implies the spheres
-  const SlabBlock* slabs;           ///< by parent; null where the policy has none
-  const std::uint8_t* masks;        ///< occupancy masks of the parents
-  const std::uint8_t* child_masks;  ///< occupancy masks of the children; null for circumspheres
-  const ImplicitLevel* implicit;    ///< of the children; null where there are blocks
+  const OctreeNode* nodes;        ///< the parents, and one more as an end
+  const BallBlock* balls;         ///< by parent; null where the octree implies the spheres
+  const SlabBlock* slabs;         ///< by parent; null where the policy has none
+  const std::uint8_t* masks;      ///< occupancy masks of the parents
+  const ImplicitLevel* implicit;  ///< of the children; null where there are blocks
 
-  float voxel_size;  ///< mesh units to a voxel, the unit of node centres
-  float ball_unit;   ///< mesh units to a unit of BallBlock
-  float slab_unit;   ///< mesh units to a unit of SlabBlock
+  float voxel_size;     ///< mesh units to a voxel, the unit of node centres
+  float ball_unit;      ///< mesh units to a unit of BallBlock
+  float slab_unit;      ///< mesh units to a unit of SlabBlock
+  float octant_offset;  ///< from a parent's centre to its children's along an axis, mesh units
 
   /// Whether the step tests the children of the frontier's nodes, or these nodes themselves. The id
   /// of a node that descends is its index; of one that does not, its address, 8 · parent + slot.
   bool descends;
   bool emits_slots;  ///< whether the ids of survivors are addresses rather than indices
 };
+static_assert(sizeof(SearchSide) <= 64, "a kernel's copy of it is one vector; more costs a tenth");
 
 /// One step of the traversal: from the overlapping pairs of nodes of one level to those of the
 /// next.
@@ -46,6 +49,8 @@ struct SearchStep {
   bool last;           ///< no step follows: rows may be cut
   bool leaves;         ///< whether both sides of the pairs that it tests are leaves
   float radius_limit;  ///< exceeds every sum of two radii, mesh units; without pads
+  /// The normals of the leaves, by index.
+  const PackedNormal *fixed_normals = nullptr, *moving_normals = nullptr;
 };
 
 /// The pads of one kind of step, mesh units: of the sum of radii, and of the fixed and of the

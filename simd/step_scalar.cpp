@@ -1,3 +1,4 @@
+#include "simd/contact_lanes.h"
 #include "simd/dispatch.h"
 #include "simd/lanes.h"
 #include "simd/step.h"
@@ -21,11 +22,49 @@ std::uint64_t group_tests(const SearchStep& step, const Frontier& in, const Sear
   return opened(step.fixed, group.fixed) * lanes;
 }
 
-}  // namespace
+// The overlapping pairs are the next frontier.
+struct PairRows {
+  Frontier& out;
+  std::size_t before = 0;
 
-Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                        SearchCursor& cursor, Frontier& out, SearchScratch& scratch,
-                        std::uint64_t most, Measured measured, DistanceBounds& bounds) {
+  [[nodiscard]] bool has_room(std::size_t nodes) const { return ist::has_room(out, 1, nodes); }
+  void decoded(std::uint32_t, const FixedLanes&, const FixedRows&) {}
+  void begin(std::uint32_t fixed, bool continues) {
+    before = continues ? begin_row(out, fixed) : out.moving_count;
+  }
+  void take(const PairTest&, std::size_t, const MovingLanes& lanes, std::size_t at) {
+    out.moving[out.moving_count++] = lanes.id[at];
+  }
+  void end(std::uint32_t fixed) { end_row(out, fixed, before); }
+};
+
+// The overlapping pairs are added up.
+struct ContactRows {
+  const SearchStep& step;
+  const SearchPose& pose;
+  ContactAdder& out;
+  FixedPoints points{};
+  bool slabs = step.fixed.slabs != nullptr;
+
+  static bool has_room(std::size_t) { return true; }
+  void decoded(std::uint32_t node, const FixedLanes& fixed, const FixedRows& rows) {
+    name_surfaces(step, node, points);
+    for (std::size_t row = 0; row < opened(step.fixed, node); ++row) {
+      find_point(slabs, fixed, rows, row, points);
+    }
+  }
+  void begin(std::uint32_t, bool) {}
+  void take(const PairTest& test, std::size_t row, const MovingLanes& lanes, std::size_t at) {
+    append_pair(out.rule, test, points, row, lanes, at, slabs, out.lanes);
+    if (out.lanes.count == kContactBatch) add_contacts_scalar(step, pose, out);
+  }
+  void end(std::uint32_t) {}
+};
+
+template <class Rows>
+Advanced advance_rows(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                      SearchCursor& cursor, Rows out, SearchScratch& scratch, std::uint64_t most,
+                      Measured measured, DistanceBounds& bounds) {
   const bool slabs = step.fixed.slabs != nullptr;
   const Pads& pads = pads_of(pose, step);
   FixedRows& rows = scratch.rows[0];
@@ -41,18 +80,19 @@ Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Fr
     for (std::size_t row = 0; row < row_count; ++row) {
       turn(pose, pads, slabs, scratch.fixed, row, rows);
     }
+    out.decoded(group.fixed, scratch.fixed, rows);
     for (; cursor.row < row_count; ++cursor.row, cursor.moving = 0) {
       const std::uint32_t fixed = scratch.fixed.id[cursor.row];
       while (begin + cursor.moving < group.end) {
         const std::uint32_t first = begin + cursor.moving;
         if ((step.last || cursor.moving == 0) &&
-            !has_room(out, 1, room_of_row(step, group.end - first))) {
+            !out.has_room(room_of_row(step, group.end - first))) {
           return {tests, true};
         }
         const std::uint32_t end = std::min(first + kPieceNodes, group.end);
         const std::size_t lanes = decode_piece(step.moving, in, first, end, scratch.moving);
         if (lanes > most - tests) return {tests, false};
-        const std::size_t before = cursor.moving == 0 ? out.moving_count : begin_row(out, fixed);
+        out.begin(fixed, cursor.moving != 0);
         for (std::size_t at = 0; at < lanes; ++at) {
           const PairTest test(rows, cursor.row, scratch.moving, at, slabs);
           const bool overlapping = test.overlap();
@@ -62,15 +102,30 @@ Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Fr
           if (measured == Measured::kBoth && (step.last || !overlapping)) {
             test.measure_lower(slabs, bounds);
           }
-          if (overlapping) out.moving[out.moving_count++] = scratch.moving.id[at];
+          if (overlapping) out.take(test, cursor.row, scratch.moving, at);
         }
-        end_row(out, fixed, before);
+        out.end(fixed);
         tests += lanes;
         cursor.moving = end - begin;
       }
     }
   }
   return {tests, false};
+}
+
+}  // namespace
+
+Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                        SearchCursor& cursor, Frontier& out, SearchScratch& scratch,
+                        std::uint64_t most, Measured measured, DistanceBounds& bounds) {
+  return advance_rows(step, pose, in, cursor, PairRows{out}, scratch, most, measured, bounds);
+}
+
+Advanced advance_contacts_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                                 SearchCursor& cursor, ContactAdder& out, SearchScratch& scratch,
+                                 std::uint64_t most, Measured measured, DistanceBounds& bounds) {
+  return advance_rows(step, pose, in, cursor, ContactRows{step, pose, out}, scratch, most, measured,
+                      bounds);
 }
 
 void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
@@ -80,7 +135,8 @@ void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
   }
 }
 
-constinit const Kernels kScalarKernels{"scalar", advance_scalar, write_leaf_pairs_scalar,
-                                       find_near_scalar};
+constinit const Kernels kScalarKernels{
+    "scalar",         advance_scalar,          write_leaf_pairs_scalar,
+    find_near_scalar, advance_contacts_scalar, add_contacts_scalar};
 
 }  // namespace ist

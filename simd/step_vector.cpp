@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "simd/bounds-inl.h"
+#include "simd/contacts-inl.h"
 #include "simd/implicit-inl.h"
 #include "simd/lanes.h"
 #include "simd/near-inl.h"
@@ -28,18 +29,76 @@ struct Batch {
 template <bool kSlabs>
 HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
   __builtin_prefetch(side.nodes + parent);
-  if (!kSlabs && side.balls == nullptr) {
-    __builtin_prefetch(side.masks + parent);
-    return;
-  }
   __builtin_prefetch(side.balls + parent);
   if constexpr (kSlabs) __builtin_prefetch(side.slabs + parent);
 }
 
+HWY_INLINE void PrefetchMasks(const SearchSide& side, std::uint32_t parent) {
+  __builtin_prefetch(side.nodes + parent);
+  __builtin_prefetch(side.masks + parent);
+}
+
+// The overlapping pairs are the next frontier.
 template <bool kSlabs, Measured kMeasured>
+class PairRows {
+ public:
+  PairRows(const SearchStep& step, Frontier& out) : out_(out), last_(step.last) {}
+
+  [[nodiscard]] bool HasRoom(std::size_t rows, std::size_t nodes) const {
+    return has_room(out_, rows, nodes);
+  }
+  void Decoded(std::uint32_t, SearchScratch&, std::size_t) {}
+  // Begins a row, or goes on with one that a limit cut. Returns the number of pairs before it.
+  [[nodiscard]] HWY_INLINE std::size_t Begin() const { return out_.moving_count; }
+  [[nodiscard]] HWY_INLINE std::size_t Continue(std::uint32_t fixed) {
+    return begin_row(out_, fixed);
+  }
+  HWY_INLINE void Test(const FixedRows& rows, const FixedPoints&, std::size_t row,
+                       const MovingLanes& moving, std::size_t begin, std::size_t end,
+                       Measurer<kSlabs>& measurer) {
+    out_.moving_count += TestRow<kSlabs, kMeasured>(rows, row, moving, begin, end, last_,
+                                                    out_.moving + out_.moving_count, measurer);
+  }
+  HWY_INLINE void End(std::uint32_t fixed, std::size_t before) { end_row(out_, fixed, before); }
+
+ private:
+  Frontier& out_;
+  const bool last_;
+};
+
+// The overlapping pairs are added up.
+template <bool kSlabs, Measured kMeasured>
+class ContactRows {
+ public:
+  ContactRows(const SearchStep& step, const SearchPose& pose, ContactAdder& out)
+      : step_(step), pose_(pose), out_(out) {}
+
+  [[nodiscard]] static bool HasRoom(std::size_t, std::size_t) { return true; }
+  void Decoded(std::uint32_t node, SearchScratch& scratch, std::size_t g) {
+    FindPoints<kSlabs>(scratch.fixed, scratch.rows[g], scratch.points[g]);
+    name_surfaces(step_, node, scratch.points[g]);
+  }
+  [[nodiscard]] static std::size_t Begin() { return 0; }
+  [[nodiscard]] static std::size_t Continue(std::uint32_t) { return 0; }
+  HWY_INLINE void Test(const FixedRows& rows, const FixedPoints& points, std::size_t row,
+                       const MovingLanes& moving, std::size_t begin, std::size_t end,
+                       Measurer<kSlabs>& measurer) {
+    ContactRow<kSlabs, kMeasured>(out_.rule, rows, points, row, moving, begin, end, out_.lanes,
+                                  measurer);
+    if (out_.lanes.count >= kContactBatch) AddContacts(step_, pose_, out_);
+  }
+  static void End(std::uint32_t, std::size_t) {}
+
+ private:
+  const SearchStep& step_;
+  const SearchPose& pose_;
+  ContactAdder& out_;
+};
+
+template <bool kSlabs, class Rows>
 class Advancer {
  public:
-  Advancer(const SearchStep& step, const SearchPose& pose, const Frontier& in, Frontier& out,
+  Advancer(const SearchStep& step, const SearchPose& pose, const Frontier& in, const Rows& out,
            SearchScratch& scratch, std::uint64_t most, DistanceBounds& bounds)
       : step_(step),
         pose_(pose),
@@ -81,22 +140,22 @@ class Advancer {
   }
 
   HWY_INLINE std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
-    const SearchSide& side = step_.moving;
     const std::uint32_t* const ids = in_.moving;
-    if (!HasVectorForm(side)) {
-      for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
-      return at;
-    }
     const std::size_t last = in_.moving_count - 1;
     if constexpr (kDecodesImplicit && !kSlabs) {
-      if (side.balls == nullptr) {
-        const ImplicitDecoder decoder(side);
+      if (step_.moving.descends && step_.moving.balls == nullptr) {
+        const ImplicitDecoder decoder(step_.moving);
         for (std::uint32_t i = begin; i < end; ++i) {
-          Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
+          PrefetchMasks(step_.moving, ids[HWY_MIN(i + kAhead, last)]);
           at += decoder.Decode(ids[i], scratch_.moving, at);
         }
         return at;
       }
+    }
+    const SearchSide side = step_.moving;  // a copy, which stores to lanes cannot alias
+    if (!HasVectorForm(side)) {
+      for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
+      return at;
     }
     for (std::uint32_t i = begin; i < end; ++i) {
       Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
@@ -105,14 +164,16 @@ class Advancer {
     return at;
   }
 
-  HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, FixedRows& rows) {
+  HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, std::size_t g) {
     const SearchSide& side = step_.fixed;
     const std::uint32_t node = in_.groups[group].fixed;
-    if (HasVectorForm(side)) {
-      Prefetch<kSlabs>(side, in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed);
+    if (side.descends) {
+      const std::uint32_t ahead = in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed;
+      side.balls != nullptr ? Prefetch<kSlabs>(side, ahead) : PrefetchMasks(side, ahead);
     }
     const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);
-    Turn<kSlabs>(pose_, pads_of(pose_, step_), scratch_.fixed, rows);
+    Turn<kSlabs>(pose_, pads_of(pose_, step_), scratch_.fixed, scratch_.rows[g]);
+    out_.Decoded(node, scratch_, g);
     return count;
   }
 
@@ -137,14 +198,14 @@ class Advancer {
       const std::size_t lanes = MostLanes(group.end - begin);
       rows += 8;
       most += 8 * lanes;
-      if (at + lanes > MovingLanes::kSize || !has_room(out_, rows, most) ||
+      if (at + lanes > MovingLanes::kSize || !out_.HasRoom(rows, most) ||
           !Affordable(group, begin, tests)) {
         return;
       }
       const std::size_t g = batch.groups++;
       batch.begin[g] = at;
       batch.end[g] = at = DecodeMoving(begin, group.end, at);
-      batch.rows[g] = DecodeFixed(first + g, scratch_.rows[g]);
+      batch.rows[g] = DecodeFixed(first + g, g);
       batch.id[g] = scratch_.fixed.id[0];
       tests += batch.rows[g] * (batch.end[g] - batch.begin[g]);
       begin = group.end;
@@ -153,20 +214,15 @@ class Advancer {
 
   void Test(const Batch& batch) {
     for (std::size_t g = 0; g < batch.groups; ++g) {
+      const FixedRows& rows = scratch_.rows[g];
       for (std::uint32_t row = 0; row < batch.rows[g]; ++row) {
-        const std::size_t before = out_.moving_count;
-        TestLanes(scratch_.rows[g], row, batch.begin[g], batch.end[g]);
-        end_row(out_, batch.id[g] + row, before);
+        const std::size_t before = out_.Begin();
+        out_.Test(rows, scratch_.points[g], row, scratch_.moving, batch.begin[g], batch.end[g],
+                  measurer_);
+        out_.End(batch.id[g] + row, before);
       }
       tests_ += batch.rows[g] * (batch.end[g] - batch.begin[g]);
     }
-  }
-
-  HWY_INLINE void TestLanes(const FixedRows& rows, std::size_t row, std::size_t begin,
-                            std::size_t end) {
-    out_.moving_count +=
-        TestRow<kSlabs, kMeasured>(rows, row, scratch_.moving, begin, end, step_.last,
-                                   out_.moving + out_.moving_count, measurer_);
   }
 
   // Tests one group piece by piece: it has more moving nodes than the scratch memory holds, or
@@ -174,7 +230,7 @@ class Advancer {
   Stop RowByRow(SearchCursor& cursor) {
     const SearchGroup group = in_.groups[cursor.group];
     const std::uint32_t begin = Begin(cursor.group);
-    const std::uint32_t rows = DecodeFixed(cursor.group, scratch_.rows[0]);
+    const std::uint32_t rows = DecodeFixed(cursor.group, 0);
     const bool whole = group.end - begin <= kPieceNodes;
     std::size_t lanes = whole ? DecodeMoving(begin, group.end, 0) : 0;
     for (; cursor.row < rows; ++cursor.row, cursor.moving = 0) {
@@ -182,16 +238,17 @@ class Advancer {
       while (begin + cursor.moving < group.end) {
         const std::uint32_t first = begin + cursor.moving;
         if ((step_.last || cursor.moving == 0) &&
-            !has_room(out_, 1, room_of_row(step_, group.end - first))) {
+            !out_.HasRoom(1, room_of_row(step_, group.end - first))) {
           return Stop::kFull;
         }
         const std::uint32_t end = HWY_MIN(first + kPieceNodes, group.end);
         if (!whole) lanes = DecodeMoving(first, end, 0);
         if (lanes > most_ - tests_) return Stop::kSpent;
-        const std::size_t before = cursor.moving == 0 ? out_.moving_count : begin_row(out_, fixed);
-        TestLanes(scratch_.rows[0], cursor.row, 0, lanes);
+        const std::size_t before = cursor.moving == 0 ? out_.Begin() : out_.Continue(fixed);
+        out_.Test(scratch_.rows[0], scratch_.points[0], cursor.row, scratch_.moving, 0, lanes,
+                  measurer_);
         tests_ += lanes;
-        end_row(out_, fixed, before);
+        out_.End(fixed, before);
         cursor.moving = end - begin;
       }
     }
@@ -203,21 +260,16 @@ class Advancer {
   const SearchStep& step_;
   const SearchPose& pose_;
   const Frontier& in_;
-  Frontier& out_;
+  Rows out_;
   SearchScratch& scratch_;
   const std::uint64_t most_;
   Measurer<kSlabs> measurer_;
   std::uint64_t tests_ = 0;
 };
 
-Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
-                 SearchCursor& cursor, Frontier& out, SearchScratch& scratch, std::uint64_t most,
-                 Measured measured, DistanceBounds& bounds) {
-  Frontier next = out;  // copies, so that the compiler may keep them in registers
-  DistanceBounds known = bounds;
-  const auto run = [&]<bool kSlabs, Measured kMeasured>() {
-    return Advancer<kSlabs, kMeasured>(step, pose, in, next, scratch, most, known).Run(cursor);
-  };
+// Calls a function object with the template arguments of a step.
+template <class Run>
+Advanced Specialised(const SearchStep& step, Measured measured, const Run& run) {
   const auto measure = [&]<bool kSlabs>() {
     switch (measured) {
       case Measured::kUpper:
@@ -228,9 +280,35 @@ Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier&
         return run.template operator()<kSlabs, Measured::kNothing>();
     }
   };
-  const Advanced advanced = step.fixed.slabs != nullptr ? measure.template operator()<true>()
-                                                        : measure.template operator()<false>();
+  return step.fixed.slabs != nullptr ? measure.template operator()<true>()
+                                     : measure.template operator()<false>();
+}
+
+Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                 SearchCursor& cursor, Frontier& out, SearchScratch& scratch, std::uint64_t most,
+                 Measured measured, DistanceBounds& bounds) {
+  Frontier next = out;  // copies, so that the compiler may keep them in registers
+  DistanceBounds known = bounds;
+  const Advanced advanced = Specialised(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
+    using Rows = PairRows<kSlabs, kMeasured>;
+    return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, next), scratch, most, known)
+        .Run(cursor);
+  });
   out = next;
+  bounds = known;
+  return advanced;
+}
+
+// Vector twin of ist::advance_contacts_scalar.
+Advanced AdvanceContacts(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                         SearchCursor& cursor, ContactAdder& out, SearchScratch& scratch,
+                         std::uint64_t most, Measured measured, DistanceBounds& bounds) {
+  DistanceBounds known = bounds;
+  const Advanced advanced = Specialised(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
+    using Rows = ContactRows<kSlabs, kMeasured>;
+    return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, pose, out), scratch, most, known)
+        .Run(cursor);
+  });
   bounds = known;
   return advanced;
 }
@@ -271,7 +349,8 @@ struct Compiled {
   Compiled {                                                                   \
     HWY_##TARGET, {                                                            \
       NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs), \
-          HWY_CHOOSE_##TARGET(FindNear)                                        \
+          HWY_CHOOSE_##TARGET(FindNear), HWY_CHOOSE_##TARGET(AdvanceContacts), \
+          HWY_CHOOSE_##TARGET(AddContacts)                                     \
     }                                                                          \
   }
 

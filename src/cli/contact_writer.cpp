@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "ist/base/pose.h"
-#include "ist/query/contacts/contact_reducer.h"
 #include "ist/tree/saved_spheres.h"
 
 namespace ist::cli {
@@ -18,6 +17,7 @@ ContactWriter::ContactWriter(const std::filesystem::path& file, const Bodies& bo
       bodies_(bodies),
       fixed_(level_spheres(bodies.fixed, bodies.policy, 0)),
       moving_(level_spheres(bodies.moving, bodies.policy, 0)),
+      query_(bodies.fixed, bodies.moving, {.policy = bodies.policy}),
       points_(bodies.fixed, bodies.moving, bodies.policy) {}
 
 void ContactWriter::write(std::size_t index, const Eigen::Isometry3d& pose,
@@ -34,9 +34,8 @@ void ContactWriter::write(std::size_t index, const Eigen::Isometry3d& pose,
     const Eigen::Vector3d moving = rigid * (bodies_.moving.origin() + moving_[pair.moving].centre);
     add({{"index", index}, {"fixed_centre", triple(fixed)}, {"moving_centre", triple(moving)}});
   }
-  if (complete && points_.reducer().begin(pose)) {
-    points_.reducer().take(leaf_pairs);
-    points_.reducer().finish();
+  if (complete) {
+    static_cast<void>(query_.contacts(pose, points_));
     for (const Contact& point : points_.points()) {
       add({{"index", index},
            {"position", triple(point.position)},

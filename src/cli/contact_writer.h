@@ -9,8 +9,7 @@
 
 #include "cli/bodies.h"
 #include "ist/base/files.h"
-#include "ist/query/manifold.h"
-#include "ist/query/results.h"
+#include "ist/query/query.h"
 #include "ist/tree/bounds.h"
 
 namespace ist::cli {
@@ -35,6 +34,7 @@ class ContactWriter {
   OutputFile file_;
   const Bodies& bodies_;
   std::vector<Ball> fixed_, moving_;
+  Query query_;
   ContactManifold points_;
   std::string lines_;  // not yet written
 };

@@ -12,6 +12,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/exact/mesh_distance.h"
 #include "query/scenes.h"
+#include "query/test_clocks.h"
 #include "simd/dispatch.h"
 #include "simd/targets.h"
 #include "support/shapes.h"
@@ -125,15 +126,6 @@ TEST(WithinABudget, ContactsAreTheFirst) {
   EXPECT_GT(some, 20u);
 }
 
-// A clock that stands still and counts how often it is read.
-struct FakeClock {
-  static Budget::Clock::time_point now() noexcept {
-    ++looks;
-    return {};
-  }
-  static inline std::uint64_t looks;
-};
-
 // Counts the tests and pairs from one look at the clock to the next.
 struct Watched : PairLister {
   using PairLister::PairLister;
@@ -183,24 +175,13 @@ TEST(WithinADeadline, TheClockIsReadOftenEnough) {
                shift({0.1, 0, 0}));
 }
 
-// A clock that is late from one look on.
-struct LateClock {
-  static Budget::Clock::time_point now() noexcept {
-    return Budget::Clock::time_point(std::chrono::nanoseconds(looks++ < allowed ? 0 : 2));
-  }
-  static inline int looks, allowed;
-};
-
 TEST(WithinADeadline, TheSearchEndsAtTheFirstLookAfterIt) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kSpherePolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));
     std::uint64_t before = 0;
     for (int allowed = 0; allowed < 40; ++allowed) {
-      LateClock::looks = 0;
-      LateClock::allowed = allowed;
-      const Budget budget{.deadline = Budget::Clock::time_point(std::chrono::nanoseconds(1)),
-                          .now = LateClock::now};
+      const Budget budget = LateClock::budget_of(allowed);
       const FoundPairs stopped = ask_within(query, scene.pose, budget);
       EXPECT_FALSE(stopped.result.complete);
       EXPECT_EQ(LateClock::looks, allowed + 1);

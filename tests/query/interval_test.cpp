@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "ist/query/manifold.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search.h"
 #include "ist/query/traversal/search_pose.h"
@@ -106,6 +107,7 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
       const Kernels& kernels = select_kernels("");
       Search search(plan, kernels, 1 << 20);
       Query query(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold contacts(scene.fixed, scene.moving, policy);
       for (const double x : {0.0, 1.6, 1.9, 2.1, 2.6}) {
         Eigen::Isometry3d at = scene.pose;
         at.translation()[0] += x;
@@ -131,6 +133,13 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           const double last_bits = 1e-6 * formula.upper;
           EXPECT_GE(told.distance->lower, formula.lower - last_bits);
           EXPECT_LE(told.distance->upper, formula.upper + last_bits);
+          const QueryResult weighed = query.contacts(at, contacts, {.tests = tests + 1});
+          EXPECT_EQ(weighed.sphere_tests, told.sphere_tests);
+          EXPECT_EQ(weighed.level, told.level);
+          if (!weighed.complete) {
+            EXPECT_GE(weighed.distance->lower, formula.lower - last_bits);
+            EXPECT_LE(weighed.distance->upper, formula.upper + last_bits);
+          }
           stopped += told.complete ? 0 : 1;
           apart += formula.lower > 0 ? 1 : 0;
         }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "ist/query/contacts/contact_leaf.h"
 #include "ist/tree/tree_parts.h"
 #include "query/contacts/contact_cases.h"
 #include "query/exact/exact_tree.h"
@@ -12,7 +11,7 @@
 #include "query/exact/mesh_distance.h"
 #include "query/scenes.h"
 #include "simd/dispatch.h"
-#include "stability/search_overlap.h"
+#include "stability/leaf_overlap.h"
 #include "verify/read_bounds.h"
 
 namespace ist::test {

@@ -8,7 +8,7 @@
 
 #include "ist/base/pose.h"
 #include "query/scenes.h"
-#include "stability/search_overlap.h"
+#include "stability/leaf_overlap.h"
 #include "support/stability.h"
 
 namespace ist::test {
@@ -109,7 +109,7 @@ void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d&
         differing += differ.size();
         for (const LeafPair& pair : differ) {
           const double overlap =
-              search_overlap(scene.fixed, scene.moving, policy, place(direct, x), pair);
+              leaf_overlap(scene.fixed, scene.moving, policy, place(direct, x), pair);
           pairs.sample(std::abs(overlap), band);
         }
       }

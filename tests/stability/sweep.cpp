@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/query/contacts/contact_pair.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
+#include "query/contacts/pair_sums.h"
 #include "query/query_cases.h"
-#include "stability/search_overlap.h"
+#include "stability/leaf_overlap.h"
 #include "verify/read_bounds.h"
 
 namespace ist::test {
@@ -64,7 +64,8 @@ Sweep::Sweep(const SphereTree& fixed, const SphereTree& moving, const SphereTree
       cases_(cases),
       exact_(fixed, moving, with(policy)),
       plain_(plain_fixed, plain_moving, with(policy)),
-      points_(plain_fixed, plain_moving, policy) {}
+      points_(plain_fixed, plain_moving, policy),
+      contacts_(plain_fixed, plain_moving, policy) {}
 
 void Sweep::along(const Path& path) {
   last_seen_.clear();
@@ -97,7 +98,7 @@ Sweep::Step Sweep::look(const Isometry3d& pose) {
 }
 
 double Sweep::overlap(const LeafPair& pair, const Isometry3d& pose) const {
-  return search_overlap(fixed_, moving_, policy_, pose, pair);
+  return leaf_overlap(fixed_, moving_, policy_, pose, pair);
 }
 
 // A pair is in an answer only if nothing over it is farther apart than the pad, and is out of one
@@ -150,6 +151,7 @@ void Sweep::compare_sums(const Step& before, const Step& now, double motion) {
   const auto pairs = static_cast<double>(a.pairs + b.pairs);
   if (a.pairs + b.pairs == 0) return;
   const ContactRates& rates = points_.rates();
+  motion += 2 * rounding_of(fixed_, points_);
   const auto sample = [&](double change, double rate, const char* what) {
     cases_.sums.sample(change / (rate * motion * pairs), 1, what);
   };
@@ -163,18 +165,10 @@ void Sweep::compare_sums(const Step& before, const Step& now, double motion) {
 
 void Sweep::compare_depths(const Step& before, const Step& now, double motion) {
   const ContactScale scale(fixed_, moving_);
-  const auto terms = [&](const LeafPair& pair, const Isometry3d& pose) {
-    const RelativePose relative =
-        *relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
-    return pair_terms(
-        read_leaf(fixed_, policy_, pair.fixed, parent_of(fixed_.parts().octree, 0, pair.fixed)),
-        read_leaf(moving_, policy_, pair.moving, parent_of(moving_.parts().octree, 0, pair.moving))
-            .in(relative),
-        scale);
-  };
   for (std::size_t i = 0; i < now.pairs.size(); i += 1 + now.pairs.size() / 8) {
-    const PairTerms a = terms(now.pairs[i], before.pose), b = terms(now.pairs[i], now.pose);
-    const double mean_normal = std::min(a.weight, b.weight);
+    const PlainPair a = contacts_.at(now.pairs[i], before.pose),
+                    b = contacts_.at(now.pairs[i], now.pose);
+    const double mean_normal = std::min(a.mean_normal, b.mean_normal);
     if (!(mean_normal > 0)) continue;  // no direction, no weight, no depth
     cases_.depth.sample(std::abs(b.depth - a.depth),
                         motion * depth_rate(scale, points_.rates().lever, mean_normal));

@@ -10,6 +10,7 @@
 #include "ist/query/manifold.h"
 #include "ist/query/query.h"
 #include "ist/query/relative_pose.h"
+#include "query/contacts/plain_contacts.h"
 #include "support/stability.h"
 
 namespace ist::test {
@@ -86,6 +87,7 @@ class Sweep {
   MotionCases& cases_;
   Query exact_, plain_;
   ContactManifold points_;
+  PlainContacts contacts_;
   std::unordered_map<std::uint64_t, int> last_seen_;  // step, by pair
   std::size_t changes_ = 0;
 };

@@ -16,7 +16,7 @@ class ContactReducer;
 }
 
 /// A place where a hand feels the other body, in fixed mesh coordinates: the mean, by weight, of
-/// the leaf pairs of one moving leaf, or of a few leaves together. Lengths are in mesh units.
+/// the leaf pairs of one fixed leaf, or of a few leaves together. Lengths are in mesh units.
 struct Contact {
   Eigen::Vector3d position;  ///< half way between the two surfaces
   Eigen::Vector3d normal;    ///< of unit length, from the fixed body to the moving one
@@ -42,7 +42,8 @@ struct Wrench {
 /// The sums over all leaf pairs of one answer, none merged or left out, that act on the moving
 /// body. A pair has a weight w (mesh units²), a unit normal n, a depth d and a position p (mesh
 /// units); d0 is the least depth (ManifoldOptions). The sums are Lipschitz in the pose, so that
-/// forces made of them do not jump; docs/guarantees.md gives the rates.
+/// forces made of them do not jump; docs/guarantees.md gives the rates. They are made in float and
+/// fixed point, and do not depend on the order of pairs: the same bits with one worker or two.
 struct ContactSums {
   double weight = 0;  ///< Σ w, mesh units²
   Wrench pressure;    ///< Σ w n, mesh units², and Σ p × w n, mesh units³
@@ -57,8 +58,8 @@ struct ContactSums {
 /// sum changes by at most rate · motion · (pairs with a weight before + pairs with a weight after).
 ///
 /// The motion from one pose to another, mesh units, is the distance that the origin of the moving
-/// tree's frame moves + lever · |angle in radians|. The rates are derived in docs/guarantees.md,
-/// Rates of the contact sums.
+/// tree's frame moves + lever · |angle in radians| + 2⁻¹⁶ (bounding radius of the fixed tree +
+/// lever), for rounding. The rates are derived in docs/guarantees.md, Rates of the contact sums.
 struct ContactRates {
   double lever;  ///< radius round the moving frame's origin of every point that counts, mesh units
   double weight, pressure_force, pressure_torque, spring_force, spring_torque;
@@ -71,7 +72,7 @@ inline constexpr std::size_t kMostItems = std::size_t{1} << 26;
 struct ManifoldOptions {
   /// The most contacts; 0: the sums alone, which take less time and memory.
   std::size_t points = 32;
-  /// The most moving leaves to keep apart, 104 bytes each. Beyond it, leaves are joined by their
+  /// The most fixed leaves to keep apart, 80 bytes each. Beyond it, leaves are joined by their
   /// ancestors in the octree.
   std::size_t max_leaves = 1 << 15;
   /// The depth at which springs begin: pairs that are less deep weigh nothing. From -2, where every
@@ -86,9 +87,8 @@ struct ManifoldOptions {
 /// All contacts of two bodies at one pose: sums that forces are made of, and a few points. Filled
 /// by Query::contacts for the same trees and the same policy.
 ///
-/// The constructor reserves all memory: 5.4 bytes a leaf of either tree, half a megabyte to a
-/// megabyte of caches, and the points. It shares the content of both trees. One
-/// manifold belongs to one thread at a time.
+/// The constructor reserves all memory: 90 kB, and with points the leaves and the points. It shares
+/// the content of both trees. One manifold belongs to one thread at a time.
 class IST_API ContactManifold {
  public:
   /// Throws kPolicyMissing; kArgumentInvalid for an option out of range; std::bad_alloc.

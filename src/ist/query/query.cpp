@@ -87,24 +87,26 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
   detail::ContactReducer& reducer = manifold.reducer();
-  const bool rigid = reducer.begin(pose);  // empties the reducer in any case
+  reducer.clear();
   if (!reducer.fits(s.fixed, s.moving, s.policy)) {
     return {.status = QueryStatus::kManifoldMismatch, .complete = false};
   }
   const double margin = reducer.scale().margin;
   const std::optional<detail::Approach> bodies = s.approach(pose, margin);
-  if (!rigid || !bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
   QueryResult result = s.root_result(bodies->roots);
-  if (bodies->roots.overlap) {
-    LeafPairSink sink(s.plan, s.kernels, s.window, reducer);
-    // Only the end of a budget needs a bound: the upper one, because a pair of nodes is left.
-    s.search(*bodies, budget, budget.is_limited() ? Measured::kUpper : Measured::kNothing, sink,
-             result);
-    auto& [lower, upper] = *result.distance;
-    if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
-    if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, margin);
-  }
-  reducer.finish();
+  if (!bodies->roots.overlap) return result;
+
+  const SearchPose from = s.to_float(*bodies);
+  ContactOutput sink(s.plan, s.kernels, from, reducer.adder(), reducer.leaf_sums());
+  // Only the end of a budget needs a bound: the upper one, because a pair of nodes is left.
+  const Measured measured = budget.is_limited() ? Measured::kUpper : Measured::kNothing;
+  s.search<ContactVisitor>(*bodies, from, budget, measured, sink, result);
+  sink.flush();
+  auto& [lower, upper] = *result.distance;
+  if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
+  if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, margin);
+  reducer.finish(bodies->relative);
   return result;
 }
 

@@ -97,7 +97,8 @@ class IST_API Query {
   /// @param budget   ends the search early: then neither result nor manifold is complete, and no
   ///                 force should be made of it
   ///
-  /// Cost: that of leaf_pairs(), and 50 to 120 ns a leaf pair.
+  /// Cost: that of leaf_pairs(), and 3 to 5 ns a leaf pair, with points 10 to 15; on the scalar
+  /// target 50.
   [[nodiscard]] QueryResult contacts(const Eigen::Isometry3d& pose, ContactManifold& manifold,
                                      const Budget& budget = {}) noexcept;
 

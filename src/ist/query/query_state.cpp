@@ -110,22 +110,24 @@ QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
   QueryResult result = root_result(bodies->roots);
   if (!bodies->roots.overlap) return result;
-  search(*bodies, budget, budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
+  search<PairLister>(*bodies, to_float(*bodies), budget,
+                     budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
   if (!budget.is_limited()) result.distance.reset();  // nothing was measured
   return result;
 }
 
-void QueryState::search(const Approach& bodies, const Budget& budget, Measured measured,
-                        LeafPairSink& sink, QueryResult& result) noexcept {
-  const SearchPose from = to_float(bodies);
-  set_pad(2 * pad_of(from) - bodies.margin, result);
+template <class Lister>
+void QueryState::search(const Approach& bodies, const SearchPose& pose, const Budget& budget,
+                        Measured measured, typename Lister::Sink& sink,
+                        QueryResult& result) noexcept {
+  set_pad(2 * pad_of(pose) - bodies.margin, result);
   // The test of the roots is one of the budget's.
   const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
   SharedSearch::End end{};
   if (auto* shared = std::get_if<SharedSearch>(&searches)) {
-    end = shared->run(from, sink, meter, measured);
+    end = shared->run<Lister>(pose, sink, meter, measured);
   } else {
-    PairLister lister(from, sink, meter, measured);
+    Lister lister(pose, sink, meter, measured);
     const std::size_t steps = serial().run(lister);
     end = {steps, lister.tests(), sink.count(), lister.bounds()};
   }
@@ -145,5 +147,10 @@ void QueryState::search(const Approach& bodies, const Budget& budget, Measured m
     upper = std::min(upper, end.bounds.upper - bodies.margin);
   }
 }
+
+template void QueryState::search<PairLister>(const Approach&, const SearchPose&, const Budget&,
+                                             Measured, LeafPairSink&, QueryResult&) noexcept;
+template void QueryState::search<ContactVisitor>(const Approach&, const SearchPose&, const Budget&,
+                                                 Measured, ContactOutput&, QueryResult&) noexcept;
 
 }  // namespace ist::detail

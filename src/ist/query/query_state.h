@@ -37,10 +37,11 @@ struct QueryState {
   [[nodiscard]] double pad_of(const SearchPose& pose) const noexcept;
   /// Returns the search of the calling thread alone.
   [[nodiscard]] Search& serial() noexcept;
-  /// Lists the leaf pairs of two bodies whose roots overlap, with all workers, and completes
-  /// `result`.
-  void search(const Approach& bodies, const Budget& budget, Measured measured, LeafPairSink& sink,
-              QueryResult& result) noexcept;
+  /// Searches two bodies whose roots overlap, with all workers, as a Lister does (SharedSearch),
+  /// and completes `result`.
+  template <class Lister>
+  void search(const Approach& bodies, const SearchPose& pose, const Budget& budget,
+              Measured measured, typename Lister::Sink& sink, QueryResult& result) noexcept;
   /// Lists all leaf pairs at a pose.
   [[nodiscard]] QueryResult list(const Eigen::Isometry3d& pose, const Budget& budget,
                                  LeafPairSink& sink) noexcept;

@@ -10,6 +10,7 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/contacts/contact_cases.h"
+#include "query/contacts/pair_sums.h"
 #include "query/contacts/plain_contacts.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
@@ -46,85 +47,86 @@ void expect_near(const Vector3d& a, const Vector3d& b, double tolerance) {
   EXPECT_LE((a - b).norm(), tolerance) << a.transpose() << " and " << b.transpose();
 }
 
-void expect_near(const ContactSums& a, const ContactSums& b, double extent) {
-  const double tolerance = 1e-10 * b.weight;
-  EXPECT_NEAR(a.weight, b.weight, tolerance);
-  expect_near(a.about, b.about, 1e-12 * extent);
-  expect_near(a.pressure.force, b.pressure.force, tolerance);
-  expect_near(a.pressure.torque, b.pressure.torque, extent * tolerance);
-  expect_near(a.spring.force, b.spring.force, extent * tolerance);
-  expect_near(a.spring.torque, b.spring.torque, extent * extent * tolerance);
+// Within what rounding may do to every pair; returns the largest part of it that it does.
+double compare(const ContactSums& a, const ContactSums& b, const ContactRates& rates,
+               double rounding) {
+  const double all = rounding * static_cast<double>(std::max<std::uint64_t>(b.pairs, 1));
+  EXPECT_EQ(a.about, b.about);
+  const double most =
+      std::max({std::abs(a.weight - b.weight) / rates.weight,
+                (a.pressure.force - b.pressure.force).norm() / rates.pressure_force,
+                (a.pressure.torque - b.pressure.torque).norm() / rates.pressure_torque,
+                (a.spring.force - b.spring.force).norm() / rates.spring_force,
+                (a.spring.torque - b.spring.torque).norm() / rates.spring_torque}) /
+      all;
+  EXPECT_LE(most, 1);
+  return most;
 }
 
-double extent_of(const Scene& scene) {
-  return scene.fixed.bounding_radius() + scene.moving.bounding_radius();
-}
-
-double mean_size(const Scene& scene) {
-  return 0.5 * (scene.fixed.voxel_size() + scene.moving.voxel_size());
-}
-
-// The query gives what all pairs of leaves give: no pair with a weight is missing in the answer,
-// and none that the weight knows nothing of.
-TEST(ContactManifold, AreThoseOfAllPairsOfLeaves) {
+// The query gives what its leaf pairs give in double, and one contact a fixed leaf.
+TEST(ContactManifold, AreThoseOfEachLeafPairInDouble) {
   std::size_t pairs = 0;
+  double most = 0;
   for (const Scene& scene : small_scenes()) {
     for (const SpherePolicy policy : kSpherePolicies) {
-      SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
-      const auto plain = plain_pairs(scene.fixed, scene.moving, policy, scene.pose);
-      const FoundContacts found = find_contacts(scene.fixed, scene.moving, policy, scene.pose);
-      const double extent = extent_of(scene);
-      expect_near(found.sums, plain_sums(plain, mean_size(scene), scene.fixed.origin()), extent);
-      EXPECT_NEAR(static_cast<double>(found.sums.pairs), static_cast<double>(plain.size()), 1);
-      EXPECT_LE(found.sums.pairs, found.result.leaf_pairs);
-      pairs += plain.size();
-
-      std::vector<Contact> expected, points = found.points;
-      for (const auto& [leaf, point] : plain_points(plain)) expected.push_back(point);
-      const auto before = [](const Contact& a, const Contact& b) { return a.weight < b.weight; };
-      std::sort(expected.begin(), expected.end(), before);
-      std::sort(points.begin(), points.end(), before);
-      ASSERT_EQ(points.size(), expected.size());
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const double weight = expected[i].weight;
-        EXPECT_NEAR(points[i].weight, weight, 1e-10 * found.sums.weight);
-        if (weight < 1e-6 * found.sums.weight) continue;  // of rounding alone, or next to it
-        expect_near(points[i].position, expected[i].position, 1e-8 * extent);
-        EXPECT_NEAR(points[i].normal.norm(), 1, 1e-12);
+      for (const double least : {-2.0, -0.5}) {
+        SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
+        const ManifoldOptions options{
+            .points = 1 << 14, .max_leaves = 1 << 20, .least_depth = least};
+        Query query(scene.fixed, scene.moving, options_of(policy));
+        ContactManifold points(scene.fixed, scene.moving, policy, options);
+        const PlainContacts plain(scene.fixed, scene.moving, policy, options);
+        const auto wanted = plain.of(ask(query, scene.pose).leaf_pairs, scene.pose);
+        const FoundContacts found = find_contacts(query, points, scene.pose);
+        const double rounding = rounding_of(scene.fixed, points);
+        most = std::max(most, compare(found.sums, plain.sums(wanted), points.rates(), rounding));
+        EXPECT_GE(found.sums.pairs, wanted.size());  // by pads
+        EXPECT_LE(found.sums.pairs, wanted.size() + wanted.size() / 50 + 1);
+        EXPECT_LE(found.sums.pairs, found.result.leaf_pairs);
+        pairs += wanted.size();
+        double weight = 0;
+        for (const Contact& p : found.points) weight += p.weight;
+        EXPECT_NEAR(weight, found.sums.weight,
+                    rounding * points.rates().weight * static_cast<double>(found.sums.pairs));
       }
     }
   }
   EXPECT_GT(pairs, 5'000u);
+  EXPECT_GT(most, 0.01);  // the bound of rounding is not idle
 }
 
-// Unlike the test above, which has to sort by weight, this one knows which leaf a point is of.
-TEST(ContactManifold, OfOneMovingLeafAreItsMeans) {
+// By leaf: the sums of one fixed leaf are its contact.
+TEST(ContactManifold, OfOneFixedLeafAreItsMeans) {
   const std::vector<Scene> scenes = small_scenes();
-  const Scene& scene = scenes[0];
-  for (const SpherePolicy policy : kSpherePolicies) {
-    const auto plain = plain_pairs(scene.fixed, scene.moving, policy, scene.pose);
-    const auto expected = plain_points(plain);
-    ContactManifold points(scene.fixed, scene.moving, policy);
-    std::size_t checked = 0;
-    for (const auto& [leaf, point] : expected) {
-      ASSERT_TRUE(points.reducer().begin(scene.pose));
-      for (const PlainPair& pair : plain) {
-        if (pair.moving == leaf)
-          points.reducer().take(std::vector<LeafPair>{{pair.fixed, pair.moving}});
+  for (const Scene* scene : {&scenes[0], &scenes[1], &scenes[2]}) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      SCOPED_TRACE(scene->name + ", " + std::string(to_string(policy)));
+      Query query(scene->fixed, scene->moving, options_of(policy));
+      ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0});
+      const LinearOctree& octree = scene->fixed.parts().octree;
+      LeafSums leaves(octree, octree.leaf_count());
+      points.reducer().adder().stream = &leaves;
+      static_cast<void>(query.contacts(scene->pose, points));
+      leaves.close();
+      const PlainContacts plain(scene->fixed, scene->moving, policy);
+      const auto wanted = plain_points(plain.of(ask(query, scene->pose).leaf_pairs, scene->pose));
+      const double whole = points.reducer().scale().area,
+                   rounding = rounding_of(scene->fixed, points);
+      std::size_t checked = 0;
+      for (const LeafSum& leaf : leaves.nodes()) {
+        const auto point = wanted.find(octree.first_child(1, leaf.node / 8) + leaf.node % 8);
+        const double weight = whole / kContactUnit * leaf.weight;
+        const double of_pairs = 64 * points.rates().weight * rounding;
+        ASSERT_TRUE(point != wanted.end() || weight <= of_pairs);
+        if (weight < 0.01 * whole) continue;
+        const Contact& p = point->second;
+        EXPECT_NEAR(weight, p.weight, of_pairs);
+        EXPECT_NEAR(leaf.depth / leaf.weight - 2 * points.reducer().scale().size, p.depth,
+                    1e3 * rounding);
+        ++checked;
       }
-      points.reducer().finish();
-      ASSERT_EQ(points.points().size(), 1u);
-      const Contact& found = points.points()[0];
-      EXPECT_NEAR(found.weight, point.weight, 1e-12);
-      if (point.weight < 1e-6) continue;
-      expect_near(found.position, point.position, 1e-8);
-      expect_near(found.normal, point.normal, 1e-7);
-      EXPECT_NEAR(found.depth, point.depth, 1e-8);
-      EXPECT_LE(found.depth, mean_size(scene));
-      EXPECT_GE(found.depth, -2 * mean_size(scene));
-      ++checked;
+      EXPECT_GT(checked, 5u);
     }
-    EXPECT_GT(checked, 20u);
   }
 }
 
@@ -145,7 +147,7 @@ Moments moments_of(std::span<const Contact> points) {
 
 void expect_near(const Moments& a, const Moments& b) {
   EXPECT_NEAR(a.weight, b.weight, 1e-12 * b.weight);
-  EXPECT_NEAR(a.depth, b.depth, 1e-12 * b.weight);
+  EXPECT_NEAR(a.depth, b.depth, 1e-7 * b.weight);
   expect_near(a.position, b.position, 1e-11 * b.weight);
 }
 
@@ -176,7 +178,7 @@ TEST(ContactManifold, AreJoinedToAsManyAsAreWanted) {
       const FoundContacts all = find_contacts(scene.fixed, scene.moving, policy, scene.pose);
       ASSERT_GT(all.points.size(), 20u);
       const Moments whole = moments_of(all.points);
-      EXPECT_NEAR(whole.weight, all.sums.weight, 1e-10 * whole.weight);
+      EXPECT_NEAR(whole.weight, all.sums.weight, 1e-6 * whole.weight);
       const auto marked = marked_of(all.points);
       for (std::size_t most = 1; most <= 100; most += most < 16 ? 1 : 21) {
         SCOPED_TRACE(most);
@@ -214,7 +216,9 @@ TEST(ContactManifold, LoseNothingWhereThereIsNoRoom) {
       const FoundContacts whole = find_contacts(query, all, scene.pose);
       for (const std::size_t room : {1u, 2u, 7u, 30u, 200u}) {
         ContactManifold few(scene.fixed, scene.moving, policy, {1 << 14, room});
-        EXPECT_LT(few.bytes(), all.bytes());
+        if (room < scene.fixed.leaf_count()) {
+          EXPECT_LT(few.bytes(), all.bytes());
+        }
         const FoundContacts found = find_contacts(query, few, scene.pose);
         EXPECT_TRUE(same(found.sums, whole.sums));
         EXPECT_GE(found.points.size(), 1u);
@@ -228,7 +232,7 @@ TEST(ContactManifold, LoseNothingWhereThereIsNoRoom) {
         ContactManifold fewer(scene.fixed, scene.moving, policy, {3, room});
         const FoundContacts joined = find_contacts(query, fewer, scene.pose);
         EXPECT_LE(joined.points.size(), 3u);
-        EXPECT_NEAR(moments_of(joined.points).weight, whole.sums.weight, 1e-10 * whole.sums.weight);
+        EXPECT_NEAR(moments_of(joined.points).weight, whole.sums.weight, 1e-6 * whole.sums.weight);
       }
     }
   }
@@ -243,7 +247,7 @@ TEST(ContactManifold, AreTheSameBitsHoweverTheyAreFound) {
       EXPECT_GT(expected.points.size(), 8u);
       for (const std::string& target : all_targets()) {
         for (const int workers : {1, 2}) {
-          for (const std::size_t pairs : {65536u, 100u}) {
+          for (const std::size_t pairs : {65536u, 1000u, 1u}) {
             QueryOptions options = options_of(policy, target, workers);
             options.frontier_pairs = pairs;
             Query query(scene.fixed, scene.moving, options);
@@ -253,18 +257,6 @@ TEST(ContactManifold, AreTheSameBitsHoweverTheyAreFound) {
             }
           }
         }
-      }
-      const FoundPairs answer = ask(plain, scene.pose);
-      for (const std::size_t part : {1u, 7u, 1000u, 1u << 30}) {
-        ASSERT_TRUE(points.reducer().begin(scene.pose));
-        for (std::span<const LeafPair> left = answer.leaf_pairs; !left.empty();) {
-          const std::size_t count = std::min(part, left.size());
-          EXPECT_TRUE(points.reducer().take(left.first(count)));
-          left = left.subspan(count);
-        }
-        points.reducer().finish();
-        EXPECT_TRUE(same(points.sums(), expected.sums));
-        EXPECT_EQ(points.points().size(), expected.points.size());
       }
     }
   }
@@ -284,9 +276,6 @@ TEST(ContactManifold, OfNoRigidMotionAreNone) {
   EXPECT_EQ(none.sums.pairs, 0u);
   EXPECT_EQ(none.sums.weight, 0);
   EXPECT_EQ(none.sums.spring.force, Vector3d::Zero());
-  EXPECT_FALSE(points.reducer().take(ask(query, scene.pose).leaf_pairs));
-  points.reducer().finish();
-  EXPECT_EQ(points.points().size(), 0u);
   EXPECT_TRUE(same(find_contacts(query, points, scene.pose), before));
 
   const FoundContacts apart = find_contacts(query, points, shift({10, 0, 0}));
@@ -361,10 +350,10 @@ TEST(ContactManifold, OfNormalsThatCancelHaveNoWeight) {
 TEST(ContactManifold, HaveADirectionWhereNormalsBalance) {
   const TriangleMesh clamp = joined(box({-4, -4, -4}, {4, 4, -0.5}), box({-4, -4, 0.5}, {4, 4, 4}));
   const TriangleMesh pin = box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
-  const FoundContacts found = find_contacts(tree_of(clamp, 8), tree_of(pin, 1),
+  const FoundContacts found = find_contacts(tree_of(pin, 1), tree_of(clamp, 8),
                                             SpherePolicy::kTable, Eigen::Isometry3d::Identity());
   EXPECT_GT(found.sums.weight, 0);
-  EXPECT_LT(found.sums.pressure.force.norm(), 1e-9 * found.sums.weight);
+  EXPECT_LT(found.sums.pressure.force.norm(), 1e-6 * found.sums.weight);
   ASSERT_EQ(found.points.size(), 1u);
   EXPECT_NEAR(found.points[0].normal.norm(), 1, 1e-12);
   expect_near(found.points[0].position, {0, 0, 0}, 1e-12);

@@ -1,16 +1,13 @@
-// What counts as a contact besides bounds that touch, and how it begins to.
+// What counts as a contact besides bounds that touch.
 
 #include <gtest/gtest.h>
 
-#include "ist/query/contacts/contact_pair.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/contacts/contact_cases.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-using Eigen::Vector3d;
 
 // A plate a little above another: what of it counts, and with which weight, by margin.
 TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
@@ -39,24 +36,6 @@ TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
   EXPECT_GT(more.pressure.force.z(), 0.9 * more.weight);
   // Those in their middle, which are flat, meet only by margin.
   EXPECT_GT(sums_at(0.3, 0.5).weight, 3 * sums_at(0.3, 0).weight);
-}
-
-// Two leaves that face each other: with another least depth than -2 their weight grows from 0.
-TEST(ContactMargin, BeginToWeighWithNothing) {
-  const SphereTree tree = tree_of(box({0, 0, 0}, {1, 1, 1}), 4);
-  const double size = tree.voxel_size();
-  const auto weight_at = [&](double above_least, double least) {
-    ContactLeaf fixed, moving;
-    fixed.normal = Vector3d::UnitZ();
-    moving.normal = -Vector3d::UnitZ();
-    moving.point = {0, 0, -(least + above_least) * size};
-    return pair_terms(fixed, moving, ContactScale(tree, tree, least)).weight;
-  };
-  EXPECT_EQ(weight_at(0, -0.25), 0);
-  EXPECT_NEAR(weight_at(0.05, -0.25), 0.2, 1e-12);
-  EXPECT_NEAR(weight_at(0.125, -0.25), 0.5, 1e-12);
-  EXPECT_EQ(weight_at(0.5, -0.25), 1);
-  EXPECT_EQ(weight_at(0.05, -2), 1);
 }
 
 }  // namespace

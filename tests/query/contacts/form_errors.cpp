@@ -36,6 +36,7 @@ FormErrors form_errors(const ClosedForm& form, const SphereTree& fixed, const Sp
     errors.finite = errors.finite && p.position.allFinite() && p.normal.allFinite() &&
                     std::isfinite(p.depth) && std::isfinite(p.weight);
     errors.deepest = std::max(errors.deepest, p.depth / s);
+    if (p.weight < 0.05 * s * s) continue;  // normals that cancel have no direction
     if (!form.fixed.smooth(p.position, 10 * s) ||
         !form.moving.smooth(pose.inverse() * p.position, 10 * s)) {
       continue;

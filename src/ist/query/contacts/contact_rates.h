@@ -1,21 +1,29 @@
 #pragma once
 
-#include "ist/query/contacts/contact_pair.h"
+#include <algorithm>
+#include <cmath>
+
+#include "ist/query/contacts/contact_scale.h"
 #include "ist/query/manifold.h"
 
 namespace ist {
 
-/// Returns the rates of two trees' contacts.
+/// Returns the rates of two trees' contacts under a policy.
 [[nodiscard]] inline ContactRates contact_rates(const SphereTree& fixed, const SphereTree& moving,
+                                                SpherePolicy policy,
                                                 const ContactScale& scale) noexcept {
   ContactRates rates{};
   const double s = scale.size;
-  // The distance from a fixed ancestor's centre to a leaf of it is at most both radii.
-  rates.lever = (fixed.bounding_radius() + moving.bounding_radius()) + (4 * s + scale.margin);
+  rates.lever = moving.bounding_radius() + (3 * s + scale.margin);
   const double far = fixed.bounding_radius() + (2.5 * s + scale.margin);
   const double radii = 1.02 * scale.radius_sum + scale.margin;
-  const double share =
-      scale.area * (2 * radii / (scale.radius_sum * scale.radius_sum) + 1 / scale.width);
+  const double squared = scale.radius_sum * scale.radius_sum, width = scale.width;
+  // With slabs the steepest share is one where the centres are so far apart.
+  const double apart = std::max(width, std::sqrt(std::max(0.0, radii * radii - squared)));
+  const double slope = policy == SpherePolicy::kSlab
+                           ? (radii * radii - apart * apart) / width + 2 * apart
+                           : 2 * radii;
+  const double share = scale.area * slope / squared;
   const double depth = scale.area * (1 + (3.9 * s + 0.5 * scale.margin) / rates.lever);
   rates.weight = share + 0.5 * scale.area / rates.lever + (scale.fade > 0 ? depth / scale.fade : 0);
   rates.pressure_force = rates.weight;

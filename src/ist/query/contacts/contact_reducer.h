@@ -1,35 +1,34 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "ist/base/float_environment.h"
-#include "ist/query/contacts/ancestor_share.h"
 #include "ist/query/contacts/contact_rates.h"
 #include "ist/query/contacts/leaf_sums.h"
 #include "ist/query/manifold.h"
-#include "ist/query/traversal/leaf_pair_sink.h"
+#include "ist/query/relative_pose.h"
 
 namespace ist::detail {
 
-/// Reduces the leaf pairs of an answer, one after the other, to sums that are Lipschitz in the pose
-/// and to a few contacts (see cluster()).
+/// Reduces the leaf pairs of an answer to sums that are Lipschitz in the pose and to a few contacts
+/// (see cluster()).
 ///
 /// A pair weighs s_f s_m · u · b · |e|, with s_f and s_m the two voxel sizes, u the overlap of the
-/// two balls (ball_weight), b the least overlap of both slabs and of all ancestors' bounds, and e
-/// the mean of the two normals, each as long as it is coherent (pair_terms). Each factor falls to
-/// 0, with a bounded slope, where the pair leaves the answer or its normals cancel. With a least
-/// depth above -2 the weight also falls to 0 there, over a quarter of a voxel.
+/// two balls, b the lesser overlap of a slab with the other ball (bound_share), and e the mean of
+/// the two normals, each as long as it is coherent (pair_terms). Each factor falls to 0, with a
+/// bounded slope, where the pair leaves the answer or its normals cancel. With a least depth above
+/// -2 the weight also falls to 0 there, over a quarter of a voxel.
 ///
-/// Query::contacts does all of it. To reduce a list of leaf pairs, call begin(), take() and
-/// finish(); the list must be whole and sorted.
+/// The kernels add up, in float and fixed point, what their adder() is given; this class turns it
+/// into mesh units and the fixed tree's frame.
 ///
-/// The constructor reserves all memory: 5.4 bytes a leaf of either tree, half a megabyte to a
-/// megabyte of caches, and LeafSums where there are points. A query allocates nothing and locks
-/// nothing. Holds references to both trees, which must outlive it; one object belongs to one thread
-/// at a time. Cost: 40 to 100 ns a leaf pair, most where few of them share a leaf.
-class ContactReducer final : public LeafPairStream {
+/// The constructor reserves all memory: 80 kB, and LeafSums where there are points. A query
+/// allocates nothing and locks nothing. One object belongs to one thread at a time.
+class ContactReducer {
  public:
   /// Takes the policy of the query. Throws kPolicyMissing; kArgumentInvalid for an option out of
   /// range; std::bad_alloc.
@@ -39,15 +38,16 @@ class ContactReducer final : public LeafPairStream {
   ContactReducer(const ContactReducer&) = delete;
   ContactReducer& operator=(const ContactReducer&) = delete;
 
-  /// Begins a query and forgets the one before. Returns false where `pose` is no rigid motion: then
-  /// no leaf pair is taken, and the sums are 0.
-  [[nodiscard]] bool begin(const Eigen::Isometry3d& pose) noexcept;
-  /// Adds leaf pairs, sorted by fixed and then by moving leaf over all calls.
-  bool take(std::span<const LeafPair> leaf_pairs) noexcept override;
-  /// Makes the contacts.
-  void finish() noexcept;
+  /// Forgets the query before.
+  void clear() noexcept;
+  /// Returns the sums of the kernels, to which a query adds its leaf pairs in order.
+  [[nodiscard]] ContactAdder& adder() noexcept { return *adder_; }
+  /// Returns the sums by leaf, to which the adder's terms go, or null where no points are wanted.
+  [[nodiscard]] LeafSums* leaf_sums() noexcept { return leaf_sums_ ? &*leaf_sums_ : nullptr; }
+  /// Makes sums and contacts of all that was added at a pose.
+  void finish(const RelativePose& pose) noexcept;
 
-  /// Returns the contacts, from finish() to the next begin().
+  /// Returns the contacts, from finish() to the next clear().
   [[nodiscard]] std::span<const Contact> points() const noexcept {
     return {points_.data(), count_};
   }
@@ -67,35 +67,13 @@ class ContactReducer final : public LeafPairStream {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  // A moving leaf in the fixed tree's frame, and the query that moved it.
-  struct MovedLeaf {
-    std::uint32_t query = 0;
-    std::uint32_t leaf;
-    ContactLeaf at;
-  };
-  void take(const LeafPair& leaf_pair) noexcept;
-  [[nodiscard]] ContactLeaf leaf_of(const SphereTree& tree, std::uint32_t leaf,
-                                    const NodeParents& parents) const noexcept;
-  [[nodiscard]] double bound_weight(const LeafPair& leaf_pair, const NodeBound& moving) noexcept;
-  void add(const PairTerms& pair) noexcept;
-  [[nodiscard]] const ContactLeaf& moved(std::uint32_t leaf) noexcept;
-  void move(std::uint32_t leaf, MovedLeaf& to) const noexcept;
-
   const SphereTree fixed_, moving_;  // which share the content
   SpherePolicy policy_;
   ContactScale scale_;
   ContactRates rates_;
-  NodeParents fixed_parents_, moving_parents_;
-  AncestorShare ancestors_;
-  std::vector<MovedLeaf> moved_;  // cached by the last bits of the leaf
-  LeafSums leaf_sums_;
+  std::unique_ptr<ContactAdder> adder_;
+  std::optional<LeafSums> leaf_sums_;
   std::vector<Contact> points_;
-
-  RelativePose pose_;
-  std::uint32_t query_ = 0;
-  bool begun_ = false;
-  std::uint32_t fixed_leaf_ = 0;  // the leaf that fixed_at_ holds
-  ContactLeaf fixed_at_;
   ContactSums sums_;
   std::size_t count_ = 0;
 };

@@ -1,90 +1,80 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "ist/query/contacts/contact_pair.h"
-#include "ist/query/contacts/node_parents.h"
+#include "ist/base/ordered_vector.h"
+#include "ist/tree/linear_octree.h"
+#include "simd/contact_step.h"
 
 namespace ist {
 
-/// The sums over all leaf pairs of one moving node, in the fixed tree's frame. Two of them add up
+/// The sums over all leaf pairs of one fixed node, in the units of ContactTerms. Two of them add up
 /// to that of a common ancestor.
 struct LeafSum {
-  std::uint32_t node;
-  double weight, depth;              ///< Σ w and Σ w d
-  Eigen::Vector3d position, normal;  ///< Σ w p and Σ w n
-  double deepest;                    ///< the greatest depth of a pair
-  Eigen::Vector3d deepest_normal;    ///< that pair's normal, for a sum that has no direction
+  std::uint32_t node;               ///< by index, but a leaf by its address, 8 · parent + slot
+  std::array<float, 3> first;       ///< w n of the first pair, for a sum that has no direction
+  double weight, depth;             ///< Σ w and Σ w x
+  Eigen::Vector3d position, force;  ///< Σ w p and Σ w n
 
-  LeafSum(std::uint32_t of, const PairTerms& pair) noexcept
-      : node(of),
-        weight(pair.weight),
-        depth(pair.weight * pair.depth),
-        position(scaled(pair.weight, pair.position)),
-        normal(scaled(pair.weight, pair.normal)),
-        deepest(pair.depth),
-        deepest_normal(pair.normal) {}
-  LeafSum() = default;
-
-  void add(const PairTerms& pair) noexcept { add(LeafSum(node, pair)); }
   void add(const LeafSum& other) noexcept {
     weight += other.weight;
     depth += other.depth;
     add_to(position, other.position);
-    add_to(normal, other.normal);
-    if (other.deepest <= deepest) return;
-    deepest = other.deepest;
-    deepest_normal = other.deepest_normal;
+    add_to(force, other.force);
   }
 };
 
-/// Adds up leaf pairs by their moving leaf, in bounded memory. When there are more leaves than fit,
-/// all sums are merged by their parents, and later pairs are added at that level. Nothing is
-/// dropped. The nodes and their order follow from the order of the pairs alone.
-class LeafSums {
+/// Adds up leaf pairs by their fixed leaf, in bounded memory. Pairs come in the order of the fixed
+/// leaves, so the sums are a list that only grows. When there are more leaves than fit, sums are
+/// merged by their parents in the octree, and later leaves are added at that level: nothing is
+/// dropped. The nodes follow from the pairs alone, in whatever batches they come.
+class LeafSums final : public ContactTermsStream {
  public:
-  /// Reserves 4 bytes a moving leaf, and 104 for each of `most` nodes. With `most` = 0 nothing may
-  /// be added.
-  LeafSums(const NodeParents& parents, std::size_t most);
+  /// Reserves memory for `most` nodes, at least one: 80 bytes each.
+  LeafSums(const LinearOctree& octree, std::size_t most);
+  /// A list that cannot merge: it leaves out what does not fit, and is_short() says so.
+  explicit LeafSums(std::size_t most) : nodes_(most) {}
 
   void clear() noexcept;
-  /// Adds a leaf pair. Cost: 5 ns.
-  void add(std::uint32_t leaf, const PairTerms& pair) noexcept {
-    LeafSum* found = find(parents_.of_leaf(leaf, level_));
-    if (found != nullptr) {
-      found->add(pair);
-    } else {
-      insert(leaf, pair);
-    }
-  }
+  /// Adds leaf pairs. Cost: 4 ns each.
+  void take(const ContactTerms& terms) noexcept override;
+  /// Adds the sums of leaves that another list took, after all that this one took.
+  void append(std::span<const LeafSum> leaves) noexcept;
+  /// Ends the list: the last leaf is a node, too.
+  void close() noexcept;
 
-  /// Returns the nodes, in the order in which they were first added.
+  /// Returns the nodes, in the order of the fixed tree; without the last one until close().
   [[nodiscard]] std::span<LeafSum> nodes() noexcept { return {nodes_.data(), count_}; }
   /// Returns the level of the nodes: 0 as long as they are leaves.
   [[nodiscard]] int level() const noexcept { return level_; }
+  /// Returns whether something was left out.
+  [[nodiscard]] bool is_short() const noexcept { return short_; }
 
-  /// Merges the nodes by their parents, one level up. Precondition: level() < depth of the tree.
+  /// Merges the nodes by their parents, one level up. Precondition: level() < depth of the octree.
   void coarsen() noexcept;
   /// Removes the nodes at a few places.
   void take_out(std::span<const std::size_t> places) noexcept;
+  /// Keeps the first `count` nodes; then nothing is left out.
+  void shorten(std::size_t count) noexcept;
 
-  [[nodiscard]] std::size_t bytes() const noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept { return nodes_.size() * sizeof(LeafSum); }
 
  private:
-  void insert(std::uint32_t leaf, const PairTerms& pair) noexcept;
-  // Returns null where the node has no sum.
-  [[nodiscard]] LeafSum* find(std::uint32_t node) noexcept {
-    const std::uint32_t place = place_[node];
-    return place < count_ && nodes_[place].node == node ? &nodes_[place] : nullptr;
-  }
+  void push(const LeafSum& leaf) noexcept;
+  [[nodiscard]] std::uint32_t parent_of(int level, std::uint32_t node) noexcept;
 
-  const NodeParents& parents_;
-  std::vector<std::uint32_t> place_;  // by node of the level; valid where nodes_ agrees
+  static constexpr std::size_t kMostLevels = 32;
+  const LinearOctree* octree_ = nullptr;
   std::vector<LeafSum> nodes_;
   std::size_t count_ = 0;
   int level_ = 0;
+  bool open_ = false, short_ = false;
+  LeafSum last_;                                      // the leaf that may go on, if open_
+  std::array<std::uint32_t, kMostLevels> parents_{};  // the last one found, by its children's level
 };
 
 }  // namespace ist

@@ -29,31 +29,33 @@ float least_float(double value) {
   return nearest < value ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-ImplicitLevel implicit_levels(const Lattice& lattice, int level) {
-  const double half = 0.5 * lattice.edge(level);
-  ImplicitLevel lengths{};
-  lengths.octant_offset = level == lattice.depth ? 0 : static_cast<float>(half);
+ImplicitLevel implicit_level(const TreeParts& tree, SpherePolicy policy, int level) {
+  const double half = 0.5 * tree.lattice.edge(level);
+  ImplicitLevel made{};
   for (int code = 0; code < 8; ++code) {
     const double length = half / 6 * (code & 3);
-    lengths.offset[code] = static_cast<float>((code & 4) != 0 ? -length : length);
+    made.offset[code] = static_cast<float>((code & 4) != 0 ? -length : length);
   }
   for (std::size_t code = 0; code < kTableRadii.size(); ++code) {
-    lengths.radius[code] = least_float(nested_radius(lattice, level, code));
+    made.radius[code] = least_float(nested_radius(tree.lattice, level, code));
   }
-  return lengths;
+  const bool looks_up = policy == SpherePolicy::kTable && level > 0;
+  made.masks = looks_up ? tree.octree.masks(level).data() : nullptr;
+  return made;
 }
 
-std::vector<ImplicitLevel> implicit_levels(const SphereTree& tree, SpherePolicy policy) {
+// Makes all levels of a tree, the leaves first; none where the policy has blocks.
+std::vector<ImplicitLevel> implicit_levels(const TreeParts& tree, SpherePolicy policy) {
   std::vector<ImplicitLevel> levels;
-  for (int level = 0; is_implicit(policy) && level <= tree.depth(); ++level) {
-    levels.push_back(implicit_levels(tree.parts().lattice, level));
+  for (int level = 0; is_implicit(policy) && level <= tree.lattice.depth; ++level) {
+    levels.push_back(implicit_level(tree, policy, level));
   }
   return levels;
 }
 
 // Makes the view of the children at `level` that a step reads.
 SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
-                         const std::vector<ImplicitLevel>& lengths) {
+                         const std::vector<ImplicitLevel>& levels) {
   const LinearOctree& octree = tree.parts().octree;
   const bool is_root = level == tree.depth();
   const double edge = tree.parts().lattice.edge(level);
@@ -62,9 +64,8 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
   side.masks = is_root ? &kRootMask : octree.masks(level + 1).data();
   side.voxel_size = static_cast<float>(tree.voxel_size());
   if (is_implicit(policy)) {
-    side.implicit = &lengths[static_cast<std::size_t>(level)];
-    side.child_masks =
-        policy == SpherePolicy::kTable && level > 0 ? octree.masks(level).data() : nullptr;
+    side.implicit = &levels[static_cast<std::size_t>(level)];
+    side.octant_offset = is_root ? 0 : static_cast<float>(0.5 * edge);
     return side;
   }
   side.balls = tree.parts().balls(level).data();
@@ -80,8 +81,8 @@ SearchSide read_children(const SphereTree& tree, SpherePolicy policy, int level,
 
 SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                        SearchLevels last)
-    : fixed_lengths_(implicit_levels(fixed, policy)),
-      moving_lengths_(implicit_levels(moving, policy)) {
+    : fixed_implicit_(implicit_levels(fixed.parts(), policy)),
+      moving_implicit_(implicit_levels(moving.parts(), policy)) {
   fixed.require(policy, "fixed");
   moving.require(policy, "moving");
   require_addresses(fixed, "fixed");
@@ -96,8 +97,13 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
         std::size_t{fixed.parts().octree.node_count(a)} * moving.parts().octree.node_count(b);
     a -= open_a ? 1 : 0;
     b -= open_b ? 1 : 0;
-    SearchStep step{read_children(fixed, policy, a, fixed_lengths_),
-                    read_children(moving, policy, b, moving_lengths_), false, a == 0 && b == 0, 0};
+    SearchStep step{read_children(fixed, policy, a, fixed_implicit_),
+                    read_children(moving, policy, b, moving_implicit_),
+                    false,
+                    a == 0 && b == 0,
+                    0,
+                    fixed.parts().normals.data(),
+                    moving.parts().normals.data()};
     step.fixed.descends = open_a;
     step.moving.descends = open_b;
     step.fixed.emits_slots = a == last.fixed && b > last.moving;

@@ -28,7 +28,7 @@ class SearchPlan {
   SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
              SearchLevels last = {});
 
-  SearchPlan(const SearchPlan&) = delete;  // steps refer to the plan's own lengths
+  SearchPlan(const SearchPlan&) = delete;  // steps refer to the plan's own levels
 
   [[nodiscard]] const std::vector<SearchStep>& steps() const noexcept { return steps_; }
 
@@ -50,7 +50,7 @@ class SearchPlan {
   struct Sizes {
     std::size_t row, pairs;
   };
-  std::vector<ImplicitLevel> fixed_lengths_, moving_lengths_;  // by level; empty with saved bounds
+  std::vector<ImplicitLevel> fixed_implicit_, moving_implicit_;  // by level; empty with blocks
   std::vector<SearchStep> steps_;
   std::vector<Sizes> sizes_;
   const OctreeNode* fixed_leaves_ = nullptr;  // the parents of leaves that have addresses

@@ -66,6 +66,8 @@ struct VisitorBase {
 /// first leaf pairs in the sink.
 class PairLister : public VisitorBase {
  public:
+  using Sink = LeafPairSink;
+
   PairLister(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter = {},
              Measured measured = Measured::kNothing) noexcept
       : pose_(pose), sink_(sink), meter_(meter), measured_(measured) {}

@@ -1,6 +1,7 @@
 #include "ist/query/workers/shared_search.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace ist {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::size_t kFewestPairs = 512, kMostPairs = 64 * kFewestPairs;
 constexpr std::size_t kChunkPairs = 24;
 // The time that the caller, when done, waits for the worker's last chunk.
 constexpr std::chrono::microseconds kPatience{20};
-constexpr std::size_t kFoundContacts = 1 << 18;
+constexpr std::size_t kFoundPairs = 1 << 18, kFoundLeaves = 1 << 15;
 
 std::chrono::nanoseconds patience(const Budget& budget) noexcept {
   if (!budget.has_deadline()) return kPatience;
@@ -31,7 +32,9 @@ SharedSearch::SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::
       period_(period),
       queue_(kMostPairs / kChunkPairs + 1),
       parts_(queue_.capacity()),
-      found_(kFoundContacts),
+      found_(kFoundPairs),
+      adder_(std::make_unique<ContactAdder>()),
+      found_leaves_(kFoundLeaves),
       job_([](void* self) noexcept { static_cast<SharedSearch*>(self)->help(); }, this) {
   shared_.groups.resize(kMostPairs + kFrontierSpare);
   shared_.moving.resize(kMostPairs + kFrontierSpare);
@@ -43,17 +46,19 @@ SharedSearch::~SharedSearch() {
   job_.wait_idle();
 }
 
-SharedSearch::End SharedSearch::run(const SearchPose& pose, LeafPairSink& sink,
+template <class Lister>
+SharedSearch::End SharedSearch::run(const SearchPose& pose, typename Lister::Sink& sink,
                                     const BudgetMeter& meter, Measured measured) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
   ++sharing_.queries;
-  // Lists pairs, but stops at the first level with enough of them to share.
-  struct Widening : PairLister {
-    using PairLister::PairLister;
+  // Lists, but stops at the first level with enough pairs to share.
+  struct Widening : Lister {
+    using Lister::Lister;
     bool enter(std::size_t, const Frontier& pairs, bool whole) noexcept {
       wide = !whole || pairs.moving_count >= kFewestPairs;
       worth = whole && wide;
-      if (whole) above = {0, tests(), 0, bounds()};  // a step that is not whole is made again
+      if (whole)
+        above = {0, this->tests(), 0, this->bounds()};  // a step that is not whole is made again
       return !wide;
     }
     bool wide = false, worth = false;
@@ -66,27 +71,35 @@ SharedSearch::End SharedSearch::run(const SearchPose& pose, LeafPairSink& sink,
   sharing_.worth += widening.worth ? 1U : 0U;
   const Frontier& pairs = caller_.frontier(step);
   if (!widening.worth || meter.budget().has_tests() || job_.busy()) {
-    PairLister alone(pose, sink, BudgetMeter(meter.budget(), above.tests), measured);
+    Lister alone(pose, sink, BudgetMeter(meter.budget(), above.tests), measured);
     const std::size_t steps = caller_.descend(step, pairs, 0, alone);
     above.bounds.add(alone.bounds());
     return {steps, alone.tests(), sink.count(), above.bounds};
   }
+  want(sink);
   share(pose, measured, step, pairs);
   End end{plan_.steps().size(), above.tests, 0, above.bounds};
-  if (!do_chunks(meter.budget(), sink, end)) {
+  if (!do_chunks<Lister>(meter.budget(), sink, end)) {
     if (sink.stopped()) above.leaf_pairs = sink.count();
+    if constexpr (std::is_same_v<Lister, ContactVisitor>) sink.clear();
     return above;
   }
   end.leaf_pairs = sink.count();
   return end;
 }
 
-bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink, End& end) noexcept {
+template SharedSearch::End SharedSearch::run<PairLister>(const SearchPose&, LeafPairSink&,
+                                                         const BudgetMeter&, Measured) noexcept;
+template SharedSearch::End SharedSearch::run<ContactVisitor>(const SearchPose&, ContactOutput&,
+                                                             const BudgetMeter&, Measured) noexcept;
+
+template <class Lister>
+bool SharedSearch::do_chunks(const Budget& budget, typename Lister::Sink& sink, End& end) noexcept {
   // Searches a chunk. Returns whether all of it was done.
   const auto search = [&](std::size_t index) {
     std::size_t first = 0;
     const Frontier part = chunk(index, first);
-    PairLister lister(shared_.pose, sink, BudgetMeter(budget), shared_.measured);
+    Lister lister(shared_.pose, sink, BudgetMeter(budget), shared_.measured);
     const std::size_t steps = caller_.descend(shared_.step, part, first, lister);
     end.tests += lister.tests();
     end.bounds.add(lister.bounds());
@@ -106,7 +119,7 @@ bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink, End& end)
   for (std::size_t index = queue_.close(); index < chunk_count_ && in_time; ++index) {
     if (queue_.collect(index, patience(budget)) && parts_[index].whole) {
       const Part& part = parts_[index];
-      sink.append({found_.data() + part.begin, part.count});
+      collect(part, sink);
       end.tests += part.tests;
       end.bounds.add(part.bounds);
       ++sharing_.chunks;
@@ -120,6 +133,22 @@ bool SharedSearch::do_chunks(const Budget& budget, LeafPairSink& sink, End& end)
   }
   if (taken && !worker_.retract(job_)) ++sharing_.shared;
   return done == chunk_count_;
+}
+
+void SharedSearch::want(const LeafPairSink& /*sink*/) noexcept { shared_.contacts = false; }
+
+void SharedSearch::want(const ContactOutput& sink) noexcept {
+  shared_.contacts = true;
+  adder_->rule = sink.adder().rule;
+  adder_->stream = sink.leaves() != nullptr ? &found_leaves_ : nullptr;
+}
+
+void SharedSearch::collect(const Part& part, LeafPairSink& sink) noexcept {
+  sink.append({found_.data() + part.begin, part.count});
+}
+
+void SharedSearch::collect(const Part& part, ContactOutput& sink) noexcept {
+  sink.append(part.totals, found_leaves_.nodes().subspan(part.begin, part.count));
 }
 
 void SharedSearch::share(const SearchPose& pose, Measured measured, std::size_t step,
@@ -150,27 +179,55 @@ Frontier SharedSearch::chunk(std::size_t index, std::size_t& first) const noexce
 
 void SharedSearch::help() noexcept {
   std::size_t used = 0;
+  found_leaves_.clear();
   while (const auto index = queue_.claim_back(shared_.epoch)) {
     hand_over(HandOver::kClaimed);
-    LeafPairSink sink(plan_, kernels_, std::span<LeafPair>(found_).subspan(used));
     std::size_t first = 0;
     const Frontier part = chunk(*index, first);
     Part& made = parts_[*index];
     made.begin = used;
-    PairLister lister(shared_.pose, sink, {}, shared_.measured);
-    helper_.descend(shared_.step, part, first, lister);
-    made.tests = lister.tests();
-    made.bounds = lister.bounds();
-    made.count = sink.count();
-    made.whole = !sink.truncated();
+    if (shared_.contacts) {
+      help_contacts(part, first, made);
+    } else {
+      help_pairs(part, first, made);
+    }
     if (made.whole) used += made.count;
     hand_over(HandOver::kWorked);
     queue_.complete(shared_.epoch, *index);
   }
 }
 
+template <class Lister>
+void SharedSearch::help_with(const Frontier& part, std::size_t first, typename Lister::Sink& sink,
+                             Part& made) noexcept {
+  Lister lister(shared_.pose, sink, {}, shared_.measured);
+  helper_.descend(shared_.step, part, first, lister);
+  made.tests = lister.tests();
+  made.bounds = lister.bounds();
+}
+
+void SharedSearch::help_pairs(const Frontier& part, std::size_t first, Part& made) noexcept {
+  LeafPairSink sink(plan_, kernels_, std::span<LeafPair>(found_).subspan(made.begin));
+  help_with<PairLister>(part, first, sink, made);
+  made.count = sink.count();
+  made.whole = !sink.truncated();
+}
+
+void SharedSearch::help_contacts(const Frontier& part, std::size_t first, Part& made) noexcept {
+  adder_->clear();
+  found_leaves_.shorten(made.begin);
+  ContactOutput sink(plan_, kernels_, shared_.pose, *adder_, &found_leaves_);
+  help_with<ContactVisitor>(part, first, sink, made);
+  sink.flush();
+  found_leaves_.close();
+  made.totals = adder_->totals;
+  made.count = found_leaves_.nodes().size() - made.begin;
+  made.whole = !found_leaves_.is_short();
+}
+
 std::size_t SharedSearch::bytes() const noexcept {
   return caller_.bytes() + helper_.bytes() + found_.size() * sizeof(LeafPair) +
+         sizeof(ContactAdder) + found_leaves_.bytes() +
          shared_.groups.size() * sizeof(SearchGroup) +
          shared_.moving.size() * sizeof(std::uint32_t) + parts_.size() * sizeof(Part) +
          shared_.chunk_ends.size() * sizeof(std::size_t) +

@@ -10,14 +10,12 @@ namespace ist::test {
 
 /// How far the bounds of two leaves overlap, mesh units, by the search's own test that finds least:
 /// of the balls, or of a ball and a slab; below 0 where they are apart. In double, without a pad.
+/// It decides whether a search finds them.
 [[nodiscard]] double leaf_overlap(const SphereTree& fixed, const SphereTree& moving,
                                   SpherePolicy policy, const RelativePose& pose,
                                   const LeafPair& pair);
-
-/// The overlap that decides whether a search finds two leaves: theirs; with `table`, where bounds
-/// are not nested, the least of all pairs of nodes that it tests on its way, theirs included.
-[[nodiscard]] double search_overlap(const SphereTree& fixed, const SphereTree& moving,
-                                    SpherePolicy policy, const Eigen::Isometry3d& pose,
-                                    const LeafPair& pair);
+[[nodiscard]] double leaf_overlap(const SphereTree& fixed, const SphereTree& moving,
+                                  SpherePolicy policy, const Eigen::Isometry3d& pose,
+                                  const LeafPair& pair);
 
 }  // namespace ist::test

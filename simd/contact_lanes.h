@@ -1,0 +1,186 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/contact_step.h"
+#include "simd/lanes.h"
+
+namespace ist {
+
+// The scalar forms of contact sums. As in simd/lanes.h, each specifies its vector twin.
+
+// As x86's min and max: the second number where one of them is NaN.
+[[nodiscard]] inline float lesser(float a, float b) noexcept { return a < b ? a : b; }
+[[nodiscard]] inline float greater(float a, float b) noexcept { return a > b ? a : b; }
+
+/// Returns the index of the leaf that a step names `id`.
+[[nodiscard]] inline std::uint32_t leaf_of(const SearchSide& side, std::uint32_t id) noexcept {
+  return side.descends ? id : side.nodes[id / 8].first_child + id % 8;
+}
+
+/// Names the surfaces in the children of a frontier's fixed node.
+inline void name_surfaces(const SearchStep& step, std::uint32_t node,
+                          FixedPoints& points) noexcept {
+  const SearchSide& side = step.fixed;
+  points.first = side.descends ? 8 * node : node;
+  points.normals =
+      step.fixed_normals + (side.descends ? side.nodes[node].first_child : leaf_of(side, node));
+}
+
+/// Finds the surface point of the fixed leaf in lane `at`: the foot of the perpendicular from the
+/// ball's centre to the slab's middle, or without slabs the centre.
+inline void find_point(bool slabs, const FixedLanes& fixed, const FixedRows& rows, std::size_t at,
+                       FixedPoints& points) noexcept {
+  points.x[at] = rows.x[at];
+  points.y[at] = rows.y[at];
+  points.z[at] = rows.z[at];
+  if (!slabs) return;
+  const float nx = fixed.lane[kNormalX][at], ny = fixed.lane[kNormalY][at],
+              nz = fixed.lane[kNormalZ][at];
+  // Normals in blocks are whole numbers, so 1 is below every square but 0.
+  const float squared = greater((nx * nx + ny * ny) + nz * nz, 1);
+  const float along = (fixed.lane[kOffset][at] / squared) * kSlabScale;
+  points.x[at] += along * rows.normal_x[at];
+  points.y[at] += along * rows.normal_y[at];
+  points.z[at] += along * rows.normal_z[at];
+}
+
+/// Returns the factor of a weight, 0 … 1, that the bounds of an overlapping pair give. It is 0
+/// where the test drops the pair.
+[[nodiscard]] inline float bound_share(const ContactRule& rule, const PairTest& test,
+                                       bool slabs) noexcept {
+  const float left = test.radius_sum * test.radius_sum - test.squared;
+  const float balls = lesser(left * rule.per_ball, 1);
+  if (!slabs) return balls;
+  const float fixed = (test.fixed_sum - test.over_fixed) * rule.per_slab;
+  const float moving = (test.moving_sum - test.over_moving) * rule.per_scaled_slab;
+  return balls * lesser(lesser(fixed, moving), 1);
+}
+
+/// Appends a pair that overlaps.
+inline void append_pair(const ContactRule& rule, const PairTest& test, const FixedPoints& points,
+                        std::size_t row, const MovingLanes& moving, std::size_t at, bool slabs,
+                        ContactLanes& out) noexcept {
+  const std::size_t to = out.count++;
+  out.share[to] = bound_share(rule, test, slabs);
+  out.fixed_x[to] = points.x[row];
+  out.fixed_y[to] = points.y[row];
+  out.fixed_z[to] = points.z[row];
+  out.fixed[to] = points.first + static_cast<std::uint32_t>(row);
+  out.fixed_normal[to] = points.normals[row].word();
+  float x = moving.lane[kX][at], y = moving.lane[kY][at], z = moving.lane[kZ][at];
+  if (slabs) {
+    const float nx = moving.lane[kNormalX][at], ny = moving.lane[kNormalY][at],
+                nz = moving.lane[kNormalZ][at];
+    const float squared = greater((nx * nx + ny * ny) + nz * nz, 1);
+    const float along = moving.lane[kOffset][at] / squared;
+    x += along * nx;
+    y += along * ny;
+    z += along * nz;
+  }
+  out.moving_x[to] = x;
+  out.moving_y[to] = y;
+  out.moving_z[to] = z;
+  out.moving[to] = moving.id[at];
+}
+
+struct FloatVector {
+  float x, y, z;
+};
+
+/// Unpacks a leaf's normal (PackedNormal), as long as it is coherent. All is exact up to the root.
+[[nodiscard]] inline FloatVector unpack_normal(std::uint32_t word) noexcept {
+  constexpr int kHalf = 2047;
+  float u = static_cast<float>(static_cast<int>(word >> 20) - kHalf);
+  float v = static_cast<float>(static_cast<int>(word >> 8 & 4095) - kHalf);
+  const float z = (kHalf - std::abs(u)) - std::abs(v);
+  if (z < 0) {
+    const float folded = std::copysign(kHalf - std::abs(v), u);
+    v = std::copysign(kHalf - std::abs(u), v);
+    u = folded;
+  }
+  const float coherence = static_cast<float>(static_cast<int>(word & 255)) * (1.0F / 255);
+  const float scale = coherence / std::sqrt((u * u + v * v) + z * z);
+  return {u * scale, v * scale, z * scale};
+}
+
+[[nodiscard]] inline FloatVector turned(const SearchPose& pose, const FloatVector& v) noexcept {
+  const float* r = pose.rotation;
+  return {(r[0] * v.x + r[1] * v.y) + r[2] * v.z, (r[3] * v.x + r[4] * v.y) + r[5] * v.z,
+          (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
+}
+
+/// Two normals whose sum is shorter than this, twice the length of their mean, give no weight that
+/// is a unit.
+inline constexpr float kShortestMean = 0x1p-40F;
+
+/// The terms of a pair in the sums, as in ContactTerms.
+struct PairTerms {
+  float weight, depth;
+  FloatVector position, force;
+};
+
+/// Computes the terms of pair `at`, of a moving leaf with packed normal `word`.
+///
+/// The direction n is that of e, the mean of the fixed normal and of the reversed moving one; the
+/// weight is |e| times the share of the bounds and the part of the fade. A weight that is no number
+/// counts as 0.
+[[nodiscard]] inline PairTerms pair_terms(const ContactRule& rule, const SearchPose& pose,
+                                          const ContactLanes& lanes, std::size_t at,
+                                          std::uint32_t word) noexcept {
+  const FloatVector a = turned(pose, unpack_normal(lanes.fixed_normal[at])),
+                    b = unpack_normal(word);
+  const FloatVector e{a.x - b.x, a.y - b.y, a.z - b.z};
+  const float length = std::sqrt((e.x * e.x + e.y * e.y) + e.z * e.z);
+  const float inverse = 1 / greater(length, kShortestMean);
+  const FloatVector n{e.x * inverse, e.y * inverse, e.z * inverse};
+  const float fx = lanes.fixed_x[at], fy = lanes.fixed_y[at], fz = lanes.fixed_z[at];
+  const float mx = lanes.moving_x[at], my = lanes.moving_y[at], mz = lanes.moving_z[at];
+  const float along = (n.x * (fx - mx) + n.y * (fy - my)) + n.z * (fz - mz);
+  PairTerms terms{};
+  terms.depth = lesser(greater(along - rule.least, 0), rule.range);
+  const float fade = lesser(rule.fade_from + terms.depth * rule.per_fade, 1);
+  const float weight = (lanes.share[at] * (length * (0.5F * kContactUnit))) * fade;
+  const auto part = [&](float x) { return lesser(greater(x * rule.half_per_lever, -1), 1); };
+  terms.position = {part(fx + mx), part(fy + my), part(fz + mz)};
+  if (!(weight > 0)) return terms;
+  terms.weight = lesser(weight, kContactUnit);
+  terms.force = {terms.weight * n.x, terms.weight * n.y, terms.weight * n.z};
+  return terms;
+}
+
+/// Rounds a term, at most 2²² without its sign, to a whole number, ties to even: the sum's last bit
+/// is 1.
+[[nodiscard]] inline std::int32_t to_fixed_point(float term) noexcept {
+  constexpr float kMagic = 0x1.8p23F;
+  return std::bit_cast<std::int32_t>(term + kMagic) - std::bit_cast<std::int32_t>(kMagic);
+}
+
+/// Adds the terms of a pair to the sums.
+inline void add_pair(const ContactRule& rule, const PairTerms& terms,
+                     ContactTotals& totals) noexcept {
+  const auto to = [&](std::size_t place, float term) { totals.sum[place] += to_fixed_point(term); };
+  const FloatVector &p = terms.position, &f = terms.force;
+  const FloatVector t{p.y * f.z - p.z * f.y, p.z * f.x - p.x * f.z, p.x * f.y - p.y * f.x};
+  const float x = terms.depth * rule.per_range;
+  to(kWeightSum, terms.weight);
+  to(kForceSum, f.x);
+  to(kForceSum + 1, f.y);
+  to(kForceSum + 2, f.z);
+  to(kTorqueSum, t.x);
+  to(kTorqueSum + 1, t.y);
+  to(kTorqueSum + 2, t.z);
+  to(kSpringSum, f.x * x);
+  to(kSpringSum + 1, f.y * x);
+  to(kSpringSum + 2, f.z * x);
+  to(kSpringTorqueSum, t.x * x);
+  to(kSpringTorqueSum + 1, t.y * x);
+  to(kSpringTorqueSum + 2, t.z * x);
+  totals.counted += terms.weight > 0 ? 1 : 0;
+}
+
+}  // namespace ist

@@ -1,0 +1,307 @@
+// Per-target: see Highway's foreach_target.h for why the guard is a toggle.
+#if defined(IST_SIMD_CONTACTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef IST_SIMD_CONTACTS_INL_H
+#undef IST_SIMD_CONTACTS_INL_H
+#else
+#define IST_SIMD_CONTACTS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstdint>
+
+#include "simd/bounds-inl.h"
+#include "simd/contact_lanes.h"
+#include "simd/select-inl.h"
+
+// Vector twins of the scalar forms in simd/contact_lanes.h.
+HWY_BEFORE_NAMESPACE();
+namespace ist::simd::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Vector twin of ist::find_point, for all eight rows.
+template <bool kSlabs>
+HWY_INLINE void FindPoints(const FixedLanes& fixed, const FixedRows& rows, FixedPoints& points) {
+  const Eight d;
+  for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
+    auto x = hn::Load(d, rows.x + k), y = hn::Load(d, rows.y + k), z = hn::Load(d, rows.z + k);
+    if constexpr (kSlabs) {
+      const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
+      const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
+      const auto squared = hn::Max(
+          hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)), hn::Set(d, 1.0F));
+      const auto along = hn::Mul(hn::Div(load(kOffset), squared), hn::Set(d, kSlabScale));
+      x = hn::Add(x, hn::Mul(along, hn::Load(d, rows.normal_x + k)));
+      y = hn::Add(y, hn::Mul(along, hn::Load(d, rows.normal_y + k)));
+      z = hn::Add(z, hn::Mul(along, hn::Load(d, rows.normal_z + k)));
+    }
+    hn::Store(x, d, points.x + k);
+    hn::Store(y, d, points.y + k);
+    hn::Store(z, d, points.z + k);
+  }
+}
+
+// Vector twin of ist::bound_share.
+template <bool kSlabs>
+HWY_INLINE hn::Vec<Full> BoundShare(const ContactRule& rule, const VectorTest<kSlabs>& t) {
+  const Full d;
+  const auto one = hn::Set(d, 1.0F);
+  const auto left = hn::Sub(hn::Mul(t.radius_sum, t.radius_sum), t.squared);
+  const auto balls = hn::Min(hn::Mul(left, hn::Set(d, rule.per_ball)), one);
+  if constexpr (!kSlabs) {
+    return balls;
+  } else {
+    const auto fixed = hn::Mul(hn::Sub(t.fixed_sum, t.over_fixed), hn::Set(d, rule.per_slab));
+    const auto moving =
+        hn::Mul(hn::Sub(t.moving_sum, t.over_moving), hn::Set(d, rule.per_scaled_slab));
+    return hn::Mul(balls, hn::Min(hn::Min(fixed, moving), one));
+  }
+}
+
+// Tests one row like TestRow, and appends the overlapping pairs to `out`; twin of
+// ist::append_pair.
+template <bool kSlabs, Measured kMeasured>
+HWY_INLINE void ContactRow(const ContactRule& rule, const FixedRows& f, const FixedPoints& points,
+                           std::size_t row, const MovingLanes& m, std::size_t begin,
+                           std::size_t end, ContactLanes& out, Measurer<kSlabs>& measurer) {
+  const Full d;
+  const hn::RebindToUnsigned<Full> du;
+  const RowVectors<kSlabs> fixed(f, row);
+  const std::size_t before = out.count;
+  std::size_t count = before;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    const VectorTest<kSlabs> test(fixed, m, i);
+    const auto here = hn::FirstN(d, end - i);
+    const auto overlapping = hn::AndNot(test.Separate(), here);
+    if constexpr (kMeasured == Measured::kBoth) measurer.Both(test, here, here);
+    if (hn::AllFalse(d, overlapping)) continue;
+    if constexpr (kMeasured == Measured::kUpper) measurer.Upper(test, overlapping);
+    const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
+    auto x = load(kX), y = load(kY), z = load(kZ);
+    if constexpr (kSlabs) {
+      const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
+      const auto squared = hn::Max(
+          hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)), hn::Set(d, 1.0F));
+      const auto along = hn::Div(load(kOffset), squared);
+      x = hn::Add(x, hn::Mul(along, nx));
+      y = hn::Add(y, hn::Mul(along, ny));
+      z = hn::Add(z, hn::Mul(along, nz));
+    }
+    const Selected<Full> selected(d, overlapping);
+    selected.Store(d, BoundShare<kSlabs>(rule, test), out.share + count);
+    selected.Store(d, x, out.moving_x + count);
+    selected.Store(d, y, out.moving_y + count);
+    selected.Store(d, z, out.moving_z + count);
+    selected.Store(du, hn::Load(du, m.id + i), out.moving + count);
+    count += selected.count();
+  }
+  for (std::size_t i = before; i < count; i += hn::Lanes(d)) {
+    hn::StoreU(hn::Set(d, points.x[row]), d, out.fixed_x + i);
+    hn::StoreU(hn::Set(d, points.y[row]), d, out.fixed_y + i);
+    hn::StoreU(hn::Set(d, points.z[row]), d, out.fixed_z + i);
+    hn::StoreU(hn::Set(du, points.first + static_cast<std::uint32_t>(row)), du, out.fixed + i);
+    hn::StoreU(hn::Set(du, points.normals[row].word()), du, out.fixed_normal + i);
+  }
+  out.count = count;
+}
+
+struct Vector {
+  hn::Vec<Full> x, y, z;
+};
+HWY_INLINE hn::Vec<Full> Dot(const Vector& a, const Vector& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vector Difference(const Vector& a, const Vector& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector Scaled(const Vector& a, hn::Vec<Full> by) {
+  return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
+}
+
+HWY_INLINE Vector Cross(const Vector& a, const Vector& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+// Vector twin of ist::unpack_normal.
+HWY_INLINE Vector UnpackNormals(const std::uint32_t* HWY_RESTRICT words) {
+  const Full d;
+  const hn::RebindToSigned<Full> di;
+  const hn::RebindToUnsigned<Full> du;
+  const auto word = hn::Load(du, words);
+  const auto half = hn::Set(d, 2047.0F);
+  const auto to_float = [&](hn::Vec<decltype(du)> v) {
+    return hn::ConvertTo(d, hn::BitCast(di, v));
+  };
+  const auto u = hn::Sub(to_float(hn::ShiftRight<20>(word)), half);
+  const auto v = hn::Sub(to_float(hn::And(hn::ShiftRight<8>(word), hn::Set(du, 4095U))), half);
+  const auto left_u = hn::Sub(half, hn::Abs(u)), left_v = hn::Sub(half, hn::Abs(v));
+  const auto z = hn::Sub(left_u, hn::Abs(v));
+  const auto folded = hn::Lt(z, hn::Zero(d));
+  const Vector n{hn::IfThenElse(folded, hn::CopySign(left_v, u), u),
+                 hn::IfThenElse(folded, hn::CopySign(left_u, v), v), z};
+  const auto coherence =
+      hn::Mul(to_float(hn::And(word, hn::Set(du, 255U))), hn::Set(d, 1.0F / 255));
+  return Scaled(n, hn::Div(coherence, hn::Sqrt(Dot(n, n))));
+}
+
+// Vector twin of ist::turned.
+HWY_INLINE Vector Turned(const SearchPose& pose, const Vector& v) {
+  const auto row = [&](int i) {
+    const Full d;
+    const float* r = pose.rotation + 3 * i;
+    return Dot({hn::Set(d, r[0]), hn::Set(d, r[1]), hn::Set(d, r[2])}, v);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+// Adds up terms, a vector at a time: twin of ist::to_fixed_point. A term becomes a whole number in
+// the last bits of a sum with kMagic; what is added up with it is taken off at the end.
+class FixedPointSums {
+ public:
+  HWY_INLINE FixedPointSums() {
+    for (auto& sum : sums_) sum = hn::Zero(hn::RebindToUnsigned<Full>());
+  }
+  HWY_INLINE void Add(std::size_t place, hn::Vec<Full> term) {
+    const hn::RebindToUnsigned<Full> du;
+    sums_[place] = hn::Add(sums_[place], hn::BitCast(du, hn::Add(term, hn::Set(Full(), kMagic))));
+  }
+  HWY_INLINE void Add(std::size_t place, const Vector& terms) {
+    Add(place, terms.x);
+    Add(place + 1, terms.y);
+    Add(place + 2, terms.z);
+  }
+  // Adds the sums of `vectors` vectors to `totals`.
+  HWY_INLINE void AddTo(std::size_t vectors, std::int64_t* totals) const {
+    const hn::RebindToUnsigned<Full> du;
+    const auto magic =
+        std::bit_cast<std::uint32_t>(kMagic) * static_cast<std::uint32_t>(vectors * hn::Lanes(du));
+    for (std::size_t i = 0; i < kContactSums; ++i) {
+      totals[i] += static_cast<std::int32_t>(hn::GetLane(hn::SumOfLanes(du, sums_[i])) - magic);
+    }
+  }
+
+ private:
+  static constexpr float kMagic = 0x1.8p23F;
+  hn::Vec<hn::RebindToUnsigned<Full>> sums_[kContactSums];
+};
+
+// The unpacked normals of a batch, side by side.
+struct NormalLanes {
+  static constexpr std::size_t kSize = kContactBatch + 16;
+  alignas(64) float x[kSize], y[kSize], z[kSize];
+
+  HWY_INLINE void Store(std::size_t i, const Vector& v) {
+    const Full d;
+    hn::Store(v.x, d, x + i);
+    hn::Store(v.y, d, y + i);
+    hn::Store(v.z, d, z + i);
+  }
+  [[nodiscard]] HWY_INLINE Vector Load(std::size_t i) const {
+    const Full d;
+    return {hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)};
+  }
+};
+
+// Vector twin of ist::pair_terms, for a batch of pairs from `first` on. Returns the number of those
+// that have a weight.
+HWY_INLINE std::size_t FindTerms(const ContactRule& rule, const ContactLanes& lanes,
+                                 std::size_t first, const NormalLanes& fixed,
+                                 const NormalLanes& moving, ContactTerms& terms) {
+  const Full d;
+  const auto set = [&](float x) { return hn::Set(d, x); };
+  const auto zero = hn::Zero(d), one = set(1);
+  std::size_t counted = 0;
+  for (std::size_t i = 0; i < terms.count; i += hn::Lanes(d)) {
+    const auto load = [&](const float* from) { return hn::Load(d, from + first + i); };
+    const Vector e = Difference(fixed.Load(i), moving.Load(i));
+    const auto length = hn::Sqrt(Dot(e, e));
+    const Vector n = Scaled(e, hn::Div(one, hn::Max(length, set(kShortestMean))));
+    const Vector f{load(lanes.fixed_x), load(lanes.fixed_y), load(lanes.fixed_z)};
+    const Vector m{load(lanes.moving_x), load(lanes.moving_y), load(lanes.moving_z)};
+    const auto along = Dot(n, Difference(f, m));
+    const auto depth = hn::Min(hn::Max(hn::Sub(along, set(rule.least)), zero), set(rule.range));
+    const auto fade =
+        hn::Min(hn::Add(set(rule.fade_from), hn::Mul(depth, set(rule.per_fade))), one);
+    const auto found =
+        hn::Mul(hn::Mul(load(lanes.share), hn::Mul(length, set(0.5F * kContactUnit))), fade);
+    const auto counts = hn::And(hn::Gt(found, zero), hn::FirstN(d, terms.count - i));
+    const auto weight = hn::IfThenElseZero(counts, hn::Min(found, set(kContactUnit)));
+    const auto part = [&](hn::Vec<Full> a, hn::Vec<Full> b) {
+      return hn::Min(hn::Max(hn::Mul(hn::Add(a, b), set(rule.half_per_lever)), set(-1)), one);
+    };
+    const auto of_weight = [&](hn::Vec<Full> x) {
+      return hn::IfThenElseZero(counts, hn::Mul(weight, x));
+    };
+    hn::Store(weight, d, terms.weight + i);
+    hn::Store(depth, d, terms.depth + i);
+    hn::Store(part(f.x, m.x), d, terms.x + i);
+    hn::Store(part(f.y, m.y), d, terms.y + i);
+    hn::Store(part(f.z, m.z), d, terms.z + i);
+    hn::Store(of_weight(n.x), d, terms.force_x + i);
+    hn::Store(of_weight(n.y), d, terms.force_y + i);
+    hn::Store(of_weight(n.z), d, terms.force_z + i);
+    counted += hn::CountTrue(d, counts);
+  }
+  return counted;
+}
+
+// Vector twin of ist::add_pair, for a batch.
+HWY_INLINE void AddTerms(const ContactRule& rule, const ContactTerms& terms,
+                         std::int64_t* HWY_RESTRICT totals) {
+  const Full d;
+  FixedPointSums sums;
+  std::size_t vectors = 0;
+  for (std::size_t i = 0; i < terms.count; i += hn::Lanes(d), ++vectors) {
+    const auto load = [&](const float* from) { return hn::Load(d, from + i); };
+    const Vector p{load(terms.x), load(terms.y), load(terms.z)};
+    const Vector force{load(terms.force_x), load(terms.force_y), load(terms.force_z)};
+    const Vector torque = Cross(p, force);
+    const auto stretch = hn::Mul(load(terms.depth), hn::Set(d, rule.per_range));
+    sums.Add(kWeightSum, load(terms.weight));
+    sums.Add(kForceSum, force);
+    sums.Add(kTorqueSum, torque);
+    sums.Add(kSpringSum, Scaled(force, stretch));
+    sums.Add(kSpringTorqueSum, Scaled(torque, stretch));
+  }
+  sums.AddTo(vectors, totals);
+}
+
+// Vector twin of ist::add_contacts_scalar. Each stage is a loop of its own, so that the long chains
+// of operations of several vectors are under way at once.
+inline void AddContacts(const SearchStep& step, const SearchPose& pose, ContactAdder& out) {
+  const Full d;
+  alignas(64) std::uint32_t words[NormalLanes::kSize];
+  NormalLanes fixed, moving;
+  ContactLanes& lanes = out.lanes;
+  ContactTerms& terms = out.terms;
+  for (std::size_t first = 0; first < lanes.count; first += kContactBatch) {
+    const std::size_t count = HWY_MIN(kContactBatch, lanes.count - first);
+    const std::uint32_t* const ids = lanes.moving + first;
+    if (step.moving.descends) {
+      for (std::size_t i = 0; i < count; ++i) words[i] = step.moving_normals[ids[i]].word();
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        words[i] = step.moving_normals[leaf_of(step.moving, ids[i])].word();
+      }
+    }
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      fixed.Store(i, Turned(pose, UnpackNormals(lanes.fixed_normal + first + i)));
+      moving.Store(i, UnpackNormals(words + i));
+    }
+    terms.count = count;
+    terms.fixed = lanes.fixed + first;
+    out.totals.counted += FindTerms(out.rule, lanes, first, fixed, moving, terms);
+    AddTerms(out.rule, terms, out.totals.sum);
+    if (out.stream != nullptr) out.stream->take(terms);
+  }
+  out.totals.pairs += lanes.count;
+  lanes.count = 0;
+}
+
+}  // namespace ist::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
