@@ -13,6 +13,8 @@ class Mutant(NamedTuple):
 SEARCH_POSE = "src/ist/query/traversal/search_pose.cpp"
 LANES = "simd/lanes.h"
 BOUNDS_INL = "simd/bounds-inl.h"
+MEASURE_INL = "simd/measure-inl.h"
+PAIR_ROWS_INL = "simd/pair_rows-inl.h"
 SHARED = "src/ist/query/workers/shared_search.cpp"
 NODE_BOUNDS = "src/ist/tree/node_bounds.cpp"
 LEAF_SEARCH = "src/ist/tree/leaf_search.cpp"
@@ -50,10 +52,10 @@ MUTANTS = [
            [(BOUNDS_INL, "auto separate = hn::Gt(squared, hn::Mul(radius_sum, radius_sum));",
              "auto separate = hn::Not(hn::Le(squared, hn::Mul(radius_sum, radius_sum)));")], [KERNELS]),
     Mutant("last-lane-skipped", "the last moving node of a row is not tested",
-           [(BOUNDS_INL, "const auto here = hn::FirstN(d, end - i);",
+           [(PAIR_ROWS_INL, "const auto here = hn::FirstN(d, end - i);",
              "const auto here = hn::FirstN(d, end - i - 1);")], [KERNELS]),
     Mutant("empty-lanes-kept", "what lies in the lanes behind the last moving node is tested too",
-           [(BOUNDS_INL, "const auto overlapping = hn::AndNot(test.Separate(), here);",
+           [(PAIR_ROWS_INL, "const auto overlapping = hn::AndNot(test.Separate(), here);",
              "const auto overlapping = hn::Not(test.Separate());")], [KERNELS]),
     Mutant("moving-slab-forgotten", "a pair is not rejected by the moving node's slab",
            [(LANES, "!(over_moving > moving_sum);", "!(over_moving > 1e9F * moving_sum);")], [KERNELS]),
@@ -101,10 +103,10 @@ MUTANTS = [
            ["workers_test SplitQueue*", "search_test SharedSearch*"]),
     Mutant("leaf-pairs-not-measured", "the lower end of a distance forgets the pairs of the last step",
            [("simd/step_scalar.cpp", "(step.last || !overlapping)", "!overlapping"),
-            (BOUNDS_INL, "last ? here : hn::AndNot(overlapping, here)", "hn::AndNot(overlapping, here)")],
+            (PAIR_ROWS_INL, "last ? here : hn::AndNot(overlapping, here)", "hn::AndNot(overlapping, here)")],
            ["search_test *Within*", "exact_test QueryDistance*"]),
     Mutant("bound-missed", "a pair that improves a bound by little is passed over",
-           [(BOUNDS_INL, "const float spare = 0x1p-20F;", "const float spare = -0x1p-6F;")],
+           [(MEASURE_INL, "const float spare = 0x1p-20F;", "const float spare = -0x1p-6F;")],
            [KERNELS]),
     Mutant("gap-raised", "the lower end of a gap is eight pads higher than float can tell",
            [("src/ist/query/query_distance.cpp", "std::max(lower, nearest.least())",

@@ -9,10 +9,8 @@
 #include <hwy/highway.h>
 
 #include <cstdint>
-#include <limits>
 
 #include "simd/lanes.h"
-#include "simd/select-inl.h"
 
 // Vector twins of the scalar forms in simd/lanes.h.
 HWY_BEFORE_NAMESPACE();
@@ -171,91 +169,6 @@ struct VectorTest {
     return apart;
   }
 };
-
-// Measures as ist::PairTest does. Few pairs improve a bound, so a root is taken only where squares,
-// with some last bits to spare, say that one may.
-template <bool kSlabs>
-class Measurer {
- public:
-  using V = hn::Vec<Full>;
-
-  // `most_radii` is at least every sum of radii.
-  HWY_INLINE Measurer(DistanceBounds& bounds, float most_radii)
-      : bounds_(bounds), most_radii_(most_radii) {
-    Spare();
-  }
-
-  // `here` are the lanes in use, `ends` those of pairs that are not descended.
-  HWY_INLINE void Both(const VectorTest<kSlabs>& test, hn::Mask<Full> here, hn::Mask<Full> ends) {
-    auto improves = hn::And(ends, Below(test, hn::Add(lower_, test.radius_sum)));
-    if constexpr (kSlabs) {
-      improves = hn::AndNot(hn::Ge(hn::Sub(test.over_fixed, test.fixed_sum), lower_), improves);
-      improves =
-          hn::AndNot(hn::Ge(hn::Sub(test.over_moving, test.moving_sum), scaled_lower_), improves);
-    }
-    improves = hn::Or(improves, ImprovesUpper(test, here));
-    if (HWY_LIKELY(hn::AllFalse(Full(), improves))) return;
-    const V distance = hn::Sqrt(test.squared);
-    Least(bounds_.lower, ends, test.Apart(distance));
-    Least(bounds_.upper, here, hn::Add(distance, test.radius_sum));
-    Spare();
-  }
-  HWY_INLINE void Upper(const VectorTest<kSlabs>& test, hn::Mask<Full> overlapping) {
-    if (HWY_LIKELY(hn::AllFalse(Full(), ImprovesUpper(test, overlapping)))) return;
-    Least(bounds_.upper, overlapping, hn::Add(hn::Sqrt(test.squared), test.radius_sum));
-    Spare();
-  }
-
- private:
-  HWY_INLINE static hn::Mask<Full> Below(const VectorTest<kSlabs>& test, V length) {
-    const V positive = hn::Max(length, hn::Zero(Full()));
-    return hn::Lt(test.squared, hn::Mul(positive, positive));
-  }
-  HWY_INLINE hn::Mask<Full> ImprovesUpper(const VectorTest<kSlabs>& test,
-                                          hn::Mask<Full> among) const {
-    return hn::And(among, Below(test, hn::Sub(upper_, test.radius_sum)));
-  }
-  HWY_INLINE void Spare() {
-    const float spare = 0x1p-20F;
-    scaled_lower_ = hn::Set(Full(), kSlabScale * bounds_.lower);
-    lower_ = hn::Set(Full(), bounds_.lower + spare * (most_radii_ + HWY_MAX(bounds_.lower, 0.0F)));
-    upper_ = hn::Set(Full(), bounds_.upper + spare * (most_radii_ + bounds_.upper));
-  }
-  HWY_INLINE static void Least(float& so_far, hn::Mask<Full> among, V v) {
-    const Full d;
-    const V none = hn::Set(d, DistanceBounds::kNone);
-    const V numbers = hn::IfThenElse(hn::And(among, hn::Lt(v, none)), v, none);
-    so_far = HWY_MIN(so_far, hn::GetLane(hn::MinOfLanes(d, numbers)));
-  }
-
-  DistanceBounds& bounds_;
-  float most_radii_;
-  V lower_, scaled_lower_, upper_;
-};
-
-// Tests one row against the moving lanes [begin, end), begin at a multiple of the vector. Writes
-// the ids of the overlapping lanes to `out` and returns their number; needs a vector's worth of
-// room behind them. `last` says that no overlapping pair is descended.
-template <bool kSlabs, Measured kMeasured>
-HWY_INLINE std::size_t TestRow(const FixedRows& f, std::size_t row, const MovingLanes& m,
-                               std::size_t begin, std::size_t end, bool last,
-                               std::uint32_t* HWY_RESTRICT out, Measurer<kSlabs>& measurer) {
-  const Full d;
-  const hn::RebindToUnsigned<Full> du;
-  const RowVectors<kSlabs> fixed(f, row);
-  std::size_t count = 0;
-  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
-    const VectorTest<kSlabs> test(fixed, m, i);
-    const auto here = hn::FirstN(d, end - i);
-    const auto overlapping = hn::AndNot(test.Separate(), here);
-    if constexpr (kMeasured == Measured::kUpper) measurer.Upper(test, overlapping);
-    if constexpr (kMeasured == Measured::kBoth) {
-      measurer.Both(test, here, last ? here : hn::AndNot(overlapping, here));
-    }
-    count += StoreSelected(d, overlapping, hn::Load(du, m.id + i), out + count);
-  }
-  return count;
-}
 
 }  // namespace ist::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

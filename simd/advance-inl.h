@@ -1,0 +1,220 @@
+// Per-target: see Highway's foreach_target.h for why the guard is a toggle.
+#if defined(IST_SIMD_ADVANCE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef IST_SIMD_ADVANCE_INL_H
+#undef IST_SIMD_ADVANCE_INL_H
+#else
+#define IST_SIMD_ADVANCE_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "simd/bounds-inl.h"
+#include "simd/implicit-inl.h"
+#include "simd/lanes.h"
+#include "simd/measure-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ist::simd::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Prefetch distance, in nodes: time enough for memory to answer, not enough for the lines to be
+// evicted again.
+constexpr std::size_t kAhead = 24;
+
+// The place of each group of a batch in the scratch memory.
+struct Batch {
+  std::size_t groups = 0;
+  std::size_t begin[SearchScratch::kGroups], end[SearchScratch::kGroups];
+  std::uint32_t rows[SearchScratch::kGroups], id[SearchScratch::kGroups];
+};
+
+template <bool kSlabs>
+HWY_INLINE void Prefetch(const SearchSide& side, std::uint32_t parent) {
+  __builtin_prefetch(side.nodes + parent);
+  __builtin_prefetch(side.balls + parent);
+  if constexpr (kSlabs) __builtin_prefetch(side.slabs + parent);
+}
+
+HWY_INLINE void PrefetchMasks(const SearchSide& side, std::uint32_t parent) {
+  __builtin_prefetch(side.nodes + parent);
+  __builtin_prefetch(side.masks + parent);
+}
+
+template <bool kSlabs, class Rows>
+class Advancer {
+ public:
+  Advancer(const SearchStep& step, const SearchPose& pose, const Frontier& in, const Rows& out,
+           SearchScratch& scratch, std::uint64_t most, DistanceBounds& bounds)
+      : step_(step),
+        pose_(pose),
+        in_(in),
+        out_(out),
+        scratch_(scratch),
+        most_(most),
+        measurer_(bounds, step.radius_limit + pads_of(pose, step).ball) {}
+
+  // Decodes a batch of groups, then tests it. So a vector is loaded long after the narrower stores
+  // that wrote it, and short loops of varying length do not delay each other.
+  Advanced Run(SearchCursor& cursor) {
+    while (cursor.group < in_.group_count) {
+      Batch batch;
+      if (cursor.row == 0 && cursor.moving == 0) Gather(cursor.group, batch);
+      if (batch.groups == 0) {
+        if (tests_ > 0 && cursor.row == 0 && cursor.moving == 0 &&
+            !Affordable(in_.groups[cursor.group], Begin(cursor.group), tests_)) {
+          break;
+        }
+        const Stop stop = RowByRow(cursor);
+        if (stop != Stop::kNot) return {tests_, stop == Stop::kFull};
+      } else {
+        Test(batch);
+        cursor.group += batch.groups;
+      }
+    }
+    return {tests_, false};
+  }
+
+ private:
+  enum class Stop { kNot, kFull, kSpent };
+
+  [[nodiscard]] std::uint32_t Begin(std::size_t group) const {
+    return group == 0 ? 0 : in_.groups[group - 1].end;
+  }
+  [[nodiscard]] std::size_t MostLanes(std::size_t moving) const {
+    return step_.moving.descends ? 8 * moving : moving;
+  }
+
+  HWY_INLINE std::size_t DecodeMoving(std::uint32_t begin, std::uint32_t end, std::size_t at) {
+    const std::uint32_t* const ids = in_.moving;
+    const std::size_t last = in_.moving_count - 1;
+    if constexpr (kDecodesImplicit && !kSlabs) {
+      if (step_.moving.descends && step_.moving.balls == nullptr) {
+        const ImplicitDecoder decoder(step_.moving);
+        for (std::uint32_t i = begin; i < end; ++i) {
+          PrefetchMasks(step_.moving, ids[HWY_MIN(i + kAhead, last)]);
+          at += decoder.Decode(ids[i], scratch_.moving, at);
+        }
+        return at;
+      }
+    }
+    const SearchSide side = step_.moving;  // a copy, which stores to lanes cannot alias
+    if (!HasVectorForm(side)) {
+      for (std::uint32_t i = begin; i < end; ++i) at += decode(side, ids[i], scratch_.moving, at);
+      return at;
+    }
+    for (std::uint32_t i = begin; i < end; ++i) {
+      Prefetch<kSlabs>(side, ids[HWY_MIN(i + kAhead, last)]);
+      at += DecodeBlock<kSlabs>(side, ids[i], scratch_.moving, at);
+    }
+    return at;
+  }
+
+  HWY_INLINE std::uint32_t DecodeFixed(std::size_t group, std::size_t g) {
+    const SearchSide& side = step_.fixed;
+    const std::uint32_t node = in_.groups[group].fixed;
+    if (side.descends) {
+      const std::uint32_t ahead = in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed;
+      side.balls != nullptr ? Prefetch<kSlabs>(side, ahead) : PrefetchMasks(side, ahead);
+    }
+    const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);
+    Turn<kSlabs>(pose_, pads_of(pose_, step_), scratch_.fixed, scratch_.rows[g]);
+    out_.Decoded(node, scratch_, g);
+    return count;
+  }
+
+  // Returns whether the tests of a group stay within the limit.
+  [[nodiscard]] bool Affordable(const SearchGroup& group, std::uint32_t begin,
+                                std::uint64_t tests) const {
+    if (HWY_LIKELY(8 * MostLanes(group.end - begin) <= most_ - tests)) return true;
+    std::uint64_t lanes = 0;
+    for (std::uint32_t i = begin; i < group.end; ++i) lanes += opened(step_.moving, in_.moving[i]);
+    return opened(step_.fixed, group.fixed) * lanes <= most_ - tests;
+  }
+
+  // Gathers as many groups from `first` on as fit the scratch memory, the limit of tests and,
+  // whatever overlaps, `out`.
+  void Gather(std::size_t first, Batch& batch) {
+    std::size_t at = 0, rows = 0, most = 0;
+    std::uint64_t tests = tests_;
+    std::uint32_t begin = Begin(first);
+    while (batch.groups < SearchScratch::kGroups && first + batch.groups < in_.group_count) {
+      const SearchGroup group = in_.groups[first + batch.groups];
+      at = (at + 15) & ~std::size_t{15};
+      const std::size_t lanes = MostLanes(group.end - begin);
+      rows += 8;
+      most += 8 * lanes;
+      if (at + lanes > MovingLanes::kSize || !out_.HasRoom(rows, most) ||
+          !Affordable(group, begin, tests)) {
+        return;
+      }
+      const std::size_t g = batch.groups++;
+      batch.begin[g] = at;
+      batch.end[g] = at = DecodeMoving(begin, group.end, at);
+      batch.rows[g] = DecodeFixed(first + g, g);
+      batch.id[g] = scratch_.fixed.id[0];
+      tests += batch.rows[g] * (batch.end[g] - batch.begin[g]);
+      begin = group.end;
+    }
+  }
+
+  void Test(const Batch& batch) {
+    for (std::size_t g = 0; g < batch.groups; ++g) {
+      const FixedRows& rows = scratch_.rows[g];
+      for (std::uint32_t row = 0; row < batch.rows[g]; ++row) {
+        const std::size_t before = out_.Begin();
+        out_.Test(rows, scratch_.points[g], row, scratch_.moving, batch.begin[g], batch.end[g],
+                  measurer_);
+        out_.End(batch.id[g] + row, before);
+      }
+      tests_ += batch.rows[g] * (batch.end[g] - batch.begin[g]);
+    }
+  }
+
+  // Tests one group piece by piece: it has more moving nodes than the scratch memory holds, or
+  // `out` is nearly full, or the limit is near.
+  Stop RowByRow(SearchCursor& cursor) {
+    const SearchGroup group = in_.groups[cursor.group];
+    const std::uint32_t begin = Begin(cursor.group);
+    const std::uint32_t rows = DecodeFixed(cursor.group, 0);
+    const bool whole = group.end - begin <= kPieceNodes;
+    std::size_t lanes = whole ? DecodeMoving(begin, group.end, 0) : 0;
+    for (; cursor.row < rows; ++cursor.row, cursor.moving = 0) {
+      const std::uint32_t fixed = scratch_.fixed.id[cursor.row];
+      while (begin + cursor.moving < group.end) {
+        const std::uint32_t first = begin + cursor.moving;
+        if ((step_.last || cursor.moving == 0) &&
+            !out_.HasRoom(1, room_of_row(step_, group.end - first))) {
+          return Stop::kFull;
+        }
+        const std::uint32_t end = HWY_MIN(first + kPieceNodes, group.end);
+        if (!whole) lanes = DecodeMoving(first, end, 0);
+        if (lanes > most_ - tests_) return Stop::kSpent;
+        const std::size_t before = cursor.moving == 0 ? out_.Begin() : out_.Continue(fixed);
+        out_.Test(scratch_.rows[0], scratch_.points[0], cursor.row, scratch_.moving, 0, lanes,
+                  measurer_);
+        tests_ += lanes;
+        out_.End(fixed, before);
+        cursor.moving = end - begin;
+      }
+    }
+    ++cursor.group;
+    cursor.row = 0;
+    return Stop::kNot;
+  }
+
+  const SearchStep& step_;
+  const SearchPose& pose_;
+  const Frontier& in_;
+  Rows out_;
+  SearchScratch& scratch_;
+  const std::uint64_t most_;
+  Measurer<kSlabs> measurer_;
+  std::uint64_t tests_ = 0;
+};
+
+}  // namespace ist::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
