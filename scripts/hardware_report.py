@@ -30,7 +30,8 @@ HEAD = """# The pair test in hardware
 
 Made by `scripts/hardware_report.sh`; nothing in it that was measured is typed by hand. The circuit is
 [`ist_pair_test.v`](../src/hardware/rtl/ist_pair_test.v), specified in [`src/hardware`](../src/hardware/README.md):
-one pair of nodes a clock, its answer {latency} clocks later.
+one pair of nodes a clock, its answer {latency} clocks later. The balls are the published ones, from the table as it is; the
+constants by which `ist::Query` enlarges them, so that they are nested, are no part of the circuit.
 """
 
 

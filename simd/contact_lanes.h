@@ -31,6 +31,12 @@ inline void name_surfaces(const SearchStep& step, std::uint32_t node,
       step.fixed_normals + (side.descends ? side.nodes[node].first_child : leaf_of(side, node));
 }
 
+/// Returns the place of a slab's middle along its normal, in lengths of that normal. Normals in
+/// lanes are whole numbers, so 1 is below every square but 0.
+[[nodiscard]] inline float middle_of(float nx, float ny, float nz, float offset) noexcept {
+  return offset / greater((nx * nx + ny * ny) + nz * nz, 1);
+}
+
 /// Finds the surface point of the fixed leaf in lane `at`: the foot of the perpendicular from the
 /// ball's centre to the slab's middle, or without slabs the centre.
 inline void find_point(bool slabs, const FixedLanes& fixed, const FixedRows& rows, std::size_t at,
@@ -39,11 +45,9 @@ inline void find_point(bool slabs, const FixedLanes& fixed, const FixedRows& row
   points.y[at] = rows.y[at];
   points.z[at] = rows.z[at];
   if (!slabs) return;
-  const float nx = fixed.lane[kNormalX][at], ny = fixed.lane[kNormalY][at],
-              nz = fixed.lane[kNormalZ][at];
-  // Normals in blocks are whole numbers, so 1 is below every square but 0.
-  const float squared = greater((nx * nx + ny * ny) + nz * nz, 1);
-  const float along = (fixed.lane[kOffset][at] / squared) * kSlabScale;
+  const float along = middle_of(fixed.lane[kNormalX][at], fixed.lane[kNormalY][at],
+                                fixed.lane[kNormalZ][at], fixed.lane[kOffset][at]) *
+                      kSlabScale;
   points.x[at] += along * rows.normal_x[at];
   points.y[at] += along * rows.normal_y[at];
   points.z[at] += along * rows.normal_z[at];
@@ -76,8 +80,7 @@ inline void append_pair(const ContactRule& rule, const PairTest& test, const Fix
   if (slabs) {
     const float nx = moving.lane[kNormalX][at], ny = moving.lane[kNormalY][at],
                 nz = moving.lane[kNormalZ][at];
-    const float squared = greater((nx * nx + ny * ny) + nz * nz, 1);
-    const float along = moving.lane[kOffset][at] / squared;
+    const float along = middle_of(nx, ny, nz, moving.lane[kOffset][at]);
     x += along * nx;
     y += along * ny;
     z += along * nz;
@@ -153,11 +156,12 @@ struct PairTerms {
   return terms;
 }
 
-/// Rounds a term, at most 2²² without its sign, to a whole number, ties to even: the sum's last bit
-/// is 1.
+/// The sum of it and of a term, at most 2²² without its sign, has 1 as its last bit.
+inline constexpr float kToWhole = 0x1.8p23F;
+
+/// Rounds a term to a whole number, ties to even.
 [[nodiscard]] inline std::int32_t to_fixed_point(float term) noexcept {
-  constexpr float kMagic = 0x1.8p23F;
-  return std::bit_cast<std::int32_t>(term + kMagic) - std::bit_cast<std::int32_t>(kMagic);
+  return std::bit_cast<std::int32_t>(term + kToWhole) - std::bit_cast<std::int32_t>(kToWhole);
 }
 
 /// Adds the terms of a pair to the sums.

@@ -20,6 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Vector twin of ist::middle_of.
+template <class D>
+HWY_INLINE hn::Vec<D> MiddleOf(D d, hn::Vec<D> nx, hn::Vec<D> ny, hn::Vec<D> nz,
+                               hn::Vec<D> offset) {
+  const auto squared = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
+  return hn::Div(offset, hn::Max(squared, hn::Set(d, 1.0F)));
+}
+
 // Vector twin of ist::find_point, for all eight rows.
 template <bool kSlabs>
 HWY_INLINE void FindPoints(const FixedLanes& fixed, const FixedRows& rows, FixedPoints& points) {
@@ -29,9 +37,7 @@ HWY_INLINE void FindPoints(const FixedLanes& fixed, const FixedRows& rows, Fixed
     if constexpr (kSlabs) {
       const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
       const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
-      const auto squared = hn::Max(
-          hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)), hn::Set(d, 1.0F));
-      const auto along = hn::Mul(hn::Div(load(kOffset), squared), hn::Set(d, kSlabScale));
+      const auto along = hn::Mul(MiddleOf(d, nx, ny, nz, load(kOffset)), hn::Set(d, kSlabScale));
       x = hn::Add(x, hn::Mul(along, hn::Load(d, rows.normal_x + k)));
       y = hn::Add(y, hn::Mul(along, hn::Load(d, rows.normal_y + k)));
       z = hn::Add(z, hn::Mul(along, hn::Load(d, rows.normal_z + k)));
@@ -74,16 +80,14 @@ HWY_INLINE void ContactRow(const ContactRule& rule, const FixedRows& f, const Fi
     const VectorTest<kSlabs> test(fixed, m, i);
     const auto here = hn::FirstN(d, end - i);
     const auto overlapping = hn::AndNot(test.Separate(), here);
-    if constexpr (kMeasured == Measured::kBoth) measurer.Both(test, here, here);
+    static_assert(kMeasured != Measured::kBoth);
     if (hn::AllFalse(d, overlapping)) continue;
     if constexpr (kMeasured == Measured::kUpper) measurer.Upper(test, overlapping);
     const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
     auto x = load(kX), y = load(kY), z = load(kZ);
     if constexpr (kSlabs) {
       const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
-      const auto squared = hn::Max(
-          hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz)), hn::Set(d, 1.0F));
-      const auto along = hn::Div(load(kOffset), squared);
+      const auto along = MiddleOf(d, nx, ny, nz, load(kOffset));
       x = hn::Add(x, hn::Mul(along, nx));
       y = hn::Add(y, hn::Mul(along, ny));
       z = hn::Add(z, hn::Mul(along, nz));

@@ -104,7 +104,7 @@ struct ContactAdder {
 };
 
 /// Advances like AdvanceFunction in a last step, but gives the overlapping pairs to `out`, which
-/// may keep some in its lanes and is never full.
+/// may keep some in its lanes and is never full. Measures no lower end: kBoth is as kUpper.
 using AdvanceContactsFunction = Advanced (*)(const SearchStep& step, const SearchPose& pose,
                                              const Frontier& in, SearchCursor& cursor,
                                              ContactAdder& out, SearchScratch& scratch,

@@ -71,7 +71,7 @@ HWY_INLINE Vector Turned(const SearchPose& pose, const Vector& v) {
 }
 
 // Adds up terms, a vector at a time: twin of ist::to_fixed_point. A term becomes a whole number in
-// the last bits of a sum with kMagic; what is added up with it is taken off at the end.
+// the last bits of a sum with kToWhole; what is added up with it is taken off at the end.
 class FixedPointSums {
  public:
   HWY_INLINE FixedPointSums() {
@@ -79,7 +79,7 @@ class FixedPointSums {
   }
   HWY_INLINE void Add(std::size_t place, hn::Vec<Full> term) {
     const hn::RebindToUnsigned<Full> du;
-    sums_[place] = hn::Add(sums_[place], hn::BitCast(du, hn::Add(term, hn::Set(Full(), kMagic))));
+    sums_[place] = hn::Add(sums_[place], hn::BitCast(du, hn::Add(term, hn::Set(Full(), kToWhole))));
   }
   HWY_INLINE void Add(std::size_t place, const Vector& terms) {
     Add(place, terms.x);
@@ -89,15 +89,14 @@ class FixedPointSums {
   // Adds the sums of `vectors` vectors to `totals`.
   HWY_INLINE void AddTo(std::size_t vectors, std::int64_t* totals) const {
     const hn::RebindToUnsigned<Full> du;
-    const auto magic =
-        std::bit_cast<std::uint32_t>(kMagic) * static_cast<std::uint32_t>(vectors * hn::Lanes(du));
+    const auto magic = std::bit_cast<std::uint32_t>(kToWhole) *
+                       static_cast<std::uint32_t>(vectors * hn::Lanes(du));
     for (std::size_t i = 0; i < kContactSums; ++i) {
       totals[i] += static_cast<std::int32_t>(hn::GetLane(hn::SumOfLanes(du, sums_[i])) - magic);
     }
   }
 
  private:
-  static constexpr float kMagic = 0x1.8p23F;
   hn::Vec<hn::RebindToUnsigned<Full>> sums_[kContactSums];
 };
 

@@ -124,6 +124,7 @@ Advanced advance_scalar(const SearchStep& step, const SearchPose& pose, const Fr
 Advanced advance_contacts_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
                                  SearchCursor& cursor, ContactAdder& out, SearchScratch& scratch,
                                  std::uint64_t most, Measured measured, DistanceBounds& bounds) {
+  if (measured == Measured::kBoth) measured = Measured::kUpper;
   return advance_rows(step, pose, in, cursor, ContactRows{step, pose, out}, scratch, most, measured,
                       bounds);
 }

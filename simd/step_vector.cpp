@@ -15,15 +15,15 @@ HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Calls a function object with the template arguments of a step.
-template <class Run>
+// Calls a function object with the template arguments of a step; kLower: both ends may be measured.
+template <bool kLower, class Run>
 Advanced Specialised(const SearchStep& step, Measured measured, const Run& run) {
   const auto measure = [&]<bool kSlabs>() {
     switch (measured) {
       case Measured::kUpper:
         return run.template operator()<kSlabs, Measured::kUpper>();
       case Measured::kBoth:
-        return run.template operator()<kSlabs, Measured::kBoth>();
+        return run.template operator() < kSlabs, kLower ? Measured::kBoth : Measured::kUpper > ();
       default:
         return run.template operator()<kSlabs, Measured::kNothing>();
     }
@@ -37,11 +37,12 @@ Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier&
                  Measured measured, DistanceBounds& bounds) {
   Frontier next = out;  // copies, so that the compiler may keep them in registers
   DistanceBounds known = bounds;
-  const Advanced advanced = Specialised(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
-    using Rows = PairRows<kSlabs, kMeasured>;
-    return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, next), scratch, most, known)
-        .Run(cursor);
-  });
+  const Advanced advanced =
+      Specialised<true>(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
+        using Rows = PairRows<kSlabs, kMeasured>;
+        return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, next), scratch, most, known)
+            .Run(cursor);
+      });
   out = next;
   bounds = known;
   return advanced;
@@ -52,11 +53,12 @@ Advanced AdvanceContacts(const SearchStep& step, const SearchPose& pose, const F
                          SearchCursor& cursor, ContactAdder& out, SearchScratch& scratch,
                          std::uint64_t most, Measured measured, DistanceBounds& bounds) {
   DistanceBounds known = bounds;
-  const Advanced advanced = Specialised(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
-    using Rows = ContactRows<kSlabs, kMeasured>;
-    return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, pose, out), scratch, most, known)
-        .Run(cursor);
-  });
+  const Advanced advanced =
+      Specialised<false>(step, measured, [&]<bool kSlabs, Measured kMeasured>() {
+        using Rows = ContactRows<kSlabs, kMeasured>;
+        return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, pose, out), scratch, most, known)
+            .Run(cursor);
+      });
   bounds = known;
   return advanced;
 }

@@ -3,8 +3,12 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/relative_pose.h"
+#include "ist/query/traversal/search.h"
+#include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
@@ -46,6 +50,9 @@ class Judged {
                                 published_are_nested(policy_)))
         << "the reference at pose\n"
         << pose.matrix();
+    for (const double margin : {0.375 * fixed().voxel_size(), 2 * moving().voxel_size()}) {
+      check_within(exact, pose, margin);
+    }
     return answer.leaf_pairs.size();
   }
 
@@ -56,6 +63,25 @@ class Judged {
   [[nodiscard]] ExactPair exact(const Eigen::Isometry3d& pose) const { return bodies_.at(pose); }
 
  private:
+  // A search with a margin, as contacts make it.
+  void check_within(const ExactPair& exact, const Eigen::Isometry3d& pose, double margin) const {
+    const SearchPlan plan(fixed(), moving(), policy_);
+    Search search(plan, select_kernels(""), 1 << 12);
+    const SearchPose from =
+        to_float(*relative_pose(pose, fixed().parts().lattice, moving().parts().lattice),
+                 lengths_of(fixed(), policy_), lengths_of(moving(), policy_), margin);
+    std::vector<LeafPair> found(std::size_t{fixed().leaf_count()} * moving().leaf_count() +
+                                kLeafPairSpare);
+    LeafPairSink sink(plan, select_kernels(""), found);
+    PairLister lister(from, sink);
+    search.run(lister);
+    found.resize(sink.count());
+    const double pad = policy_ == SpherePolicy::kSlab ? from.leaf.slab_fixed : from.leaf.ball;
+    EXPECT_TRUE(keeps_guarantee(exact, policy_, found, 2 * pad - margin, true, margin))
+        << "margin " << margin << " at pose\n"
+        << pose.matrix();
+  }
+
   SpherePolicy policy_;
   RationalBodies bodies_;
   ReferenceQuery reference_;

@@ -18,22 +18,29 @@
 namespace ist::test {
 namespace {
 
-// The distances that the bounds of a pair allow, mesh units, in double; without pads.
+// The distances that the bounds of a pair allow, mesh units, in double; without the pads for
+// rounding, but slabs of inner nodes count as wider for large partners.
 struct Distances {
   double least, greatest;
 };
 
-Distances distances_of(const PairTest& test, const Pads& pads, bool slabs) {
+Distances distances_of(const PairTest& test, const Pads& rounding, bool slabs) {
   const double distance = std::sqrt(double{test.squared});
-  const double radii = double{test.radius_sum} - pads.ball;
+  const double radii = double{test.radius_sum} - rounding.ball;
   Distances distances{distance - radii, distance + radii};
   if (slabs) {
-    const double fixed = double{test.over_fixed} - (double{test.fixed_sum} - pads.slab_fixed);
+    const double fixed = double{test.over_fixed} - (double{test.fixed_sum} - rounding.slab_fixed);
     const double moving =
-        (double{test.over_moving} - double{test.moving_sum}) / kSlabScale + pads.slab_moving;
+        (double{test.over_moving} - double{test.moving_sum}) / kSlabScale + rounding.slab_moving;
     distances.least = std::max({distances.least, fixed, moving});
   }
   return distances;
+}
+
+// The pads of inner nodes without a slab's rise: in proportion to those of leaves, as derived.
+Pads rounding_of(const SearchPose& pose) {
+  const float slab = pose.leaf.slab_fixed * (53.0F / 17);
+  return {pose.inner.ball, slab, slab};
 }
 
 // Lists pairs, and keeps its own list of all pairs that are pruned, and of those that are live: an
@@ -41,7 +48,7 @@ Distances distances_of(const PairTest& test, const Pads& pads, bool slabs) {
 class Listing : public PairLister {
  public:
   Listing(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter)
-      : PairLister(pose, sink, meter, Measured::kBoth), pose_(pose) {}
+      : PairLister(pose, sink, meter, Measured::kBoth), pose_(pose), inner_(rounding_of(pose)) {}
 
   Advanced advance(const SearchBatch& batch) noexcept {
     SearchCursor from = batch.cursor;
@@ -60,7 +67,8 @@ class Listing : public PairLister {
               decode(batch.step.moving, batch.in.moving[i], scratch_->moving, 0);
           for (std::uint32_t at = 0; at < lanes; ++at) {
             const PairTest test(scratch_->rows[0], from.row, scratch_->moving, at, slabs);
-            const Distances distances = distances_of(test, pads_of(pose_, batch.step), slabs);
+            const Distances distances =
+                distances_of(test, batch.step.leaves ? pose_.leaf : inner_, slabs);
             (test.overlap() ? live_ : pruned_).push_back(distances);
           }
           tests += lanes;
@@ -94,6 +102,7 @@ class Listing : public PairLister {
 
  private:
   const SearchPose& pose_;
+  Pads inner_;
   std::unique_ptr<SearchScratch> scratch_ = std::make_unique<SearchScratch>();
   std::vector<Distances> live_{{-HUGE_VAL, HUGE_VAL}};  // first the pair of roots
   std::vector<Distances> pruned_;
@@ -127,7 +136,7 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           EXPECT_EQ(listing.tests() + 1, told.sphere_tests);
           EXPECT_EQ(static_cast<int>(plan.steps().size() - steps), told.level);
           EXPECT_EQ(told.complete, told.level == 0);
-          const Pads& pads = pose.inner;  // no less than those of leaves
+          const Pads pads = rounding_of(pose);  // no less than those of leaves
           const DistanceInterval formula =
               listing.formula(std::max({pads.ball, pads.slab_fixed, pads.slab_moving}));
           const double last_bits = 1e-6 * formula.upper;

@@ -37,16 +37,17 @@ bool holds_ball(const ExactBound& outer, const ExactBound& inner) {
 
 // Where the ball's point farthest along the normal lies beyond a face of the slab, the disc's point
 // farthest along it counts: at (p · top + √((NN - p²/nn) nn (R² nn - top²))) / nn from the centre,
-// with p = N · n, NN = |N|², nn = |n|², R = radius + reach and top = ±offset + half + reach.
-bool stays_below(const ExactBound& bound, const mpq_class& reach, const ExactPoint& normal,
+// with p = N · n, NN = |N|², nn = |n|², R = radius + partner radius and top = ±offset + half +
+// partner radius.
+bool stays_below(const ExactBound& bound, const mpq_class& partner_radius, const ExactPoint& normal,
                  const ExactPoint& from, const mpq_class& limit) {
-  const mpq_class radius = bound.radius + reach;
+  const mpq_class radius = bound.radius + partner_radius;
   const mpq_class squared = square(normal), own = square(bound.normal);
   const mpq_class left = limit - dot(normal, bound.centre - from);
   if (root_at_most(radius * radius * squared, left)) return true;  // the whole ball stays below
   for (const int side : {1, -1}) {
     const mpq_class along = side * dot(normal, bound.normal);
-    const mpq_class top = side * bound.offset + bound.half + reach;
+    const mpq_class top = side * bound.offset + bound.half + partner_radius;
     // Beyond this face: R p > top √NN.
     const bool beyond =
         sgn(top) >= 0 ? sgn(along) > 0 && radius * radius * along * along > top * top * squared
@@ -58,11 +59,12 @@ bool stays_below(const ExactBound& bound, const mpq_class& reach, const ExactPoi
   return false;
 }
 
-bool is_nested(const ExactBound& outer, const ExactBound& leaf, const mpq_class& reach,
+bool is_nested(const ExactBound& outer, const ExactBound& leaf, const mpq_class& partner_radius,
                const mpq_class& rise) {
-  const mpq_class room = outer.half + reach + rise;
-  return stays_below(leaf, reach, outer.normal, outer.centre, outer.offset + room) &&
-         stays_below(leaf, reach, mpq_class(-1) * outer.normal, outer.centre, room - outer.offset);
+  const mpq_class room = outer.half + partner_radius + rise;
+  return stays_below(leaf, partner_radius, outer.normal, outer.centre, outer.offset + room) &&
+         stays_below(leaf, partner_radius, mpq_class(-1) * outer.normal, outer.centre,
+                     room - outer.offset);
 }
 
 }  // namespace ist::test

@@ -21,15 +21,17 @@ struct ExactBound {
 /// Whether the ball of one bound holds that of the other, whole.
 [[nodiscard]] bool holds_ball(const ExactBound& outer, const ExactBound& inner);
 
-/// Whether normal · (x - from) is at most `limit` for all x within `reach` of a bound: those with
-/// |x - c| <= radius + reach and |n · (x - c) - offset| <= half + reach. Decided in rational
-/// numbers; a normal of a bound, and a reach that leaves something of the bound.
-[[nodiscard]] bool stays_below(const ExactBound& bound, const mpq_class& reach,
+/// Whether normal · (x - from) is at most `limit` for all x within `partner_radius` of a bound:
+/// those with |x - c| <= radius + partner radius and |n · (x - c) - offset| <= half + partner
+/// radius. Decided in rational numbers; a normal of a bound, and a partner radius that leaves
+/// something of the bound.
+[[nodiscard]] bool stays_below(const ExactBound& bound, const mpq_class& partner_radius,
                                const ExactPoint& normal, const ExactPoint& from,
                                const mpq_class& limit);
 
-/// Whether a slab is nested over a leaf for a partner of `reach`, counting as wider by `rise`.
+/// Whether a slab is nested over a leaf for a partner of `partner_radius`, counting as wider by
+/// `rise`.
 [[nodiscard]] bool is_nested(const ExactBound& outer, const ExactBound& leaf,
-                             const mpq_class& reach, const mpq_class& rise = 0);
+                             const mpq_class& partner_radius, const mpq_class& rise = 0);
 
 }  // namespace ist::test

@@ -260,14 +260,14 @@ bool ExactPair::slabs_met(const ExactBody::Bound& fixed, const ExactBody::Bound&
 }
 
 bool must_be_found(const ExactPair& pair, SpherePolicy policy, std::uint32_t fixed_leaf,
-                   std::uint32_t moving_leaf, bool nested) {
-  return nested ? pair.bounds_meet(policy, fixed_leaf, moving_leaf, 0)
+                   std::uint32_t moving_leaf, bool nested, double margin) {
+  return nested ? pair.bounds_meet(policy, fixed_leaf, moving_leaf, margin)
                 : pair.geometry_meets(policy, fixed_leaf, moving_leaf);
 }
 
 ::testing::AssertionResult keeps_guarantee(const ExactPair& pair, SpherePolicy policy,
                                            std::span<const LeafPair> leaf_pairs, double pad,
-                                           bool nested) {
+                                           bool nested, double margin) {
   const auto says = [policy](const char* what, std::uint32_t f, std::uint32_t m) {
     return ::testing::AssertionFailure() << to_string(policy) << ": the pair of fixed leaf " << f
                                          << " and moving leaf " << m << " " << what;
@@ -280,7 +280,7 @@ bool must_be_found(const ExactPair& pair, SpherePolicy policy, std::uint32_t fix
         if (!pair.bounds_meet(policy, f, m, pad)) {
           return says("is in the answer, but its bounds are apart", f, m);
         }
-      } else if (must_be_found(pair, policy, f, m, nested)) {
+      } else if (must_be_found(pair, policy, f, m, nested, margin)) {
         return says("is not in the answer at its place, but must be found", f, m);
       }
     }

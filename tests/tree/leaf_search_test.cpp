@@ -26,25 +26,25 @@ Vector3d packed_normal(test::Seeded& seeded) {
 }
 
 // The value to a few roundings, against a decision in rational numbers on both sides of it.
-void expect_support(const Ball& ball, const Slab& slab, double reach, const Vector3d& normal,
-                    const Vector3d& from) {
-  const ReachedBound bound(ball, slab, reach);
+void expect_support(const Ball& ball, const Slab& slab, double partner_radius,
+                    const Vector3d& normal, const Vector3d& from) {
+  const InflatedBound bound(ball, slab, partner_radius);
   const double length = normal.norm();
   const double value = bound.support(normal, length, from);
-  const double error = 0x1p-49 * (ball.radius + reach + (ball.centre - from).norm());
+  const double error = 0x1p-49 * (ball.radius + partner_radius + (ball.centre - from).norm());
   const test::ExactBound exact{test::exact(ball.centre), ball.radius, test::exact(slab.normal),
                                slab.offset, slab.half};
   const auto below = [&](double limit) {
-    return test::stays_below(exact, reach, test::exact(normal), test::exact(from), limit);
+    return test::stays_below(exact, partner_radius, test::exact(normal), test::exact(from), limit);
   };
   ASSERT_TRUE(below(value + error)) << value;
   ASSERT_FALSE(below(value - error)) << value;
   const Vector3d point = bound.support_point(normal, length);
   ASSERT_NEAR(normal.dot(point - from), value, 1e-9 * (1 + std::abs(value)));
-  ASSERT_LE((point - ball.centre).norm(), (ball.radius + reach) * (1 + 1e-9));
+  ASSERT_LE((point - ball.centre).norm(), (ball.radius + partner_radius) * (1 + 1e-9));
 }
 
-TEST(ReachedBound, SupportsAreExactToAFewRoundings) {
+TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
   test::Seeded seeded(1);
   for (int i = 0; i < 20'000; ++i) {
     const Ball ball{seeded.point(-5, 5), seeded.between(0.01, 0.87)};
@@ -59,7 +59,7 @@ TEST(ReachedBound, SupportsAreExactToAFewRoundings) {
     }
     if (i % 100 == 99) slab = {Vector3d::Zero(), 0, 1};  // holds everything
     ASSERT_NO_FATAL_FAILURE(
-        expect_support(ball, slab, i % 3 == 0 ? 0 : kReach, normal, seeded.point(-5, 5)));
+        expect_support(ball, slab, i % 3 == 0 ? 0 : kPartnerRadius, normal, seeded.point(-5, 5)));
   }
 }
 
@@ -111,11 +111,11 @@ TEST(LeafSearch, FindsTheGreatestOfAllLeaves) {
       double farthest = 0, highest = -HUGE_VAL;
       for (std::size_t i = 0; i < balls.size(); ++i) {
         farthest = std::max(farthest, (balls[i].centre - from).norm() + balls[i].radius);
-        highest = std::max(
-            highest, height_of(ReachedBound(balls[i], slabs[i], kReach), normal, length, from));
+        highest = std::max(highest, height_of(InflatedBound(balls[i], slabs[i], kPartnerRadius),
+                                              normal, length, from));
       }
       ASSERT_NEAR(search.farthest(from).value, farthest, 1e-14 * farthest);
-      Greatest<ReachedBound> greatest;
+      Greatest<InflatedBound> greatest;
       search.raise_support(normal, from, greatest);
       ASSERT_EQ(greatest.value, highest);
       ASSERT_EQ(height_of(greatest.bound, normal, length, from), highest);

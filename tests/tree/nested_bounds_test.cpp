@@ -70,24 +70,26 @@ class Nested {
   std::vector<ExactBound> leaves_;
 };
 
-// The reaches for which a slab must hold as it is, from almost none, and beyond them with the rise.
+// The partner radii for which a slab must hold as it is, from almost none, and beyond them with the
+// rise.
 void expect_nested(const Nested& tree, std::uint32_t step = 1) {
   ASSERT_GT(tree.octree().depth(), 0);
-  const mpq_class built(kReach), rise(kReachRise);
-  tree.each_inner_node(step, [&](int, const ExactBound& node, std::uint32_t first,
-                                 std::uint32_t end) {
-    for (std::uint32_t leaf = first; leaf < end; ++leaf) {
-      const ExactBound& own = tree.leaves()[leaf];
-      ASSERT_TRUE(test::holds_ball(node, own)) << "leaf " << leaf;
-      for (const double reach : {0x1p-20, 0.2, 0.6, 1.0, kReach}) {
-        ASSERT_TRUE(test::is_nested(node, own, reach)) << "leaf " << leaf << ", reach " << reach;
-      }
-      for (const double reach : {1.5, 2.5, 8.0, 100.0}) {
-        ASSERT_TRUE(test::is_nested(node, own, reach, rise * (reach - built)))
-            << "leaf " << leaf << ", reach " << reach;
-      }
-    }
-  });
+  const mpq_class built(kPartnerRadius), rise(kPartnerRise);
+  tree.each_inner_node(
+      step, [&](int, const ExactBound& node, std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t leaf = first; leaf < end; ++leaf) {
+          const ExactBound& own = tree.leaves()[leaf];
+          ASSERT_TRUE(test::holds_ball(node, own)) << "leaf " << leaf;
+          for (const double partner_radius : {0x1p-20, 0.2, 0.6, 1.0, kPartnerRadius}) {
+            ASSERT_TRUE(test::is_nested(node, own, partner_radius))
+                << "leaf " << leaf << ", partner radius " << partner_radius;
+          }
+          for (const double partner_radius : {1.5, 2.5, 8.0, 100.0}) {
+            ASSERT_TRUE(test::is_nested(node, own, partner_radius, rise * (partner_radius - built)))
+                << "leaf " << leaf << ", partner radius " << partner_radius;
+          }
+        }
+      });
 }
 
 TEST(NestedBounds, HoldTheirLeavesOfASphere) { expect_nested({test::icosphere(2, 1), 0.17}); }
@@ -158,8 +160,8 @@ TEST(NestedBounds, AreBallsThatAreHardlyLargerThanTheSmallest) {
   }
 }
 
-// Nested for its reach, the slab of a plane is as thin as the leaves', but for what its rounded
-// normal tilts and what a leaf's normal is shorter.
+// Nested for its partner radius, the slab of a plane is as thin as the leaves', but for what its
+// rounded normal tilts and what a leaf's normal is shorter.
 TEST(NestedBounds, OfAFlatPatchAreThin) {
   const Nested tree(test::open_strip(3), 0.3);
   tree.each_inner_node(1, [&](int level, const ExactBound& node, std::uint32_t, std::uint32_t) {
@@ -179,11 +181,11 @@ TEST(NestedBounds, AreRoundedUpByOneUnitAtMost) {
       holds_all = holds_all && test::holds_ball(node, tree.leaves()[leaf]);
     }
     ASSERT_FALSE(holds_all);
-    // Half a unit of the offset and one of the width; and by no shorter normal's reach.
+    // Half a unit of the offset and one of the width; and by no shorter normal's partner radius.
     node.half -= mpq_class(8, 256) * (std::uint64_t{1} << level) / 4;
     bool nested = true;
     for (std::uint32_t leaf = first; leaf < end && nested; ++leaf) {
-      nested = test::is_nested(node, tree.leaves()[leaf], mpq_class(kReach));
+      nested = test::is_nested(node, tree.leaves()[leaf], mpq_class(kPartnerRadius));
     }
     tight += nested ? 0 : 1;
     ++nodes;

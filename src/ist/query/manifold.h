@@ -87,7 +87,7 @@ struct ManifoldOptions {
 /// All contacts of two bodies at one pose: sums that forces are made of, and a few points. Filled
 /// by Query::contacts for the same trees and the same policy.
 ///
-/// The constructor reserves all memory: 90 kB, and with points the leaves and the points. It shares
+/// The constructor reserves all memory: 80 kB, and with points the leaves and the points. It shares
 /// the content of both trees. One manifold belongs to one thread at a time.
 class IST_API ContactManifold {
  public:
@@ -105,7 +105,7 @@ class IST_API ContactManifold {
   ContactManifold& operator=(ContactManifold&&) noexcept;
 
   /// The contacts of the last query: the deepest first, then the extreme ones along x, y and z,
-  /// then the others. Empty where that query had a status other than kDone.
+  /// then the others. Empty where that query had a status other than kDone or was not complete.
   [[nodiscard]] std::span<const Contact> points() const noexcept;
   /// The sums of the last query.
   [[nodiscard]] const ContactSums& sums() const noexcept;

@@ -94,7 +94,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   const double margin = reducer.scale().margin;
   const std::optional<detail::Approach> bodies = s.approach(pose, margin);
   if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
-  QueryResult result = s.root_result(bodies->roots);
+  QueryResult result = s.root_result(bodies->roots, margin);
   if (!bodies->roots.overlap) return result;
 
   const SearchPose from = s.to_float(*bodies);
@@ -106,7 +106,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   auto& [lower, upper] = *result.distance;
   if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
   if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, margin);
-  reducer.finish(bodies->relative);
+  reducer.finish(bodies->relative, result.complete);
   return result;
 }
 

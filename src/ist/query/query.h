@@ -90,12 +90,14 @@ class IST_API Query {
                                        LeafPairStream& stream) noexcept;
 
   /// Reduces all leaf pairs to contacts and to the sums that forces are made of. The distance is
-  /// that of the roots' bounds, and no more than the resolution where there are pairs.
+  /// that of the roots' bounds, and no more than the resolution where there are pairs; of a search
+  /// that a budget ended, no more than that of its pairs.
   ///
   /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
   ///                 status is another than kDone
-  /// @param budget   ends the search early: then neither result nor manifold is complete, and no
-  ///                 force should be made of it
+  /// @param budget   ends the search early: then neither result nor manifold is complete, there are
+  ///                 no contacts, and no force should be made of the sums. Contacts are made after
+  ///                 the last look at the clock, in 15 ns a fixed leaf
   ///
   /// Cost: that of leaf_pairs(), and 3 to 5 ns a leaf pair, with points 10 to 15; on the scalar
   /// target 50.

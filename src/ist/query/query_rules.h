@@ -1,6 +1,8 @@
 #pragma once
 
+#include "ist/base/ordered_vector.h"
 #include "ist/query/results.h"
+#include "ist/tree/bounds.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -26,6 +28,14 @@ namespace ist {
                                    double other_edge) noexcept {
   constexpr double kLarger = 1.4142135623730951;
   return level > 0 && (other_level == 0 || other_edge <= kLarger * edge);
+}
+
+/// Returns whether two balls, in one frame, are more than `pad` apart, in double. By >, so that a
+/// NaN keeps the pair.
+[[nodiscard]] inline bool are_apart(const Ball& a, const Ball& b, double pad) noexcept {
+  const Eigen::Vector3d apart = difference(b.centre, a.centre);
+  const double radius_sum = (a.radius + b.radius) + pad;
+  return dot_in_order(apart, apart) > radius_sum * radius_sum;
 }
 
 /// Returns the largest distance between the surfaces in a leaf pair, mesh units: 2 (rA + rB) + pad,

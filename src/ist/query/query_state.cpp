@@ -23,14 +23,14 @@ int one_or_two(int workers) {
               fmt::format("query option workers is {}: give 1 or 2", workers));
 }
 
-// Returns the largest coordinate, without its sign, of a vertex in use; other vertices may lie
-// anywhere.
 std::size_t within_limit(const char* option, std::size_t value) {
   if (value <= kMostItems) return value;
   throw Error(ErrorCode::kArgumentInvalid,
               fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
 }
 
+// Returns the largest coordinate, without its sign, of a vertex in use; other vertices may lie
+// anywhere.
 double largest_coordinate_of(const TriangleMesh& mesh) {
   double largest = 0;
   for (const Triangle& triangle : mesh.triangles) {
@@ -92,14 +92,13 @@ Search& QueryState::serial() noexcept {
 
 void QueryState::set_pad(double pad, QueryResult& result) const noexcept {
   result.pad = pad;
-  result.resolution =
-      2 * (fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)) + pad;
+  result.resolution = resolution_of(result, fixed, moving, policy);
 }
 
-QueryResult QueryState::root_result(const RootTest& roots) const noexcept {
+QueryResult QueryState::root_result(const RootTest& roots, double margin) const noexcept {
   QueryResult result;
   result.sphere_tests = 1;
-  set_pad(2 * roots.pad, result);
+  set_pad(2 * roots.pad + margin, result);
   result.distance = roots.distance;
   return result;
 }

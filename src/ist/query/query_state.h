@@ -46,7 +46,7 @@ struct QueryState {
   [[nodiscard]] QueryResult list(const Eigen::Isometry3d& pose, const Budget& budget,
                                  LeafPairSink& sink) noexcept;
   /// Returns the result that the root test alone gives.
-  [[nodiscard]] QueryResult root_result(const RootTest& roots) const noexcept;
+  [[nodiscard]] QueryResult root_result(const RootTest& roots, double margin = 0) const noexcept;
   void set_pad(double pad, QueryResult& result) const noexcept;
   /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
   void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;

@@ -17,21 +17,21 @@ double edge_at(int level) noexcept { return static_cast<double>(std::uint64_t{1}
 
 }  // namespace
 
-ReachedBound::ReachedBound(const Ball& ball, const Slab& slab, double reach) noexcept
+InflatedBound::InflatedBound(const Ball& ball, const Slab& slab, double partner_radius) noexcept
     : centre_(ball.centre),
       normal_(slab.normal),
-      radius_(ball.radius + reach),
+      radius_(ball.radius + partner_radius),
       square_(dot_in_order(normal_, normal_)),
-      above_(cut(slab.half + slab.offset + reach)),
-      below_(cut(slab.half - slab.offset + reach)) {}
+      above_(cut(slab.half + slab.offset + partner_radius)),
+      below_(cut(slab.half - slab.offset + partner_radius)) {}
 
-ReachedBound::Cut ReachedBound::cut(double height) const noexcept {
+InflatedBound::Cut InflatedBound::cut(double height) const noexcept {
   const double radius2 = radius_ * radius_ * square_ - height * height;
   return radius2 > 0 ? Cut{height, radius2} : Cut{};
 }
 
-double ReachedBound::support(const Vector3d& normal, double length,
-                             const Vector3d& from) const noexcept {
+double InflatedBound::support(const Vector3d& normal, double length,
+                              const Vector3d& from) const noexcept {
   const double along = dot_in_order(normal, normal_);
   const double centre = dot_in_order(normal, difference(centre_, from));
   const bool up = radius_ * along > above_.height * length;
@@ -42,7 +42,7 @@ double ReachedBound::support(const Vector3d& normal, double length,
          ((up ? along : -along) * face.height + std::sqrt(across2 * face.radius2)) / square_;
 }
 
-Vector3d ReachedBound::support_point(const Vector3d& normal, double length) const noexcept {
+Vector3d InflatedBound::support_point(const Vector3d& normal, double length) const noexcept {
   const double along = dot_in_order(normal, normal_);
   const bool up = radius_ * along > above_.height * length;
   if (!up && !(radius_ * -along > below_.height * length)) {
@@ -55,9 +55,9 @@ Vector3d ReachedBound::support_point(const Vector3d& normal, double length) cons
   return sum(centre_, sum(scaled(lift, normal_), scaled(out, normal)));
 }
 
-double height_of(const ReachedBound& bound, const Vector3d& normal, double length,
+double height_of(const InflatedBound& bound, const Vector3d& normal, double length,
                  const Vector3d& from) noexcept {
-  return bound.support(normal, length, from) - length * kReach;
+  return bound.support(normal, length, from) - length * kPartnerRadius;
 }
 
 Vector3d normal_of(const PackedSlab& slab) noexcept {
@@ -89,11 +89,11 @@ void LeafSearch::read(int level, std::uint32_t node, Ball (&children)[8]) const 
   for (int slot = 0; slot < count; ++slot) children[slot] = saved_ball(level, node, slot);
 }
 
-void LeafSearch::read(int level, std::uint32_t node, ReachedBound (&children)[8]) const noexcept {
+void LeafSearch::read(int level, std::uint32_t node, InflatedBound (&children)[8]) const noexcept {
   const int count = octree_.child_count(level, node);
   for (int slot = 0; slot < count; ++slot) {
     children[slot] =
-        ReachedBound(saved_ball(level, node, slot), saved_slab(level, node, slot), kReach);
+        InflatedBound(saved_ball(level, node, slot), saved_slab(level, node, slot), kPartnerRadius);
   }
 }
 
@@ -130,9 +130,9 @@ Greatest<Ball> LeafSearch::farthest(const Vector3d& from) const noexcept {
 }
 
 void LeafSearch::raise_support(const Vector3d& normal, const Vector3d& from,
-                               Greatest<ReachedBound>& greatest) const noexcept {
+                               Greatest<InflatedBound>& greatest) const noexcept {
   const double length = std::sqrt(dot_in_order(normal, normal));
-  const auto height = [&](const ReachedBound& bound) {
+  const auto height = [&](const InflatedBound& bound) {
     return height_of(bound, normal, length, from);
   };
   raise(level_, node_, reached_, height, greatest);

@@ -10,12 +10,12 @@
 
 namespace ist {
 
-/// A bound inflated by a reach: the points x with |x - c| <= radius + reach and
-/// |n · (x - c) - offset| <= half + reach, which hold the centre of any partner of that reach.
-class ReachedBound {
+/// A bound inflated by a partner radius: the points x with |x - c| <= radius + partner radius and
+/// |n · (x - c) - offset| <= half + partner radius, which hold the centre of any such partner.
+class InflatedBound {
  public:
-  ReachedBound() = default;
-  ReachedBound(const Ball& ball, const Slab& slab, double reach) noexcept;
+  InflatedBound() = default;
+  InflatedBound(const Ball& ball, const Slab& slab, double partner_radius) noexcept;
 
   /// Returns the greatest value of `normal` · (x - from). `length` is the normal's. Exact to a few
   /// roundings, for parallel normals too, because products of packed normals are exact.
@@ -63,16 +63,17 @@ class LeafSearch {
   /// Returns the leaf ball that extends farthest from a point, and how far.
   [[nodiscard]] Greatest<Ball> farthest(const Eigen::Vector3d& from) const noexcept;
 
-  /// Raises `greatest` to the leaf that extends farthest along a normal with kReach, from a point,
-  /// less the reach times the normal's length: no smaller reach extends farther than that.
+  /// Raises `greatest` to the leaf that extends farthest along a normal with kPartnerRadius, from a
+  /// point, less the partner radius times the normal's length: no smaller partner radius extends
+  /// farther than that.
   void raise_support(const Eigen::Vector3d& normal, const Eigen::Vector3d& from,
-                     Greatest<ReachedBound>& greatest) const noexcept;
+                     Greatest<InflatedBound>& greatest) const noexcept;
 
  private:
   [[nodiscard]] Ball saved_ball(int level, std::uint32_t node, int slot) const noexcept;
   [[nodiscard]] Slab saved_slab(int level, std::uint32_t node, int slot) const noexcept;
   void read(int level, std::uint32_t node, Ball (&children)[8]) const noexcept;
-  void read(int level, std::uint32_t node, ReachedBound (&children)[8]) const noexcept;
+  void read(int level, std::uint32_t node, InflatedBound (&children)[8]) const noexcept;
   template <typename Bound, typename Value>
   void raise(int level, std::uint32_t node, const Bound (&children)[8], const Value& value,
              Greatest<Bound>& greatest) const noexcept;
@@ -82,11 +83,11 @@ class LeafSearch {
   int level_;
   std::uint32_t node_ = 0;
   Ball balls_[8];  // the node's children
-  ReachedBound reached_[8];
+  InflatedBound reached_[8];
 };
 
 /// Returns the value of a leaf in LeafSearch::raise_support(). `length` is the normal's.
-[[nodiscard]] double height_of(const ReachedBound& bound, const Eigen::Vector3d& normal,
+[[nodiscard]] double height_of(const InflatedBound& bound, const Eigen::Vector3d& normal,
                                double length, const Eigen::Vector3d& from) noexcept;
 
 /// The normal of a packed slab, exact.

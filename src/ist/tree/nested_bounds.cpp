@@ -131,7 +131,7 @@ struct Fit {
   PackedSlab packed;
   Vector3d normal;
   double length;
-  Greatest<ReachedBound> above, below;  // the leaves that reach farthest
+  Greatest<InflatedBound> above, below;  // the leaves that reach farthest
 
   explicit Fit(const Vector3d& axis) noexcept
       : packed(longest_normal(axis)), normal(normal_of(packed)), length(length_of(normal)) {}

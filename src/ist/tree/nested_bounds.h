@@ -11,28 +11,28 @@
 /// (docs/guarantees.md, Nested bounds).
 namespace ist {
 
-/// The reach of a leaf for a partner is the partner's radius, and the margin and pads of the test.
-/// Slabs are nested for this reach, in voxels: a partner of the same voxel size, at a margin of 3/8
+/// The partner radius of a test of two leaves is the other leaf's radius, with the margin and pads.
+/// Slabs are nested for this one, in voxels: a partner of the same voxel size, at a margin of 3/8
 /// voxel.
-inline constexpr double kReach = 1.25;
+inline constexpr double kPartnerRadius = 1.25;
 
-/// The part of a larger reach's excess by which slabs must count as wider.
-inline constexpr double kReachRise = 1.0 / 3;
+/// The part of a larger partner radius's excess by which slabs must count as wider.
+inline constexpr double kPartnerRise = 1.0 / 3;
 
-/// Returns by how much the slabs of a tree's inner nodes must count as wider for a reach, mesh
-/// units.
-[[nodiscard]] inline double slab_rise(double voxel_size, double reach) noexcept {
-  return kReachRise * std::max(0.0, reach - kReach * voxel_size);
+/// Returns by how much the slabs of a tree's inner nodes must count as wider for a partner radius,
+/// mesh units.
+[[nodiscard]] inline double slab_rise(double voxel_size, double partner_radius) noexcept {
+  return kPartnerRise * std::max(0.0, partner_radius - kPartnerRadius * voxel_size);
 }
 
 /// The memory that slabs need while they are nested, bytes a node above the leaves.
 inline constexpr std::uint64_t kNestingBytes = 80;
 
 /// Fits the bounds of all nodes above the leaves from the leaves' bounds, as they are packed.
-///  - A ball holds the balls of all its leaves. Its radius exceeds the smallest by at most 0.5 %
-///  and
-///    the rounding.
-///  - A slab is nested for kReach. Its normal begins with the axis along which the circles spread
+///  - A ball holds the balls of all its leaves. Its radius exceeds the smallest by at most 0.5 %,
+///    and by the rounding.
+///  - A slab is nested for kPartnerRadius. Its normal begins with the axis along which the circles
+///  spread
 ///    least in which the leaves' slabs halve their balls, and climbs to where the slab is thinner.
 ///
 /// @param pad    a bound of the arithmetic's errors: 2^-48 of the root cube's edge, voxels

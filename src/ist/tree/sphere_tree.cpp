@@ -17,14 +17,14 @@ namespace {
 
 // How far a published table ball extends from its cube's centre at most, in half edges of the cube:
 // (√12 + √96)/6, rounded up, with the radius code 3.
-constexpr double kTableReach = 2.21034343104508;
-constexpr std::size_t kTableReachCode = 3;
+constexpr double kTableExtent = 2.21034343104508;
+constexpr std::size_t kTableExtentCode = 3;
 
 // The bounding radius of implicit balls: a nested root ball of the table extends farthest
 // (docs/guarantees.md, Bounding radius).
 double implicit_bounding_radius(const Lattice& lattice) {
-  return kTableReach * 0.5 * lattice.edge(lattice.depth) +
-         leaf_excess(lattice.depth, kTableReachCode) * lattice.voxel_size;
+  return kTableExtent * 0.5 * lattice.edge(lattice.depth) +
+         leaf_excess(lattice.depth, kTableExtentCode) * lattice.voxel_size;
 }
 
 // Whether `blocks` is empty or has a block for each parent of each level.

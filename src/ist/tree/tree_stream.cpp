@@ -66,7 +66,8 @@ TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(f
   }
   if (preamble.version != kTreeFileVersion) {
     fail(ErrorCode::kTreeVersion,
-         fmt::format("it is of version {}, and this program reads version {}: build it again from the mesh",
+         fmt::format("it is of version {}, and this program reads version {}: build it again from "
+                     "the mesh",
                      preamble.version, kTreeFileVersion));
   }
   if (preamble.bytes != file_.size()) {

@@ -58,6 +58,37 @@ TEST(StoppedContacts, StopWhereTheListStops) {
   EXPECT_GT(with_some, 10);
 }
 
+// Nor does a margin widen what the bounds tell of the distance.
+TEST(StoppedContacts, TellNoWiderIntervalWithAMargin) {
+  int stopped = 0;
+  for (const Scene& scene : solids()) {
+    for (const SpherePolicy policy : kSpherePolicies) {
+      Query query(scene.fixed, scene.moving, options_of(policy));
+      ContactManifold plain(scene.fixed, scene.moving, policy);
+      for (const double margin : {0.375, 1.0}) {
+        ManifoldOptions options;
+        options.margin = margin;
+        ContactManifold wide(scene.fixed, scene.moving, policy, options);
+        for (const double x : {0.0, 1.6, 1.9, 2.6}) {
+          Eigen::Isometry3d at = scene.pose;
+          at.translation()[0] += x;
+          const DistanceInterval roots = *query.contacts(at, plain, {.tests = 0}).distance;
+          for (const std::uint64_t tests : {0u, 9u, 900u, 7'000u}) {
+            const QueryResult told = query.contacts(at, wide, {.tests = tests});
+            if (!told.complete) {
+              EXPECT_TRUE(wide.points().empty());
+            }
+            EXPECT_GE(told.distance->lower, roots.lower);
+            EXPECT_LE(told.distance->upper, roots.upper);
+            stopped += told.complete ? 0 : 1;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(stopped, 50);
+}
+
 TEST(StoppedContacts, EndAtTheFirstLookAfterTheDeadline) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kSpherePolicies) {

@@ -46,7 +46,7 @@ struct PairSums {
     if (!(recorder.pairs[i].weight > 0)) continue;
     reducer.clear();
     add_pair(reducer.adder().rule, recorder.pairs[i], reducer.adder().totals);
-    reducer.finish(*relative);
+    reducer.finish(*relative, true);
     all.push_back({leaves[i], reducer.sums()});
   }
   return all;

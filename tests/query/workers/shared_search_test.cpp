@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <iostream>
@@ -134,6 +135,29 @@ TEST_F(SharedSearchThread, WhatADeadlineCutsShortSpoilsNothing) {
     return ++turn >= 100 && helped > 20;
   }));
   EXPECT_GT(cut, 0);
+}
+
+// Whatever the frontier holds, no step is made twice.
+TEST_F(SharedSearchThread, ALimitOfTestsEndsWhereOneWorkerEnds) {
+  const Scene& scene = solids()[0];
+  for (const std::size_t pairs : {1u, 2u, 8u, 65536u}) {
+    QueryOptions options = alone_;
+    options.frontier_pairs = pairs;
+    Query single(scene.fixed, scene.moving, options);
+    options.workers = 2;
+    Query query(scene.fixed, scene.moving, options);
+    for (const std::uint64_t tests : {0u, 1u, 5u, 64u, 1000u, 20'000u, 10'000'000u}) {
+      const QueryResult one = single.leaf_pairs(scene.pose, {}, {.tests = tests});
+      const QueryResult two = query.leaf_pairs(scene.pose, {}, {.tests = tests});
+      EXPECT_LE(two.sphere_tests, std::max<std::uint64_t>(tests, 1));
+      EXPECT_EQ(two.sphere_tests, one.sphere_tests);
+      EXPECT_EQ(two.leaf_pairs, one.leaf_pairs);
+      EXPECT_EQ(two.level, one.level);
+      EXPECT_EQ(two.truncated, one.truncated);
+      EXPECT_EQ(two.distance->lower, one.distance->lower);
+      EXPECT_EQ(two.distance->upper, one.distance->upper);
+    }
+  }
 }
 
 // In turn with poses that have nothing to share, and none at all.

@@ -63,7 +63,7 @@ void ContactReducer::clear() noexcept {
   sums_.about = fixed_.origin();
 }
 
-void ContactReducer::finish(const RelativePose& pose) noexcept {
+void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
   const ContactRule& rule = adder_->rule;
   const ContactTotals& totals = adder_->totals;
   // The units are those that the kernels used, rounding and all.
@@ -84,7 +84,7 @@ void ContactReducer::finish(const RelativePose& pose) noexcept {
   sums_.weight = weight * static_cast<double>(totals.sum[kWeightSum]);
   sums_.pressure = wrench(kForceSum, kTorqueSum, weight);
   sums_.spring = wrench(kSpringSum, kSpringTorqueSum, range * weight);
-  if (!leaf_sums_) return;
+  if (!leaf_sums_ || !complete) return;
   leaf_sums_->close();
   const LeafSumUnits units{weight, lever, scale_.least_depth, scale_.size, pose, sums_.about};
   count_ = cluster(*leaf_sums_, units, points_);

@@ -26,7 +26,7 @@ namespace ist::detail {
 /// The kernels add up, in float and fixed point, what their adder() is given; this class turns it
 /// into mesh units and the fixed tree's frame.
 ///
-/// The constructor reserves all memory: 80 kB, and LeafSums where there are points. A query
+/// The constructor reserves all memory: 80 kB, and with points LeafSums. A query
 /// allocates nothing and locks nothing. One object belongs to one thread at a time.
 class ContactReducer {
  public:
@@ -44,8 +44,8 @@ class ContactReducer {
   [[nodiscard]] ContactAdder& adder() noexcept { return *adder_; }
   /// Returns the sums by leaf, to which the adder's terms go, or null where no points are wanted.
   [[nodiscard]] LeafSums* leaf_sums() noexcept { return leaf_sums_ ? &*leaf_sums_ : nullptr; }
-  /// Makes sums and contacts of all that was added at a pose.
-  void finish(const RelativePose& pose) noexcept;
+  /// Makes sums of all that was added at a pose and, where that is complete, contacts.
+  void finish(const RelativePose& pose, bool complete) noexcept;
 
   /// Returns the contacts, from finish() to the next clear().
   [[nodiscard]] std::span<const Contact> points() const noexcept {

@@ -47,6 +47,10 @@ class LeafSums final : public ContactTermsStream {
   /// Ends the list: the last leaf is a node, too.
   void close() noexcept;
 
+  /// Returns nodes that are complete, whatever another thread appends behind them.
+  [[nodiscard]] std::span<const LeafSum> part(std::size_t begin, std::size_t count) const noexcept {
+    return {nodes_.data() + begin, count};
+  }
   /// Returns the nodes, in the order of the fixed tree; without the last one until close().
   [[nodiscard]] std::span<LeafSum> nodes() noexcept { return {nodes_.data(), count_}; }
   /// Returns the level of the nodes: 0 as long as they are leaves.

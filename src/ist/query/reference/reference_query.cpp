@@ -177,8 +177,7 @@ bool ReferenceState::overlap(const Node& a, const Node& b) noexcept {
   ++tests_;
   const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
   const Pads& pads = a.level == 0 && b.level == 0 ? leaf_ : inner_;
-  const double radius_sum = (a.ball.radius + b.ball.radius) + pads.ball;
-  if (dot(apart, apart) > radius_sum * radius_sum) return false;
+  if (are_apart(a.ball, b.ball, pads.ball)) return false;
   return policy_ != SpherePolicy::kSlab ||
          !(beyond(a.slab, apart, b.ball.radius + pads.fixed_slab) ||
            beyond(b.slab, -apart, a.ball.radius + pads.moving_slab));

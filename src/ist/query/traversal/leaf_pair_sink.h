@@ -25,6 +25,9 @@ class LeafPairSink {
   /// Appends leaf pairs that another sink took.
   void append(std::span<const LeafPair> leaf_pairs) noexcept;
 
+  /// Forgets all pairs that were appended to the span.
+  void clear() noexcept { count_ = 0; }
+
   /// Returns the number of leaf pairs appended, in the span or not; with a stream, of those that it
   /// was given.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }

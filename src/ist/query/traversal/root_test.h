@@ -8,14 +8,14 @@ namespace ist {
 
 /// The test of the two root balls, in double, and the distance of the surfaces in them.
 struct RootTest {
-  bool overlap;  ///< with the pad of inner nodes: no search in float would find a pair if not
-  /// The rounding error of a test in double and the margin, mesh units: the interval allows for it.
-  double pad;
+  /// Within the margin and the pad of inner nodes: no search in float would find a pair if not.
+  bool overlap;
+  double pad;  ///< the rounding error of a test in double, mesh units: the interval allows for it
   DistanceInterval distance;
 };
 
-/// Tests the two roots; `margin`, mesh units, is added to the sum of radii. Precondition: both
-/// trees have `policy`.
+/// Tests the two roots, which overlap up to `margin`, mesh units, apart. Precondition: both trees
+/// have `policy`.
 [[nodiscard]] RootTest test_roots(const SphereTree& fixed, const SphereTree& moving,
                                   SpherePolicy policy, const RelativePose& pose,
                                   double margin = 0) noexcept;

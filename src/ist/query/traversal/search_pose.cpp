@@ -64,7 +64,7 @@ SearchPose inflated(const SearchPose& pose, double by) noexcept {
   SearchPose inflated = pose;
   inflated.leaf = more(pose.leaf, kLeafMargin * by, kLeafMargin * by);
   inflated.inner =
-      more(pose.inner, kInnerMargin * by, kInnerMargin * (1 + kReachRise * kInnerMargin) * by);
+      more(pose.inner, kInnerMargin * by, kInnerMargin * (1 + kPartnerRise * kInnerMargin) * by);
   return inflated;
 }
 

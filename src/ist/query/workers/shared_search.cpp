@@ -1,7 +1,6 @@
 #include "ist/query/workers/shared_search.h"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace ist {
 namespace {
@@ -51,6 +50,11 @@ SharedSearch::End SharedSearch::run(const SearchPose& pose, typename Lister::Sin
                                     const BudgetMeter& meter, Measured measured) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
   ++sharing_.queries;
+  if (meter.budget().has_tests()) {  // alone, so that no step is made twice
+    Lister alone(pose, sink, meter, measured);
+    const std::size_t steps = caller_.run(alone);
+    return {steps, alone.tests(), sink.count(), alone.bounds()};
+  }
   // Lists, but stops at the first level with enough pairs to share.
   struct Widening : Lister {
     using Lister::Lister;
@@ -70,7 +74,7 @@ SharedSearch::End SharedSearch::run(const SearchPose& pose, typename Lister::Sin
   above.steps = step;
   sharing_.worth += widening.worth ? 1U : 0U;
   const Frontier& pairs = caller_.frontier(step);
-  if (!widening.worth || meter.budget().has_tests() || job_.busy()) {
+  if (!widening.worth || job_.busy()) {
     Lister alone(pose, sink, BudgetMeter(meter.budget(), above.tests), measured);
     const std::size_t steps = caller_.descend(step, pairs, 0, alone);
     above.bounds.add(alone.bounds());
@@ -80,8 +84,11 @@ SharedSearch::End SharedSearch::run(const SearchPose& pose, typename Lister::Sin
   share(pose, measured, step, pairs);
   End end{plan_.steps().size(), above.tests, 0, above.bounds};
   if (!do_chunks<Lister>(meter.budget(), sink, end)) {
-    if (sink.stopped()) above.leaf_pairs = sink.count();
-    if constexpr (std::is_same_v<Lister, ContactVisitor>) sink.clear();
+    if (sink.stopped()) {
+      above.leaf_pairs = sink.count();
+    } else {
+      sink.clear();
+    }
     return above;
   }
   end.leaf_pairs = sink.count();
@@ -148,7 +155,7 @@ void SharedSearch::collect(const Part& part, LeafPairSink& sink) noexcept {
 }
 
 void SharedSearch::collect(const Part& part, ContactOutput& sink) noexcept {
-  sink.append(part.totals, found_leaves_.nodes().subspan(part.begin, part.count));
+  sink.append(part.totals, found_leaves_.part(part.begin, part.count));
 }
 
 void SharedSearch::share(const SearchPose& pose, Measured measured, std::size_t step,

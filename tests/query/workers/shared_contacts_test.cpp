@@ -1,0 +1,95 @@
+// Contacts that two workers find are those of one, whatever becomes of the second.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "ist/query/workers/shared_search.h"
+#include "query/contacts/contact_cases.h"
+#include "query/scenes.h"
+#include "query/workers/stall.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+class SharedContactsThread : public ::testing::Test {
+ protected:
+  // Until `done`, or for five minutes: a machine that is busy is no failure.
+  bool ask_until(Query& query, const std::function<bool()>& done) {
+    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+      if (!same(find_contacts(query, points_, scene_.pose), expected_)) return false;
+      if (done()) return true;
+    }
+    return false;
+  }
+
+  const Scene& scene_ = shells();
+  const QueryOptions shared_ = options_of(SpherePolicy::kSlab, "", 2);
+  ContactManifold points_{scene_.fixed, scene_.moving, SpherePolicy::kSlab};
+  const FoundContacts expected_ = [this] {
+    Query query(scene_.fixed, scene_.moving, options_of(SpherePolicy::kSlab));
+    return find_contacts(query, points_, scene_.pose);
+  }();
+};
+
+TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherStalls) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  for (const HandOver point :
+       {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed, HandOver::kWorked}) {
+    {
+      const Stall stall(point);
+      ASSERT_TRUE(ask_until(query, Stall::reached));
+      for (int later = 0; later < 10; ++later) {
+        ASSERT_TRUE(same(find_contacts(query, points_, scene_.pose), expected_));
+      }
+    }
+    const std::uint64_t before = query.sharing().chunks;
+    ASSERT_TRUE(ask_until(query, [&] { return query.sharing().chunks > before; }));
+  }
+}
+
+// Each time it stalls it is let go on while the caller collects its parts, or in later queries.
+TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherIsLate) {
+  Query query(scene_.fixed, scene_.moving, shared_);
+  for (int round = 0; round < 16; ++round) {
+    const Stall stall(round % 2 == 0 ? HandOver::kClaimed : HandOver::kWorked);
+    ASSERT_TRUE(ask_until(query, Stall::reached));
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(round * 25us);
+      Stall::release();
+    });
+    for (int later = 0; later < 6; ++later) {
+      ASSERT_TRUE(same(find_contacts(query, points_, scene_.pose), expected_));
+    }
+  }
+}
+
+// The worker leaves to the caller the chunks whose leaves it has no room for.
+TEST(SharedContacts, OfMoreLeavesThanTheWorkerHasRoomFor) {
+  BuildOptions build;
+  build.voxel_size = 2.0 / 150;
+  build.spheres = SpherePolicy::kSimple;
+  const SphereTree ball = build_tree(icosphere(4, 1), build);
+  const Eigen::Isometry3d pose = shift({build.voxel_size / 4, 0, 0});
+  ManifoldOptions options;
+  options.max_leaves = 1 << 20;
+  ContactManifold points(ball, ball, SpherePolicy::kSimple, options);
+  Query single(ball, ball, options_of(SpherePolicy::kSimple));
+  const FoundContacts expected = find_contacts(single, points, pose);
+  EXPECT_GT(expected.points.size(), 8u);
+  Query query(ball, ball, options_of(SpherePolicy::kSimple, "", 2));
+  const auto give_up = Clock::now() + 300s;
+  for (int repeat = 0; repeat < 10 || (query.sharing().chunks == 0 && Clock::now() < give_up);
+       ++repeat) {
+    ASSERT_TRUE(same(find_contacts(query, points, pose), expected));
+  }
+  EXPECT_GT(query.sharing().chunks, 0u);
+}
+
+}  // namespace
+}  // namespace ist::test
