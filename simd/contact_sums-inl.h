@@ -71,11 +71,13 @@ HWY_INLINE Vector Turned(const SearchPose& pose, const Vector& v) {
 }
 
 // Adds up terms, a vector at a time: twin of ist::to_fixed_point. A term becomes a whole number in
-// the last bits of a sum with kToWhole; what is added up with it is taken off at the end.
+// the last bits of a sum with kToWhole; what is added up with it is taken off at the start.
 class FixedPointSums {
  public:
-  HWY_INLINE FixedPointSums() {
-    for (auto& sum : sums_) sum = hn::Zero(hn::RebindToUnsigned<Full>());
+  // For the terms of so many vectors.
+  HWY_INLINE explicit FixedPointSums(std::size_t vectors) {
+    const auto added = std::bit_cast<std::uint32_t>(kToWhole) * static_cast<std::uint32_t>(vectors);
+    for (auto& sum : sums_) sum = hn::Set(hn::RebindToUnsigned<Full>(), 0U - added);
   }
   HWY_INLINE void Add(std::size_t place, hn::Vec<Full> term) {
     const hn::RebindToUnsigned<Full> du;
@@ -86,13 +88,11 @@ class FixedPointSums {
     Add(place + 1, terms.y);
     Add(place + 2, terms.z);
   }
-  // Adds the sums of `vectors` vectors to `totals`.
-  HWY_INLINE void AddTo(std::size_t vectors, std::int64_t* totals) const {
-    const hn::RebindToUnsigned<Full> du;
-    const auto magic = std::bit_cast<std::uint32_t>(kToWhole) *
-                       static_cast<std::uint32_t>(vectors * hn::Lanes(du));
+  // Adds the sums to `totals`. No sum of some lanes exceeds what 32 bits hold, either.
+  HWY_INLINE void AddTo(std::int64_t* totals) const {
+    const hn::RebindToSigned<Full> di;
     for (std::size_t i = 0; i < kContactSums; ++i) {
-      totals[i] += static_cast<std::int32_t>(hn::GetLane(hn::SumOfLanes(du, sums_[i])) - magic);
+      totals[i] += hn::GetLane(hn::SumOfLanes(di, hn::BitCast(di, sums_[i])));
     }
   }
 
@@ -164,9 +164,8 @@ HWY_INLINE std::size_t FindTerms(const ContactRule& rule, const ContactLanes& la
 HWY_INLINE void AddTerms(const ContactRule& rule, const ContactTerms& terms,
                          std::int64_t* HWY_RESTRICT totals) {
   const Full d;
-  FixedPointSums sums;
-  std::size_t vectors = 0;
-  for (std::size_t i = 0; i < terms.count; i += hn::Lanes(d), ++vectors) {
+  FixedPointSums sums((terms.count + hn::Lanes(d) - 1) / hn::Lanes(d));
+  for (std::size_t i = 0; i < terms.count; i += hn::Lanes(d)) {
     const auto load = [&](const float* from) { return hn::Load(d, from + i); };
     const Vector p{load(terms.x), load(terms.y), load(terms.z)};
     const Vector force{load(terms.force_x), load(terms.force_y), load(terms.force_z)};
@@ -178,7 +177,7 @@ HWY_INLINE void AddTerms(const ContactRule& rule, const ContactTerms& terms,
     sums.Add(kSpringSum, Scaled(force, stretch));
     sums.Add(kSpringTorqueSum, Scaled(torque, stretch));
   }
-  sums.AddTo(vectors, totals);
+  sums.AddTo(totals);
 }
 
 // Vector twin of ist::add_contacts_scalar. Each stage is a loop of its own, so that the long chains
