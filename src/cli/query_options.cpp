@@ -148,7 +148,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
   command.add_flag("--verify", options.verify,
                    "run each engine at each pose once more and check the answers against the "
                    "guarantee, some 0.1 s a pose; exit code 5 if it is broken. With tight and "
-                   "slab, only meshes and trees built with --exact show whether a pair is missing");
+                   "slab, only meshes and trees built with --exact show that bounds hold the "
+                   "surface");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
 }

@@ -180,16 +180,17 @@ void verify(Engines& engines, const Bodies& bodies, std::span<const Eigen::Isome
       progress.add(1);
     }
   }
-  const bool nested = std::all_of(engines.begin(), engines.end(),
-                                  [](const Engine& engine) { return engine.nested(); });
   const bool by_triangles = !is_implicit(bodies.policy) && check.knows_geometry();
-  std::fprintf(stderr,
-               "verified: at each of %zu poses, the bounds of every leaf pair overlap, and no pair "
-               "of voxels whose %s is missing\n",
-               poses.size(),
-               !nested        ? "cubes intersect"
-               : by_triangles ? "bounds overlap or whose triangles cross"
-                              : "bounds overlap");
+  for (const Engine& engine : engines) {
+    std::fprintf(
+        stderr,
+        "verified, %s: at each of %zu poses, the bounds of every leaf pair overlap, and no "
+        "pair of voxels whose %s is missing\n",
+        std::string(engine.name()).c_str(), poses.size(),
+        !engine.nested() ? "cubes intersect"
+        : by_triangles   ? "bounds overlap or whose triangles cross"
+                         : "bounds overlap");
+  }
 }
 
 }  // namespace

@@ -38,7 +38,12 @@ TEST_F(Verify, WhatIsTrueIsConfirmed) {
                     "--json", "--spheres", spheres, "--engine", "reference", "--engine", "simd",
                     "--workers", workers});
       EXPECT_EQ(json_lines(result.out).size(), 8u);
-      EXPECT_TRUE(says(result.err, "verified: at each of 4 poses, the bounds of every leaf pair"));
+      EXPECT_TRUE(says(result.err,
+                       "verified, reference: at each of 4 poses, the bounds of every "
+                       "leaf pair overlap"));
+      EXPECT_TRUE(says(result.err,
+                       "verified, simd: at each of 4 poses, the bounds of every leaf "
+                       "pair overlap"));
       EXPECT_TRUE(says(result.err, spheres == "simple"  ? "bounds overlap is missing"
                                    : spheres == "table" ? "cubes intersect is missing"
                                                         : "triangles cross is missing"));
