@@ -161,8 +161,8 @@ class Watch {
   void press_ends() {
     // Below it, the flicker of one count of the encoders in each direction, 5 mN, is 1 % of it.
     EXPECT_GT(least_, 0.6) << "N: hardly pressed";
-    // Still is less than 1 %. With voxels of 0.8 mm one press in 200 is not, by up to 3.1 %: the tool's
-    // steps circle round the balance where few pairs bear it (perf/NOTES.md).
+    // Still is less than 1 %. With voxels of 0.8 mm one press in 200 is not, by up to 3.1 %: the
+    // tool's steps circle round the balance where few pairs bear it (perf/NOTES.md).
     const double trembles = (most_ - least_) / most_;
     noise_.sample(trembles, 0.04);
     ++presses_;

@@ -118,14 +118,6 @@ class AllPairsOf : public ::testing::TestWithParam<SpherePolicy> {};
 INSTANTIATE_TEST_SUITE_P(Policies, AllPairsOf, ::testing::ValuesIn(kSpherePolicies),
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
 
-// A vertex of each brought together, and then a little apart or into each other.
-Eigen::Isometry3d near_touch(const TriangleMesh& a, const TriangleMesh& b,
-                             const Eigen::Matrix3d& rotation, double gap, Random& random) {
-  const Eigen::Vector3d on_a = a.vertices[random.below(a.vertices.size())];
-  const Eigen::Vector3d on_b = b.vertices[random.below(b.vertices.size())];
-  return pose_of(rotation, on_a - rotation * on_b + gap * random.direction());
-}
-
 TEST_P(AllPairsOf, VoxelSizesFromOneToEight) {
   const TriangleMesh ball = icosphere(3, 1), block = box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8});
   Random random(1);

@@ -76,10 +76,8 @@ TEST_P(ImplicitPolicies, FindTheSameLeafPairsOfRandomBodies) {
     Implicit bodies(fixed, moving, GetParam());
     for (int i = 0; i < 8; ++i) {
       const Eigen::Matrix3d rotation = random.rotation();
-      const Eigen::Vector3d on_a = a.vertices[random.below(a.vertices.size())];
-      const Eigen::Vector3d on_b = b.vertices[random.below(b.vertices.size())];
       const double gap = random.uniform(-1, 1) * fixed.voxel_size();
-      bodies.check(pose_of(rotation, on_a - rotation * on_b + gap * random.direction()));
+      bodies.check(near_touch(a, b, rotation, gap, random));
     }
     found += bodies.found;
     lost += bodies.lost_by_published;

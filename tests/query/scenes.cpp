@@ -52,6 +52,13 @@ QueryOptions options_of(SpherePolicy policy, const std::string& target, int work
   return options;
 }
 
+Eigen::Isometry3d near_touch(const TriangleMesh& a, const TriangleMesh& b,
+                             const Eigen::Matrix3d& rotation, double gap, Random& random) {
+  const Eigen::Vector3d on_a = a.vertices[random.below(a.vertices.size())];
+  const Eigen::Vector3d on_b = b.vertices[random.below(b.vertices.size())];
+  return pose_of(rotation, on_a - rotation * on_b + gap * random.direction());
+}
+
 bool same(const FoundPairs& a, const FoundPairs& b) {
   const auto numbers = [](const QueryResult& r) {
     return std::tuple(r.status, r.complete, r.truncated, r.level, r.leaf_pairs, r.sphere_tests,

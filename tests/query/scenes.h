@@ -8,6 +8,7 @@
 
 #include "ist/query/query.h"
 #include "query/query_cases.h"
+#include "support/shapes.h"
 
 namespace ist::test {
 
@@ -35,6 +36,11 @@ using Scenes = std::initializer_list<std::reference_wrapper<const Scene>>;
 
 [[nodiscard]] QueryOptions options_of(SpherePolicy policy, const std::string& target = "",
                                       int workers = 1);
+
+/// A pose that brings a vertex of each mesh together, and then `gap` apart in any direction.
+[[nodiscard]] Eigen::Isometry3d near_touch(const TriangleMesh& a, const TriangleMesh& b,
+                                           const Eigen::Matrix3d& rotation, double gap,
+                                           Random& random);
 
 /// Whether two answers are the same bits.
 [[nodiscard]] bool same(const FoundPairs& a, const FoundPairs& b);

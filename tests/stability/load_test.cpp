@@ -33,20 +33,20 @@ void PrintTo(const LoadPair& pair, std::ostream* out) { *out << pair.name; }
 
 class Load : public ::testing::TestWithParam<LoadPair> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    Pairs, Load,
-    ::testing::Values(LoadPair{"human",
-                               "human_maxilla.stl",
-                               "human_mandible.stl",
-                               {0, -5, 45},
-                               {{{kFew, 0x229459dc0563b20d}, {kThousandTimes, 0xd309919fc2177524}}}},
-                      LoadPair{
-                          "spl",
-                          "spl_cranium_face.stl",
-                          "spl_mandible.stl",
-                          {4, -22, -10},
-                          {{{kFew, 0x4cf68ca3858d47bd}, {kThousandTimes, 0x41c121fb10fb621e}}}}),
-    [](const auto& pair) { return std::string(pair.param.name); });
+INSTANTIATE_TEST_SUITE_P(Pairs, Load,
+                         ::testing::Values(LoadPair{"human",
+                                                    "human_maxilla.stl",
+                                                    "human_mandible.stl",
+                                                    {0, -5, 45},
+                                                    {{{kFew, 0x229459dc0563b20d},
+                                                      {kThousandTimes, 0xd309919fc2177524}}}},
+                                           LoadPair{"spl",
+                                                    "spl_cranium_face.stl",
+                                                    "spl_mandible.stl",
+                                                    {4, -22, -10},
+                                                    {{{kFew, 0x4cf68ca3858d47bd},
+                                                      {kThousandTimes, 0x41c121fb10fb621e}}}}),
+                         [](const auto& pair) { return std::string(pair.param.name); });
 
 // Mostly near where the jaws close, some anywhere, a few that are no rigid motion.
 Isometry3d random_pose(Random& random, const Vector3d& centre) {

@@ -171,10 +171,7 @@ TEST(VoxelizerMemory, ARefusalNamesASizeThatFitsTheSameLimit) {
 
 TEST(VoxelizerMemory, NothingIsRefusedThatFits) {
   const TriangleMesh mesh = test::icosphere(3, 1);
-  EXPECT_EQ(test::error_name([&] {
-              (void)voxelize(mesh, {0.05, true, 64u << 20, 24});
-            }),
-            "none");
+  EXPECT_EQ(test::error_name([&] { (void)voxelize(mesh, {0.05, true, 64u << 20, 24}); }), "none");
 }
 
 TEST(VoxelizerMemory, WhereNoSizeFitsTheRefusalSaysSo) {

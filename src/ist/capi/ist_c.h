@@ -327,9 +327,9 @@ typedef struct ist_contact_sums {
 } ist_contact_sums;
 
 /* Reduces all leaf pairs to a few contacts and to sums. `contacts` may be NULL where `capacity` is
- * 0; `sums` may be NULL; `budget` may be NULL: no limit. Errors: IST_POSE_INVALID;
- * IST_NOT_PREPARED where options->contacts was -1. Cost: as ist_query_leaf_pairs, plus 10 to 15 ns
- * per pair. [real time] */
+ * 0; `sums` may be NULL; `budget` may be NULL: no limit. If the budget ends it, there are no
+ * contacts and the sums make no force. Errors: IST_POSE_INVALID; IST_NOT_PREPARED where
+ * options->contacts was -1. Cost: ist_query_leaf_pairs plus 10 to 15 ns per pair. [real time] */
 IST_C_API ist_status ist_query_contacts(ist_query* query, const double pose[16],
                                         const ist_budget* budget, ist_contact* contacts,
                                         size_t capacity, ist_contact_sums* sums,

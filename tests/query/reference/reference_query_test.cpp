@@ -45,9 +45,8 @@ class ReferenceOracle : public ::testing::TestWithParam<Engine> {
     EXPECT_EQ(answer.result.status, QueryStatus::kDone);
     EXPECT_TRUE(answer.result.complete);
     EXPECT_EQ(answer.result.level, 0);
-    EXPECT_TRUE(
-        keeps_guarantee(bodies.at(pose), GetParam().policy, answer.leaf_pairs, answer.result.pad,
-                        published_are_nested(GetParam().policy)))
+    EXPECT_TRUE(keeps_guarantee(bodies.at(pose), GetParam().policy, answer.leaf_pairs,
+                                answer.result.pad, published_are_nested(GetParam().policy)))
         << "pose\n"
         << pose.matrix();
     return answer.leaf_pairs.size();

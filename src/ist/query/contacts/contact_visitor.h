@@ -49,13 +49,13 @@ class ContactOutput {
 };
 
 /// Adds up all leaf pairs within a budget: the last step tests and weighs them in one.
-class ContactVisitor : public VisitorBase {
+class ContactVisitor : public MeteredVisitor {
  public:
   using Sink = ContactOutput;
 
   ContactVisitor(const SearchPose& pose, ContactOutput& sink, const BudgetMeter& meter = {},
                  Measured measured = Measured::kNothing) noexcept
-      : pose_(pose), sink_(sink), meter_(meter), measured_(measured) {}
+      : MeteredVisitor(pose, meter, measured), sink_(sink) {}
 
   Advanced advance(const SearchBatch& batch) noexcept {
     const Advanced made =
@@ -68,16 +68,8 @@ class ContactVisitor : public VisitorBase {
   }
   static bool leaves(const Frontier& /*none*/) noexcept { return true; }
 
-  /// Returns the tests made, with those that the meter began with.
-  [[nodiscard]] std::uint64_t tests() const noexcept { return meter_.spent(); }
-  [[nodiscard]] const DistanceBounds& bounds() const noexcept { return bounds_; }
-
  private:
-  const SearchPose& pose_;
   ContactOutput& sink_;
-  BudgetMeter meter_;
-  Measured measured_;
-  DistanceBounds bounds_;
 };
 
 }  // namespace ist

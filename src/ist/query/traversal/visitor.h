@@ -62,15 +62,32 @@ struct VisitorBase {
   static std::size_t most_leaves() noexcept { return kAll; }
 };
 
+/// A visitor that spends a budget and measures distances.
+class MeteredVisitor : public VisitorBase {
+ public:
+  MeteredVisitor(const SearchPose& pose, const BudgetMeter& meter, Measured measured) noexcept
+      : pose_(pose), meter_(meter), measured_(measured) {}
+
+  /// Returns the tests made, with those that the meter began with.
+  [[nodiscard]] std::uint64_t tests() const noexcept { return meter_.spent(); }
+  [[nodiscard]] const DistanceBounds& bounds() const noexcept { return bounds_; }
+
+ protected:
+  const SearchPose& pose_;
+  BudgetMeter meter_;
+  Measured measured_;
+  DistanceBounds bounds_;
+};
+
 /// Passes all leaf pairs to a sink, within a budget. A budget that ends the search early leaves the
 /// first leaf pairs in the sink.
-class PairLister : public VisitorBase {
+class PairLister : public MeteredVisitor {
  public:
   using Sink = LeafPairSink;
 
   PairLister(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter = {},
              Measured measured = Measured::kNothing) noexcept
-      : pose_(pose), sink_(sink), meter_(meter), measured_(measured) {}
+      : MeteredVisitor(pose, meter, measured), sink_(sink) {}
 
   Advanced advance(const SearchBatch& batch) noexcept {
     const Advanced made = batch.measure(measured_, pose_, bounds_, meter_.allow());
@@ -83,16 +100,8 @@ class PairLister : public VisitorBase {
   }
   [[nodiscard]] std::size_t most_leaves() const noexcept { return meter_.most_pairs(); }
 
-  /// Returns the tests made, with those that the meter began with.
-  [[nodiscard]] std::uint64_t tests() const noexcept { return meter_.spent(); }
-  [[nodiscard]] const DistanceBounds& bounds() const noexcept { return bounds_; }
-
  private:
-  const SearchPose& pose_;
   LeafPairSink& sink_;
-  BudgetMeter meter_;
-  Measured measured_;
-  DistanceBounds bounds_;
 };
 
 }  // namespace ist
