@@ -28,9 +28,10 @@ struct Data {
     pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
     pose.leaf = pose.inner = {1e-4F, 1e-4F, 1e-4F};
     decode(step.moving, 0, scratch->moving, 0);
-    decode(step.fixed, 0, scratch->fixed, 0);
+    decode(step.fixed, 0, scratch->fixed[0].lanes, 0);
     for (const Lane lane : {kX, kY, kZ}) {
-      pose.translation[lane] = scratch->moving.lane[lane][0] - scratch->fixed.lane[lane][0];
+      pose.translation[lane] =
+          scratch->moving.lane[lane][0] - scratch->fixed[0].lanes.lane[lane][0];
     }
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       for (std::uint32_t node = 0; node < nodes; ++node) moving.push_back(node);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what a hand feels where it closes two jaws: the force and the gap over time.
+"""Draws what a hand feels where it closes two jaws: the force over time, and how far the hand goes beyond the tool.
 
     scripts/draw_closing.py PATH/TO/ist OUTPUT.svg [SCENE.toml]
 
@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt
 README = pathlib.Path(__file__).resolve().parent.parent / "README.md"
 METRES = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "inch": 0.0254}  # as base/units has them
 EVERY = 5  # ticks a point of the picture
-FORCE, BAND, STRETCH = "#b03a2e", "#aed6f1", "#1f618d"
+FORCE, STRETCH = "#b03a2e", "#1f618d"
 
 
 def readme_scene():
@@ -45,18 +45,15 @@ def draw(ticks, period, unit, output):
     times = [period * tick["tick"] for tick in ticks]
     touching = [tick["leaf_pairs"] > 0 for tick in ticks]
     plt.rcParams.update({"svg.hashsalt": "ist", "svg.fonttype": "none", "font.size": 9})
-    figure, (felt, gap) = plt.subplots(2, 1, sharex=True, figsize=(8, 4.6))
+    figure, (felt, beyond) = plt.subplots(2, 1, sharex=True, figsize=(8, 4.6))
 
     felt.plot(times, [math.hypot(*tick["wrench"][:3]) for tick in ticks], color=FORCE, linewidth=1.4)
     felt.set_ylabel("force felt, N")
-    known = [(time, tick["gap_lower"], tick["gap_upper"]) for time, tick in zip(times, ticks) if tick["gap_upper"] is not None]
-    gap.fill_between(*zip(*known), color=BAND, linewidth=0, label="the gap is in this band")
     ahead = [math.dist(tick["device"][:3], tick["tool"][:3]) / METRES[unit] for tick in ticks]
-    gap.plot(times, ahead, color=STRETCH, linewidth=1.4, label="the hand is so far beyond the tool")
-    gap.set_ylabel(unit)
-    gap.set_xlabel("s")
-    gap.legend(frameon=False, loc="upper center")
-    for axes in (felt, gap):
+    beyond.plot(times, ahead, color=STRETCH, linewidth=1.4)
+    beyond.set_ylabel(f"hand beyond the tool, {unit}")
+    beyond.set_xlabel("s")
+    for axes in (felt, beyond):
         axes.set_ylim(bottom=0)
         axes.margins(x=0)
         axes.spines[["top", "right"]].set_visible(False)

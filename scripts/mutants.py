@@ -23,6 +23,11 @@ BINS = "src/ist/voxel/triangle_bins.cpp"
 BOX = "src/ist/voxel/triangle_box.h"
 EXACT = "src/ist/query/exact/"
 CONTACTS = "src/ist/query/contacts/"
+COHERENT = "src/ist/query/coherent/"
+FRONT_INL = "simd/front-inl.h"
+FRONT_STEP = "simd/front_step.h"
+FRONT_SCALAR = "simd/front_scalar.cpp"
+QUERY_STATE = "src/ist/query/query_state.cpp"
 ADVICE = "src/advise/"
 CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
@@ -34,6 +39,8 @@ FRICTION = HAPTICS + "effects/friction_effect.cpp"
 TANGENCY = "stability_test *Tangency*"
 KERNELS = "search_test *Border*:*Advance*"
 GUARANTEE = "search_test *Guarantee*-*Thread*"
+FRONTS = "search_test *Front*"
+COHERENT_ANSWERS = "coherent_test *CoherentQuery.*"
 
 MUTANTS = [
     # What a query decides by.
@@ -79,9 +86,16 @@ MUTANTS = [
            [("src/ist/base/pose.cpp", "if (!(determinant(rotation) > 0)) return std::nullopt;",
              "static_cast<void>(determinant(rotation));")], ["base_test"]),
     Mutant("query-forgets-mxcsr", "a query computes as its caller's flags have it",
-           [("src/ist/query/query.cpp", """  const ScopedFloatEnvironment environment;
+           [("src/ist/query/query.cpp", """                              const Budget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
-  LeafPairSink sink(s.plan, s.kernels, out);""", "  detail::QueryState& s = *state_;\n  LeafPairSink sink(s.plan, s.kernels, out);")],
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  LeafPairSink sink(s.plan, s.kernels, out);""", """                              const Budget& budget) noexcept {
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  LeafPairSink sink(s.plan, s.kernels, out);""")],
            ["search_test *KeepsTheFloatEnvironment*", "stability_test *Environment*"]),
     Mutant("worker-forgets-mxcsr", "the second worker does",
            [("src/ist/query/workers/resident_worker.cpp", "const ScopedFloatEnvironment environment;", "")],
@@ -131,6 +145,86 @@ MUTANTS = [
     Mutant("row-torn", "a row that was left unfinished is taken for two",
            [("simd/step.h", "--frontier.group_count;\n  return frontier.group_count == 0 ? 0",
              "return frontier.group_count == 0 ? 0")], ["search_test *Within*:*Advance*"]),
+    # What is kept from one pose to the next.
+    Mutant("front-holds-for-too-long", "a front is taken to have all pairs a little farther apart than were searched",
+           [(COHERENT + "front_search.cpp", "front.extent = wanted.extent;", "front.extent = 1.5 * wanted.extent;")],
+           [COHERENT_ANSWERS]),
+    Mutant("front-searched-too-near", "a front lacks the pairs at the end of its slack",
+           [(COHERENT + "coherent_search.cpp", "to_float(centre, fixed_, moving_, extent)",
+             "to_float(centre, fixed_, moving_, 0.8 * extent)")], [COHERENT_ANSWERS]),
+    Mutant("margin-not-kept", "a front made for contacts without a margin answers for those with one",
+           [(COHERENT + "coherent_search.cpp",
+             "  const double need = most_apart(pose, fixed_, moving_, margin);\n  FrontAt found;",
+             "  const double need = most_apart(pose, fixed_, moving_, 0 * margin);\n  FrontAt found;")], [COHERENT_ANSWERS]),
+    Mutant("turn-is-no-motion", "only the translation of a motion is counted",
+           [(COHERENT + "motion_bound.cpp", "(i == j ? 1 : 0);", "(i == j ? 1 : 0);\n      turn(i, j) = 0;")],
+           ["coherent_test MotionBound*"]),
+    Mutant("motion-of-centres-alone", "the box of a motion does not hold what leaves reach beyond their centres",
+           [(COHERENT + "motion_bound.cpp", "const double around = reach + leaves_;", "const double around = reach - leaves_;")],
+           ["coherent_test MotionBound*"]),
+    Mutant("half-the-corners", "a motion is bounded in half of its box",
+           [(COHERENT + "motion_bound.cpp", "for (const double sz : {-1.0, 1.0})", "for (const double sz : {1.0})")],
+           ["coherent_test MotionBound*"]),
+    Mutant("pending-row-skipped", "a search that goes on forgets the pairs it was about to go down from",
+           [("src/ist/query/traversal/search.h", "for (std::size_t step = ended_ + 1; step-- > 0;)",
+             "for (std::size_t step = ended_ + (ended_ == 0 ? 1 : 0); step-- > 0;)")], ["coherent_test *ResumedSearch*"]),
+    Mutant("cut-row-searched-from", "a search goes down from a row that a limit cut, and later from the rest of it",
+           [("src/ist/query/traversal/search.h", "in_row_ = !last && cursor.moving > 0;", "in_row_ = false;")],
+           ["coherent_test *FrontSearch*"]),
+    Mutant("late-front-is-full", "a front that its deadline cut is taken for one that does not fit",
+           [(COHERENT + "front_search.cpp", "(budget.tests >= left && !budget.is_past())", "budget.tests >= left")],
+           ["coherent_test *FrontSearch*"]),
+    Mutant("full-front-is-whole", "a front that had no room for all pairs is used",
+           [(COHERENT + "front_search.cpp", "  if (whole) {", "  if (whole || keeper.full()) {")],
+           ["coherent_test *FrontSearch*:*CoherentQuery.*"]),
+    Mutant("track-runs-backwards", "the next front is made where the body came from",
+           [(COHERENT + "pose_track.cpp", "turn.angle() *= part;", "turn.angle() *= -part;")], ["coherent_test PoseTrack*"]),
+    Mutant("clearance-does-not-shrink", "the distance of a clearance is told as it was found, whatever the motion since",
+           [(QUERY_STATE, "lower = std::max(lower, front.extent - found.motion);", "lower = std::max(lower, front.extent);")],
+           ["coherent_test ClearDistance*"]),
+    Mutant("clear-of-what-is-near-now", "a clearance's upper end grows by the motion of what is near now, not of what was",
+           [(COHERENT + "coherent_search.cpp", "bound_.between(pose, front.centre, front.upper)",
+             "bound_.between(front.centre, pose, front.extent)")], ["coherent_test ClearDistance*"]),
+    Mutant("late-pairs-shown", "an answer that the clock ended shows whatever parts of a front it came to",
+           [(COHERENT + "coherent_search.cpp", "if (budget.is_past() || sink.stopped()) return false;\n    pass_on(",
+             "if (sink.stopped()) return false;\n    if (budget.is_past()) continue;\n    pass_on(")],
+           ["coherent_test *Deadline*"]),
+    Mutant("front-within-a-budget", "a query with a limit of tests is answered by what was kept",
+           [(QUERY_STATE, "if (coherent && !budget.has_tests()) {", "if (coherent) {")], ["coherent_test *Deadline*"]),
+    Mutant("front-taken-from-the-worker", "the next front is taken up while the worker makes it",
+           [(COHERENT + "coherent_search.cpp", "const bool busy = job_.busy();", "const bool busy = false;"),
+            (COHERENT + "coherent_search.cpp", "if (job_.busy() || budget.is_past()) return;", "if (budget.is_past()) return;")],
+           ["coherent_test CoherentQueryThread*"]),
+    Mutant("front-destroyed-under-the-worker", "a query goes away while the worker makes its front",
+           [(COHERENT + "coherent_search.cpp", "  worker_->retract(job_);\n  job_.wait_idle();\n", "")],
+           ["coherent_test CoherentQueryThread*"]),
+    Mutant("two-threads-in-a-query", "a query does not notice that another thread uses it",
+           [("src/ist/query/query_state.h", "state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state",
+             "&state")], ["coherent_test TwoThreads*"]),
+    Mutant("front-rows-cut", "a row that a limit cut becomes two",
+           [(FRONT_STEP, "if (rows > 0 && out.fixed.id[rows - 1] == id) return rows - 1;", "")],
+           ["coherent_test *FrontSearch*"]),
+    Mutant("front-last-pair-skipped", "the last pair of a front is not tested again",
+           [(FRONT_INL, "const VectorTest<kSlabs> test(RowVectors<kSlabs>(rows, spread), front.moving, i);\n"
+             "    const auto overlapping = hn::AndNot(test.Separate(), hn::FirstN(d, end - i));\n    const auto places",
+             "const VectorTest<kSlabs> test(RowVectors<kSlabs>(rows, spread), front.moving, i);\n"
+             "    const auto overlapping = hn::AndNot(test.Separate(), hn::FirstN(d, end - i - 1));\n    const auto places")],
+           [FRONTS]),
+    Mutant("front-room-overrun", "a front takes pairs that it has no room for",
+           [("simd/front_step.h", "front.pair_count + pairs <= front.pair_capacity", "front.pair_count + pairs / 64 <= front.pair_capacity")],
+           [FRONTS]),
+    Mutant("front-rows-not-turned", "the surfaces of a front stay as they were at its first pose",
+           [(FRONT_INL, "hn::Store(n.x, d, on.normal_x + k);", "")], [FRONTS]),
+    Mutant("front-spread-wrongly", "pairs behind the first row of a vector are tested against that row",
+           [(FRONT_INL, "hn::And(hn::Sub(hn::Load(du, row), hn::Set(du, row[0])), last)",
+             "hn::And(hn::Sub(hn::Set(du, row[0]), hn::Set(du, row[0])), last)")], [FRONTS]),
+    Mutant("front-counts-by-address", "leaf pairs of a front are named by address where a search names them by index",
+           [(COHERENT + "coherent_search.cpp", "  plan_.resolve({pairs, count});\n", "")], [COHERENT_ANSWERS]),
+    Mutant("front-adds-no-weight", "what a front adds up does not count pairs without weight",
+           [(FRONT_SCALAR, "    ++out.totals.pairs;\n", ""),
+            (FRONT_SCALAR, "    if (!(pair.weight > 0)) continue;\n", "    if (!(pair.weight > 0)) continue;\n    ++out.totals.pairs;\n")],
+           [FRONTS]),
+
     # The tree.
     Mutant("table-radius-less", "the lookup table's smallest radius is one less",
            [("src/ist/tree/lookup_table_search.h", "best_squared = farthest;\n",
@@ -272,7 +366,7 @@ MUTANTS = [
            [(CONTACTS + "leaf_sums.cpp", "if (!open_ || last_.node != leaf) {", "if (true) {")],
            ["contacts_test LeafSums*:ContactManifold*"]),
     Mutant("depth-turned-round", "depth is measured against the normal",
-           [("simd/contact_lanes.h", "const float along = (n.x * (fx - mx) + n.y * (fy - my)) + n.z * (fz - mz);",
+           [("simd/contact_lanes.h", "const float along = (n.x * (f.x - m.x) + n.y * (f.y - m.y)) + n.z * (f.z - m.z);",
              "const float along = (n.x * (mx - fx) + n.y * (my - fy)) + n.z * (mz - fz);")],
            ["search_test PairTerms*:*ContactKernels*"]),
     Mutant("weights-start-at-once", "a contact that begins to push does so with all its weight",

@@ -38,8 +38,8 @@ run() {  # preset, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
-run thread "base_test capi_test loop_test tree_test search_test workers_test" -R 'Thread|Parallel'
-run sanitize "capi_test ist_c11_test mesh_test tree_test search_test fuzz_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
+run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
+run sanitize "capi_test ist_c11_test mesh_test tree_test search_test fuzz_test coherent_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
 $long || exit 0
 
@@ -51,6 +51,7 @@ more() {  # preset, times the samples, program, filter
 echo "== Package.Subdirectory, all compiled"
 IST_COMPILE_ALL=1 ctest --preset test -R '^Package\.Subdirectory$'
 more thread 100 search_test 'SharedTreeThread.*'
+more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'  # a million ticks
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
 more test 1000 load_test '*' &
 load=$!

@@ -118,9 +118,10 @@ class Advancer {
       const std::uint32_t ahead = in_.groups[HWY_MIN(group + 8, in_.group_count - 1)].fixed;
       side.balls != nullptr ? Prefetch<kSlabs>(side, ahead) : PrefetchMasks(side, ahead);
     }
-    const std::uint32_t count = Decode<kSlabs>(side, node, scratch_.fixed, 0);
-    Turn<kSlabs>(pose_, pads_of(pose_, step_), scratch_.fixed, scratch_.rows[g]);
-    out_.Decoded(node, scratch_, g);
+    FixedGroup& fixed = scratch_.fixed[g];
+    const std::uint32_t count = Decode<kSlabs>(side, node, fixed.lanes, 0);
+    Turn<kSlabs>(pose_, pads_of(pose_, step_), fixed.lanes, fixed.rows);
+    out_.Decoded(node, fixed);
     return count;
   }
 
@@ -153,7 +154,7 @@ class Advancer {
       batch.begin[g] = at;
       batch.end[g] = at = DecodeMoving(begin, group.end, at);
       batch.rows[g] = DecodeFixed(first + g, g);
-      batch.id[g] = scratch_.fixed.id[0];
+      batch.id[g] = scratch_.fixed[g].lanes.id[0];
       tests += batch.rows[g] * (batch.end[g] - batch.begin[g]);
       begin = group.end;
     }
@@ -161,11 +162,10 @@ class Advancer {
 
   void Test(const Batch& batch) {
     for (std::size_t g = 0; g < batch.groups; ++g) {
-      const FixedRows& rows = scratch_.rows[g];
+      const FixedGroup& fixed = scratch_.fixed[g];
       for (std::uint32_t row = 0; row < batch.rows[g]; ++row) {
         const std::size_t before = out_.Begin();
-        out_.Test(rows, scratch_.points[g], row, scratch_.moving, batch.begin[g], batch.end[g],
-                  measurer_);
+        out_.Test(fixed, row, scratch_.moving, batch.begin[g], batch.end[g], measurer_);
         out_.End(batch.id[g] + row, before);
       }
       tests_ += batch.rows[g] * (batch.end[g] - batch.begin[g]);
@@ -181,7 +181,7 @@ class Advancer {
     const bool whole = group.end - begin <= kPieceNodes;
     std::size_t lanes = whole ? DecodeMoving(begin, group.end, 0) : 0;
     for (; cursor.row < rows; ++cursor.row, cursor.moving = 0) {
-      const std::uint32_t fixed = scratch_.fixed.id[cursor.row];
+      const std::uint32_t fixed = scratch_.fixed[0].lanes.id[cursor.row];
       while (begin + cursor.moving < group.end) {
         const std::uint32_t first = begin + cursor.moving;
         if ((step_.last || cursor.moving == 0) &&
@@ -192,8 +192,7 @@ class Advancer {
         if (!whole) lanes = DecodeMoving(first, end, 0);
         if (lanes > most_ - tests_) return Stop::kSpent;
         const std::size_t before = cursor.moving == 0 ? out_.Begin() : out_.Continue(fixed);
-        out_.Test(scratch_.rows[0], scratch_.points[0], cursor.row, scratch_.moving, 0, lanes,
-                  measurer_);
+        out_.Test(scratch_.fixed[0], cursor.row, scratch_.moving, 0, lanes, measurer_);
         tests_ += lanes;
         out_.End(fixed, before);
         cursor.moving = end - begin;

@@ -22,7 +22,8 @@ using Full = hn::ScalableTag<float>;
 using Eight = hn::CappedTag<float, 8>;
 
 // Read from memory: Highway 1.0.3's Iota stores its lanes one by one and then waits to load them.
-alignas(64) constexpr std::uint32_t kSlots[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+alignas(64) constexpr std::uint32_t kLaneNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                        8, 9, 10, 11, 12, 13, 14, 15};
 
 template <typename Integer>
 HWY_INLINE hn::Vec<Eight> FloatsOf(const Integer* HWY_RESTRICT values) {
@@ -63,63 +64,72 @@ HWY_INLINE std::uint32_t DecodeBlock(const SearchSide& side, std::uint32_t paren
       store(kOffset, hn::Mul(FloatsOf(slab.offset + k), slab_unit));
       store(kHalf, hn::Mul(FloatsOf(slab.half + k), slab_unit));
     }
-    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kSlots + k)), du, out.id + at + k);
+    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kLaneNumbers + k)), du, out.id + at + k);
   }
   return child_count(side, parent);
 }
 
-// Vector twin of ist::turn, for all eight rows.
+// Vector twin of ist::turn, for a vector of rows from `k` on.
+template <bool kSlabs, class D, class Lanes, class Rows>
+HWY_INLINE void TurnAt(D d, const SearchPose& pose, const Pads& pads, const Lanes& fixed,
+                       std::size_t k, Rows& rows) {
+  using V = hn::Vec<D>;
+  const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
+  const auto dot = [&](int row, V x, V y, V z) {
+    const float* r = pose.rotation + 3 * row;
+    return hn::Add(hn::Add(hn::Mul(hn::Set(d, r[0]), x), hn::Mul(hn::Set(d, r[1]), y)),
+                   hn::Mul(hn::Set(d, r[2]), z));
+  };
+  const auto x = load(kX), y = load(kY), z = load(kZ), radius = load(kRadius);
+  hn::StoreU(hn::Add(dot(0, x, y, z), hn::Set(d, pose.translation[0])), d, rows.x + k);
+  hn::StoreU(hn::Add(dot(1, x, y, z), hn::Set(d, pose.translation[1])), d, rows.y + k);
+  hn::StoreU(hn::Add(dot(2, x, y, z), hn::Set(d, pose.translation[2])), d, rows.z + k);
+  hn::StoreU(hn::Add(radius, hn::Set(d, pads.ball)), d, rows.radius + k);
+  if constexpr (kSlabs) {
+    const auto unscale = hn::Set(d, 1 / kSlabScale);
+    const auto nx = hn::Mul(load(kNormalX), unscale), ny = hn::Mul(load(kNormalY), unscale),
+               nz = hn::Mul(load(kNormalZ), unscale);
+    hn::StoreU(dot(0, nx, ny, nz), d, rows.normal_x + k);
+    hn::StoreU(dot(1, nx, ny, nz), d, rows.normal_y + k);
+    hn::StoreU(dot(2, nx, ny, nz), d, rows.normal_z + k);
+    hn::StoreU(hn::Mul(load(kOffset), unscale), d, rows.offset + k);
+    hn::StoreU(hn::Add(hn::Mul(load(kHalf), unscale), hn::Set(d, pads.slab_fixed)), d,
+               rows.half + k);
+    hn::StoreU(hn::Mul(hn::Add(radius, hn::Set(d, pads.slab_moving)), hn::Set(d, kSlabScale)), d,
+               rows.scaled_radius + k);
+  }
+}
+
+// The same for all eight rows of a fixed node.
 template <bool kSlabs>
 HWY_INLINE void Turn(const SearchPose& pose, const Pads& pads, const FixedLanes& fixed,
                      FixedRows& rows) {
   const Eight d;
-  for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
-    const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
-    const auto dot = [&](int row, hn::Vec<Eight> x, hn::Vec<Eight> y, hn::Vec<Eight> z) {
-      const float* r = pose.rotation + 3 * row;
-      return hn::Add(hn::Add(hn::Mul(hn::Set(d, r[0]), x), hn::Mul(hn::Set(d, r[1]), y)),
-                     hn::Mul(hn::Set(d, r[2]), z));
-    };
-    const auto x = load(kX), y = load(kY), z = load(kZ), radius = load(kRadius);
-    hn::StoreU(hn::Add(dot(0, x, y, z), hn::Set(d, pose.translation[0])), d, rows.x + k);
-    hn::StoreU(hn::Add(dot(1, x, y, z), hn::Set(d, pose.translation[1])), d, rows.y + k);
-    hn::StoreU(hn::Add(dot(2, x, y, z), hn::Set(d, pose.translation[2])), d, rows.z + k);
-    hn::StoreU(hn::Add(radius, hn::Set(d, pads.ball)), d, rows.radius + k);
-    if constexpr (kSlabs) {
-      const auto unscale = hn::Set(d, 1 / kSlabScale);
-      const auto nx = hn::Mul(load(kNormalX), unscale), ny = hn::Mul(load(kNormalY), unscale),
-                 nz = hn::Mul(load(kNormalZ), unscale);
-      hn::StoreU(dot(0, nx, ny, nz), d, rows.normal_x + k);
-      hn::StoreU(dot(1, nx, ny, nz), d, rows.normal_y + k);
-      hn::StoreU(dot(2, nx, ny, nz), d, rows.normal_z + k);
-      hn::StoreU(hn::Mul(load(kOffset), unscale), d, rows.offset + k);
-      hn::StoreU(hn::Add(hn::Mul(load(kHalf), unscale), hn::Set(d, pads.slab_fixed)), d,
-                 rows.half + k);
-      hn::StoreU(hn::Mul(hn::Add(radius, hn::Set(d, pads.slab_moving)), hn::Set(d, kSlabScale)), d,
-                 rows.scaled_radius + k);
-    }
-  }
+  for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) TurnAt<kSlabs>(d, pose, pads, fixed, k, rows);
 }
 
-// A row in vectors: each of its numbers in all lanes.
+// Rows in vectors, one a lane: all lanes of the same row, or each lane of its own.
 template <bool kSlabs>
 struct RowVectors {
   using V = hn::Vec<Full>;
   V x, y, z, radius, normal_x, normal_y, normal_z, offset, half, scaled_radius;
 
-  HWY_INLINE RowVectors(const FixedRows& f, std::size_t row) {
-    const auto set = [](float number) { return hn::Set(Full(), number); };
-    x = set(f.x[row]);
-    y = set(f.y[row]);
-    z = set(f.z[row]);
-    radius = set(f.radius[row]);
+  HWY_INLINE RowVectors(const FixedRows& f, std::size_t row)
+      : RowVectors(f, [=](const float* of) { return hn::Set(Full(), of[row]); }) {}
+  // `spread` makes a vector of one number of the rows.
+  template <class Rows, class Spread>
+  HWY_INLINE RowVectors(const Rows& f, const Spread& spread) {
+    x = spread(f.x);
+    y = spread(f.y);
+    z = spread(f.z);
+    radius = spread(f.radius);
     if constexpr (kSlabs) {
-      normal_x = set(f.normal_x[row]);
-      normal_y = set(f.normal_y[row]);
-      normal_z = set(f.normal_z[row]);
-      offset = set(f.offset[row]);
-      half = set(f.half[row]);
-      scaled_radius = set(f.scaled_radius[row]);
+      normal_x = spread(f.normal_x);
+      normal_y = spread(f.normal_y);
+      normal_z = spread(f.normal_z);
+      offset = spread(f.offset);
+      half = spread(f.half);
+      scaled_radius = spread(f.scaled_radius);
     }
   }
 };
@@ -130,7 +140,8 @@ struct VectorTest {
   using V = hn::Vec<Full>;
   V squared, radius_sum, over_fixed, fixed_sum, over_moving, moving_sum;
 
-  HWY_INLINE VectorTest(const RowVectors<kSlabs>& f, const MovingLanes& m, std::size_t at) {
+  template <class Lanes>
+  HWY_INLINE VectorTest(const RowVectors<kSlabs>& f, const Lanes& m, std::size_t at) {
     const Full d;
     const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + at); };
     const V dx = hn::Sub(load(kX), f.x), dy = hn::Sub(load(kY), f.y), dz = hn::Sub(load(kZ), f.z);

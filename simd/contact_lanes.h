@@ -39,8 +39,9 @@ inline void name_surfaces(const SearchStep& step, std::uint32_t node,
 
 /// Finds the surface point of the fixed leaf in lane `at`: the foot of the perpendicular from the
 /// ball's centre to the slab's middle, or without slabs the centre.
-inline void find_point(bool slabs, const FixedLanes& fixed, const FixedRows& rows, std::size_t at,
-                       FixedPoints& points) noexcept {
+template <class Lanes, class Rows, class Points>
+void find_point(bool slabs, const Lanes& fixed, const Rows& rows, std::size_t at,
+                Points& points) noexcept {
   points.x[at] = rows.x[at];
   points.y[at] = rows.y[at];
   points.z[at] = rows.z[at];
@@ -65,6 +66,24 @@ inline void find_point(bool slabs, const FixedLanes& fixed, const FixedRows& row
   return balls * lesser(lesser(fixed, moving), 1);
 }
 
+struct FloatVector {
+  float x, y, z;
+};
+
+/// Returns the surface point of the moving leaf in lane `at`, in its tree's frame.
+template <class Lanes>
+[[nodiscard]] FloatVector moving_point(bool slabs, const Lanes& moving, std::size_t at) noexcept {
+  FloatVector point{moving.lane[kX][at], moving.lane[kY][at], moving.lane[kZ][at]};
+  if (!slabs) return point;
+  const float nx = moving.lane[kNormalX][at], ny = moving.lane[kNormalY][at],
+              nz = moving.lane[kNormalZ][at];
+  const float along = middle_of(nx, ny, nz, moving.lane[kOffset][at]);
+  point.x += along * nx;
+  point.y += along * ny;
+  point.z += along * nz;
+  return point;
+}
+
 /// Appends a pair that overlaps.
 inline void append_pair(const ContactRule& rule, const PairTest& test, const FixedPoints& points,
                         std::size_t row, const MovingLanes& moving, std::size_t at, bool slabs,
@@ -76,24 +95,12 @@ inline void append_pair(const ContactRule& rule, const PairTest& test, const Fix
   out.fixed_z[to] = points.z[row];
   out.fixed[to] = points.first + static_cast<std::uint32_t>(row);
   out.fixed_normal[to] = points.normals[row].word();
-  float x = moving.lane[kX][at], y = moving.lane[kY][at], z = moving.lane[kZ][at];
-  if (slabs) {
-    const float nx = moving.lane[kNormalX][at], ny = moving.lane[kNormalY][at],
-                nz = moving.lane[kNormalZ][at];
-    const float along = middle_of(nx, ny, nz, moving.lane[kOffset][at]);
-    x += along * nx;
-    y += along * ny;
-    z += along * nz;
-  }
-  out.moving_x[to] = x;
-  out.moving_y[to] = y;
-  out.moving_z[to] = z;
+  const FloatVector point = moving_point(slabs, moving, at);
+  out.moving_x[to] = point.x;
+  out.moving_y[to] = point.y;
+  out.moving_z[to] = point.z;
   out.moving[to] = moving.id[at];
 }
-
-struct FloatVector {
-  float x, y, z;
-};
 
 /// Unpacks a leaf's normal (PackedNormal), as long as it is coherent. All is exact up to the root.
 [[nodiscard]] inline FloatVector unpack_normal(std::uint32_t word) noexcept {
@@ -127,29 +134,26 @@ struct PairTerms {
   FloatVector position, force;
 };
 
-/// Computes the terms of pair `at`, of a moving leaf with packed normal `word`.
+/// Computes the terms of a pair, of surface points f and m with normals a and b: all in the moving
+/// tree's frame.
 ///
 /// The direction n is that of e, the mean of the fixed normal and of the reversed moving one; the
 /// weight is |e| times the share of the bounds and the part of the fade. A weight that is no number
 /// counts as 0.
-[[nodiscard]] inline PairTerms pair_terms(const ContactRule& rule, const SearchPose& pose,
-                                          const ContactLanes& lanes, std::size_t at,
-                                          std::uint32_t word) noexcept {
-  const FloatVector a = turned(pose, unpack_normal(lanes.fixed_normal[at])),
-                    b = unpack_normal(word);
+[[nodiscard]] inline PairTerms pair_terms(const ContactRule& rule, float share,
+                                          const FloatVector& f, const FloatVector& m,
+                                          const FloatVector& a, const FloatVector& b) noexcept {
   const FloatVector e{a.x - b.x, a.y - b.y, a.z - b.z};
   const float length = std::sqrt((e.x * e.x + e.y * e.y) + e.z * e.z);
   const float inverse = 1 / greater(length, kShortestMean);
   const FloatVector n{e.x * inverse, e.y * inverse, e.z * inverse};
-  const float fx = lanes.fixed_x[at], fy = lanes.fixed_y[at], fz = lanes.fixed_z[at];
-  const float mx = lanes.moving_x[at], my = lanes.moving_y[at], mz = lanes.moving_z[at];
-  const float along = (n.x * (fx - mx) + n.y * (fy - my)) + n.z * (fz - mz);
+  const float along = (n.x * (f.x - m.x) + n.y * (f.y - m.y)) + n.z * (f.z - m.z);
   PairTerms terms{};
   terms.depth = lesser(greater(along - rule.least, 0), rule.range);
   const float fade = lesser(rule.fade_from + terms.depth * rule.per_fade, 1);
-  const float weight = (lanes.share[at] * (length * (0.5F * kContactUnit))) * fade;
+  const float weight = (share * (length * (0.5F * kContactUnit))) * fade;
   const auto part = [&](float x) { return lesser(greater(x * rule.half_per_lever, -1), 1); };
-  terms.position = {part(fx + mx), part(fy + my), part(fz + mz)};
+  terms.position = {part(f.x + m.x), part(f.y + m.y), part(f.z + m.z)};
   if (!(weight > 0)) return terms;
   terms.weight = lesser(weight, kContactUnit);
   terms.force = {terms.weight * n.x, terms.weight * n.y, terms.weight * n.z};
@@ -162,6 +166,18 @@ inline constexpr float kToWhole = 0x1.8p23F;
 /// Rounds a term to a whole number, ties to even.
 [[nodiscard]] inline std::int32_t to_fixed_point(float term) noexcept {
   return std::bit_cast<std::int32_t>(term + kToWhole) - std::bit_cast<std::int32_t>(kToWhole);
+}
+
+/// Writes the terms of a pair at place `at` of a batch.
+inline void store_terms(const PairTerms& pair, ContactTerms& terms, std::size_t at) noexcept {
+  terms.weight[at] = pair.weight;
+  terms.depth[at] = pair.depth;
+  terms.x[at] = pair.position.x;
+  terms.y[at] = pair.position.y;
+  terms.z[at] = pair.position.z;
+  terms.force_x[at] = pair.force.x;
+  terms.force_y[at] = pair.force.y;
+  terms.force_z[at] = pair.force.z;
 }
 
 /// Adds the terms of a pair to the sums.

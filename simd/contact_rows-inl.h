@@ -28,24 +28,45 @@ HWY_INLINE hn::Vec<D> MiddleOf(D d, hn::Vec<D> nx, hn::Vec<D> ny, hn::Vec<D> nz,
   return hn::Div(offset, hn::Max(squared, hn::Set(d, 1.0F)));
 }
 
-// Vector twin of ist::find_point, for all eight rows.
+// Vector twin of ist::find_point, for a vector of rows from `k` on.
+template <bool kSlabs, class D, class Lanes, class Rows, class Points>
+HWY_INLINE void FindPointsAt(D d, const Lanes& fixed, const Rows& rows, std::size_t k,
+                             Points& points) {
+  auto x = hn::Load(d, rows.x + k), y = hn::Load(d, rows.y + k), z = hn::Load(d, rows.z + k);
+  if constexpr (kSlabs) {
+    const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
+    const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
+    const auto along = hn::Mul(MiddleOf(d, nx, ny, nz, load(kOffset)), hn::Set(d, kSlabScale));
+    x = hn::Add(x, hn::Mul(along, hn::Load(d, rows.normal_x + k)));
+    y = hn::Add(y, hn::Mul(along, hn::Load(d, rows.normal_y + k)));
+    z = hn::Add(z, hn::Mul(along, hn::Load(d, rows.normal_z + k)));
+  }
+  hn::Store(x, d, points.x + k);
+  hn::Store(y, d, points.y + k);
+  hn::Store(z, d, points.z + k);
+}
+
+// The same for all eight rows of a fixed node.
 template <bool kSlabs>
 HWY_INLINE void FindPoints(const FixedLanes& fixed, const FixedRows& rows, FixedPoints& points) {
   const Eight d;
-  for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
-    auto x = hn::Load(d, rows.x + k), y = hn::Load(d, rows.y + k), z = hn::Load(d, rows.z + k);
-    if constexpr (kSlabs) {
-      const auto load = [&](Lane lane) { return hn::LoadU(d, fixed.lane[lane] + k); };
-      const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
-      const auto along = hn::Mul(MiddleOf(d, nx, ny, nz, load(kOffset)), hn::Set(d, kSlabScale));
-      x = hn::Add(x, hn::Mul(along, hn::Load(d, rows.normal_x + k)));
-      y = hn::Add(y, hn::Mul(along, hn::Load(d, rows.normal_y + k)));
-      z = hn::Add(z, hn::Mul(along, hn::Load(d, rows.normal_z + k)));
-    }
-    hn::Store(x, d, points.x + k);
-    hn::Store(y, d, points.y + k);
-    hn::Store(z, d, points.z + k);
+  for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) FindPointsAt<kSlabs>(d, fixed, rows, k, points);
+}
+
+// Vector twin of ist::moving_point, for a vector of moving lanes.
+template <bool kSlabs, class Lanes>
+HWY_INLINE Vector MovingPoints(const Lanes& m, std::size_t at) {
+  const Full d;
+  const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + at); };
+  Vector point{load(kX), load(kY), load(kZ)};
+  if constexpr (kSlabs) {
+    const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
+    const auto along = MiddleOf(d, nx, ny, nz, load(kOffset));
+    point.x = hn::Add(point.x, hn::Mul(along, nx));
+    point.y = hn::Add(point.y, hn::Mul(along, ny));
+    point.z = hn::Add(point.z, hn::Mul(along, nz));
   }
+  return point;
 }
 
 // Vector twin of ist::bound_share.
@@ -83,20 +104,12 @@ HWY_INLINE void ContactRow(const ContactRule& rule, const FixedRows& f, const Fi
     static_assert(kMeasured != Measured::kBoth);
     if (hn::AllFalse(d, overlapping)) continue;
     if constexpr (kMeasured == Measured::kUpper) measurer.Upper(test, overlapping);
-    const auto load = [&](Lane lane) { return hn::Load(d, m.lane[lane] + i); };
-    auto x = load(kX), y = load(kY), z = load(kZ);
-    if constexpr (kSlabs) {
-      const auto nx = load(kNormalX), ny = load(kNormalY), nz = load(kNormalZ);
-      const auto along = MiddleOf(d, nx, ny, nz, load(kOffset));
-      x = hn::Add(x, hn::Mul(along, nx));
-      y = hn::Add(y, hn::Mul(along, ny));
-      z = hn::Add(z, hn::Mul(along, nz));
-    }
+    const Vector point = MovingPoints<kSlabs>(m, i);
     const Selected<Full> selected(d, overlapping);
     selected.Store(d, BoundShare<kSlabs>(rule, test), out.share + count);
-    selected.Store(d, x, out.moving_x + count);
-    selected.Store(d, y, out.moving_y + count);
-    selected.Store(d, z, out.moving_z + count);
+    selected.Store(d, point.x, out.moving_x + count);
+    selected.Store(d, point.y, out.moving_y + count);
+    selected.Store(d, point.z, out.moving_z + count);
     selected.Store(du, hn::Load(du, m.id + i), out.moving + count);
     count += selected.count();
   }
@@ -118,17 +131,16 @@ class ContactRows {
       : step_(step), pose_(pose), out_(out) {}
 
   [[nodiscard]] static bool HasRoom(std::size_t, std::size_t) { return true; }
-  void Decoded(std::uint32_t node, SearchScratch& scratch, std::size_t g) {
-    FindPoints<kSlabs>(scratch.fixed, scratch.rows[g], scratch.points[g]);
-    name_surfaces(step_, node, scratch.points[g]);
+  void Decoded(std::uint32_t node, FixedGroup& fixed) {
+    FindPoints<kSlabs>(fixed.lanes, fixed.rows, fixed.points);
+    name_surfaces(step_, node, fixed.points);
   }
   [[nodiscard]] static std::size_t Begin() { return 0; }
   [[nodiscard]] static std::size_t Continue(std::uint32_t) { return 0; }
-  HWY_INLINE void Test(const FixedRows& rows, const FixedPoints& points, std::size_t row,
-                       const MovingLanes& moving, std::size_t begin, std::size_t end,
-                       Measurer<kSlabs>& measurer) {
-    ContactRow<kSlabs, kMeasured>(out_.rule, rows, points, row, moving, begin, end, out_.lanes,
-                                  measurer);
+  HWY_INLINE void Test(const FixedGroup& fixed, std::size_t row, const MovingLanes& moving,
+                       std::size_t begin, std::size_t end, Measurer<kSlabs>& measurer) {
+    ContactRow<kSlabs, kMeasured>(out_.rule, fixed.rows, fixed.points, row, moving, begin, end,
+                                  out_.lanes, measurer);
     if (out_.lanes.count >= kContactBatch) AddContacts(step_, pose_, out_);
   }
   static void End(std::uint32_t, std::size_t) {}

@@ -117,45 +117,64 @@ struct NormalLanes {
   }
 };
 
-// Vector twin of ist::pair_terms, for a batch of pairs from `first` on. Returns the number of those
-// that have a weight.
-HWY_INLINE std::size_t FindTerms(const ContactRule& rule, const ContactLanes& lanes,
-                                 std::size_t first, const NormalLanes& fixed,
-                                 const NormalLanes& moving, ContactTerms& terms) {
+// Vector twin of ist::PairTerms; `counts` marks the pairs with a weight.
+struct VectorTerms {
+  hn::Vec<Full> weight, depth;
+  Vector position, force;
+  hn::Mask<Full> counts;
+};
+
+// Vector twin of ist::pair_terms, for the lanes `here`.
+HWY_INLINE VectorTerms FindTerms(const ContactRule& rule, hn::Vec<Full> share, const Vector& f,
+                                 const Vector& m, const Vector& a, const Vector& b,
+                                 hn::Mask<Full> here) {
   const Full d;
   const auto set = [&](float x) { return hn::Set(d, x); };
   const auto zero = hn::Zero(d), one = set(1);
+  const Vector e = Difference(a, b);
+  const auto length = hn::Sqrt(Dot(e, e));
+  const Vector n = Scaled(e, hn::Div(one, hn::Max(length, set(kShortestMean))));
+  const auto along = Dot(n, Difference(f, m));
+  VectorTerms terms;
+  terms.depth = hn::Min(hn::Max(hn::Sub(along, set(rule.least)), zero), set(rule.range));
+  const auto fade =
+      hn::Min(hn::Add(set(rule.fade_from), hn::Mul(terms.depth, set(rule.per_fade))), one);
+  const auto found = hn::Mul(hn::Mul(share, hn::Mul(length, set(0.5F * kContactUnit))), fade);
+  terms.counts = hn::And(hn::Gt(found, zero), here);
+  terms.weight = hn::IfThenElseZero(terms.counts, hn::Min(found, set(kContactUnit)));
+  const auto part = [&](hn::Vec<Full> x, hn::Vec<Full> y) {
+    return hn::Min(hn::Max(hn::Mul(hn::Add(x, y), set(rule.half_per_lever)), set(-1)), one);
+  };
+  const auto of_weight = [&](hn::Vec<Full> x) {
+    return hn::IfThenElseZero(terms.counts, hn::Mul(terms.weight, x));
+  };
+  terms.position = {part(f.x, m.x), part(f.y, m.y), part(f.z, m.z)};
+  terms.force = {of_weight(n.x), of_weight(n.y), of_weight(n.z)};
+  return terms;
+}
+
+// Finds the terms of a batch of pairs from `first` on. Returns the number of those that have a
+// weight.
+HWY_INLINE std::size_t FindBatch(const ContactRule& rule, const ContactLanes& lanes,
+                                 std::size_t first, const NormalLanes& fixed,
+                                 const NormalLanes& moving, ContactTerms& terms) {
+  const Full d;
   std::size_t counted = 0;
   for (std::size_t i = 0; i < terms.count; i += hn::Lanes(d)) {
     const auto load = [&](const float* from) { return hn::Load(d, from + first + i); };
-    const Vector e = Difference(fixed.Load(i), moving.Load(i));
-    const auto length = hn::Sqrt(Dot(e, e));
-    const Vector n = Scaled(e, hn::Div(one, hn::Max(length, set(kShortestMean))));
-    const Vector f{load(lanes.fixed_x), load(lanes.fixed_y), load(lanes.fixed_z)};
-    const Vector m{load(lanes.moving_x), load(lanes.moving_y), load(lanes.moving_z)};
-    const auto along = Dot(n, Difference(f, m));
-    const auto depth = hn::Min(hn::Max(hn::Sub(along, set(rule.least)), zero), set(rule.range));
-    const auto fade =
-        hn::Min(hn::Add(set(rule.fade_from), hn::Mul(depth, set(rule.per_fade))), one);
-    const auto found =
-        hn::Mul(hn::Mul(load(lanes.share), hn::Mul(length, set(0.5F * kContactUnit))), fade);
-    const auto counts = hn::And(hn::Gt(found, zero), hn::FirstN(d, terms.count - i));
-    const auto weight = hn::IfThenElseZero(counts, hn::Min(found, set(kContactUnit)));
-    const auto part = [&](hn::Vec<Full> a, hn::Vec<Full> b) {
-      return hn::Min(hn::Max(hn::Mul(hn::Add(a, b), set(rule.half_per_lever)), set(-1)), one);
-    };
-    const auto of_weight = [&](hn::Vec<Full> x) {
-      return hn::IfThenElseZero(counts, hn::Mul(weight, x));
-    };
-    hn::Store(weight, d, terms.weight + i);
-    hn::Store(depth, d, terms.depth + i);
-    hn::Store(part(f.x, m.x), d, terms.x + i);
-    hn::Store(part(f.y, m.y), d, terms.y + i);
-    hn::Store(part(f.z, m.z), d, terms.z + i);
-    hn::Store(of_weight(n.x), d, terms.force_x + i);
-    hn::Store(of_weight(n.y), d, terms.force_y + i);
-    hn::Store(of_weight(n.z), d, terms.force_z + i);
-    counted += hn::CountTrue(d, counts);
+    const VectorTerms found = FindTerms(
+        rule, load(lanes.share), {load(lanes.fixed_x), load(lanes.fixed_y), load(lanes.fixed_z)},
+        {load(lanes.moving_x), load(lanes.moving_y), load(lanes.moving_z)}, fixed.Load(i),
+        moving.Load(i), hn::FirstN(d, terms.count - i));
+    hn::Store(found.weight, d, terms.weight + i);
+    hn::Store(found.depth, d, terms.depth + i);
+    hn::Store(found.position.x, d, terms.x + i);
+    hn::Store(found.position.y, d, terms.y + i);
+    hn::Store(found.position.z, d, terms.z + i);
+    hn::Store(found.force.x, d, terms.force_x + i);
+    hn::Store(found.force.y, d, terms.force_y + i);
+    hn::Store(found.force.z, d, terms.force_z + i);
+    counted += hn::CountTrue(d, found.counts);
   }
   return counted;
 }
@@ -204,7 +223,7 @@ inline void AddContacts(const SearchStep& step, const SearchPose& pose, ContactA
     }
     terms.count = count;
     terms.fixed = lanes.fixed + first;
-    out.totals.counted += FindTerms(out.rule, lanes, first, fixed, moving, terms);
+    out.totals.counted += FindBatch(out.rule, lanes, first, fixed, moving, terms);
     AddTerms(out.rule, terms, out.totals.sum);
     if (out.stream != nullptr) out.stream->take(terms);
   }

@@ -13,17 +13,13 @@ void add_contacts_scalar(const SearchStep& step, const SearchPose& pose, Contact
     for (std::size_t i = 0; i < terms.count; ++i) {
       const std::size_t at = first + i;
       const std::uint32_t leaf = leaf_of(step.moving, lanes.moving[at]);
-      const PairTerms pair =
-          pair_terms(out.rule, pose, lanes, at, step.moving_normals[leaf].word());
+      const PairTerms pair = pair_terms(
+          out.rule, lanes.share[at], {lanes.fixed_x[at], lanes.fixed_y[at], lanes.fixed_z[at]},
+          {lanes.moving_x[at], lanes.moving_y[at], lanes.moving_z[at]},
+          turned(pose, unpack_normal(lanes.fixed_normal[at])),
+          unpack_normal(step.moving_normals[leaf].word()));
       add_pair(out.rule, pair, out.totals);
-      terms.weight[i] = pair.weight;
-      terms.depth[i] = pair.depth;
-      terms.x[i] = pair.position.x;
-      terms.y[i] = pair.position.y;
-      terms.z[i] = pair.position.z;
-      terms.force_x[i] = pair.force.x;
-      terms.force_y[i] = pair.force.y;
-      terms.force_z[i] = pair.force.z;
+      store_terms(pair, terms, i);
     }
     if (out.stream != nullptr) out.stream->take(terms);
   }

@@ -6,6 +6,7 @@
 
 #include "ist/query/exact/triangle_bounds.h"
 #include "simd/contact_step.h"
+#include "simd/front_step.h"
 #include "simd/step.h"
 
 namespace ist {
@@ -18,6 +19,10 @@ struct Kernels {
   FindNearFunction find_near;
   AdvanceContactsFunction advance_contacts;
   AddContactsFunction add_contacts;
+  AdvanceFrontFunction advance_front;
+  TurnFrontFunction turn_front;
+  SelectFrontFunction select_front;
+  AddFrontFunction add_front;
 };
 
 /// The scalar kernels, which every processor runs.

@@ -59,7 +59,7 @@ class ImplicitDecoder {
     hn::StoreU(z, d, out.lane[kZ] + at);
     hn::StoreU(radius, d, out.lane[kRadius] + at);
     const std::uint32_t first = emits_slots_ ? 8 * parent : node.first_child;
-    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kSlots)), du, out.id + at);
+    hn::StoreU(hn::Add(hn::Set(du, first), hn::Load(du, kLaneNumbers)), du, out.id + at);
     return nodes_[parent + 1].first_child - node.first_child;
   }
 

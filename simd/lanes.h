@@ -50,13 +50,18 @@ struct alignas(64) FixedPoints {
   std::uint32_t first;  ///< the first child's address, 8 · parent + slot
 };
 
+/// The children of one fixed node, in all their forms.
+struct FixedGroup {
+  FixedRows rows;
+  FixedPoints points;
+  FixedLanes lanes;
+};
+
 /// The scratch memory of a step. One object belongs to one thread.
 struct SearchScratch {
   static constexpr std::size_t kGroups = 8;
   MovingLanes moving;
-  FixedLanes fixed;
-  FixedRows rows[kGroups];
-  FixedPoints points[kGroups];
+  FixedGroup fixed[kGroups];
 };
 
 // The scalar forms, inline because the vector kernels share some of them. Each specifies its vector
@@ -142,8 +147,9 @@ std::uint32_t decode(const SearchSide& side, std::uint32_t node, BoundLanes<N>& 
 }
 
 /// Turns the fixed node in lane `at` into the moving tree's frame, as a row.
-inline void turn(const SearchPose& pose, const Pads& pads, bool slabs, const FixedLanes& fixed,
-                 std::size_t at, FixedRows& rows) noexcept {
+template <class Lanes, class Rows>
+void turn(const SearchPose& pose, const Pads& pads, bool slabs, const Lanes& fixed, std::size_t at,
+          Rows& rows) noexcept {
   const float* r = pose.rotation;
   const float x = fixed.lane[kX][at], y = fixed.lane[kY][at], z = fixed.lane[kZ][at];
   rows.x[at] = ((r[0] * x + r[1] * y) + r[2] * z) + pose.translation[0];
@@ -170,9 +176,8 @@ struct PairTest {
   float over_fixed, fixed_sum;    ///< height of the moving centre over the fixed slab's middle
   float over_moving, moving_sum;  ///< of the fixed centre over the moving slab's, · kSlabScale
 
-  template <std::size_t N>
-  PairTest(const FixedRows& f, std::size_t row, const BoundLanes<N>& m, std::size_t at,
-           bool slabs) noexcept
+  template <class Rows, class Lanes>
+  PairTest(const Rows& f, std::size_t row, const Lanes& m, std::size_t at, bool slabs) noexcept
       : over_fixed(0), fixed_sum(0), over_moving(0), moving_sum(0) {
     const float dx = m.lane[kX][at] - f.x[row], dy = m.lane[kY][at] - f.y[row],
                 dz = m.lane[kZ][at] - f.z[row];

@@ -51,16 +51,15 @@ class PairRows {
   [[nodiscard]] bool HasRoom(std::size_t rows, std::size_t nodes) const {
     return has_room(out_, rows, nodes);
   }
-  void Decoded(std::uint32_t, SearchScratch&, std::size_t) {}
+  void Decoded(std::uint32_t, FixedGroup&) {}
   // Begins a row, or goes on with one that a limit cut. Returns the number of pairs before it.
   [[nodiscard]] HWY_INLINE std::size_t Begin() const { return out_.moving_count; }
   [[nodiscard]] HWY_INLINE std::size_t Continue(std::uint32_t fixed) {
     return begin_row(out_, fixed);
   }
-  HWY_INLINE void Test(const FixedRows& rows, const FixedPoints&, std::size_t row,
-                       const MovingLanes& moving, std::size_t begin, std::size_t end,
-                       Measurer<kSlabs>& measurer) {
-    out_.moving_count += TestRow<kSlabs, kMeasured>(rows, row, moving, begin, end, last_,
+  HWY_INLINE void Test(const FixedGroup& fixed, std::size_t row, const MovingLanes& moving,
+                       std::size_t begin, std::size_t end, Measurer<kSlabs>& measurer) {
+    out_.moving_count += TestRow<kSlabs, kMeasured>(fixed.rows, row, moving, begin, end, last_,
                                                     out_.moving + out_.moving_count, measurer);
   }
   HWY_INLINE void End(std::uint32_t fixed, std::size_t before) { end_row(out_, fixed, before); }

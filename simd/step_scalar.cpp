@@ -1,5 +1,6 @@
 #include "simd/contact_lanes.h"
 #include "simd/dispatch.h"
+#include "simd/front_step.h"
 #include "simd/lanes.h"
 #include "simd/step.h"
 
@@ -28,7 +29,7 @@ struct PairRows {
   std::size_t before = 0;
 
   [[nodiscard]] bool has_room(std::size_t nodes) const { return ist::has_room(out, 1, nodes); }
-  void decoded(std::uint32_t, const FixedLanes&, const FixedRows&) {}
+  void decoded(std::uint32_t, FixedGroup&) {}
   void begin(std::uint32_t fixed, bool continues) {
     before = continues ? begin_row(out, fixed) : out.moving_count;
   }
@@ -43,20 +44,54 @@ struct ContactRows {
   const SearchStep& step;
   const SearchPose& pose;
   ContactAdder& out;
-  FixedPoints points{};
+  const FixedGroup* group = nullptr;
   bool slabs = step.fixed.slabs != nullptr;
 
   static bool has_room(std::size_t) { return true; }
-  void decoded(std::uint32_t node, const FixedLanes& fixed, const FixedRows& rows) {
-    name_surfaces(step, node, points);
+  void decoded(std::uint32_t node, FixedGroup& fixed) {
+    name_surfaces(step, node, fixed.points);
     for (std::size_t row = 0; row < opened(step.fixed, node); ++row) {
-      find_point(slabs, fixed, rows, row, points);
+      find_point(slabs, fixed.lanes, fixed.rows, row, fixed.points);
     }
+    group = &fixed;
   }
   void begin(std::uint32_t, bool) {}
   void take(const PairTest& test, std::size_t row, const MovingLanes& lanes, std::size_t at) {
-    append_pair(out.rule, test, points, row, lanes, at, slabs, out.lanes);
+    append_pair(out.rule, test, group->points, row, lanes, at, slabs, out.lanes);
     if (out.lanes.count == kContactBatch) add_contacts_scalar(step, pose, out);
+  }
+  void end(std::uint32_t) {}
+};
+
+// The overlapping pairs are kept.
+struct FrontRowsOut {
+  const SearchStep& step;
+  FrontLanes& out;
+  bool slabs = step.fixed.slabs != nullptr;
+  const FixedGroup* group = nullptr;
+
+  [[nodiscard]] bool has_room(std::size_t pairs) const { return ist::has_room(out, 1, pairs); }
+  void decoded(std::uint32_t node, FixedGroup& fixed) {
+    name_surfaces(step, node, fixed.points);
+    group = &fixed;
+  }
+  void begin(std::uint32_t, bool) {}
+  void take(const PairTest&, std::size_t row, const MovingLanes& lanes, std::size_t at) {
+    const std::size_t to = out.pair_count++;
+    out.moving.row[to] = static_cast<std::uint32_t>(name_row(*group, row, slabs, out));
+    for (std::size_t lane = 0; lane < lanes_of(slabs); ++lane) {
+      out.moving.lane[lane][to] = lanes.lane[lane][at];
+    }
+    out.moving.id[to] = lanes.id[at];
+    const FloatVector point = moving_point(slabs, lanes, at);
+    out.moving.x[to] = point.x;
+    out.moving.y[to] = point.y;
+    out.moving.z[to] = point.z;
+    const FloatVector normal =
+        unpack_normal(step.moving_normals[leaf_of(step.moving, lanes.id[at])].word());
+    out.moving.normal_x[to] = normal.x;
+    out.moving.normal_y[to] = normal.y;
+    out.moving.normal_z[to] = normal.z;
   }
   void end(std::uint32_t) {}
 };
@@ -67,7 +102,8 @@ Advanced advance_rows(const SearchStep& step, const SearchPose& pose, const Fron
                       Measured measured, DistanceBounds& bounds) {
   const bool slabs = step.fixed.slabs != nullptr;
   const Pads& pads = pads_of(pose, step);
-  FixedRows& rows = scratch.rows[0];
+  FixedGroup& fixed_group = scratch.fixed[0];
+  FixedRows& rows = fixed_group.rows;
   std::uint64_t tests = 0;
   for (; cursor.group < in.group_count; ++cursor.group, cursor.row = 0) {
     const SearchGroup& group = in.groups[cursor.group];
@@ -76,13 +112,13 @@ Advanced advance_rows(const SearchStep& step, const SearchPose& pose, const Fron
         group_tests(step, in, group, begin) > most - tests) {
       break;
     }
-    const std::uint32_t row_count = decode(step.fixed, group.fixed, scratch.fixed, 0);
+    const std::uint32_t row_count = decode(step.fixed, group.fixed, fixed_group.lanes, 0);
     for (std::size_t row = 0; row < row_count; ++row) {
-      turn(pose, pads, slabs, scratch.fixed, row, rows);
+      turn(pose, pads, slabs, fixed_group.lanes, row, rows);
     }
-    out.decoded(group.fixed, scratch.fixed, rows);
+    out.decoded(group.fixed, fixed_group);
     for (; cursor.row < row_count; ++cursor.row, cursor.moving = 0) {
-      const std::uint32_t fixed = scratch.fixed.id[cursor.row];
+      const std::uint32_t fixed = fixed_group.lanes.id[cursor.row];
       while (begin + cursor.moving < group.end) {
         const std::uint32_t first = begin + cursor.moving;
         if ((step.last || cursor.moving == 0) &&
@@ -129,6 +165,14 @@ Advanced advance_contacts_scalar(const SearchStep& step, const SearchPose& pose,
                       bounds);
 }
 
+Advanced advance_front_scalar(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                              SearchCursor& cursor, FrontLanes& out, SearchScratch& scratch,
+                              std::uint64_t most) {
+  DistanceBounds none;
+  return advance_rows(step, pose, in, cursor, FrontRowsOut{step, out}, scratch, most,
+                      Measured::kNothing, none);
+}
+
 void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
   std::uint32_t i = 0;
   for (std::size_t g = 0; g < leaves.group_count; ++g) {
@@ -136,8 +180,15 @@ void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
   }
 }
 
-constinit const Kernels kScalarKernels{
-    "scalar",         advance_scalar,          write_leaf_pairs_scalar,
-    find_near_scalar, advance_contacts_scalar, add_contacts_scalar};
+constinit const Kernels kScalarKernels{"scalar",
+                                       advance_scalar,
+                                       write_leaf_pairs_scalar,
+                                       find_near_scalar,
+                                       advance_contacts_scalar,
+                                       add_contacts_scalar,
+                                       advance_front_scalar,
+                                       turn_front_scalar,
+                                       select_front_scalar,
+                                       add_front_scalar};
 
 }  // namespace ist

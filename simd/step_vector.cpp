@@ -8,12 +8,20 @@
 #include "simd/advance-inl.h"
 #include "simd/contact_rows-inl.h"
 #include "simd/contact_sums-inl.h"
+#include "simd/front-inl.h"
 #include "simd/near-inl.h"
 #include "simd/pair_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ist::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+// Calls a function object with whether a step's bounds have slabs.
+template <class Run>
+auto WithSlabs(const SearchStep& step, const Run& run) {
+  return step.fixed.slabs != nullptr ? run.template operator()<true>()
+                                     : run.template operator()<false>();
+}
 
 // Calls a function object with the template arguments of a step; kLower: both ends may be measured.
 template <bool kLower, class Run>
@@ -28,8 +36,7 @@ Advanced Specialised(const SearchStep& step, Measured measured, const Run& run) 
         return run.template operator()<kSlabs, Measured::kNothing>();
     }
   };
-  return step.fixed.slabs != nullptr ? measure.template operator()<true>()
-                                     : measure.template operator()<false>();
+  return WithSlabs(step, measure);
 }
 
 Advanced Advance(const SearchStep& step, const SearchPose& pose, const Frontier& in,
@@ -61,6 +68,36 @@ Advanced AdvanceContacts(const SearchStep& step, const SearchPose& pose, const F
       });
   bounds = known;
   return advanced;
+}
+
+// Vector twins of the scalar forms in simd/front_step.h.
+Advanced AdvanceFront(const SearchStep& step, const SearchPose& pose, const Frontier& in,
+                      SearchCursor& cursor, FrontLanes& out, SearchScratch& scratch,
+                      std::uint64_t most) {
+  DistanceBounds none;
+  const std::size_t before = out.pair_count;
+  const Advanced advanced = WithSlabs(step, [&]<bool kSlabs>() {
+    using Rows = FrontPairs<kSlabs>;
+    return Advancer<kSlabs, Rows>(step, pose, in, Rows(step, out), scratch, most, none).Run(cursor);
+  });
+  UnpackMovingNormals(step, before, out);
+  return advanced;
+}
+
+void TurnFront(const FrontLanes& front, const SearchStep& step, const SearchPose& pose,
+               bool surfaces, FrontRows& rows) {
+  WithSlabs(step, [&]<bool kSlabs>() { TurnRows<kSlabs>(front, step, pose, surfaces, rows); });
+}
+
+std::size_t SelectFront(const FrontLanes& front, const SearchStep& step, const FrontRows& rows,
+                        std::size_t begin, std::size_t end, std::uint32_t* out) {
+  return WithSlabs(
+      step, [&]<bool kSlabs>() { return SelectPairs<kSlabs>(front, rows, begin, end, out); });
+}
+
+void AddFront(const FrontLanes& front, const SearchStep& step, const FrontRows& rows,
+              std::size_t begin, std::size_t end, ContactAdder& out) {
+  WithSlabs(step, [&]<bool kSlabs>() { AddPairs<kSlabs>(front, rows, begin, end, out); });
 }
 
 // Vector twin of ist::write_leaf_pairs_scalar.
@@ -100,7 +137,9 @@ struct Compiled {
     HWY_##TARGET, {                                                            \
       NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs), \
           HWY_CHOOSE_##TARGET(FindNear), HWY_CHOOSE_##TARGET(AdvanceContacts), \
-          HWY_CHOOSE_##TARGET(AddContacts)                                     \
+          HWY_CHOOSE_##TARGET(AddContacts), HWY_CHOOSE_##TARGET(AdvanceFront), \
+          HWY_CHOOSE_##TARGET(TurnFront), HWY_CHOOSE_##TARGET(SelectFront),    \
+          HWY_CHOOSE_##TARGET(AddFront)                                        \
     }                                                                          \
   }
 

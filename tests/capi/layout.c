@@ -49,7 +49,7 @@ AT(ist_tree_info, origin, 64);
 AT(ist_tree_info, bounding_radius, 88);
 AT(ist_tree_info, largest_leaf_radius, 96);
 
-SIZE(ist_query_options, 64);
+SIZE(ist_query_options, 72);
 AT(ist_query_options, struct_size, 0);
 AT(ist_query_options, spheres, 8);
 AT(ist_query_options, workers, 12);
@@ -59,6 +59,7 @@ AT(ist_query_options, triangle_pairs, 32);
 AT(ist_query_options, contacts, 40);
 AT(ist_query_options, target, 48);
 AT(ist_query_options, push_distance, 56);
+AT(ist_query_options, front_pairs, 64);
 
 SIZE(ist_query_info, 56);
 AT(ist_query_info, struct_size, 0);
@@ -74,7 +75,7 @@ SIZE(ist_leaf_pair, 8);
 AT(ist_leaf_pair, fixed, 0);
 AT(ist_leaf_pair, moving, 4);
 
-SIZE(ist_query_result, 80);
+SIZE(ist_query_result, 88);
 AT(ist_query_result, struct_size, 0);
 AT(ist_query_result, leaf_pairs, 8);
 AT(ist_query_result, contacts, 16);
@@ -87,6 +88,8 @@ AT(ist_query_result, distance_known, 52);
 AT(ist_query_result, distance_lower, 56);
 AT(ist_query_result, distance_upper, 64);
 AT(ist_query_result, resolution, 72);
+AT(ist_query_result, found, 80);
+AT(ist_query_result, reserved, 84);
 
 SIZE(ist_budget, 24);
 AT(ist_budget, struct_size, 0);

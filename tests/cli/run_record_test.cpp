@@ -38,12 +38,8 @@ TEST_F(RunRecord, RecordsEveryTickAsJsonLines) {
                                       "wrench",
                                       "contacts",
                                       "leaf_pairs",
-                                      "gap_lower",
-                                      "gap_upper",
-                                      "level",
                                       "complete",
-                                      "sphere_tests",
-                                      "proximity_tests",
+                                      "proximity_complete",
                                       "held",
                                       "fault",
                                       "late_microseconds",
@@ -76,7 +72,7 @@ TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
     return parts;
   };
   const std::vector<std::string> header = cells(rows[0]);
-  EXPECT_EQ(header.size(), 46u);
+  EXPECT_EQ(header.size(), 42u);
   EXPECT_EQ(std::set<std::string>(header.begin(), header.end()).size(), header.size());
   const auto column = [&](const char* name) {
     const auto found = std::find(header.begin(), header.end(), name);
@@ -84,8 +80,8 @@ TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
     return static_cast<std::size_t>(found - header.begin());
   };
   const std::size_t z = column("tool_z"), force = column("force_z"), turn = column("device_zz"),
-                    tests = column("sphere_tests"), gap = column("gap_lower"),
-                    near = column("proximity_tests"), pairs = column("leaf_pairs");
+                    contacts = column("contacts"), complete = column("complete"),
+                    near = column("proximity_complete"), pairs = column("leaf_pairs");
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::vector<std::string> row = cells(rows[i + 1]);
     ASSERT_EQ(row.size(), header.size());
@@ -93,9 +89,9 @@ TEST_F(RunRecord, RecordsTheSameNumbersAsCsv) {
     EXPECT_EQ(std::stod(row[z]), objects[i]["tool"][2].get<double>());
     EXPECT_EQ(std::stod(row[force]), objects[i]["wrench"][2].get<double>());
     EXPECT_EQ(std::stod(row[turn]), objects[i]["device"][11].get<double>());
-    EXPECT_EQ(std::stoull(row[tests]), objects[i]["sphere_tests"].get<std::uint64_t>());
+    EXPECT_EQ(std::stoull(row[contacts]), objects[i]["contacts"].get<std::uint64_t>());
     EXPECT_EQ(std::stod(row[pairs]), objects[i]["leaf_pairs"].get<double>());
-    EXPECT_EQ(row[gap].empty(), objects[i]["gap_lower"].is_null());
+    EXPECT_EQ(row[complete], objects[i]["complete"].get<bool>() ? "1" : "0");
     EXPECT_TRUE(row[near].empty());  // nothing asks for it
   }
 }
@@ -110,8 +106,8 @@ TEST_F(RunRecord, ReplayGivesTheSameBytes) {
   }
 }
 
-// Also of what the clock stopped now and then. Where it did is in the recording, as the sphere
-// tests that were made; here every fourth tick that presses is given half of what it needs.
+// Also of what the clock stopped now and then, as the recording says; here every fourth tick that
+// presses.
 TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
   const std::string scene = all_effects(), whole = path("whole.jsonl"), first = path("first.jsonl"),
                     again = path("again.jsonl");
@@ -119,11 +115,8 @@ TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
   std::string text;
   for (const std::string& line : lines_of(file_content(whole))) {
     const nlohmann::json tick = nlohmann::json::parse(line);
-    const auto tests = tick["sphere_tests"].get<std::uint64_t>();
     const bool stopped = tick["tick"].get<int>() % 4 == 0 && tick["contacts"].get<int>() > 0;
-    const std::string key = "\"sphere_tests\":";
-    text += stopped ? replaced(line, key + std::to_string(tests), key + std::to_string(tests / 2))
-                    : line;
+    text += stopped ? replaced(line, "\"complete\":true", "\"complete\":false") : line;
     text += '\n';
   }
   const std::string stopped = write("stopped.jsonl", text);
@@ -151,9 +144,11 @@ TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
       {"", "not a JSON object"},
       {"[1, 2]", "not a JSON object"},
       {replaced(third, "\"tick\"", "\"tock\""), "no key 'tick'"},
-      {replaced(third, "\"tick\":2", "\"tick\":null"), "'tick' is null"},
+      {replaced(third, "\"tick\":2", "\"tick\":null"), "'tick' is not a whole number"},
       {replaced(third, "\"tick\":2", "\"tick\":-2"), "'tick' is not a whole number"},
-      {replaced(third, "\"sphere_tests\"", "\"tests\""), "no key 'sphere_tests'"},
+      {replaced(third, "\"complete\"", "\"whole\""), "no key 'complete'"},
+      {replaced(third, "\"complete\":true", "\"complete\":1"),
+       "'complete' is neither true, false nor null"},
       {replaced(third, "\"device\":[", "\"device\":[1,"), "'device' is not an array of 12 numbers"},
       {replaced(third, "\"device\":[", "\"device\":[\"x\","),
        "'device' is not an array of 12 numbers"},

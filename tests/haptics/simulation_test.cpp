@@ -188,8 +188,9 @@ TEST_F(Pressing, ADevicePoseThatIsNoneIsAFault) {
   EXPECT_FALSE(press(-1e-3).fault);
 }
 
-// Where the queries stopped is all that a tick hangs on besides the device.
-TEST_F(Pressing, ABudgetInTestsGivesTheSameBits) {
+// Whether the queries came to their end is all that a tick hangs on besides the device: not how far
+// they came, nor what was kept from earlier ticks.
+TEST_F(Pressing, WhetherItWasStoppedGivesTheSameBits) {
   Simulation again = bodies_.simulation();
   for (int i = 0; i < 400; ++i) {
     const double z = 1e-3 - 1e-5 * i;
@@ -197,13 +198,15 @@ TEST_F(Pressing, ABudgetInTestsGivesTheSameBits) {
     if (i % 7 == 3) budget.contacts.tests = static_cast<std::uint64_t>(i);
     const Tick first = press(z, budget);
     TickBudget stopped;
-    stopped.contacts.tests = first.contacts->sphere_tests;
+    if (!first.contacts->complete) stopped.contacts.tests = 0;
     const Tick second = again.tick(bodies_.at(z), stopped);
     EXPECT_EQ(first.tool.translation, second.tool.translation);
     EXPECT_EQ(first.tool.rotation, second.tool.rotation);
     EXPECT_EQ(first.wrench, second.wrench);
     EXPECT_EQ(first.held, second.held);
-    EXPECT_EQ(first.contacts->leaf_pairs, second.contacts->leaf_pairs);
+    if (first.contacts->complete) {
+      EXPECT_EQ(first.contacts->leaf_pairs, second.contacts->leaf_pairs);
+    }
   }
 }
 

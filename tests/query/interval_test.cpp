@@ -58,15 +58,15 @@ class Listing : public PairLister {
     for (; tests < made.tests; ++from.group, from.row = from.moving = 0) {
       const SearchGroup group = batch.in.groups[from.group];
       const std::uint32_t begin = from.group == 0 ? 0 : batch.in.groups[from.group - 1].end;
-      const std::uint32_t rows = decode(batch.step.fixed, group.fixed, scratch_->fixed, 0);
+      const std::uint32_t rows = decode(batch.step.fixed, group.fixed, scratch_->fixed[0].lanes, 0);
       for (; from.row < rows && tests < made.tests; ++from.row, from.moving = 0) {
-        turn(pose_, pads_of(pose_, batch.step), slabs, scratch_->fixed, from.row,
-             scratch_->rows[0]);
+        turn(pose_, pads_of(pose_, batch.step), slabs, scratch_->fixed[0].lanes, from.row,
+             scratch_->fixed[0].rows);
         for (std::uint32_t i = begin + from.moving; i < group.end && tests < made.tests; ++i) {
           const std::uint32_t lanes =
               decode(batch.step.moving, batch.in.moving[i], scratch_->moving, 0);
           for (std::uint32_t at = 0; at < lanes; ++at) {
-            const PairTest test(scratch_->rows[0], from.row, scratch_->moving, at, slabs);
+            const PairTest test(scratch_->fixed[0].rows, from.row, scratch_->moving, at, slabs);
             const Distances distances =
                 distances_of(test, batch.step.leaves ? pose_.leaf : inner_, slabs);
             (test.overlap() ? live_ : pruned_).push_back(distances);

@@ -108,10 +108,10 @@ TEST_P(Border, TheLastBitDecides) {
       }
     });
     SearchPose pose = random_pose(random, 0);
-    decode(made.step.fixed, 0, scratch_->fixed, 0);
+    decode(made.step.fixed, 0, scratch_->fixed[0].lanes, 0);
     decode(made.step.moving, 0, scratch_->moving, 0);
-    turn(pose, pose.leaf, slabs, scratch_->fixed, 0, scratch_->rows[0]);
-    const PairTest test(scratch_->rows[0], 0, scratch_->moving, 0, slabs);
+    turn(pose, pose.leaf, slabs, scratch_->fixed[0].lanes, 0, scratch_->fixed[0].rows);
+    const PairTest test(scratch_->fixed[0].rows, 0, scratch_->moving, 0, slabs);
     const auto near = [&](float apart) {
       return apart * (1 + 0x1p-23F * (static_cast<float>(random.below(5)) - 2));
     };
@@ -121,9 +121,9 @@ TEST_P(Border, TheLastBitDecides) {
                                   : (test.over_moving - test.moving_sum) / kSlabScale);
     pose.leaf = pose.inner = {ball, slab, slab};
     expect_same(made, pose);
-    turn(pose, pose.leaf, slabs, scratch_->fixed, 0, scratch_->rows[0]);
+    turn(pose, pose.leaf, slabs, scratch_->fixed[0].lanes, 0, scratch_->fixed[0].rows);
     decode(made.step.moving, 0, scratch_->moving, 0);
-    const bool overlap = PairTest(scratch_->rows[0], 0, scratch_->moving, 0, slabs).overlap();
+    const bool overlap = PairTest(scratch_->fixed[0].rows, 0, scratch_->moving, 0, slabs).overlap();
     ++(overlap ? overlapping : separate);
   }
   EXPECT_GT(overlapping, 1000);

@@ -10,40 +10,15 @@
 #include <memory>
 #include <vector>
 
-#include "ist/query/contacts/contact_rates.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/contact_lanes.h"
 #include "simd/guarded.h"
 #include "simd/plan_cases.h"
 #include "simd/targets.h"
+#include "simd/terms_recorder.h"
 
 namespace ist::test {
 namespace {
-
-// Keeps the terms of all pairs.
-class Recorder final : public ContactTermsStream {
- public:
-  void take(const ContactTerms& terms) noexcept override {
-    for (std::size_t i = 0; i < terms.count; ++i) {
-      fixed.push_back(terms.fixed[i]);
-      for (const float* of : {terms.weight, terms.depth, terms.x, terms.y, terms.z, terms.force_x,
-                              terms.force_y, terms.force_z}) {
-        numbers.push_back(of[i]);
-      }
-    }
-  }
-  [[nodiscard]] bool is(const Recorder& other) const {
-    return fixed == other.fixed && numbers == other.numbers;
-  }
-
-  std::vector<std::uint32_t> fixed;
-  std::vector<float> numbers;
-};
-
-bool same(const ContactTotals& a, const ContactTotals& b) {
-  return std::equal(a.sum, a.sum + kContactSums, b.sum) && a.counted == b.counted &&
-         a.pairs == b.pairs;
-}
 
 class ContactKernels : public ::testing::TestWithParam<std::string> {
  protected:
@@ -52,7 +27,7 @@ class ContactKernels : public ::testing::TestWithParam<std::string> {
                             const ContactRule& rule, std::uint64_t most) {
     std::uint64_t counted = 0;
     for (const Measured measured : {Measured::kNothing, Measured::kUpper, Measured::kBoth}) {
-      Recorder wanted_terms, made_terms;
+      TermsRecorder wanted_terms, made_terms;
       wanted_->clear();
       made_->clear();
       wanted_->rule = made_->rule = rule;
@@ -90,12 +65,6 @@ class ContactKernels : public ::testing::TestWithParam<std::string> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Targets, ContactKernels, ::testing::ValuesIn(vector_targets()), name_of);
-
-ContactRule rule_of(const PlannedSearch& search, double least) {
-  const ContactScale scale(search.fixed, search.moving, least);
-  return contact_rule(scale,
-                      contact_rates(search.fixed, search.moving, search.policy, scale).lever);
-}
 
 // From the roots down by the scalar form, and then the last step.
 TEST_P(ContactKernels, AreTheScalarFormAfterASearch) {
@@ -238,14 +207,9 @@ TEST_P(ContactKernels, DoNotOverflow) {
 
 // The scalar form by hand: two leaves that face each other along z, `depth` deep.
 PairTerms facing(double depth, const ContactRule& rule, float share = 1) {
-  const auto lanes = std::make_unique<ContactLanes>();
-  lanes->share[0] = share;
-  lanes->fixed_x[0] = lanes->moving_x[0] = 3;
-  lanes->moving_z[0] = static_cast<float>(-depth);
-  lanes->fixed_normal[0] = PackedNormal({0, 0, 1}, 1).word();
-  SearchPose pose{};
-  pose.rotation[0] = pose.rotation[4] = pose.rotation[8] = 1;
-  return pair_terms(rule, pose, *lanes, 0, PackedNormal({0, 0, -1}, 2).word());
+  return pair_terms(rule, share, {3, 0, 0}, {3, 0, static_cast<float>(-depth)},
+                    unpack_normal(PackedNormal({0, 0, 1}, 1).word()),
+                    unpack_normal(PackedNormal({0, 0, -1}, 2).word()));
 }
 
 TEST(PairTerms, AreWeightDepthPositionAndForce) {

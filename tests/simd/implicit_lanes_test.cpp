@@ -106,15 +106,15 @@ TEST_P(ImplicitLanes, AreTheScalarFormOfEveryMask) {
       in.append(0, std::vector<std::uint32_t>{parent});
       for (std::uint32_t child = 0; child < child_count(step.moving, parent); ++child) {
         SearchPose pose = random_pose(random, 0);
-        decode(step.fixed, 0, scratch->fixed, 0);
+        decode(step.fixed, 0, scratch->fixed[0].lanes, 0);
         decode(step.moving, parent, scratch->moving, 0);
-        turn(pose, pose.leaf, false, scratch->fixed, 0, scratch->rows[0]);
-        const PairTest test(scratch->rows[0], 0, scratch->moving, child, false);
+        turn(pose, pose.leaf, false, scratch->fixed[0].lanes, 0, scratch->fixed[0].rows);
+        const PairTest test(scratch->fixed[0].rows, 0, scratch->moving, child, false);
         pose.leaf.ball = (std::sqrt(test.squared) - test.radius_sum) *
                          (1 + 0x1p-23F * (static_cast<float>(random.below(5)) - 2));
         pose.inner = pose.leaf;
-        turn(pose, pose.leaf, false, scratch->fixed, 0, scratch->rows[0]);
-        const PairTest border(scratch->rows[0], 0, scratch->moving, child, false);
+        turn(pose, pose.leaf, false, scratch->fixed[0].lanes, 0, scratch->fixed[0].rows);
+        const PairTest border(scratch->fixed[0].rows, 0, scratch->moving, child, false);
         ++(border.overlap() ? overlapping : separate);
         wanted.clear();
         made.clear();

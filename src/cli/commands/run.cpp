@@ -209,13 +209,12 @@ void add_run(CLI::App& app) {
   for (CLI::Option* of_a_loop : {seconds, allow_missed, unpaced, cpu}) replay->excludes(of_a_loop);
   add_max_memory(*command, options->max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(
-      *command,
-      "Prints how late ticks began, how long they took, and the time of each effect.\n"
-      "Ctrl-C reduces the force to zero and completes the recording.\n"
-      "Lengths of a recording are metres; gap_lower and gap_upper are in mesh units. README.md\n"
-      "lists the keys of a scene and of a recording; tests/data/scenes has scenes to try.\n"
-      "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
+  add_example(*command,
+              "Prints how late ticks began, how long they took, and the time of each effect.\n"
+              "Ctrl-C reduces the force to zero and completes the recording.\n"
+              "Lengths of a recording are metres. README.md\n"
+              "lists the keys of a scene and of a recording; tests/data/scenes has scenes to try.\n"
+              "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
   command->callback([options] { run(*options); });
 }
 

@@ -83,6 +83,9 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
                                 {"missed", report.missed},
                                 {"held", report.held},
                                 {"faults", report.faults},
+                                {"fresh", report.fresh},
+                                {"kept", report.kept},
+                                {"clear", report.clear},
                                 {"late_microseconds", as_json(report.late)},
                                 {"microseconds", as_json(report.execution)},
                                 {"cpu_microseconds", as_json(report.cpu)},
@@ -97,8 +100,13 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
     return;
   }
   for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print("{} ticks of {:.4g} µs: {} deadlines missed, {} answers incomplete, {} faults\n\n",
+  fmt::print("{} ticks of {:.4g} µs: {} deadlines missed, {} answers incomplete, {} faults\n",
              report.ticks, 1e6 / scene.rate, report.missed, report.held, report.faults);
+  if (report.fresh + report.kept + report.clear > 0) {
+    fmt::print("contacts: {} ticks by a search, {} among the pairs kept, {} inside a clearance\n",
+               report.fresh, report.kept, report.clear);
+  }
+  fmt::print("\n");
   fmt::print("{:<12}", "µs");
   for (const auto& [name, part] : kQuantiles) fmt::print("{:>10}", name);
   fmt::print("{:>10}\n", "max");

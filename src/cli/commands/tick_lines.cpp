@@ -18,8 +18,8 @@ constexpr const char* kCsvHeader =
     "tick,dt,device_known,device_x,device_y,device_z,device_xx,device_xy,device_xz,device_yx,"
     "device_yy,device_yz,device_zx,device_zy,device_zz,tool_x,tool_y,tool_z,tool_xx,tool_xy,"
     "tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,force_x,force_y,force_z,torque_x,"
-    "torque_y,torque_z,contacts,leaf_pairs,gap_lower,gap_upper,level,complete,sphere_tests,"
-    "proximity_tests,held,fault,late_microseconds,microseconds,cpu_microseconds\n";
+    "torque_y,torque_z,contacts,leaf_pairs,complete,proximity_complete,held,fault,"
+    "late_microseconds,microseconds,cpu_microseconds\n";
 
 double microseconds(std::int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
 
@@ -32,15 +32,12 @@ void for_each_number(const TickRecord& record, const Use& use) {
   };
   const auto* contacts = record.contacts ? &*record.contacts : nullptr;
   const auto* proximity = record.proximity ? &*record.proximity : nullptr;
-  const auto* gap = contacts != nullptr && contacts->distance ? &*contacts->distance : nullptr;
-  use("contacts", of(contacts, &QueryResult::leaf_pairs));
+  // Where a deadline ended a query, its numbers are not repeatable.
+  const bool known = contacts != nullptr && contacts->complete;
+  use("contacts", of(known ? contacts : nullptr, &QueryResult::leaf_pairs));
   use("leaf_pairs", std::optional(record.leaf_pairs));
-  use("gap_lower", of(gap, &DistanceInterval::lower));
-  use("gap_upper", of(gap, &DistanceInterval::upper));
-  use("level", of(contacts, &QueryResult::level));
   use("complete", of(contacts, &QueryResult::complete));
-  use("sphere_tests", of(contacts, &QueryResult::sphere_tests));
-  use("proximity_tests", of(proximity, &QueryResult::sphere_tests));
+  use("proximity_complete", of(proximity, &QueryResult::complete));
   use("held", std::optional(record.held));
   use("fault", std::optional(record.fault));
   use("late_microseconds", std::optional(microseconds(record.late_ns)));
@@ -131,18 +128,23 @@ std::optional<RecordedTick> TickReader::next() {
   const nlohmann::json line = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!line.is_object()) refuse("not a JSON object");
   RecordedTick tick{};
-  const auto count = [&](const char* key) -> std::optional<std::uint64_t> {
+  const auto value = [&](const char* key) -> const nlohmann::json& {
     const auto found = line.find(key);
     if (found == line.end()) refuse(fmt::format("no key '{}'", key));
-    if (found->is_null()) return std::nullopt;
-    if (!found->is_number_unsigned()) refuse(fmt::format("'{}' is not a whole number", key));
-    return found->get<std::uint64_t>();
+    return *found;
   };
-  const std::optional<std::uint64_t> number = count("tick");
-  if (!number) refuse("'tick' is null");
-  tick.tick = *number;
-  if (const auto tests = count("sphere_tests")) tick.budget.contacts.tests = *tests;
-  if (const auto tests = count("proximity_tests")) tick.budget.proximity.tests = *tests;
+  const nlohmann::json& number = value("tick");
+  if (!number.is_number_unsigned()) refuse("'tick' is not a whole number");
+  tick.tick = number.get<std::uint64_t>();
+  const auto limit = [&](const char* key, Budget& budget) {
+    const nlohmann::json& complete = value(key);
+    if (!complete.is_null() && !complete.is_boolean()) {
+      refuse(fmt::format("'{}' is neither true, false nor null", key));
+    }
+    if (complete == false) budget.tests = 0;
+  };
+  limit("complete", tick.budget.contacts);
+  limit("proximity_complete", tick.budget.proximity);
 
   const auto dt = line.find("dt");
   if (dt == line.end() || !dt->is_number()) refuse("no number 'dt'");

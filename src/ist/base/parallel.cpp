@@ -14,16 +14,25 @@ namespace {
 // loop.
 std::atomic<std::size_t> loops_begun{0};
 
+// Also where a body throws.
 struct Loop {
   std::size_t count, grain;
   const std::function<void(std::size_t, std::size_t)>& body;
   std::atomic<std::size_t> ranges_ended{0};
 
+  ~Loop() { static_cast<void>(ranges_ended.load(std::memory_order_acquire)); }
+
   void run(std::size_t range) {
+    const End end{ranges_ended};
     const ScopedFloatEnvironment environment;
     body(range * grain, std::min(count, (range + 1) * grain));
-    ranges_ended.fetch_add(1, std::memory_order_release);
   }
+
+ private:
+  struct End {
+    std::atomic<std::size_t>& ranges_ended;
+    ~End() { ranges_ended.fetch_add(1, std::memory_order_release); }
+  };
 };
 
 }  // namespace
@@ -31,7 +40,7 @@ struct Loop {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   IST_ASSERT(grain > 0);
-  Loop loop{count, grain, body, {}};
+  Loop loop{count, grain, body};
   loops_begun.fetch_add(1, std::memory_order_release);
   tbb_ranges((count + grain - 1) / grain,
              [](void* context, std::size_t range) {
@@ -39,7 +48,6 @@ void parallel_for(std::size_t count, std::size_t grain,
                static_cast<Loop*>(context)->run(range);
              },
              &loop);
-  static_cast<void>(loop.ranges_ended.load(std::memory_order_acquire));
 }
 
 void parallel_sort(std::span<std::uint64_t> keys) {

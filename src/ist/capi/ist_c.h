@@ -2,13 +2,13 @@
 #define IST_CAPI_IST_C_H
 
 /*
- * IST for C, and for any language that calls C: collision queries between two rigid triangle
- * meshes. It needs a 64-bit processor.
+ * IST for C, and for any language that calls C: collision queries between two rigid meshes, on a
+ * 64-bit processor.
  *
  * Handles. A mesh, a tree, a query and a servo (ist_servo.h) are opaque handles, not addresses. One
- * function creates each kind, and its ist_..._free releases it. A call with a handle that was
- * freed, has another kind or never existed returns an error code. The library recognises a freed
- * handle until 2^32 later handles have used its slot. At most 65,536 handles live at a time.
+ * function creates each kind, and its ist_..._free releases it. A call with a handle that was freed
+ * (until 2^32 later ones have used its slot), has another kind or never existed returns an error
+ * code. At most 65,536 handles live at a time.
  *
  * Threads. Any thread may call any function. Meshes and trees are immutable; any number of threads
  * may share them. A query or a servo serves one call at a time; a second, simultaneous call returns
@@ -16,7 +16,7 @@
  *
  * Errors. Functions that can fail return an ist_status: IST_OK or an error code. After an error,
  * ist_last_error_message() gives the calling thread's cause and remedy. No C++ exception leaves the
- * library. A call that fails sets its outputs to zero, except the contents of arrays.
+ * library. A call that fails sets its outputs to zero, but for the contents of arrays.
  *
  * Structs that begin with `struct_size`: set it to sizeof and all other members to zero; a zero
  * member selects its default. A program compiled with an older header passes a shorter struct; the
@@ -26,8 +26,8 @@
  * Poses are double[16] in column-major order: [0..2], [4..6] and [8..10] are the images of the x, y
  * and z axes, [12..14] is the translation, and [3], [7], [11], [15] are 0, 0, 0, 1. A query's pose
  * maps moving mesh coordinates to fixed mesh coordinates. A pose that is not finite, or deviates
- * from a rigid motion by more than 1e-5, gives IST_POSE_INVALID. Lengths are in mesh units, which
- * both meshes must share.
+ * from a rigid motion by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit of
+ * length.
  *
  * Real time. Functions marked [real time] allocate no memory, wait for nothing and make no system
  * call. Two exceptions: in a library loaded by dlopen() a thread's first error may allocate memory
@@ -188,9 +188,8 @@ typedef struct ist_build_options {
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
-/* Reads a tree file and checks every number in it. Cost: 1 ns per byte.
- * Errors: IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED,
- * IST_TREE_CORRUPT. */
+/* Reads a tree file and checks every number in it. Cost: 1 ns per byte. Errors:
+ * IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED, IST_TREE_CORRUPT. */
 IST_C_API ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT;
 
 /* Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
@@ -242,12 +241,13 @@ typedef struct ist_query_options {
   const char* target;   /* instruction set, such as "avx2"; default: the best. Same answers */
   double push_distance; /* distance at which springs begin, in mean voxel sizes, up to 2;
                            default 2; -1: springs begin where surfaces meet */
+  uint64_t front_pairs; /* capacity for leaf pairs kept from pose to pose, 224 bytes each; up to
+                           2^26, 0: none. For slow motion. Answers do not depend on it */
 } ist_query_options;
 
-/* Creates a query and reserves all its memory. `options` may be NULL. `fixed` and `moving` may be
- * the same tree, and may be freed afterwards.
- * Errors: IST_POLICY_MISSING, IST_TARGET_MISSING, IST_MEMORY_LIMIT, IST_OUT_OF_MEMORY,
- * IST_ARGUMENT_INVALID. Cost: a few ms. */
+/* Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
+ * and may be freed afterwards. Errors: IST_POLICY_MISSING, IST_TARGET_MISSING, IST_MEMORY_LIMIT,
+ * IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
 IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                                       const ist_query_options* options,
                                       ist_query** query) IST_NOEXCEPT;
@@ -266,10 +266,13 @@ typedef struct ist_query_info {
 /* Gives the properties of a query. [real time] */
 IST_C_API ist_status ist_query_get_info(ist_query* query, ist_query_info* info) IST_NOEXCEPT;
 
-/* A leaf of the fixed tree and a leaf of the moving tree with overlapping bounds, by index. */
+/* Two leaves with overlapping bounds, by their indices in the two trees. */
 typedef struct IST_MAY_ALIAS ist_leaf_pair {
   uint32_t fixed, moving;
 } ist_leaf_pair;
+
+/* How an answer was found: by a search, among kept leaf pairs, or by a clearance known before. */
+enum { IST_FOUND_FRESH = 0, IST_FOUND_KEPT = 1, IST_FOUND_CLEAR = 2 };
 
 typedef struct ist_query_result {
   size_t struct_size;
@@ -284,12 +287,14 @@ typedef struct ist_query_result {
   int32_t distance_known; /* 1: the distance between the surfaces is in [lower, upper] */
   double distance_lower, distance_upper;
   double resolution; /* greatest distance between the surfaces in a leaf pair */
+  int32_t found;     /* IST_FOUND_...; only sphere_tests and the distance depend on it */
+  int32_t reserved;  /* zero */
 } ist_query_result;
 
 /* The limits of one query, with one contract for every function that takes them. A search never
  * makes more tests than allowed, but for the test of the roots. With a limit of time it reads the
- * clock at least every 500 tests and every 512 leaf pairs. A limit of tests alone gives the same
- * answer in every run. */
+ * clock every 500 tests, 512 leaf pairs or 2,048 kept ones. A limit of tests alone gives the same
+ * answer in every run, and keeps nothing from pose to pose. */
 typedef struct ist_budget {
   size_t struct_size;
   uint64_t tests;       /* most pairs of bounds to test; 0: no limit */
@@ -297,9 +302,8 @@ typedef struct ist_budget {
 } ist_budget;
 
 /* Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
- * `pairs` may be NULL where `capacity` is 0; the call then counts the pairs. `budget` may be NULL:
- * no limit. With a budget the distance is always known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns
- * per test. [real time] */
+ * `pairs` may be NULL where `capacity` is 0, to count; `budget` may be NULL: no limit. With a
+ * budget the distance is known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns per test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
                                           size_t capacity, ist_query_result* result) IST_NOEXCEPT;
@@ -312,9 +316,9 @@ typedef struct ist_contact {
   double weight;      /* an area, mesh units^2; falls to 0 where a contact ends */
 } ist_contact;
 
-/* Sums over all leaf pairs, for continuous forces on the moving body. A pair has weight w, normal
- * n, depth d and position p; springs begin at depth d0, the negative push distance. Units are for
- * meshes in mm. */
+/* Sums over all leaf pairs, for forces on the moving body; units for meshes in mm. A pair has
+ * weight w, normal n, depth d and position p; springs begin at depth d0, the negative push
+ * distance. */
 typedef struct ist_contact_sums {
   size_t struct_size;
   uint64_t pairs;            /* leaf pairs with a weight above 0 */
@@ -335,9 +339,8 @@ IST_C_API ist_status ist_query_contacts(ist_query* query, const double pose[16],
                                         size_t capacity, ist_contact_sums* sums,
                                         ist_query_result* result) IST_NOEXCEPT;
 
-/* Gives the wrench of springs of one stiffness on the moving body, about sums->about. A stiffness
- * in N/mm^3 and meshes in mm give a force in N and a torque in N mm. Errors: IST_ARGUMENT_INVALID
- * where the stiffness is not finite. [real time] */
+/* Gives the wrench of springs on the moving body, about sums->about. A stiffness in N/mm^3 and
+ * meshes in mm give N and N mm. IST_ARGUMENT_INVALID for one that is not finite. [real time] */
 IST_C_API ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffness,
                                              double force[3], double torque[3]) IST_NOEXCEPT;
 
@@ -349,9 +352,9 @@ typedef struct ist_distance_result {
   int32_t reserved; /* zero */
 } ist_distance_result;
 
-/* Bounds the distance between the surfaces by an interval no wider than `tolerance`, at least 0;
- * without triangles, no wider than the greater of it and twice the resolution. Errors:
- * IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: 0.02 to 0.7 ms for jaws. [real time] */
+/* Bounds the distance between the surfaces by an interval no wider than `tolerance`, or, without
+ * triangles, than twice the resolution where that is more. Errors: IST_POSE_INVALID,
+ * IST_ARGUMENT_INVALID. Cost: 0.02 to 0.7 ms for jaws. [real time] */
 IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
                                         ist_distance_result* result) IST_NOEXCEPT;
 
@@ -363,13 +366,11 @@ enum {
   IST_ANSWER_YES = 3
 };
 
-/* Decides whether the bodies intersect, exactly where both trees have triangles. `answer` receives
- * an IST_ANSWER_... Errors: IST_POSE_INVALID. Cost: at most that of ist_query_triangle_pairs, or of
- * ist_query_leaf_pairs without triangles. [real time] */
+/* Decides whether the bodies intersect: an IST_ANSWER_... Errors: IST_POSE_INVALID. [real time] */
 IST_C_API ist_status ist_query_intersects(ist_query* query, const double pose[16],
                                           int32_t* answer) IST_NOEXCEPT;
 
-/* Two triangles with a common point, by their indices in the two meshes. */
+/* Two triangles with a common point, by index. */
 typedef struct IST_MAY_ALIAS ist_triangle_pair {
   uint32_t fixed, moving;
 } ist_triangle_pair;
@@ -383,9 +384,8 @@ typedef struct ist_triangle_pairs_result {
   int32_t reserved;  /* zero */
 } ist_triangle_pairs_result;
 
-/* Finds all pairs of triangles with a common point, exactly, sorted by fixed and then by moving
- * triangle. `pairs` may be NULL where `capacity` is 0. Errors: IST_POSE_INVALID;
- * IST_TRIANGLES_MISSING where a tree has no triangles. Cost: about 1.2 us per pair. [real time] */
+/* Finds all pairs of triangles with a common point, exactly, sorted as leaf pairs are. Errors:
+ * IST_POSE_INVALID; IST_TRIANGLES_MISSING. Cost: about 1.2 us per pair. [real time] */
 IST_C_API ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
                                               ist_triangle_pair* pairs, size_t capacity,
                                               ist_triangle_pairs_result* result) IST_NOEXCEPT;

@@ -20,6 +20,9 @@ static_assert(sizeof(ist_triangle_pair) == sizeof(TrianglePair) &&
 constexpr std::int32_t answer_of(Answer answer) {
   return static_cast<std::int32_t>(answer) + IST_ANSWER_NO;
 }
+static_assert(static_cast<int>(Found::kFresh) == IST_FOUND_FRESH &&
+              static_cast<int>(Found::kKept) == IST_FOUND_KEPT &&
+              static_cast<int>(Found::kClear) == IST_FOUND_CLEAR);
 static_assert(answer_of(Answer::kNo) == IST_ANSWER_NO &&
               answer_of(Answer::kNear) == IST_ANSWER_NEAR &&
               answer_of(Answer::kYes) == IST_ANSWER_YES);
@@ -53,6 +56,7 @@ ist_query_result result_of(const QueryResult& found) {
     result.distance_upper = found.distance->upper;
   }
   result.resolution = found.resolution;
+  result.found = static_cast<std::int32_t>(found.found);
   return result;
 }
 

@@ -21,6 +21,7 @@ ist_status status_of(const Call& call, QueryStatus status) {
       return call.fail(IST_TRIANGLES_MISSING,
                        "a tree has no triangles: build both trees with keep_triangles = 1");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
+    case QueryStatus::kBusy:              // a handle is used by one thread at a time
       break;
   }
   return call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");

@@ -50,11 +50,12 @@ struct TickRecord {
 struct RecordedTick {
   std::uint64_t tick = 0;
   std::optional<Placement> device = {};
-  TickBudget budget = {};  ///< of tests: the count at which each query stopped, or no limit
+  TickBudget budget = {};  ///< no tests for a query that a deadline ended, else no limit
 };
 
-/// Replays a tick. The record equals the recorded one but for its times, if all earlier ticks were
-/// replayed before.
+/// Replays a tick. If all earlier ticks were replayed before, the record equals the recorded one,
+/// but for its times, for the tests and the distance of complete queries, and for all numbers of
+/// those that a deadline ended.
 [[nodiscard]] IST_API TickRecord replay(const RecordedTick& recorded,
                                         Simulation& simulation) noexcept;
 

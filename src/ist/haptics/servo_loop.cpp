@@ -97,12 +97,27 @@ class Loop {
     ++report_.ticks;
     report_.held += record.held ? 1U : 0U;
     report_.faults += record.fault ? 1U : 0U;
+    if (record.contacts) count(record.contacts->found);
     report_.late.record(nanoseconds(record.late_ns));
     report_.execution.record(nanoseconds(record.execution_ns));
     report_.cpu.record(nanoseconds(record.cpu_ns));
     if (outputs_.records != nullptr) push(record);
     if (outputs_.snapshot != nullptr) outputs_.snapshot->publish(record);
     if (outputs_.progress != nullptr) outputs_.progress->add(1);
+  }
+
+  void count(Found found) noexcept {
+    switch (found) {
+      case Found::kFresh:
+        ++report_.fresh;
+        break;
+      case Found::kKept:
+        ++report_.kept;
+        break;
+      case Found::kClear:
+        ++report_.clear;
+        break;
+    }
   }
 
   void push(const TickRecord& record) noexcept {

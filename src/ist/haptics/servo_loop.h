@@ -54,6 +54,9 @@ struct ServoReport {
   std::uint64_t missed = 0;  ///< ticks that ended after their period, or were skipped
   std::uint64_t held = 0;    ///< ticks with incomplete contacts
   std::uint64_t faults = 0;
+  /// Ticks by the way their contacts were found (Found): by a search, among the leaf pairs kept
+  /// from earlier ticks, inside a clearance.
+  std::uint64_t fresh = 0, kept = 0, clear = 0;
   std::uint64_t lost_records = 0;
   std::vector<std::string> notes;  ///< denied requests to the system, with cause and remedy
 };

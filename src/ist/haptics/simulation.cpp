@@ -78,8 +78,6 @@ bool detail::SimulationState::query_contacts(const TickBudget& budget, Tick& tic
   if (!is_complete(tick.contacts)) return false;
   if (proximity) tick.proximity = proximity->find(tool_pose, budget.proximity, candidate.proximity);
   if (!is_complete(tick.proximity)) candidate.proximity = last_complete.proximity;
-  // Last, because no effect uses the distance.
-  if (contacts) contacts->measure_distance(tool_pose, budget.contacts, *tick.contacts);
   if (motion) {
     effects.advance(input(), *motion);
     step_scale = std::min(1.0, 2 * step_scale);

@@ -1,7 +1,6 @@
 #include "ist/haptics/tool_contact_query.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace ist {
 namespace {
@@ -29,7 +28,10 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
     : frames_(frames),
       area_(fixed.voxel_size() * held.voxel_size()),
       query_(fixed, held,
-             {.policy = options.policy, .workers = options.workers, .period = options.period}),
+             {.policy = options.policy,
+              .workers = options.workers,
+              .period = options.period,
+              .front_pairs = options.front_pairs}),
       least_depth_(options.least_depth * 0.5 * (fixed.voxel_size() + held.voxel_size())),
       manifold_(fixed, held, options.policy,
                 {.points = ToolContacts::kMost,
@@ -43,19 +45,6 @@ QueryResult ToolContactQuery::find(const Placement& tool, const Budget& budget,
   if (result.status != QueryStatus::kDone || !result.complete) return result;
   reduce(tool, contacts);
   return result;
-}
-
-void ToolContactQuery::measure_distance(const Placement& tool, const Budget& budget,
-                                        QueryResult& result) noexcept {
-  if (result.leaf_pairs > 0) return;
-  Budget left = budget;
-  // A search measures the distance only under a limit, even one that is never reached.
-  left.tests = std::min(left.tests, std::numeric_limits<std::uint64_t>::max() - 1);
-  left.tests -= std::min(left.tests, result.sphere_tests);
-  const QueryResult measured =
-      query_.leaf_pairs(frames_.query_pose(tool), std::span<LeafPair>(), left);
-  result.distance = measured.distance;
-  result.sphere_tests += measured.sphere_tests;
 }
 
 void ToolContactQuery::reduce(const Placement& tool, ToolContacts& contacts) const noexcept {

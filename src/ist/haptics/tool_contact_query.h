@@ -22,9 +22,10 @@ struct BodyFrames {
 /// Options of a ToolContactQuery. Depths are in voxels; see ManifoldOptions.
 struct ToolContactOptions {
   SpherePolicy policy = SpherePolicy::kTable;
-  double least_depth = -0.25;  ///< the depth at which contacts begin
-  double margin = 0.375;       ///< the detection margin
-  int workers = 1;             ///< 2: a second thread helps the search
+  double least_depth = -0.25;         ///< the depth at which contacts begin
+  double margin = 0.375;              ///< the detection margin
+  int workers = 1;                    ///< 2: a second thread helps the search
+  std::size_t front_pairs = 1 << 16;  ///< the most leaf pairs kept from tick to tick
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one query to the next
 };
 
@@ -37,13 +38,10 @@ class ToolContactQuery {
                    const ToolContactOptions& options);
 
   /// Finds the contacts at a pose of the tool. Leaves `contacts` unchanged unless the result is
-  /// complete.
+  /// complete. Where the tool is apart, the distance of the result is a clearance, as far as it is
+  /// known.
   [[nodiscard]] QueryResult find(const Placement& tool, const Budget& budget,
                                  ToolContacts& contacts) noexcept;
-  /// If `result` has no leaf pairs, measures the distance within the rest of the budget. Its tests
-  /// are added to the result.
-  void measure_distance(const Placement& tool, const Budget& budget, QueryResult& result) noexcept;
-
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + manifold_.bytes(); }
 
  private:

@@ -31,7 +31,8 @@ struct AnyLeafPair : VisitorBase {
 }  // namespace
 
 const char* to_string(QueryStatus status) noexcept {
-  constexpr std::array kNames = {"done", "invalid-pose", "no-triangles", "manifold-mismatch"};
+  constexpr std::array kNames = {"done", "invalid-pose", "no-triangles", "manifold-mismatch",
+                                 "busy"};
   const auto at = static_cast<std::size_t>(status);
   return at < kNames.size() ? kNames[at] : "unknown";
 }
@@ -47,6 +48,8 @@ Query& Query::operator=(Query&&) noexcept = default;
 IntersectionResult Query::intersects(const Eigen::Isometry3d& pose) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
   if (!bodies) return {.status = QueryStatus::kInvalidPose};
   IntersectionResult result;
@@ -71,6 +74,8 @@ QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair>
                               const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   LeafPairSink sink(s.plan, s.kernels, out);
   return s.list(pose, budget, sink);
 }
@@ -78,6 +83,8 @@ QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair>
 QueryResult Query::leaf_pairs(const Eigen::Isometry3d& pose, LeafPairStream& stream) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   LeafPairSink sink(s.plan, s.kernels, s.window, stream);
   return s.list(pose, {}, sink);
 }
@@ -86,6 +93,8 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
                             const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   detail::ContactReducer& reducer = manifold.reducer();
   reducer.clear();
   if (!reducer.fits(s.fixed, s.moving, s.policy)) {
@@ -114,6 +123,8 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
                                           std::span<TrianglePair> out) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy};
   if (!s.exact) return {.status = QueryStatus::kNoTriangles};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
   if (!bodies) return {.status = QueryStatus::kInvalidPose};
@@ -136,6 +147,7 @@ int Query::workers() const noexcept {
 std::size_t Query::bytes() const noexcept {
   const auto* shared = std::get_if<SharedSearch>(&state_->searches);
   return (shared != nullptr ? shared->bytes() : state_->serial().bytes()) +
+         (state_->coherent ? state_->coherent->bytes() : 0) +
          (state_->exact ? state_->exact->bytes() : 0) + state_->window.size() * sizeof(LeafPair);
 }
 

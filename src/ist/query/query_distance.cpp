@@ -53,6 +53,8 @@ class NearestLeaves : public VisitorBase {
 DistanceResult Query::distance(const Eigen::Isometry3d& pose, double tolerance) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
   if (!bodies) return {.status = QueryStatus::kInvalidPose};
   DistanceResult result{.distance = bodies->roots.distance, .sphere_tests = 1};

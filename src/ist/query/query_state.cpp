@@ -55,6 +55,12 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   } else {
     searches.emplace<Search>(plan, kernels, options.frontier_pairs);
   }
+  if (options.front_pairs > 0) {
+    coherent.emplace(
+        fixed, moving, policy, plan, kernels,
+        CoherentOptions{options.frontier_pairs, within_limit("front_pairs", options.front_pairs),
+                        options.workers, options.period});
+  }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
     exact.emplace(fixed, moving, policy, kernels,
@@ -100,6 +106,7 @@ QueryResult QueryState::root_result(const RootTest& roots, double margin) const 
   result.sphere_tests = 1;
   set_pad(2 * roots.pad + margin, result);
   result.distance = roots.distance;
+  if (!roots.overlap) result.found = Found::kClear;
   return result;
 }
 
@@ -111,7 +118,8 @@ QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget
   if (!bodies->roots.overlap) return result;
   search<PairLister>(*bodies, to_float(*bodies), budget,
                      budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
-  if (!budget.is_limited()) result.distance.reset();  // nothing was measured
+  if (!budget.is_limited() && result.found != Found::kClear)
+    result.distance.reset();  // nothing was measured
   return result;
 }
 
@@ -120,6 +128,15 @@ void QueryState::search(const Approach& bodies, const SearchPose& pose, const Bu
                         Measured measured, typename Lister::Sink& sink,
                         QueryResult& result) noexcept {
   set_pad(2 * pad_of(pose) - bodies.margin, result);
+  std::uint64_t made = 0;  // tests for a front
+  if (coherent && !budget.has_tests()) {
+    const CoherentSearch::FrontAt found = coherent->find(bodies.relative, bodies.margin, budget);
+    if (found.front != nullptr) {
+      answer_from(found, bodies, pose, budget, sink, result);
+      return;
+    }
+    made = found.tests;
+  }
   // The test of the roots is one of the budget's.
   const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
   SharedSearch::End end{};
@@ -130,7 +147,7 @@ void QueryState::search(const Approach& bodies, const SearchPose& pose, const Bu
     const std::size_t steps = serial().run(lister);
     end = {steps, lister.tests(), sink.count(), lister.bounds()};
   }
-  result.sphere_tests += end.tests - meter.spent();
+  result.sphere_tests += end.tests - meter.spent() + made;
   result.leaf_pairs = end.leaf_pairs;
   result.truncated = sink.truncated();
   result.level = static_cast<int>(plan.steps().size() - end.steps);
@@ -145,6 +162,33 @@ void QueryState::search(const Approach& bodies, const SearchPose& pose, const Bu
   if (!result.complete || measured == Measured::kBoth) {
     upper = std::min(upper, end.bounds.upper - bodies.margin);
   }
+  if (coherent && result.complete) {
+    coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
+  }
+}
+
+template <class Sink>
+void QueryState::answer_from(const CoherentSearch::FrontAt& found, const Approach& bodies,
+                             const SearchPose& pose, const Budget& budget, Sink& sink,
+                             QueryResult& result) noexcept {
+  const Front& front = *found.front;
+  result.found = found.tests > 0 ? Found::kFresh : front.empty() ? Found::kClear : Found::kKept;
+  result.sphere_tests += found.tests + front.lanes.pair_count;
+  result.complete = coherent->pass_on(front, pose, budget, sink);
+  if (!result.complete) {
+    if (!sink.stopped()) sink.clear();  // which pairs were passed on is not repeatable
+    result.level = static_cast<int>(plan.steps().size());
+  }
+  result.leaf_pairs = sink.count();
+  result.truncated = sink.truncated();
+  auto& [lower, upper] = *result.distance;
+  if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
+  if (front.empty()) {
+    lower = std::max(lower, front.extent - found.motion);
+    upper = std::min(upper, found.upper);
+  }
+  if (!result.complete) return;
+  coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, found.tests, budget);
 }
 
 template void QueryState::search<PairLister>(const Approach&, const SearchPose&, const Budget&,

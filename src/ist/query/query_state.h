@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <atomic>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/query/coherent/coherent_search.h"
 #include "ist/query/exact/exact_search.h"
 #include "ist/query/query.h"
 #include "ist/query/traversal/root_test.h"
@@ -47,6 +49,11 @@ struct QueryState {
                                  LeafPairSink& sink) noexcept;
   /// Returns the result that the root test alone gives.
   [[nodiscard]] QueryResult root_result(const RootTest& roots, double margin = 0) const noexcept;
+  /// Answers from a front, and goes on with the next one.
+  template <class Sink>
+  void answer_from(const CoherentSearch::FrontAt& found, const Approach& bodies,
+                   const SearchPose& pose, const Budget& budget, Sink& sink,
+                   QueryResult& result) noexcept;
   void set_pad(double pad, QueryResult& result) const noexcept;
   /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
   void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;
@@ -56,9 +63,27 @@ struct QueryState {
   const Kernels& kernels;
   SearchPlan plan;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
+  std::optional<CoherentSearch> coherent;
   std::optional<ExactSearch> exact;
   double largest_coordinate = 0;  // the largest of a moving vertex, without its sign
   std::vector<LeafPair> window;   // the leaf pairs that a stream is given at once
+  std::atomic_flag in_use;
+};
+
+/// The use of a query by one thread: false where another thread is using it.
+class Use {
+ public:
+  explicit Use(QueryState& state) noexcept
+      : state_(state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state) {}
+  ~Use() {
+    if (state_ != nullptr) state_->in_use.clear(std::memory_order_release);
+  }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+  [[nodiscard]] explicit operator bool() const noexcept { return state_ != nullptr; }
+
+ private:
+  QueryState* state_;
 };
 
 }  // namespace ist::detail

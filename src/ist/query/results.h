@@ -15,11 +15,11 @@ namespace ist {
 /// The limits of one query: one contract for every verb that takes them.
 ///
 /// A search never makes more tests than allowed, but for the test of the roots, which is always
-/// made. With a deadline it reads the clock at least every 500 tests and every 512 leaf pairs, and
-/// ends at the first look after the deadline. The result of a search that ended early states the
-/// level, and the interval of the distance that the tests so far tell. With a limit of tests alone
-/// the answer is the same on every machine and in every run; a limit of as many tests as a deadline
-/// allowed ends the search at the same place.
+/// made. With a deadline it reads the clock at least every 500 tests, every 512 leaf pairs, and
+/// every 2,048 pairs of a front, and ends at the first look after the deadline. The result of a
+/// search that ended early states the level, and the interval of the distance that the tests so far
+/// tell. With a limit of tests alone the answer is the same on every machine and in every run; a
+/// limit of as many tests as a deadline allowed ends the search at the same place.
 struct Budget {
   using Clock = std::chrono::steady_clock;
 
@@ -49,8 +49,16 @@ enum class QueryStatus : std::uint8_t {
   kInvalidPose,       ///< the pose is no rigid motion; nothing was searched
   kNoTriangles,       ///< the question needs triangles, and a tree was built without them
   kManifoldMismatch,  ///< the manifold was made for other trees or another policy
+  kBusy,              ///< another thread is using the query; nothing was searched or changed
 };
 [[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;
+
+/// How a query found its answer. The answer does not depend on it.
+enum class Found : std::uint8_t {
+  kFresh,  ///< by a search at this pose
+  kKept,   ///< among the leaf pairs that were kept from earlier poses
+  kClear,  ///< without a look: by the bounds of the roots, or a clearance found at an earlier pose
+};
 
 /// The answer of Query::leaf_pairs and Query::contacts.
 struct QueryResult {
@@ -69,6 +77,7 @@ struct QueryResult {
   /// The bounds of a leaf pair are no farther apart than this, mesh units: the margin asked for,
   /// and the rounding error that the tests allow for.
   double pad = 0;
+  Found found = Found::kFresh;
 };
 
 /// A pair of triangles that have a point in common, by their indices in the two meshes.

@@ -189,7 +189,9 @@ void Builder::build_simulation() {
   double radius = 0;
   const SceneTrees& trees = built_.trees;
   if (trees.fixed) {
-    parts.contacts = notes_.make("contact points", "for effects at contacts", [&] {
+    const std::string why = fmt::format("for effects at contacts; up to {} leaf pairs are kept",
+                                        ToolContactOptions().front_pairs);
+    parts.contacts = notes_.make("contact points", why, [&] {
       const SpherePolicy policy = std::min(scene_.fixed.spheres.value_or(trees.fixed->tightest()),
                                            scene_.held.spheres.value_or(trees.held->tightest()));
       return std::make_unique<ToolContactQuery>(

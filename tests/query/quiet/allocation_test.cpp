@@ -97,6 +97,37 @@ TEST(Allocations, ContactPointsMakeNone) {
   }
 }
 
+// Nor does a query that keeps a front: where it fits and where it does not, with one worker and
+// two, for leaf pairs and contacts, with a deadline and without.
+TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
+  const Scene& scene = solids()[0];
+  for (const int workers : {1, 2}) {
+    for (const std::size_t front_pairs : {std::size_t{100}, std::size_t{1} << 15}) {
+      QueryOptions options = options_of(SpherePolicy::kSlab, "", workers);
+      options.front_pairs = front_pairs;
+      std::vector<LeafPair> out(1 << 16);
+      Query query(scene.fixed, scene.moving, options);
+      ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+      int kept = 0, clear = 0;
+      EXPECT_EQ(allocations_of([&] {
+                  for (int i = 0; i < 1000; ++i) {
+                    Eigen::Isometry3d pose = i < 800 ? scene.pose : shift({2.05, 0, 0});
+                    pose.translation()[2] += 0.0005 * (i % 100) + 0.1 * (i / 100 % 2);
+                    Budget budget;
+                    if (i % 7 == 0) budget.deadline = Clock::now() + 20us;
+                    const QueryResult result = i / 10 % 2 == 0
+                                                   ? query.leaf_pairs(pose, out, budget)
+                                                   : query.contacts(pose, points, budget);
+                    kept += result.found == Found::kKept ? 1 : 0;
+                    clear += result.found == Found::kClear ? 1 : 0;
+                  }
+                }),
+                0u);
+      EXPECT_TRUE(front_pairs == 100 || (kept > 100 && clear > 100)) << kept << ", " << clear;
+    }
+  }
+}
+
 // Nor do certified answers: not for the distance, nor for triangles, whatever their memory.
 TEST(Allocations, CertifiedAnswersMakeNone) {
   const SphereTree tree = exact_tree(icosphere(3, 1), 20);

@@ -46,6 +46,33 @@ void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
   end_process(enough(helped) ? 0 : 1);
 }
 
+// A slow way with a front that is kept and made again, by the worker where there is one.
+void carry_in_silence(const Scene& scene, int workers) {
+  std::vector<LeafPair> out(1 << 16);
+  QueryOptions options = options_of(SpherePolicy::kSlab, "", workers);
+  options.front_pairs = 1 << 15;
+  Query query(scene.fixed, scene.moving, options);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  Eigen::Isometry3d pose = scene.pose;
+  const double step = 0.01 * scene.fixed.voxel_size();
+  int kept = 0;
+  const auto tick = [&](int i) {
+    pose.translation()[2] += i / 500 % 2 == 0 ? step : -step;
+    const Budget budget{.deadline = Budget::Clock::now() + 1s};
+    const QueryResult result =
+        i % 2 == 0 ? query.contacts(pose, points, budget) : query.leaf_pairs(pose, out);
+    kept += result.found == Found::kKept ? 1 : 0;
+  };
+  for (int i = 0; i < 500; ++i) tick(i);  // the worker is there, if it comes
+  kept = 0;
+  forbid_system_calls();
+  for (int i = 0; i < 2000; ++i) tick(i);
+  for (int i = 0; i < 50; ++i) {
+    static_cast<void>(query.contacts(i % 2 == 0 ? scene.pose : shift({2.2, 0, 0}), points));
+  }
+  end_process(kept > 500 ? 0 : 1);
+}
+
 TEST_F(SystemCalls, AreCaught) {
   EXPECT_EXIT(
       {
@@ -84,6 +111,12 @@ TEST_F(SystemCalls, ContactPointsMakeNone) {
         end_process(points.points().size() > 8 ? 0 : 1);
       },
       ::testing::ExitedWithCode(0), "");
+}
+
+TEST_F(SystemCalls, AQueryThatKeepsAFrontMakesNone) {
+  for (const int workers : {1, 2}) {
+    EXPECT_EXIT(carry_in_silence(solids()[0], workers), ::testing::ExitedWithCode(0), "");
+  }
 }
 
 TEST_F(SystemCalls, CertifiedAnswersMakeNone) {

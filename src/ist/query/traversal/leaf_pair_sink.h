@@ -40,7 +40,7 @@ class LeafPairSink {
 
  private:
   void hand_over(std::span<const LeafPair> leaf_pairs) noexcept {
-    if (stopped_) return;
+    if (stopped_ || leaf_pairs.empty()) return;
     count_ += leaf_pairs.size();
     stopped_ = !stream_->take(leaf_pairs);
   }

@@ -27,6 +27,7 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
     memory.moving.resize(capacity + kFrontierSpare);
     frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
   }
+  cursors_.resize(steps + 1);
   // Makes the first dispatched calls. With infinite pads all bounds overlap, wherever the bodies
   // lie.
   SearchPose pose{};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "ist/query/traversal/search_plan.h"
@@ -30,7 +31,20 @@ class Search {
   /// search. Returns the number of steps that are whole.
   template <SearchVisitor Visitor>
   std::size_t descend(std::size_t step, const Frontier& in, std::size_t first,
-                      Visitor& visitor) noexcept;
+                      Visitor& visitor) noexcept {
+    cursors_[step] = SearchCursor{first};
+    in_row_ = false;
+    return advance(step, in, visitor);
+  }
+  /// Searches as run() does, but may be resumed where the visitor ends it by making no test.
+  /// Returns whether all steps are whole.
+  template <SearchVisitor Visitor>
+  bool begin(Visitor& visitor) noexcept {
+    return run(visitor) == plan_.steps().size();
+  }
+  /// Goes on with such a search.
+  template <SearchVisitor Visitor>
+  bool resume(Visitor& visitor) noexcept;
 
   /// Returns the pairs before a step, where a visitor's enter() ended the search.
   [[nodiscard]] const Frontier& frontier(std::size_t step) const noexcept {
@@ -55,29 +69,44 @@ class Search {
     std::vector<std::uint32_t> moving;
   };
   [[nodiscard]] const Frontier& roots() noexcept;
+  // Searches from a step's cursor on.
+  template <SearchVisitor Visitor>
+  std::size_t advance(std::size_t step, const Frontier& in, Visitor& visitor) noexcept;
 
   const SearchPlan& plan_;
   const Kernels& kernels_;
   std::vector<Memory> memory_;
   std::vector<Frontier> frontiers_;  // the pairs before each step, and the leaf pairs
+  std::vector<SearchCursor> cursors_;
+  std::size_t ended_ = 0;  // the deepest step with pairs left when a visitor ended the search
+  bool in_row_ = false;    // that step ended within a row, which is not searched from until whole
   std::unique_ptr<SearchScratch> scratch_;
 };
 
 template <SearchVisitor Visitor>
-std::size_t Search::descend(std::size_t step, const Frontier& in, std::size_t first,
-                            Visitor& visitor) noexcept {
+bool Search::resume(Visitor& visitor) noexcept {
+  const std::size_t steps = plan_.steps().size();
+  for (std::size_t step = ended_ + 1; step-- > 0;) {
+    if (advance(step, frontiers_[step], visitor) < steps) return false;
+  }
+  return true;
+}
+
+template <SearchVisitor Visitor>
+std::size_t Search::advance(std::size_t step, const Frontier& in, Visitor& visitor) noexcept {
   const std::size_t steps = plan_.steps().size();
   if (step == steps) return visitor.leaves(in) ? steps : steps - 1;
   const bool last = step + 1 == steps;
   Frontier& out = frontiers_[step + 1];
-  SearchCursor cursor{first};
+  SearchCursor& cursor = cursors_[step];
+  const SearchCursor first = cursor;
   while (cursor.group < in.group_count) {
-    const bool begins = cursor == SearchCursor{first};
+    const bool begins = cursor == first;
     Frontier some = in;
     some.group_count =
         cursor.group + std::min(visitor.most_groups(), in.group_count - cursor.group);
     Frontier next = out;
-    next.group_count = next.moving_count = 0;
+    if (!std::exchange(in_row_, false)) next.group_count = next.moving_count = 0;
     if (last) next.capacity = std::min(next.capacity, visitor.most_leaves());
     Advanced made;
     do {
@@ -87,7 +116,13 @@ std::size_t Search::descend(std::size_t step, const Frontier& in, std::size_t fi
     out.moving_count = next.moving_count;
     const bool ended = !made.full && cursor.group < some.group_count;
     if (ended && last) visitor.leaves(out);
-    if (ended) return step;
+    if (ended) {
+      in_row_ = !last && cursor.moving > 0;
+      const bool found = !last && !in_row_ && out.group_count > 0;
+      if (found) cursors_[step + 1] = {};
+      ended_ = found ? step + 1 : step;
+      return step;
+    }
     const bool rest = cursor.group < in.group_count;
     if (out.group_count == 0) continue;
     const bool whole = begins && !rest;

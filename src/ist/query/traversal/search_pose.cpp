@@ -19,6 +19,14 @@ constexpr double kInnerBall = 37.5 * kUnit, kInnerSlab = 53 * kUnit;
 // asked for.
 constexpr double kLeafMargin = 1 + 32 * kUnit, kInnerMargin = 1 + 96 * kUnit;
 
+// |A| + |B| + |t|.
+double lengths_between(const RelativePose& pose, const TreeLengths& fixed,
+                       const TreeLengths& moving) noexcept {
+  const Eigen::Vector3d& t = pose.translation;
+  return (fixed.bounding_radius + moving.bounding_radius) +
+         std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
+}
+
 float round_up(double value) noexcept {
   return std::nextafter(static_cast<float>(value), HUGE_VALF);
 }
@@ -27,6 +35,11 @@ float round_up(double value) noexcept {
 
 TreeLengths lengths_of(const SphereTree& tree, SpherePolicy policy) noexcept {
   return {tree.bounding_radius(), tree.voxel_size(), tree.largest_leaf_radius(policy)};
+}
+
+double most_apart(const RelativePose& pose, const TreeLengths& fixed, const TreeLengths& moving,
+                  double margin) noexcept {
+  return 2 * kLeafSlab * lengths_between(pose, fixed, moving) + kInnerMargin * margin;
 }
 
 SearchPose to_float(const RelativePose& pose, const TreeLengths& fixed, const TreeLengths& moving,
@@ -40,13 +53,10 @@ SearchPose to_float(const RelativePose& pose, const TreeLengths& fixed, const Tr
     }
     narrow.translation[i] = static_cast<float>(moved);
   }
-  const Eigen::Vector3d& t = pose.translation;
-  const double lengths = (fixed.bounding_radius + moving.bounding_radius) +
-                         std::sqrt((t[0] * t[0] + t[1] * t[1]) + t[2] * t[2]);
+  const double lengths = lengths_between(pose, fixed, moving);
   const float leaf_slab = round_up(kLeafSlab * lengths + kLeafMargin * margin);
   narrow.leaf = {round_up(kLeafBall * lengths + kLeafMargin * margin), leaf_slab, leaf_slab};
-  // Leaves that are kept are no farther apart than twice their pad.
-  const double apart = 2 * kLeafSlab * lengths + kInnerMargin * margin;
+  const double apart = most_apart(pose, fixed, moving, margin);
   const auto inner_slab = [&](const TreeLengths& tree, const TreeLengths& partner) {
     const double rise = slab_rise(tree.voxel_size, partner.largest_leaf + apart);
     return round_up(kInnerSlab * lengths + kInnerMargin * (margin + rise));

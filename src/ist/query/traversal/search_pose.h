@@ -20,6 +20,11 @@ struct TreeLengths {
 [[nodiscard]] SearchPose to_float(const RelativePose& pose, const TreeLengths& fixed,
                                   const TreeLengths& moving, double margin = 0) noexcept;
 
+/// Returns a distance, mesh units, that no pair of leaves exceeds which the kernels keep at that
+/// pose: the margin, and twice the pad.
+[[nodiscard]] double most_apart(const RelativePose& pose, const TreeLengths& fixed,
+                                const TreeLengths& moving, double margin = 0) noexcept;
+
 /// Returns the pose with a margin that is larger by `by`, mesh units. The pads of inner slabs may
 /// be larger than those that to_float() would give.
 [[nodiscard]] SearchPose inflated(const SearchPose& pose, double by) noexcept;

@@ -1,0 +1,71 @@
+#include "ist/query/coherent/front_search.h"
+
+#include <algorithm>
+
+namespace ist {
+namespace {
+
+// Keeps all leaf pairs, as long as there is room.
+class Keeper : public VisitorBase {
+ public:
+  Keeper(const SearchPose& pose, Measured measured, Front& front, DistanceBounds& bounds,
+         const BudgetMeter& meter) noexcept
+      : pose_(pose), measured_(measured), front_(front), bounds_(bounds), meter_(meter) {}
+
+  Advanced advance(const SearchBatch& batch) noexcept {
+    const std::uint64_t most = meter_.allow();
+    const Advanced made =
+        batch.step.last ? batch.kernels.advance_front(batch.step, pose_, batch.in, batch.cursor,
+                                                      front_.lanes, batch.scratch, most)
+                        : batch.measure(measured_, pose_, bounds_, most);
+    meter_.spend(made.tests);
+    full_ = batch.step.last && made.full;
+    return full_ ? Advanced{0, false} : made;  // no test ends the search
+  }
+  static bool leaves(const Frontier& /*none*/) noexcept { return true; }
+
+  [[nodiscard]] bool full() const noexcept { return full_; }
+  [[nodiscard]] std::uint64_t tests() const noexcept { return meter_.spent(); }
+
+ private:
+  const SearchPose& pose_;
+  Measured measured_;
+  Front& front_;
+  DistanceBounds& bounds_;
+  BudgetMeter meter_;
+  bool full_ = false;
+};
+
+}  // namespace
+
+void FrontSearch::begin(Front& front, const Wanted& wanted) noexcept {
+  front_ = &front;
+  wanted_ = wanted;
+  front.lanes.pair_count = front.lanes.row_count = 0;
+  front.centre = wanted.centre;
+  front.extent = wanted.extent;
+  bounds_ = {};
+  tests_ = 0;
+  begun_ = false;
+  state_ = State::kUnderWay;
+}
+
+FrontSearch::State FrontSearch::advance(const Budget& budget) noexcept {
+  if (state_ != State::kUnderWay) return state_;
+  Budget part = budget;
+  const std::uint64_t left = wanted_.most_tests - std::min(wanted_.most_tests, tests_);
+  part.tests = std::min(part.tests, left);
+  Keeper keeper(wanted_.pose, wanted_.measured, *front_, bounds_, BudgetMeter(part));
+  const bool whole = begun_ ? search_.resume(keeper) : search_.begin(keeper);
+  begun_ = true;
+  tests_ += keeper.tests();
+  if (whole) {
+    front_->upper = bounds_.upper - wanted_.extent;  // by which radii were inflated
+    state_ = State::kDone;
+  } else if (keeper.full() || (budget.tests >= left && !budget.is_past())) {
+    state_ = State::kFull;
+  }
+  return state_;
+}
+
+}  // namespace ist

@@ -1,0 +1,150 @@
+// How a front is carried on: which ticks it answers, and where the next one comes from.
+
+#include "ist/query/coherent/coherent_search.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "query/coherent/front_case.h"
+
+namespace ist::test {
+namespace {
+
+// A carried front, with fresh searches where it has no answer.
+class CarriedFront {
+ public:
+  CarriedFront(const FrontCase& bodies, std::size_t front_pairs)
+      : bodies_(bodies),
+        search_(bodies.plan, bodies.kernels, 1 << 16),
+        carried_(bodies.fixed, bodies.moving, bodies.policy, bodies.plan, bodies.kernels,
+                 CoherentOptions{1 << 16, front_pairs, 1, std::chrono::nanoseconds(0)}) {}
+
+  // One tick. Returns the number of leaf pairs, which is that of a fresh search.
+  std::size_t tick(const Eigen::Isometry3d& pose) {
+    const RelativePose at = bodies_.relative(pose);
+    const SearchPose from = to_float(at, bodies_.fixed_lengths, bodies_.moving_lengths);
+    found_ = carried_.find(at, 0, {});
+    std::vector<LeafPair> fresh(kRoom), kept(kRoom);
+    LeafPairSink wanted(bodies_.plan, bodies_.kernels, fresh),
+        made(bodies_.plan, bodies_.kernels, kept);
+    PairLister lister(from, wanted);
+    search_.run(lister);
+    if (found_.front != nullptr) {
+      EXPECT_TRUE(carried_.pass_on(*found_.front, from, Budget{}, made));
+      kept.resize(made.count());
+      fresh.resize(wanted.count());
+      EXPECT_EQ(kept, fresh);
+    }
+    // The pairs of the front have changed: it was taken up, or made in this tick.
+    if (found_.front != nullptr && found_.tests > 0) ++at_once_;
+    if (found_.front != nullptr && found_.tests == 0) {
+      ++answered_;
+      taken_up_ += found_.front == last_ ? 0 : 1;
+      last_ = found_.front;
+    }
+    carried_.prepare(at, 0, wanted.count(), found_.front != nullptr ? found_.tests : lister.tests(),
+                     {});
+    ++ticks_;
+    return wanted.count();
+  }
+
+  [[nodiscard]] const CoherentSearch::FrontAt& found() const { return found_; }
+  [[nodiscard]] int answered() const { return answered_; }
+  [[nodiscard]] int taken_up() const { return taken_up_; }
+  [[nodiscard]] int fresh() const { return ticks_ - answered_ - at_once_; }
+
+ private:
+  static constexpr std::size_t kRoom = 1 << 17;
+  const FrontCase& bodies_;
+  Search search_;
+  CoherentSearch carried_;
+  CoherentSearch::FrontAt found_;
+  const Front* last_ = nullptr;
+  int ticks_ = 0, answered_ = 0, taken_up_ = 0, at_once_ = 0;
+};
+
+class CarriedFrontOf : public ::testing::TestWithParam<SpherePolicy> {
+ protected:
+  const Scene& scene_ = solids()[0];
+  const FrontCase bodies_{scene_.fixed, scene_.moving, GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(Policies, CarriedFrontOf, ::testing::ValuesIn(kSpherePolicies),
+                         [](const auto& policy) { return std::string(to_string(policy.param)); });
+
+// Each front lasts for some ticks; the next one is made in slices while it does.
+TEST_P(CarriedFrontOf, IsFollowedByTheNextThatWasMadeInSlices) {
+  CarriedFront front(bodies_, 1 << 15);
+  Eigen::Isometry3d pose = scene_.pose;
+  std::size_t pairs = 0;
+  int fresh_at_first = 0;
+  for (int i = 0; i < 400 && !HasFailure(); ++i) {
+    pose.translation() += 0.02 * bodies_.voxel * Eigen::Vector3d(0.6, 0, i < 200 ? 0.8 : -0.8);
+    pairs += front.tick(pose);
+    if (i == 30) fresh_at_first = front.fresh();
+  }
+  EXPECT_GT(pairs, 100'000u);
+  EXPECT_GE(front.taken_up(), 10);
+  EXPECT_LE(front.fresh() - fresh_at_first, 20);
+}
+
+TEST_P(CarriedFrontOf, LastsAtRest) {
+  CarriedFront front(bodies_, 1 << 15);
+  for (int i = 0; i < 100; ++i) {
+    front.tick(scene_.pose);
+    if (i < 20) continue;
+    ASSERT_NE(front.found().front, nullptr) << i;
+    EXPECT_EQ(front.found().tests, 0u);
+    EXPECT_LE(front.found().motion, 1e-9);
+  }
+  EXPECT_LE(front.taken_up(), 3);
+}
+
+// The leaf pairs would fit, a front with slack does not: the next ones get less of it, until one
+// fits or all ticks are fresh searches.
+TEST_P(CarriedFrontOf, ThatIsFullIsFollowedByOneWithLessSlack) {
+  std::size_t pairs = 0;
+  {
+    CarriedFront front(bodies_, 1);
+    pairs = front.tick(scene_.pose);
+    ASSERT_GT(pairs, 400u);
+    EXPECT_EQ(front.found().front, nullptr);
+  }
+  const std::size_t room = pairs + pairs / 8 + 1;
+  Front kept(room);
+  FrontSearch search(bodies_.plan, bodies_.kernels, 1 << 16);
+  search.begin(kept, bodies_.wanted(bodies_.relative(scene_.pose), 0.4 * bodies_.voxel));
+  ASSERT_EQ(search.advance({}), FrontSearch::State::kFull);
+  CarriedFront none(bodies_, 1), front(bodies_, room), roomy(bodies_, 4 * room + 1000);
+  Eigen::Isometry3d pose = scene_.pose;
+  double widest = 0;
+  for (int i = 0; i < 60; ++i) {
+    pose.translation()[2] += (i / 10 % 2 == 0 ? 0.02 : -0.02) * bodies_.voxel;  // where it began
+    none.tick(pose);
+    front.tick(pose);
+    roomy.tick(pose);
+    if (front.found().front != nullptr) widest = std::max(widest, front.found().front->extent);
+  }
+  EXPECT_EQ(none.fresh(), 60);
+  EXPECT_GT(roomy.answered(), 40);
+  EXPECT_GT(front.fresh(), roomy.fresh());
+  EXPECT_LT(widest, 0.3 * bodies_.voxel);
+}
+
+// A clearance grows where bodies stay apart, and is an empty front.
+TEST_P(CarriedFrontOf, IsEmptyWhereBodiesAreApart) {
+  CarriedFront front(bodies_, 1 << 12);
+  for (int i = 0; i < 60; ++i) {
+    ASSERT_EQ(front.tick(shift({1.9 + 0.4, 0, 0})), 0u);
+  }
+  ASSERT_NE(front.found().front, nullptr);
+  EXPECT_TRUE(front.found().front->empty());
+  EXPECT_GE(front.found().upper, 0.4);
+  EXPECT_LE(front.found().front->extent, 0.4);
+  EXPECT_GT(front.answered(), 40);
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,96 @@
+// The rules by which a front is made: when it is worth its search, and how wide it is to be.
+
+#include "ist/query/coherent/front_schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace ist::test {
+namespace {
+
+constexpr double kVoxel = 0.2;
+constexpr double kFar = 1e3;
+
+TEST(FrontSchedule, ASlackLastsForTwentyTicksAndIsNeitherThinNorWide) {
+  const FrontSchedule schedule(kVoxel, false);
+  EXPECT_DOUBLE_EQ(schedule.slack({0, 0}), 0.05 * kVoxel);
+  EXPECT_DOUBLE_EQ(schedule.slack({0.002, 0.002}), 0.04);
+  EXPECT_DOUBLE_EQ(schedule.slack({0.005, 0}), 0.02);  // it trembles
+  EXPECT_DOUBLE_EQ(schedule.slack({0.1, 0.1}), 0.4 * kVoxel);
+}
+
+// One worker makes a front up to 0.1 voxel of motion a tick, two up to 0.2.
+TEST(FrontSchedule, AFastBodyIsSearchedAnew) {
+  for (const bool helped : {false, true}) {
+    const FrontSchedule schedule(kVoxel, helped);
+    const double most = (helped ? 0.2 : 0.1) * kVoxel;
+    for (const double speed : {0.5 * most, 0.99 * most, 1.01 * most, 2 * most}) {
+      EXPECT_EQ(schedule.is_worth(schedule.slack({speed, speed}), speed), speed < most) << speed;
+    }
+    EXPECT_TRUE(schedule.is_worth_at_once(schedule.slack_at_once(), 0.1 * most));
+    EXPECT_FALSE(schedule.is_worth_at_once(schedule.slack_at_once(), most));
+  }
+}
+
+TEST(FrontSchedule, AFrontIsCentredWhereABodyGoesUnlessItTrembles) {
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.01}), 8);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.001, 0.001}), 20);
+  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.004}), 0);
+  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0, 0}), 0);
+}
+
+TEST(FrontSchedule, AFullFrontHalvesTheSlackAndIsFollowedByAPause) {
+  FrontSchedule schedule(kVoxel, false);
+  double slack = schedule.slack({1, 1});
+  int waited = 0;
+  for (int i = 1; i <= 12; ++i) {
+    ASSERT_TRUE(schedule.may_fit(100, 1000));
+    schedule.was_full(false);
+    EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 0.5 * slack);
+    slack = schedule.slack({1, 1});
+    for (waited = 0; !schedule.may_fit(100, 1000); ++waited) schedule.tick();
+    EXPECT_EQ(waited, std::min((1 << i) - 1, 255));
+  }
+  schedule.took_up(false, 0);
+  EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 1.25 * slack);
+  schedule.was_full(false);
+  schedule.tick();
+  EXPECT_TRUE(schedule.may_fit(100, 1000));
+  for (int i = 0; i < 1000; ++i) schedule.searched();
+  EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 0.4 * kVoxel);
+}
+
+TEST(FrontSchedule, PairsThatHardlyFitAreNotTried) {
+  const FrontSchedule schedule(kVoxel, false);
+  EXPECT_TRUE(schedule.may_fit(888, 1000));
+  EXPECT_FALSE(schedule.may_fit(889, 1000));
+}
+
+TEST(FrontSchedule, AClearanceAsksForTwiceTheLastOneUnlessItIsKnownToBeLess) {
+  FrontSchedule schedule(kVoxel, false);
+  EXPECT_DOUBLE_EQ(schedule.clearance(kFar, 0.1), 0.4 * kVoxel);
+  schedule.took_up(true, 1);
+  EXPECT_DOUBLE_EQ(schedule.clearance(kFar, 0.1), 2);
+  EXPECT_DOUBLE_EQ(schedule.clearance(1, 0.1), 0.7);
+  schedule.was_full(true);
+  EXPECT_DOUBLE_EQ(schedule.clearance(kFar, 0.1), 0.5);
+}
+
+TEST(FrontSchedule, AWideFrontIsWastefulWhereMostOfItDoesNotOverlap) {
+  EXPECT_TRUE(FrontSchedule::is_wasteful(0.08, 0.01, 2000, 1000));
+  EXPECT_FALSE(FrontSchedule::is_wasteful(0.08, 0.05, 2000, 1000));
+  EXPECT_FALSE(FrontSchedule::is_wasteful(0.08, 0.01, 1200, 1000));
+  EXPECT_FALSE(FrontSchedule::is_wasteful(0.08, 0.01, 2000, 0));  // a clearance may be wide
+}
+
+// A search is spread over the ticks ahead, with some to spare; a tick that searches has little
+// more.
+TEST(FrontSchedule, SlicesMakeTheFrontInTime) {
+  const std::uint64_t whole = 100'000;
+  EXPECT_GT(FrontSchedule::kTicksAhead * static_cast<double>(FrontSchedule::slice(whole, false)),
+            1.5 * static_cast<double>(whole));
+  EXPECT_EQ(FrontSchedule::slice(whole, true), whole / 5);
+  EXPECT_EQ(FrontSchedule::slice(10, false), 2000u);
+}
+
+}  // namespace
+}  // namespace ist::test

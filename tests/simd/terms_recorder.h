@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "ist/query/contacts/contact_rates.h"
+#include "simd/contact_step.h"
+#include "simd/plan_cases.h"
+
+namespace ist::test {
+
+/// Keeps the terms of all pairs that it is given, batch after batch.
+class TermsRecorder final : public ContactTermsStream {
+ public:
+  void take(const ContactTerms& terms) noexcept override {
+    ++batches;
+    for (std::size_t i = 0; i < terms.count; ++i) {
+      fixed.push_back(terms.fixed[i]);
+      for (const float* of : {terms.weight, terms.depth, terms.x, terms.y, terms.z, terms.force_x,
+                              terms.force_y, terms.force_z}) {
+        numbers.push_back(of[i]);
+      }
+    }
+  }
+  [[nodiscard]] bool is(const TermsRecorder& other) const {
+    return fixed == other.fixed && numbers == other.numbers;
+  }
+  /// Returns those of pairs that weigh.
+  [[nodiscard]] TermsRecorder with_weight() const {
+    TermsRecorder left;
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(kNumbers * i);
+      if (!(*from > 0)) continue;
+      left.fixed.push_back(fixed[i]);
+      left.numbers.insert(left.numbers.end(), from, from + kNumbers);
+    }
+    return left;
+  }
+
+  static constexpr std::ptrdiff_t kNumbers = 8;
+  int batches = 0;
+  std::vector<std::uint32_t> fixed;
+  std::vector<float> numbers;
+};
+
+/// Whether two totals are the same numbers.
+[[nodiscard]] inline bool same(const ContactTotals& a, const ContactTotals& b) {
+  return std::equal(a.sum, a.sum + kContactSums, b.sum) && a.counted == b.counted &&
+         a.pairs == b.pairs;
+}
+
+/// The rule of the contacts of two trees with a least depth.
+[[nodiscard]] inline ContactRule rule_of(const PlannedSearch& search, double least) {
+  const ContactScale scale(search.fixed, search.moving, least);
+  return contact_rule(scale,
+                      contact_rates(search.fixed, search.moving, search.policy, scale).lever);
+}
+
+}  // namespace ist::test
