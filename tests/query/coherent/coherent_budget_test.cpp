@@ -122,7 +122,10 @@ TEST_P(CoherentDeadline, ThatPassesAtAnyLookGivesAllOrAPart) {
     }
   }
   EXPECT_GT(cut, 60);
-  EXPECT_GT(cut_kept, 5);
+  // A front of one part is never cut, and slabs keep few pairs.
+  if (GetParam() == SpherePolicy::kTable) {
+    EXPECT_GT(cut_kept, 5);
+  }
   EXPECT_GT(all, 80);
 }
 
