@@ -212,8 +212,8 @@ void add_run(CLI::App& app) {
   add_example(*command,
               "Prints how late ticks began, how long they took, and the time of each effect.\n"
               "Ctrl-C reduces the force to zero and completes the recording.\n"
-              "Lengths of a recording are metres. README.md\n"
-              "lists the keys of a scene and of a recording; tests/data/scenes has scenes to try.\n"
+              "Lengths of a recording are metres. README.md lists the keys of a scene and of a\n"
+              "recording; tests/data/scenes has scenes to try.\n"
               "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
   command->callback([options] { run(*options); });
 }

@@ -118,8 +118,8 @@ QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget
   if (!bodies->roots.overlap) return result;
   search<PairLister>(*bodies, to_float(*bodies), budget,
                      budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);
-  if (!budget.is_limited() && result.found != Found::kClear)
-    result.distance.reset();  // nothing was measured
+  // Without a limit a search measures nothing; a clearance is known anyway.
+  if (!budget.is_limited() && result.found != Found::kClear) result.distance.reset();
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 namespace ist {
+
 void PoseTrack::add(const RelativePose& pose) noexcept {
   poses_[next_] = pose;
   next_ = (next_ + 1) % kSize;

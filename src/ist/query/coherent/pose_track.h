@@ -35,8 +35,7 @@ class PoseTrack {
   [[nodiscard]] Pace pace(const MotionBound& bound, double reach) const noexcept {
     return {speed(bound, reach), drift(bound, reach)};
   }
-  /// Returns the pose to which the mean motion leads in `ticks`: the last one, if the body only
-  /// trembles.
+  /// Returns the pose to which the mean motion leads in `ticks`; the last pose where they are 0.
   [[nodiscard]] RelativePose ahead(double ticks) const noexcept;
 
  private:
