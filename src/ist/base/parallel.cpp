@@ -14,7 +14,7 @@ namespace {
 // loop.
 std::atomic<std::size_t> loops_begun{0};
 
-// A loop over ranges. It counts a range as ended, and is read as ended, where a body throws too.
+// A loop over ranges. A range counts as ended where its body throws, too.
 struct Loop {
   std::size_t count, grain;
   const std::function<void(std::size_t, std::size_t)>& body;

@@ -71,7 +71,7 @@ TEST_F(PoseTracks, ForgetWhatIsLongAgo) {
     track_.add(pose_at(0, {2, 0.01 * static_cast<double>(i), 0}));
   EXPECT_NEAR(track_.drift(bound_, 0.1), 0.01, 1e-12);
   EXPECT_NEAR(track_.speed(bound_, 0.1), 0.01, 1e-12);
-  track_.clear();
+  track_ = PoseTrack();
   EXPECT_EQ(track_.speed(bound_, 0.1), HUGE_VAL);
   track_.add(pose_at(0, {0, 0, 1}));
   track_.add(pose_at(0, {0, 0, 1.25}));
@@ -86,7 +86,7 @@ TEST_F(PoseTracks, TellTremblingFromMoving) {
   EXPECT_NEAR(track_.drift(bound_, 0.1), 0, 1e-12);
   EXPECT_NEAR(track_.ahead(20).translation[0], 0.02, 1e-12);
   // A start from rest shows in the speed at once, in the mean a little later.
-  track_.clear();
+  track_ = PoseTrack();
   for (int i = 0; i < 10; ++i) track_.add(pose_at(0, {0, 0, 0}));
   EXPECT_NEAR(track_.speed(bound_, 0.1), 0, 1e-12);
   track_.add(pose_at(0, {0.1, 0, 0}));

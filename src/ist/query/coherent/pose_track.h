@@ -23,8 +23,6 @@ class PoseTrack {
   static constexpr std::size_t kTicks = 4;
 
   void add(const RelativePose& pose) noexcept;
-  /// Forgets all poses.
-  void clear() noexcept { count_ = 0; }
 
   /// Returns a bound of the motion of a tick, mesh units: of the last one, or of the mean of the
   /// last kTicks, whichever is more; infinite without two poses.
