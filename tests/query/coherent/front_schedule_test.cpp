@@ -38,6 +38,22 @@ TEST(FrontSchedule, AFrontIsCentredWhereABodyGoesUnlessItTrembles) {
   EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0, 0}), 0);
 }
 
+TEST(FrontSchedule, ABodyThatStandsHasSlackInReserve) {
+  const FrontSchedule schedule(kVoxel, false);
+  EXPECT_DOUBLE_EQ(schedule.reserve({0, 0}), 0.25 * schedule.slack({0, 0}));
+  EXPECT_DOUBLE_EQ(schedule.reserve({0.0004 * kVoxel, 0}), 0.25 * schedule.slack({0, 0}));
+  EXPECT_EQ(schedule.reserve({0.0006 * kVoxel, 0}), 0);
+  EXPECT_EQ(schedule.reserve({kFar, kFar}), 0);
+}
+
+// Two fifths of the way to its centre before a front is used up, and four ticks at least.
+TEST(FrontSchedule, TheNextFrontIsBegunAhead) {
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.001, 0.001}), 8);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.005, 0.005}), 6.4);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.01, 0.01}), 4);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0, 0}), 4);
+}
+
 TEST(FrontSchedule, AFullFrontHalvesTheSlackAndIsFollowedByAPause) {
   FrontSchedule schedule(kVoxel, false);
   double slack = schedule.slack({1, 1});

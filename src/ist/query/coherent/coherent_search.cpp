@@ -126,7 +126,9 @@ bool CoherentSearch::may_fit() const noexcept {
 void CoherentSearch::want_next(const RelativePose& pose, double need) noexcept {
   const Pace pace = track_.pace(bound_, need);
   const double slack = schedule_.slack(pace);
-  if (holds_ && motion_to(*kept_, track_.ahead(FrontSchedule::kTicksAhead), need) &&
+  if (holds_ &&
+      motion_to(*kept_, track_.ahead(FrontSchedule::ticks_ahead(slack, pace)),
+                need + schedule_.reserve(pace)) &&
       !FrontSchedule::is_wasteful(kept_->extent - need, slack, kept_->lanes.pair_count,
                                   last_pairs_)) {
     return;

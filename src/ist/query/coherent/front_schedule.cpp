@@ -7,6 +7,9 @@ namespace {
 
 // The slack of a front, in voxels: at rest, at most, and of one that is made within a tick.
 constexpr double kLeastSlack = 0.05, kMostSlack = 0.4, kSlackAtOnce = 0.1;
+// The speed of a body that stands, in voxels a tick, and the part of a slack that it has in
+// reserve.
+constexpr double kStanding = 0.0005, kReserve = 0.25;
 // The ticks for which a slack should last: of directed motion, and of trembling.
 constexpr double kTicksOfSlack = 20, kTicksOfTrembling = 4;
 // A front that would last for fewer ticks is not worth its search: by the query's own thread, and
@@ -15,8 +18,11 @@ constexpr double kFewestTicks = 8, kFewestTicksHelped = 4;
 // A front is wasteful that has so much more slack than is wanted, and so many more pairs than
 // overlap.
 constexpr double kTooWide = 2, kTooMany = 1.25;
-// The part of the ticks ahead that slices are made for, and the part of a search that is added to a
-// tick that searches.
+// The part of the ticks to a front's centre by which the next one is begun ahead: a hand that moves
+// evenly may yet make a step that is five times the others.
+constexpr double kPartAhead = 0.4;
+// The part of the fewest ticks ahead that slices are made for, and the part of a search that is
+// added to a tick that searches.
 constexpr double kPartOfTicks = 0.6, kPartOfSearch = 0.2;
 constexpr double kLeastSlice = 2000;  // tests
 // The factors by which the next slack is wider after a front that had room, or after a fresh
@@ -42,6 +48,10 @@ double FrontSchedule::slack(const Pace& pace) const noexcept {
   return std::min(std::clamp(wanted, kLeastSlack * voxel_size_, kMostSlack * voxel_size_), widest_);
 }
 
+double FrontSchedule::reserve(const Pace& pace) const noexcept {
+  return pace.speed < kStanding * voxel_size_ ? kReserve * slack(pace) : 0;
+}
+
 double FrontSchedule::slack_at_once() const noexcept {
   return std::min(kSlackAtOnce * voxel_size_, widest_);
 }
@@ -58,6 +68,10 @@ bool FrontSchedule::is_wasteful(double slack, double wanted, std::size_t pairs,
 
 double FrontSchedule::ticks_to_centre(double slack, const Pace& pace) noexcept {
   return pace.is_directed() ? std::min(slack / pace.drift, kTicksOfSlack) : 0;
+}
+
+double FrontSchedule::ticks_ahead(double slack, const Pace& pace) noexcept {
+  return std::max(kTicksAhead, kPartAhead * ticks_to_centre(slack, pace));
 }
 
 std::uint64_t FrontSchedule::slice(std::uint64_t whole, bool searched) noexcept {
