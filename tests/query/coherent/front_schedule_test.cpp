@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace ist::test {
 namespace {
 
@@ -12,10 +14,10 @@ constexpr double kFar = 1e3;
 
 TEST(FrontSchedule, ASlackLastsForTwentyTicksAndIsNeitherThinNorWide) {
   const FrontSchedule schedule(kVoxel, false);
-  EXPECT_DOUBLE_EQ(schedule.slack({0, 0}), 0.05 * kVoxel);
-  EXPECT_DOUBLE_EQ(schedule.slack({0.002, 0.002}), 0.04);
-  EXPECT_DOUBLE_EQ(schedule.slack({0.005, 0}), 0.02);  // it trembles
-  EXPECT_DOUBLE_EQ(schedule.slack({0.1, 0.1}), 0.4 * kVoxel);
+  EXPECT_DOUBLE_EQ(schedule.slack({0, 0, 0}), 0.05 * kVoxel);
+  EXPECT_DOUBLE_EQ(schedule.slack({0.002, 0.002, 0}), 0.04);
+  EXPECT_DOUBLE_EQ(schedule.slack({0.005, 0, 0}), 0.02);  // it trembles
+  EXPECT_DOUBLE_EQ(schedule.slack({0.1, 0.1, 0}), 0.4 * kVoxel);
 }
 
 // One worker makes a front up to 0.1 voxel of motion a tick, two up to 0.2.
@@ -24,7 +26,7 @@ TEST(FrontSchedule, AFastBodyIsSearchedAnew) {
     const FrontSchedule schedule(kVoxel, helped);
     const double most = (helped ? 0.2 : 0.1) * kVoxel;
     for (const double speed : {0.5 * most, 0.99 * most, 1.01 * most, 2 * most}) {
-      EXPECT_EQ(schedule.is_worth(schedule.slack({speed, speed}), speed), speed < most) << speed;
+      EXPECT_EQ(schedule.is_worth(schedule.slack({speed, speed, 0}), speed), speed < most) << speed;
     }
     EXPECT_TRUE(schedule.is_worth_at_once(schedule.slack_at_once(), 0.1 * most));
     EXPECT_FALSE(schedule.is_worth_at_once(schedule.slack_at_once(), most));
@@ -32,47 +34,47 @@ TEST(FrontSchedule, AFastBodyIsSearchedAnew) {
 }
 
 TEST(FrontSchedule, AFrontIsCentredWhereABodyGoesUnlessItTrembles) {
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.01}), 8);
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.001, 0.001}), 20);
-  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.004}), 0);
-  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0, 0}), 0);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.01, 0}), 8);
+  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_to_centre(0.08, {0.001, 0.001, 0}), 20);
+  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0.01, 0.004, 0}), 0);
+  EXPECT_EQ(FrontSchedule::ticks_to_centre(0.08, {0, 0, 0}), 0);
 }
 
-TEST(FrontSchedule, ABodyThatStandsHasSlackInReserve) {
-  const FrontSchedule schedule(kVoxel, false);
-  EXPECT_DOUBLE_EQ(schedule.reserve({0, 0}), 0.25 * schedule.slack({0, 0}));
-  EXPECT_DOUBLE_EQ(schedule.reserve({0.0004 * kVoxel, 0}), 0.25 * schedule.slack({0, 0}));
-  EXPECT_EQ(schedule.reserve({0.0006 * kVoxel, 0}), 0);
-  EXPECT_EQ(schedule.reserve({kFar, kFar}), 0);
-}
-
-// Two fifths of the way to its centre before a front is used up, and four ticks at least.
+// Two fifths of the way to its centre before a front is used up, and four ticks at least; where
+// nothing tells where the body goes, when a fourth of the slack is left.
 TEST(FrontSchedule, TheNextFrontIsBegunAhead) {
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.001, 0.001}), 8);
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.005, 0.005}), 6.4);
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0.01, 0.01}), 4);
-  EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, {0, 0}), 4);
+  for (const double drift : {0.001, 0.005, 0.01}) {
+    const Pace steady{drift, drift, drift}, directed{drift, drift, 0.4 * drift},
+        trembling{drift, 0.4 * drift, 0.4 * drift};
+    EXPECT_DOUBLE_EQ(FrontSchedule::ticks_ahead(0.08, steady), std::clamp(0.032 / drift, 4.0, 8.0));
+    EXPECT_EQ(FrontSchedule::ticks_ahead(0.08, directed), 4);
+    EXPECT_EQ(FrontSchedule::ticks_ahead(0.08, trembling), 0);
+    EXPECT_EQ(FrontSchedule::reserve(0.08, steady), 0);
+    EXPECT_EQ(FrontSchedule::reserve(0.08, directed), 0);
+    EXPECT_DOUBLE_EQ(FrontSchedule::reserve(0.08, trembling), 0.02);
+  }
+  EXPECT_DOUBLE_EQ(FrontSchedule::reserve(0.08, {0, 0, 0}), 0.02);
 }
 
 TEST(FrontSchedule, AFullFrontHalvesTheSlackAndIsFollowedByAPause) {
   FrontSchedule schedule(kVoxel, false);
-  double slack = schedule.slack({1, 1});
+  double slack = schedule.slack({1, 1, 1});
   int waited = 0;
   for (int i = 1; i <= 12; ++i) {
     ASSERT_TRUE(schedule.may_fit(100, 1000));
     schedule.was_full(false);
-    EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 0.5 * slack);
-    slack = schedule.slack({1, 1});
+    EXPECT_DOUBLE_EQ(schedule.slack({1, 1, 1}), 0.5 * slack);
+    slack = schedule.slack({1, 1, 1});
     for (waited = 0; !schedule.may_fit(100, 1000); ++waited) schedule.tick();
     EXPECT_EQ(waited, std::min((1 << i) - 1, 255));
   }
   schedule.took_up(false, 0);
-  EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 1.25 * slack);
+  EXPECT_DOUBLE_EQ(schedule.slack({1, 1, 1}), 1.25 * slack);
   schedule.was_full(false);
   schedule.tick();
   EXPECT_TRUE(schedule.may_fit(100, 1000));
   for (int i = 0; i < 1000; ++i) schedule.searched();
-  EXPECT_DOUBLE_EQ(schedule.slack({1, 1}), 0.4 * kVoxel);
+  EXPECT_DOUBLE_EQ(schedule.slack({1, 1, 1}), 0.4 * kVoxel);
 }
 
 TEST(FrontSchedule, PairsThatHardlyFitAreNotTried) {

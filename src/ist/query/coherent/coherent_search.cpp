@@ -74,8 +74,8 @@ bool CoherentSearch::adopt(const RelativePose& pose, double need) noexcept {
 CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double margin,
                                              const Budget& budget) noexcept {
   if (worker_) worker_->tick(std::chrono::steady_clock::now(), period_);
-  track_.add(pose);
   const double need = most_apart(pose, fixed_, moving_, margin);
+  track_.add(pose, bound_, need);
   FrontAt found;
   const auto answer_from_kept = [&] {
     if (const auto motion = motion_to(*kept_, pose, need)) {
@@ -98,7 +98,7 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
                      (at_once_ || 2 * search_.tests() > search_tests_);
   if (!go_on) {
     const double slack = schedule_.slack_at_once();
-    if (!schedule_.is_worth_at_once(slack, track_.speed(bound_, need)) || !may_fit()) return found;
+    if (!schedule_.is_worth_at_once(slack, track_.drift(bound_, need)) || !may_fit()) return found;
     want(pose, need + slack, kNoLimit);
     at_once_ = true;
   }
@@ -126,9 +126,9 @@ bool CoherentSearch::may_fit() const noexcept {
 void CoherentSearch::want_next(const RelativePose& pose, double need) noexcept {
   const Pace pace = track_.pace(bound_, need);
   const double slack = schedule_.slack(pace);
+  const double reserve = FrontSchedule::reserve(kept_->extent - need, pace);
   if (holds_ &&
-      motion_to(*kept_, track_.ahead(FrontSchedule::ticks_ahead(slack, pace)),
-                need + schedule_.reserve(pace)) &&
+      motion_to(*kept_, track_.ahead(FrontSchedule::ticks_ahead(slack, pace)), need + reserve) &&
       !FrontSchedule::is_wasteful(kept_->extent - need, slack, kept_->lanes.pair_count,
                                   last_pairs_)) {
     return;

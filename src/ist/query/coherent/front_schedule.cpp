@@ -7,9 +7,6 @@ namespace {
 
 // The slack of a front, in voxels: at rest, at most, and of one that is made within a tick.
 constexpr double kLeastSlack = 0.05, kMostSlack = 0.4, kSlackAtOnce = 0.1;
-// The speed of a body that stands, in voxels a tick, and the part of a slack that it has in
-// reserve.
-constexpr double kStanding = 0.0005, kReserve = 0.25;
 // The ticks for which a slack should last: of directed motion, and of trembling.
 constexpr double kTicksOfSlack = 20, kTicksOfTrembling = 4;
 // A front that would last for fewer ticks is not worth its search: by the query's own thread, and
@@ -18,9 +15,10 @@ constexpr double kFewestTicks = 8, kFewestTicksHelped = 4;
 // A front is wasteful that has so much more slack than is wanted, and so many more pairs than
 // overlap.
 constexpr double kTooWide = 2, kTooMany = 1.25;
-// The part of the ticks to a front's centre by which the next one is begun ahead: a hand that moves
-// evenly may yet make a step that is five times the others.
-constexpr double kPartAhead = 0.4;
+// The part of the ticks to a front's centre by which the next one is begun ahead, for a hand that
+// moves evenly may yet make a step that is five times the others; and the part of the slack of a
+// body whose motion has no direction.
+constexpr double kPartAhead = 0.4, kReserve = 0.25;
 // The part of the fewest ticks ahead that slices are made for, and the part of a search that is
 // added to a tick that searches.
 constexpr double kPartOfTicks = 0.6, kPartOfSearch = 0.2;
@@ -48,10 +46,6 @@ double FrontSchedule::slack(const Pace& pace) const noexcept {
   return std::min(std::clamp(wanted, kLeastSlack * voxel_size_, kMostSlack * voxel_size_), widest_);
 }
 
-double FrontSchedule::reserve(const Pace& pace) const noexcept {
-  return pace.speed < kStanding * voxel_size_ ? kReserve * slack(pace) : 0;
-}
-
 double FrontSchedule::slack_at_once() const noexcept {
   return std::min(kSlackAtOnce * voxel_size_, widest_);
 }
@@ -71,7 +65,13 @@ double FrontSchedule::ticks_to_centre(double slack, const Pace& pace) noexcept {
 }
 
 double FrontSchedule::ticks_ahead(double slack, const Pace& pace) noexcept {
-  return std::max(kTicksAhead, kPartAhead * ticks_to_centre(slack, pace));
+  if (!pace.is_directed()) return 0;
+  return pace.is_steady() ? std::max(kTicksAhead, kPartAhead * ticks_to_centre(slack, pace))
+                          : kTicksAhead;
+}
+
+double FrontSchedule::reserve(double slack, const Pace& pace) noexcept {
+  return pace.is_directed() ? 0 : kReserve * slack;
 }
 
 std::uint64_t FrontSchedule::slice(std::uint64_t whole, bool searched) noexcept {

@@ -23,9 +23,6 @@ class FrontSchedule {
 
   /// Returns the slack that the next front is to have, mesh units.
   [[nodiscard]] double slack(const Pace& pace) const noexcept;
-  /// Returns the slack that a front must have left, mesh units, or the next one is begun: none, but
-  /// for a body that stands. A device that tells places in steps takes it out of the front at once.
-  [[nodiscard]] double reserve(const Pace& pace) const noexcept;
   /// Returns the slack of a front that is made within a tick.
   [[nodiscard]] double slack_at_once() const noexcept;
   /// Returns how far beyond what is needed to look where there are no pairs, mesh units, if leaves
@@ -51,6 +48,9 @@ class FrontSchedule {
   [[nodiscard]] static double ticks_to_centre(double slack, const Pace& pace) noexcept;
   /// Returns how many ticks before it is used up a front is followed by one with that slack.
   [[nodiscard]] static double ticks_ahead(double slack, const Pace& pace) noexcept;
+  /// Returns how much of its slack a front has left where it is followed by the next one, if
+  /// nothing tells where the body goes: a device may tell places in steps.
+  [[nodiscard]] static double reserve(double slack, const Pace& pace) noexcept;
   /// Returns the tests to make in a tick for a front, of a search that makes `whole` in all.
   [[nodiscard]] static std::uint64_t slice(std::uint64_t whole, bool searched) noexcept;
   /// Returns the most tests that the search for a clearance is allowed.

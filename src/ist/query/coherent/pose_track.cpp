@@ -6,27 +6,32 @@
 
 namespace ist {
 
-void PoseTrack::add(const RelativePose& pose) noexcept {
+void PoseTrack::add(const RelativePose& pose, const MotionBound& bound, double reach) noexcept {
+  steps_[next_] = count_ > 0 ? bound.between(back(0), pose, reach) : 0;
   poses_[next_] = pose;
   next_ = (next_ + 1) % kSize;
   count_ = std::min(count_ + 1, kSize);
 }
 
-double PoseTrack::speed(const MotionBound& bound, double reach) const noexcept {
+double PoseTrack::speed() const noexcept {
   if (count_ < 2) return std::numeric_limits<double>::infinity();
-  return std::max(bound.between(back(1), back(0), reach), drift(bound, reach));
+  double most = 0;
+  for (std::size_t i = 0; i < past(kTicks); ++i) most = std::max(most, steps_[place(i)]);
+  return most;
 }
 
-double PoseTrack::drift(const MotionBound& bound, double reach) const noexcept {
-  if (count_ < 2) return std::numeric_limits<double>::infinity();
-  return bound.between(back(past()), back(0), reach) / static_cast<double>(past());
+double PoseTrack::mean(const MotionBound& bound, double reach, std::size_t ticks) const noexcept {
+  const std::size_t first = past(ticks);
+  if (first == 0) return std::numeric_limits<double>::infinity();
+  return bound.between(back(first), back(0), reach) / static_cast<double>(first);
 }
 
 RelativePose PoseTrack::ahead(double ticks) const noexcept {
   RelativePose pose = back(0);
-  if (past() == 0) return pose;
-  const RelativePose& before = back(past());
-  const double part = ticks / static_cast<double>(past());
+  const std::size_t first = past(kTicks);
+  if (first == 0) return pose;
+  const RelativePose& before = back(first);
+  const double part = ticks / static_cast<double>(first);
   Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.rotation * before.rotation.transpose()));
   turn.angle() *= part;
   pose.rotation = turn.toRotationMatrix() * pose.rotation;
