@@ -98,7 +98,7 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
                      (at_once_ || 2 * search_.tests() > search_tests_);
   if (!go_on) {
     const double slack = schedule_.slack_at_once();
-    if (!schedule_.is_worth_at_once(slack, track_.drift(bound_, need)) || !may_fit()) return found;
+    if (!schedule_.is_worth_at_once(slack, track_.speed()) || !may_fit()) return found;
     want(pose, need + slack, kNoLimit);
     at_once_ = true;
   }
