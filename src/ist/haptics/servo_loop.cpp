@@ -97,7 +97,7 @@ class Loop {
     ++report_.ticks;
     report_.held += record.held ? 1U : 0U;
     report_.faults += record.fault ? 1U : 0U;
-    if (record.contacts) count(record.contacts->found);
+    if (record.contacts && record.contacts->complete) count(record.contacts->found);
     report_.late.record(nanoseconds(record.late_ns));
     report_.execution.record(nanoseconds(record.execution_ns));
     report_.cpu.record(nanoseconds(record.cpu_ns));

@@ -41,12 +41,14 @@ struct QueryOptions {
   /// The most pairs of triangles in memory, 20 to 36 bytes each. With more pairs near each other
   /// the search is repeated for each part of them.
   std::size_t triangle_pairs = 1 << 18;
-  /// The most leaf pairs to keep from one pose to the next, 224 bytes each, and the memory of one
-  /// more search; 0: none, and every query is a search of its own. For a body that moves by less than some 0.1 voxel from query to
-  /// query: leaf_pairs() and contacts() then keep the pairs that are nearly near enough, test them
-  /// again, and search only where the motion has used that up. Where they do not fit, they search.
-  /// The answers are the same, bit by bit, but for `sphere_tests`, `distance` and `found`. A budget
-  /// of tests makes every query a search of its own.
+  /// The most leaf pairs to keep from one pose to the next, of at most half as many fixed leaves,
+  /// 224 bytes each, and the memory of one more search; 0: none, and every query is a search of its
+  /// own. For a body that moves by less than some 0.1 voxel from query to query: leaf_pairs() and
+  /// contacts() then keep the pairs that are nearly near enough, test them again, and search only
+  /// where the motion has used that up. Where they do not fit, they search. The answers are the
+  /// same, bit by bit, but for `sphere_tests`, `distance` and `found`. A budget of tests makes
+  /// every query a search of its own. A query that a stream or a deadline ended makes nothing for
+  /// the next one.
   std::size_t front_pairs = 0;
 };
 
@@ -57,13 +59,12 @@ struct QueryOptions {
 /// `pose` maps moving mesh coordinates to fixed mesh coordinates; a pose that is no rigid motion
 /// gives kInvalidPose. Lengths are in mesh units. For one pair of trees and one pose every answer
 /// is the same, bit by bit, on every instruction set, with one worker or two, and whatever the
-/// options for memory.
+/// options for memory, but for those numbers that `front_pairs` names.
 ///
 /// The constructor reserves all memory and makes the first call of the kernels. A verb allocates
-/// nothing, locks nothing and makes no system call. A query shares
-/// the content of both trees; a temporary tree does not compile. Any number of threads may share a
-/// tree; one query belongs to one thread at a time: a verb that finds another thread in the query
-/// gives kBusy.
+/// nothing, locks nothing and makes no system call. A query shares the content of both trees; a
+/// temporary tree does not compile. Any number of threads may share a tree; one query belongs to
+/// one thread at a time: a verb that finds another thread in the query gives kBusy.
 class IST_API Query {
  public:
   /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
@@ -84,8 +85,9 @@ class IST_API Query {
   ///
   /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
   ///               the first of them. Elements behind the last pair may be overwritten
-  /// @param budget ends the search early: the result then holds the first pairs, and the distance
-  ///               as far as it is known. With a budget the distance is bounded in any case
+  /// @param budget ends the search early: the result then holds the first pairs, of pairs that were
+  ///               kept none, and the distance as far as it is known. With a budget the distance is
+  ///               bounded in any case
   ///
   /// Cost: 1 to 3 ns a test of two bounds, 20 to 40 ns a pair of nodes.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out,
@@ -99,7 +101,8 @@ class IST_API Query {
 
   /// Reduces all leaf pairs to contacts and to the sums that forces are made of. The distance is
   /// that of the roots' bounds, and no more than the resolution where there are pairs; of a search
-  /// that a budget ended, no more than that of its pairs.
+  /// that a budget ended, no more than that of its pairs; inside a clearance that was kept, what is
+  /// left of it.
   ///
   /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
   ///                 status is another than kDone

@@ -162,7 +162,7 @@ void QueryState::search(const Approach& bodies, const SearchPose& pose, const Bu
   if (!result.complete || measured == Measured::kBoth) {
     upper = std::min(upper, end.bounds.upper - bodies.margin);
   }
-  if (coherent && result.complete) {
+  if (coherent && result.complete && !budget.has_tests()) {
     coherent->prepare(bodies.relative, bodies.margin, result.leaf_pairs, end.tests, budget);
   }
 }

@@ -150,6 +150,25 @@ TEST_P(CarriedFrontOf, ThatIsFullIsFollowedByOneWithLessSlack) {
   EXPECT_LT(widest, 0.3 * bodies_.voxel);
 }
 
+// Nor is it tried again in the next tick where a deadline ended the query.
+TEST_P(CarriedFrontOf, ThatIsFullIsNotTriedInEachTick) {
+  const RelativePose at = bodies_.relative(scene_.pose);
+  Front all(1 << 16);
+  FrontSearch search(bodies_.plan, bodies_.kernels, 1 << 16);
+  search.begin(all, bodies_.wanted(at, 0.1 * bodies_.voxel));
+  ASSERT_EQ(search.advance({}), FrontSearch::State::kDone);
+  const std::size_t room = all.lanes.pair_count - 1;
+  CoherentSearch carried(bodies_.fixed, bodies_.moving, bodies_.policy, bodies_.plan,
+                         bodies_.kernels,
+                         CoherentOptions{1 << 16, room, 1, std::chrono::nanoseconds(0)});
+  EXPECT_EQ(carried.find(at, 0, {}).tests, 0u);
+  carried.prepare(at, 0, room / 2, 1000, {});  // so few that a front seems to fit
+  const CoherentSearch::FrontAt full = carried.find(at, 0, {});
+  EXPECT_EQ(full.front, nullptr);
+  EXPECT_GT(full.tests, 0u);
+  EXPECT_EQ(carried.find(at, 0, {}).tests, 0u);
+}
+
 // A clearance grows where bodies stay apart, and is an empty front.
 TEST_P(CarriedFrontOf, IsEmptyWhereBodiesAreApart) {
   CarriedFront front(bodies_, 1 << 12);

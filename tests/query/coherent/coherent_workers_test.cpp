@@ -2,6 +2,8 @@
 // those of a fresh query all the same.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <functional>
@@ -133,6 +135,24 @@ TEST_F(CoherentQueryThread, IsDestroyedWhereTheWorkerStalls) {
     KeptAnswers answers(scene_, helped());
     for (int k = 0; k < i; ++k) tick(answers);
   }
+}
+
+// In a child process there is no worker: what it was about is never taken up, nor waited for.
+TEST_F(CoherentQueryThread, GoesOnInAChildProcessWhereTheWorkerStalls) {
+  std::optional<KeptAnswers> answers(std::in_place, scene_, helped());
+  ASSERT_TRUE(tick_until_kept(*answers));
+  std::optional<Stall> stall;
+  ASSERT_TRUE(tick_until_stalled(*answers, HandOver::kClaimed, stall));
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);
+    for (int i = 0; i < 100; ++i) tick(*answers);
+    answers.reset();
+    _exit(HasFailure() ? 1 : 0);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
 TEST_F(CoherentQueryThread, IsMovedBetweenTicks) {

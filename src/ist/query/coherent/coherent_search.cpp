@@ -108,6 +108,7 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
   rest.now = budget.now;
   search_.advance(rest);
   found.tests = search_.tests() - before;
+  give_up_where_full();
   if (adopt(pose, need)) answer_from_kept();
   return found;
 }
@@ -120,6 +121,12 @@ void CoherentSearch::want(const RelativePose& centre, double extent,
 
 bool CoherentSearch::may_fit() const noexcept {
   return schedule_.may_fit(last_pairs_, kept_->lanes.pair_capacity);
+}
+
+void CoherentSearch::give_up_where_full() noexcept {
+  if (search_.state() != FrontSearch::State::kFull) return;
+  schedule_.was_full(search_.most_tests() != kNoLimit);  // a clearance has a limit of tests
+  search_.drop();
 }
 
 // Begins the next front, if it is time for it and worth it.
@@ -155,11 +162,8 @@ void CoherentSearch::prepare(const RelativePose& pose, double margin, std::uint6
   }
   schedule_.tick();
   if (job_.busy() || budget.is_past()) return;
+  give_up_where_full();
   using State = FrontSearch::State;
-  if (search_.state() == State::kFull) {
-    schedule_.was_full(last_pairs_ == 0);
-    search_.drop();
-  }
   const double need = most_apart(pose, fixed_, moving_, margin);
   if (search_.state() != State::kNone &&
       !motion_to(*next_, track_.ahead(FrontSchedule::kTicksAhead), need)) {
@@ -183,7 +187,7 @@ bool CoherentSearch::pass_on(const Front& front, const SearchPose& pose, const B
   kernels_.turn_front(front.lanes, plan_.steps().back(), pose, kSurfaces, rows_.rows());
   const std::size_t pairs = front.lanes.pair_count;
   for (std::size_t begin = 0; begin < pairs; begin += kPart) {
-    // The first part is tested even after the deadline: it takes 3 µs.
+    // The first part is tested even after the deadline: rows are turned, and it takes 3 µs.
     if ((begin > 0 && budget.is_past()) || sink.stopped()) return false;
     pass_on(front.lanes, begin, std::min(begin + kPart, pairs), sink);
   }

@@ -69,6 +69,7 @@ class CoherentSearch {
                ContactOutput& sink) noexcept;
   void want(const RelativePose& centre, double extent, std::uint64_t most_tests) noexcept;
   void want_next(const RelativePose& pose, double need) noexcept;
+  void give_up_where_full() noexcept;
   [[nodiscard]] bool may_fit() const noexcept;
 
   const SearchPlan& plan_;

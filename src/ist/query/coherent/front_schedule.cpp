@@ -14,7 +14,7 @@ constexpr double kTicksOfSlack = 20, kTicksOfTrembling = 4;
 constexpr double kFewestTicks = 8, kFewestTicksHelped = 4;
 // A front is wasteful that has so much more slack than is wanted, and so many more pairs than
 // overlap.
-constexpr double kTooWide = 2, kTooMany = 1.25;
+constexpr double kTooWide = 1.9, kTooMany = 1.25;
 // The part of the ticks to a front's centre by which the next one is begun ahead, for a hand that
 // moves evenly may yet make a step that is five times the others; and the part of the slack of a
 // body whose motion has no direction.
@@ -91,8 +91,8 @@ void FrontSchedule::took_up(bool empty, double clear) noexcept {
   if (empty) clearance_ = kClearer * clear;
 }
 
-void FrontSchedule::was_full(bool apart) noexcept {
-  if (apart) {
+void FrontSchedule::was_full(bool clearance) noexcept {
+  if (clearance) {
     clearance_ *= kLessClear;
   } else {
     ask_for(kNarrower);

@@ -14,7 +14,8 @@ namespace ist {
 /// (perf/NOTES.md, A front kept).
 class FrontSchedule {
  public:
-  /// The fewest ticks before a front is used up in which the next one is made.
+  /// The ticks before a front is used up in which the next one is made, at least, where the body
+  /// goes one way.
   static constexpr double kTicksAhead = 4;
 
   /// @param voxel_size the lesser of two voxel sizes, mesh units
@@ -56,12 +57,13 @@ class FrontSchedule {
   /// Returns the most tests that the search for a clearance is allowed.
   [[nodiscard]] static std::uint64_t most_for_clearance(std::uint64_t whole) noexcept;
 
-  /// Each tick ends with one of these, or none: a fresh search answered; a front was taken up, and
-  /// was empty as far as `clear` beyond what was needed; a front was full.
+  /// To be told of a fresh search that answered; of a front that was taken up, and was empty as far
+  /// as `clear` beyond what was needed, or not; and of one that was full, or of a clearance that
+  /// took too many tests.
   void searched() noexcept;
   void took_up(bool empty, double clear) noexcept;
-  void was_full(bool apart) noexcept;
-  /// Begins a tick.
+  void was_full(bool clearance) noexcept;
+  /// To be called once in each tick that has a complete answer.
   void tick() noexcept { wait_ -= wait_ > 0 ? 1 : 0; }
 
  private:

@@ -1,6 +1,7 @@
 #include "ist/query/workers/resident_worker.h"
 
 #include <time.h>
+#include <unistd.h>
 #include <xmmintrin.h>
 
 #include <thread>
@@ -207,8 +208,10 @@ ResidentWorker::Usage ResidentWorker::usage() noexcept {
           Nanoseconds(cpu_used.load(std::memory_order_relaxed))};
 }
 
+Job::Job(Run run, void* context) noexcept : run_(run), context_(context), process_(getpid()) {}
+
 void Job::wait_idle() const noexcept {
-  while (busy()) std::this_thread::sleep_for(50us);
+  while (busy() && process_ == getpid()) std::this_thread::sleep_for(50us);
 }
 
 }  // namespace ist

@@ -14,7 +14,7 @@ class Job {
  public:
   using Run = void (*)(void* context) noexcept;
 
-  Job(Run run, void* context) noexcept : run_(run), context_(context) {}
+  Job(Run run, void* context) noexcept;
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
@@ -22,8 +22,8 @@ class Job {
   /// everything the worker wrote is visible.
   [[nodiscard]] bool busy() const noexcept { return busy_.load(std::memory_order_acquire); }
 
-  /// Waits until the job is not busy, however long that takes. Sleeps: for destructors, after
-  /// retract(), not for queries.
+  /// Waits until the job is not busy, however long that takes, but in a child process after fork(),
+  /// which has no worker, not at all. Sleeps: for destructors, after retract(), not for queries.
   void wait_idle() const noexcept;
 
  private:
@@ -31,6 +31,7 @@ class Job {
   friend class WorkerLoop;
   Run run_;
   void* context_;
+  int process_;
   std::atomic<bool> busy_{false};
 };
 
