@@ -209,12 +209,14 @@ void add_run(CLI::App& app) {
   for (CLI::Option* of_a_loop : {seconds, allow_missed, unpaced, cpu}) replay->excludes(of_a_loop);
   add_max_memory(*command, options->max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(*command,
-              "Prints how late ticks began, how long they took, and the time of each effect.\n"
-              "Ctrl-C reduces the force to zero and completes the recording.\n"
-              "Lengths of a recording are metres. README.md lists the keys of a scene and of a\n"
-              "recording; tests/data/scenes has scenes to try.\n"
-              "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
+  add_example(
+      *command,
+      "Prints how many ticks searched and how many kept pairs, how late they began, how long\n"
+      "they took, and the time of each effect.\n"
+      "Ctrl-C reduces the force to zero and completes the recording.\n"
+      "Lengths of a recording are metres. README.md lists the keys of a scene and of a\n"
+      "recording; tests/data/scenes has scenes to try.\n"
+      "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
   command->callback([options] { run(*options); });
 }
 

@@ -41,14 +41,14 @@ struct QueryOptions {
   /// The most pairs of triangles in memory, 20 to 36 bytes each. With more pairs near each other
   /// the search is repeated for each part of them.
   std::size_t triangle_pairs = 1 << 18;
-  /// The most leaf pairs to keep from one pose to the next, of at most half as many fixed leaves,
-  /// 224 bytes each, and the memory of one more search; 0: none, and every query is a search of its
-  /// own. For a body that moves by less than some 0.1 voxel from query to query: leaf_pairs() and
-  /// contacts() then keep the pairs that are nearly near enough, test them again, and search only
-  /// where the motion has used that up. Where they do not fit, they search. The answers are the
-  /// same, bit by bit, but for `sphere_tests`, `distance` and `found`. A budget of tests makes
-  /// every query a search of its own. A query that a stream or a deadline ended makes nothing for
-  /// the next one.
+  /// The most leaf pairs to keep from one pose to the next, 224 bytes each, and the memory of one
+  /// more search; 0: none, and every query is a search of its own. They may be of half as many
+  /// different fixed leaves; three times the leaf pairs that overlap is room enough. For a body
+  /// that moves by less than some 0.1 voxel from query to query: leaf_pairs() and contacts() then
+  /// keep the pairs that are nearly near enough, test them again, and search only where the motion
+  /// has used that up. Where they do not fit, they search. The answers are the same, bit by bit,
+  /// but for `sphere_tests`, `distance` and `found`. A budget of tests makes every query a search
+  /// of its own. A query that a stream or a deadline ended makes nothing for the next one.
   std::size_t front_pairs = 0;
 };
 
