@@ -17,11 +17,10 @@ namespace ist {
 /// A search never makes more tests than allowed, but for the test of the roots, which is always
 /// made. With a deadline it reads the clock at least every 500 tests, every 512 leaf pairs, and
 /// every 2,048 pairs of a front whose rows were turned, some 3 ns each, and ends at the first look
-/// after the deadline. The result of a
-/// search that ended early states the level, and the interval of the distance that the tests so far
-/// tell. With a limit of tests alone the answer is the same on every machine and in every run; a
-/// limit of as many tests as a deadline allowed ends the search at the same place, but for an
-/// answer from kept pairs: where a deadline ended it, it holds none.
+/// after the deadline. The result of a search that ended early states the level, and the interval of
+/// the distance that the tests so far tell. With a limit of tests alone the answer is the same on
+/// every machine and in every run; a limit of as many tests as a deadline allowed ends the search at
+/// the same place, but for an answer from kept pairs: where a deadline ended it, it holds none.
 struct Budget {
   using Clock = std::chrono::steady_clock;
 
