@@ -10,12 +10,9 @@ breach() { echo "$*" >&2; failed=1; }
 layers=(base mesh models voxel tree simd query haptics scene capi)
 room() { [ "$1" = simd ] && echo simd || echo "src/ist/$1"; }
 path() { [ "$1" = simd ] && echo simd || echo "ist/$1"; }
-# Exceptions, each waiting for the work that deletes it. The list only shrinks.
-#  - the kernel table of simd/ holds the triangle filter of query/exact, too
-waiting='^simd/(dispatch\.h|near-inl\.h):.*"ist/query/exact/triangle_bounds\.h"'
 for i in "${!layers[@]}"; do
   for later in "${layers[@]:i+1}"; do
-    found=$(grep -rnE "#include \"$(path "$later")/" "$(room "${layers[i]}")" | grep -vE "$waiting" || true)
+    found=$(grep -rnE "#include \"$(path "$later")/" "$(room "${layers[i]}")" || true)
     [ -z "$found" ] || breach "${layers[i]} includes $later, which stands after it: $found"
   done
 done
@@ -42,7 +39,7 @@ only() {  # what, pattern, the one file (a pattern), where to look
 }
 only "assimp" '#include [<"]assimp/' 'src/ist/mesh/mesh_io\.cpp' "src simd"
 only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/tbb_ranges\.cpp' "src simd"
-only "Highway" '#include [<"]hwy/' 'simd/[a-z_]+(\.cpp|-inl\.h)' "src simd tests bench"
+only "Highway" '#include [<"]hwy/' 'simd/([a-z]+/)?[a-z_]+(\.cpp|-inl\.h)' "src simd tests bench"
 only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd tests bench"
 only "GMP" '#include [<"]gmp' 'src/ist/query/exact/whole_number\.h' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/tree/tree_stream|hardware/xxh64)\.(h|cpp)' "src simd"
@@ -63,16 +60,6 @@ found=$(grep -rnE '\bLikewise\b|\bis none\b|/// What\b' src simd --include='*.h'
 [ -z "$found" ] || breach "a sentence that leans on another one, or on a bare word: $found"
 found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth|[dD]ive|run_hurried|run_until|run_within|widen|StepParts' src simd --include='*.h' --include='*.cpp' || true)
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
-# Words of the first version that wait for the work that deletes them. A word that is gone leaves this
-# list; none may come back elsewhere.
-waiting_words() {  # word, where it may stand
-  local found
-  found=$(grep -rlwE "$1" src simd --include='*.h' --include='*.cpp' || true)
-  [ -n "$found" ] || breach "'$1' is gone: take it out of the exceptions"
-  found=$(echo "$found" | grep -vE "$2" || true)
-  [ -z "$found" ] || breach "'$1' may stand in $2 alone, and is in: $found"
-}
-waiting_words 'FindNear|find_near_scalar' '^(simd|src/ist/query/exact)/'
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
 [ "$headers" -le 24 ] || breach "$headers headers are installed: 24 are the most"
 long=$(find src simd tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ist/query/exact/triangle_bounds.h"
 #include "simd/contact_step.h"
+#include "simd/exact/cluster_step.h"
 #include "simd/front_step.h"
 #include "simd/step.h"
 
@@ -16,13 +16,13 @@ struct Kernels {
   const char* target;  ///< `scalar`, `avx3`, …
   AdvanceFunction advance;
   WriteLeafPairsFunction write_leaf_pairs;
-  FindNearFunction find_near;
   AdvanceContactsFunction advance_contacts;
   AddContactsFunction add_contacts;
   AdvanceFrontFunction advance_front;
   TurnFrontFunction turn_front;
   SelectFrontFunction select_front;
   AddFrontFunction add_front;
+  ClusterKernels clusters;
 };
 
 /// The scalar kernels, which every processor runs.

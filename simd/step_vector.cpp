@@ -9,7 +9,6 @@
 #include "simd/contact_rows-inl.h"
 #include "simd/contact_sums-inl.h"
 #include "simd/front-inl.h"
-#include "simd/near-inl.h"
 #include "simd/pair_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -132,15 +131,14 @@ struct Compiled {
 };
 
 // One target's kernels, or null where this compiler does not make them.
-#define IST_KERNELS(NAME, TARGET)                                              \
-  Compiled {                                                                   \
-    HWY_##TARGET, {                                                            \
-      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs), \
-          HWY_CHOOSE_##TARGET(FindNear), HWY_CHOOSE_##TARGET(AdvanceContacts), \
-          HWY_CHOOSE_##TARGET(AddContacts), HWY_CHOOSE_##TARGET(AdvanceFront), \
-          HWY_CHOOSE_##TARGET(TurnFront), HWY_CHOOSE_##TARGET(SelectFront),    \
-          HWY_CHOOSE_##TARGET(AddFront)                                        \
-    }                                                                          \
+#define IST_KERNELS(NAME, TARGET)                                                 \
+  Compiled {                                                                      \
+    HWY_##TARGET, {                                                               \
+      NAME, HWY_CHOOSE_##TARGET(Advance), HWY_CHOOSE_##TARGET(WriteLeafPairs),    \
+          HWY_CHOOSE_##TARGET(AdvanceContacts), HWY_CHOOSE_##TARGET(AddContacts), \
+          HWY_CHOOSE_##TARGET(AdvanceFront), HWY_CHOOSE_##TARGET(TurnFront),      \
+          HWY_CHOOSE_##TARGET(SelectFront), HWY_CHOOSE_##TARGET(AddFront), {}     \
+    }                                                                             \
   }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),
@@ -156,6 +154,7 @@ std::vector<Kernels> supported_kernels() {
   for (const Compiled& compiled : kCompiled) {
     if (compiled.kernels.advance != nullptr && (supported & compiled.bit) != 0) {
       kernels.push_back(compiled.kernels);
+      kernels.back().clusters = cluster_kernels(compiled.bit);
     }
   }
   return kernels;

@@ -185,7 +185,6 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(queried([](auto& o) { o.workers = -1; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.period_ns = -2; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.frontier_pairs = UINT64_MAX; }), "argument-invalid");
-  EXPECT_EQ(queried([](auto& o) { o.triangle_pairs = UINT64_MAX; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = 4097; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = -2; }), "argument-invalid");
   for (const double bad : {2.001, -0.5, -1.5, -2.0, HUGE_VAL, -HUGE_VAL, double{NAN}}) {

@@ -55,7 +55,7 @@ AT(ist_query_options, spheres, 8);
 AT(ist_query_options, workers, 12);
 AT(ist_query_options, period_ns, 16);
 AT(ist_query_options, frontier_pairs, 24);
-AT(ist_query_options, triangle_pairs, 32);
+AT(ist_query_options, reserved, 32);
 AT(ist_query_options, contacts, 40);
 AT(ist_query_options, target, 48);
 AT(ist_query_options, push_distance, 56);

@@ -33,7 +33,7 @@ class LittleMemory {
 TEST(CMemory, ThatIsNotThereIsTold) {
   ist_tree* tree = c_tree(icosphere(2, 1), 0.1);
   auto options = sized<ist_query_options>();
-  options.triangle_pairs = 1 << 26;
+  options.frontier_pairs = 1 << 26;
   ist_query* query = nullptr;
   std::string status, message;
   {

@@ -58,7 +58,6 @@ QueryChecks::QueryChecks(const SphereTree& fixed, const SphereTree& moving, Tree
     options.policy = policy;
     // Small, so that the ways are taken that are taken where memory is full.
     options.frontier_pairs = 16;
-    options.triangle_pairs = 64;
     Policy& made = policies_.emplace_back();
     made.best = std::make_unique<Query>(fixed, moving, options);
     options.target = "scalar";

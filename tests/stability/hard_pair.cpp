@@ -31,7 +31,7 @@ void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
   constexpr int kParts = 16;  // of a pad, to which it is measured
   const Lattice& lattice = tree.parts().lattice;
   const std::vector<std::uint64_t> codes = tree.parts().octree.codes(0);
-  const auto& [mesh, lists] = *tree.parts().triangles;
+  const auto& [mesh, lists, clusters] = *tree.parts().triangles;
   std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
   for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
     for (const std::uint32_t t : lists[voxel]) found[t].push_back(codes[voxel]);
@@ -61,7 +61,6 @@ HardPair::Asked::Asked(const SphereTree& fixed, const SphereTree& moving, Sphere
   const auto add = [&](const std::string& target, int workers) {
     QueryOptions options = options_of(by, target, workers);
     options.frontier_pairs = 1 << 10;
-    options.triangle_pairs = 1 << 12;
     engines.push_back(std::make_unique<Query>(fixed, moving, options));
   };
   for (const Kernels& kernels : all_kernels()) add(kernels.target, 1);

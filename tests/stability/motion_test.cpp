@@ -132,7 +132,6 @@ class TwoSizes {
       for (const SpherePolicy policy : kSpherePolicies) {
         QueryOptions options;
         options.policy = policy;
-        options.triangle_pairs = 1 << 12;
         Query exact(fixed[i]->exact, moving[i]->exact, options),
             plain(fixed[i]->plain, moving[i]->plain, options);
         ask_all(exact);

@@ -63,7 +63,6 @@ class Scaled {
       for (const char* target : {"", "scalar"}) {
         QueryOptions options = options_of(policy, target);
         options.frontier_pairs = 1 << 10;
-        options.triangle_pairs = 1 << 12;
         Query query(fixed_, moving_, options);
         ReferenceQuery reference(fixed_, moving_, policy);
         ContactManifold points(fixed_, moving_, policy, {8, 64});

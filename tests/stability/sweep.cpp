@@ -27,7 +27,6 @@ std::string title(const std::string& what, SpherePolicy policy) {
 QueryOptions with(SpherePolicy policy) {
   QueryOptions options;
   options.policy = policy;
-  options.triangle_pairs = 1 << 12;
   return options;
 }
 

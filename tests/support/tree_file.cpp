@@ -24,7 +24,7 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   slabs = balls + 8 * tree.parts().octree.node_count();
   counts = slabs + 5 * tree.parts().octree.node_count();
   vertices = counts + 24;
-  const auto& [mesh, lists] = *tree.parts().triangles;
+  const auto& [mesh, lists, clusters] = *tree.parts().triangles;
   triangles = vertices + 24 * mesh.vertices.size();
   list_begins = triangles + 12 * mesh.triangles.size();
   list_ids = list_begins + 4 * (leaf_count + 1);

@@ -234,8 +234,7 @@ typedef struct ist_query_options {
   int64_t period_ns;       /* with two workers: interval of queries; default 1 ms, -1: no pause */
   uint64_t frontier_pairs; /* capacity for the node pairs of a level, 12 bytes each; up to 2^26,
                               default 2^16. Answers do not depend on it */
-  uint64_t triangle_pairs; /* capacity for triangle pairs, 20 to 36 bytes each; up to 2^26, default
-                              2^18. Answers do not depend on it */
+  uint64_t reserved;       /* passed over; was a capacity that exact questions do without */
   int64_t contacts;     /* most contacts, up to 4096; default 32; -1: no contacts, which saves about
                            3 MB */
   const char* target;   /* instruction set, such as "avx2"; default: the best. Same answers */

@@ -54,11 +54,13 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose) noexcept {
   if (!bodies) return {.status = QueryStatus::kInvalidPose};
   IntersectionResult result;
   if (!bodies->roots.overlap) return result;
-  const SearchPose from = s.to_float(*bodies);
   if (s.exact) {
-    if (s.exact->any(*project_to_rigid(pose), from)) result.answer = Answer::kYes;
+    bool found = false;
+    s.exact->any({*project_to_rigid(pose), bodies->relative}, {}, found);
+    if (found) result.answer = Answer::kYes;
     return result;
   }
+  const SearchPose from = s.to_float(*bodies);
   AnyLeafPair any(from);
   s.serial().run(any);
   if (any.found) {
@@ -131,8 +133,8 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
   TrianglePairsResult result;
   result.sphere_tests = 1;
   if (!bodies->roots.overlap) return result;
-  result.triangle_pairs = s.exact->pairs(*project_to_rigid(pose), s.to_float(*bodies), out);
-  result.sphere_tests += s.exact->tests();
+  result.sphere_tests += s.exact->pairs({*project_to_rigid(pose), bodies->relative}, {}, out).tests;
+  result.triangle_pairs = s.exact->pair_count();
   result.truncated = result.triangle_pairs > out.size();
   return result;
 }

@@ -59,23 +59,24 @@ DistanceResult Query::distance(const Eigen::Isometry3d& pose, double tolerance) 
   if (!bodies) return {.status = QueryStatus::kInvalidPose};
   DistanceResult result{.distance = bodies->roots.distance, .sphere_tests = 1};
   auto& [lower, upper] = result.distance;
-  const SearchPose from = s.to_float(*bodies);
-  const double pad = s.pad_of(from);
+  if (s.exact) {
+    if (s.exact->is_too_far(bodies->relative)) return result;
+    DistanceInterval nearest{0, upper};
+    const ExactSearch::End end =
+        s.exact->nearest({*project_to_rigid(pose), bodies->relative}, tolerance, {}, nearest);
+    // Far from the origin the rounding error of a moved vertex can exceed the distance.
+    const double off = nearest.upper > 0 ? bodies->margin : 0;
+    result.distance = {std::max(lower, nearest.lower - off), nearest.upper + off};
+    result.sphere_tests += end.tests;
+    result.complete = true;  // as far as distances of triangles are rounded
+    return result;
+  }
   // Where the pad exceeds the leaves' radii, float cannot distinguish leaves: the roots' interval
   // stays.
+  const double pad = s.pad_of(s.to_float(*bodies));
   if (pad <= s.fixed.largest_leaf_radius(s.policy) + s.moving.largest_leaf_radius(s.policy)) {
-    if (s.exact) {
-      const DistanceInterval nearest =
-          s.exact->nearest(*project_to_rigid(pose), from, pad, upper, tolerance);
-      // Far from the origin the rounding error of a moved vertex can exceed the distance.
-      const double off = nearest.upper > 0 ? bodies->margin : 0;
-      result.distance = {std::max(lower, nearest.lower - off), nearest.upper + off};
-      result.sphere_tests += s.exact->tests();
-      result.complete = true;  // as far as distances of triangles are rounded
-    } else {
-      s.nearest_leaves(*bodies, tolerance, result);
-      result.complete = upper - lower <= (tolerance > 0 ? tolerance : 0);
-    }
+    s.nearest_leaves(*bodies, tolerance, result);
+    result.complete = upper - lower <= (tolerance > 0 ? tolerance : 0);
   }
   return result;
 }

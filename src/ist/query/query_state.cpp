@@ -29,18 +29,6 @@ std::size_t within_limit(const char* option, std::size_t value) {
               fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
 }
 
-// Returns the largest coordinate, without its sign, of a vertex in use; other vertices may lie
-// anywhere.
-double largest_coordinate_of(const TriangleMesh& mesh) {
-  double largest = 0;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      largest = std::max(largest, mesh.vertices[v].cwiseAbs().maxCoeff());
-    }
-  }
-  return largest;
-}
-
 }  // namespace
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
@@ -63,16 +51,14 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    exact.emplace(fixed, moving, policy, kernels,
-                  within_limit("triangle_pairs", options.triangle_pairs));
-    largest_coordinate = largest_coordinate_of(*moving.triangles());
+    exact.emplace(fixed, moving, kernels);
   }
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {
   // Bounds are inflated by the rounding error of a moved vertex, so that triangles which intersect
   // only after rounding are found (docs/guarantees.md, Triangles moved in double).
-  return exact ? 0x1p-48 * (largest_coordinate + pose.translation().cwiseAbs().maxCoeff()) : 0;
+  return exact ? exact->moved_error(pose) : 0;
 }
 
 std::optional<Approach> QueryState::approach(const Eigen::Isometry3d& pose,

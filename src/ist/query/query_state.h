@@ -65,8 +65,7 @@ struct QueryState {
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CoherentSearch> coherent;
   std::optional<ExactSearch> exact;
-  double largest_coordinate = 0;  // the largest of a moving vertex, without its sign
-  std::vector<LeafPair> window;   // the leaf pairs that a stream is given at once
+  std::vector<LeafPair> window;  // the leaf pairs that a stream is given at once
   std::atomic_flag in_use;
 };
 

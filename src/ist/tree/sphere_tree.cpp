@@ -115,7 +115,8 @@ std::uint64_t SphereTree::bytes() const noexcept {
   for (const auto& level : parts_->bounds.slabs) bytes += size(level);
   if (parts_->triangles) {
     bytes += size(parts_->triangles->mesh.vertices) + size(parts_->triangles->mesh.triangles) +
-             size(parts_->triangles->lists.first) + size(parts_->triangles->lists.ids);
+             size(parts_->triangles->lists.first) + size(parts_->triangles->lists.ids) +
+             parts_->triangles->clusters.bytes();
   }
   if (parts_->proximity) bytes += parts_->proximity->octree.bytes();
   return bytes;

@@ -92,7 +92,9 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
     end_stage("proximity voxels");
   }
   if (options.keep_triangles) {
-    parts.triangles = LeafTriangles{std::move(mesh), std::move(voxels.triangles)};
+    parts.triangles =
+        LeafTriangles(std::move(mesh), std::move(voxels.triangles), parts.lattice.origin());
+    end_stage("triangle clusters");
   }
   return SphereTree(std::move(parts));
 }

@@ -167,9 +167,8 @@ bool is_in_grid(const Lattice& lattice, const Eigen::Vector3d& vertex) {
   return place.minCoeff() >= 0 && place.maxCoeff() <= lattice.cells;
 }
 
-void verify_triangles(const TreeReader& reader, const Lattice& lattice,
-                      const LeafTriangles& leaves) {
-  const auto& [mesh, lists] = leaves;
+void verify_triangles(const TreeReader& reader, const Lattice& lattice, const TriangleMesh& mesh,
+                      const TriangleLists& lists) {
   reader.require(
       mesh.vertices.empty() || all_finite(mesh.vertices.front().data(), 3 * mesh.vertices.size()),
       "a vertex is not finite");
@@ -217,7 +216,8 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
     write_bounds<PackedSlab>(writer, tree.parts().octree, tree.parts().bounds.slabs);
   }
   if (tree.triangles()) {
-    const auto& [mesh, lists] = *tree.parts().triangles;
+    const TriangleMesh& mesh = tree.parts().triangles->mesh;
+    const TriangleLists& lists = tree.parts().triangles->lists;
     writer.value(std::uint64_t{mesh.vertices.size()});
     writer.value(std::uint64_t{mesh.triangles.size()});
     writer.value(std::uint64_t{lists.ids.size()});
@@ -246,15 +246,15 @@ SphereTree read_tree(const std::filesystem::path& file) {
   if ((sections & kBallsSection) != 0) balls = read_bounds<PackedBall>(reader, stored);
   Levels<PackedSlab> slabs;
   if ((sections & kSlabsSection) != 0) slabs = read_bounds<PackedSlab>(reader, stored);
-  std::optional<LeafTriangles> triangles;
+  std::optional<std::pair<TriangleMesh, TriangleLists>> triangles;
   if ((sections & kTrianglesSection) != 0) {
     const auto counts = reader.value<std::array<std::uint64_t, 3>>();
     triangles.emplace();
     const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
-    for (const auto& [x, y, z] : coordinates) triangles->mesh.vertices.emplace_back(x, y, z);
-    triangles->mesh.triangles = reader.array<Triangle>(counts[1]);
-    triangles->lists.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
-    triangles->lists.ids = reader.array<std::uint32_t>(counts[2]);
+    for (const auto& [x, y, z] : coordinates) triangles->first.vertices.emplace_back(x, y, z);
+    triangles->first.triangles = reader.array<Triangle>(counts[1]);
+    triangles->second.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
+    triangles->second.ids = reader.array<std::uint32_t>(counts[2]);
   }
   std::optional<StoredOctree> proximity;
   if ((sections & kProximitySection) != 0) {
@@ -268,14 +268,18 @@ SphereTree read_tree(const std::filesystem::path& file) {
   reader.require(orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is unknown");
   verify_lattice(reader, lattice);
-  if (triangles) verify_triangles(reader, lattice, *triangles);
+  if (triangles) verify_triangles(reader, lattice, triangles->first, triangles->second);
   TreeParts parts{lattice,
                   verified(reader, std::move(stored)),
                   static_cast<Orientation>(orientation),
                   std::move(normals),
                   {},
-                  std::move(triangles),
+                  std::nullopt,
                   std::nullopt};
+  if (triangles) {
+    parts.triangles.emplace(std::move(triangles->first), std::move(triangles->second),
+                            lattice.origin());
+  }
   parts.bounds.balls =
       verified<BallBlock>(reader, parts.octree, std::move(balls), "a ball has no radius");
   parts.bounds.slabs = verified<SlabBlock>(reader, parts.octree, std::move(slabs),

@@ -7,6 +7,7 @@
 #include "ist/mesh/mesh.h"
 #include "ist/tree/bound_blocks.h"
 #include "ist/tree/bounds.h"
+#include "ist/tree/clusters/triangle_clusters.h"
 #include "ist/tree/implicit_ball.h"
 #include "ist/tree/linear_octree.h"
 #include "ist/voxel/classify.h"
@@ -18,8 +19,13 @@ namespace ist {
 
 /// The triangles of a tree built with keep_triangles.
 struct LeafTriangles {
-  TriangleMesh mesh;    ///< as oriented at build, mesh frame
-  TriangleLists lists;  ///< one list a leaf
+  /// @param oriented the mesh as oriented at build
+  LeafTriangles(TriangleMesh oriented, TriangleLists of_leaves, const Eigen::Vector3d& origin)
+      : mesh(std::move(oriented)), lists(std::move(of_leaves)), clusters(mesh, origin) {}
+
+  TriangleMesh mesh;          ///< mesh frame
+  TriangleLists lists;        ///< one list a leaf
+  TriangleClusters clusters;  ///< about the tree's origin
 };
 
 /// The proximity voxels, cells near the outside of the surface, on the lattice of the surface

@@ -1,46 +1,74 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
-#include "ist/query/exact/triangle_pairs.h"
-#include "ist/query/traversal/search.h"
+#include "ist/query/exact/cluster_search.h"
+#include "ist/query/exact/pair_list.h"
+#include "ist/query/relative_pose.h"
+#include "ist/tree/sphere_tree.h"
+#include "simd/dispatch.h"
 
 namespace ist {
 
-/// Answers queries about the triangles of two trees: a traversal down to nodes about as large as
-/// triangles, and TrianglePairs there. Works in the calling thread alone.
+/// Two bodies at a pose, for exact questions.
+struct ExactPose {
+  const Eigen::Isometry3d& rigid;  ///< of mesh coordinates
+  const RelativePose& relative;    ///< the same, of the trees' frames
+};
+
+/// Answers questions about the triangles of two trees: a traversal of their clusters, a decision in
+/// float with a bound of its error, and exact arithmetic for what that leaves open. Works in the
+/// calling thread alone.
 class ExactSearch {
  public:
-  /// Reserves all memory. Both trees must have triangles and `policy`. Holds references to both.
-  ExactSearch(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-              const Kernels& kernels, std::size_t triangle_pairs);
+  /// Reserves all memory. Both trees must have triangles. Holds references to both.
+  ExactSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels);
 
-  /// Finds all pairs of triangles that intersect; the first go into `out`. `from` is `rigid`,
-  /// narrowed. Returns their number.
-  [[nodiscard]] std::uint64_t pairs(const Eigen::Isometry3d& rigid, const SearchPose& from,
-                                    std::span<TrianglePair> out) noexcept;
+  /// The end of a search, and its cost.
+  struct End {
+    bool complete;        ///< not the budget
+    std::uint64_t tests;  ///< as ClusterBudget counts them
+  };
 
-  /// Tests whether any pair of triangles intersects.
-  [[nodiscard]] bool any(const Eigen::Isometry3d& rigid, const SearchPose& from) noexcept;
+  /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
+  /// says how many there are.
+  End pairs(const ExactPose& pose, const Budget& budget, std::span<TrianglePair> out) noexcept;
+  [[nodiscard]] std::uint64_t pair_count() const noexcept { return list_.count(); }
 
-  /// Bounds the distance between the surfaces by an interval no wider than `tolerance` and the
-  /// error of a distance of two triangles. Pairs farther apart than `limit` are not searched.
+  /// Tests whether any pair of triangles intersects, and sets `found`.
+  End any(const ExactPose& pose, const Budget& budget, bool& found) noexcept;
+
+  /// Bounds the distance between the surfaces by an interval that is no wider than `tolerance` and
+  /// twice distance_error(), unless the budget ended the search.
   ///
-  /// @param pad rounding error of tests with `from`, mesh units
-  [[nodiscard]] DistanceInterval nearest(const Eigen::Isometry3d& rigid, const SearchPose& from,
-                                         double pad, double limit, double tolerance) noexcept;
+  /// @param distance bounds it already; narrowed
+  End nearest(const ExactPose& pose, double tolerance, const Budget& budget,
+              DistanceInterval& distance) noexcept;
 
-  /// Returns the pairs of nodes tested since the query began.
-  [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
+  /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
+  /// triangles' distances from each other.
+  [[nodiscard]] bool is_too_far(const RelativePose& pose) const noexcept;
+
+  /// Returns the rounding error of a triangle that is moved in double, mesh units.
+  [[nodiscard]] double moved_error(const Eigen::Isometry3d& rigid) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  const Kernels& kernels_;
-  TrianglePairs triangles_;
-  SearchPlan plan_;
-  Search search_;
-  std::vector<LeafPair> window_;  // pairs of nodes pass through it
-  std::uint64_t tests_ = 0;
+  [[nodiscard]] ClusterPose cluster_pose(const ExactPose& pose) const noexcept;
+  void clear_found() noexcept;
+
+  const SphereTree &fixed_, &moving_;
+  const TriangleClusters &fixed_clusters_, &moving_clusters_;
+  const ClusterKernels& kernels_;
+  double largest_coordinate_, longest_edge_;
+  ClusterSearch search_;
+  PairList list_;
+  std::vector<std::uint32_t> ids_;  // what the kernels find
+  std::vector<float> squares_;
+  FoundTriangles found_{};
+  TriangleBatch batch_;
 };
 
 }  // namespace ist

@@ -113,6 +113,9 @@ bool edges_meet(const TriangleCorners& a, const TriangleCorners& b) {
 }  // namespace
 
 bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  for (const Eigen::Vector3d& corner : a) {
+    if (corner == b[0] || corner == b[1] || corner == b[2]) return true;
+  }
   const Sides of_b = sides_of(b, a);
   if (on_one_side(of_b)) return false;
   const Sides of_a = sides_of(a, b);

@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "ist/query/exact/moved_triangles.h"
+#include "ist/query/exact/triangle_distance.h"
+#include "ist/query/exact/triangles_meet.h"
+#include "simd/dispatch.h"
+#include "simd/exact/cluster_cases.h"
+#include "simd/targets.h"
+
+namespace ist::test {
+namespace {
+
+using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+// Room for what the kernels find.
+struct Room {
+  static constexpr std::size_t kLength = FoundTriangles::kRoom + kClusterWidth;
+  std::vector<std::uint32_t> ids = std::vector<std::uint32_t>(4 * kLength);
+  std::vector<float> squares = std::vector<float>(kLength);
+  TriangleBatch batch;
+  FoundTriangles found{{ids.data(), ids.data() + kLength},
+                       {ids.data() + 2 * kLength, ids.data() + 3 * kLength},
+                       squares.data()};
+};
+
+// Two zeros are equal, whatever their signs.
+std::vector<float> numbers_of(const TurnedBlock& block) {
+  std::vector<float> numbers(sizeof block / sizeof(float));
+  std::memcpy(numbers.data(), &block, sizeof block);
+  return numbers;
+}
+
+// All nodes of a level.
+std::vector<std::uint32_t> all(std::uint32_t count) {
+  std::vector<std::uint32_t> nodes(count);
+  std::iota(nodes.begin(), nodes.end(), 0U);
+  return nodes;
+}
+
+NodeList list(const std::vector<std::uint32_t>& nodes) { return {nodes.data(), nodes.size()}; }
+
+class ClusterKernelsOf : public ::testing::TestWithParam<std::string> {
+ protected:
+  const ClusterKernels& kernels_ = select_kernels(GetParam()).clusters;
+  static inline const ClusterKernels& kScalar = kScalarClusterKernels;
+};
+INSTANTIATE_TEST_SUITE_P(Targets, ClusterKernelsOf, ::testing::ValuesIn(all_targets()), name_of);
+
+TEST_P(ClusterKernelsOf, TestNodesAsTheScalarForm) {
+  std::size_t near = 0, tested = 0;
+  for (const ClusterCase& c : cluster_cases()) {
+    SCOPED_TRACE(c.name);
+    for (int level = 0; level <= c.moving_clusters.root_level(); ++level) {
+      const auto blocks = c.moving_clusters.bounds(level);
+      for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        TurnedBlock turned, wanted;
+        kernels_.turn_nodes(blocks[block], c.step.pose, turned);
+        kScalar.turn_nodes(blocks[block], c.step.pose, wanted);
+        ASSERT_EQ(numbers_of(turned), numbers_of(wanted));
+        const std::uint32_t lanes =
+            std::min(kClusterWidth, c.moving_clusters.node_count(level) - kClusterWidth * block);
+        const int fixed_level = std::min(level, c.fixed_clusters.root_level() - 1);
+        const FixedNodes parents{c.fixed_clusters.bounds(fixed_level + 1).data(),
+                                 c.fixed_clusters.node_count(fixed_level + 1)};
+        const FixedNodes children{c.fixed_clusters.bounds(fixed_level).data(),
+                                  c.fixed_clusters.node_count(fixed_level)};
+        const std::vector<std::uint32_t> nodes = all(parents.count);
+        for (const float reach : {0.0F, 1e-3F, 0.4F}) {
+          std::vector<std::uint32_t> a(kClusterWidth * nodes.size()), b = a;
+          LaneLists mine{a.data(), nodes.size(), {}}, theirs{b.data(), nodes.size(), {}};
+          kernels_.meet_nodes(turned, lanes, parents, list(nodes), reach, mine);
+          kScalar.meet_nodes(wanted, lanes, parents, list(nodes), reach, theirs);
+          ASSERT_TRUE(std::equal(mine.counts, mine.counts + 16, theirs.counts));
+          ASSERT_EQ(a, b);
+          near += std::accumulate(mine.counts, mine.counts + 16, std::size_t{0});
+          tested += lanes * nodes.size();
+          for (std::uint32_t lane = 0; lane < lanes; lane += 5) {
+            std::vector<std::uint32_t> x(children.count), y = x;
+            const auto found =
+                kernels_.meet_children(turned, lane, children, list(nodes), reach, x.data());
+            ASSERT_EQ(found,
+                      kScalar.meet_children(wanted, lane, children, list(nodes), reach, y.data()));
+            ASSERT_EQ(x, y);
+            alignas(64) float scores[16], scores_wanted[16];
+            kernels_.score_children(turned, lane, children.blocks[0], scores);
+            kScalar.score_children(wanted, lane, children.blocks[0], scores_wanted);
+            ASSERT_EQ(std::memcmp(scores, scores_wanted, sizeof scores), 0);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(near, tested / 50);
+  EXPECT_LT(near, tested / 2);
+}
+
+// Calls `ask` for each moving cluster, with all fixed nodes above clusters.
+template <class Ask>
+void each_cluster(const ClusterKernels& kernels, const ClusterCase& c, Ask ask) {
+  const std::vector<std::uint32_t> parents = all(c.fixed_clusters.node_count(1));
+  for (std::uint32_t moving = 0; moving < c.moving_clusters.node_count(0); ++moving) {
+    TurnedBlock turned;
+    kernels.turn_nodes(c.moving_clusters.bounds(0)[moving / kClusterWidth], c.step.pose, turned);
+    ask(turned, moving % kClusterWidth, moving, parents);
+  }
+}
+
+// What is certain is true, and what is true is certain or open; and clusters are compared as the
+// scalar form says.
+TEST_P(ClusterKernelsOf, MissNoPairThatMeetsAndInventNone) {
+  std::size_t meeting = 0, open = 0;
+  for (const ClusterCase& c : cluster_cases()) {
+    SCOPED_TRACE(c.name);
+    std::size_t compared[2] = {};
+    Pairs certain, undecided;
+    for (const bool scalar : {false, true}) {
+      const ClusterKernels& kernels = scalar ? kScalar : kernels_;
+      Room room;
+      each_cluster(
+          kernels, c,
+          [&](const TurnedBlock& turned, std::uint32_t lane, std::uint32_t moving,
+              const std::vector<std::uint32_t>& nodes) {
+            for (std::size_t done = 0; done < nodes.size();) {
+              done += kernels.meet_clusters(c.step, turned, lane, moving,
+                                            {nodes.data() + done, nodes.size() - done}, room.batch,
+                                            room.found);
+              kernels.decide_triangles(room.batch, room.found);
+              if (!scalar) {
+                for (std::size_t k = 0; k < room.found.certain.count; ++k) {
+                  certain.insert({room.found.certain[k].fixed, room.found.certain[k].moving});
+                }
+                for (std::size_t k = 0; k < room.found.open.count; ++k) {
+                  undecided.insert({room.found.open[k].fixed, room.found.open[k].moving});
+                }
+              }
+              room.found.certain.count = room.found.open.count = 0;
+            }
+          });
+      compared[scalar ? 1 : 0] = room.found.cluster_pairs;
+    }
+    EXPECT_EQ(compared[0], compared[1]);
+    for (std::uint32_t f = 0; f < c.fixed.triangles.size(); ++f) {
+      for (std::uint32_t m = 0; m < c.moving.triangles.size(); ++m) {
+        const auto a = corners_of(c.fixed, f), b = corners_of(c.moving, m);
+        const bool is_certain = certain.count({f, m}) > 0;
+        if (box_distance_squared(a, b) > 0) {
+          ASSERT_FALSE(is_certain) << f << ' ' << m;
+          continue;
+        }
+        const bool meet = triangles_meet(a, b);
+        meeting += meet ? 1U : 0U;
+        if (is_certain) {
+          ASSERT_TRUE(meet) << f << ' ' << m;
+        } else if (meet) {
+          ASSERT_TRUE(undecided.count({f, m}) > 0) << f << ' ' << m;
+        }
+      }
+    }
+    if (c.name != "on itself") open += undecided.size();
+  }
+  EXPECT_GT(meeting, 2000u);
+  EXPECT_LT(open, meeting / 5);
+}
+
+// The nearest pair is never left out, and its lower bound is none but that.
+TEST_P(ClusterKernelsOf, KeepTheNearestPair) {
+  for (const ClusterCase& c : cluster_cases()) {
+    SCOPED_TRACE(c.name);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t f = 0; f < c.fixed.triangles.size() && least > 0; ++f) {
+      for (std::uint32_t m = 0; m < c.moving.triangles.size() && least > 0; ++m) {
+        const auto a = corners_of(c.fixed, f), b = corners_of(c.moving, m);
+        if (box_distance_squared(a, b) > least) continue;
+        least = triangles_meet(a, b) ? 0 : std::min(least, ist::distance_squared(a, b));
+      }
+    }
+    if (least == 0) continue;
+    const auto from = static_cast<float>(1.3 * std::sqrt(least));
+    const float margin = 1e-6F * from + c.step.pose.error;
+    Room room;
+    Reach reach{from + margin, from + margin, margin};
+    double found = std::numeric_limits<double>::infinity();
+    std::size_t kept = 0;
+    each_cluster(kernels_, c,
+                 [&](const TurnedBlock& turned, std::uint32_t lane, std::uint32_t moving,
+                     const std::vector<std::uint32_t>& nodes) {
+                   for (std::size_t done = 0; done < nodes.size();) {
+                     done += kernels_.near_clusters(c.step, turned, lane, moving,
+                                                    {nodes.data() + done, nodes.size() - done},
+                                                    reach, room.batch, room.found);
+                     for (std::size_t k = 0; k < room.found.open.count; ++k) {
+                       const TriangleIds ids = room.found.open[k];
+                       const double squared = ist::distance_squared(
+                           corners_of(c.fixed, ids.fixed), corners_of(c.moving, ids.moving));
+                       const double slack = 1e-6 * std::sqrt(least) + double{c.step.pose.error};
+                       ASSERT_LE(std::sqrt(double{room.found.squares[k]}),
+                                 std::sqrt(squared) + slack);
+                       found = std::min(found, squared);
+                       ++kept;
+                     }
+                     room.found.open.count = 0;
+                   }
+                 });
+    EXPECT_EQ(found, least);
+    EXPECT_GE(double{reach.triangles} * reach.triangles, least);
+    EXPECT_LT(kept, c.fixed.triangles.size() + c.moving.triangles.size());
+  }
+}
+
+}  // namespace
+}  // namespace ist::test
