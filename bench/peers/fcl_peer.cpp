@@ -57,6 +57,15 @@ class FclPeer : public Peer {
   fcl::CollisionResult<double> found_;
 };
 
+// FCL's own rule ends where a bound is within the absolute error and within the relative one, which
+// is 0 and so undoes the other. A great relative error would not mend it: where bounds overlap,
+// their distance is 0, and so is its product, or not a number.
+struct WithinTolerance final : fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> {
+  [[nodiscard]] bool canStop(double bound) const override {
+    return bound >= result->min_distance - kTolerance;
+  }
+};
+
 class FclWithinPeer final : public Peer {
  public:
   FclWithinPeer(std::shared_ptr<const Model> fixed, std::shared_ptr<const Model> moving)
@@ -69,10 +78,9 @@ class FclWithinPeer final : public Peer {
   }
   DistanceInterval distance(const Eigen::Isometry3d& pose) override {
     fcl::DistanceResult<double> result;
-    fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> node;
-    fcl::detail::initialize(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,
-                            fcl::DistanceRequest<double>(), result);
-    node.abs_err = kTolerance;
+    WithinTolerance node;
+    fcl::detail::initialize<double>(node, *fixed_, fcl::Transform3d::Identity(), *moving_, pose,
+                                    fcl::DistanceRequest<double>(), result);
     fcl::detail::distance<double>(&node);
     const double found = std::max(result.min_distance, 0.0);
     return {std::max(found - kTolerance, 0.0), found};
