@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "ist/base/pose.h"
-#include "ist/query/exact/triangles_meet.h"
+#include "peers/exact_parts.h"
 
 namespace ist::bench {
 namespace {
@@ -146,9 +146,7 @@ class BulletBoxesPeer final : public Peer {
     for (int i = 0; i < boxes_.size() && pairs_.size() < most; ++i) {
       const auto a = static_cast<std::uint32_t>(boxes_[i].m_index1);
       const auto b = static_cast<std::uint32_t>(boxes_[i].m_index2);
-      TriangleCorners moved = corners(moving_, b);
-      for (Eigen::Vector3d& corner : moved) corner = rigid * corner;
-      if (triangles_meet(corners(fixed_, a), moved)) pairs_.push_back({a, b});
+      if (meet(corners(fixed_, a), moved(rigid, corners(moving_, b)))) pairs_.push_back({a, b});
     }
     return pairs_.size();
   }

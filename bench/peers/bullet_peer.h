@@ -11,7 +11,7 @@ namespace ist::bench {
 ///    names with each. It lists all pairs of boxes before it looks at a triangle and cannot stop at
 ///    the first contact, so whether the meshes meet costs it as much as all pairs.
 ///  - `bullet_boxes`: btGImpactBoxSet::find_collision, which lists candidates, told apart by
-///    triangles_meet() in double where pairs are asked for: Bullet's hierarchy without its
+///    meet() in double where pairs are asked for: Bullet's hierarchy without its
 ///    triangles.
 /// What differs: boxes are of 16 bits an axis, rounded to the nearest, so that a pair may be
 /// missed; and Bullet's own test of triangles clips one at the edges of the other in float, which

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "ist/base/pose.h"
+#include "peers/exact_parts.h"
 
 namespace ist::bench {
 namespace {
@@ -49,11 +50,18 @@ struct Body {
   Tree tree;
 };
 
-Transform transform_of(const Eigen::Isometry3d& pose) {
-  const Eigen::Isometry3d rigid = *project_to_rigid(pose);
+Transform transform_of(const Eigen::Isometry3d& rigid) {
   const auto& m = rigid.matrix();
   return {m(0, 0), m(0, 1), m(0, 2), m(0, 3), m(1, 0), m(1, 1),
           m(1, 2), m(1, 3), m(2, 0), m(2, 1), m(2, 2), m(2, 3)};
+}
+
+Kernel::Triangle_3 moved(const Eigen::Isometry3d& rigid, const Kernel::Triangle_3& triangle) {
+  const auto vector = [](const Kernel::Point_3& p) { return Eigen::Vector3d(p.x(), p.y(), p.z()); };
+  const auto point = [](const Eigen::Vector3d& v) { return Kernel::Point_3(v.x(), v.y(), v.z()); };
+  const TriangleCorners at =
+      bench::moved(rigid, {vector(triangle[0]), vector(triangle[1]), vector(triangle[2])});
+  return {point(at[0]), point(at[1]), point(at[2])};
 }
 
 using FacePair = std::pair<Mesh::Face_index, Mesh::Face_index>;
@@ -62,9 +70,13 @@ using FacePair = std::pair<Mesh::Face_index, Mesh::Face_index>;
 // until it has `most` pairs or a few more.
 class ListPairs {
  public:
-  ListPairs(const Tree& moving, const Transform& transform, std::size_t most,
+  ListPairs(const Tree& moving, const Eigen::Isometry3d& rigid, std::size_t most,
             std::vector<FacePair>& pairs)
-      : traits_(moving.traits()), transform_(transform), most_(most), pairs_(pairs) {}
+      : traits_(moving.traits()),
+        rigid_(rigid),
+        transform_(transform_of(rigid)),
+        most_(most),
+        pairs_(pairs) {}
 
   [[nodiscard]] bool go_further() const { return pairs_.size() < most_; }
   [[nodiscard]] bool do_intersect(const Tree& fixed, const CGAL::AABB_node<Traits>& node) const {
@@ -73,13 +85,14 @@ class ListPairs {
   void intersection(const Tree& fixed, const Primitive& primitive) {
     const auto datum = CGAL::internal::Primitive_helper<Traits>::get_datum(primitive, traits_);
     found_.clear();
-    fixed.all_intersected_primitives(datum.transform(transform_), std::back_inserter(found_));
+    fixed.all_intersected_primitives(moved(rigid_, datum), std::back_inserter(found_));
     for (const Mesh::Face_index face : found_) pairs_.emplace_back(face, primitive.id());
   }
 
  private:
   const Traits& traits_;
-  const Transform& transform_;
+  const Eigen::Isometry3d& rigid_;
+  const Transform transform_;
   const std::size_t most_;
   std::vector<FacePair>& pairs_;
   std::vector<Mesh::Face_index> found_;
@@ -107,8 +120,8 @@ class CgalPeer final : public Peer {
  private:
   std::size_t list(const Eigen::Isometry3d& pose, std::size_t most) {
     pairs_.clear();
-    const Transform transform = transform_of(pose);
-    ListPairs found(bodies_->moving.tree, transform, most, pairs_);
+    const Eigen::Isometry3d rigid = *project_to_rigid(pose);
+    ListPairs found(bodies_->moving.tree, rigid, most, pairs_);
     const CGAL::Interval_nt_advanced::Protector upward;  // as the boxes are turned in intervals
     bodies_->moving.tree.traversal(bodies_->fixed.tree, found);
     return pairs_.size();
@@ -130,7 +143,7 @@ class CgalRigidPeer final : public Peer {
     return question == Question::kMeets;
   }
   bool meets(const Eigen::Isometry3d& pose) override {
-    detection_.set_transformation(moving_, transform_of(pose));
+    detection_.set_transformation(moving_, transform_of(*project_to_rigid(pose)));
     return !detection_.get_all_intersections(fixed_, std::array{moving_}).empty();
   }
 

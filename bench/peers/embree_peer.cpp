@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "ist/base/pose.h"
-#include "ist/query/exact/triangles_meet.h"
+#include "peers/exact_parts.h"
 
 namespace ist::bench {
 namespace {
@@ -150,7 +150,7 @@ class EmbreePeer final : public Peer {
     for (unsigned i = 0; i < size; ++i) {
       const TriangleCorners a = peer.fixed_.corners(found[i].primID0);
       const TriangleCorners b = peer.moving_.corners(found[i].primID1);
-      if (boxes_apart(a, b) || !triangles_meet(a, b)) continue;
+      if (boxes_apart(a, b) || !meet(a, b)) continue;
       peer.pairs_.push_back({found[i].primID0, found[i].primID1});
     }
   }

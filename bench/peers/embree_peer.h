@@ -5,7 +5,7 @@
 namespace ist::bench {
 
 /// Embree: rtcCollide over two scenes of one user geometry each, in one thread; candidates are told
-/// apart by their boxes and triangles_meet(), in double, so that all pairs are IST's. Embree cannot
+/// apart by their boxes and meet(), in double, so that all pairs are IST's. Embree cannot
 /// be asked for a pose, so the moving mesh is moved and its hierarchy refitted. Three contestants:
 ///  - `embree`: moves, refits, collides, tests triangles;
 ///  - `embree_no_refit`: the same, but moved and refitted before its time begins;
