@@ -73,9 +73,10 @@ std::optional<std::string> untrue(Question question, const Answer& ist, const Na
   return {};
 }
 
-Contest::Contest(Question question, const Peers& all, const std::vector<NamedPose>& poses)
+Contest::Contest(Question question, const std::vector<Peer*>& all,
+                 const std::vector<NamedPose>& poses)
     : question_(question), poses_(poses) {
-  for (const auto& peer : all) {
+  for (Peer* peer : all) {
     if (peer->answers(question)) players_.push_back({*peer, {}, {}});
   }
 }

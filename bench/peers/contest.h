@@ -38,7 +38,8 @@ class Contest {
     double spent = 0;  ///< s, with what is not counted
   };
 
-  Contest(Question question, const Peers& all, const std::vector<NamedPose>& poses);
+  /// Of those who answer `question`; the first is IST. The poses must outlive it.
+  Contest(Question question, const std::vector<Peer*>& all, const std::vector<NamedPose>& poses);
 
   [[nodiscard]] Question question() const { return question_; }
   [[nodiscard]] const std::vector<NamedPose>& poses() const { return poses_; }

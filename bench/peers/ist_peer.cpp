@@ -1,7 +1,10 @@
 #include "peers/ist_peer.h"
 
+#include <algorithm>
+
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
+#include "simd/dispatch.h"
 
 namespace ist::bench {
 namespace {
@@ -11,7 +14,17 @@ constexpr std::size_t kPairs = 1 << 16;
 class IstPeer final : public Peer {
  public:
   IstPeer(const TriangleMesh& fixed, const TriangleMesh& moving)
-      : Peer("ist", Guarantee::kExact), fixed_(tree(fixed)), moving_(tree(moving)) {}
+      : Peer("ist", Guarantee::kExact),
+        fixed_(tree(fixed)),
+        moving_(tree(moving)),
+        query_(fixed_, moving_, options("")) {}
+  IstPeer(const IstPeer& other, const std::string& target)
+      : Peer("ist_" + target, Guarantee::kExact),
+        fixed_(other.fixed_),
+        moving_(other.moving_),
+        query_(fixed_, moving_, options(target)) {}
+
+  [[nodiscard]] const char* target() const { return query_.target(); }
 
   [[nodiscard]] bool answers(Question) const override { return true; }
   bool meets(const Eigen::Isometry3d& pose) override {
@@ -33,14 +46,15 @@ class IstPeer final : public Peer {
     options.keep_triangles = true;
     return build_tree(mesh, options);
   }
-  static QueryOptions options() {
+  static QueryOptions options(const std::string& target) {
     QueryOptions options;
     options.policy = SpherePolicy::kSlab;
+    options.target = target;
     return options;
   }
 
   const SphereTree fixed_, moving_;
-  Query query_{fixed_, moving_, options()};
+  Query query_;
   std::vector<TrianglePair> pairs_ = std::vector<TrianglePair>(kPairs);
 };
 
@@ -51,6 +65,13 @@ Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
 }
 
 }  // namespace
+
+std::unique_ptr<Peer> ist_on(const Peer& ist, const std::string& target) {
+  const auto& same = static_cast<const IstPeer&>(ist);
+  const auto has = [&](const Kernels& kernels) { return target == kernels.target; };
+  if (target == same.target() || std::ranges::none_of(all_kernels(), has)) return nullptr;
+  return std::make_unique<IstPeer>(same, target);
+}
 
 Library ist_library() { return {"ist", IST_VERSION, make_peers}; }
 

@@ -8,4 +8,8 @@ namespace ist::bench {
 /// it as pairs, which is more.
 [[nodiscard]] Library ist_library();
 
+/// `ist`, which is of ist_library(), on another instruction set, over the same trees: `ist_TARGET`.
+/// Null where that is its own, or this processor lacks it.
+[[nodiscard]] std::unique_ptr<Peer> ist_on(const Peer& ist, const std::string& target);
+
 }  // namespace ist::bench

@@ -40,5 +40,6 @@ std::vector<Library> libraries() {
 }
 
 std::string missing_libraries() { return IST_PEERS_MISSING; }
+std::string library_flags() { return IST_PEERS_FLAGS; }
 
 }  // namespace ist::bench

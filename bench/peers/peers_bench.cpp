@@ -3,8 +3,12 @@
 //
 //   peers/build/LIBRARY                what its structures of both meshes take
 //   peers/QUESTION/CONTESTANT/POSE     what an answer takes, over n rounds, and what it says
+//   turned/QUESTION/CONTESTANT/POSE    the closing, with both meshes in turned frames
+//   cold/QUESTION/CONTESTANT/POSE      the closing, with cold caches
+//   avx2/QUESTION/CONTESTANT/POSE      the closing, asked of IST with AVX2 alone, where it has more
 //
-//   IST_PEERS_SECONDS   for how long each question is asked, at least 5 rounds; by default 55
+//   IST_PEERS_SECONDS   for how long each question of `peers` is asked, at least 5 rounds; by
+//                       default 55. What follows takes some half of that together
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -13,13 +17,24 @@
 
 #include "ist/base/parallel.h"
 #include "peers/build_cost.h"
+#include "peers/cold_peers.h"
 #include "peers/contest.h"
+#include "peers/ist_peer.h"
 #include "peers/libraries.h"
+#include "peers/turned.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 
 namespace ist::bench {
 namespace {
+
+// Who is asked what where; all must outlive the benchmarks.
+struct Series {
+  std::string name;
+  std::vector<Peer*> players;  // the first is IST
+  std::vector<NamedPose> poses;
+  double part;  // of the time of a question
+};
 
 double seconds_a_question() {
   const char* seconds = std::getenv("IST_PEERS_SECONDS");
@@ -59,8 +74,9 @@ void report_answer(benchmark::State& state, Question question, const Answer& ist
   }
 }
 
-void report(benchmark::State& state, Contest& contest, std::size_t index, std::size_t at) {
-  contest.hold(seconds_a_question(), quick() ? 1 : 5);
+void report(benchmark::State& state, Contest& contest, double part, std::size_t index,
+            std::size_t at) {
+  contest.hold(part * seconds_a_question(), quick() ? 1 : 5);
   Contest::Player& player = contest.players()[index];
   const NamedPose& pose = contest.poses()[at];
   const Question question = contest.question();
@@ -99,28 +115,32 @@ void add_benchmark(const std::string& name, Body body) {
       ->Iterations(1);
 }
 
-void add_contest(const std::shared_ptr<Contest>& contest) {
-  const std::string question = std::string("peers/") + to_string(contest->question());
+void add_contest(const Series& series, Question question) {
+  const auto contest = std::make_shared<Contest>(question, series.players, series.poses);
+  const std::string prefix = series.name + "/" + to_string(question) + "/";
   for (std::size_t player = 0; player < contest->players().size(); ++player) {
-    const std::string name = question + "/" + contest->players()[player].peer.name() + "/";
-    for (std::size_t pose = 0; pose < contest->poses().size(); ++pose) {
-      add_benchmark(name + contest->poses()[pose].name,
-                    [=](benchmark::State& state) { report(state, *contest, player, pose); });
+    const std::string name = prefix + contest->players()[player].peer.name() + "/";
+    for (std::size_t pose = 0; pose < series.poses.size(); ++pose) {
+      add_benchmark(name + series.poses[pose].name,
+                    [=, part = series.part](benchmark::State& state) {
+                      report(state, *contest, part, player, pose);
+                    });
     }
   }
 }
 
-}  // namespace
-}  // namespace ist::bench
+void add_series(const Series& series) {
+  for (const Question question : kQuestions) add_contest(series, question);
+}
 
-int main(int argc, char** argv) {
-  using namespace ist::bench;
-  benchmark::AddCustomContext("missing_peers", missing_libraries());
-  benchmark::AddCustomContext("voxel_size", std::to_string(voxel_size()));
-  benchmark::AddCustomContext("pair", pair_name());
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  const ist::ScopedThreadLimit one(1);
+std::vector<Peer*> pointers(const Peers& peers) {
+  std::vector<Peer*> all;
+  for (const auto& peer : peers) all.push_back(peer.get());
+  return all;
+}
+
+// Every library's contestants of both jaws, with a benchmark of what it took to make them.
+Peers build_measured() {
   Peers all;
   for (const Library& library : libraries()) {
     Peers built;
@@ -131,10 +151,41 @@ int main(int argc, char** argv) {
                     report_build(state, *cost, version);
                   });
   }
-  const std::vector<NamedPose> poses = peer_poses();
-  for (const Question question : kQuestions) {
-    add_contest(std::make_shared<Contest>(question, all, poses));
+  return all;
+}
+
+Peers build(const TurnedPair& pair) {
+  Peers all;
+  for (const Library& library : libraries()) {
+    Peers built = library.make(pair.fixed, pair.moving);
+    std::move(built.begin(), built.end(), std::back_inserter(all));
   }
+  return all;
+}
+
+}  // namespace
+}  // namespace ist::bench
+
+int main(int argc, char** argv) {
+  using namespace ist::bench;
+  benchmark::AddCustomContext("missing_peers", missing_libraries());
+  benchmark::AddCustomContext("voxel_size", std::to_string(voxel_size()));
+  benchmark::AddCustomContext("pair", pair_name());
+  benchmark::AddCustomContext("peer_flags", library_flags());
+  benchmark::AddCustomContext("swept_mb", std::to_string(swept_bytes() / 1'000'000));
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  const ist::ScopedThreadLimit one(1);
+  const Peers all = build_measured();
+  const TurnedPair turned = turned_pair();
+  const Peers all_turned = build(turned);
+  const Peers all_cold = cold_peers(all);
+  const std::unique_ptr<Peer> avx2 = ist_on(*all.front(), "avx2");
+  std::vector<Series> asked = {{"peers", pointers(all), peer_poses(), 1},
+                               {"turned", pointers(all_turned), turned.poses, 0.2},
+                               {"cold", pointers(all_cold), closing_poses(), 0.2}};
+  if (avx2) asked.push_back({"avx2", {all.front().get(), avx2.get()}, closing_poses(), 0.1});
+  for (const Series& each : asked) add_series(each);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

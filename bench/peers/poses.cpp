@@ -11,13 +11,18 @@
 
 namespace ist::bench {
 
-std::vector<NamedPose> peer_poses() {
+std::vector<NamedPose> closing_poses() {
   std::vector<NamedPose> poses;
   for (const double dz : kClosing) {
     char name[16];
     std::snprintf(name, sizeof name, "%.1f", dz);
     poses.push_back({name, std::string(pair_name()) + " dz=" + name, closing(dz)});
   }
+  return poses;
+}
+
+std::vector<NamedPose> peer_poses() {
+  std::vector<NamedPose> poses = closing_poses();
   std::ifstream file(data_file("truth_human.json"));
   if (!file || std::string_view(pair_name()) != "human") return poses;
   int index = 0;

@@ -21,7 +21,10 @@ struct NamedPose {
   std::optional<Truth> truth{};
 };
 
-/// The closing of bodies.h, then the poses of truth_human.json where that and the real pair are
+/// The closing of bodies.h.
+[[nodiscard]] std::vector<NamedPose> closing_poses();
+
+/// closing_poses(), then the poses of truth_human.json where that and the real pair are
 /// there; three of them where it is quick().
 [[nodiscard]] std::vector<NamedPose> peer_poses();
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "ist/mesh/mesh.h"
+#include "peers/poses.h"
+
+namespace ist::bench {
+
+/// The same bodies in other frames: each mesh turned about an oblique axis of its own, by 46 and by
+/// 52 degrees, its vertices rounded to double, and poses that put them where the closing does. A
+/// scan has the axes of its scanner; here no axis of a box, a voxel or a grid lies along a jaw, and
+/// no mesh's along the other's. Coordinates are rounded, so that counts may differ from those of
+/// the meshes as they are given.
+struct TurnedPair {
+  TriangleMesh fixed, moving;
+  std::vector<NamedPose> poses;
+};
+[[nodiscard]] TurnedPair turned_pair();
+
+}  // namespace ist::bench
