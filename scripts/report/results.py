@@ -28,6 +28,10 @@ class Results:
         """Of a program's run: processor, compiler, flags, commit, load_avg, date."""
         return self._file(program)["context"]
 
+    def has(self, program, *first):
+        """Whether a program made any run whose name begins with these parts."""
+        return any(tuple(Run(raw).parts[: len(first)]) == first for raw in self._file(program)["benchmarks"])
+
     def runs(self, program, *first):
         """The runs whose names begin with these parts, in the order they were made in."""
         found = [Run(raw) for raw in self._file(program)["benchmarks"] if raw.get("run_type") != "aggregate"]

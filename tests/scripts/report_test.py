@@ -6,6 +6,10 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 from report.curves import between, crossings, power  # noqa: E402  after its folder is known
+from report.peer_answers import Answers  # noqa: E402
+from report.peers_elsewhere import absent, native_fcl  # noqa: E402
+from report.peers_otherwise import asked_in  # noqa: E402
+from report.results import Results  # noqa: E402
 from report.text import number, table  # noqa: E402
 
 
@@ -32,6 +36,34 @@ class Curves(unittest.TestCase):
     def test_a_lead_within_the_noise_is_none(self):
         self.assertEqual(crossings([0, 1, 2], [1, 1.02, 1], [2, 1, 2]), [])
         self.assertEqual(len(crossings([0, 1, 2], [1, 1.2, 1], [2, 1, 2])), 2)
+
+
+class Peers(unittest.TestCase):
+    """Two poses, at which FCL takes 1.5 and 3 times as long as IST, and who samples takes no time."""
+
+    TIMES = {"ist": (10, 10), "fcl": (15, 30), "openvdb": (1, 1)}
+
+    def setUp(self):
+        runs = [{"name": f"peers/meets/{player}/{pose}/iterations:1/manual_time", "label": pose, "p50_us": time, "n": 5, "agree": 1,
+                 "promise": 2 if player == "openvdb" else 0, "prepared": 0}
+                for player, times in self.TIMES.items() for pose, time in zip(("truth7", "far"), times)]
+        self.results = Results("nowhere")
+        self.results._read["peers_bench"] = {"benchmarks": runs}
+        self.meets = Answers(self.results, "meets")
+
+    def test_fcl_as_it_could_be_wins_where_the_greater_factor_suffices(self):
+        text = native_fcl("meets", self.meets)[0]
+        self.assertIn("some 1.7 to 2.1 times faster", text)
+        self.assertIn("at 1 of 2 poses (truth7)", text)
+
+    def test_nothing_is_said_of_a_question_that_was_not_measured_so(self):
+        self.assertEqual(native_fcl("candidates", self.meets), [])
+
+    def test_who_is_absent_stands_in_proportion_to_fcl_here(self):
+        self.assertIn(f"some {number(15 * 4609 / 12610)} µs here, for 10 by IST", absent({"pairs": self.meets})[0])
+
+    def test_what_was_not_asked_is_left_out(self):
+        self.assertEqual(asked_in(self.results, "avx2"), {})
 
 
 class Texts(unittest.TestCase):

@@ -1,0 +1,79 @@
+"""The same peers where something is otherwise: bodies in turned frames, cold caches, IST without AVX-512."""
+
+from report.peer_answers import QUESTIONS, Answers, medians, verdict
+from report.text import number, table
+
+
+def asked_in(results, series):
+    """By question; nothing where the program did not ask so."""
+    if not results.has("peers_bench", series):
+        return {}
+    return {question: Answers(results, question, series) for question in QUESTIONS}
+
+
+def ratios(asked, beside, player, beside_player=None):
+    """How many times as long a contestant takes as another did at the same poses."""
+    return [asked.runs[player, pose]["p50_us"] / beside.runs[beside_player or player, pose]["p50_us"] for pose in asked.poses]
+
+
+def span(values):
+    low, high = number(min(values), 2), number(max(values), 2)
+    return low if low == high else f"{low} to {high}"
+
+
+def turned(results, answers):
+    asked = asked_in(results, "turned")
+    if not asked:
+        return []
+    lines = ["### In turned frames", "",
+             "The closing again, the same bodies given in other frames: the fixed mesh turned by 46 degrees and the moving one by 52, "
+             "each about an oblique axis of its own, vertices rounded to double, poses composed to match. A scan lies along its scanner's "
+             "axes, which helps boxes and voxels along the same axes; here it does not. Exact contestants agree here too, or the run "
+             "fails.", ""]
+    for question, title in QUESTIONS.items():
+        first, *rest = medians(question, asked[question])
+        lines += [f"{title} {first}", *rest, *verdict(asked[question]), ""]
+    rows = []
+    for player in dict.fromkeys(player for one in asked.values() for player in one.players):
+        rows.append([player] + [span(ratios(asked[question], answers[question], player)) if player in asked[question].players else ""
+                                for question in QUESTIONS])
+    return lines + ["How many times as long as with meshes as they are given, over these poses:", "",
+                    *table(["", *QUESTIONS], rows), ""]
+
+
+def cold(results, answers):
+    asked = asked_in(results, "cold")
+    if not asked:
+        return []
+    swept = results.context("peers_bench")["swept_mb"]
+    rows = []
+    for question, one in asked.items():
+        for player in one.players:
+            times = ratios(one, answers[question], player)
+            cells = []
+            for pose, run, ratio in zip(one.poses, one.row(player), times):
+                text = number(run["p50_us"])
+                text = f"**{text}**" if player in one.winners(pose) else text
+                cells.append(f"{text} ({number(ratio, 2)})")
+            rows.append([question, one.name(player), *cells, str(one.rounds(player))])
+    poses = next(iter(asked.values())).poses
+    return ["### With cold caches", "",
+            f"The quickest again at the closing, but before each question {number(float(swept))} MB are gone through, twice what the last "
+            "cache holds: so does a program find them that asks seldom. Median, µs, and in brackets how many times as long as in the tables above, "
+            "where one question follows the other; the fastest is in bold, as there.", "",
+            *table(["question", "", *poses, "n"], rows), ""]
+
+
+def avx2(results):
+    title = ["### IST without AVX-512", ""]
+    asked = asked_in(results, "avx2")
+    if not asked:
+        return title + ["Not asked: IST did not run on AVX-512 here, or AVX2 is not there.", ""]
+    rows = []
+    for question, one in asked.items():
+        times = ratios(one, one, "ist_avx2", "ist")
+        rows.append([question, *(f"{number(run['p50_us'])} ({number(ratio, 3)})" for run, ratio in zip(one.row("ist_avx2"), times)),
+                     str(one.rounds("ist_avx2"))])
+    poses = next(iter(asked.values())).poses
+    return title + ["IST by its kernels for AVX2, beside those it takes by itself, in turn. Median, µs, and in brackets how many times as "
+                    "long:", "", *table(["question", *poses, "n"], rows), ""]
