@@ -48,11 +48,13 @@ struct Bounds {
 // Bounds distances. Whatever vector v is, the triangles are no nearer than the gap between them
 // along v, and the rounding of that gap is at most twice `error` for each unit of |v|₁, however
 // thin a triangle is. Each look takes the vector between the nearest points so far, whose length
-// is no less than the distance.
+// is no less than the distance. Ends early where all `wanted` pairs are farther than `far` says, a
+// square.
 //
 // Source: E. G. Gilbert, An iterative procedure for computing the minimum of a quadratic form on a
 // convex set, SIAM Journal on Control 4, 1966.
-HWY_INLINE Bounds DistanceBounds(const Triangles& fixed, const Triangles& moving, FloatVec error) {
+HWY_INLINE Bounds DistanceBounds(const Triangles& fixed, const Triangles& moving, FloatVec error,
+                                 hn::Mask<FloatTag> wanted, FloatVec far) {
   const FloatTag d;
   const FloatVec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
   const FloatVec slack = hn::Add(error, error);
@@ -67,6 +69,7 @@ HWY_INLINE Bounds DistanceBounds(const Triangles& fixed, const Triangles& moving
     const FloatVec square = hn::Mul(gap, hn::Div(gap, length));
     const auto known = hn::And(hn::Gt(gap, zero), hn::Gt(length, hn::Set(d, kLeastSquare)));
     bounds.least = hn::Max(bounds.least, hn::IfThenElseZero(known, square));
+    if (hn::AllFalse(d, hn::AndNot(hn::Gt(bounds.least, far), wanted))) break;
     const Points step = (b.corner - a.corner) - v;
     const FloatVec squared = FusedDot(step, step);
     const FloatVec part = hn::Div(hn::Neg(FusedDot(v, step)), squared);

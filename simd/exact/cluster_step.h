@@ -27,10 +27,21 @@ struct alignas(64) TurnedBlock {
   float rim[kClusterWidth], radius[kClusterWidth];
 };
 
-/// Some of the fixed nodes, by their indices.
-struct NodeList {
-  const std::uint32_t* nodes;
+/// Pairs of one of sixteen lanes and a fixed node: each is 16 times the node's index and the lane.
+struct LaneNodes {
+  const std::uint32_t* codes;
   std::size_t count;
+
+  [[nodiscard]] std::uint32_t lane(std::size_t k) const noexcept {
+    return codes[k] % kClusterWidth;
+  }
+  [[nodiscard]] std::uint32_t node(std::size_t k) const noexcept {
+    return codes[k] / kClusterWidth;
+  }
+  [[nodiscard]] LaneNodes part(std::size_t first, std::size_t most) const noexcept {
+    const std::size_t rest = count - first;
+    return {codes + first, rest < most ? rest : most};
+  }
 };
 
 /// The bounds of all fixed nodes at a level: node i is lane i % 16 of block i / 16, so that block i
@@ -43,9 +54,9 @@ struct FixedNodes {
     const std::uint32_t rest = count - kClusterWidth * parent;
     return rest < kClusterWidth ? rest : kClusterWidth;
   }
-  [[nodiscard]] std::uint64_t children_of(const NodeList& parents) const noexcept {
+  [[nodiscard]] std::uint64_t children_of(const LaneNodes& parents) const noexcept {
     std::uint64_t all = 0;
-    for (std::size_t k = 0; k < parents.count; ++k) all += children_of(parents.nodes[k]);
+    for (std::size_t k = 0; k < parents.count; ++k) all += children_of(parents.node(k));
     return all;
   }
 };
@@ -64,35 +75,33 @@ inline constexpr float kSquareUnderflow = 0x1p-140F;
 /// More than underflow can take from a determinant, where its rounding is not more.
 inline constexpr float kUnderflow = 0x1p-120F;
 
+/// Begins to load all of an item that is read soon.
+template <class Item>
+inline void load_ahead(const Item& item) noexcept {
+  const char* const bytes = reinterpret_cast<const char*>(&item);
+  for (std::size_t line = 0; line < sizeof item; line += 64) __builtin_prefetch(bytes + line);
+}
+
 /// Turns the bounds of a moving node's children.
 using TurnNodesFunction = void (*)(const NodeBlock& moving, const ClusterPose& pose,
                                    TurnedBlock& out);
 
-/// Sixteen lists of fixed nodes, one a lane.
-struct LaneLists {
-  std::uint32_t* nodes;
-  std::size_t room;  ///< of each
-  std::uint32_t counts[kClusterWidth];
-
-  [[nodiscard]] NodeList operator[](std::size_t lane) const noexcept {
-    return {nodes + lane * room, counts[lane]};
-  }
-  void add(std::size_t lane, std::uint32_t node) noexcept {
-    nodes[lane * room + counts[lane]++] = node;
-  }
-};
-
-/// Tests the first `lane_count` lanes against each of some fixed nodes. Adds the nodes that may be
-/// within `reach` of a lane to its list, in their order.
+/// Tests the first `lane_count` lanes against each of some fixed nodes. Writes for each node the
+/// lanes within `reach` of which it may be, as bits. (The lanes of `nodes` do not matter.)
 using MeetNodesFunction = void (*)(const TurnedBlock& lanes, std::uint32_t lane_count,
-                                   const FixedNodes& fixed, NodeList nodes, float reach,
-                                   LaneLists& out);
+                                   const FixedNodes& fixed, LaneNodes nodes, float reach,
+                                   std::uint32_t* bits);
 
-/// Tests one lane against the children of some fixed nodes. Writes the children that may be within
-/// `reach`, in their order, and returns their number.
-using MeetChildrenFunction = std::size_t (*)(const TurnedBlock& lanes, std::uint32_t lane,
-                                             const FixedNodes& children, NodeList parents,
-                                             float reach, std::uint32_t* out);
+/// Lists the pairs that such bits say, by lanes, and of a lane in the order of `nodes`. Returns
+/// their number. May write sixteen more.
+using ListLanesFunction = std::size_t (*)(LaneNodes nodes, const std::uint32_t* bits,
+                                          std::uint32_t* out);
+
+/// Tests the lane of each pair against the children of its node. Lists the pairs of a lane and a
+/// child that may be within `reach`, in their order, and returns their number. May write sixteen
+/// more.
+using MeetChildrenFunction = std::size_t (*)(const TurnedBlock& lanes, const FixedNodes& children,
+                                             LaneNodes parents, float reach, std::uint32_t* out);
 
 /// Says how near one lane is to each child of a fixed node, smaller being nearer: the square of the
 /// distance of the boxes, and a part of that of the centres.
@@ -133,15 +142,13 @@ struct TriangleList {
 
 /// Pairs that are certain to meet, and pairs that float cannot decide.
 struct FoundTriangles {
-  /// The most that one fixed node's children add to a list, with what is in a batch.
-  static constexpr std::size_t kMostAtOnce =
-      kClusterWidth * kClusterWidth * kClusterWidth + TriangleBatch::kRoom;
+  /// The most that one pair of clusters adds to a list, with the content of a batch.
+  static constexpr std::size_t kMostAtOnce = kClusterWidth * kClusterWidth + TriangleBatch::kRoom;
   /// The room of each list.
-  static constexpr std::size_t kRoom = 2 * kMostAtOnce;
+  static constexpr std::size_t kRoom = 4 * kMostAtOnce;
 
   TriangleList certain, open;
-  float* squares = nullptr;       ///< beside `open`: of distances that the pairs have at least
-  std::size_t cluster_pairs = 0;  ///< whose triangles were compared
+  float* squares = nullptr;  ///< beside `open`: of distances that the pairs have at least
 
   [[nodiscard]] bool has_room() const noexcept {
     return (certain.count > open.count ? certain.count : open.count) <= kRoom - kMostAtOnce;
@@ -156,42 +163,43 @@ struct ClusterStep {
   std::uint32_t fixed_triangles, moving_triangles;
 };
 
-/// Finds pairs of triangles that meet: those of a moving cluster, which is a lane, and of the
-/// clusters below some fixed nodes. Candidates go to `batch`; where that is full, they are decided,
-/// and what is found goes to `out`. Ends where `out` has no room for the next node. Returns the
-/// number of nodes that were done.
-using MeetClustersFunction = std::size_t (*)(const ClusterStep& step, const TurnedBlock& lanes,
-                                             std::uint32_t lane, std::uint32_t moving,
-                                             NodeList parents, TriangleBatch& batch,
-                                             FoundTriangles& out);
+/// Pairs of moving clusters, which are lanes, and fixed ones.
+struct ClusterPairs {
+  const TurnedBlock& lanes;
+  std::uint32_t moving;  ///< the cluster that is lane 0
+  LaneNodes pairs;
+};
+
+/// Finds pairs of triangles that meet, of pairs of clusters. Candidates go to `batch`; where that
+/// is full, they are decided, and go to `out`. Ends where `out` has no room for the next pair of
+/// clusters. Returns the number of those that were compared.
+using MeetClustersFunction = std::size_t (*)(const ClusterStep& step, const ClusterPairs& pairs,
+                                             TriangleBatch& batch, FoundTriangles& out);
 
 /// Decides what is left in a batch, and empties it.
 using DecideTrianglesFunction = void (*)(TriangleBatch& batch, FoundTriangles& out);
 
-/// How near clusters must be for their triangles to be compared, and how near triangles to be
-/// found.
+/// How near triangles are looked for.
 struct Reach {
-  float clusters, triangles;
-  /// No less than twice the error of a distance in double.
-  float margin = 0;
+  float triangles;
+  float margin;  ///< no less than twice the error of a distance in double
 };
 
 /// Finds pairs of triangles, of clusters as for MeetClustersFunction, that may be within reach, or
 /// that may be within `margin` of the nearest of those that are: all of them go to `out.open`, and
-/// some that are not. Lowers reach.triangles to what the nearest has at most, and the margin. Ends
+/// some that are not. Lowers reach.triangles to the most that the nearest has, and the margin. Ends
 /// and returns as MeetClustersFunction does.
-using NearClustersFunction = std::size_t (*)(const ClusterStep& step, const TurnedBlock& lanes,
-                                             std::uint32_t lane, std::uint32_t moving,
-                                             NodeList parents, Reach& reach, TriangleBatch& batch,
+using NearClustersFunction = std::size_t (*)(const ClusterStep& step, const ClusterPairs& pairs,
+                                             Reach& reach, TriangleBatch& batch,
                                              FoundTriangles& out);
 
-/// The kernels of a search of clusters, for one instruction set. What turn_nodes, meet_nodes,
-/// meet_children and score_children give is the same on all, bit by bit, and so are the clusters
-/// that the others look into; of a pair of triangles these say no more than is certain, and that
-/// may differ.
+/// The kernels of a search of clusters, for one instruction set. Of a pair of triangles,
+/// meet_clusters, decide_triangles and near_clusters say no more than is certain, and that may
+/// differ; all else is the same on all, bit by bit.
 struct ClusterKernels {
   TurnNodesFunction turn_nodes;
   MeetNodesFunction meet_nodes;
+  ListLanesFunction list_lanes;
   MeetChildrenFunction meet_children;
   ScoreChildrenFunction score_children;
   MeetClustersFunction meet_clusters;

@@ -82,16 +82,18 @@ HWY_INLINE void MoveToBatch(const ClusterPair& pair, std::size_t count, Triangle
   }
 }
 
-// Keeps the pairs that may be within reach, and lowers that.
+// Keeps the pairs that may be within reach, and lowers that. A vector is looked at no longer than
+// some pair in it may be kept: bounds.least is rounded down by 2⁻²⁰ at last.
 HWY_INLINE void KeepNear(const ClusterPair& pair, std::size_t count, Reach& reach,
                          FoundTriangles& out) {
   const FloatTag d;
   const FloatVec infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   for (std::size_t n = 0; n < count; n += kLanes) {
     const PickedPairs picked(pair, n);
-    const Bounds bounds =
-        DistanceBounds(picked.FixedOf(pair), picked.MovingOf(pair), hn::Set(d, pair.error()));
     const auto there = hn::FirstN(d, count - n);
+    const float enough = (reach.triangles * reach.triangles) * (1 + 0x1p-18F);
+    const Bounds bounds = DistanceBounds(picked.FixedOf(pair), picked.MovingOf(pair),
+                                         hn::Set(d, pair.error()), there, hn::Set(d, enough));
     const FloatVec most = hn::IfThenElse(there, bounds.most, infinite);
     reach.triangles =
         HWY_MIN(reach.triangles,
@@ -104,55 +106,41 @@ HWY_INLINE void KeepNear(const ClusterPair& pair, std::size_t count, Reach& reac
   }
 }
 
-// Calls `take(pair, count)` for each fixed cluster below the nodes that has pairs within reach.
-template <class Take>
-HWY_INLINE std::size_t EachCluster(const ClusterStep& step, const TurnedBlock& lanes,
-                                   std::uint32_t lane, std::uint32_t moving, NodeList parents,
-                                   const Reach& reach, TriangleBatch& batch, FoundTriangles& out,
-                                   Take take) {
-  const OneNode one = SetNode(lanes, lane);
-  const Sixteen within = Set16(reach.clusters);
-  const FixedNodes& nodes = step.fixed_nodes;
+// Calls `take(pair, count)` for pairs of clusters, with the number of their pairs of triangles
+// within reach.
+template <bool kFourth, class Take>
+HWY_INLINE std::size_t EachPair(const ClusterStep& step, const ClusterPairs& clusters,
+                                const float& reach, TriangleBatch& batch, const FoundTriangles& out,
+                                Take take) {
+  const LaneNodes& pairs = clusters.pairs;
+  const std::uint32_t last = (step.moving_triangles - 1) / kClusterWidth;
   std::size_t k = 0;
-  Lanes16 near = 0;
-  const auto next = [&]() HWY_ATTR {
-    const std::uint32_t parent = parents.nodes[k];
-    near = NearNodes(one, nodes.blocks[parent], within, FirstLanes(nodes.children_of(parent)));
-  };
-  for (; k < parents.count; ++k) {
-    if (!out.has_room()) return k;
-    next();
-    if (near != 0) break;
-  }
-  if (k == parents.count) return k;
-  // Only now is the moving cluster wanted.
-  ClusterPair pair(step, lanes, lane, moving, batch.codes);
-  for (;;) {
-    out.cluster_pairs += static_cast<std::size_t>(std::popcount(near));
-    for (; near != 0; near &= near - 1) {
-      const auto at = static_cast<std::uint32_t>(std::countr_zero(near));
-      const std::uint32_t parent = parents.nodes[k];
-      take(pair, pair.Find(kClusterWidth * parent + at, nodes.blocks[parent], at, reach.triangles));
+  while (k < pairs.count && out.has_room()) {
+    const std::uint32_t lane = pairs.lane(k);
+    ClusterPair pair(step, clusters.lanes, lane, clusters.moving + lane, batch.codes);
+    load_ahead(step.moving[HWY_MIN(clusters.moving + lane + 1, last)]);
+    for (; k < pairs.count && pairs.lane(k) == lane && out.has_room(); ++k) {
+      const std::uint32_t fixed = pairs.node(k);
+      load_ahead(step.fixed[pairs.node(HWY_MIN(k + kItemsAhead, pairs.count - 1))]);
+      const NodeBlock& block = step.fixed_nodes.blocks[fixed / kClusterWidth];
+      take(pair, pair.Find<kFourth>(fixed, block, fixed % kClusterWidth, reach));
     }
-    if (++k == parents.count || !out.has_room()) return k;
-    next();
   }
+  return k;
 }
 
-std::size_t MeetClusters(const ClusterStep& step, const TurnedBlock& lanes, std::uint32_t lane,
-                         std::uint32_t moving, NodeList parents, TriangleBatch& batch,
+std::size_t MeetClusters(const ClusterStep& step, const ClusterPairs& pairs, TriangleBatch& batch,
                          FoundTriangles& out) {
-  return EachCluster(step, lanes, lane, moving, parents, Reach{step.pose.error, 0}, batch, out,
-                     [&](const ClusterPair& pair, std::size_t count)
-                         HWY_ATTR { MoveToBatch(pair, count, batch, out); });
+  return EachPair<false>(step, pairs, 0.0F, batch, out,
+                         [&](const ClusterPair& pair, std::size_t count)
+                             HWY_ATTR { MoveToBatch(pair, count, batch, out); });
 }
 
-std::size_t NearClusters(const ClusterStep& step, const TurnedBlock& lanes, std::uint32_t lane,
-                         std::uint32_t moving, NodeList parents, Reach& reach, TriangleBatch& batch,
-                         FoundTriangles& out) {
-  return EachCluster(step, lanes, lane, moving, parents, reach, batch, out,
-                     [&](const ClusterPair& pair, std::size_t count)
-                         HWY_ATTR { KeepNear(pair, count, reach, out); });
+std::size_t NearClusters(const ClusterStep& step, const ClusterPairs& pairs, Reach& reach,
+                         TriangleBatch& batch, FoundTriangles& out) {
+  return EachPair<true>(step, pairs, reach.triangles, batch, out,
+                        [&](const ClusterPair& pair, std::size_t count)
+                            HWY_ATTR { KeepNear(pair, count, reach, out); });
 }
 
 }  // namespace ist::simd::HWY_NAMESPACE
@@ -161,12 +149,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ist::simd {
 
-#define IST_CLUSTER_KERNELS(TARGET)                                              \
-  ClusterKernels {                                                               \
-    HWY_CHOOSE_##TARGET(TurnNodes), HWY_CHOOSE_##TARGET(MeetNodes),              \
-        HWY_CHOOSE_##TARGET(MeetChildren), HWY_CHOOSE_##TARGET(ScoreChildren),   \
-        HWY_CHOOSE_##TARGET(MeetClusters), HWY_CHOOSE_##TARGET(DecideTriangles), \
-        HWY_CHOOSE_##TARGET(NearClusters)                                        \
+#define IST_CLUSTER_KERNELS(TARGET)                                             \
+  ClusterKernels {                                                              \
+    HWY_CHOOSE_##TARGET(TurnNodes), HWY_CHOOSE_##TARGET(MeetNodes),             \
+        HWY_CHOOSE_##TARGET(ListLanes), HWY_CHOOSE_##TARGET(MeetChildren),      \
+        HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),  \
+        HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters) \
   }
 
 ClusterKernels cluster_kernels(std::int64_t target) {

@@ -46,6 +46,13 @@ struct Range16 {
   }
 };
 
+// Sixteen triangles along some axes, and how far from them others count as near.
+template <std::size_t kAxes>
+struct Ranges {
+  Range16 axis[kAxes];
+  Sixteen slack[kAxes];
+};
+
 // Finds, of a moving cluster and one fixed cluster after the other, the pairs of triangles whose
 // boxes are within reach, in a frame of the fixed cluster: first the moving triangles in the fixed
 // cluster's box, then the fixed triangles in the moving one's, then triangle by triangle.
@@ -69,25 +76,39 @@ class ClusterPair {
   }
 
   // Returns the number of pairs; codes() then names them, a fixed lane and 16 times a moving one.
+  // Where the reach is not next to nothing, a fourth axis tells more pairs apart: the direction of
+  // the moving centre from the fixed box.
+  template <bool kFourth>
   HWY_INLINE std::size_t Find(std::uint32_t fixed, const NodeBlock& block, std::size_t lane,
                               float reach) {
     const TriangleCluster& cluster = step_.fixed[fixed];
     SetPlace(cluster, block, lane);
     const Sixteen slack = Set16(reach + 2 * error_);
-    const Lanes16 moving = MoveInto(cluster, slack);
+    Lanes16 moving = MoveInto(cluster, slack);
     if (moving == 0) return 0;
     still_.Load(cluster);
-    const Lanes16 still =
-        StillIn(slack) & FirstLanes(HWY_MIN(step_.fixed_triangles - kClusterWidth * fixed, 16U));
+    Lanes16 still = FirstLanes(HWY_MIN(step_.fixed_triangles - kClusterWidth * fixed, 16U));
+    constexpr std::size_t kAxes = kFourth ? 4 : 3;
+    Ranges<kAxes> of_moving, of_still;
+    if constexpr (kFourth) {
+      const Sixteen more = Set16(reach * (1 + 0x1p-20F) + 4 * error_);
+      SetFourth(cluster, of_moving.axis[3], of_still.axis[3]);
+      of_moving.slack[3] = of_still.slack[3] = more;
+      moving &= ~BitsOf(of_moving.axis[3].low > Greatest(of_still.axis[3].high) + more);
+      still &= ~BitsOf(Least(of_moving.axis[3].low) - more > of_still.axis[3].high);
+      if (moving == 0 || still == 0) return 0;
+    }
+    still &= StillIn(slack);
     if (still == 0) return 0;
-    Range16 ranges[3];
     for (std::size_t i = 0; i < 3; ++i) {
-      ranges[i].Set(still_.corner[0][i], still_.corner[1][i], still_.corner[2][i]);
+      of_moving.axis[i] = moved_ranges_[i];
+      of_still.axis[i].Set(still_.corner[0][i], still_.corner[1][i], still_.corner[2][i]);
+      of_moving.slack[i] = of_still.slack[i] = slack;
     }
     fixed_ids_ = cluster.id;
     return std::popcount(moving) < std::popcount(still)
-               ? List<true>(moving, still, moved_ranges_, ranges, slack)
-               : List<false>(still, moving, ranges, moved_ranges_, slack);
+               ? List<true>(moving, still, of_moving, of_still)
+               : List<false>(still, moving, of_still, of_moving);
   }
 
   [[nodiscard]] HWY_INLINE const std::uint32_t* codes() const { return codes_; }
@@ -160,25 +181,48 @@ class ClusterPair {
     return ~BitsOf(beside) & kAllLanes;
   }
 
-  // Lists the pairs of a triangle of `rows` and one of `lanes` whose boxes are near.
-  template <bool kRowsMove>
-  HWY_INLINE std::size_t List(Lanes16 rows, Lanes16 lanes, const Range16 (&of_rows)[3],
-                              const Range16 (&of_lanes)[3], const Sixteen& slack) {
+  // The triangles along a unit vector, or along nothing.
+  HWY_INLINE void SetFourth(const TriangleCluster& cluster, Range16& of_moving,
+                            Range16& of_still) const {
+    float v[3], squared = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      v[i] = place_[i] - HWY_MIN(HWY_MAX(place_[i], cluster.low[i]), cluster.high[i]);
+      squared += v[i] * v[i];
+    }
+    const float scale = squared > kLeastSquare ? 1 / std::sqrt(squared) : 0;
+    const Sixteen x = Set16(v[0] * scale), y = Set16(v[1] * scale), z = Set16(v[2] * scale);
+    const auto set = [&](const SixteenTriangles& t, Range16& range) HWY_ATTR {
+      Sixteen along[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& p = t.corner[k];
+        along[k] = MulAdd(z, p[2], MulAdd(y, p[1], x * p[0]));
+      }
+      range.Set(along[0], along[1], along[2]);
+    };
+    set(moved_, of_moving);
+    set(still_, of_still);
+  }
+
+  // Lists the pairs of a triangle of `rows` and one of `lanes` whose ranges are near.
+  template <bool kRowsMove, std::size_t kAxes>
+  HWY_INLINE std::size_t List(Lanes16 rows, Lanes16 lanes, const Ranges<kAxes>& of_rows,
+                              const Ranges<kAxes>& of_lanes) {
     const FloatTag d;
     const IndexTag du;
-    alignas(64) float low[3][16], high[3][16];
-    for (std::size_t i = 0; i < 3; ++i) {
-      Store16(of_rows[i].low - slack, low[i]);
-      Store16(of_rows[i].high + slack, high[i]);
+    alignas(64) float low[kAxes][16], high[kAxes][16];
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      Store16(of_rows.axis[i].low - of_rows.slack[i], low[i]);
+      Store16(of_rows.axis[i].high + of_rows.slack[i], high[i]);
     }
     std::size_t count = 0;
     for (; rows != 0; rows &= rows - 1) {
       const auto row = static_cast<std::uint32_t>(std::countr_zero(rows));
       for (std::size_t part = 0; part < kParts; ++part) {
         auto beside = hn::FirstN(d, 0);
-        for (std::size_t i = 0; i < 3; ++i) {
-          beside = hn::Or(beside, hn::Gt(of_lanes[i].low.part[part], hn::Set(d, high[i][row])));
-          beside = hn::Or(beside, hn::Gt(hn::Set(d, low[i][row]), of_lanes[i].high.part[part]));
+        for (std::size_t i = 0; i < kAxes; ++i) {
+          const Range16& range = of_lanes.axis[i];
+          beside = hn::Or(beside, hn::Gt(range.low.part[part], hn::Set(d, high[i][row])));
+          beside = hn::Or(beside, hn::Gt(hn::Set(d, low[i][row]), range.high.part[part]));
         }
         const Lanes16 near = ~BitsOf(beside) & lanes >> (part * kLanes) & FirstLanes(kLanes);
         const IndexVec lane = hn::Iota(du, static_cast<std::uint32_t>(part * kLanes));

@@ -39,26 +39,36 @@ void turn_nodes_scalar(const NodeBlock& moving, const ClusterPose& pose, TurnedB
 }
 
 void meet_nodes_scalar(const TurnedBlock& lanes, std::uint32_t lane_count, const FixedNodes& fixed,
-                       NodeList nodes, float reach, LaneLists& out) {
+                       LaneNodes nodes, float reach, std::uint32_t* bits) {
   for (std::size_t k = 0; k < nodes.count; ++k) {
-    const std::uint32_t node = nodes.nodes[k];
+    const std::uint32_t node = nodes.node(k);
     const NodeLane one(fixed.blocks[node / kClusterWidth], node % kClusterWidth);
+    bits[k] = 0;
     for (std::uint32_t lane = 0; lane < lane_count; ++lane) {
-      if (may_be_near(one, NodeLane(lanes, lane), reach)) out.add(lane, node);
+      if (may_be_near(one, NodeLane(lanes, lane), reach)) bits[k] |= std::uint32_t{1} << lane;
     }
   }
 }
 
-std::size_t meet_children_scalar(const TurnedBlock& lanes, std::uint32_t lane,
-                                 const FixedNodes& children, NodeList parents, float reach,
-                                 std::uint32_t* out) {
-  const NodeLane one(lanes, lane);
+std::size_t list_lanes_scalar(LaneNodes nodes, const std::uint32_t* bits, std::uint32_t* out) {
+  std::size_t found = 0;
+  for (std::uint32_t lane = 0; lane < kClusterWidth; ++lane) {
+    for (std::size_t k = 0; k < nodes.count; ++k) {
+      if (bits[k] >> lane & 1U) out[found++] = kClusterWidth * nodes.node(k) + lane;
+    }
+  }
+  return found;
+}
+
+std::size_t meet_children_scalar(const TurnedBlock& lanes, const FixedNodes& children,
+                                 LaneNodes parents, float reach, std::uint32_t* out) {
   std::size_t found = 0;
   for (std::size_t k = 0; k < parents.count; ++k) {
-    const std::uint32_t parent = parents.nodes[k];
+    const std::uint32_t lane = parents.lane(k), parent = parents.node(k);
+    const NodeLane one(lanes, lane);
     for (std::uint32_t child = 0; child < children.children_of(parent); ++child) {
       if (!may_be_near(one, NodeLane(children.blocks[parent], child), reach)) continue;
-      out[found++] = kClusterWidth * parent + child;
+      out[found++] = kClusterWidth * (kClusterWidth * parent + child) + lane;
     }
   }
   return found;
@@ -73,32 +83,26 @@ void score_children_scalar(const TurnedBlock& lanes, std::uint32_t lane, const N
   }
 }
 
-// Calls `take(pair, fixed lane, moving lane)` for all pairs of triangles of near clusters.
+// Calls `take(place, a, b, f, m)` for all pairs of triangles, of some pairs of clusters, whose
+// boxes are within reach: in lanes f and m of their clusters.
 template <class Take>
-std::size_t each_pair(const ClusterStep& step, const TurnedBlock& lanes, std::uint32_t lane,
-                      std::uint32_t moving, NodeList parents, const Reach& reach,
-                      FoundTriangles& out, Take take) {
-  const NodeLane one(lanes, lane);
-  const FixedNodes& nodes = step.fixed_nodes;
-  for (std::size_t k = 0; k < parents.count; ++k) {
-    if (!out.has_room()) return k;
-    const std::uint32_t parent = parents.nodes[k];
-    const NodeBlock& block = nodes.blocks[parent];
-    for (std::uint32_t child = 0; child < nodes.children_of(parent); ++child) {
-      if (!may_be_near(one, NodeLane(block, child), reach.clusters)) continue;
-      ++out.cluster_pairs;
-      const ClusterPlace place(step, one, moving, kClusterWidth * parent + child,
-                               NodeLane(block, child));
-      for (std::uint32_t m = 0; m < place.moving_count(); ++m) {
-        const LaneTriangle b = place.moving(m);
-        for (std::uint32_t f = 0; f < place.fixed_count(); ++f) {
-          const LaneTriangle a = place.fixed(f);
-          if (!boxes_apart(a, b, reach.triangles + 2 * place.error())) take(place, a, b, f, m);
-        }
+std::size_t each_pair(const ClusterStep& step, const ClusterPairs& clusters, const float& reach,
+                      const FoundTriangles& out, Take take) {
+  std::size_t k = 0;
+  for (; k < clusters.pairs.count && out.has_room(); ++k) {
+    const std::uint32_t lane = clusters.pairs.lane(k), fixed = clusters.pairs.node(k);
+    const NodeLane other(step.fixed_nodes.blocks[fixed / kClusterWidth], fixed % kClusterWidth);
+    const ClusterPlace place(step, NodeLane(clusters.lanes, lane), clusters.moving + lane, fixed,
+                             other);
+    for (std::uint32_t m = 0; m < place.moving_count(); ++m) {
+      const LaneTriangle b = place.moving(m);
+      for (std::uint32_t f = 0; f < place.fixed_count(); ++f) {
+        const LaneTriangle a = place.fixed(f);
+        if (!boxes_apart(a, b, reach + 2 * place.error())) take(place, a, b, f, m);
       }
     }
   }
-  return parents.count;
+  return k;
 }
 
 void take(Decision decision, TriangleIds ids, FoundTriangles& out) {
@@ -107,11 +111,10 @@ void take(Decision decision, TriangleIds ids, FoundTriangles& out) {
 }
 
 // Decides each pair at once: the batch stays as it is.
-std::size_t meet_clusters_scalar(const ClusterStep& step, const TurnedBlock& lanes,
-                                 std::uint32_t lane, std::uint32_t moving, NodeList parents,
+std::size_t meet_clusters_scalar(const ClusterStep& step, const ClusterPairs& pairs,
                                  TriangleBatch& /*batch*/, FoundTriangles& out) {
   return each_pair(
-      step, lanes, lane, moving, parents, Reach{step.pose.error, 0}, out,
+      step, pairs, 0, out,
       [&](const ClusterPlace& place, const LaneTriangle& a, const LaneTriangle& b, std::uint32_t f,
           std::uint32_t m) { take(decide(a, b, place.error()), place.ids(f, m), out); });
 }
@@ -130,10 +133,9 @@ void decide_triangles_scalar(TriangleBatch& batch, FoundTriangles& out) {
   batch.count = 0;
 }
 
-std::size_t near_clusters_scalar(const ClusterStep& step, const TurnedBlock& lanes,
-                                 std::uint32_t lane, std::uint32_t moving, NodeList parents,
-                                 Reach& reach, TriangleBatch& /*batch*/, FoundTriangles& out) {
-  return each_pair(step, lanes, lane, moving, parents, reach, out,
+std::size_t near_clusters_scalar(const ClusterStep& step, const ClusterPairs& pairs, Reach& reach,
+                                 TriangleBatch& /*batch*/, FoundTriangles& out) {
+  return each_pair(step, pairs, reach.triangles, out,
                    [&](const ClusterPlace& place, const LaneTriangle& a, const LaneTriangle& b,
                        std::uint32_t f, std::uint32_t m) {
                      const LaneDistance distance(a, b, place.error());
@@ -148,7 +150,7 @@ std::size_t near_clusters_scalar(const ClusterStep& step, const TurnedBlock& lan
 }  // namespace
 
 constinit const ClusterKernels kScalarClusterKernels{
-    turn_nodes_scalar,    meet_nodes_scalar,       meet_children_scalar, score_children_scalar,
-    meet_clusters_scalar, decide_triangles_scalar, near_clusters_scalar};
+    turn_nodes_scalar,     meet_nodes_scalar,    list_lanes_scalar,       meet_children_scalar,
+    score_children_scalar, meet_clusters_scalar, decide_triangles_scalar, near_clusters_scalar};
 
 }  // namespace ist

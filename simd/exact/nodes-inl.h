@@ -14,6 +14,7 @@
 
 #include "simd/exact/cluster_step.h"
 #include "simd/exact/sixteen-inl.h"
+#include "simd/select-inl.h"
 
 // Vector twins of the scalar forms in simd/exact/node_lanes.h. No product is fused to a sum, so
 // that the same nodes meet on every instruction set.
@@ -79,11 +80,10 @@ struct Apart {
   }
 };
 
-// The lanes, of those in `wanted`, that may be within `reach` of one node: neither their boxes are
-// farther apart, nor is one disc from the plane of the other.
+// The lanes that are not within `reach` of one node: their boxes are farther apart, or one disc is
+// from the plane of the other.
 template <class Block>
-HWY_INLINE Lanes16 NearNodes(const OneNode& one, const Block& block, const Sixteen& reach,
-                             Lanes16 wanted) {
+HWY_INLINE Truth16 FarNodes(const OneNode& one, const Block& block, const Sixteen& reach) {
   const Sixteen sizes = (one.radius + Load16(block.radius)) + reach;
   const Sixteen most = reach + sizes * Set16(kNodeRounding);
   const Apart apart(one, block);
@@ -96,7 +96,7 @@ HWY_INLINE Lanes16 NearNodes(const OneNode& one, const Block& block, const Sixte
   const Sixteen to_lane = ((thickness + size * one.thickness) + sine * one.rim) + most;
   const Sixteen from_one = (cosine * offset - Dot(one.normal, apart.centre)) - one.offset;
   const Sixteen to_one = ((one.thickness + size * thickness) + sine * Load16(block.rim)) + most;
-  return wanted & ~BitsOf((far | (Abs(from_lane) > to_lane)) | (Abs(from_one) > to_one));
+  return (far | (Abs(from_lane) > to_lane)) | (Abs(from_one) > to_one);
 }
 
 // Vector twin of ist::turn_nodes_scalar.
@@ -146,31 +146,55 @@ inline void TurnNodes(const NodeBlock& moving, const ClusterPose& pose, TurnedBl
 
 // Vector twin of ist::meet_nodes_scalar.
 inline void MeetNodes(const TurnedBlock& lanes, std::uint32_t lane_count, const FixedNodes& fixed,
-                      NodeList nodes, float reach, LaneLists& out) {
+                      LaneNodes nodes, float reach, std::uint32_t* HWY_RESTRICT bits) {
   const Sixteen within = Set16(reach);
+  const Lanes16 all = FirstLanes(lane_count);
   for (std::size_t k = 0; k < nodes.count; ++k) {
-    const std::uint32_t node = nodes.nodes[k];
+    const std::uint32_t node = nodes.node(k);
     const OneNode one = SetNode(fixed.blocks[node / kClusterWidth], node % kClusterWidth);
-    Lanes16 near = NearNodes(one, lanes, within, FirstLanes(lane_count));
-    for (; near != 0; near &= near - 1) {
-      out.add(static_cast<std::size_t>(std::countr_zero(near)), node);
-    }
+    bits[k] = all & ~BitsOf(FarNodes(one, lanes, within));
   }
 }
 
-// Vector twin of ist::meet_children_scalar.
-inline std::size_t MeetChildren(const TurnedBlock& lanes, std::uint32_t lane,
-                                const FixedNodes& children, NodeList parents, float reach,
-                                std::uint32_t* out) {
-  const OneNode one = SetNode(lanes, lane);
+// Vector twin of ist::list_lanes_scalar.
+inline std::size_t ListLanes(LaneNodes nodes, const std::uint32_t* HWY_RESTRICT bits,
+                             std::uint32_t* HWY_RESTRICT out) {
+  const FloatTag d;
+  const IndexTag du;
+  std::size_t found = 0;
+  for (std::uint32_t lane = 0; lane < kClusterWidth; ++lane) {
+    const IndexVec bit = hn::Set(du, std::uint32_t{1} << lane), name = hn::Set(du, lane);
+    for (std::size_t k = 0; k < nodes.count; k += kLanes) {
+      const auto near = hn::RebindMask(d, hn::TestBit(hn::LoadU(du, bits + k), bit));
+      const IndexVec codes = hn::LoadU(du, nodes.codes + k);
+      found += StoreSelected(d, hn::And(near, hn::FirstN(d, nodes.count - k)),
+                             hn::Or(hn::And(codes, hn::Set(du, ~(kClusterWidth - 1))), name),
+                             out + found);
+    }
+  }
+  return found;
+}
+
+// Vector twin of ist::meet_children_scalar. No branch depends on how many are near, so that one
+// test begins before the last one has ended, and the children of the test after that are loaded.
+inline std::size_t MeetChildren(const TurnedBlock& lanes, const FixedNodes& children,
+                                LaneNodes parents, float reach, std::uint32_t* HWY_RESTRICT out) {
+  const FloatTag d;
+  const IndexTag du;
   const Sixteen within = Set16(reach);
+  const IndexVec numbers = hn::ShiftLeft<4>(hn::Iota(du, 0));
   std::size_t found = 0;
   for (std::size_t k = 0; k < parents.count; ++k) {
-    const std::uint32_t parent = parents.nodes[k];
-    Lanes16 near =
-        NearNodes(one, children.blocks[parent], within, FirstLanes(children.children_of(parent)));
-    for (; near != 0; near &= near - 1) {
-      out[found++] = kClusterWidth * parent + static_cast<std::uint32_t>(std::countr_zero(near));
+    load_ahead(children.blocks[parents.node(HWY_MIN(k + kItemsAhead, parents.count - 1))]);
+    const std::uint32_t lane = parents.lane(k), parent = parents.node(k);
+    const std::uint32_t count = children.children_of(parent);
+    const Truth16 far = FarNodes(SetNode(lanes, lane), children.blocks[parent], within);
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const auto first = static_cast<std::uint32_t>(part * kLanes);
+      const auto there = hn::FirstN(d, HWY_MAX(count, first) - first);
+      const IndexVec code =
+          hn::Add(numbers, hn::Set(du, kClusterWidth * (kClusterWidth * parent + first) + lane));
+      found += StoreSelected(d, hn::AndNot(far.part[part], there), code, out + found);
     }
   }
   return found;

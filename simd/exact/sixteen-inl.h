@@ -21,6 +21,8 @@ using FloatVec = hn::Vec<FloatTag>;
 using IndexVec = hn::Vec<IndexTag>;
 inline constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 inline constexpr std::size_t kParts = 16 / kLanes;
+// Items in a list between the one that is read and the one that begins to be loaded.
+inline constexpr std::size_t kItemsAhead = 4;
 
 // Sixteen floats, in as many vectors as they take.
 struct Sixteen {
@@ -67,6 +69,20 @@ HWY_INLINE Sixteen Max(const Sixteen& a, const Sixteen& b) {
 
 HWY_INLINE Sixteen Sqrt(const Sixteen& a) {
   return Each([&](std::size_t k) { return hn::Sqrt(a.part[k]); });
+}
+
+// The least and the greatest of the lanes, in all lanes.
+HWY_INLINE Sixteen Least(const Sixteen& a) {
+  FloatVec least = a.part[0];
+  for (std::size_t k = 1; k < kParts; ++k) least = hn::Min(least, a.part[k]);
+  least = hn::MinOfLanes(FloatTag(), least);
+  return Each([&](std::size_t) { return least; });
+}
+HWY_INLINE Sixteen Greatest(const Sixteen& a) {
+  FloatVec greatest = a.part[0];
+  for (std::size_t k = 1; k < kParts; ++k) greatest = hn::Max(greatest, a.part[k]);
+  greatest = hn::MaxOfLanes(FloatTag(), greatest);
+  return Each([&](std::size_t) { return greatest; });
 }
 
 // Which of sixteen lanes are meant, lane 0 in the lowest bit.

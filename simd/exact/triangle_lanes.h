@@ -180,7 +180,7 @@ enum class Decision : std::uint8_t { kApart, kMeet, kOpen };
 }
 
 /// The looks at a pair of triangles for its distance.
-inline constexpr int kLooks = 4;
+inline constexpr int kLooks = 12;
 /// A square whose rounding is that of float, whatever underflowed on the way to it.
 inline constexpr float kLeastSquare = 0x1p-100F;
 /// More than underflow can take from a length by taking it from the square.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <set>
 
 #include "ist/query/exact/moved_triangles.h"
@@ -36,14 +35,33 @@ std::vector<float> numbers_of(const TurnedBlock& block) {
   return numbers;
 }
 
-// All nodes of a level.
-std::vector<std::uint32_t> all(std::uint32_t count) {
-  std::vector<std::uint32_t> nodes(count);
-  std::iota(nodes.begin(), nodes.end(), 0U);
-  return nodes;
+using Codes = std::vector<std::uint32_t>;
+
+// All nodes of a level, each with a lane.
+Codes all(std::uint32_t count, std::uint32_t lane) {
+  Codes codes(count);
+  for (std::uint32_t node = 0; node < count; ++node) codes[node] = kClusterWidth * node + lane;
+  return codes;
 }
 
-NodeList list(const std::vector<std::uint32_t>& nodes) { return {nodes.data(), nodes.size()}; }
+LaneNodes list(const Codes& codes) { return {codes.data(), codes.size()}; }
+
+// What the node tests of some kernels find: bits, pairs of a lane and a node, and of a child.
+struct NodesFound {
+  Codes bits, near, deeper;
+
+  NodesFound(const ClusterKernels& kernels, const TurnedBlock& turned, std::uint32_t lanes,
+             const FixedNodes& parents, const FixedNodes& children, float reach) {
+    const Codes nodes = all(parents.count, 3);
+    bits.resize(nodes.size() + kClusterWidth);
+    kernels.meet_nodes(turned, lanes, parents, list(nodes), reach, bits.data());
+    near.resize(kClusterWidth * nodes.size() + kClusterWidth);
+    near.resize(kernels.list_lanes(list(nodes), bits.data(), near.data()));
+    bits.resize(nodes.size());
+    deeper.resize(kClusterWidth * std::size_t{children.count} + kClusterWidth);
+    deeper.resize(kernels.meet_children(turned, children, list(near), reach, deeper.data()));
+  }
+};
 
 class ClusterKernelsOf : public ::testing::TestWithParam<std::string> {
  protected:
@@ -70,28 +88,20 @@ TEST_P(ClusterKernelsOf, TestNodesAsTheScalarForm) {
                                  c.fixed_clusters.node_count(fixed_level + 1)};
         const FixedNodes children{c.fixed_clusters.bounds(fixed_level).data(),
                                   c.fixed_clusters.node_count(fixed_level)};
-        const std::vector<std::uint32_t> nodes = all(parents.count);
         for (const float reach : {0.0F, 1e-3F, 0.4F}) {
-          std::vector<std::uint32_t> a(kClusterWidth * nodes.size()), b = a;
-          LaneLists mine{a.data(), nodes.size(), {}}, theirs{b.data(), nodes.size(), {}};
-          kernels_.meet_nodes(turned, lanes, parents, list(nodes), reach, mine);
-          kScalar.meet_nodes(wanted, lanes, parents, list(nodes), reach, theirs);
-          ASSERT_TRUE(std::equal(mine.counts, mine.counts + 16, theirs.counts));
-          ASSERT_EQ(a, b);
-          near += std::accumulate(mine.counts, mine.counts + 16, std::size_t{0});
-          tested += lanes * nodes.size();
-          for (std::uint32_t lane = 0; lane < lanes; lane += 5) {
-            std::vector<std::uint32_t> x(children.count), y = x;
-            const auto found =
-                kernels_.meet_children(turned, lane, children, list(nodes), reach, x.data());
-            ASSERT_EQ(found,
-                      kScalar.meet_children(wanted, lane, children, list(nodes), reach, y.data()));
-            ASSERT_EQ(x, y);
-            alignas(64) float scores[16], scores_wanted[16];
-            kernels_.score_children(turned, lane, children.blocks[0], scores);
-            kScalar.score_children(wanted, lane, children.blocks[0], scores_wanted);
-            ASSERT_EQ(std::memcmp(scores, scores_wanted, sizeof scores), 0);
-          }
+          const NodesFound mine(kernels_, turned, lanes, parents, children, reach);
+          const NodesFound theirs(kScalar, wanted, lanes, parents, children, reach);
+          ASSERT_EQ(mine.bits, theirs.bits);
+          ASSERT_EQ(mine.near, theirs.near);
+          ASSERT_EQ(mine.deeper, theirs.deeper);
+          near += mine.near.size();
+          tested += lanes * parents.count;
+        }
+        alignas(64) float scores[16], scores_wanted[16];
+        for (std::uint32_t lane = 0; lane < lanes; lane += 5) {
+          kernels_.score_children(turned, lane, children.blocks[0], scores);
+          kScalar.score_children(wanted, lane, children.blocks[0], scores_wanted);
+          ASSERT_EQ(std::memcmp(scores, scores_wanted, sizeof scores), 0);
         }
       }
     }
@@ -100,51 +110,58 @@ TEST_P(ClusterKernelsOf, TestNodesAsTheScalarForm) {
   EXPECT_LT(near, tested / 2);
 }
 
-// Calls `ask` for each moving cluster, with all fixed nodes above clusters.
-template <class Ask>
-void each_cluster(const ClusterKernels& kernels, const ClusterCase& c, Ask ask) {
-  const std::vector<std::uint32_t> parents = all(c.fixed_clusters.node_count(1));
-  for (std::uint32_t moving = 0; moving < c.moving_clusters.node_count(0); ++moving) {
-    TurnedBlock turned;
-    kernels.turn_nodes(c.moving_clusters.bounds(0)[moving / kClusterWidth], c.step.pose, turned);
-    ask(turned, moving % kClusterWidth, moving, parents);
+// The lists of an odd number of nodes, whose bits are of any lanes, and of none.
+TEST_P(ClusterKernelsOf, ListLanesAsTheScalarForm) {
+  for (const std::uint32_t count : {0U, 1U, 7U, 16U, 33U}) {
+    const Codes nodes = all(count, 9);
+    Codes bits(count + kClusterWidth, 0xFFFF);
+    for (std::uint32_t k = 0; k < count; ++k) bits[k] = (k * 40503U + 7U * k * k) & 0xFFFFU;
+    Codes mine(kClusterWidth * count + kClusterWidth), theirs = mine;
+    mine.resize(kernels_.list_lanes(list(nodes), bits.data(), mine.data()));
+    theirs.resize(kScalar.list_lanes(list(nodes), bits.data(), theirs.data()));
+    EXPECT_EQ(mine, theirs);
+    EXPECT_EQ(mine.empty(), count < 2);
   }
 }
 
-// What is certain is true, and what is true is certain or open; and clusters are compared as the
-// scalar form says.
+// Calls `ask` for each block of moving clusters, with all pairs of them and fixed clusters whose
+// nodes may be within `reach`.
+template <class Ask>
+void each_block(const ClusterKernels& kernels, const ClusterCase& c, float reach, Ask ask) {
+  const TriangleClusters &fixed = c.fixed_clusters, &moving = c.moving_clusters;
+  const FixedNodes parents{fixed.bounds(1).data(), fixed.node_count(1)};
+  const FixedNodes children{fixed.bounds(0).data(), fixed.node_count(0)};
+  for (std::uint32_t block = 0; block < moving.node_count(1); ++block) {
+    TurnedBlock turned;
+    kernels.turn_nodes(moving.bounds(0)[block], c.step.pose, turned);
+    const NodesFound found(kernels, turned, moving.child_count(0, block), parents, children, reach);
+    ask(ClusterPairs{turned, kClusterWidth * block, list(found.deeper)});
+  }
+}
+
+// What is certain is true, and what is true is certain or open.
 TEST_P(ClusterKernelsOf, MissNoPairThatMeetsAndInventNone) {
   std::size_t meeting = 0, open = 0;
   for (const ClusterCase& c : cluster_cases()) {
     SCOPED_TRACE(c.name);
-    std::size_t compared[2] = {};
     Pairs certain, undecided;
-    for (const bool scalar : {false, true}) {
-      const ClusterKernels& kernels = scalar ? kScalar : kernels_;
-      Room room;
-      each_cluster(
-          kernels, c,
-          [&](const TurnedBlock& turned, std::uint32_t lane, std::uint32_t moving,
-              const std::vector<std::uint32_t>& nodes) {
-            for (std::size_t done = 0; done < nodes.size();) {
-              done += kernels.meet_clusters(c.step, turned, lane, moving,
-                                            {nodes.data() + done, nodes.size() - done}, room.batch,
-                                            room.found);
-              kernels.decide_triangles(room.batch, room.found);
-              if (!scalar) {
-                for (std::size_t k = 0; k < room.found.certain.count; ++k) {
-                  certain.insert({room.found.certain[k].fixed, room.found.certain[k].moving});
-                }
-                for (std::size_t k = 0; k < room.found.open.count; ++k) {
-                  undecided.insert({room.found.open[k].fixed, room.found.open[k].moving});
-                }
-              }
-              room.found.certain.count = room.found.open.count = 0;
-            }
-          });
-      compared[scalar ? 1 : 0] = room.found.cluster_pairs;
-    }
-    EXPECT_EQ(compared[0], compared[1]);
+    Room room;
+    each_block(kernels_, c, c.step.pose.error, [&](const ClusterPairs& clusters) {
+      for (std::size_t done = 0; done < clusters.pairs.count;) {
+        done += kernels_.meet_clusters(
+            c.step,
+            {clusters.lanes, clusters.moving, clusters.pairs.part(done, clusters.pairs.count)},
+            room.batch, room.found);
+        kernels_.decide_triangles(room.batch, room.found);
+        for (std::size_t k = 0; k < room.found.certain.count; ++k) {
+          certain.insert({room.found.certain[k].fixed, room.found.certain[k].moving});
+        }
+        for (std::size_t k = 0; k < room.found.open.count; ++k) {
+          undecided.insert({room.found.open[k].fixed, room.found.open[k].moving});
+        }
+        room.found.certain.count = room.found.open.count = 0;
+      }
+    });
     for (std::uint32_t f = 0; f < c.fixed.triangles.size(); ++f) {
       for (std::uint32_t m = 0; m < c.moving.triangles.size(); ++m) {
         const auto a = corners_of(c.fixed, f), b = corners_of(c.moving, m);
@@ -184,29 +201,27 @@ TEST_P(ClusterKernelsOf, KeepTheNearestPair) {
     const auto from = static_cast<float>(1.3 * std::sqrt(least));
     const float margin = 1e-6F * from + c.step.pose.error;
     Room room;
-    Reach reach{from + margin, from + margin, margin};
+    Reach reach{from + margin, margin};
     double found = std::numeric_limits<double>::infinity();
     std::size_t kept = 0;
-    each_cluster(kernels_, c,
-                 [&](const TurnedBlock& turned, std::uint32_t lane, std::uint32_t moving,
-                     const std::vector<std::uint32_t>& nodes) {
-                   for (std::size_t done = 0; done < nodes.size();) {
-                     done += kernels_.near_clusters(c.step, turned, lane, moving,
-                                                    {nodes.data() + done, nodes.size() - done},
-                                                    reach, room.batch, room.found);
-                     for (std::size_t k = 0; k < room.found.open.count; ++k) {
-                       const TriangleIds ids = room.found.open[k];
-                       const double squared = ist::distance_squared(
-                           corners_of(c.fixed, ids.fixed), corners_of(c.moving, ids.moving));
-                       const double slack = 1e-6 * std::sqrt(least) + double{c.step.pose.error};
-                       ASSERT_LE(std::sqrt(double{room.found.squares[k]}),
-                                 std::sqrt(squared) + slack);
-                       found = std::min(found, squared);
-                       ++kept;
-                     }
-                     room.found.open.count = 0;
-                   }
-                 });
+    each_block(kernels_, c, from + margin, [&](const ClusterPairs& clusters) {
+      for (std::size_t done = 0; done < clusters.pairs.count;) {
+        done += kernels_.near_clusters(
+            c.step,
+            {clusters.lanes, clusters.moving, clusters.pairs.part(done, clusters.pairs.count)},
+            reach, room.batch, room.found);
+        for (std::size_t k = 0; k < room.found.open.count; ++k) {
+          const TriangleIds ids = room.found.open[k];
+          const double squared = ist::distance_squared(corners_of(c.fixed, ids.fixed),
+                                                       corners_of(c.moving, ids.moving));
+          const double slack = 1e-6 * std::sqrt(least) + double{c.step.pose.error};
+          ASSERT_LE(std::sqrt(double{room.found.squares[k]}), std::sqrt(squared) + slack);
+          found = std::min(found, squared);
+          ++kept;
+        }
+        room.found.open.count = 0;
+      }
+    });
     EXPECT_EQ(found, least);
     EXPECT_GE(double{reach.triangles} * reach.triangles, least);
     EXPECT_LT(kept, c.fixed.triangles.size() + c.moving.triangles.size());

@@ -15,81 +15,81 @@ ClusterSearch::ClusterSearch(const TriangleClusters& fixed, const TriangleCluste
   const int top = moving.root_level() + 1;
   for (int level = 0; level <= top; ++level) {
     Step& step = steps_.emplace_back();
-    step.near.resize(level == top ? nodes_at(level - 1) : kClusterWidth * nodes_at(level));
-    step.nodes.resize(nodes_at(level - 1));
-  }
-  for (int level = 0; level < top; ++level) {
-    Step& step = step_at(level);
-    step.lists = {step.near.data(), nodes_at(level), {}};
+    const std::size_t lanes = level == top ? 1 : kClusterWidth;
+    step.bits.resize(nodes_at(level) + kClusterWidth);
+    step.near.resize(lanes * nodes_at(level == top ? level - 1 : level) + kClusterWidth);
+    step.deeper.resize(lanes * nodes_at(level - 1) + kClusterWidth);
   }
 }
 
-void ClusterSearch::begin(const ClusterPose& pose, bool measures_rest) noexcept {
-  measures_rest_ = measures_rest;
+void ClusterSearch::begin(const ClusterPose& pose) noexcept {
   step_ = {pose,
            fixed_at(0),
            fixed_.clusters().data(),
            moving_.clusters().data(),
            fixed_.triangle_count(),
            moving_.triangle_count()};
-  nearest_left_ = std::numeric_limits<double>::infinity();
 }
 
-bool ClusterSearch::find_lists(Step& step, std::uint32_t lanes, int fixed_level, NodeList nodes,
-                               float reach, ClusterBudget& budget) const noexcept {
-  std::fill_n(step.lists.counts, kClusterWidth, 0U);
-  for (std::size_t k = 0; k < nodes.count; k += kPart) {
-    const NodeList part{nodes.nodes + k, std::min(kPart, nodes.count - k)};
-    if (!budget.allows(lanes * part.count)) return false;
-    kernels_.meet_nodes(step.turned, lanes, fixed_at(fixed_level), part, reach, step.lists);
+// Lists the lanes that are near some of the nodes.
+bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, LaneNodes nodes,
+                              float reach, ClusterBudget& budget, LaneNodes& found) noexcept {
+  bool allowed = true;
+  std::size_t k = 0;
+  for (; k < nodes.count; k += kPart) {
+    const LaneNodes part = nodes.part(k, kPart);
+    allowed = budget.allows(lanes * part.count);
+    if (!allowed) break;
+    kernels_.meet_nodes(step.turned, lanes, fixed_at(fixed_level), part, reach,
+                        step.bits.data() + k);
     budget.spend(lanes * part.count);
   }
-  return true;
+  if (!allowed) std::fill_n(step.bits.data(), nodes.count, (1U << lanes) - 1);  // all are left
+  found = {step.near.data(), kernels_.list_lanes(nodes, step.bits.data(), step.near.data())};
+  if (!allowed) leave(step, fixed_level, found);
+  return allowed;
 }
 
-bool ClusterSearch::find_children(Step& step, std::uint32_t lane, int level, NodeList parents,
-                                  float reach, ClusterBudget& budget,
-                                  NodeList& found) const noexcept {
+// Lists the children that may be near the lanes of their parents.
+bool ClusterSearch::find_children(Step& step, int level, LaneNodes parents, float reach,
+                                  ClusterBudget& budget, LaneNodes& found) const noexcept {
   const FixedNodes children = fixed_at(level);
-  found = {step.nodes.data(), 0};
-  for (std::size_t k = 0; k < parents.count; k += kPart) {
-    const NodeList part{parents.nodes + k, std::min(kPart, parents.count - k)};
+  found = {step.deeper.data(), 0};
+  const std::size_t most = budget.is_limited() ? kPart : parents.count;
+  for (std::size_t k = 0; k < parents.count; k += most) {
+    const LaneNodes part = parents.part(k, most);
     const std::uint64_t tests = children.children_of(part);
     if (!budget.allows(tests)) return false;
-    found.count += kernels_.meet_children(step.turned, lane, children, part, reach,
-                                          step.nodes.data() + found.count);
+    found.count += kernels_.meet_children(step.turned, children, part, reach,
+                                          step.deeper.data() + found.count);
     budget.spend(tests);
   }
   return true;
 }
 
-// Lanes whose lists are empty stay at the end, in any order.
-ClusterSearch::Order ClusterSearch::most_first(const LaneLists& lists) noexcept {
-  Order order;
-  std::size_t count = 0, empty = kClusterWidth;
-  for (std::uint8_t lane = 0; lane < kClusterWidth; ++lane) {
-    if (lists.counts[lane] == 0) {
-      order[--empty] = lane;
-      continue;
+ClusterSearch::Groups ClusterSearch::by_lanes(LaneNodes pairs, bool most_first) noexcept {
+  Groups groups;
+  for (std::size_t first = 0; first < pairs.count;) {
+    std::size_t last = first + 1;
+    while (last < pairs.count && pairs.lane(last) == pairs.lane(first)) ++last;
+    const LaneNodes group = pairs.part(first, last - first);
+    std::size_t at = groups.count++;
+    for (; most_first && at > 0 && group.count > groups.pairs[at - 1].count; --at) {
+      groups.pairs[at] = groups.pairs[at - 1];
     }
-    std::size_t at = count++;
-    for (; at > 0 && lists.counts[lane] > lists.counts[order[at - 1]]; --at) {
-      order[at] = order[at - 1];
-    }
-    order[at] = lane;
+    groups.pairs[at] = group;
+    first = last;
   }
-  return order;
+  return groups;
 }
 
-// Notes how near the balls of a child and of some fixed nodes are.
-void ClusterSearch::leave(const Step& step, std::uint32_t lane, int fixed_level,
-                          NodeList nodes) noexcept {
+// Notes how near the balls of some lanes and fixed nodes are.
+void ClusterSearch::leave(const Step& step, int fixed_level, LaneNodes pairs) noexcept {
   if (!measures_rest_) return;
   const TurnedBlock& from = step.turned;
-  for (std::size_t k = 0; k < nodes.count; ++k) {
-    const std::uint32_t node = nodes.nodes[k];
+  for (std::size_t k = 0; k < pairs.count; ++k) {
+    const std::uint32_t lane = pairs.lane(k), node = pairs.node(k), at = node % kClusterWidth;
     const NodeBlock& block = fixed_.bounds(fixed_level)[node / kClusterWidth];
-    const std::uint32_t at = node % kClusterWidth;
     double squared = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double apart =
@@ -104,7 +104,8 @@ void ClusterSearch::leave(const Step& step, std::uint32_t lane, int fixed_level,
 std::size_t ClusterSearch::bytes() const noexcept {
   std::size_t bytes = 0;
   for (const Step& step : steps_) {
-    bytes += sizeof(Step) + (step.near.size() + step.nodes.size()) * sizeof(std::uint32_t);
+    bytes += sizeof(Step) +
+             (step.bits.size() + step.near.size() + step.deeper.size()) * sizeof(std::uint32_t);
   }
   return bytes;
 }

@@ -13,19 +13,6 @@
 
 namespace ist {
 
-/// A moving cluster, and fixed nodes whose clusters may be near it.
-struct ClusterTask {
-  const TurnedBlock& lanes;
-  std::uint32_t lane, moving;
-  NodeList parents;
-};
-
-/// The outcome of a task: whether the search goes on, and the pairs of clusters compared.
-struct Visited {
-  bool goes_on;
-  std::size_t cluster_pairs;
-};
-
 /// A traversal of two trees of clusters, depth first: one moving node after the other, each with
 /// all fixed nodes of its level that may be near it. Where the fixed tree is deeper, its upper
 /// levels come first; where the moving tree is, its own.
@@ -33,38 +20,43 @@ struct Visited {
 /// A visitor says what is looked for:
 ///
 ///     float reach() const                 what is farther apart is not looked for; may shrink
-///     Visited visit(const ClusterTask&)   compares the triangles
+///     bool visit(const ClusterPairs&)     compares the triangles; false ends the search
 ///     bool kMostFirst                     begin with the children that may meet most nodes
 ///     bool kMeasuresRest                  nearest_left() is asked for
 class ClusterSearch {
  public:
-  /// Reserves all memory: 10 to 14 bytes for each fixed cluster. Holds references to both trees.
+  /// Reserves all memory: 80 bytes for each fixed cluster. Holds references to both trees.
   ClusterSearch(const TriangleClusters& fixed, const TriangleClusters& moving,
                 const ClusterKernels& kernels);
 
+  /// Sets the pose.
+  void begin(const ClusterPose& pose) noexcept;
   /// Searches from the roots. Returns false where the budget or the visitor ended the search.
   template <class Visitor>
-  bool run(const ClusterPose& pose, ClusterBudget& budget, Visitor& visitor) noexcept;
+  bool run(ClusterBudget& budget, Visitor& visitor) noexcept;
 
-  /// The clusters, at the pose of the last run.
+  /// The clusters, at the pose.
   [[nodiscard]] const ClusterStep& step() const noexcept { return step_; }
   /// Returns a lower bound of the distance of all nodes that an ended search did not come to.
   [[nodiscard]] double nearest_left() const noexcept { return nearest_left_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  // A step from a moving node to its children.
+  // A step from a moving node to its children, which are lanes.
   struct Step {
-    TurnedBlock turned;                // the children
-    LaneLists lists;                   // of fixed nodes near each child
-    std::vector<std::uint32_t> near;   // what is in the lists
-    std::vector<std::uint32_t> nodes;  // the children, near one child, of those in its list
+    TurnedBlock turned;
+    std::vector<std::uint32_t> bits;    // of lanes, for each fixed node that the moving one is near
+    std::vector<std::uint32_t> near;    // these, by lanes
+    std::vector<std::uint32_t> deeper;  // their children, by lanes
   };
-  using Order = std::array<std::uint8_t, kClusterWidth>;
-  // Nodes that one call of a kernel tests: some 10 µs of work, 500 tests.
+  // The pairs of each lane.
+  struct Groups {
+    std::array<LaneNodes, kClusterWidth> pairs;
+    std::size_t count = 0;
+  };
+  // Nodes that one call of a kernel tests: some 5 µs of work, 500 tests.
   static constexpr std::size_t kPart = 31;
 
-  void begin(const ClusterPose& pose, bool measures_rest) noexcept;
   [[nodiscard]] FixedNodes fixed_at(int level) const noexcept {
     return {fixed_.bounds(level).data(), fixed_.node_count(level)};
   }
@@ -72,17 +64,19 @@ class ClusterSearch {
     return steps_[static_cast<std::size_t>(level)];
   }
   template <class Visitor>
-  bool descend(int moving_level, std::uint32_t moving, int fixed_level, NodeList nodes,
+  bool descend(int moving_level, std::uint32_t moving, int fixed_level, LaneNodes nodes,
                ClusterBudget& budget, Visitor& visitor) noexcept;
   template <class Visitor>
-  bool go_on(Step& step, std::uint32_t lane, int moving_level, std::uint32_t child, int fixed_level,
-             NodeList parents, ClusterBudget& budget, Visitor& visitor) noexcept;
-  bool find_lists(Step& step, std::uint32_t lanes, int fixed_level, NodeList nodes, float reach,
-                  ClusterBudget& budget) const noexcept;
-  bool find_children(Step& step, std::uint32_t lane, int level, NodeList parents, float reach,
-                     ClusterBudget& budget, NodeList& found) const noexcept;
-  static Order most_first(const LaneLists& lists) noexcept;
-  void leave(const Step& step, std::uint32_t lane, int fixed_level, NodeList nodes) noexcept;
+  bool go_deeper(Step& step, int moving_level, std::uint32_t first, int fixed_level,
+                 LaneNodes pairs, ClusterBudget& budget, Visitor& visitor) noexcept;
+  template <class Visitor>
+  bool compare(const ClusterPairs& clusters, ClusterBudget& budget, Visitor& visitor) noexcept;
+  bool find_near(Step& step, std::uint32_t lanes, int fixed_level, LaneNodes nodes, float reach,
+                 ClusterBudget& budget, LaneNodes& found) noexcept;
+  bool find_children(Step& step, int level, LaneNodes parents, float reach, ClusterBudget& budget,
+                     LaneNodes& found) const noexcept;
+  static Groups by_lanes(LaneNodes pairs, bool most_first) noexcept;
+  void leave(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
 
   const TriangleClusters &fixed_, &moving_;
   const ClusterKernels& kernels_;
@@ -93,81 +87,101 @@ class ClusterSearch {
 };
 
 template <class Visitor>
-bool ClusterSearch::run(const ClusterPose& pose, ClusterBudget& budget, Visitor& visitor) noexcept {
-  begin(pose, Visitor::kMeasuresRest);
+bool ClusterSearch::run(ClusterBudget& budget, Visitor& visitor) noexcept {
+  measures_rest_ = Visitor::kMeasuresRest;
+  nearest_left_ = std::numeric_limits<double>::infinity();
   // Above its root the moving tree has a node of one child.
   Step& top = steps_.back();
-  kernels_.turn_nodes(moving_.bounds(moving_.root_level())[0], pose, top.turned);
+  kernels_.turn_nodes(moving_.bounds(moving_.root_level())[0], step_.pose, top.turned);
   int level = fixed_.root_level();
-  constexpr std::uint32_t kRoot = 0;
-  NodeList nodes{&kRoot, 1};
+  LaneNodes nodes{top.near.data(), 1};
+  top.near[0] = 0;
   while (level > moving_.root_level()) {
-    std::copy_n(nodes.nodes, nodes.count, top.near.begin());
-    const NodeList parents{top.near.data(), nodes.count};
-    --level;
-    if (!find_children(top, 0, level, parents, visitor.reach(), budget, nodes)) {
-      leave(top, 0, level + 1, parents);
+    LaneNodes children{};
+    if (!find_children(top, --level, nodes, visitor.reach(), budget, children)) {
+      leave(top, level + 1, nodes);
       return false;
     }
+    std::copy_n(children.codes, children.count, top.near.begin());
+    nodes.count = children.count;
   }
   return descend(moving_.root_level(), 0, level, nodes, budget, visitor);
 }
 
-// Goes on with the children of a moving node, each with those of `nodes` that it may be near.
+// Goes on with the children of a moving node, and those of `nodes` that they may be near.
 template <class Visitor>
-bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_level, NodeList nodes,
-                            ClusterBudget& budget, Visitor& visitor) noexcept {
+bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_level,
+                            LaneNodes nodes, ClusterBudget& budget, Visitor& visitor) noexcept {
   if (nodes.count == 0) return true;
   Step& step = step_at(moving_level);
   const std::uint32_t lanes = moving_.child_count(moving_level - 1, moving);
   kernels_.turn_nodes(moving_.bounds(moving_level - 1)[moving], step_.pose, step.turned);
-  if (!find_lists(step, lanes, fixed_level, nodes, visitor.reach(), budget)) {
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) leave(step, lane, fixed_level, nodes);
-    return false;
-  }
-  Order order{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  if constexpr (Visitor::kMostFirst) order = most_first(step.lists);
-  for (std::uint32_t k = 0; k < kClusterWidth; ++k) {
-    const std::uint32_t lane = order[k];
-    const NodeList parents = step.lists[lane];
-    if (parents.count == 0 || go_on(step, lane, moving_level, kClusterWidth * moving + lane,
-                                    fixed_level, parents, budget, visitor)) {
-      continue;
-    }
-    while (++k < kClusterWidth) leave(step, order[k], fixed_level, step.lists[order[k]]);
+  LaneNodes near{};
+  if (!find_near(step, lanes, fixed_level, nodes, visitor.reach(), budget, near)) return false;
+  const auto go_on = [&](LaneNodes some) {
+    return go_deeper(step, moving_level, kClusterWidth * moving, fixed_level, some, budget,
+                     visitor);
+  };
+  if (!Visitor::kMostFirst || moving_level == 1 || near.count == 0) return go_on(near);
+  // The lane near most nodes goes alone, and all others then at once, which is faster.
+  const LaneNodes first = by_lanes(near, true).pairs[0];
+  const auto before = static_cast<std::size_t>(first.codes - near.codes);
+  const LaneNodes parts[] = {first, near.part(0, before),
+                             near.part(before + first.count, near.count)};
+  for (std::size_t k = 0; k < std::size(parts); ++k) {
+    if (go_on(parts[k])) continue;
+    while (++k < std::size(parts)) leave(step, fixed_level, parts[k]);
     return false;
   }
   return true;
 }
 
-// Goes on with one child, and the nodes that it may be near.
+// Goes on with some of a moving node's children, each with the children of nodes near it where it
+// is not above these.
 template <class Visitor>
-bool ClusterSearch::go_on(Step& step, std::uint32_t lane, int moving_level, std::uint32_t child,
-                          int fixed_level, NodeList parents, ClusterBudget& budget,
-                          Visitor& visitor) noexcept {
-  if (moving_level > fixed_level) {
-    return descend(moving_level - 1, child, fixed_level, parents, budget, visitor);
-  }
-  if (moving_level > 1) {
-    NodeList nodes{};
-    if (!find_children(step, lane, fixed_level - 1, parents, visitor.reach(), budget, nodes)) {
-      leave(step, lane, fixed_level, parents);
+bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first, int fixed_level,
+                              LaneNodes pairs, ClusterBudget& budget, Visitor& visitor) noexcept {
+  if (moving_level <= fixed_level) {
+    LaneNodes deeper{};
+    --fixed_level;
+    if (!find_children(step, fixed_level, pairs, visitor.reach(), budget, deeper)) {
+      leave(step, fixed_level + 1, pairs);
       return false;
     }
-    return descend(moving_level - 1, child, fixed_level - 1, nodes, budget, visitor);
+    pairs = deeper;
   }
-  const std::size_t part = budget.is_limited() ? 1 : parents.count;
-  constexpr std::uint64_t kMost = kClusterWidth * (1 + ClusterBudget::kClusterTests);
-  for (std::size_t k = 0; k < parents.count; k += part) {
-    const NodeList list{parents.nodes + k, part};
-    Visited visited{false, 0};
-    if (budget.allows(kMost)) {
-      visited = visitor.visit({step.turned, lane, child, list});
-      budget.spend(fixed_at(0).children_of(list) +
-                   ClusterBudget::kClusterTests * visited.cluster_pairs);
+  if (moving_level == 1) return compare({step.turned, first, pairs}, budget, visitor);
+  const Groups groups = by_lanes(pairs, Visitor::kMostFirst);
+  for (std::size_t k = 0; k < groups.count; ++k) {
+    const LaneNodes& group = groups.pairs[k];
+    if (k + 1 < groups.count) {
+      load_ahead(moving_.bounds(moving_level - 2)[first + groups.pairs[k + 1].lane(0)]);
     }
-    if (!visited.goes_on) {
-      leave(step, lane, fixed_level, {list.nodes, parents.count - k});
+    if (descend(moving_level - 1, first + group.lane(0), fixed_level, group, budget, visitor)) {
+      continue;
+    }
+    while (++k < groups.count) leave(step, fixed_level, groups.pairs[k]);
+    return false;
+  }
+  return true;
+}
+
+// Compares the triangles of pairs of clusters.
+template <class Visitor>
+bool ClusterSearch::compare(const ClusterPairs& clusters, ClusterBudget& budget,
+                            Visitor& visitor) noexcept {
+  const LaneNodes& all = clusters.pairs;
+  const std::size_t most = budget.is_limited() ? kPart : all.count;
+  for (std::size_t k = 0; k < all.count; k += most) {
+    const LaneNodes part = all.part(k, most);
+    const std::uint64_t tests = ClusterBudget::kClusterTests * part.count;
+    bool goes_on = budget.allows(tests);
+    if (goes_on) {
+      budget.spend(tests);
+      goes_on = visitor.visit({clusters.lanes, clusters.moving, part});
+    }
+    if (!goes_on) {
+      leave(step_at(1), 0, all.part(k, all.count));
       return false;
     }
   }

@@ -63,17 +63,16 @@ struct Bench {
   FoundTriangles& found;
 };
 
-// Calls `run(rest)` for the rest of the nodes until it has done all, and `take()` each time, which
-// empties what was found. Returns false where that does.
+// Calls `run(rest)` for the rest of the pairs until it has done all, and `take()` after each,
+// which empties the lists of what was found and says whether to go on.
 template <class Run, class Take>
-Visited in_turns(FoundTriangles& found, NodeList parents, Run run, Take take) {
-  const std::size_t before = found.cluster_pairs;
-  bool goes_on = true;
-  for (std::size_t done = 0; goes_on && done < parents.count;) {
-    done += run(NodeList{parents.nodes + done, parents.count - done});
-    goes_on = take(done < parents.count);
+bool in_turns(const ClusterPairs& clusters, Run run, Take take) {
+  const LaneNodes& all = clusters.pairs;
+  for (std::size_t done = 0; done < all.count;) {
+    done += run(ClusterPairs{clusters.lanes, clusters.moving, all.part(done, all.count)});
+    if (!take()) return false;
   }
-  return {goes_on, found.cluster_pairs - before};
+  return true;
 }
 
 // Lists all pairs that intersect.
@@ -84,15 +83,14 @@ class AllPairs {
   AllPairs(Bench bench, PairList& list) noexcept : bench_(bench), list_(list) {}
 
   [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
-  Visited visit(const ClusterTask& task) noexcept {
+  bool visit(const ClusterPairs& clusters) noexcept {
     return in_turns(
-        bench_.found, task.parents,
-        [&](NodeList parents) {
-          return bench_.kernels.meet_clusters(bench_.step, task.lanes, task.lane, task.moving,
-                                              parents, bench_.batch, bench_.found);
+        clusters,
+        [&](const ClusterPairs& rest) {
+          return bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
         },
-        [&](bool more) {
-          if (more || !bench_.found.has_room()) take();
+        [&] {
+          if (!bench_.found.has_room()) take();
           return true;
         });
   }
@@ -127,16 +125,16 @@ class AnyPair {
 
   [[nodiscard]] bool found() const noexcept { return found_; }
   [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
-  Visited visit(const ClusterTask& task) noexcept {
+  bool visit(const ClusterPairs& clusters) noexcept {
     return in_turns(
-        bench_.found, task.parents,
-        [&](NodeList parents) {
-          const std::size_t done = bench_.kernels.meet_clusters(
-              bench_.step, task.lanes, task.lane, task.moving, parents, bench_.batch, bench_.found);
+        clusters,
+        [&](const ClusterPairs& rest) {
+          const std::size_t done =
+              bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
           if (bench_.batch.count > 0) bench_.kernels.decide_triangles(bench_.batch, bench_.found);
           return done;
         },
-        [&](bool) {
+        [&] {
           take();
           return !found_;
         });
@@ -180,25 +178,34 @@ class NearestPair {
   [[nodiscard]] float reach() const noexcept {
     return rounded_up(within() + double{bench_.step.pose.error});
   }
-  Visited visit(const ClusterTask& task) noexcept {
-    // One node at a time, so that the next one is sought within what this one gave.
-    std::size_t cluster_pairs = 0;
-    for (std::size_t k = 0; k < task.parents.count; ++k) {
-      const float margin = rounded_up(2 * error() + double{bench_.step.pose.error});
-      Reach reaches{reach(), rounded_up(nearest_) + margin, margin};
-      bench_.found.cluster_pairs = 0;
-      bench_.kernels.near_clusters(bench_.step, task.lanes, task.lane, task.moving,
-                                   {task.parents.nodes + k, 1}, reaches, bench_.batch,
-                                   bench_.found);
-      cluster_pairs += bench_.found.cluster_pairs;
-      for (std::size_t i = 0; i < bench_.found.open.count && nearest_ > 0; ++i) {
-        if (bench_.found.squares[i] > reaches.triangles * reaches.triangles) continue;
-        measure(bench_.found.open[i]);
-      }
-      bench_.found.open.count = 0;
-      if (nearest_ == 0) return {false, cluster_pairs};
+  bool visit(const ClusterPairs& clusters) noexcept {
+    const float margin = rounded_up(2 * error() + double{bench_.step.pose.error});
+    Reach reaches{rounded_up(nearest_) + margin, margin};
+    return in_turns(
+        clusters,
+        [&](const ClusterPairs& rest) {
+          return bench_.kernels.near_clusters(bench_.step, rest, reaches, bench_.batch,
+                                              bench_.found);
+        },
+        [&] {
+          measure_found();
+          bench_.found.open.count = 0;
+          return nearest_ > 0;
+        });
+  }
+
+ private:
+  // First the pair that may be the nearest, so that few others may still be nearer.
+  void measure_found() noexcept {
+    const FoundTriangles& found = bench_.found;
+    const std::size_t count = found.open.count;
+    const auto first = static_cast<std::size_t>(
+        std::min_element(found.squares, found.squares + count) - found.squares);
+    if (count > 0) measure(found.open[first]);
+    for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
+      const double enough = nearest_ + 2 * error() + double{bench_.step.pose.error};
+      if (k != first && double{found.squares[k]} <= enough * enough) measure(found.open[k]);
     }
-    return {true, cluster_pairs};
   }
   void measure(TriangleIds ids) noexcept {
     const TriangleCorners a = corners_of(bench_.meshes.fixed, ids.fixed);
@@ -211,7 +218,6 @@ class NearestPair {
                    : std::min(nearest_, std::sqrt(distance_squared(a, b)));
   }
 
- private:
   Bench bench_;
   double tolerance_, longest_edge_, nearest_;
 };
@@ -282,7 +288,8 @@ ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   AllPairs all({search_.step(), kernels_, meshes, batch_, found_}, list_);
   ClusterBudget spent(budget, 0);
-  const bool complete = search_.run(cluster_pose(pose), spent, all);
+  search_.begin(cluster_pose(pose));
+  const bool complete = search_.run(spent, all);
   all.finish();
   list_.finish();
   return {complete, spent.spent()};
@@ -294,7 +301,8 @@ ExactSearch::End ExactSearch::any(const ExactPose& pose, const Budget& budget,
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   AnyPair any({search_.step(), kernels_, meshes, batch_, found_});
   ClusterBudget spent(budget, 0);
-  const bool complete = search_.run(cluster_pose(pose), spent, any);
+  search_.begin(cluster_pose(pose));
+  const bool complete = search_.run(spent, any);
   found = any.found();
   return {complete || found, spent.spent()};
 }
@@ -307,10 +315,15 @@ ExactSearch::End ExactSearch::nearest(const ExactPose& pose, double tolerance, c
   NearestPair nearest({search_.step(), kernels_, meshes, batch_, found_}, tolerance, longest_edge_,
                       distance.upper);
   ClusterBudget spent(budget, 0);
-  for (const TriangleIds& ids : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, at)) {
-    nearest.measure(ids);
+  search_.begin(at);
+  TurnedBlock turned;
+  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, at)) {
+    const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
+    kernels_.turn_nodes(moving_clusters_.bounds(0)[block], at, turned);
+    const std::uint32_t code = kClusterWidth * pair.fixed + lane;
+    nearest.visit({turned, kClusterWidth * block, {&code, 1}});
   }
-  bool complete = nearest.distance() == 0 || search_.run(at, spent, nearest);
+  bool complete = nearest.distance() == 0 || search_.run(spent, nearest);
   complete = complete || nearest.distance() == 0;
   const double error = nearest.error();
   double lower =

@@ -9,18 +9,23 @@ namespace ist {
 
 inline constexpr std::size_t kBeamWidth = 6;
 
-/// Triangles that are near each other, for the first bound of a distance: by going down both trees
-/// with the kBeamWidth pairs of nodes that score best at each level, and then by first corners.
+/// Pairs of clusters that are near each other, best first, for the first bound of a distance: by
+/// going down both trees with the kBeamWidth pairs of nodes that score best at each level.
 class NearestBeam {
  public:
+  struct NodePair {
+    std::uint32_t fixed, moving;
+    float score;
+  };
+
   NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
               const ClusterKernels& kernels, const ClusterPose& pose) noexcept;
 
-  [[nodiscard]] const TriangleIds* begin() const noexcept { return ids_.data(); }
-  [[nodiscard]] const TriangleIds* end() const noexcept { return ids_.data() + count_; }
+  [[nodiscard]] const NodePair* begin() const noexcept { return pairs_.data(); }
+  [[nodiscard]] const NodePair* end() const noexcept { return pairs_.data() + count_; }
 
  private:
-  std::array<TriangleIds, kBeamWidth> ids_{};
+  std::array<NodePair, kBeamWidth> pairs_{};
   std::size_t count_ = 0;
 };
 
