@@ -341,7 +341,7 @@ MUTANTS = [
            [(EXACT + "exact_search.cpp", "rounded_up(2 * moved_error(pose.rigid) + frames)",
              "rounded_up(0 * frames)")], ["exact_test", "stability_test *Shapes*:*Place*"]),
     Mutant("far-gap-too-narrow", "a gap far from the origin forgets that vertices are rounded",
-           [("src/ist/query/query_distance.cpp", "nearest.upper > 0 ? bodies->margin : 0", "0 * bodies->margin")],
+           [("src/ist/query/query_distance.cpp", "const double off = bodies.margin;", "const double off = 0 * bodies.margin;")],
            ["stability_test *Place*:*Shapes*"]),
     Mutant("predicate-without-bound", "the sign of a determinant is believed however small it is",
            [(EXACT + "orientation.cpp", "kBound3 = 8 * kRounding", "kBound3 = 0 * kRounding")],

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -111,6 +112,8 @@ using ScoreChildrenFunction = void (*)(const TurnedBlock& lanes, std::uint32_t l
 /// Two triangles by their indices in the meshes.
 struct TriangleIds {
   std::uint32_t fixed, moving;
+
+  friend auto operator<=>(const TriangleIds&, const TriangleIds&) = default;
 };
 
 /// Candidates: pairs of triangles that no box and no plane tells apart, side by side, in frames of

@@ -30,6 +30,7 @@ std::string_view Engine::target() const {
 Engine::Answer Engine::ask(const Eigen::Isometry3d& pose) {
   const Budget budget{options_.max_tests.value_or(Budget().tests)};
   while (true) {
+    if (simd_) simd_->forget();  // no answer depends on the pose before
     const auto begin = std::chrono::steady_clock::now();
     const QueryResult leaves = simd_ ? simd_->leaf_pairs(pose, leaf_pairs_, budget)
                                      : reference_->leaf_pairs(pose, leaf_pairs_);

@@ -270,24 +270,24 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
   std::uint64_t met = 0;
   for (const Eigen::Isometry3d& pose : poses()) {
     auto distance = sized<ist_distance_result>();
-    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 0.001, &distance)), "ok");
+    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 0.001, nullptr, &distance)), "ok");
     const DistanceResult wanted = query_.distance(pose, 0.001);
     EXPECT_EQ(distance.lower, wanted.distance.lower);
     EXPECT_EQ(distance.upper, wanted.distance.upper);
     EXPECT_EQ(distance.sphere_tests, wanted.sphere_tests);
     EXPECT_EQ(distance.complete, wanted.complete ? 1 : 0);
-    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, &distance)), "ok");
+    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, nullptr, &distance)), "ok");
     EXPECT_EQ(distance.complete, 1);
 
     std::int32_t answer = -1;
-    ASSERT_EQ(name(ist_query_intersects(c_query_, pose.data(), &answer)), "ok");
+    ASSERT_EQ(name(ist_query_intersects(c_query_, pose.data(), nullptr, &answer)), "ok");
     EXPECT_EQ(answer,
               query_.intersects(pose).answer == ist::Answer::kYes ? IST_ANSWER_YES : IST_ANSWER_NO);
 
     auto c = sized<ist_triangle_pairs_result>();
-    ASSERT_EQ(
-        name(ist_query_triangle_pairs(c_query_, pose.data(), c_pairs.data(), c_pairs.size(), &c)),
-        "ok");
+    ASSERT_EQ(name(ist_query_triangle_pairs(c_query_, pose.data(), nullptr, c_pairs.data(),
+                                            c_pairs.size(), &c)),
+              "ok");
     const TrianglePairsResult result = query_.triangle_pairs(pose, pairs);
     EXPECT_EQ(c.pairs, result.triangle_pairs);
     EXPECT_EQ(c.sphere_tests, result.sphere_tests);

@@ -45,13 +45,14 @@ TEST_F(CMisuse, OfAPoseIsToldAndNothingIsAnswered) {
       EXPECT_EQ(result_.contacts, 0u);
     }
     distance_.lower = distance_.upper = distance_.complete = 7;
-    EXPECT_EQ(name(ist_query_distance(query_, pose, 0.1, &distance_)), "pose-invalid");
+    EXPECT_EQ(name(ist_query_distance(query_, pose, 0.1, nullptr, &distance_)), "pose-invalid");
     EXPECT_EQ(distance_.lower + distance_.upper + distance_.complete, 0);
     answer_ = IST_ANSWER_NO;
-    EXPECT_EQ(name(ist_query_intersects(query_, pose, &answer_)), "pose-invalid");
+    EXPECT_EQ(name(ist_query_intersects(query_, pose, nullptr, &answer_)), "pose-invalid");
     EXPECT_EQ(answer_, IST_ANSWER_UNKNOWN);
     triangle_result_.pairs = 7;
-    EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose, triangle_pairs_, 4, &triangle_result_)),
+    EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose, nullptr, triangle_pairs_, 4,
+                                            &triangle_result_)),
               "pose-invalid");
     EXPECT_EQ(triangle_result_.pairs, 0u);
     force_[1] = torque_[2] = 7;
@@ -153,7 +154,7 @@ TEST_F(CMisuse, OfArraysIsTold) {
   EXPECT_EQ(name(ist_query_contacts(query_, pose_.data(), nullptr, contacts_, SIZE_MAX, nullptr,
                                     &result_)),
             "argument-invalid");
-  EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose_.data(), triangle_pairs_, SIZE_MAX,
+  EXPECT_EQ(name(ist_query_triangle_pairs(query_, pose_.data(), nullptr, triangle_pairs_, SIZE_MAX,
                                           &triangle_result_)),
             "argument-invalid");
 }
@@ -170,7 +171,7 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(built([](auto& o) { o.max_memory = 1; }), "memory-limit");
   EXPECT_EQ(built([](auto& o) { o.spheres = 5; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.spheres = -1; }), "argument-invalid");
-  EXPECT_EQ(built([](auto& o) { o.keep_triangles = 2; }), "argument-invalid");
+  EXPECT_EQ(built([](auto& o) { o.drop_triangles = 2; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.proximity = -1; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.reserved = 1; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.struct_size = 0; }), "struct-size");
@@ -219,9 +220,11 @@ TEST_F(CMisuse, OfOptionsIsTold) {
       name(ist_query_contacts(query_, pose_.data(), &budget_, contacts_, 4, &sums_, &result_)),
       "struct-size");
   distance_.upper = 7;
-  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), NAN, &distance_)), "argument-invalid");
+  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), NAN, nullptr, &distance_)),
+            "argument-invalid");
   EXPECT_EQ(distance_.upper, 0);
-  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), -1, &distance_)), "argument-invalid");
+  EXPECT_EQ(name(ist_query_distance(query_, pose_.data(), -1, nullptr, &distance_)),
+            "argument-invalid");
   EXPECT_TRUE(!no_tree_ && !no_query_ && !no_servo_);
 }
 

@@ -34,7 +34,7 @@ template <typename Struct>
   ist_mesh* from = c_mesh(mesh);
   auto options = sized<ist_build_options>();
   options.voxel_size = voxel_size;
-  options.keep_triangles = keep_triangles;
+  options.drop_triangles = !keep_triangles;
   ist_tree* made = nullptr;
   EXPECT_EQ(name(ist_tree_build(from, &options, &made)), "ok") << ist_last_error_message();
   EXPECT_EQ(name(ist_mesh_free(from)), "ok");

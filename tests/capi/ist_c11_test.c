@@ -58,7 +58,7 @@ static ist_mesh* make_mesh(void) {
 static ist_tree* make_tree(const char* folder) {
   ist_mesh* mesh = make_mesh();
   const ist_build_options options = {
-      .struct_size = sizeof options, .voxel_size = 1, .keep_triangles = 1};
+      .struct_size = sizeof options, .voxel_size = 1};
   ist_tree* built = NULL;
   IS(ist_tree_build(mesh, &options, &built), IST_OK);
   IS(ist_mesh_free(mesh), IST_OK);
@@ -144,27 +144,27 @@ static void reduce(ist_query* query) {
 static void certify(ist_query* query) {
   int32_t answer = -1;
   const pose_at in = shifted(9.5, 0.25, 0), out = shifted(12, 0, 0);
-  IS(ist_query_intersects(query, in.at, &answer), IST_OK);
+  IS(ist_query_intersects(query, in.at, NULL, &answer), IST_OK);
   CHECK(answer == IST_ANSWER_YES);
-  IS(ist_query_intersects(query, out.at, &answer), IST_OK);
+  IS(ist_query_intersects(query, out.at, NULL, &answer), IST_OK);
   CHECK(answer == IST_ANSWER_NO);
 
   ist_distance_result distance = {.struct_size = sizeof distance};
-  IS(ist_query_distance(query, out.at, 0.01, &distance), IST_OK);
+  IS(ist_query_distance(query, out.at, 0.01, NULL, &distance), IST_OK);
   CHECK(distance.lower <= 2 && distance.upper >= 2 && distance.upper - distance.lower < 0.011);
   CHECK(distance.complete == 1 || distance.upper - distance.lower > 0.01);
-  IS(ist_query_distance(query, out.at, 5, &distance), IST_OK);
+  IS(ist_query_distance(query, out.at, 5, NULL, &distance), IST_OK);
   CHECK(distance.lower <= 2 && distance.upper >= 2 && distance.complete == 1);
-  IS(ist_query_distance(query, in.at, 0, &distance), IST_OK);
+  IS(ist_query_distance(query, in.at, 0, NULL, &distance), IST_OK);
   CHECK(distance.lower == 0 && distance.upper == 0 && distance.complete == 1);
 
   ist_triangle_pair* pairs = malloc(200 * sizeof *pairs);
   ist_triangle_pairs_result result = {.struct_size = sizeof result};
-  IS(ist_query_triangle_pairs(query, in.at, pairs, 200, &result), IST_OK);
+  IS(ist_query_triangle_pairs(query, in.at, NULL, pairs, 200, &result), IST_OK);
   CHECK(result.pairs > 0 && result.written == result.pairs && result.truncated == 0);
-  IS(ist_query_triangle_pairs(query, in.at, pairs, 1, &result), IST_OK);
+  IS(ist_query_triangle_pairs(query, in.at, NULL, pairs, 1, &result), IST_OK);
   CHECK(result.written == 1 && result.truncated == 1);
-  IS(ist_query_triangle_pairs(query, out.at, NULL, 0, &result), IST_OK);
+  IS(ist_query_triangle_pairs(query, out.at, NULL, NULL, 0, &result), IST_OK);
   CHECK(result.pairs == 0 && result.truncated == 0);
   free(pairs);
 }
@@ -194,7 +194,7 @@ static void misuse(ist_tree* tree, ist_query* query) {
   IS(ist_query_free(gone), IST_HANDLE_FREED);
   int32_t answer = -1;
   pose.at[12] = 9.5;
-  IS(ist_query_intersects(gone, pose.at, &answer), IST_HANDLE_FREED);
+  IS(ist_query_intersects(gone, pose.at, NULL, &answer), IST_HANDLE_FREED);
   CHECK(answer == IST_ANSWER_UNKNOWN);
   IS(ist_query_free(NULL), IST_OK);
 }

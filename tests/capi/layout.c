@@ -28,7 +28,7 @@ SIZE(ist_build_options, 40);
 AT(ist_build_options, struct_size, 0);
 AT(ist_build_options, voxel_size, 8);
 AT(ist_build_options, spheres, 16);
-AT(ist_build_options, keep_triangles, 20);
+AT(ist_build_options, drop_triangles, 20);
 AT(ist_build_options, proximity, 24);
 AT(ist_build_options, reserved, 28);
 AT(ist_build_options, max_memory, 32);
@@ -112,13 +112,14 @@ AT(ist_contact_sums, spring_force, 72);
 AT(ist_contact_sums, spring_torque, 96);
 AT(ist_contact_sums, about, 120);
 
-SIZE(ist_distance_result, 40);
+SIZE(ist_distance_result, 48);
 AT(ist_distance_result, struct_size, 0);
 AT(ist_distance_result, lower, 8);
 AT(ist_distance_result, upper, 16);
 AT(ist_distance_result, sphere_tests, 24);
 AT(ist_distance_result, complete, 32);
 AT(ist_distance_result, reserved, 36);
+AT(ist_distance_result, narrowest, 40);
 
 SIZE(ist_triangle_pair, 8);
 AT(ist_triangle_pair, fixed, 0);
@@ -130,7 +131,7 @@ AT(ist_triangle_pairs_result, pairs, 8);
 AT(ist_triangle_pairs_result, written, 16);
 AT(ist_triangle_pairs_result, sphere_tests, 24);
 AT(ist_triangle_pairs_result, truncated, 32);
-AT(ist_triangle_pairs_result, reserved, 36);
+AT(ist_triangle_pairs_result, complete, 36);
 
 SIZE(ist_servo_options, 40);
 AT(ist_servo_options, struct_size, 0);

@@ -67,15 +67,15 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("sums", ist_contact_sums_wrench(nullptr, 1, force_, torque_));
   is_null("force", ist_contact_sums_wrench(&sums_, 1, nullptr, torque_));
   is_null("torque", ist_contact_sums_wrench(&sums_, 1, force_, nullptr));
-  is_null("query", ist_query_distance(nullptr, pose, 0, &distance_));
-  is_null("pose", ist_query_distance(query_, nullptr, 0, &distance_));
-  is_null("result", ist_query_distance(query_, pose, 0, nullptr));
-  is_null("query", ist_query_intersects(nullptr, pose, &answer_));
-  is_null("pose", ist_query_intersects(query_, nullptr, &answer_));
-  is_null("answer", ist_query_intersects(query_, pose, nullptr));
+  is_null("query", ist_query_distance(nullptr, pose, 0, nullptr, &distance_));
+  is_null("pose", ist_query_distance(query_, nullptr, 0, nullptr, &distance_));
+  is_null("result", ist_query_distance(query_, pose, 0, nullptr, nullptr));
+  is_null("query", ist_query_intersects(nullptr, pose, nullptr, &answer_));
+  is_null("pose", ist_query_intersects(query_, nullptr, nullptr, &answer_));
+  is_null("answer", ist_query_intersects(query_, pose, nullptr, nullptr));
   const auto triangles = [&](ist_query* query, const double* at, ist_triangle_pair* out,
                              ist_triangle_pairs_result* result) {
-    return ist_query_triangle_pairs(query, at, out, 4, result);
+    return ist_query_triangle_pairs(query, at, nullptr, out, 4, result);
   };
   is_null("query", triangles(nullptr, pose, triangle_pairs_, &triangle_result_));
   is_null("pose", triangles(query_, nullptr, triangle_pairs_, &triangle_result_));
@@ -142,14 +142,16 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        }},
       {kQuery,
        [&](void* h) {
-         return ist_query_distance(static_cast<ist_query*>(h), pose, 0, &distance_);
+         return ist_query_distance(static_cast<ist_query*>(h), pose, 0, nullptr, &distance_);
        }},
       {kQuery,
-       [&](void* h) { return ist_query_intersects(static_cast<ist_query*>(h), pose, &answer_); }},
+       [&](void* h) {
+         return ist_query_intersects(static_cast<ist_query*>(h), pose, nullptr, &answer_);
+       }},
       {kQuery,
        [&](void* h) {
-         return ist_query_triangle_pairs(static_cast<ist_query*>(h), pose, triangle_pairs_, 4,
-                                         &triangle_result_);
+         return ist_query_triangle_pairs(static_cast<ist_query*>(h), pose, nullptr, triangle_pairs_,
+                                         4, &triangle_result_);
        }},
       {kQuery, [&](void* h) { return ist_query_free(static_cast<ist_query*>(h)); }},
       {kServo,

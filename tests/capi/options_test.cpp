@@ -24,21 +24,24 @@ constexpr double kVoxel = 0.07;
 TEST(CAnswer, MayStayOpenWithoutTriangles) {
   ist_query* query = c_query(c_tree(icosphere(2, 1), 0.2, false));
   std::int32_t answer = -1;
-  ASSERT_EQ(name(ist_query_intersects(query, c_shift(1.8, 0, 0).data(), &answer)), "ok");
+  ASSERT_EQ(name(ist_query_intersects(query, c_shift(1.8, 0, 0).data(), nullptr, &answer)), "ok");
   EXPECT_EQ(answer, IST_ANSWER_NEAR);
-  ASSERT_EQ(name(ist_query_intersects(query, c_shift(9, 0, 0).data(), &answer)), "ok");
+  ASSERT_EQ(name(ist_query_intersects(query, c_shift(9, 0, 0).data(), nullptr, &answer)), "ok");
   EXPECT_EQ(answer, IST_ANSWER_NO);
   auto c = sized<ist_triangle_pairs_result>();
   c.pairs = 7;
-  EXPECT_EQ(name(ist_query_triangle_pairs(query, c_shift(1.8, 0, 0).data(), nullptr, 0, &c)),
-            "triangles-missing");
+  EXPECT_EQ(
+      name(ist_query_triangle_pairs(query, c_shift(1.8, 0, 0).data(), nullptr, nullptr, 0, &c)),
+      "triangles-missing");
   EXPECT_EQ(c.pairs, 0u);
 
   auto distance = sized<ist_distance_result>();
-  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 1e-6, &distance)), "ok");
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 1e-6, nullptr, &distance)),
+            "ok");
   EXPECT_EQ(distance.complete, 0);
   EXPECT_GT(distance.upper - distance.lower, 1e-6);
-  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 10, &distance)), "ok");
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(2.5, 0, 0).data(), 10, nullptr, &distance)),
+            "ok");
   EXPECT_EQ(distance.complete, 1);
   EXPECT_LE(distance.upper - distance.lower, 10);
   EXPECT_EQ(name(ist_query_free(query)), "ok");

@@ -85,9 +85,9 @@ Asked ask_all(Bodies& bodies) noexcept {
     }
     seen.status(ist_contact_sums_wrench(&sums, bad ? NAN : 2, force, torque),
                 bad ? IST_ARGUMENT_INVALID : IST_OK);
-    seen.status(ist_query_distance(bodies.query, at, 0.01, &distance), wanted);
-    seen.status(ist_query_intersects(bodies.query, at, &answer), wanted);
-    seen.status(ist_query_triangle_pairs(bodies.query, at, bodies.triangle_pairs.data(),
+    seen.status(ist_query_distance(bodies.query, at, 0.01, nullptr, &distance), wanted);
+    seen.status(ist_query_intersects(bodies.query, at, nullptr, &answer), wanted);
+    seen.status(ist_query_triangle_pairs(bodies.query, at, nullptr, bodies.triangle_pairs.data(),
                                          bodies.triangle_pairs.size(), &triangle_result),
                 wanted);
     seen.triangle_pairs += triangle_result.written;

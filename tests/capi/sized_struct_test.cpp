@@ -105,7 +105,8 @@ TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_distance_result distance{};
   distance.struct_size = 32;
   distance.complete = 99;
-  ASSERT_EQ(name(ist_query_distance(query, c_shift(3, 0, 0).data(), 0.1, &distance)), "ok");
+  ASSERT_EQ(name(ist_query_distance(query, c_shift(3, 0, 0).data(), 0.1, nullptr, &distance)),
+            "ok");
   EXPECT_GT(distance.upper, 1);
   EXPECT_EQ(distance.complete, 99);
 

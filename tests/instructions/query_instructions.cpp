@@ -76,12 +76,16 @@ void count_all() {
   count("collide/slab/within_20000_tests",
         [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs, {.tests = 20'000})); });
   count("contact_points/closed", [&] { return answer_of(query.contacts(closed, points)); });
+  // Each is a fresh answer.
   count("gap/apart", [&] {
+    query.forget();
     const ist::DistanceResult result = query.distance(apart, 0.01);
     return Answer{result.distance.lower > 0 ? 1U : 0U, result.sphere_tests};
   });
-  count("touches/near", [&] {  // where leaves touch and triangles do not; it tells no tests
-    return Answer{query.intersects(near).answer == ist::Answer::kYes ? 1U : 0U, 0};
+  count("touches/near", [&] {  // where leaves touch and triangles do not
+    query.forget();
+    const ist::IntersectionResult result = query.intersects(near);
+    return Answer{result.answer == ist::Answer::kYes ? 1U : 0U, result.sphere_tests};
   });
   count("collide_exact/closed", [&] {
     const ist::TrianglePairsResult result = query.triangle_pairs(closed, pairs);

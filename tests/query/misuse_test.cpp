@@ -167,7 +167,16 @@ TEST(DistanceResult, SaysWhetherTheToleranceWasReached) {
   EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 0.01).complete);
   EXPECT_FALSE(of_plain.distance(shift({5, 0, 0}), 1e-6).complete);
   EXPECT_TRUE(of_plain.distance(shift({5, 0, 0}), 10).complete);
-  EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 0).complete);  // but for rounding
+  // Below what rounding allows, the interval is as narrow as it says.
+  const DistanceResult sharp = of_exact.distance(shift({5, 0, 0}), 0);
+  EXPECT_FALSE(sharp.complete);
+  EXPECT_GT(sharp.narrowest, 0);
+  EXPECT_LT(sharp.narrowest, 1e-6);
+  EXPECT_LE(sharp.distance.upper - sharp.distance.lower, sharp.narrowest * (1 + 1e-3));
+  EXPECT_TRUE(of_exact.distance(shift({5, 0, 0}), 1.01 * sharp.narrowest).complete);
+  const DistanceResult meeting = of_exact.distance(shift({1.9, 0.1, 0}), 0);
+  EXPECT_TRUE(meeting.complete);
+  EXPECT_EQ(meeting.narrowest, 0);
   // So far apart that floats cannot tell the leaves from each other.
   EXPECT_FALSE(of_exact.distance(shift({1e12, 0, 0}), 1e-3).complete);
 }

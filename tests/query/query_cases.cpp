@@ -61,6 +61,7 @@ SphereTree tree_of(const TriangleMesh& mesh, double cells) {
   BuildOptions options;
   options.voxel_size = bounds.sizes().maxCoeff() / cells;
   options.spheres = SpherePolicy::kSlab;
+  options.keep_triangles = false;
   return build_tree(mesh, options);
 }
 

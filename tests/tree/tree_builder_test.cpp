@@ -45,7 +45,9 @@ TEST(BuildTree, HasTheVoxelsAsLeavesInOrder) {
 TEST(BuildTree, KeepsNoMoreThanItIsAskedFor) {
   BuildOptions options;
   options.voxel_size = 0.2;
+  EXPECT_TRUE(build_tree(test::icosphere(1, 1), options).triangles());
   options.spheres = SpherePolicy::kSimple;
+  options.keep_triangles = false;
   const SphereTree tree = build_tree(test::icosphere(1, 1), options);
   EXPECT_FALSE(tree.has(SpherePolicy::kTight));
   EXPECT_FALSE(tree.triangles());

@@ -69,6 +69,7 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
+  options->build.keep_triangles = false;
   command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();

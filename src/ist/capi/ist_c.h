@@ -26,8 +26,7 @@
  * Poses are double[16] in column-major order: [0..2], [4..6] and [8..10] are the images of the x, y
  * and z axes, [12..14] is the translation, and [3], [7], [11], [15] are 0, 0, 0, 1. A query's pose
  * maps moving mesh coordinates to fixed mesh coordinates. A pose that is not finite, or deviates
- * from a rigid motion by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit of
- * length.
+ * from a rigid motion by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit.
  *
  * Real time. Functions marked [real time] allocate no memory, wait for nothing and make no system
  * call. Two exceptions: in a library loaded by dlopen() a thread's first error may allocate memory
@@ -176,7 +175,7 @@ typedef struct ist_build_options {
   size_t struct_size;
   double voxel_size;      /* edge of a voxel, mesh units; required */
   int32_t spheres;        /* IST_SPHERES_...: the bounds to save */
-  int32_t keep_triangles; /* 1: keep the triangles, for exact answers */
+  int32_t drop_triangles; /* 1: no exact answers, and half the memory */
   int32_t proximity;      /* 1: add the voxels near the outside, for a scene's proximity effect */
   int32_t reserved;       /* zero */
   uint64_t max_memory;    /* memory limit, bytes; default 4 GiB */
@@ -232,16 +231,13 @@ typedef struct ist_query_options {
   int32_t spheres;         /* IST_SPHERES_... */
   int32_t workers;         /* 1 (default) or 2: a resident thread helps */
   int64_t period_ns;       /* with two workers: interval of queries; default 1 ms, -1: no pause */
-  uint64_t frontier_pairs; /* capacity for the node pairs of a level, 12 bytes each; up to 2^26,
-                              default 2^16. Answers do not depend on it */
+  uint64_t frontier_pairs; /* most node pairs of a level, 12 bytes each; default 2^16, to 2^26 */
   uint64_t reserved;       /* passed over; was a capacity that exact questions do without */
-  int64_t contacts;     /* most contacts, up to 4096; default 32; -1: no contacts, which saves about
-                           3 MB */
-  const char* target;   /* instruction set, such as "avx2"; default: the best. Same answers */
-  double push_distance; /* distance at which springs begin, in mean voxel sizes, up to 2;
-                           default 2; -1: springs begin where surfaces meet */
-  uint64_t front_pairs; /* capacity for leaf pairs kept from pose to pose, 224 bytes each; up to
-                           2^26, 0: none. For slow motion. Answers do not depend on it */
+  int64_t contacts;        /* most contacts, up to 4096; default 32; -1: none, 3 MB less memory */
+  const char* target;      /* instruction set, such as "avx2"; default: the best. Same answers */
+  double push_distance;    /* distance at which springs begin, in mean voxel sizes, up to 2;
+                              default 2; -1: springs begin where surfaces meet */
+  uint64_t front_pairs; /* most leaf pairs kept in slow motion, 224 bytes each, to 2^26; 0: none */
 } ist_query_options;
 
 /* Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
@@ -315,9 +311,8 @@ typedef struct ist_contact {
   double weight;      /* an area, mesh units^2; falls to 0 where a contact ends */
 } ist_contact;
 
-/* Sums over all leaf pairs, for forces on the moving body; units for meshes in mm. A pair has
- * weight w, normal n, depth d and position p; springs begin at depth d0, the negative push
- * distance. */
+/* Sums over all leaf pairs, for forces on the moving body, of meshes in mm. A pair has weight w,
+ * normal n, depth d and position p; springs begin at depth d0, the negative push distance. */
 typedef struct ist_contact_sums {
   size_t struct_size;
   uint64_t pairs;            /* leaf pairs with a weight above 0 */
@@ -347,27 +342,29 @@ typedef struct ist_distance_result {
   size_t struct_size;
   double lower, upper; /* the distance between the surfaces is in [lower, upper] */
   uint64_t sphere_tests;
-  int32_t complete; /* 1: no wider than the tolerance, but for rounding */
+  int32_t complete; /* 1: the interval is no wider than the tolerance */
   int32_t reserved; /* zero */
+  double narrowest; /* no tolerance below this width can be reached at this pose */
 } ist_distance_result;
 
-/* Bounds the distance between the surfaces by an interval no wider than `tolerance`, or, without
- * triangles, than twice the resolution where that is more. Errors: IST_POSE_INVALID,
- * IST_ARGUMENT_INVALID. Cost: 0.02 to 0.7 ms for jaws. [real time] */
+/* Bounds the distance between the surfaces by an interval no wider than `tolerance`, or `narrowest`
+ * where that is more; `budget` as for leaf pairs. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID.
+ * Cost: 0.02 to 0.7 ms for jaws. [real time] */
 IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
+                                        const ist_budget* budget,
                                         ist_distance_result* result) IST_NOEXCEPT;
 
 /* The answer of ist_query_intersects. */
 enum {
   IST_ANSWER_UNKNOWN = 0, /* after an error */
   IST_ANSWER_NO = 1,
-  IST_ANSWER_NEAR = 2, /* bounds of leaves overlap; without triangles the answer stays open */
+  IST_ANSWER_NEAR = 2, /* open: without triangles bounds of leaves overlap, or the budget ended */
   IST_ANSWER_YES = 3
 };
 
 /* Decides whether the bodies intersect: an IST_ANSWER_... Errors: IST_POSE_INVALID. [real time] */
 IST_C_API ist_status ist_query_intersects(ist_query* query, const double pose[16],
-                                          int32_t* answer) IST_NOEXCEPT;
+                                          const ist_budget* budget, int32_t* answer) IST_NOEXCEPT;
 
 /* Two triangles with a common point, by index. */
 typedef struct IST_MAY_ALIAS ist_triangle_pair {
@@ -380,14 +377,18 @@ typedef struct ist_triangle_pairs_result {
   uint64_t written; /* valid elements of the array */
   uint64_t sphere_tests;
   int32_t truncated; /* 1: the array was too short and holds the first pairs */
-  int32_t reserved;  /* zero */
+  int32_t complete;  /* 0: the budget ended the search; there may be more pairs */
 } ist_triangle_pairs_result;
 
 /* Finds all pairs of triangles with a common point, exactly, sorted as leaf pairs are. Errors:
- * IST_POSE_INVALID; IST_TRIANGLES_MISSING. Cost: about 1.2 us per pair. [real time] */
+ * IST_POSE_INVALID; IST_TRIANGLES_MISSING. Cost: 0.1 to 0.2 us per pair. [real time] */
 IST_C_API ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
-                                              ist_triangle_pair* pairs, size_t capacity,
+                                              const ist_budget* budget, ist_triangle_pair* pairs,
+                                              size_t capacity,
                                               ist_triangle_pairs_result* result) IST_NOEXCEPT;
+
+/* Forgets what earlier poses left behind: the next answers are those of a new query. [real time] */
+IST_C_API ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT;
 
 /* Frees a query. */
 IST_C_API ist_status ist_query_free(ist_query* query) IST_NOEXCEPT;

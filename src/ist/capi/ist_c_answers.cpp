@@ -173,7 +173,7 @@ ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffnes
 }
 
 ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
-                              ist_distance_result* result) IST_NOEXCEPT {
+                              const ist_budget* budget, ist_distance_result* result) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
@@ -181,26 +181,30 @@ ist_status ist_query_distance(ist_query* query, const double pose[16], double to
       return call.fail(IST_ARGUMENT_INVALID, "tolerance is {}: pass a number of at least 0",
                        tolerance);
     }
+    ist::Budget allowed;
+    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance);
+    const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance, allowed);
     if (const ist_status wrong = status_of(call, found.status)) return wrong;
-    write_sized(
-        {0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete, 0},
-        *result);
+    write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
+                 0, found.narrowest},
+                *result);
     return IST_OK;
   });
 }
 
-ist_status ist_query_intersects(ist_query* query, const double pose[16],
+ist_status ist_query_intersects(ist_query* query, const double pose[16], const ist_budget* budget,
                                 int32_t* answer) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status missing = call.need({{"answer", answer}})) return missing;
     *answer = IST_ANSWER_UNKNOWN;
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    ist::Budget allowed;
+    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    const ist::IntersectionResult found = held->query.intersects(to_isometry(pose));
+    const ist::IntersectionResult found = held->query.intersects(to_isometry(pose), allowed);
     if (const ist_status wrong = status_of(call, found.status)) return wrong;
     *answer = answer_of(found.answer);
     return IST_OK;
@@ -208,23 +212,36 @@ ist_status ist_query_intersects(ist_query* query, const double pose[16],
 }
 
 ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
-                                    ist_triangle_pair* pairs, size_t capacity,
+                                    const ist_budget* budget, ist_triangle_pair* pairs,
+                                    size_t capacity,
                                     ist_triangle_pairs_result* result) IST_NOEXCEPT {
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
     if (const ist_status missing = call.need_array("pairs", pairs, capacity)) return missing;
+    ist::Budget allowed;
+    if (const ist_status wrong = read_budget(call, budget, allowed)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
     const ist::TrianglePairsResult found = held->query.triangle_pairs(
-        to_isometry(pose), {reinterpret_cast<ist::TrianglePair*>(pairs), capacity});
+        to_isometry(pose), {reinterpret_cast<ist::TrianglePair*>(pairs), capacity}, allowed);
     if (const ist_status wrong = status_of(call, found.status)) return wrong;
     ist_triangle_pairs_result values{};
     values.pairs = found.triangle_pairs;
     values.written = std::min<std::uint64_t>(found.triangle_pairs, capacity);
     values.sphere_tests = found.sphere_tests;
     values.truncated = found.truncated;
+    values.complete = found.complete;
     write_sized(values, *result);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    held->query.forget();
     return IST_OK;
   });
 }

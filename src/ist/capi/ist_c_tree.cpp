@@ -20,15 +20,15 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
                      known.spheres);
   }
   const auto is_flag = [](std::int32_t value) { return value == 0 || value == 1; };
-  if (!is_flag(known.keep_triangles) || !is_flag(known.proximity) || known.reserved != 0) {
+  if (!is_flag(known.drop_triangles) || !is_flag(known.proximity) || known.reserved != 0) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->keep_triangles is {}, proximity is {} and reserved is {}: pass 0 or "
+                     "options->drop_triangles is {}, proximity is {} and reserved is {}: pass 0 or "
                      "1 for the first two and 0 for the last",
-                     known.keep_triangles, known.proximity, known.reserved);
+                     known.drop_triangles, known.proximity, known.reserved);
   }
   options.voxel_size = known.voxel_size;
   options.spheres = policy_of(known.spheres).value_or(options.spheres);
-  options.keep_triangles = known.keep_triangles == 1;
+  options.keep_triangles = known.drop_triangles == 0;
   options.proximity = known.proximity == 1;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
   return IST_OK;

@@ -19,7 +19,7 @@ ist_status status_of(const Call& call, QueryStatus status) {
           "0 1 as the last row and a rotation that is orthonormal to 1e-5");
     case QueryStatus::kNoTriangles:
       return call.fail(IST_TRIANGLES_MISSING,
-                       "a tree has no triangles: build both trees with keep_triangles = 1");
+                       "a tree has no triangles: build both trees with drop_triangles = 0");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
       break;

@@ -15,17 +15,25 @@ namespace {
 constexpr std::size_t kFewGroups = 16;
 
 // Ends at the first leaf pair.
-struct AnyLeafPair : VisitorBase {
-  const SearchPose& pose;
-  bool found = false;
+class AnyLeafPair : public MeteredVisitor {
+ public:
+  AnyLeafPair(const SearchPose& pose, const BudgetMeter& meter) noexcept
+      : MeteredVisitor(pose, meter, Measured::kNothing) {}
 
-  explicit AnyLeafPair(const SearchPose& at) noexcept : pose(at) {}
-  Advanced advance(const SearchBatch& batch) noexcept { return batch.advance(pose); }
-  bool leaves(const Frontier& /*pairs*/) noexcept {
-    found = true;
-    return false;
+  [[nodiscard]] bool found() const noexcept { return found_; }
+  Advanced advance(const SearchBatch& batch) noexcept {
+    const Advanced made = batch.advance(pose_, meter_.allow());
+    meter_.spend(made.tests);
+    return made;
+  }
+  bool leaves(const Frontier& pairs) noexcept {
+    found_ = pairs.moving_count > 0;
+    return !found_;
   }
   static std::size_t most_groups() noexcept { return kFewGroups; }
+
+ private:
+  bool found_ = false;
 };
 
 }  // namespace
@@ -45,30 +53,34 @@ Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
-IntersectionResult Query::intersects(const Eigen::Isometry3d& pose) noexcept {
+IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
   const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy};
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose};
-  IntersectionResult result;
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  IntersectionResult result{.sphere_tests = 1};
   if (!bodies->roots.overlap) return result;
   if (s.exact) {
-    bool found = false;
-    s.exact->any({*project_to_rigid(pose), bodies->relative}, {}, found);
-    if (found) result.answer = Answer::kYes;
+    const ExactSearch::Any any = s.exact->any({*project_to_rigid(pose), bodies->relative}, budget);
+    result.sphere_tests += any.tests;
+    result.complete = any.complete;
+    result.answer = any.found ? Answer::kYes : any.complete ? Answer::kNo : Answer::kNear;
     return result;
   }
   const SearchPose from = s.to_float(*bodies);
-  AnyLeafPair any(from);
-  s.serial().run(any);
-  if (any.found) {
+  const BudgetMeter meter(budget, budget.has_tests() ? result.sphere_tests : 0);
+  AnyLeafPair any(from, meter);
+  const bool whole = s.serial().run(any) == s.plan.steps().size();
+  result.sphere_tests += any.tests() - meter.spent();
+  result.complete = whole || any.found();
+  if (any.found()) {
     QueryResult of_pairs;
     s.set_pad(2 * s.pad_of(from), of_pairs);
-    result.answer = Answer::kNear;
     result.resolution = of_pairs.resolution;
   }
+  if (any.found() || !whole) result.answer = Answer::kNear;
   return result;
 }
 
@@ -122,21 +134,32 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
 }
 
 TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
-                                          std::span<TrianglePair> out) noexcept {
+                                          std::span<TrianglePair> out,
+                                          const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
   const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy};
-  if (!s.exact) return {.status = QueryStatus::kNoTriangles};
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  if (!s.exact) return {.status = QueryStatus::kNoTriangles, .complete = false};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose};
-  TrianglePairsResult result;
-  result.sphere_tests = 1;
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  TrianglePairsResult result{.sphere_tests = 1};
   if (!bodies->roots.overlap) return result;
-  result.sphere_tests += s.exact->pairs({*project_to_rigid(pose), bodies->relative}, {}, out).tests;
+  const ExactSearch::End end =
+      s.exact->pairs({*project_to_rigid(pose), bodies->relative}, budget, out);
+  result.sphere_tests += end.tests;
+  result.complete = end.complete;
   result.triangle_pairs = s.exact->pair_count();
   result.truncated = result.triangle_pairs > out.size();
   return result;
+}
+
+void Query::forget() noexcept {
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return;
+  if (s.exact) s.exact->forget();
+  if (s.coherent) s.coherent->forget();
 }
 
 bool Query::has_triangles() const noexcept { return state_->exact.has_value(); }
@@ -155,7 +178,9 @@ std::size_t Query::bytes() const noexcept {
 
 Sharing Query::sharing() const noexcept {
   const auto* shared = std::get_if<SharedSearch>(&state_->searches);
-  return shared != nullptr ? shared->sharing() : Sharing{};
+  Sharing sum = shared != nullptr ? shared->sharing() : Sharing{};
+  if (state_->exact) sum += state_->exact->sharing();
+  return sum;
 }
 
 }  // namespace ist

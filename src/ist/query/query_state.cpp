@@ -51,7 +51,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    exact.emplace(fixed, moving, kernels);
+    exact.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
   }
 }
 

@@ -55,8 +55,12 @@ struct QueryState {
                    const SearchPose& pose, const Budget& budget, Sink& sink,
                    QueryResult& result) noexcept;
   void set_pad(double pad, QueryResult& result) const noexcept;
-  /// Narrows the interval of `result` by leaves, to a width of `tolerance` where leaves can decide.
-  void nearest_leaves(const Approach& approach, double tolerance, DistanceResult& result) noexcept;
+  /// Narrow the interval of `result` to a width of `tolerance`, as far as triangles or leaves can,
+  /// and the budget allows.
+  void nearest_triangles(const Eigen::Isometry3d& pose, const Approach& bodies, double tolerance,
+                         const Budget& budget, DistanceResult& result) noexcept;
+  void nearest_leaves(const Approach& bodies, double tolerance, const Budget& budget,
+                      DistanceResult& result) noexcept;
 
   const SphereTree fixed, moving;  // which share the content
   SpherePolicy policy;

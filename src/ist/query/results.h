@@ -17,14 +17,16 @@ namespace ist {
 /// A search never makes more tests than allowed, but for the test of the roots, which is always
 /// made. With a deadline it reads the clock at least every 500 tests, every 512 leaf pairs, and
 /// every 2,048 pairs of a front whose rows were turned, some 3 ns each, and ends at the first look
-/// after the deadline. The result of a search that ended early states the level, and the interval of
-/// the distance that the tests so far tell. With a limit of tests alone the answer is the same on
-/// every machine and in every run; a limit of as many tests as a deadline allowed ends the search at
-/// the same place, but for an answer from kept pairs: where a deadline ended it, it holds none.
+/// after the deadline. The result of a search that ended early states the level, and the interval
+/// of the distance that the tests so far tell. With a limit of tests alone the answer is the same
+/// on every machine and in every run; a limit of as many tests as a deadline allowed ends the
+/// search at the same place, but for an answer from kept pairs: where a deadline ended it, it holds
+/// none.
 struct Budget {
   using Clock = std::chrono::steady_clock;
 
-  /// The most pairs of bounds to test.
+  /// The most pairs of bounds to test. Of clusters of triangles, a pair whose triangles are
+  /// compared counts as 16 more.
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   Clock::time_point deadline = Clock::time_point::max();
   /// The clock of the deadline.
@@ -92,32 +94,38 @@ struct TrianglePair {
 /// The answer of Query::triangle_pairs.
 struct TrianglePairsResult {
   QueryStatus status = QueryStatus::kDone;
+  bool complete = true;              ///< the search came to its end: these are all pairs
   bool truncated = false;            ///< the span was too short and holds the first pairs
-  std::uint64_t triangle_pairs = 0;  ///< all pairs that intersect, in the span or not
-  std::uint64_t sphere_tests = 0;
+  std::uint64_t triangle_pairs = 0;  ///< pairs that intersect and were found, in the span or not
+  std::uint64_t sphere_tests = 0;    ///< as Budget::tests counts them
 };
 
 /// The answer of Query::distance.
 struct DistanceResult {
   QueryStatus status = QueryStatus::kDone;
-  /// The interval is no wider than the tolerance, but for the rounding of a distance of triangles.
-  bool complete = false;
+  bool complete = false;  ///< the interval is no wider than the tolerance
   DistanceInterval distance{};
-  std::uint64_t sphere_tests = 0;
+  /// The width below which no tolerance can be reached here: the rounding of a distance of
+  /// triangles; without triangles, twice the resolution.
+  double narrowest = 0;
+  std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
 };
 
 /// Whether two bodies intersect.
 enum class Answer : std::uint8_t {
   kNo,
-  kNear,  ///< bounds of leaves overlap, and there are no triangles to decide by
+  kNear,  ///< bounds of leaves overlap, and there are no triangles to decide by; or a budget ended
+          ///< the search before the bodies were known to intersect or to be apart
   kYes,
 };
 
 /// The answer of Query::intersects.
 struct IntersectionResult {
   QueryStatus status = QueryStatus::kDone;
-  Answer answer = Answer::kNo;  ///< exact where both trees have triangles; kNo after an error
-  double resolution = 0;        ///< with kNear: the surfaces are no farther apart, mesh units
+  Answer answer = Answer::kNo;     ///< exact where both trees have triangles; kNo after an error
+  bool complete = true;            ///< no budget ended the search
+  double resolution = 0;           ///< with kNear, complete: the surfaces are no farther apart
+  std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
 };
 
 /// How often the second worker of a query helped, since the query was made.
@@ -127,6 +135,15 @@ struct Sharing {
   std::uint64_t shared = 0;   ///< queries that the worker took up
   std::uint64_t chunks = 0;   ///< chunks of work that it did in them
   std::uint64_t dropped = 0;  ///< chunks that it did too late, or had no room for
+
+  Sharing& operator+=(const Sharing& other) noexcept {
+    queries += other.queries;
+    worth += other.worth;
+    shared += other.shared;
+    chunks += other.chunks;
+    dropped += other.dropped;
+    return *this;
+  }
 };
 
 /// Takes leaf pairs in order, many at a time, while a query finds them.

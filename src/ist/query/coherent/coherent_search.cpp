@@ -86,7 +86,10 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
     return found.front != nullptr;
   };
   const bool busy = job_.busy();
-  if (!busy) static_cast<void>(adopt(pose, need));
+  if (!busy) {
+    drop_stale();
+    static_cast<void>(adopt(pose, need));
+  }
   if (holds_ && answer_from_kept()) return found;
   holds_ = false;
   if (busy) return found;
@@ -162,6 +165,7 @@ void CoherentSearch::prepare(const RelativePose& pose, double margin, std::uint6
   }
   schedule_.tick();
   if (job_.busy() || budget.is_past()) return;
+  drop_stale();
   give_up_where_full();
   using State = FrontSearch::State;
   const double need = most_apart(pose, fixed_, moving_, margin);
@@ -215,6 +219,20 @@ void CoherentSearch::pass_on(const FrontLanes& front, std::size_t begin, std::si
 void CoherentSearch::pass_on(const FrontLanes& front, std::size_t begin, std::size_t end,
                              ContactOutput& sink) noexcept {
   kernels_.add_front(front, plan_.steps().back(), rows_.rows(), begin, end, sink.adder());
+}
+
+void CoherentSearch::forget() noexcept {
+  holds_ = at_once_ = false;
+  track_ = {};
+  schedule_.forget();
+  last_pairs_ = search_tests_ = 0;
+  stale_ = true;
+  if (!job_.busy()) drop_stale();
+}
+
+void CoherentSearch::drop_stale() noexcept {
+  if (stale_) search_.drop();
+  stale_ = false;
 }
 
 std::size_t CoherentSearch::bytes() const noexcept {

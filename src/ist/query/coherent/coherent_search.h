@@ -55,6 +55,8 @@ class CoherentSearch {
   template <class Sink>
   [[nodiscard]] bool pass_on(const Front& front, const SearchPose& pose, const Budget& budget,
                              Sink& sink) noexcept;
+  /// Begins afresh, as if there had been no pose. Does not wait for the worker.
+  void forget() noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -70,6 +72,7 @@ class CoherentSearch {
   void want(const RelativePose& centre, double extent, std::uint64_t most_tests) noexcept;
   void want_next(const RelativePose& pose, double need) noexcept;
   void give_up_where_full() noexcept;
+  void drop_stale() noexcept;
   [[nodiscard]] bool may_fit() const noexcept;
 
   const SearchPlan& plan_;
@@ -80,6 +83,7 @@ class CoherentSearch {
   Front fronts_[2];
   Front *kept_ = fronts_, *next_ = fronts_ + 1;
   bool holds_ = false;  // kept_ is whole
+  bool stale_ = false;  // the next front was forgotten while the worker was busy with it
   FrontSearch search_;  // for next_; the worker's while the job is busy
   FrontRowMemory rows_;
   FrontSchedule schedule_;

@@ -41,6 +41,11 @@ FrontSchedule::FrontSchedule(double voxel_size, bool helped) noexcept
       widest_(kMostSlack * voxel_size),
       clearance_(kMostSlack * voxel_size) {}
 
+void FrontSchedule::forget() noexcept {
+  widest_ = clearance_ = kMostSlack * voxel_size_;
+  pause_ = wait_ = 0;
+}
+
 double FrontSchedule::slack(const Pace& pace) const noexcept {
   const double wanted = std::max(kTicksOfSlack * pace.drift, kTicksOfTrembling * pace.speed);
   return std::min(std::clamp(wanted, kLeastSlack * voxel_size_, kMostSlack * voxel_size_), widest_);

@@ -63,6 +63,8 @@ class FrontSchedule {
   void searched() noexcept;
   void took_up(bool empty, double clear) noexcept;
   void was_full(bool clearance) noexcept;
+  /// Begins afresh.
+  void forget() noexcept;
   /// To be called once in each tick that has a complete answer.
   void tick() noexcept { wait_ -= wait_ > 0 ? 1 : 0; }
 

@@ -13,6 +13,13 @@
 
 namespace ist {
 
+/// A moving node above clusters, and the fixed nodes that it may be near.
+struct ClusterTask {
+  std::uint32_t moving;
+  int fixed_level;
+  LaneNodes nodes;
+};
+
 /// A traversal of two trees of clusters, depth first: one moving node after the other, each with
 /// all fixed nodes of its level that may be near it. Where the fixed tree is deeper, its upper
 /// levels come first; where the moving tree is, its own.
@@ -23,6 +30,7 @@ namespace ist {
 ///     bool visit(const ClusterPairs&)     compares the triangles; false ends the search
 ///     bool kMostFirst                     begin with the children that may meet most nodes
 ///     bool kMeasuresRest                  nearest_left() is asked for
+///     bool take(const ClusterTask&)       instead of visit(), for later; false ends the search
 class ClusterSearch {
  public:
   /// Reserves all memory: 80 bytes for each fixed cluster. Holds references to both trees.
@@ -34,6 +42,12 @@ class ClusterSearch {
   /// Searches from the roots. Returns false where the budget or the visitor ended the search.
   template <class Visitor>
   bool run(ClusterBudget& budget, Visitor& visitor) noexcept;
+
+  /// Goes on with a task that another search was given at the same pose.
+  template <class Visitor>
+  bool run(const ClusterTask& task, ClusterBudget& budget, Visitor& visitor) noexcept {
+    return descend(1, task.moving, task.fixed_level, task.nodes, budget, visitor);
+  }
 
   /// The clusters, at the pose.
   [[nodiscard]] const ClusterStep& step() const noexcept { return step_; }
@@ -113,6 +127,9 @@ template <class Visitor>
 bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_level,
                             LaneNodes nodes, ClusterBudget& budget, Visitor& visitor) noexcept {
   if (nodes.count == 0) return true;
+  if constexpr (requires(ClusterTask task) { visitor.take(task); }) {
+    if (moving_level == 1) return visitor.take({moving, fixed_level, nodes});
+  }
   Step& step = step_at(moving_level);
   const std::uint32_t lanes = moving_.child_count(moving_level - 1, moving);
   kernels_.turn_nodes(moving_.bounds(moving_level - 1)[moving], step_.pose, step.turned);
@@ -150,7 +167,9 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
     }
     pairs = deeper;
   }
-  if (moving_level == 1) return compare({step.turned, first, pairs}, budget, visitor);
+  if constexpr (requires(ClusterPairs some) { visitor.visit(some); }) {
+    if (moving_level == 1) return compare({step.turned, first, pairs}, budget, visitor);
+  }
   const Groups groups = by_lanes(pairs, Visitor::kMostFirst);
   for (std::size_t k = 0; k < groups.count; ++k) {
     const LaneNodes& group = groups.pairs[k];

@@ -4,16 +4,19 @@
 #include <cmath>
 
 #include "ist/base/ordered_vector.h"
-#include "ist/query/exact/moved_triangles.h"
 #include "ist/query/exact/nearest_beam.h"
-#include "ist/query/exact/triangle_distance.h"
+#include "ist/query/exact/nearest_pair.h"
+#include "ist/query/exact/triangle_visitors.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist {
 namespace {
 
-// The length of a list of indices that the kernels write.
-constexpr std::size_t kListed = FoundTriangles::kRoom + kClusterWidth;
+// The test of the roots, which counts.
+constexpr std::uint64_t kRootTests = 1;
+// Where the last nearest pair is farther now by more than this factor, and by the tolerance, others
+// are looked for first.
+constexpr double kNearWitness = 1.25;
 // Pairs that are sorted fast.
 constexpr std::size_t kSorted = 1 << 14;
 
@@ -40,191 +43,10 @@ double longest_edge(const TriangleMesh& mesh) {
   return std::sqrt(squared);
 }
 
-float rounded_up(double value) noexcept {
-  return static_cast<float>(value * (1 + 0x1p-22)) + std::numeric_limits<float>::min();
-}
-
-// Two meshes, the moving one at a pose.
-struct Meshes {
-  const TriangleMesh& fixed;
-  MovedTriangles moving;
-
-  [[nodiscard]] bool meet(TriangleIds ids) const noexcept {
-    return triangles_meet(corners_of(fixed, ids.fixed), moving[ids.moving]);
-  }
-};
-
-// What visitors share: the kernels, and where they put what they find.
-struct Bench {
-  const ClusterStep& step;
-  const ClusterKernels& kernels;
-  const Meshes& meshes;
-  TriangleBatch& batch;
-  FoundTriangles& found;
-};
-
-// Calls `run(rest)` for the rest of the pairs until it has done all, and `take()` after each,
-// which empties the lists of what was found and says whether to go on.
-template <class Run, class Take>
-bool in_turns(const ClusterPairs& clusters, Run run, Take take) {
-  const LaneNodes& all = clusters.pairs;
-  for (std::size_t done = 0; done < all.count;) {
-    done += run(ClusterPairs{clusters.lanes, clusters.moving, all.part(done, all.count)});
-    if (!take()) return false;
-  }
-  return true;
-}
-
-// Lists all pairs that intersect.
-class AllPairs {
- public:
-  static constexpr bool kMostFirst = false, kMeasuresRest = false;
-
-  AllPairs(Bench bench, PairList& list) noexcept : bench_(bench), list_(list) {}
-
-  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
-  bool visit(const ClusterPairs& clusters) noexcept {
-    return in_turns(
-        clusters,
-        [&](const ClusterPairs& rest) {
-          return bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
-        },
-        [&] {
-          if (!bench_.found.has_room()) take();
-          return true;
-        });
-  }
-  // Decides and takes what is left.
-  void finish() noexcept {
-    if (!bench_.found.has_room()) take();
-    bench_.kernels.decide_triangles(bench_.batch, bench_.found);
-    take();
-  }
-
- private:
-  void take() noexcept {
-    FoundTriangles& found = bench_.found;
-    for (std::size_t k = 0; k < found.certain.count; ++k) add(found.certain[k]);
-    for (std::size_t k = 0; k < found.open.count; ++k) {
-      if (bench_.meshes.meet(found.open[k])) add(found.open[k]);
-    }
-    found.certain.count = found.open.count = 0;
-  }
-  void add(TriangleIds ids) noexcept { list_.add({ids.fixed, ids.moving}); }
-
-  Bench bench_;
-  PairList& list_;
-};
-
-// Ends with the first pair that intersects.
-class AnyPair {
- public:
-  static constexpr bool kMostFirst = true, kMeasuresRest = false;
-
-  explicit AnyPair(Bench bench) noexcept : bench_(bench) {}
-
-  [[nodiscard]] bool found() const noexcept { return found_; }
-  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
-  bool visit(const ClusterPairs& clusters) noexcept {
-    return in_turns(
-        clusters,
-        [&](const ClusterPairs& rest) {
-          const std::size_t done =
-              bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
-          if (bench_.batch.count > 0) bench_.kernels.decide_triangles(bench_.batch, bench_.found);
-          return done;
-        },
-        [&] {
-          take();
-          return !found_;
-        });
-  }
-
- private:
-  void take() noexcept {
-    FoundTriangles& found = bench_.found;
-    found_ = found.certain.count > 0;
-    for (std::size_t k = 0; k < found.open.count && !found_; ++k) {
-      found_ = bench_.meshes.meet(found.open[k]);
-    }
-    found.certain.count = found.open.count = 0;
-  }
-
-  Bench bench_;
-  bool found_ = false;
-};
-
-// Finds the nearest pair, or one that is farther by at most the tolerance. Only nodes are left out
-// for the tolerance's sake; of the triangles that are compared the nearest is found, so that the
-// answer does not depend on how the kernels decide.
-class NearestPair {
- public:
-  static constexpr bool kMostFirst = false, kMeasuresRest = true;
-
-  NearestPair(Bench bench, double tolerance, double longest_edge, double nearest) noexcept
-      : bench_(bench),
-        tolerance_(tolerance > 0 ? tolerance : 0),  // a NaN too
-        longest_edge_(longest_edge),
-        nearest_(nearest) {}
-
-  [[nodiscard]] double distance() const noexcept { return nearest_; }
-  [[nodiscard]] double error() const noexcept {
-    return nearest_ > 0 ? kTriangleDistanceError * (longest_edge_ + nearest_) : 0;
-  }
-  /// Returns the distance from which on nothing was looked for.
-  [[nodiscard]] double within() const noexcept {
-    return std::max(0.0, nearest_ + 2 * error() - tolerance_);
-  }
-  [[nodiscard]] float reach() const noexcept {
-    return rounded_up(within() + double{bench_.step.pose.error});
-  }
-  bool visit(const ClusterPairs& clusters) noexcept {
-    const float margin = rounded_up(2 * error() + double{bench_.step.pose.error});
-    Reach reaches{rounded_up(nearest_) + margin, margin};
-    return in_turns(
-        clusters,
-        [&](const ClusterPairs& rest) {
-          return bench_.kernels.near_clusters(bench_.step, rest, reaches, bench_.batch,
-                                              bench_.found);
-        },
-        [&] {
-          measure_found();
-          bench_.found.open.count = 0;
-          return nearest_ > 0;
-        });
-  }
-
- private:
-  // First the pair that may be the nearest, so that few others may still be nearer.
-  void measure_found() noexcept {
-    const FoundTriangles& found = bench_.found;
-    const std::size_t count = found.open.count;
-    const auto first = static_cast<std::size_t>(
-        std::min_element(found.squares, found.squares + count) - found.squares);
-    if (count > 0) measure(found.open[first]);
-    for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
-      const double enough = nearest_ + 2 * error() + double{bench_.step.pose.error};
-      if (k != first && double{found.squares[k]} <= enough * enough) measure(found.open[k]);
-    }
-  }
-  void measure(TriangleIds ids) noexcept {
-    const TriangleCorners a = corners_of(bench_.meshes.fixed, ids.fixed);
-    const TriangleCorners b = bench_.meshes.moving[ids.moving];
-    const double boxes = box_distance_squared(a, b);
-    const double enough = nearest_ + 2 * error();
-    if (boxes > enough * enough || surely_farther(a, b, enough)) return;
-    nearest_ = boxes == 0 && triangles_meet(a, b)
-                   ? 0
-                   : std::min(nearest_, std::sqrt(distance_squared(a, b)));
-  }
-
-  Bench bench_;
-  double tolerance_, longest_edge_, nearest_;
-};
-
 }  // namespace
 
-ExactSearch::ExactSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels)
+ExactSearch::ExactSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
+                         const WorkerOptions& options)
     : fixed_(fixed),
       moving_(moving),
       fixed_clusters_(fixed.parts().triangles->clusters),
@@ -233,9 +55,11 @@ ExactSearch::ExactSearch(const SphereTree& fixed, const SphereTree& moving, cons
       largest_coordinate_(largest_coordinate(*moving.triangles())),
       longest_edge_(std::max(longest_edge(*fixed.triangles()), longest_edge(*moving.triangles()))),
       search_(fixed_clusters_, moving_clusters_, kernels_),
-      list_(kSorted),
-      ids_(4 * kListed),
-      squares_(kListed) {}
+      list_(kSorted) {
+  if (options.workers == 2) {
+    shared_.emplace(fixed_clusters_, moving_clusters_, kernels_, options.period);
+  }
+}
 
 double ExactSearch::moved_error(const Eigen::Isometry3d& rigid) const noexcept {
   return 0x1p-48 * (largest_coordinate_ + rigid.translation().cwiseAbs().maxCoeff());
@@ -275,67 +99,88 @@ ClusterPose ExactSearch::cluster_pose(const ExactPose& pose) const noexcept {
   return out;
 }
 
-void ExactSearch::clear_found() noexcept {
-  std::uint32_t* const ids = ids_.data();
-  found_ = {{ids, ids + kListed}, {ids + 2 * kListed, ids + 3 * kListed}, squares_.data()};
-  batch_.count = 0;
-}
-
 ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
                                     std::span<TrianglePair> out) noexcept {
-  clear_found();
   list_.begin(out);
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
-  AllPairs all({search_.step(), kernels_, meshes, batch_, found_}, list_);
-  ClusterBudget spent(budget, 0);
   search_.begin(cluster_pose(pose));
-  const bool complete = search_.run(spent, all);
+  AllPairs<PairList> all({search_.step(), kernels_, meshes, memory_}, list_);
+  ClusterBudget spent(budget, kRootTests);
+  const bool complete =
+      shared_ ? shared_->run(search_, meshes, budget, spent, all, list_) : search_.run(spent, all);
   all.finish();
   list_.finish();
-  return {complete, spent.spent()};
+  if (list_.count() > 0 && !out.empty()) met_ = {out[0].fixed, out[0].moving};
+  return {complete, spent.spent() - kRootTests};
 }
 
-ExactSearch::End ExactSearch::any(const ExactPose& pose, const Budget& budget,
-                                  bool& found) noexcept {
-  clear_found();
+ExactSearch::Any ExactSearch::any(const ExactPose& pose, const Budget& budget) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
-  AnyPair any({search_.step(), kernels_, meshes, batch_, found_});
-  ClusterBudget spent(budget, 0);
+  if (still_meet(meshes, budget)) return {{true, 1}, true};
+  AnyPair any({search_.step(), kernels_, meshes, memory_});
+  ClusterBudget spent(budget, kRootTests);
   search_.begin(cluster_pose(pose));
   const bool complete = search_.run(spent, any);
-  found = any.found();
-  return {complete || found, spent.spent()};
+  if (any.found()) met_ = any.found();
+  return {{complete || any.found(), spent.spent() - kRootTests}, any.found().has_value()};
 }
 
-ExactSearch::End ExactSearch::nearest(const ExactPose& pose, double tolerance, const Budget& budget,
-                                      DistanceInterval& distance) noexcept {
-  clear_found();
+ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double tolerance,
+                                          const Budget& budget,
+                                          DistanceInterval& distance) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
-  const ClusterPose at = cluster_pose(pose);
-  NearestPair nearest({search_.step(), kernels_, meshes, batch_, found_}, tolerance, longest_edge_,
-                      distance.upper);
-  ClusterBudget spent(budget, 0);
-  search_.begin(at);
-  TurnedBlock turned;
-  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, at)) {
-    const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
-    kernels_.turn_nodes(moving_clusters_.bounds(0)[block], at, turned);
-    const std::uint32_t code = kClusterWidth * pair.fixed + lane;
-    nearest.visit({turned, kClusterWidth * block, {&code, 1}});
+  if (still_meet(meshes, budget)) {
+    distance = {0, 0};
+    return {{true, 1}, 0};
   }
+  search_.begin(cluster_pose(pose));
+  NearestPair nearest({search_.step(), kernels_, meshes, memory_}, tolerance, longest_edge_,
+                      distance.upper);
+  ClusterBudget spent(budget, kRootTests);
+  bool near = false;
+  if (nearest_ && !budget.has_tests()) {
+    nearest.measure(nearest_->ids);
+    near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance;
+    spent.spend(1);
+  }
+  if (!near) begin_nearest(spent, nearest);
   bool complete = nearest.distance() == 0 || search_.run(spent, nearest);
   complete = complete || nearest.distance() == 0;
+  if (nearest.distance() == 0) {
+    met_ = nearest.ids();
+  } else if (nearest.ids()) {
+    nearest_ = {*nearest.ids(), nearest.distance()};
+  }
   const double error = nearest.error();
   double lower =
       nearest.distance() > 0 ? std::min(nearest.within(), nearest.distance()) - error : 0;
   if (!complete) lower = std::min(lower, search_.nearest_left());
   distance = {std::max(distance.lower, lower), nearest.distance() + error};
-  return {complete, spent.spent()};
+  return {{complete, spent.spent() - kRootTests}, error};
+}
+
+// Returns whether the triangles that met last still do. A limit of tests does not ask.
+bool ExactSearch::still_meet(const Meshes& meshes, const Budget& budget) const noexcept {
+  return met_ && !budget.has_tests() && meshes.meet(*met_);
+}
+
+// Finds a first bound, as far as the budget allows.
+template <class Visitor>
+void ExactSearch::begin_nearest(ClusterBudget& budget, Visitor& nearest) noexcept {
+  const ClusterPose& pose = search_.step().pose;
+  TurnedBlock turned;
+  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, pose, budget)) {
+    if (!budget.allows(ClusterBudget::kClusterTests)) return;
+    budget.spend(ClusterBudget::kClusterTests);
+    const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
+    kernels_.turn_nodes(moving_clusters_.bounds(0)[block], pose, turned);
+    const std::uint32_t code = kClusterWidth * pair.fixed + lane;
+    nearest.visit({turned, kClusterWidth * block, {&code, 1}});
+  }
 }
 
 std::size_t ExactSearch::bytes() const noexcept {
-  return search_.bytes() + list_.bytes() + ids_.size() * sizeof(std::uint32_t) +
-         squares_.size() * sizeof(float) + sizeof(batch_);
+  return search_.bytes() + list_.bytes() + memory_.bytes() + (shared_ ? shared_->bytes() : 0);
 }
 
 }  // namespace ist

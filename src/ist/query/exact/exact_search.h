@@ -1,16 +1,24 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <vector>
 
 #include "ist/query/exact/cluster_search.h"
 #include "ist/query/exact/pair_list.h"
+#include "ist/query/exact/shared_pairs.h"
+#include "ist/query/exact/triangle_visitors.h"
 #include "ist/query/relative_pose.h"
 #include "ist/tree/sphere_tree.h"
 #include "simd/dispatch.h"
 
 namespace ist {
+
+struct WorkerOptions {
+  int workers;                      ///< 1 or 2
+  std::chrono::nanoseconds period;  ///< as for ResidentWorker::tick
+};
 
 /// Two bodies at a pose, for exact questions.
 struct ExactPose {
@@ -19,17 +27,28 @@ struct ExactPose {
 };
 
 /// Answers questions about the triangles of two trees: a traversal of their clusters, a decision in
-/// float with a bound of its error, and exact arithmetic for what that leaves open. Works in the
-/// calling thread alone.
+/// float with a bound of its error, and exact arithmetic for what that leaves open. A second worker
+/// helps with pairs() alone.
+///
+/// Keeps witnesses, the triangles that met last and those that were nearest last. They are looked
+/// at first, unless the budget has a limit of tests. An answer to nearest() depends on the nearest
+/// ones alone: they are the same on every target, as those that met need not be.
 class ExactSearch {
  public:
   /// Reserves all memory. Both trees must have triangles. Holds references to both.
-  ExactSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels);
+  ExactSearch(const SphereTree& fixed, const SphereTree& moving, const Kernels& kernels,
+              const WorkerOptions& options);
 
   /// The end of a search, and its cost.
   struct End {
-    bool complete;        ///< not the budget
+    bool complete;        ///< the budget did not end it
     std::uint64_t tests;  ///< as ClusterBudget counts them
+  };
+  struct Any : End {
+    bool found;
+  };
+  struct Nearest : End {
+    double error;  ///< of a distance of triangles, mesh units
   };
 
   /// Finds all pairs of triangles that intersect; the first of them go into `out`. pair_count()
@@ -37,15 +56,20 @@ class ExactSearch {
   End pairs(const ExactPose& pose, const Budget& budget, std::span<TrianglePair> out) noexcept;
   [[nodiscard]] std::uint64_t pair_count() const noexcept { return list_.count(); }
 
-  /// Tests whether any pair of triangles intersects, and sets `found`.
-  End any(const ExactPose& pose, const Budget& budget, bool& found) noexcept;
+  /// Tests whether any pair of triangles intersects.
+  Any any(const ExactPose& pose, const Budget& budget) noexcept;
 
-  /// Bounds the distance between the surfaces by an interval that is no wider than `tolerance` and
-  /// twice distance_error(), unless the budget ended the search.
+  /// Bounds the distance between the surfaces by an interval that is no wider than `tolerance`, or
+  /// twice the error, unless the budget ended the search.
   ///
   /// @param distance bounds it already; narrowed
-  End nearest(const ExactPose& pose, double tolerance, const Budget& budget,
-              DistanceInterval& distance) noexcept;
+  Nearest nearest(const ExactPose& pose, double tolerance, const Budget& budget,
+                  DistanceInterval& distance) noexcept;
+
+  void forget() noexcept {
+    met_.reset();
+    nearest_.reset();
+  }
 
   /// Returns whether the bodies are so far apart, against their sizes, that float cannot tell their
   /// triangles' distances from each other.
@@ -53,11 +77,21 @@ class ExactSearch {
 
   /// Returns the rounding error of a triangle that is moved in double, mesh units.
   [[nodiscard]] double moved_error(const Eigen::Isometry3d& rigid) const noexcept;
+  /// Returns how often the second worker helped.
+  [[nodiscard]] Sharing sharing() const noexcept {
+    return shared_ ? shared_->sharing() : Sharing{};
+  }
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  struct Witness {
+    TriangleIds ids;
+    double distance;
+  };
   [[nodiscard]] ClusterPose cluster_pose(const ExactPose& pose) const noexcept;
-  void clear_found() noexcept;
+  [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
+  template <class Visitor>
+  void begin_nearest(ClusterBudget& budget, Visitor& nearest) noexcept;
 
   const SphereTree &fixed_, &moving_;
   const TriangleClusters &fixed_clusters_, &moving_clusters_;
@@ -65,10 +99,10 @@ class ExactSearch {
   double largest_coordinate_, longest_edge_;
   ClusterSearch search_;
   PairList list_;
-  std::vector<std::uint32_t> ids_;  // what the kernels find
-  std::vector<float> squares_;
-  FoundTriangles found_{};
-  TriangleBatch batch_;
+  FoundMemory memory_;
+  std::optional<SharedPairs> shared_;
+  std::optional<TriangleIds> met_;
+  std::optional<Witness> nearest_;
 };
 
 }  // namespace ist

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "ist/query/exact/cluster_budget.h"
 #include "ist/tree/clusters/triangle_clusters.h"
 #include "simd/exact/cluster_step.h"
 
@@ -10,7 +11,8 @@ namespace ist {
 inline constexpr std::size_t kBeamWidth = 6;
 
 /// Pairs of clusters that are near each other, best first, for the first bound of a distance: by
-/// going down both trees with the kBeamWidth pairs of nodes that score best at each level.
+/// going down both trees with the kBeamWidth pairs of nodes that score best at each level. None
+/// where the budget ends it.
 class NearestBeam {
  public:
   struct NodePair {
@@ -19,7 +21,8 @@ class NearestBeam {
   };
 
   NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
-              const ClusterKernels& kernels, const ClusterPose& pose) noexcept;
+              const ClusterKernels& kernels, const ClusterPose& pose,
+              ClusterBudget& budget) noexcept;
 
   [[nodiscard]] const NodePair* begin() const noexcept { return pairs_.data(); }
   [[nodiscard]] const NodePair* end() const noexcept { return pairs_.data() + count_; }

@@ -33,7 +33,8 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   SearchPose pose{};
   constexpr float kAll = std::numeric_limits<float>::infinity();
   pose.leaf = pose.inner = {kAll, kAll, kAll};
-  static_cast<void>(beam(pose));
+  BudgetMeter unlimited;
+  static_cast<void>(beam(pose, unlimited));
 }
 
 const Frontier& Search::roots() noexcept {
@@ -44,28 +45,35 @@ const Frontier& Search::roots() noexcept {
   return roots;
 }
 
-Search::Beam Search::beam(const SearchPose& pose) noexcept {
-  Beam beam{frontiers_.back(), {}, 0};
+float Search::beam(const SearchPose& pose, BudgetMeter& meter) noexcept {
+  float upper = DistanceBounds::kNone;
   Frontier in = roots();
   for (std::size_t i = 0; i < plan_.steps().size(); ++i) {
     SearchStep step = plan_.steps()[i];
     step.last = true;  // so that every pair is measured
     Frontier& out = frontiers_[i + 1];
+    // Returns whether the budget was enough.
     const auto test = [&](const SearchPose& with, DistanceBounds& bounds) {
       SearchCursor cursor;
       out.group_count = out.moving_count = 0;
       const SearchBatch batch{kernels_, step, in, cursor, out, *scratch_};
-      beam.tests += batch.measure(Measured::kBoth, with, bounds).tests;
+      Advanced made;
+      do {
+        made = batch.measure(Measured::kBoth, with, bounds, meter.allow());
+        meter.spend(made.tests);
+      } while (made.tests > 0 && !made.full && cursor.group < in.group_count);
+      return made.full || cursor.group >= in.group_count;
     };
     DistanceBounds all;
-    test(pose, all);
-    beam.bounds.upper = std::min(beam.bounds.upper, all.upper);
+    bool enough = test(pose, all);
+    upper = std::min(upper, all.upper);
     const float widest = 0.125F * step.radius_limit;
-    for (float width = widest;; width *= 0.5F) {
+    for (float width = widest; enough; width *= 0.5F) {
       DistanceBounds none;
-      test(inflated(pose, all.lower + width), none);
+      enough = test(inflated(pose, all.lower + width), none);
       if (out.moving_count <= kBeamPairs || width < kLeastWidth * widest) break;
     }
+    if (!enough) break;
     in = out;
     // A frontier that begins with more pairs ends with the first of them.
     in.moving_count = std::min(in.moving_count, kBeamPairs);
@@ -76,8 +84,7 @@ Search::Beam Search::beam(const SearchPose& pose) noexcept {
       in.groups[in.group_count - 1].end = static_cast<std::uint32_t>(in.moving_count);
     }
   }
-  frontiers_.back() = in;
-  return beam;
+  return upper;
 }
 
 std::size_t Search::bytes() const noexcept {

@@ -51,15 +51,10 @@ class Search {
     return frontiers_[step];
   }
 
-  /// The leaf pairs that a beam search found near each other.
-  struct Beam {
-    const Frontier& leaves;
-    DistanceBounds bounds;  ///< `upper` bounds the distance; `lower` does not
-    std::uint64_t tests;
-  };
-  /// Goes down both trees by the pairs that are nearest to each other or overlap most, at each step
-  /// within a quarter of a fixed half edge of the least distance. Cost: some 1,000 tests a step.
-  [[nodiscard]] Beam beam(const SearchPose& pose) noexcept;
+  /// Returns an upper bound of the distance: goes down both trees by the pairs that are nearest to
+  /// each other or overlap most, at each step within a quarter of a fixed half edge of the least
+  /// distance, until the budget is spent. Cost: some 1,000 tests a step.
+  [[nodiscard]] float beam(const SearchPose& pose, BudgetMeter& meter) noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ist/query/workers/patience.h"
+
 namespace ist {
 namespace {
 
@@ -9,16 +11,9 @@ namespace {
 constexpr std::size_t kFewestPairs = 512, kMostPairs = 64 * kFewestPairs;
 // The pairs of a chunk: with all below them 5 µs of work where jaws are closed. Where surfaces lie
 // on each other, or one node overlaps many, it can take far longer; if it is the worker's last, it
-// is dropped after kPatience.
+// is dropped after some patience.
 constexpr std::size_t kChunkPairs = 24;
-// The time that the caller, when done, waits for the worker's last chunk.
-constexpr std::chrono::microseconds kPatience{20};
 constexpr std::size_t kFoundPairs = 1 << 18, kFoundLeaves = 1 << 15;
-
-std::chrono::nanoseconds patience(const Budget& budget) noexcept {
-  if (!budget.has_deadline()) return kPatience;
-  return std::min<std::chrono::nanoseconds>(kPatience, budget.deadline - budget.now());
-}
 
 }  // namespace
 

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "ist/query/exact/moved_triangles.h"
+#include "ist/query/exact/triangles_meet.h"
+#include "ist/query/results.h"
+#include "simd/exact/cluster_step.h"
+
+/// The purposes of a search of clusters for triangles that intersect: visitors of a ClusterSearch.
+namespace ist {
+
+/// Two meshes, the moving one at a pose.
+struct Meshes {
+  const TriangleMesh& fixed;
+  MovedTriangles moving;
+
+  [[nodiscard]] bool meet(TriangleIds ids) const noexcept {
+    return triangles_meet(corners_of(fixed, ids.fixed), moving[ids.moving]);
+  }
+};
+
+/// The memory for what the kernels find.
+class FoundMemory {
+ public:
+  FoundMemory() : ids_(4 * kLength), squares_(kLength) {}
+
+  void clear() noexcept {
+    std::uint32_t* const ids = ids_.data();
+    found = {{ids, ids + kLength}, {ids + 2 * kLength, ids + 3 * kLength}, squares_.data()};
+    batch.count = 0;
+  }
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return ids_.size() * sizeof(std::uint32_t) + squares_.size() * sizeof(float) + sizeof(batch);
+  }
+
+  TriangleBatch batch;
+  FoundTriangles found{};
+
+ private:
+  // A list's, and a vector behind it.
+  static constexpr std::size_t kLength = FoundTriangles::kRoom + kClusterWidth;
+  std::vector<std::uint32_t> ids_;
+  std::vector<float> squares_;
+};
+
+/// The bodies at a pose, the kernels, and where they put what they find.
+struct Bench {
+  Bench(const ClusterStep& of, const ClusterKernels& by, const Meshes& bodies,
+        FoundMemory& memory) noexcept
+      : step(of), kernels(by), meshes(bodies), batch(memory.batch), found(memory.found) {
+    memory.clear();
+  }
+
+  const ClusterStep& step;
+  const ClusterKernels& kernels;
+  const Meshes& meshes;
+  TriangleBatch& batch;
+  FoundTriangles& found;
+};
+
+/// Calls `run(rest)` for the rest of the pairs until it has done all, and `take()` after each,
+/// which empties the lists of what was found and says whether to go on.
+template <class Run, class Take>
+bool in_turns(const ClusterPairs& clusters, Run run, Take take) {
+  const LaneNodes& all = clusters.pairs;
+  for (std::size_t done = 0; done < all.count;) {
+    done += run(ClusterPairs{clusters.lanes, clusters.moving, all.part(done, all.count)});
+    if (!take()) return false;
+  }
+  return true;
+}
+
+/// Lists all pairs that intersect. A list has add(TrianglePair).
+template <class List>
+class AllPairs {
+ public:
+  static constexpr bool kMostFirst = false, kMeasuresRest = false;
+
+  AllPairs(const Bench& bench, List& list) noexcept : bench_(bench), list_(list) {}
+
+  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
+  bool visit(const ClusterPairs& clusters) noexcept {
+    return in_turns(
+        clusters,
+        [&](const ClusterPairs& rest) {
+          return bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
+        },
+        [&] {
+          if (!bench_.found.has_room()) take();
+          return true;
+        });
+  }
+  /// Decides and takes what is left.
+  void finish() noexcept {
+    if (!bench_.found.has_room()) take();
+    bench_.kernels.decide_triangles(bench_.batch, bench_.found);
+    take();
+  }
+
+ private:
+  void take() noexcept {
+    FoundTriangles& found = bench_.found;
+    for (std::size_t k = 0; k < found.certain.count; ++k) add(found.certain[k]);
+    for (std::size_t k = 0; k < found.open.count; ++k) {
+      if (bench_.meshes.meet(found.open[k])) add(found.open[k]);
+    }
+    found.certain.count = found.open.count = 0;
+  }
+  void add(TriangleIds ids) noexcept { list_.add({ids.fixed, ids.moving}); }
+
+  Bench bench_;
+  List& list_;
+};
+
+/// Ends with the first pair that intersects.
+class AnyPair {
+ public:
+  static constexpr bool kMostFirst = true, kMeasuresRest = false;
+
+  explicit AnyPair(const Bench& bench) noexcept : bench_(bench) {}
+
+  [[nodiscard]] const std::optional<TriangleIds>& found() const noexcept { return found_; }
+  [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
+  bool visit(const ClusterPairs& clusters) noexcept {
+    return in_turns(
+        clusters,
+        [&](const ClusterPairs& rest) {
+          const std::size_t done =
+              bench_.kernels.meet_clusters(bench_.step, rest, bench_.batch, bench_.found);
+          if (bench_.batch.count > 0) bench_.kernels.decide_triangles(bench_.batch, bench_.found);
+          return done;
+        },
+        [&] {
+          take();
+          return !found_;
+        });
+  }
+
+ private:
+  void take() noexcept {
+    FoundTriangles& found = bench_.found;
+    if (found.certain.count > 0) found_ = found.certain[0];
+    for (std::size_t k = 0; k < found.open.count && !found_; ++k) {
+      if (bench_.meshes.meet(found.open[k])) found_ = found.open[k];
+    }
+    found.certain.count = found.open.count = 0;
+  }
+
+  Bench bench_;
+  std::optional<TriangleIds> found_;
+};
+
+}  // namespace ist

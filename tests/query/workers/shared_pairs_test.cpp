@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <thread>
+#include <vector>
+
+#include "ist/query/query.h"
+#include "query/query_cases.h"
+#include "query/workers/stall.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
+                                   HandOver::kWorked};
+
+SphereTree shell(double radius) { return build_tree(icosphere(5, radius), {.voxel_size = 0.2}); }
+
+struct Pairs {
+  std::vector<TrianglePair> pairs;
+  std::uint64_t tests = 0;
+  bool complete = false;
+
+  friend bool operator==(const Pairs&, const Pairs&) = default;
+};
+
+// A query with two workers, of two shells that cross in many places, and the answer of one.
+class SharedPairsThread : public ::testing::Test {
+ protected:
+  Pairs ask_for(Query& query, const Budget& budget = {}) const {
+    Pairs found{std::vector<TrianglePair>(1 << 18)};
+    const TrianglePairsResult result = query.triangle_pairs(pose_, found.pairs, budget);
+    found.pairs.resize(result.triangle_pairs);
+    found.tests = result.sphere_tests;
+    found.complete = result.complete;
+    return found;
+  }
+  // Until `done`, or for five minutes: a machine that is busy is no failure.
+  bool ask_until(Query& query, const std::function<bool()>& done) const {
+    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+      if (ask_for(query) != expected_) return false;
+      if (done()) return true;
+    }
+    return false;
+  }
+  bool ask_until_helped(Query& query) const {
+    const std::uint64_t before = query.sharing().chunks;
+    return ask_until(query, [&] { return query.sharing().chunks > before; });
+  }
+
+  const SphereTree fixed_ = shell(1), moving_ = shell(1.0005);
+  const Eigen::Isometry3d pose_ = pose_of(Random(2).rotation(), {0.002, 0.001, 0});
+  const QueryOptions shared_{.workers = 2, .period = {}};
+  const Pairs expected_ = [this] {
+    Query query(fixed_, moving_);
+    return ask_for(query);
+  }();
+};
+
+TEST_F(SharedPairsThread, GiveTheAnswerOfOneWorker) {
+  Query query(fixed_, moving_, shared_);
+  EXPECT_GT(expected_.pairs.size(), 1000u);
+  EXPECT_TRUE(expected_.complete);
+  int queries = 0;
+  EXPECT_TRUE(ask_until(query, [&] { return ++queries >= 100 && query.sharing().chunks > 20; }));
+  std::cout << query.sharing().chunks << " chunks helped in " << queries << " queries\n";
+}
+
+TEST_F(SharedPairsThread, DoWithoutAWorkerThatStalls) {
+  Query query(fixed_, moving_, shared_);
+  for (const HandOver point : kHandOvers) {
+    SCOPED_TRACE(static_cast<int>(point));
+    {
+      const Stall stall(point);
+      ASSERT_TRUE(ask_until(query, Stall::reached));
+      const std::uint64_t helped = query.sharing().chunks;
+      for (int later = 0; later < 10; ++later) ASSERT_EQ(ask_for(query), expected_);
+      EXPECT_EQ(query.sharing().chunks, helped);
+    }
+    ASSERT_TRUE(ask_until_helped(query));  // it works again
+  }
+}
+
+// Each time it stalls it is let go on in the midst of later queries.
+TEST_F(SharedPairsThread, ForgetAWorkerThatIsLate) {
+  Query query(fixed_, moving_, shared_);
+  for (int round = 0; round < 8; ++round) {
+    const Stall stall(kHandOvers[round % 4]);
+    ASSERT_TRUE(ask_until(query, Stall::reached));
+    std::jthread releaser([&] {
+      std::this_thread::sleep_for(round * 50us);
+      Stall::release();
+    });
+    for (int later = 0; later < 6; ++later) ASSERT_EQ(ask_for(query), expected_);
+  }
+}
+
+// A deadline leaves some of the pairs; a limit of tests the same as one worker alone.
+TEST_F(SharedPairsThread, KeepABudget) {
+  Query query(fixed_, moving_, shared_), alone(fixed_, moving_);
+  ASSERT_TRUE(ask_until_helped(query));
+  bool cut = false;
+  for (int i = 0; i < 60; ++i) {
+    const Pairs some = ask_for(query, {.deadline = Clock::now() + i * 20us});
+    EXPECT_EQ(some.complete, some.pairs.size() == expected_.pairs.size());
+    EXPECT_TRUE(std::includes(expected_.pairs.begin(), expected_.pairs.end(), some.pairs.begin(),
+                              some.pairs.end()));
+    cut = cut || !some.complete;
+    const Budget tests{.tests = static_cast<std::uint64_t>(1000 * i)};
+    EXPECT_EQ(ask_for(query, tests), ask_for(alone, tests));
+  }
+  EXPECT_TRUE(cut);
+}
+
+}  // namespace
+}  // namespace ist::test
