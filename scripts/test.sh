@@ -39,7 +39,7 @@ run() {  # preset, targets to build, then arguments for ctest
 }
 
 run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
-run sanitize "capi_test ist_c11_test mesh_test tree_test search_test fuzz_test coherent_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
+run sanitize "capi_test ist_c11_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
 $long || exit 0
 

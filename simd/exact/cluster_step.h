@@ -94,7 +94,7 @@ using MeetNodesFunction = void (*)(const TurnedBlock& lanes, std::uint32_t lane_
                                    std::uint32_t* bits);
 
 /// Lists the pairs that such bits say, by lanes, and of a lane in the order of `nodes`. Returns
-/// their number. May write sixteen more.
+/// their number. May read sixteen more nodes and bits, and write sixteen more pairs.
 using ListLanesFunction = std::size_t (*)(LaneNodes nodes, const std::uint32_t* bits,
                                           std::uint32_t* out);
 

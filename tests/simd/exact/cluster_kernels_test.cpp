@@ -37,14 +37,15 @@ std::vector<float> numbers_of(const TurnedBlock& block) {
 
 using Codes = std::vector<std::uint32_t>;
 
-// All nodes of a level, each with a lane.
+// All nodes of a level, each with a lane, and room behind them that kernels may read.
 Codes all(std::uint32_t count, std::uint32_t lane) {
-  Codes codes(count);
+  Codes codes(count + kClusterWidth, 0xBAD);
   for (std::uint32_t node = 0; node < count; ++node) codes[node] = kClusterWidth * node + lane;
   return codes;
 }
 
 LaneNodes list(const Codes& codes) { return {codes.data(), codes.size()}; }
+LaneNodes first(const Codes& codes, std::size_t count) { return {codes.data(), count}; }
 
 // What the node tests of some kernels find: bits, pairs of a lane and a node, and of a child.
 struct NodesFound {
@@ -53,11 +54,12 @@ struct NodesFound {
   NodesFound(const ClusterKernels& kernels, const TurnedBlock& turned, std::uint32_t lanes,
              const FixedNodes& parents, const FixedNodes& children, float reach) {
     const Codes nodes = all(parents.count, 3);
-    bits.resize(nodes.size() + kClusterWidth);
-    kernels.meet_nodes(turned, lanes, parents, list(nodes), reach, bits.data());
-    near.resize(kClusterWidth * nodes.size() + kClusterWidth);
-    near.resize(kernels.list_lanes(list(nodes), bits.data(), near.data()));
+    const LaneNodes each = first(nodes, parents.count);
     bits.resize(nodes.size());
+    kernels.meet_nodes(turned, lanes, parents, each, reach, bits.data());
+    near.resize(kClusterWidth * nodes.size());
+    near.resize(kernels.list_lanes(each, bits.data(), near.data()));
+    bits.resize(parents.count);
     deeper.resize(kClusterWidth * std::size_t{children.count} + kClusterWidth);
     deeper.resize(kernels.meet_children(turned, children, list(near), reach, deeper.data()));
   }
@@ -117,8 +119,8 @@ TEST_P(ClusterKernelsOf, ListLanesAsTheScalarForm) {
     Codes bits(count + kClusterWidth, 0xFFFF);
     for (std::uint32_t k = 0; k < count; ++k) bits[k] = (k * 40503U + 7U * k * k) & 0xFFFFU;
     Codes mine(kClusterWidth * count + kClusterWidth), theirs = mine;
-    mine.resize(kernels_.list_lanes(list(nodes), bits.data(), mine.data()));
-    theirs.resize(kScalar.list_lanes(list(nodes), bits.data(), theirs.data()));
+    mine.resize(kernels_.list_lanes(first(nodes, count), bits.data(), mine.data()));
+    theirs.resize(kScalar.list_lanes(first(nodes, count), bits.data(), theirs.data()));
     EXPECT_EQ(mine, theirs);
     EXPECT_EQ(mine.empty(), count < 2);
   }

@@ -13,7 +13,7 @@
 
 namespace ist {
 
-/// A moving node above clusters, and the fixed nodes that it may be near.
+/// A moving node above clusters, and the fixed nodes that it may be near: sixteen more may be read.
 struct ClusterTask {
   std::uint32_t moving;
   int fixed_level;

@@ -28,8 +28,7 @@ class SharedPairs::Tasks {
   [[nodiscard]] float reach() const noexcept { return reach_; }
   [[nodiscard]] bool full() const noexcept { return full_; }
   bool take(const ClusterTask& task) noexcept {
-    full_ = task.nodes.count > to_.nodes_.size() - to_.node_count_ ||
-            to_.task_count_ == to_.tasks_.size();
+    full_ = task.nodes.count > kMostNodes - to_.node_count_ || to_.task_count_ == to_.tasks_.size();
     if (full_) return false;
     std::copy_n(task.nodes.codes, task.nodes.count, to_.nodes_.data() + to_.node_count_);
     to_.tasks_[to_.task_count_++] = {task.moving, task.fixed_level, to_.node_count_,
@@ -48,7 +47,7 @@ SharedPairs::SharedPairs(const TriangleClusters& fixed, const TriangleClusters& 
                          const ClusterKernels& kernels, std::chrono::nanoseconds period)
     : kernels_(kernels),
       period_(period),
-      nodes_(kMostNodes),
+      nodes_(kMostNodes + kClusterWidth),
       tasks_(kMostTasks),
       chunk_ends_(kMostNodes / kChunkNodes),
       queue_(chunk_ends_.size()),
