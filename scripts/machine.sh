@@ -10,6 +10,6 @@ compiler=$(g++ --version | head -n 1)
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)
 git diff --quiet HEAD -- CMakeLists.txt CMakePresets.json src simd tests bench 2>/dev/null || commit+=+
 results=perf/results/$machine
-flags=$(grep -m 1 'search_step.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
+flags=$(grep -m 1 'exact_search.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
   tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | tr '\n' ' ' || true)
 context=("processor=$model" "compiler=$compiler" "flags=${flags% }" "commit=$commit")

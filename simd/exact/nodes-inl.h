@@ -162,7 +162,10 @@ inline std::size_t ListLanes(LaneNodes nodes, const std::uint32_t* HWY_RESTRICT 
   const FloatTag d;
   const IndexTag du;
   std::size_t found = 0;
-  for (std::uint32_t lane = 0; lane < kClusterWidth; ++lane) {
+  Lanes16 any = 0;
+  for (std::size_t k = 0; k < nodes.count; ++k) any |= bits[k];
+  for (; any != 0; any &= any - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(any));
     const IndexVec bit = hn::Set(du, std::uint32_t{1} << lane), name = hn::Set(du, lane);
     for (std::size_t k = 0; k < nodes.count; k += kLanes) {
       const auto near = hn::RebindMask(d, hn::TestBit(hn::LoadU(du, bits + k), bit));
