@@ -14,6 +14,7 @@ std::span<const Kernels> all_kernels() {
   static const std::vector<Kernels> kernels = [] {
     std::vector<Kernels> all = simd::supported_kernels();
     all.push_back(kScalarKernels);
+    all.back().clusters = kScalarClusterKernels;
     return all;
   }();
   return kernels;

@@ -25,7 +25,8 @@ struct Kernels {
   ClusterKernels clusters;
 };
 
-/// The scalar kernels, which every processor runs.
+/// The scalar kernels, which every processor runs; but for those of clusters,
+/// kScalarClusterKernels, so that both exist before anything runs.
 extern const Kernels kScalarKernels;
 
 /// Returns the kernels of every instruction set that this build and this processor have, best

@@ -180,15 +180,15 @@ void write_leaf_pairs_scalar(const Frontier& leaves, LeafPair* out) {
   }
 }
 
-const Kernels kScalarKernels{"scalar",
-                             advance_scalar,
-                             write_leaf_pairs_scalar,
-                             advance_contacts_scalar,
-                             add_contacts_scalar,
-                             advance_front_scalar,
-                             turn_front_scalar,
-                             select_front_scalar,
-                             add_front_scalar,
-                             kScalarClusterKernels};
+constinit const Kernels kScalarKernels{"scalar",
+                                       advance_scalar,
+                                       write_leaf_pairs_scalar,
+                                       advance_contacts_scalar,
+                                       add_contacts_scalar,
+                                       advance_front_scalar,
+                                       turn_front_scalar,
+                                       select_front_scalar,
+                                       add_front_scalar,
+                                       {}};
 
 }  // namespace ist

@@ -28,6 +28,7 @@ class IstPeer final : public Peer {
 
   [[nodiscard]] bool answers(Question) const override { return true; }
   bool meets(const Eigen::Isometry3d& pose) override {
+    query_.forget();  // as every peer begins afresh
     return query_.intersects(pose).answer == ist::Answer::kYes;
   }
   std::uint64_t pairs(const Eigen::Isometry3d& pose) override {
@@ -35,6 +36,7 @@ class IstPeer final : public Peer {
   }
   std::uint64_t candidates(const Eigen::Isometry3d& pose) override { return pairs(pose); }
   DistanceInterval distance(const Eigen::Isometry3d& pose) override {
+    query_.forget();
     return query_.distance(pose, kTolerance).distance;
   }
 

@@ -30,6 +30,6 @@ def chapter(_results, _pictures):
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows),
         "",
         f"Of {context['compiler']}, `{context['flags']}`: the build that the tests run on, with its assertions. "
-        "`touches` tells no tests. `within_20000_tests` ends by its budget. "
-        "`gap` and `collide_exact` look at triangles too, so that a test costs more.",
+        "`within_20000_tests` ends by its budget. "
+        "`gap`, `touches` and `collide_exact` are about triangles: their tests are of clusters of these, and cost more.",
     ]

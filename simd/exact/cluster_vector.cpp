@@ -10,6 +10,7 @@
 #include "simd/exact/apart-inl.h"
 #include "simd/exact/clusters-inl.h"
 #include "simd/exact/nodes-inl.h"
+#include "simd/exact/picked-inl.h"
 #include "simd/exact/triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();

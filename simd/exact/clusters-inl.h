@@ -14,7 +14,6 @@
 #include "simd/exact/cluster_step.h"
 #include "simd/exact/sixteen-inl.h"
 #include "simd/exact/triangle_lanes.h"
-#include "simd/exact/triangles-inl.h"
 #include "simd/select-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -249,46 +248,6 @@ class ClusterPair {
   Range16 moved_ranges_[3];
   const std::uint32_t* fixed_ids_ = nullptr;
   std::uint32_t* const codes_;
-};
-
-// The lanes of some listed pairs of a ClusterPair: their triangles, and their indices.
-class PickedPairs {
- public:
-  HWY_INLINE PickedPairs(const ClusterPair& pair, std::size_t at)
-      : fixed_(Fixed(pair, at)), moving_(Moving(pair, at)) {}
-
-  [[nodiscard]] HWY_INLINE Triangles FixedOf(const ClusterPair& pair) const {
-    return Picked(fixed_, pair.still());
-  }
-  [[nodiscard]] HWY_INLINE Triangles MovingOf(const ClusterPair& pair) const {
-    return Picked(moving_, pair.moved());
-  }
-  [[nodiscard]] HWY_INLINE IndexVec FixedIds(const ClusterPair& pair) const {
-    return fixed_(pair.fixed_ids());
-  }
-  [[nodiscard]] HWY_INLINE IndexVec MovingIds(const ClusterPair& pair) const {
-    return moving_(pair.moving_ids());
-  }
-
- private:
-  static HWY_INLINE IndexVec Fixed(const ClusterPair& pair, std::size_t at) {
-    const IndexTag du;
-    return hn::And(hn::LoadU(du, pair.codes() + at), hn::Set(du, 15U));
-  }
-  static HWY_INLINE IndexVec Moving(const ClusterPair& pair, std::size_t at) {
-    const IndexTag du;
-    return hn::And(hn::ShiftRight<4>(hn::LoadU(du, pair.codes() + at)), hn::Set(du, 15U));
-  }
-  static HWY_INLINE Triangles Picked(const Pick& pick, const SixteenTriangles& from) {
-    Triangles t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& p = from.corner[k];
-      t.corner[k] = {pick(p[0]), pick(p[1]), pick(p[2])};
-    }
-    return t;
-  }
-
-  Pick fixed_, moving_;
 };
 
 }  // namespace ist::simd::HWY_NAMESPACE

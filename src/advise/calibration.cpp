@@ -132,6 +132,7 @@ std::optional<SizeMeasure> Calibration::measure(double voxel_size, Progress* pro
   Progress& shown = progress != nullptr ? *progress : unseen;
   BuildOptions build;
   build.voxel_size = voxel_size;
+  build.keep_triangles = false;
   build.max_memory = options_.max_memory;
   if (!can_build_tree(bodies_.fixed(), build, &shown) ||
       !can_build_tree(bodies_.moving(), build, &shown)) {

@@ -13,7 +13,7 @@ namespace ist {
 class ExactBodies {
  public:
   /// Uses the triangles of both trees, which must hold them and outlive this. Their voxel sizes
-  /// change only the cost.
+  /// do not matter.
   ExactBodies(const SphereTree& fixed, const SphereTree& moving)
       : fixed_(mesh_of(fixed)),
         moving_(mesh_of(moving)),
@@ -24,11 +24,13 @@ class ExactBodies {
 
   /// Returns whether the bodies neither intersect nor one lies inside the other. Cost: 0.1 to 1 ms.
   [[nodiscard]] bool free(const Eigen::Isometry3d& pose) noexcept {
+    query_.forget();
     return query_.intersects(pose).answer == Answer::kNo && inside_.at(pose) == Inside::kNone;
   }
   /// Returns the distance between the surfaces, mesh units (Query::distance); 0 if they intersect.
   [[nodiscard]] DistanceInterval distance(const Eigen::Isometry3d& pose,
                                           double tolerance) noexcept {
+    query_.forget();
     return query_.distance(pose, tolerance).distance;
   }
 

@@ -268,7 +268,12 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
   std::vector<TrianglePair> pairs(1 << 12);
   std::vector<ist_triangle_pair> c_pairs(1 << 12);
   std::uint64_t met = 0;
+  auto budget = sized<ist_budget>();
+  budget.tests = 300;
+  bool cut = false;
   for (const Eigen::Isometry3d& pose : poses()) {
+    ASSERT_EQ(name(ist_query_forget(c_query_)), "ok");
+    query_.forget();
     auto distance = sized<ist_distance_result>();
     ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 0.001, nullptr, &distance)), "ok");
     const DistanceResult wanted = query_.distance(pose, 0.001);
@@ -276,6 +281,7 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
     EXPECT_EQ(distance.upper, wanted.distance.upper);
     EXPECT_EQ(distance.sphere_tests, wanted.sphere_tests);
     EXPECT_EQ(distance.complete, wanted.complete ? 1 : 0);
+    EXPECT_EQ(distance.narrowest, wanted.narrowest);
     ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, nullptr, &distance)), "ok");
     EXPECT_EQ(distance.complete, 1);
 
@@ -294,9 +300,25 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
     EXPECT_EQ(c.truncated, 0);
     ASSERT_EQ(c.written, c.pairs);
     EXPECT_EQ(std::memcmp(pairs.data(), c_pairs.data(), c.written * sizeof(TrianglePair)), 0);
+    EXPECT_EQ(c.complete, 1);
     EXPECT_EQ(answer == IST_ANSWER_YES, c.pairs > 0);
     met += c.pairs;
+
+    // And within a budget.
+    ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 0.001, &budget, &distance)), "ok");
+    const DistanceResult some = query_.distance(pose, 0.001, {.tests = budget.tests});
+    EXPECT_EQ(distance.lower, some.distance.lower);
+    EXPECT_EQ(distance.upper, some.distance.upper);
+    ASSERT_EQ(name(ist_query_intersects(c_query_, pose.data(), &budget, &answer)), "ok");
+    const IntersectionResult asked = query_.intersects(pose, {.tests = budget.tests});
+    EXPECT_EQ(answer, static_cast<std::int32_t>(asked.answer) + IST_ANSWER_NO);
+    ASSERT_EQ(name(ist_query_triangle_pairs(c_query_, pose.data(), &budget, nullptr, 0, &c)), "ok");
+    const TrianglePairsResult first = query_.triangle_pairs(pose, {}, {.tests = budget.tests});
+    EXPECT_EQ(c.pairs, first.triangle_pairs);
+    EXPECT_EQ(c.complete, first.complete ? 1 : 0);
+    cut = cut || !first.complete;
   }
+  EXPECT_TRUE(cut);
   EXPECT_GT(met, 100u);
 }
 

@@ -70,6 +70,7 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("query", ist_query_distance(nullptr, pose, 0, nullptr, &distance_));
   is_null("pose", ist_query_distance(query_, nullptr, 0, nullptr, &distance_));
   is_null("result", ist_query_distance(query_, pose, 0, nullptr, nullptr));
+  is_null("query", ist_query_forget(nullptr));
   is_null("query", ist_query_intersects(nullptr, pose, nullptr, &answer_));
   is_null("pose", ist_query_intersects(query_, nullptr, nullptr, &answer_));
   is_null("answer", ist_query_intersects(query_, pose, nullptr, nullptr));
@@ -153,6 +154,7 @@ TEST_F(CMisuse, OfAHandleIsTold) {
          return ist_query_triangle_pairs(static_cast<ist_query*>(h), pose, nullptr, triangle_pairs_,
                                          4, &triangle_result_);
        }},
+      {kQuery, [&](void* h) { return ist_query_forget(static_cast<ist_query*>(h)); }},
       {kQuery, [&](void* h) { return ist_query_free(static_cast<ist_query*>(h)); }},
       {kServo,
        [&](void* h) { return ist_servo_get_info(static_cast<ist_servo*>(h), &servo_info_); }},

@@ -91,6 +91,9 @@ Asked ask_all(Bodies& bodies) noexcept {
                                          bodies.triangle_pairs.size(), &triangle_result),
                 wanted);
     seen.triangle_pairs += triangle_result.written;
+    seen.status(ist_query_forget(bodies.query), IST_OK);
+    seen.status(ist_query_distance(bodies.query, at, 0.01, &budget, &distance), wanted);
+    seen.status(ist_query_intersects(bodies.query, at, &budget, &answer), wanted);
     seen.status(ist_query_leaf_pairs(bodies.freed, at, nullptr, nullptr, 0, &result),
                 IST_HANDLE_FREED);
     seen.status(ist_query_leaf_pairs(bodies.query, at, nullptr, nullptr, 7, &result),

@@ -82,8 +82,8 @@ SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving,
                   smaller.string()));
 }
 
-// Builds a tree for exact queries. Its voxel size affects time alone, so voxels are enlarged until
-// they fit the memory.
+// Builds a tree for exact queries, which do without voxels: these are enlarged until they fit the
+// memory.
 SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
                       std::uint64_t max_memory) {
   const double extent = extent_of(checked.mesh);

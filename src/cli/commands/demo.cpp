@@ -141,6 +141,7 @@ void run(const DemoArguments& options) {
   for (const double size : options.voxel_sizes) {
     BuildOptions build;
     build.voxel_size = size;
+    build.keep_triangles = false;
     std::vector<std::string> warnings;
     const auto begin = std::chrono::steady_clock::now();
     const SphereTree upper = build_with_progress("upper jaw", upper_mesh, build, warnings);

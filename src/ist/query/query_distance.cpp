@@ -89,7 +89,7 @@ void detail::QueryState::nearest_triangles(const Eigen::Isometry3d& pose, const 
                                                   tolerance - 2 * off, budget, nearest);
   const bool apart = nearest.upper > 0;
   result.distance = {apart ? std::max(lower, nearest.lower - off) : 0,
-                     apart ? nearest.upper + off : 0};
+                     apart ? std::min(upper, nearest.upper + off) : 0};
   result.narrowest = apart ? 2 * (end.error + off) : 0;
   result.sphere_tests += end.tests;
 }

@@ -112,8 +112,11 @@ void TreeBuilder::build_near_trees(const LoadedBody& fixed, const LoadedBody& he
   const double size = near_voxel_size(fixed, held);
   const std::string why = fmt::format("voxels of {:.3g}, for effects.proximity", size);
   trees_.near_fixed = notes_.make("proximity voxels", why, [&] {
-    const Tree tree = build(
-        fixed, kDistance, {.voxel_size = size, .spheres = SpherePolicy::kTable, .proximity = true});
+    const Tree tree = build(fixed, kDistance,
+                            {.voxel_size = size,
+                             .spheres = SpherePolicy::kTable,
+                             .keep_triangles = false,
+                             .proximity = true});
     if (!tree->parts().proximity) {
       fail_at(scene_, "effects.proximity",
               fmt::format("{} has no outside: repair the mesh, or take the table out", fixed.name));
@@ -121,7 +124,8 @@ void TreeBuilder::build_near_trees(const LoadedBody& fixed, const LoadedBody& he
     return std::make_unique<const SphereTree>(proximity_body(*tree));
   });
   trees_.near_held = notes_.make("held tree, coarse", why, [&] {
-    return build(held, kDistance, {.voxel_size = size, .spheres = SpherePolicy::kTight});
+    return build(held, kDistance,
+                 {.voxel_size = size, .spheres = SpherePolicy::kTight, .keep_triangles = false});
   });
 }
 

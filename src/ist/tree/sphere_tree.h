@@ -108,7 +108,7 @@ class IST_API SphereTree {
 struct BuildOptions {
   double voxel_size = 0;                       ///< mesh units
   SpherePolicy spheres = SpherePolicy::kSlab;  ///< the tightest to save; implicit ones cost nothing
-  bool keep_triangles = true;                  ///< for exact answers; some 120 bytes a triangle
+  bool keep_triangles = true;                  ///< for exact answers; 150 to 300 bytes a triangle
   bool proximity = false;                      ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
 };

@@ -26,6 +26,8 @@ constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock) + kNestingBy
 // triangle has its normals, half a corner's, three sides while sides are sorted, and some bins.
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
+// A triangle in clusters, with its corners twice while they are ordered.
+constexpr std::uint64_t kClusterBytes = 224;
 
 VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   const bool saved = !is_implicit(options.spheres);
@@ -35,6 +37,7 @@ VoxelizerOptions voxelizer_options(const BuildOptions& options) {
     voxelizer.bytes_per_voxel += kBallBytes;
     if (options.spheres == SpherePolicy::kSlab) voxelizer.bytes_per_voxel += kSlabBytes;
   }
+  if (options.keep_triangles) voxelizer.bytes_per_triangle += kClusterBytes;
   if (options.proximity) {
     voxelizer.bytes_per_voxel += kProximityBytes;
     voxelizer.bytes_per_triangle += kPseudoNormalBytes;

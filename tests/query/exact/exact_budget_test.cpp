@@ -142,5 +142,27 @@ TEST_F(ExactBudget, OfTimeIsLookedAtOftenEnough) {
   }
 }
 
+// Of bodies that lie on each other float decides nothing: each pair is decided exactly.
+TEST_F(ExactBudget, OfTimeEndsExactArithmetic) {
+  Query query(fixed_, fixed_);
+  std::vector<TrianglePair> pairs(1 << 17);
+  const Eigen::Isometry3d in_place = Eigen::Isometry3d::Identity();
+  const std::uint64_t all = query.triangle_pairs(in_place, pairs).triangle_pairs;
+  ASSERT_GT(all, 10'000u);
+  Budget budget;
+  budget.deadline = Budget::Clock::time_point(std::chrono::seconds(1));
+  budget.now = &late_at_last;
+  std::uint64_t most = 0;
+  for (glances_left = 0; glances_left < 2000; glances_left += 97) {
+    glances = 0;
+    const TrianglePairsResult some = query.triangle_pairs(in_place, pairs, budget);
+    EXPECT_LE(some.triangle_pairs, 8 * (static_cast<std::uint64_t>(glances) + 1));
+    EXPECT_FALSE(some.complete);
+    most = std::max(most, some.triangle_pairs);
+  }
+  EXPECT_GT(most, 0u);
+  EXPECT_LT(most, all);
+}
+
 }  // namespace
 }  // namespace ist::test

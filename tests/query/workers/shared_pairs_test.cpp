@@ -109,7 +109,8 @@ TEST_F(SharedPairsThread, KeepABudget) {
   bool cut = false;
   for (int i = 0; i < 60; ++i) {
     const Pairs some = ask_for(query, {.deadline = Clock::now() + i * 20us});
-    EXPECT_EQ(some.complete, some.pairs.size() == expected_.pairs.size());
+    EXPECT_LE(some.pairs.size(), expected_.pairs.size());
+    EXPECT_TRUE(!some.complete || some.pairs.size() == expected_.pairs.size());
     EXPECT_TRUE(std::includes(expected_.pairs.begin(), expected_.pairs.end(), some.pairs.begin(),
                               some.pairs.end()));
     cut = cut || !some.complete;

@@ -15,6 +15,7 @@ ClusterSearch::ClusterSearch(const TriangleClusters& fixed, const TriangleCluste
   const int top = moving.root_level() + 1;
   for (int level = 0; level <= top; ++level) {
     Step& step = steps_.emplace_back();
+    if (level == 0) continue;  // clusters have no children
     const std::size_t lanes = level == top ? 1 : kClusterWidth;
     step.bits.resize(nodes_at(level) + kClusterWidth);
     step.near.resize(lanes * nodes_at(level == top ? level - 1 : level) + kClusterWidth);
@@ -97,7 +98,10 @@ void ClusterSearch::leave(const Step& step, int fixed_level, LaneNodes pairs) no
       squared += apart * apart;
     }
     const double radii = double{from.radius[lane]} + double{block.radius[at]};
-    nearest_left_ = std::min(nearest_left_, std::sqrt(squared) - radii - step_.pose.error);
+    const double centres = std::sqrt(squared);
+    // The rest of a centre is rounded to float: far less than this part of the sizes.
+    const double rounding = double{kNodeRounding} * (radii + centres);
+    nearest_left_ = std::min(nearest_left_, centres - radii - rounding - step_.pose.error);
   }
 }
 

@@ -104,11 +104,11 @@ ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
   list_.begin(out);
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   search_.begin(cluster_pose(pose));
-  AllPairs<PairList> all({search_.step(), kernels_, meshes, memory_}, list_);
+  AllPairs<PairList> all({search_.step(), kernels_, meshes, memory_, budget}, list_);
   ClusterBudget spent(budget, kRootTests);
-  const bool complete =
+  bool complete =
       shared_ ? shared_->run(search_, meshes, budget, spent, all, list_) : search_.run(spent, all);
-  all.finish();
+  complete = all.finish() && complete;
   list_.finish();
   if (list_.count() > 0 && !out.empty()) met_ = {out[0].fixed, out[0].moving};
   return {complete, spent.spent() - kRootTests};
@@ -117,7 +117,7 @@ ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
 ExactSearch::Any ExactSearch::any(const ExactPose& pose, const Budget& budget) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   if (still_meet(meshes, budget)) return {{true, 1}, true};
-  AnyPair any({search_.step(), kernels_, meshes, memory_});
+  AnyPair any({search_.step(), kernels_, meshes, memory_, budget});
   ClusterBudget spent(budget, kRootTests);
   search_.begin(cluster_pose(pose));
   const bool complete = search_.run(spent, any);
@@ -134,7 +134,7 @@ ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double toleranc
     return {{true, 1}, 0};
   }
   search_.begin(cluster_pose(pose));
-  NearestPair nearest({search_.step(), kernels_, meshes, memory_}, tolerance, longest_edge_,
+  NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
                       distance.upper);
   ClusterBudget spent(budget, kRootTests);
   bool near = false;
@@ -155,7 +155,8 @@ ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double toleranc
   double lower =
       nearest.distance() > 0 ? std::min(nearest.within(), nearest.distance()) - error : 0;
   if (!complete) lower = std::min(lower, search_.nearest_left());
-  distance = {std::max(distance.lower, lower), nearest.distance() + error};
+  const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
+  distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
   return {{complete, spent.spent() - kRootTests}, error};
 }
 

@@ -52,9 +52,9 @@ class NearestPair {
                                               bench_.found);
         },
         [&] {
-          measure_found();
+          const bool in_time = measure_found();
           bench_.found.open.count = 0;
-          return nearest_ > 0;
+          return in_time && nearest_ > 0;
         });
   }
   void measure(TriangleIds ids) noexcept {
@@ -71,8 +71,9 @@ class NearestPair {
   }
 
  private:
-  // First the pair that may be the nearest, so that few others may still be nearer.
-  void measure_found() noexcept {
+  // First the pair that may be the nearest, so that few others may still be nearer. Returns false
+  // where the deadline came before the end.
+  bool measure_found() noexcept {
     const FoundTriangles& found = bench_.found;
     const std::size_t count = found.open.count;
     const auto first = static_cast<std::size_t>(
@@ -80,8 +81,11 @@ class NearestPair {
     if (count > 0) measure(found.open[first]);
     for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
       const double enough = nearest_ + 2 * error() + double{bench_.step.pose.error};
-      if (k != first && double{found.squares[k]} <= enough * enough) measure(found.open[k]);
+      if (k == first || double{found.squares[k]} > enough * enough) continue;
+      if (bench_.is_late(k)) return false;
+      measure(found.open[k]);
     }
+    return true;
   }
 
   Bench bench_;

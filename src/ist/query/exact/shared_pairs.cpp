@@ -142,7 +142,7 @@ void SharedPairs::help() noexcept {
   while (const auto chunk = queue_.claim_back(epoch_)) {
     hand_over(HandOver::kClaimed);
     found_.count = used;
-    AllPairs<Found> all({helper_.step(), kernels_, *meshes_, memory_}, found_);
+    AllPairs<Found> all({helper_.step(), kernels_, *meshes_, memory_, {}}, found_);
     ClusterBudget budget({}, 0);
     do_chunk(*chunk, helper_, budget, all);
     all.finish();
