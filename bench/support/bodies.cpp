@@ -29,6 +29,7 @@ BuildOptions options_of(double voxel_size, SpherePolicy spheres) {
   BuildOptions options;
   options.voxel_size = voxel_size;
   options.spheres = spheres;
+  options.keep_triangles = false;
   return options;
 }
 
