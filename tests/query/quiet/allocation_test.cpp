@@ -109,21 +109,26 @@ TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
       Query query(scene.fixed, scene.moving, options);
       ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
       int kept = 0, clear = 0;
+      const auto enough = [&] { return front_pairs == 100 || (kept > 20 && clear > 20); };
+      const auto go = [&] {
+        for (int i = 0; i < 1000; ++i) {
+          Eigen::Isometry3d pose = i < 800 ? scene.pose : shift({2.05, 0, 0});
+          pose.translation()[2] += 0.0005 * (i % 100) + 0.1 * (i / 100 % 2);
+          Budget budget;
+          if (i % 7 == 0) budget.deadline = Clock::now() + 20us;
+          const QueryResult result = i / 10 % 2 == 0 ? query.leaf_pairs(pose, out, budget)
+                                                     : query.contacts(pose, points, budget);
+          kept += result.found == Found::kKept ? 1 : 0;
+          clear += result.found == Found::kClear ? 1 : 0;
+        }
+      };
+      // How much is kept hangs on when the second worker runs.
       EXPECT_EQ(allocations_of([&] {
-                  for (int i = 0; i < 1000; ++i) {
-                    Eigen::Isometry3d pose = i < 800 ? scene.pose : shift({2.05, 0, 0});
-                    pose.translation()[2] += 0.0005 * (i % 100) + 0.1 * (i / 100 % 2);
-                    Budget budget;
-                    if (i % 7 == 0) budget.deadline = Clock::now() + 20us;
-                    const QueryResult result = i / 10 % 2 == 0
-                                                   ? query.leaf_pairs(pose, out, budget)
-                                                   : query.contacts(pose, points, budget);
-                    kept += result.found == Found::kKept ? 1 : 0;
-                    clear += result.found == Found::kClear ? 1 : 0;
-                  }
+                  go();
+                  for (int again = 0; again < 20 && !enough(); ++again) go();
                 }),
                 0u);
-      EXPECT_TRUE(front_pairs == 100 || (kept > 20 && clear > 20)) << kept << ", " << clear;
+      EXPECT_TRUE(enough()) << kept << ", " << clear;
     }
   }
 }
