@@ -1,4 +1,3 @@
-#include <bit>
 #include <cmath>
 
 #include "simd/exact/cluster_step.h"

@@ -57,8 +57,7 @@ static ist_mesh* make_mesh(void) {
 /* Built, saved, and loaded again. */
 static ist_tree* make_tree(const char* folder) {
   ist_mesh* mesh = make_mesh();
-  const ist_build_options options = {
-      .struct_size = sizeof options, .voxel_size = 1};
+  const ist_build_options options = {.struct_size = sizeof options, .voxel_size = 1};
   ist_tree* built = NULL;
   IS(ist_tree_build(mesh, &options, &built), IST_OK);
   IS(ist_mesh_free(mesh), IST_OK);

@@ -80,7 +80,8 @@ void add_build(CLI::App& app) {
                    "bounds to save beside simple and table, which need no saving")
       ->check(CLI::IsMember(policy_names()))
       ->capture_default_str();
-  command->add_flag("--exact", options->build.keep_triangles, "keep the triangles, for exact answers");
+  command->add_flag("--exact", options->build.keep_triangles,
+                    "keep the triangles, for exact answers");
   command
       ->add_option("--classes", options->classes,
                    "classes of voxels: surface, or surface,proximity")

@@ -175,7 +175,7 @@ typedef struct ist_build_options {
   size_t struct_size;
   double voxel_size;      /* edge of a voxel, mesh units; required */
   int32_t spheres;        /* IST_SPHERES_...: the bounds to save */
-  int32_t drop_triangles; /* 1: no exact answers, and half the memory */
+  int32_t drop_triangles; /* 1: keep no triangles: no exact answers */
   int32_t proximity;      /* 1: add the voxels near the outside, for a scene's proximity effect */
   int32_t reserved;       /* zero */
   uint64_t max_memory;    /* memory limit, bytes; default 4 GiB */

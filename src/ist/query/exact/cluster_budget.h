@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "ist/query/results.h"
+#include "ist/query/traversal/budget_meter.h"
 
 namespace ist {
 
@@ -12,7 +13,7 @@ class ClusterBudget {
  public:
   static constexpr std::uint64_t kClusterTests = 16;
   /// With a deadline, the most tests between two looks at the clock.
-  static constexpr std::uint64_t kUnwatchedTests = 500;
+  static constexpr std::uint64_t kUnwatchedTests = BudgetMeter::kUnwatchedTests;
 
   ClusterBudget(const Budget& budget, std::uint64_t spent) noexcept
       : budget_(budget), limited_(budget.is_limited()), spent_(spent) {}

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ist/query/exact/cluster_budget.h"
-#include "ist/query/relative_pose.h"
 #include "ist/tree/clusters/triangle_clusters.h"
 #include "simd/exact/cluster_step.h"
 

@@ -79,10 +79,11 @@ class NearestPair {
     const auto first = static_cast<std::size_t>(
         std::min_element(found.squares, found.squares + count) - found.squares);
     if (count > 0) measure(found.open[first]);
+    std::size_t measured = 0;
     for (std::size_t k = 0; k < count && nearest_ > 0; ++k) {
       const double enough = nearest_ + 2 * error() + double{bench_.step.pose.error};
       if (k == first || double{found.squares[k]} > enough * enough) continue;
-      if (bench_.is_late(k)) return false;
+      if (bench_.is_late(measured++)) return false;
       measure(found.open[k]);
     }
     return true;

@@ -21,7 +21,7 @@ namespace ist {
 /// A worker that is late is dropped, as for SharedSearch.
 class SharedPairs {
  public:
-  /// Reserves the memory of a ClusterSearch, and 2.5 MB.
+  /// Reserves the memory of a ClusterSearch, and 3 MB.
   SharedPairs(const TriangleClusters& fixed, const TriangleClusters& moving,
               const ClusterKernels& kernels, std::chrono::nanoseconds period);
   ~SharedPairs();
