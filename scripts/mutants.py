@@ -364,7 +364,7 @@ MUTANTS = [
            ["exact_test *ClusterKernels*:*Distance*"]),
     Mutant("witness-spends-a-budget", "a limit of tests asks first whether the last triangles still meet",
            [(EXACT + "exact_search.cpp", "met_ && !budget.has_tests() && meshes.meet(*met_)",
-             "met_ && meshes.meet(*met_)")], ["exact_test Witness*:ExactBudget*"]),
+             "met_ && (budget.has_tests() || meshes.meet(*met_)) && meshes.meet(*met_)")], ["exact_test Witness*:ExactBudget*"]),
     Mutant("witness-not-forgotten", "a query that is told to forget keeps its nearest triangles",
            [(EXACT + "exact_search.h", "    nearest_.reset();\n", "")], ["exact_test Witness*"]),
     Mutant("rest-not-measured", "a distance that a budget ended forgets what it did not come to",
