@@ -16,6 +16,9 @@ namespace {
 
 using Pose = Eigen::Isometry3d;
 
+// mm: answers about triangles hang on no voxels, so they are asked of the trees of one size.
+constexpr double kOfTriangles = 0.4;
+
 struct Bodies {
   double milliseconds, bytes;
 };
@@ -56,7 +59,7 @@ Finder of_policy(double voxel_size, SpherePolicy policy) {
           query->leaf_pairs(closing(0), *leaf_pairs).resolution};
 }
 
-// Triangles, told apart at voxels of this size: all pairs that meet, or only whether any do.
+// Triangles, in trees with voxels of this size: all pairs that meet, or only whether any do.
 Finder of_triangles(double voxel_size, bool all) {
   const auto& [fixed, moving] = exact_trees(voxel_size);
   const auto query = std::make_shared<Query>(fixed, moving);
@@ -81,8 +84,7 @@ class Size {
  public:
   explicit Size(double voxel_size) : voxel_size_(voxel_size) {
     for (const SpherePolicy policy : kSpherePolicies) names_.emplace_back(to_string(policy));
-    // With larger ones leaves hold so many triangles that it takes milliseconds.
-    if (voxel_size <= 0.8) names_.insert(names_.end(), {"exact", "touches"});
+    if (voxel_size == kOfTriangles) names_.insert(names_.end(), {"exact", "touches"});
   }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 

@@ -10,9 +10,9 @@ namespace ist::bench {
 
 /// Each registers its benchmarks, which measure one kind of error beside the time it takes.
 
-/// first/SIZE/POLICY, first/SIZE/exact and first/SIZE/touches, which wants a yes or no of
-/// triangles: how far apart surfaces are when they are first said to touch, and what the pose takes
-/// that is slowest, of the closing and of the ways' first contacts.
+/// first/SIZE/POLICY, and of one size first/SIZE/exact and first/SIZE/touches, which wants a yes or
+/// no of triangles: how far apart surfaces are when they are first said to touch, and what the pose
+/// takes that is slowest, of the closing and of the ways' first contacts.
 void add_first_contacts();
 /// gap/SIZE/POLICY/DISTANCE and gap/SIZE/exact-TOLERANCE/DISTANCE: the interval's width, and its
 /// time.

@@ -3,12 +3,12 @@
 //
 //   peers/build/LIBRARY                what its structures of both meshes take
 //   peers/QUESTION/CONTESTANT/POSE     what an answer takes, over n rounds, and what it says
-//   turned/QUESTION/CONTESTANT/POSE    the closing, with both meshes in turned frames
-//   cold/QUESTION/CONTESTANT/POSE      the closing, with cold caches
+//   turned/QUESTION/CONTESTANT/POSE    the same poses, with both meshes in turned frames
+//   cold/QUESTION/CONTESTANT/POSE      the same poses, with cold caches
 //   avx2/QUESTION/CONTESTANT/POSE      the closing, asked of IST with AVX2 alone, where it has more
 //
 //   IST_PEERS_SECONDS   for how long each question of `peers` is asked, at least 5 rounds; by
-//                       default 55. What follows takes some half of that together
+//                       default 55. What follows takes two thirds of that together
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -182,8 +182,8 @@ int main(int argc, char** argv) {
   const Peers all_cold = cold_peers(all);
   const std::unique_ptr<Peer> avx2 = ist_on(*all.front(), "avx2");
   std::vector<Series> asked = {{"peers", pointers(all), peer_poses(), 1},
-                               {"turned", pointers(all_turned), turned.poses, 0.2},
-                               {"cold", pointers(all_cold), closing_poses(), 0.2}};
+                               {"turned", pointers(all_turned), turned.poses, 0.3},
+                               {"cold", pointers(all_cold), peer_poses(), 0.3}};
   if (avx2) asked.push_back({"avx2", {all.front().get(), avx2.get()}, closing_poses(), 0.1});
   for (const Series& each : asked) add_series(each);
   benchmark::RunSpecifiedBenchmarks();

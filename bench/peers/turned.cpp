@@ -20,9 +20,10 @@ TriangleMesh turned(TriangleMesh mesh, const Eigen::Isometry3d& by) {
 
 TurnedPair turned_pair() {
   const Eigen::Isometry3d fixed = turn(46, {1, 2, 3}), moving = turn(52, {-3, 1, 2});
-  TurnedPair pair{turned(upper_jaw(), fixed), turned(lower_jaw(), moving), closing_poses()};
+  TurnedPair pair{turned(upper_jaw(), fixed), turned(lower_jaw(), moving), peer_poses()};
   for (NamedPose& pose : pair.poses) {
     pose.label += ", turned";
+    pose.truth.reset();  // which is of the vertices before they were rounded
     pose.pose = fixed * pose.pose * moving.inverse();
   }
   return pair;

@@ -8,7 +8,7 @@
 namespace ist::bench {
 
 /// The same bodies in other frames: each mesh turned about an oblique axis of its own, by 46 and by
-/// 52 degrees, its vertices rounded to double, and poses that put them where the closing does. A
+/// 52 degrees, its vertices rounded to double, and poses that put them where peer_poses() do. A
 /// scan has the axes of its scanner; here no axis of a box, a voxel or a grid lies along a jaw, and
 /// no mesh's along the other's. Coordinates are rounded, so that counts may differ from those of
 /// the meshes as they are given.

@@ -54,7 +54,7 @@ def _budget(first, pictures):
         axes.plot([r["p50_us"] for r in runs], [r["error_max"] for r in runs], **style(policy))
         for r in runs if policy in ("slab", "table") else ():
             axes.annotate(r.parts[1], (r["p50_us"], r["error_max"]), xytext=(4, 3), textcoords="offset points", fontsize=7)
-    exact, touches = (min(first.by_policy[name], key=lambda run: run["p50_us"]) for name in ("exact", "touches"))
+    exact, touches = (first.by_policy[name][0] for name in ("exact", "touches"))
     axes.plot([exact["p50_us"]], [floor], linestyle="", **style("exact", label="all pairs of triangles: error 0"))
     axes.plot([touches["p50_us"]], [floor], linestyle="", **style("touches", label="whether triangles meet: error 0"))
     axes.axvline(BUDGET, color="black", linestyle=":", linewidth=1)
@@ -79,8 +79,8 @@ def _budget(first, pictures):
     said.sort()
     return [f"### I have {BUDGET} µs: what accuracy can I have?", "", picture, "",
             "Read between the points: " + "; ".join(text for _, text in said) + ". All pairs of "
-            f"triangles that meet, without any error, take {number(exact['p50_us'])} µs at their best voxel size of {exact.parts[1]} mm; whether any meet, "
-            f"which is a yes or a no and nothing that a force could be made of, {number(touches['p50_us'])} µs at {touches.parts[1]} mm.", ""]
+            f"triangles that meet, without any error, take {number(exact['p50_us'])} µs, whatever the voxels are; whether any meet, "
+            f"which is a yes or a no and nothing that a force could be made of, {number(touches['p50_us'])} µs.", ""]
 
 
 def _wanted(first, pictures):
@@ -114,7 +114,7 @@ def _table(first):
     rows = []
     for run in sorted(first.runs, key=lambda r: (-r["error_max"], r["p50_us"])):
         size, policy = run.parts[1:3]
-        rows.append([NAMES.get(policy, f"`{policy}`"), size, run["error_p50"], run["error_max"],
+        rows.append([NAMES.get(policy, f"`{policy}`"), "any" if policy in NAMES else size, run["error_p50"], run["error_max"],
                      run["resolution"], run["build_ms"] / 1e3, run["MB"], run["p50_us"], run["p99_us"], 1e6 / run["p50_us"]])
     slab = first.by_policy["slab"]
     growth, _ = power([float(run.parts[1]) for run in slab], [run["error_max"] for run in slab])
@@ -123,7 +123,8 @@ def _table(first):
             *table(["bounds", "voxel size, mm", "error, median, mm", "error, largest, mm", "certain bound, mm", "to build both, s",
                     "both trees, MB", "slowest pose, µs", "its 99 of 100, µs", "rate, Hz"], rows), "",
             f"With `slab` the error grows as size^{growth:.2f}. The rate is that of the median; each pair was built once. The certain bound is `resolution`, which every answer states; what was "
-            f"measured comes to at most {100 * worst:.0f} % of it. Triangles are told apart in voxels of the size that is named.", ""]
+            f"measured comes to at most {100 * worst:.0f} % of it. Answers about triangles hang on no voxels; they were asked of trees with voxels of "
+            f"{first.by_policy['exact'][0].parts[1]} mm, whose memory and time to build are named.", ""]
 
 
 def _advice(results, first):

@@ -26,7 +26,7 @@ def turned(results, answers):
     if not asked:
         return []
     lines = ["### In turned frames", "",
-             "The closing again, the same bodies given in other frames: the fixed mesh turned by 46 degrees and the moving one by 52, "
+             "The same poses, the same bodies given in other frames: the fixed mesh turned by 46 degrees and the moving one by 52, "
              "each about an oblique axis of its own, vertices rounded to double, poses composed to match. A scan lies along its scanner's "
              "axes, which helps boxes and voxels along the same axes; here it does not. Exact contestants agree here too, or the run "
              "fails.", ""]
@@ -58,7 +58,7 @@ def cold(results, answers):
             rows.append([question, one.name(player), *cells, str(one.rounds(player))])
     poses = next(iter(asked.values())).poses
     return ["### With cold caches", "",
-            f"The quickest again at the closing, but before each question {number(float(swept))} MB are gone through, twice what the last "
+            f"The quickest again at the same poses, but before each question {number(float(swept))} MB are gone through, twice what the last "
             "cache holds: so does a program find them that asks seldom. Median, µs, and in brackets how many times as long as in the tables above, "
             "where one question follows the other; the fastest is in bold, as there.", "",
             *table(["question", "", *poses, "n"], rows), ""]
