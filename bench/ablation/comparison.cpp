@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "ist/query/reference/reference_query.h"
 #include "ist/tree/tree_parts.h"
 #include "support/effort.h"
 #include "verify/answer_verifier.h"
@@ -83,8 +84,9 @@ void Comparison::check(SpherePolicy policy) {
   for (std::size_t pose = 0; pose < kPoses; ++pose) {
     const Answer specified = ask(reference, pose), batches = ask(scalar, pose);
     if (pose == 0 || !quick()) {  // the longest of the checks; pose 0 has the most contacts
-      const GivenAnswer given[] = {{specified.result, specified.leaf_pairs},
-                                   {batches.result, batches.leaf_pairs}};
+      const GivenAnswer given[] = {
+          {specified.result, specified.leaf_pairs, published_are_nested(policy)},
+          {batches.result, batches.leaf_pairs}};
       if (const std::optional<Violation> violation =
               verifier.check(closing(kClosing[pose]), given)) {
         fail(violation->answer == 0 ? as_specified : in_batches, pose, violation->detail);
