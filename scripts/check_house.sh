@@ -7,7 +7,7 @@ failed=0
 breach() { echo "$*" >&2; failed=1; }
 
 # Folders are layers. Each includes those before it; `mesh < models`, which voxels do not need.
-layers=(base mesh models voxel tree simd query haptics scene capi)
+layers=(base mesh models voxel tree simd query measure haptics scene capi)
 room() { [ "$1" = simd ] && echo simd || echo "src/ist/$1"; }
 path() { [ "$1" = simd ] && echo simd || echo "ist/$1"; }
 for i in "${!layers[@]}"; do
@@ -19,7 +19,7 @@ done
 found=$(grep -rnE '#include "ist/models/' src/ist/voxel src/ist/tree simd src/ist/query || true)
 [ -z "$found" ] || breach "built-in models are for scenes and tools alone: $found"
 # Headers of users gather several layers, and angle brackets and paths upwards would hide one.
-found=$(grep -rnE '#include "ist/(ist|haptics|scene)\.h"' src/ist simd | grep -vE '^src/ist/((ist|haptics|scene)\.h|scene/|capi/)' || true)
+found=$(grep -rnE '#include "ist/(ist|measure|haptics|scene)\.h"' src/ist simd | grep -vE '^src/ist/((ist|measure|haptics|scene)\.h|scene/|capi/)' || true)
 [ -z "$found" ] || breach "a layer includes a header of users: $found"
 found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' src/ist simd src/cli src/verify src/advise || true)
 [ -z "$found" ] || breach "an include that hides its layer: $found"
@@ -61,7 +61,7 @@ found=$(grep -rnE '\bLikewise\b|\bis none\b|/// What\b' src simd --include='*.h'
 found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth|[dD]ive|run_hurried|run_until|run_within|widen|StepParts' src simd --include='*.h' --include='*.cpp' || true)
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
-[ "$headers" -le 24 ] || breach "$headers headers are installed: 24 are the most"
+[ "$headers" -le 30 ] || breach "$headers headers are installed: 30 are the most"
 long=$(find src simd tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
 [ -z "$long" ] || breach "longer than 400 lines: $long"
 exit $failed

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "ist/tree/clusters/triangle_clusters.h"
+#include "simd/exact/point_step.h"
 
 /// The interface of the kernels that search two trees of triangle clusters. Lengths are in mesh
 /// units, coordinates in the fixed tree's frame, where nothing else is said.
@@ -196,8 +197,8 @@ using NearClustersFunction = std::size_t (*)(const ClusterStep& step, const Clus
                                              Reach& reach, TriangleBatch& batch,
                                              FoundTriangles& out);
 
-/// The kernels of a search of clusters, for one instruction set. Of a pair of triangles,
-/// meet_clusters, decide_triangles and near_clusters say no more than is certain, and that may
+/// The kernels of a search of clusters, for one instruction set. Of triangles, meet_clusters,
+/// decide_triangles, near_clusters and near_triangles say no more than is certain, and that may
 /// differ; all else is the same on all, bit by bit.
 struct ClusterKernels {
   TurnNodesFunction turn_nodes;
@@ -208,6 +209,8 @@ struct ClusterKernels {
   MeetClustersFunction meet_clusters;
   DecideTrianglesFunction decide_triangles;
   NearClustersFunction near_clusters;
+  NearNodesFunction near_nodes;
+  NearTrianglesFunction near_triangles;
 };
 
 /// The kernels without vectors: they specify the others. Cost: 0.3 µs a test of a node against

@@ -11,6 +11,7 @@
 #include "simd/exact/clusters-inl.h"
 #include "simd/exact/nodes-inl.h"
 #include "simd/exact/picked-inl.h"
+#include "simd/exact/points-inl.h"
 #include "simd/exact/triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -150,12 +151,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ist::simd {
 
-#define IST_CLUSTER_KERNELS(TARGET)                                             \
-  ClusterKernels {                                                              \
-    HWY_CHOOSE_##TARGET(TurnNodes), HWY_CHOOSE_##TARGET(MeetNodes),             \
-        HWY_CHOOSE_##TARGET(ListLanes), HWY_CHOOSE_##TARGET(MeetChildren),      \
-        HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),  \
-        HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters) \
+#define IST_CLUSTER_KERNELS(TARGET)                                              \
+  ClusterKernels {                                                               \
+    HWY_CHOOSE_##TARGET(TurnNodes), HWY_CHOOSE_##TARGET(MeetNodes),              \
+        HWY_CHOOSE_##TARGET(ListLanes), HWY_CHOOSE_##TARGET(MeetChildren),       \
+        HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),   \
+        HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters), \
+        HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles)     \
   }
 
 ClusterKernels cluster_kernels(std::int64_t target) {

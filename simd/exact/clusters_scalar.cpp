@@ -2,6 +2,7 @@
 
 #include "simd/exact/cluster_step.h"
 #include "simd/exact/node_lanes.h"
+#include "simd/exact/points_scalar.h"
 #include "simd/exact/triangle_lanes.h"
 
 namespace ist {
@@ -150,6 +151,7 @@ std::size_t near_clusters_scalar(const ClusterStep& step, const ClusterPairs& pa
 
 constinit const ClusterKernels kScalarClusterKernels{
     turn_nodes_scalar,     meet_nodes_scalar,    list_lanes_scalar,       meet_children_scalar,
-    score_children_scalar, meet_clusters_scalar, decide_triangles_scalar, near_clusters_scalar};
+    score_children_scalar, meet_clusters_scalar, decide_triangles_scalar, near_clusters_scalar,
+    near_nodes_scalar,     near_triangles_scalar};
 
 }  // namespace ist

@@ -1,5 +1,6 @@
 /* Sizes, offsets and numbers of the C interface in compiled programs. They must never change. */
 
+#include "ist/capi/ist_measure.h"
 #include "ist/capi/ist_servo.h"
 
 #define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
@@ -150,6 +151,89 @@ AT(ist_servo_info, held, 152);
 AT(ist_servo_info, faults, 160);
 AT(ist_servo_info, late, 168);
 
+SIZE(ist_progress, 24);
+AT(ist_progress, struct_size, 0);
+AT(ist_progress, proceed, 8);
+AT(ist_progress, user, 16);
+
+SIZE(ist_surface_distance, 40);
+AT(ist_surface_distance, distance, 0);
+AT(ist_surface_distance, closest, 8);
+AT(ist_surface_distance, triangle, 32);
+AT(ist_surface_distance, is_signed, 36);
+
+SIZE(ist_penetration, 104);
+AT(ist_penetration, lower, 8);
+AT(ist_penetration, upper, 16);
+AT(ist_penetration, point, 24);
+AT(ist_penetration, direction, 48);
+AT(ist_penetration, of_moving, 72);
+AT(ist_penetration, triangle, 76);
+AT(ist_penetration, complete, 80);
+AT(ist_penetration, not_closed, 84);
+AT(ist_penetration, narrowest, 88);
+AT(ist_penetration, points, 96);
+
+SIZE(ist_motion, 88);
+AT(ist_motion, from, 8);
+AT(ist_motion, to, 16);
+AT(ist_motion, point, 24);
+AT(ist_motion, direction, 48);
+AT(ist_motion, angle, 72);
+AT(ist_motion, along, 80);
+
+SIZE(ist_first_contact, 80);
+AT(ist_first_contact, lower, 8);
+AT(ist_first_contact, upper, 16);
+AT(ist_first_contact, distance_lower, 24);
+AT(ist_first_contact, distance_upper, 32);
+AT(ist_first_contact, outcome, 40);
+AT(ist_first_contact, grazed, 44);
+AT(ist_first_contact, triangles_known, 48);
+AT(ist_first_contact, fixed, 52);
+AT(ist_first_contact, moving, 56);
+AT(ist_first_contact, reserved, 60);
+AT(ist_first_contact, narrowest, 64);
+AT(ist_first_contact, distances, 72);
+
+SIZE(ist_occlusion_options, 72);
+AT(ist_occlusion_options, reach, 8);
+AT(ist_occlusion_options, contact, 16);
+AT(ist_occlusion_options, least_area, 24);
+AT(ist_occlusion_options, longest_edge, 32);
+AT(ist_occlusion_options, foundation, 40);
+AT(ist_occlusion_options, change, 48);
+AT(ist_occlusion_options, limits, 56);
+AT(ist_occlusion_options, limit_count, 64);
+
+SIZE(ist_contact_region, 112);
+AT(ist_contact_region, area, 0);
+AT(ist_contact_region, centre, 8);
+AT(ist_contact_region, least_distance, 32);
+AT(ist_contact_region, closest, 40);
+AT(ist_contact_region, penetrating_area, 64);
+AT(ist_contact_region, depth_integral, 72);
+AT(ist_contact_region, share, 80);
+AT(ist_contact_region, share_thinner, 88);
+AT(ist_contact_region, share_thicker, 96);
+AT(ist_contact_region, triangle, 104);
+AT(ist_contact_region, partner, 108);
+
+SIZE(ist_occlusion_arrays, 48);
+AT(ist_occlusion_arrays, distances, 8);
+AT(ist_occlusion_arrays, distance_capacity, 16);
+AT(ist_occlusion_arrays, regions, 24);
+AT(ist_occlusion_arrays, region_capacity, 32);
+AT(ist_occlusion_arrays, areas, 40);
+
+SIZE(ist_occlusion, 56);
+AT(ist_occlusion, vertices, 8);
+AT(ist_occlusion, regions, 16);
+AT(ist_occlusion, total_area, 24);
+AT(ist_occlusion, penetrating_area, 32);
+AT(ist_occlusion, depth_integral, 40);
+AT(ist_occlusion, depth_at_vertices, 48);
+
 IS(IST_ABI_VERSION, 1);
 IS(IST_OK, 0);
 IS(IST_NULL_ARGUMENT, 1);
@@ -165,6 +249,7 @@ IS(IST_SYSTEM_ERROR, 10);
 IS(IST_INTERNAL_ERROR, 11);
 IS(IST_NOT_PREPARED, 12);
 IS(IST_SERVO_FAULT, 13);
+IS(IST_CANCELLED, 14);
 IS(IST_FILE_UNREADABLE, 101);
 IS(IST_FILE_UNWRITABLE, 102);
 IS(IST_NOT_A_MESH, 103);
@@ -198,3 +283,13 @@ IS(IST_ANSWER_NEAR, 2);
 IS(IST_ANSWER_YES, 3);
 IS(IST_UNIT_M, 1);
 IS(IST_UNIT_MM, 2);
+IS(IST_CLOSED, 0);
+IS(IST_FIXED_NOT_CLOSED, 1);
+IS(IST_MOVING_NOT_CLOSED, 2);
+IS(IST_FIRST_UNKNOWN, 0);
+IS(IST_FIRST_CONTACT, 1);
+IS(IST_FIRST_NONE, 2);
+IS(IST_FIRST_GRAZING, 3);
+IS(IST_FIRST_TOUCHES_AT_START, 4);
+IS(IST_FIRST_INSIDE_AT_START, 5);
+IS(IST_FIRST_STOPPED, 6);

@@ -2,6 +2,7 @@
 
 #include <ist/haptics.h>
 #include <ist/ist.h>
+#include <ist/measure.h>
 #include <ist/scene.h>
 
 #include <array>
@@ -26,13 +27,17 @@ consteval auto numbers_of(auto... places) {
                ist::FrictionSettings, ist::GravitySettings, ist::SnapSettings, ist::ServoCallback,
                ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs, ist::ServoReport,
                ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>, ist::Scene,
-               ist::BuiltScene>(
+               ist::BuiltScene, ist::SurfaceDistance, ist::Penetration, ist::PenetrationOptions,
+               ist::Motion, ist::FirstContact, ist::FirstContactOptions, ist::ContactRegion,
+               ist::SurfaceOcclusion, ist::Occlusion, ist::OcclusionOptions>(
         offsetof(ist::TriangleMesh, triangles), offsetof(ist::Contact, weight),
         offsetof(ist::ContactSums, spring), offsetof(ist::QueryResult, pad),
         offsetof(ist::Placement, translation), offsetof(ist::Response, stiffness),
         offsetof(ist::HandSettings, plan), offsetof(ist::GravitySettings, acceleration),
         offsetof(ist::Tick, wrench), offsetof(ist::Tick, leaf_pairs),
         offsetof(ist::TickRecord, cpu_ns), offsetof(ist::BuiltScene, warnings),
-        offsetof(ist::ServoReport, notes));
+        offsetof(ist::ServoReport, notes), offsetof(ist::SurfaceDistance, triangle),
+        offsetof(ist::Penetration, narrowest), offsetof(ist::FirstContact, narrowest),
+        offsetof(ist::ContactRegion, share));
 
 }  // namespace layout

@@ -200,7 +200,7 @@ class Packages:
         """The headers are closed under includes, and what they define can be linked."""
         folder = self.fresh("headers")
         ours, model = installed_headers()
-        require(len(ours) <= 24, f"{len(ours)} headers are installed: 24 are the most")
+        require(len(ours) <= 30, f"{len(ours)} headers are installed: 30 are the most")
         text = {header: (self.prefix / "include" / header).read_text() for header in ours + model}
         for header in text:
             for other in re.findall(r'#include "([^"]+)"', text[header]):
@@ -246,7 +246,7 @@ class Packages:
                 require(fine, f"{compiler}: {line} does not compile with trees that last:\n{said}")
                 fine, said = compiles(compiler, text.format(line.replace("TREE", "make()")))
                 require(not fine and "deleted" in said, f"{compiler}: {what} compiles, or for another reason not:\n{said}")
-            for header in ("ist/ist.h", "ist/haptics.h", "ist/scene.h"):
+            for header in ("ist/ist.h", "ist/measure.h", "ist/haptics.h", "ist/scene.h"):
                 fine, said = compiles(compiler, f"#include <{header}>\n", "c++17")
                 errors = [line for line in said.splitlines() if re.search(r"\berror:", line)]
                 require(not fine and len(errors) == 1 and "C++20" in errors[0], f"{compiler}, C++17, {header}:\n{said}")

@@ -31,7 +31,9 @@ void check_voxels(const SphereTree& tree, StabilityCase& voxels) {
   constexpr int kParts = 16;  // of a pad, to which it is measured
   const Lattice& lattice = tree.parts().lattice;
   const std::vector<std::uint64_t> codes = tree.parts().octree.codes(0);
-  const auto& [mesh, lists, clusters] = *tree.parts().triangles;
+  const LeafTriangles& kept = *tree.parts().triangles;
+  const TriangleMesh& mesh = kept.mesh;
+  const TriangleLists& lists = kept.lists;
   std::vector<std::vector<std::uint64_t>> found(mesh.triangles.size());
   for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
     for (const std::uint32_t t : lists[voxel]) found[t].push_back(codes[voxel]);

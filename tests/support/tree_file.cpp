@@ -24,7 +24,9 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
   slabs = balls + 8 * tree.parts().octree.node_count();
   counts = slabs + 5 * tree.parts().octree.node_count();
   vertices = counts + 24;
-  const auto& [mesh, lists, clusters] = *tree.parts().triangles;
+  const LeafTriangles& kept = *tree.parts().triangles;
+  const TriangleMesh& mesh = kept.mesh;
+  const TriangleLists& lists = kept.lists;
   triangles = vertices + 24 * mesh.vertices.size();
   list_begins = triangles + 12 * mesh.triangles.size();
   list_ids = list_begins + 4 * (leaf_count + 1);

@@ -2,8 +2,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 
 namespace ist {
+
+/// Is told now and then what part of a measure is done, 0 to 1, as far as that is known, and says
+/// whether to go on. Called on the caller's thread; an exception reaches the caller.
+using Proceed = std::function<bool(double part)>;
 
 /// Holds the progress of a build. The building threads write it; any thread may read it at any
 /// time.

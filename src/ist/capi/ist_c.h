@@ -71,7 +71,7 @@ enum {
   IST_INTERNAL_ERROR = 11, /* a bug in this library */
   IST_NOT_PREPARED = 12,   /* the query was created without contacts */
   IST_SERVO_FAULT = 13,    /* a force was not a number: the output is zero */
-
+  IST_CANCELLED = 14,      /* the caller ended the call */
   IST_FILE_UNREADABLE = 101,
   IST_FILE_UNWRITABLE = 102,
   IST_NOT_A_MESH = 103,           /* the content is not STL, PLY or OBJ */

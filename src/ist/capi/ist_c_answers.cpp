@@ -27,22 +27,6 @@ static_assert(answer_of(Answer::kNo) == IST_ANSWER_NO &&
               answer_of(Answer::kNear) == IST_ANSWER_NEAR &&
               answer_of(Answer::kYes) == IST_ANSWER_YES);
 
-// Converts a caller's budget; NULL leaves the default, which has no limit.
-ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget) {
-  if (given == nullptr) return IST_OK;
-  ist_budget known;
-  if (const ist_status wrong = read_sized(call, "budget", *given, known)) return wrong;
-  if (known.tests > 0) budget.tests = known.tests;
-  if (known.nanoseconds > 0) {
-    const Budget::Clock::time_point now = Budget::Clock::now();
-    const auto longest = static_cast<std::uint64_t>((budget.deadline - now).count());
-    if (known.nanoseconds < longest) {
-      budget.deadline = now + std::chrono::nanoseconds(known.nanoseconds);
-    }
-  }
-  return IST_OK;
-}
-
 // The members that leaf pairs and contacts have in common.
 ist_query_result result_of(const QueryResult& found) {
   ist_query_result result{};
@@ -59,8 +43,6 @@ ist_query_result result_of(const QueryResult& found) {
   result.found = static_cast<std::int32_t>(found.found);
   return result;
 }
-
-void copy(const Eigen::Vector3d& from, double (&to)[3]) { std::copy_n(from.data(), 3, to); }
 
 ist_contact contact_of(const Contact& contact) {
   ist_contact out;

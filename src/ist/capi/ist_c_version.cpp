@@ -10,8 +10,8 @@ namespace {
 constexpr const char* kNames[] = {
     "ok",           "null-argument",  "struct-size",  "argument-invalid", "not-a-handle",
     "handle-kind",  "handle-freed",   "handle-busy",  "too-many-handles", "out-of-memory",
-    "system-error", "internal-error", "not-prepared", "servo-fault"};
-static_assert(IST_OK == 0 && std::size(kNames) == IST_SERVO_FAULT + 1);
+    "system-error", "internal-error", "not-prepared", "servo-fault", "cancelled"};
+static_assert(IST_OK == 0 && std::size(kNames) == IST_CANCELLED + 1);
 
 }  // namespace
 
@@ -22,7 +22,7 @@ const char* ist_version_string(void) IST_NOEXCEPT { return IST_VERSION; }
 const char* ist_status_name(ist_status status) IST_NOEXCEPT {
   const auto code = ist::capi::error_code_of(status);
   if (code) return ist::to_string(*code);
-  return status >= IST_OK && status <= IST_SERVO_FAULT ? kNames[status] : "unknown";
+  return status >= IST_OK && status <= IST_CANCELLED ? kNames[status] : "unknown";
 }
 
 const char* ist_last_error_message(void) IST_NOEXCEPT { return ist::capi::last_error(); }

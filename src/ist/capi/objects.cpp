@@ -1,11 +1,32 @@
 #include "ist/capi/objects.h"
 
+#include <algorithm>
+
 namespace ist::capi {
 
 Eigen::Isometry3d to_isometry(const double pose[16]) noexcept {
   Eigen::Isometry3d isometry;
   isometry.matrix() = Eigen::Map<const Eigen::Matrix4d>(pose);
   return isometry;
+}
+
+void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept {
+  std::copy_n(from.data(), 3, to);
+}
+
+ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget) {
+  if (given == nullptr) return IST_OK;
+  ist_budget known;
+  if (const ist_status wrong = read_sized(call, "budget", *given, known)) return wrong;
+  if (known.tests > 0) budget.tests = known.tests;
+  if (known.nanoseconds > 0) {
+    const Budget::Clock::time_point now = Budget::Clock::now();
+    const auto longest = static_cast<std::uint64_t>((budget.deadline - now).count());
+    if (known.nanoseconds < longest) {
+      budget.deadline = now + std::chrono::nanoseconds(known.nanoseconds);
+    }
+  }
+  return IST_OK;
 }
 
 ist_status status_of(const Call& call, QueryStatus status) {

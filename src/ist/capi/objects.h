@@ -77,6 +77,11 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
 /// Converts 16 numbers in column-major order, without a check.
 [[nodiscard]] Eigen::Isometry3d to_isometry(const double pose[16]) noexcept;
 
+void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept;
+
+/// Converts a caller's budget; NULL leaves the default, which has no limit.
+[[nodiscard]] ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget);
+
 /// Converts a query's status; stores the message of an error.
 [[nodiscard]] ist_status status_of(const Call& call, QueryStatus status);
 

@@ -163,6 +163,8 @@ void Query::forget() noexcept {
 }
 
 bool Query::has_triangles() const noexcept { return state_->exact.has_value(); }
+const SphereTree& Query::fixed() const noexcept { return state_->fixed; }
+const SphereTree& Query::moving() const noexcept { return state_->moving; }
 SpherePolicy Query::policy() const noexcept { return state_->policy; }
 const char* Query::target() const noexcept { return state_->kernels.target; }
 int Query::workers() const noexcept {

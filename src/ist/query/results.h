@@ -17,8 +17,9 @@ namespace ist {
 /// A search never makes more tests than allowed, but for the test of the roots, which is always
 /// made. With a deadline it reads the clock at least every 500 tests, every 512 leaf pairs, and
 /// every 2,048 pairs of a front whose rows were turned, some 3 ns each, and ends at the first look
-/// after the deadline. The result of a search that ended early states the level, and the interval
-/// of the distance that the tests so far tell. With a limit of tests alone the answer is the same
+/// after the deadline. The result of a search that ended early holds what the tests so far tell:
+/// of bounds the level and the interval of the distance, of triangles the pairs, or the interval
+/// that was asked for. With a limit of tests alone the answer is the same
 /// on every machine and in every run; a limit of as many tests as a deadline allowed ends the
 /// search at the same place, but for an answer from kept pairs: where a deadline ended it, it holds
 /// none.
@@ -106,7 +107,8 @@ struct DistanceResult {
   bool complete = false;  ///< the interval is no wider than the tolerance
   DistanceInterval distance{};
   /// The width below which no tolerance can be reached here: the rounding of a distance of
-  /// triangles; without triangles, twice the resolution.
+  /// triangles, of those found so far where a budget ended the search; without triangles, twice the
+  /// resolution.
   double narrowest = 0;
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
 };

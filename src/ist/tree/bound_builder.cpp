@@ -11,7 +11,7 @@
 #include "ist/tree/nested_bounds.h"
 #include "ist/tree/node_bounds.h"
 #include "ist/voxel/morton.h"
-#include "ist/voxel/nearest_point.h"
+#include "ist/mesh/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
 

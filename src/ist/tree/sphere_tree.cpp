@@ -9,6 +9,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/mesh/components.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
 
@@ -64,6 +65,16 @@ TreeParts measured(TreeParts parts) {
 }
 
 }  // namespace
+
+const LeafTriangles::Lazy& LeafTriangles::made() const {
+  std::call_once(lazy_->once, [this] {
+    lazy_->normals.emplace(mesh);
+    for (const Component& component : components_of(mesh)) {
+      lazy_->component_points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
+    }
+  });
+  return *lazy_;
+}
 
 SphereTree::SphereTree(TreeParts parts)
     : parts_(std::make_shared<const TreeParts>(measured(std::move(parts)))) {}

@@ -108,8 +108,10 @@ class IST_API SphereTree {
 struct BuildOptions {
   double voxel_size = 0;                       ///< mesh units
   SpherePolicy spheres = SpherePolicy::kSlab;  ///< the tightest to save; implicit ones cost nothing
-  bool keep_triangles = true;                  ///< for exact answers; 150 to 300 bytes a triangle
-  bool proximity = false;                      ///< proximity voxels besides surface voxels
+  /// For exact answers: 48 bytes a triangle for its clusters, 25 for the mesh, and 4 for each leaf
+  /// that it meets: 80 with large voxels, 150 with 0.2 mm on a jaw of 107,000 triangles.
+  bool keep_triangles = true;
+  bool proximity = false;                             ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
 };
 

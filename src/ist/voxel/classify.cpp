@@ -11,7 +11,7 @@
 #include "ist/base/error.h"
 #include "ist/base/parallel.h"
 #include "ist/mesh/components.h"
-#include "ist/voxel/nearest_point.h"
+#include "ist/mesh/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 
 namespace ist {

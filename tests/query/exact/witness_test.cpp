@@ -116,5 +116,21 @@ TEST_F(Witness, IsForgottenWithAFront) {
   }
 }
 
+// The pair that was nearest from afar is a bad begin: no search may take much longer for it.
+TEST_F(Witness, CostsLittleAfterALeap) {
+  Query query(fixed_, moving_);
+  Query fresh(fixed_, moving_);
+  const Eigen::Isometry3d near(Eigen::Translation3d(1.8, 0.1, 0));
+  for (const Eigen::Vector3d& far : {Eigen::Vector3d(0, 0, 40), Eigen::Vector3d(-9, 0, 0),
+                                     Eigen::Vector3d(0, 300, 0), Eigen::Vector3d(-1.85, 0, 0)}) {
+    for (const double tolerance : {0.0, 0.01}) {
+      static_cast<void>(query.distance(Eigen::Isometry3d(Eigen::Translation3d(far)), tolerance));
+      fresh.forget();
+      const std::uint64_t tests = query.distance(near, tolerance).sphere_tests;
+      EXPECT_LE(tests, 3 * fresh.distance(near, tolerance).sphere_tests) << far.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

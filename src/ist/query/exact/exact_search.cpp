@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ist/base/float_rounding.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/query/exact/nearest_beam.h"
 #include "ist/query/exact/nearest_pair.h"
@@ -14,9 +15,10 @@ namespace {
 
 // The test of the roots, which counts.
 constexpr std::uint64_t kRootTests = 1;
-// Where the last nearest pair is farther now by more than this factor, and by the tolerance, others
-// are looked for first.
-constexpr double kNearWitness = 1.25;
+// The last nearest pair is a begin only where it is near: no farther than it was, by more than this
+// factor and the tolerance, and no farther than a part of the bodies' radii. Else others are looked
+// for first, as by a new query.
+constexpr double kNearWitness = 1.25, kNearBodies = 0x1p-5;
 // Pairs that are sorted fast.
 constexpr std::size_t kSorted = 1 << 14;
 
@@ -67,8 +69,7 @@ double ExactSearch::moved_error(const Eigen::Isometry3d& rigid) const noexcept {
 
 bool ExactSearch::is_too_far(const RelativePose& pose) const noexcept {
   constexpr double kFar = 0x1p12;
-  const double radii = fixed_.bounding_radius() + moving_.bounding_radius();
-  return pose.translation.cwiseAbs().maxCoeff() > kFar * radii;
+  return pose.translation.cwiseAbs().maxCoeff() > kFar * radii();
 }
 
 // The motion between the clusters' frames. Beside the rounding of moved vertices, that of the
@@ -140,7 +141,8 @@ ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double toleranc
   bool near = false;
   if (nearest_ && !budget.has_tests()) {
     nearest.measure(nearest_->ids);
-    near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance;
+    near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance &&
+           nearest.distance() <= kNearBodies * radii();
     spent.spend(1);
   }
   if (!near) begin_nearest(spent, nearest);

@@ -88,6 +88,9 @@ class ExactSearch {
     TriangleIds ids;
     double distance;
   };
+  [[nodiscard]] double radii() const noexcept {
+    return fixed_.bounding_radius() + moving_.bounding_radius();
+  }
   [[nodiscard]] ClusterPose cluster_pose(const ExactPose& pose) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
   template <class Visitor>

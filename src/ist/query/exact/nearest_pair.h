@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "ist/base/float_rounding.h"
 #include "ist/query/exact/triangle_distance.h"
 #include "ist/query/exact/triangle_visitors.h"
 
 namespace ist {
-
-/// Returns a float that is no less.
-[[nodiscard]] inline float rounded_up(double value) noexcept {
-  return static_cast<float>(value * (1 + 0x1p-22)) + std::numeric_limits<float>::min();
-}
 
 /// Finds the nearest pair, or one that is farther by at most the tolerance. Only nodes are left out
 /// for the tolerance's sake; of the triangles that are compared the nearest is found, so that the

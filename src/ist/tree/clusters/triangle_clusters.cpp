@@ -21,7 +21,7 @@ constexpr std::size_t kGrain = 64;
 // By how much the square of a normal's length may differ from 1, doubled.
 constexpr double kNormalRounding = 0x1p-21;
 
-float rounded_up(double value) {
+float nearest_above(double value) {
   const auto nearest = static_cast<float>(value);
   return nearest >= value ? nearest
                           : std::nextafter(nearest, std::numeric_limits<float>::infinity());
@@ -87,7 +87,7 @@ Vector put_bounds(Points points, const Vector& normal, double grid, NodeBlock& b
     const auto axis = static_cast<std::size_t>(i);
     block.centre[axis][lane] = static_cast<float>(centre[i]);
     block.half[axis][lane] =
-        rounded_up(kRounding * std::max(range.high - centre[i], centre[i] - range.low));
+        nearest_above(kRounding * std::max(range.high - centre[i], centre[i] - range.low));
     block.normal[axis][lane] = static_cast<float>(n[i]);
   }
   Range heights;
@@ -101,11 +101,11 @@ Vector put_bounds(Points points, const Vector& normal, double grid, NodeBlock& b
   }
   const auto offset = static_cast<float>(0.5 * (heights.low + heights.high));
   block.offset[lane] = offset;
-  block.thickness[lane] =
-      rounded_up(kRounding * std::max(heights.high - double{offset}, double{offset} - heights.low));
-  block.radius[lane] = rounded_up(kRounding * std::sqrt(radius));
+  block.thickness[lane] = nearest_above(
+      kRounding * std::max(heights.high - double{offset}, double{offset} - heights.low));
+  block.radius[lane] = nearest_above(kRounding * std::sqrt(radius));
   // The square errs by a few roundings of the radius', and the normal is not quite a unit.
-  block.rim[lane] = rounded_up(std::sqrt(rim + kNormalRounding * radius));
+  block.rim[lane] = nearest_above(std::sqrt(rim + kNormalRounding * radius));
   return centre;
 }
 

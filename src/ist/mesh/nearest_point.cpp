@@ -1,4 +1,4 @@
-#include "ist/voxel/nearest_point.h"
+#include "ist/mesh/nearest_point.h"
 
 #include <Eigen/Geometry>
 #include <limits>

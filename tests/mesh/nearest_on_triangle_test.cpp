@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "ist/voxel/nearest_point.h"
+#include "ist/mesh/nearest_point.h"
 #include "support/exact.h"
 #include "support/seeded.h"
 

@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <vector>
+
+#include "ist/capi/ist_measure.h"
+#include "ist/capi/measure_answers.h"
+#include "ist/capi/objects.h"
+#include "ist/measure/first_contact.h"
+#include "ist/measure/penetration.h"
+#include "ist/measure/signed_distance.h"
+
+namespace ist::capi {
+namespace {
+
+ist_penetration penetration_of(const Penetration& found) {
+  ist_penetration out{};
+  out.lower = found.lower;
+  out.upper = found.upper;
+  copy(found.point, out.point);
+  copy(found.direction, out.direction);
+  out.of_moving = found.of_moving;
+  out.triangle = found.triangle;
+  out.complete = found.complete;
+  out.not_closed = found.status == Penetration::Status::kFixedNotClosed    ? IST_FIXED_NOT_CLOSED
+                   : found.status == Penetration::Status::kMovingNotClosed ? IST_MOVING_NOT_CLOSED
+                                                                           : IST_CLOSED;
+  out.narrowest = found.narrowest;
+  out.points = found.points;
+  return out;
+}
+
+Penetration penetration_of(const ist_penetration& given) {
+  Penetration last;
+  last.lower = given.lower;
+  last.upper = given.upper;
+  last.point = Eigen::Vector3d(given.point[0], given.point[1], given.point[2]);
+  last.of_moving = given.of_moving != 0;
+  last.triangle = given.triangle;
+  return last;
+}
+
+ist_first_contact first_contact_of(const FirstContact& found) {
+  ist_first_contact out{};
+  out.lower = found.lower;
+  out.upper = found.upper;
+  out.distance_lower = found.distance.lower;
+  out.distance_upper = found.distance.upper;
+  out.outcome = static_cast<std::int32_t>(found.status) + IST_FIRST_CONTACT;
+  out.grazed = found.grazed;
+  out.triangles_known = found.triangles.has_value();
+  if (found.triangles) {
+    out.fixed = found.triangles->fixed;
+    out.moving = found.triangles->moving;
+  }
+  out.narrowest = found.narrowest;
+  out.distances = found.distances;
+  return out;
+}
+static_assert(static_cast<int>(FirstContact::Status::kContact) + IST_FIRST_CONTACT ==
+                  IST_FIRST_CONTACT &&
+              static_cast<int>(FirstContact::Status::kStopped) + IST_FIRST_CONTACT ==
+                  IST_FIRST_STOPPED);
+
+Motion motion_of(const ist_motion& given) {
+  const Eigen::Isometry3d from = to_isometry(given.from);
+  if (given.to != nullptr) return Motion::between(from, to_isometry(given.to));
+  const auto vector = [](const double(&v)[3]) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+  return Motion::screw(from, vector(given.point), vector(given.direction), given.angle,
+                       given.along);
+}
+
+}  // namespace
+
+ist_status cancelled(const Call& call) {
+  return call.fail(IST_CANCELLED, "progress->proceed returned 0: the call was ended as it asked");
+}
+
+ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept {
+  ist_surface_distance out;
+  out.distance = found.distance;
+  copy(found.closest, out.closest);
+  out.triangle = found.triangle;
+  out.is_signed = found.is_signed;
+  return out;
+}
+static_assert(SurfaceDistance::kNoTriangle == IST_NO_TRIANGLE);
+
+ist_status read_progress(const Call& call, const ist_progress* given, Proceed& proceed) {
+  if (given == nullptr) return IST_OK;
+  ist_progress known;
+  if (const ist_status wrong = read_sized(call, "progress", *given, known)) return wrong;
+  if (known.proceed == nullptr) return IST_OK;
+  proceed = [known](double part) { return known.proceed(known.user, part) != 0; };
+  return IST_OK;
+}
+
+}  // namespace ist::capi
+
+using namespace ist::capi;
+
+ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, size_t count,
+                                    double reach, const ist_progress* progress,
+                                    ist_surface_distance* distances) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need_array("points", points, count)) return missing;
+    if (const ist_status missing = call.need_array("distances", distances, count)) return missing;
+    ist::Proceed proceed;
+    if (const ist_status wrong = read_progress(call, progress, proceed)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    std::vector<Eigen::Vector3d> at(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      at[i] = Eigen::Vector3d(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+    }
+    const auto found = ist::signed_distance(*held->tree, at, reach, proceed);
+    if (found.size() < count) return cancelled(call);
+    std::transform(found.begin(), found.end(), distances, surface_distance_of);
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, const double pose[16],
+                                 double reach, const ist_progress* progress,
+                                 ist_surface_distance* distances, size_t capacity,
+                                 uint64_t* vertices) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"vertices", vertices}})) return missing;
+    *vertices = 0;
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    if (const ist_status missing = call.need_array("distances", distances, capacity)) {
+      return missing;
+    }
+    ist::Proceed proceed;
+    if (const ist_status wrong = read_progress(call, progress, proceed)) return wrong;
+    const Held<Tree> held_body(call, "body", body);
+    if (held_body.status() != IST_OK) return held_body.status();
+    const Held<Tree> held_other(call, "other", other);
+    if (held_other.status() != IST_OK) return held_other.status();
+    const ist::SphereTree& of = *held_body->tree;
+    const auto found = ist::distance_map(of, *held_other->tree, to_isometry(pose), reach, proceed);
+    if (found.size() < of.triangles()->vertices.size()) return cancelled(call);
+    *vertices = found.size();
+    const std::size_t count = std::min(capacity, found.size());
+    std::transform(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), distances,
+                   surface_distance_of);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_penetration(ist_query* query, const double pose[16], double tolerance,
+                                 const ist_penetration* last, const ist_budget* budget,
+                                 const ist_progress* progress,
+                                 ist_penetration* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    // Read before the result is cleared: it may be the same struct.
+    ist_penetration known{};
+    if (last != nullptr) {
+      if (const ist_status wrong = read_sized(call, "last", *last, known)) return wrong;
+    }
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    ist::PenetrationOptions options;
+    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
+    if (const ist_status wrong = read_progress(call, progress, options.proceed)) return wrong;
+    const ist::Penetration before = penetration_of(known);
+    if (last != nullptr) options.last = &before;
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    const ist::Penetration found =
+        ist::penetration(held->query, to_isometry(pose), tolerance, options);
+    if (found.status == ist::Penetration::Status::kInvalidPose) {
+      return status_of(call, ist::QueryStatus::kInvalidPose);
+    }
+    write_sized(penetration_of(found), *result);
+    return IST_OK;
+  });
+}
+
+ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion, double tolerance,
+                                   const ist_budget* budget, const ist_progress* progress,
+                                   ist_first_contact* result) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (const ist_status missing = call.need({{"motion", motion}})) return missing;
+    ist_motion known;
+    if (const ist_status wrong = read_sized(call, "motion", *motion, known)) return wrong;
+    if (const ist_status missing = call.need({{"motion->from", known.from}})) return missing;
+    ist::FirstContactOptions options;
+    if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
+    if (const ist_status wrong = read_progress(call, progress, options.proceed)) return wrong;
+    const Held<QueryObject> held(call, "query", query);
+    if (held.status() != IST_OK) return held.status();
+    const ist::FirstContact found =
+        ist::first_contact(held->query, motion_of(known), tolerance, options);
+    write_sized(first_contact_of(found), *result);
+    return IST_OK;
+  });
+}

@@ -1,0 +1,128 @@
+#include "ist/measure/contact_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include "ist/base/ordered_vector.h"
+#include "ist/mesh/components.h"
+
+namespace ist {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+// The triangles that touch, joined where they share an edge that does. Returns for each triangle
+// the first one it hangs together with.
+std::vector<std::uint32_t> joined(const RefinedSurface& surface, double contact) {
+  const auto& triangles = surface.triangles();
+  const auto touches = [&](std::uint32_t v) { return surface.vertices()[v].distance <= contact; };
+  DisjointSets sets(triangles.size());
+  std::unordered_map<std::uint64_t, std::uint32_t> first;  // triangle at an edge
+  for (std::uint32_t k = 0; k < triangles.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] =
+          std::minmax(triangles[k].vertex[i], triangles[k].vertex[(i + 1) % 3]);
+      if (!touches(low) && !touches(high)) continue;
+      const auto [other, is_new] = first.try_emplace(std::uint64_t{low} << 32 | high, k);
+      if (!is_new) sets.join(other->second, k);
+    }
+  }
+  std::vector<std::uint32_t> of(triangles.size());
+  for (std::uint32_t k = 0; k < of.size(); ++k) of[k] = sets.find(k);
+  return of;
+}
+
+// A region while its triangles are added up.
+struct Sum {
+  ContactRegion region;
+  Vector moment = Vector::Zero();
+  std::uint32_t nearest = 0;
+  std::vector<std::uint32_t> triangles;
+};
+
+void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
+         const OcclusionOptions& options, Sum& sum) {
+  const LevelTriangle corners = surface.corners(triangle);
+  const LevelCut touching = cut_at(corners, options.contact), inside = cut_at(corners, 0);
+  ContactRegion& region = sum.region;
+  region.area += touching.area;
+  add_to(sum.moment, touching.moment);
+  region.penetrating_area += inside.area;
+  region.depth_integral += inside.below;
+  region.share += cut_at(corners, options.foundation).below;
+  region.share_thinner += cut_at(corners, options.foundation - options.change).below;
+  region.share_thicker += cut_at(corners, options.foundation + options.change).below;
+  for (const std::uint32_t v : triangle.vertex) {
+    const RefinedSurface::Vertex& vertex = surface.vertices()[v];
+    if (vertex.distance >= region.least_distance) continue;
+    region.least_distance = vertex.distance;
+    region.closest = vertex.at;
+    region.triangle = triangle.of;
+    sum.nearest = vertex.nearest;
+  }
+  sum.triangles.push_back(triangle.of);
+}
+
+}  // namespace
+
+ContactRegions contact_regions(const RefinedSurface& surface, const OcclusionOptions& options) {
+  const std::vector<std::uint32_t> of = joined(surface, options.contact);
+  std::unordered_map<std::uint32_t, std::size_t> places;
+  std::vector<Sum> sums;
+  for (std::uint32_t k = 0; k < of.size(); ++k) {
+    const RefinedTriangle& triangle = surface.triangles()[k];
+    const auto touches = [&](std::uint32_t v) {
+      return surface.vertices()[v].distance <= options.contact;
+    };
+    if (std::none_of(triangle.vertex.begin(), triangle.vertex.end(), touches)) continue;
+    const auto [place, is_new] = places.try_emplace(of[k], sums.size());
+    if (is_new) sums.emplace_back().region.least_distance = HUGE_VAL;
+    add(surface, triangle, options, sums[place->second]);
+  }
+  std::erase_if(sums, [&](const Sum& sum) {
+    return !(sum.region.area > 0) || sum.region.area < options.least_area;
+  });
+  std::stable_sort(sums.begin(), sums.end(),
+                   [](const Sum& a, const Sum& b) { return a.region.area > b.region.area; });
+  double all = 0, thinner = 0, thicker = 0;
+  for (const Sum& sum : sums) {
+    all += sum.region.share;
+    thinner += sum.region.share_thinner;
+    thicker += sum.region.share_thicker;
+  }
+  ContactRegions out;
+  for (Sum& sum : sums) {
+    ContactRegion& region = sum.region;
+    region.centre = scaled(1 / region.area, sum.moment);
+    region.share = all > 0 ? region.share / all : 0;
+    region.share_thinner = thinner > 0 ? region.share_thinner / thinner : 0;
+    region.share_thicker = thicker > 0 ? region.share_thicker / thicker : 0;
+    out.regions.push_back(region);
+    out.nearest.push_back(sum.nearest);
+    std::sort(sum.triangles.begin(), sum.triangles.end());
+    out.triangles.push_back(std::move(sum.triangles));
+  }
+  return out;
+}
+
+void pair_regions(ContactRegions& fixed, ContactRegions& moving) {
+  // The first region of `others` that lies in the triangle nearest to region `k`.
+  const auto faced = [](const ContactRegions& one, std::size_t k,
+                        const ContactRegions& others) -> std::optional<std::uint32_t> {
+    for (std::uint32_t other = 0; other < others.regions.size(); ++other) {
+      const auto& triangles = others.triangles[other];
+      if (std::binary_search(triangles.begin(), triangles.end(), one.nearest[k])) return other;
+    }
+    return {};
+  };
+  for (std::uint32_t k = 0; k < fixed.regions.size(); ++k) {
+    const auto other = faced(fixed, k, moving);
+    if (!other || faced(moving, *other, fixed) != k) continue;
+    fixed.regions[k].partner = *other;
+    moving.regions[*other].partner = k;
+  }
+}
+
+}  // namespace ist

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ist/base/api.h"
+#include "ist/base/progress.h"
+#include "ist/query/query.h"
+
+namespace ist {
+
+/// A rigid motion from one pose to another: a screw, which turns about an axis and moves along it,
+/// both evenly. A translation is a screw that does not turn. Its parameter goes from 0 to 1.
+class IST_API Motion {
+ public:
+  /// The screw between two poses that turns least: by half a turn at most. Throws kPoseInvalid.
+  [[nodiscard]] static Motion between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+  /// The screw from a pose about the axis through `point` along `direction`, fixed coordinates, by
+  /// any angle, in radians, counterclockwise seen against the direction, and by `along` mesh units.
+  /// The direction's length does not matter. Throws kPoseInvalid, and kArgumentInvalid for a number
+  /// that is not finite, or a direction without a length.
+  [[nodiscard]] static Motion screw(const Eigen::Isometry3d& from, const Eigen::Vector3d& point,
+                                    const Eigen::Vector3d& direction, double angle, double along);
+
+  /// The pose at a parameter; the bits are the same on every machine.
+  [[nodiscard]] Eigen::Isometry3d at(double parameter) const noexcept;
+
+  /// The way of the point that goes farthest, mesh units for the whole motion: each goes evenly.
+  /// `points` in moving coordinates. Cost: 5 ns a point.
+  [[nodiscard]] double longest_way(std::span<const Eigen::Vector3d> points) const noexcept;
+
+ private:
+  Motion() = default;
+
+  // The motion x -> R x + translation after the first pose: R turns by parameter · angle, and the
+  // translation is (1 - cos) centre - sin across + parameter · along · axis, with the angle's
+  // sine and cosine, the axis' nearest point to the origin, and axis × centre. Plain numbers: the
+  // alignment of Eigen's types depends on the instruction set.
+  double rotation_[3][3], translation_[3];  // of the first pose
+  double axis_[3], centre_[3], across_[3];
+  double angle_, along_;
+};
+
+/// When a moving body first meets the fixed one.
+struct FirstContact {
+  enum class Status : std::uint8_t {
+    kContact,  ///< at `upper` triangles intersect, before `lower` none do
+    kNone,     ///< none intersect on the whole motion
+    kGrazing,  ///< at `lower` the surfaces are no farther apart than the tolerance; triangles
+               ///< may intersect from there to `upper`, were not found to, and do not elsewhere
+    kTouchesAtStart,  ///< triangles intersect at the first pose
+    kInsideAtStart,   ///< none do there, but a body lies inside the other, or a part of it
+    kStopped,         ///< the budget or the caller ended the search: before `lower` none intersect
+    kBusy,            ///< another thread is using the query
+  };
+
+  Status status = Status::kNone;
+  /// The parameter of the first contact lies in [lower, upper], which with kContact are no farther
+  /// apart than any point of the moving body takes to go the tolerance; farther where the surfaces
+  /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone.
+  double lower = 0, upper = 0;
+  bool grazed = false;
+  /// Triangles that intersect at `upper`, and the distance of the surfaces at `lower`, mesh units.
+  std::optional<TrianglePair> triangles = std::nullopt;
+  DistanceInterval distance{0, 0};
+  /// The least tolerance that is reached here, mesh units: rounding.
+  double narrowest = 0;
+  std::uint64_t distances = 0;  ///< distances that were asked for
+  std::uint64_t verdicts = 0;   ///< exact questions whether triangles intersect
+};
+[[nodiscard]] IST_API const char* to_string(FirstContact::Status status) noexcept;
+
+struct FirstContactOptions {
+  Budget budget = {};    ///< `tests` counts distances
+  Proceed proceed = {};  ///< asked after each distance
+};
+
+/// Finds the first contact along a motion: conservative advancement. A certified distance of the
+/// surfaces lets the body go on until some vertex has gone as far; within the tolerance of a
+/// contact, triangles decide. It passes through nothing, however thin or fast. Only where the
+/// surfaces stay within a 64th of the tolerance of each other, or as near as rounding, does it go
+/// on by the tolerance at once, and says so: `grazed`.
+///
+/// @param tolerance mesh units: how far a point of the moving body may go from `lower` to `upper`
+///
+/// `query` forgets what it kept. An answer has the same bits on every instruction set. Cost: that
+/// of some 10 to 40 distances for jaws that close; along surfaces within the tolerance, of 65
+/// distances for a way as long as the tolerance. Throws kTrianglesMissing, and kArgumentInvalid for
+/// a tolerance that is negative or NaN. Source: B. Mirtich, Impulse-based dynamic simulation of
+/// rigid body systems, dissertation, University of California at Berkeley, 1996.
+[[nodiscard]] IST_API FirstContact first_contact(Query& query, const Motion& motion,
+                                                 double tolerance,
+                                                 const FirstContactOptions& options = {});
+
+/// Along Motion::between(from, to). Throws kPoseInvalid too.
+[[nodiscard]] IST_API FirstContact first_contact(Query& query, const Eigen::Isometry3d& from,
+                                                 const Eigen::Isometry3d& to, double tolerance,
+                                                 const FirstContactOptions& options = {});
+
+}  // namespace ist

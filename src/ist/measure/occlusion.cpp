@@ -1,0 +1,131 @@
+#include "ist/measure/occlusion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ist/base/error.h"
+#include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
+#include "ist/base/rigid_move.h"
+#include "ist/measure/contact_regions.h"
+#include "ist/measure/distances_of.h"
+#include "ist/measure/far_inside.h"
+#include "ist/measure/refined_surface.h"
+#include "ist/measure/require.h"
+
+namespace ist {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+void require(bool fine, const char* name, double value, const char* remedy) {
+  if (fine) return;
+  throw Error(ErrorCode::kArgumentInvalid, fmt::format("{}: {} {}", name, value, remedy));
+}
+
+void require_options(const OcclusionOptions& options) {
+  const auto length = [](const char* name, double value) {
+    require(value > 0 && std::isfinite(value), name, value, "is no length: give more than 0");
+  };
+  const auto amount = [](const char* name, double value) {
+    require(value >= 0 && std::isfinite(value), name, value, "is not at least 0, and finite");
+  };
+  length("reach", options.reach);
+  length("longest_edge", options.longest_edge);
+  for (const double limit : options.limits) length("limits", limit);
+  amount("contact", options.contact);
+  amount("least_area", options.least_area);
+  amount("foundation", options.foundation);
+  amount("change", options.change);
+}
+
+double farthest_level(const OcclusionOptions& options) {
+  double farthest = std::max(options.contact, options.foundation + options.change);
+  for (const double limit : options.limits) farthest = std::max(farthest, limit);
+  return farthest;
+}
+
+// One surface; its regions are in the body's coordinates yet.
+struct MeasuredSurface {
+  SurfaceOcclusion surface;
+  ContactRegions regions;
+};
+
+MeasuredSurface measure_surface(const SurfaceInBody& side, const RigidMove& to_fixed,
+                                const OcclusionOptions& options) {
+  const TriangleMesh& mesh = *side.surface.triangles();
+  std::vector<Vector> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vector& v : mesh.vertices) points.push_back(side.to_body(v));
+  const double near = farthest_level(options);
+  const double reach = std::max(options.reach, near + options.longest_edge);
+  std::vector<SurfaceDistance> found = distances_of(side.body, side.search, points, reach);
+  measure_far_inside(side, points, reach, found);
+  MeasuredSurface out;
+  SurfaceOcclusion& surface = out.surface;
+  std::vector<RefinedSurface::Vertex> vertices;
+  vertices.reserve(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    SurfaceDistance& one = found[v];
+    const bool is_far = one.triangle == SurfaceDistance::kNoTriangle;
+    vertices.push_back({points[v], is_far ? reach : one.distance, one.triangle});
+    if (!is_far) surface.depth_at_vertices = std::max(surface.depth_at_vertices, -one.distance);
+    if (is_far || std::abs(one.distance) > options.reach) {
+      one = beyond_reach();
+    } else {
+      one.closest = to_fixed(one.closest);
+    }
+  }
+  surface.vertices = std::move(found);
+  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge);
+  surface.areas.assign(options.limits.size(), 0);
+  for (const RefinedTriangle& triangle : refined.triangles()) {
+    const LevelTriangle corners = refined.corners(triangle);
+    for (std::size_t i = 0; i < options.limits.size(); ++i) {
+      surface.areas[i] += cut_at(corners, options.limits[i]).area;
+    }
+    const LevelCut inside = cut_at(corners, 0);
+    surface.penetrating_area += inside.area;
+    surface.depth_integral += inside.below;
+  }
+  for (const Triangle& t : mesh.triangles) {
+    surface.total_area += area_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  }
+  out.regions = contact_regions(refined, options);
+  for (ContactRegion& region : out.regions.regions) {
+    region.centre = to_fixed(region.centre);
+    region.closest = to_fixed(region.closest);
+  }
+  return out;
+}
+
+}  // namespace
+
+Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
+                    const OcclusionOptions& options) {
+  const ScopedFloatEnvironment environment;
+  const SphereTree &fixed = query.fixed(), &moving = query.moving();
+  require_triangles(fixed, "fixed");
+  require_triangles(moving, "moving");
+  require_options(options);
+  const Eigen::Isometry3d rigid = require_rigid(pose, "pose"), back = rigid.inverse();
+  const ClusterKernels& kernels = select_kernels(query.target()).clusters;
+  const PointSearch in_fixed(fixed, kernels), in_moving(moving, kernels);
+  const RigidMove to_fixed(rigid), to_moving(back), stay(Eigen::Isometry3d::Identity());
+  const auto goes_on = [&](double part) { return !options.proceed || options.proceed(part); };
+
+  if (!goes_on(0)) return {};
+  MeasuredSurface of_fixed =
+      measure_surface({fixed, moving, in_moving, to_moving}, to_fixed, options);
+  if (!goes_on(0.5)) return {};
+  MeasuredSurface of_moving = measure_surface({moving, fixed, in_fixed, to_fixed}, stay, options);
+  pair_regions(of_fixed.regions, of_moving.regions);
+  of_fixed.surface.regions = std::move(of_fixed.regions.regions);
+  of_moving.surface.regions = std::move(of_moving.regions.regions);
+  return {true, std::move(of_fixed.surface), std::move(of_moving.surface)};
+}
+
+}  // namespace ist

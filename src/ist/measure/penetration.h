@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "ist/base/api.h"
+#include "ist/base/progress.h"
+#include "ist/query/query.h"
+
+namespace ist {
+
+/// How deep two bodies are in each other: the largest distance of a point of either surface, where
+/// it lies inside the other body, from the other surface. A body wholly inside another counts.
+struct Penetration {
+  enum class Status : std::uint8_t {
+    kDone,
+    kInvalidPose,      ///< the pose is no rigid motion
+    kFixedNotClosed,   ///< the fixed body has no certain inside: SphereTree::orientation()
+    kMovingNotClosed,  ///< the moving body likewise
+    kBusy,             ///< another thread is using the query
+  };
+
+  Status status = Status::kDone;
+  bool complete = false;  ///< the interval is no wider than the tolerance, or `narrowest`
+  /// The depth lies in [lower, upper], mesh units; [0, 0] where the bodies do not intersect.
+  double lower = 0, upper = 0;
+  /// A point of a surface that is `lower` deep, to within rounding, and the direction to the other
+  /// surface's nearest point, of unit length: the shortest way out. Fixed coordinates. Both zero
+  /// where no point was found inside.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
+  bool of_moving = false;      ///< whose surface the point lies on
+  std::uint32_t triangle = 0;  ///< the one of that surface that holds the point
+  /// The width below which no tolerance can be reached here: rounding.
+  double narrowest = 0;
+  std::uint64_t points = 0;  ///< points of which the distance was measured
+};
+[[nodiscard]] IST_API const char* to_string(Penetration::Status status) noexcept;
+
+struct PenetrationOptions {
+  /// An earlier answer of the same bodies, for a search that begins where its point is now: the
+  /// nearer the pose, the less time it takes. The interval is true whatever this says.
+  const Penetration* last = nullptr;
+  Budget budget = {};    ///< `tests` counts points; the interval is wider where it ends the search
+  Proceed proceed = {};  ///< asked every 1,024 points; likewise
+};
+
+/// Bounds the depth of two bodies by an interval no wider than `tolerance`, or `narrowest`: by
+/// branch and bound over the clusters of both surfaces. Both bodies must be closed, and their
+/// surfaces not cross themselves, which is not tested.
+///
+/// The bound of a node is its centre's signed distance and its radius; of a piece of a triangle,
+/// also the distance of its corners from the triangle that is nearest to its middle: a distance
+/// from one triangle is a convex function. Allocates. Cost: 1 to 5 ms for jaws in occlusion to 0.01
+/// mm, a tenth of that from the last answer; the first time for a tree, 0.5 µs a triangle more.
+/// Throws kTrianglesMissing, and kArgumentInvalid for a tolerance that is negative or NaN.
+[[nodiscard]] IST_API Penetration penetration(Query& query, const Eigen::Isometry3d& pose,
+                                              double tolerance,
+                                              const PenetrationOptions& options = {});
+
+}  // namespace ist

@@ -1,0 +1,172 @@
+#include "ist/measure/point_search.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "ist/base/float_rounding.h"
+#include "ist/base/ordered_vector.h"
+
+namespace ist {
+namespace {
+
+using Vector = Eigen::Vector3d;
+// No tree of 32-bit indices has more levels above its clusters.
+constexpr std::size_t kMostLevels = 8;
+
+template <class Body>
+void for_each_bit(std::uint32_t bits, const Body& body) {
+  for (; bits != 0; bits &= bits - 1) body(static_cast<std::uint32_t>(std::countr_zero(bits)));
+}
+
+}  // namespace
+
+// One search.
+class PointSearch::Descent {
+ public:
+  Descent(const PointSearch& search, const Vector& point, double within) noexcept
+      : search_(search), point_(point) {
+    const Eigen::Matrix3d& axes = search.clusters_.axes();
+    const Vector from = difference(point, search.origin_);
+    at_ = {dot_in_order(axes.col(0), from), dot_in_order(axes.col(1), from),
+           dot_in_order(axes.col(2), from)};
+    // The rounding of these coordinates, and of those of the clusters.
+    error_ = 0x1p-44 * (search.size_ + from.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      tree_point_.at[axis] = static_cast<float>(at_[i]);
+      tree_point_.rest[axis] = static_cast<float>(at_[i] - double{tree_point_.at[axis]});
+    }
+    tree_point_.error = rounded_up(4 * error_);
+    set_far(within * within);
+  }
+
+  void measure(std::uint32_t triangle) noexcept {
+    const Triangle& t = search_.mesh_.triangles[triangle];
+    const auto& vertices = search_.mesh_.vertices;
+    const NearestPoint on =
+        nearest_on_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, point_);
+    const Vector way = difference(point_, on.point);
+    const double square = dot_in_order(way, way);
+    if (!(square <= most_)) return;
+    if (best_ && square == best_->square && triangle >= best_->triangle) return;
+    best_ = {square, triangle, on};
+    set_far(square);
+  }
+
+  void run() noexcept {
+    const TriangleClusters& clusters = search_.clusters_;
+    std::array<Node, kMostLevels * kClusterWidth> stack;
+    std::size_t size = 0;
+    stack[size++] = {0, 0, clusters.root_level()};
+    while (size > 0) {
+      const Node node = stack[--size];
+      if (node.square > far_) continue;
+      if (node.level == 0) {
+        compare(node.index);
+        continue;
+      }
+      alignas(64) float squares[kClusterWidth];
+      const int level = node.level - 1;
+      const std::uint32_t near = search_.kernels_.near_nodes(clusters.bounds(level)[node.index],
+                                                             tree_point_, far_, squares);
+      const std::size_t base = size;
+      for_each_bit(near & lanes_of(clusters.child_count(level, node.index)),
+                   [&](std::uint32_t child) {
+                     std::size_t at = size++;  // the nearest on top
+                     for (; at > base && stack[at - 1].square < squares[child]; --at)
+                       stack[at] = stack[at - 1];
+                     stack[at] = {squares[child], kClusterWidth * node.index + child, level};
+                   });
+    }
+    measure_candidates();
+  }
+
+  [[nodiscard]] const std::optional<NearestTriangle>& best() const noexcept { return best_; }
+
+ private:
+  struct Node {
+    float square;
+    std::uint32_t index;
+    int level;
+  };
+
+  struct Candidate {
+    float square;  // its distance's, at least
+    std::uint32_t triangle;
+  };
+
+  // Nothing whose square is certain to be more is looked for.
+  void set_far(double square) noexcept {
+    most_ = square;
+    far_ = std::min(far_, rounded_up(square));
+  }
+
+  static std::uint32_t lanes_of(std::uint32_t count) noexcept {
+    return (std::uint32_t{1} << count) - 1;
+  }
+
+  // Takes down the triangles of a cluster that may be nearest.
+  void compare(std::uint32_t index) noexcept {
+    const TriangleClusters& clusters = search_.clusters_;
+    const TriangleCluster& cluster = clusters.clusters()[index];
+    const NodeBlock& block = clusters.bounds(0)[index / kClusterWidth];
+    const std::size_t lane = index % kClusterWidth;
+    Vector from;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      from[i] = at_[i] - double{block.centre[static_cast<std::size_t>(i)][lane]};
+    }
+    ClusterPoint point;
+    double size = block.radius[lane];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double along = (cluster.axis[0][i] * from[0] + cluster.axis[1][i] * from[1]) +
+                           cluster.axis[2][i] * from[2];
+      point.at[i] = static_cast<float>(along);
+      size += std::abs(along);
+    }
+    point.error = rounded_up(4 * error_ + double{kPointRounding} * size);
+    alignas(64) float squares[kClusterWidth];
+    const std::uint32_t near = search_.kernels_.near_triangles(cluster, point, far_, squares);
+    if (candidate_count_ > candidates_.size() - kClusterWidth) measure_candidates();
+    for_each_bit(near & lanes_of(clusters.child_count(-1, index)), [&](std::uint32_t k) {
+      candidates_[candidate_count_++] = {squares[k], cluster.id[k]};
+    });
+  }
+
+  void measure_candidates() noexcept {
+    for (std::size_t k = 0; k < candidate_count_; ++k) {
+      if (!(candidates_[k].square > far_)) measure(candidates_[k].triangle);
+    }
+    candidate_count_ = 0;
+  }
+
+  const PointSearch& search_;
+  const Vector& point_;
+  Vector at_;     // in the tree's frame
+  double error_;  // of a coordinate there
+  TreePoint tree_point_{};
+  double most_ = 0;
+  float far_ = std::numeric_limits<float>::infinity();
+  std::array<Candidate, 4 * kClusterWidth> candidates_;  // not yet measured
+  std::size_t candidate_count_ = 0;
+  std::optional<NearestTriangle> best_;
+};
+
+PointSearch::PointSearch(const SphereTree& tree, const ClusterKernels& kernels) noexcept
+    : mesh_(*tree.triangles()),
+      clusters_(tree.parts().triangles->clusters),
+      kernels_(kernels),
+      origin_(tree.origin()),
+      size_(tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff()) {}
+
+std::optional<NearestTriangle> PointSearch::nearest(
+    const Vector& point, double within, std::optional<std::uint32_t> hint) const noexcept {
+  Descent descent(*this, point, within);
+  if (hint) descent.measure(*hint);
+  descent.run();
+  return descent.best();
+}
+
+}  // namespace ist

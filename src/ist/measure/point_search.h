@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "ist/mesh/nearest_point.h"
+#include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
+#include "simd/dispatch.h"
+
+namespace ist {
+
+/// The triangle of a mesh that is nearest to a point.
+struct NearestTriangle {
+  double square;  ///< of the distance, mesh units squared
+  std::uint32_t triangle;
+  NearestPoint on;  ///< mesh coordinates
+};
+
+/// Finds the triangle nearest to a point: a search of the clusters, nearest nodes first, whose
+/// bounds in float leave out no triangle that could be the nearest; what is left is measured in
+/// double. So an answer has the same bits on every instruction set.
+class PointSearch {
+ public:
+  /// Refers to both. The tree must have triangles.
+  PointSearch(const SphereTree& tree, const ClusterKernels& kernels) noexcept;
+
+  /// Returns the triangle nearest to `point`, the first of them by its index, if it is no farther
+  /// than `within`. `hint` is a triangle that may be near, and changes the time alone. Cost: 0.2 to
+  /// 0.5 µs.
+  [[nodiscard]] std::optional<NearestTriangle> nearest(
+      const Eigen::Vector3d& point, double within,
+      std::optional<std::uint32_t> hint = {}) const noexcept;
+
+ private:
+  class Descent;
+
+  const TriangleMesh& mesh_;
+  const TriangleClusters& clusters_;
+  const ClusterKernels& kernels_;
+  Eigen::Vector3d origin_;
+  double size_;  // of the tree's coordinates, and of its origin's
+};
+
+}  // namespace ist

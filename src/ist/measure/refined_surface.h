@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ist/measure/inside_parts.h"
+#include "ist/measure/level_cut.h"
+
+namespace ist {
+
+/// A triangle of a refined surface.
+struct RefinedTriangle {
+  std::array<std::uint32_t, 3> vertex;
+  std::uint32_t of;  ///< the triangle of the mesh that it is a part of
+};
+
+/// Those parts of a surface that are near another body, in small triangles, with the signed
+/// distance at their corners. Two triangles that share an edge of the mesh share those that it is
+/// split into. Coordinates are the body's.
+class RefinedSurface {
+ public:
+  struct Vertex {
+    Eigen::Vector3d at;
+    double distance;        ///< a lower bound where it is too far to matter
+    std::uint32_t nearest;  ///< the body's triangle; kNoTriangle there
+  };
+
+  /// @param vertices     the mesh's, with their distances
+  /// @param near         what is farther is left out
+  /// @param longest_edge longer ones are split
+  RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices, double near,
+                 double longest_edge);
+
+  [[nodiscard]] const std::vector<Vertex>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const std::vector<RefinedTriangle>& triangles() const noexcept {
+    return triangles_;
+  }
+  [[nodiscard]] LevelTriangle corners(const RefinedTriangle& triangle) const noexcept;
+
+ private:
+  void add_vertices(const SurfaceInBody& side, std::span<const Eigen::Vector3d> points,
+                    double reach);
+  [[nodiscard]] bool may_be_near(const RefinedTriangle& triangle, double near) const noexcept;
+  [[nodiscard]] double longest_edge_of(const RefinedTriangle& triangle) const noexcept;
+  [[nodiscard]] double length_squared(std::uint32_t a, std::uint32_t b) const noexcept;
+
+  std::vector<Vertex> vertices_;
+  std::vector<RefinedTriangle> triangles_;
+};
+
+}  // namespace ist

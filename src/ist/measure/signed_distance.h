@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ist/base/api.h"
+#include "ist/base/progress.h"
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+/// A point's place on the surface of a body.
+struct SurfaceDistance {
+  static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
+
+  /// To the surface, mesh units: negative inside the body, NaN beyond the reach.
+  double distance;
+  Eigen::Vector3d closest;  ///< the surface's nearest point, the body's coordinates; NaN likewise
+  /// The triangle that holds it, the first of them by its index; kNoTriangle likewise.
+  std::uint32_t triangle;
+  /// Whether the sign is known: not where the surface's nearest point lies at an open border, or at
+  /// an edge that other than two triangles share, once each way. The distance is positive there.
+  bool is_signed;
+};
+
+/// Measures the distances of points from the surface of a body, with the sign of the outer normal
+/// at the nearest point (an angle-weighted pseudonormal: Baerentzen and Aanaes 2005). The sign says
+/// whether a point lies inside where the surface is closed and does not cross itself; `orientation`
+/// of the tree says whether its outer side is known.
+///
+/// @param points  mesh coordinates of the body, finite
+/// @param reach   farther points are not measured; infinity measures all
+/// @param proceed asked every 16,384 points; where it ends the call, the first points are returned
+///
+/// Right to within 1e-13 of the coordinates: 1e-11 mm for 100 mm. The same bits on every
+/// instruction set and for any number of threads. Cost: 0.3 µs a point that is within reach, on
+/// each core, less beyond; the first time for a tree, 0.3 µs a triangle more. Throws
+/// kTrianglesMissing, and kArgumentInvalid for a point that is not finite or beyond 1e30, or a
+/// reach that is not positive.
+[[nodiscard]] IST_API std::vector<SurfaceDistance> signed_distance(
+    const SphereTree& tree, std::span<const Eigen::Vector3d> points, double reach,
+    const Proceed& proceed = {});
+
+/// Measures the distances of all vertices of `body` from the surface of `other`, as
+/// signed_distance(), in the order of the vertices in `body.triangles()`. `pose` maps coordinates
+/// of `body` to those of `other`: of a query's pose the moving body's vertices take the pose
+/// itself, the fixed body's its inverse. Throws kPoseInvalid too.
+[[nodiscard]] IST_API std::vector<SurfaceDistance> distance_map(const SphereTree& body,
+                                                                const SphereTree& other,
+                                                                const Eigen::Isometry3d& pose,
+                                                                double reach,
+                                                                const Proceed& proceed = {});
+
+}  // namespace ist

@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "c_bodies.h"
+#include "ist/capi/ist_measure.h"
+#include "ist/measure/first_contact.h"
+#include "ist/measure/occlusion.h"
+#include "ist/measure/penetration.h"
+#include "ist/models/models.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+std::array<double, 16> down_by(double x, double y, double z) {
+  return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
+}
+
+int32_t count_and_stop(void* user, double part) {
+  EXPECT_GE(part, 0);
+  EXPECT_LE(part, 1);
+  return --*static_cast<int*>(user) > 0 ? 1 : 0;
+}
+
+class CMeasure : public ::testing::Test {
+ protected:
+  CMeasure() { EXPECT_EQ(name(ist_query_create(fixed_, moving_, nullptr, &query_)), "ok"); }
+  ~CMeasure() override {
+    EXPECT_EQ(name(ist_query_free(query_)), "ok");
+    EXPECT_EQ(name(ist_tree_free(fixed_)), "ok");
+    EXPECT_EQ(name(ist_tree_free(moving_)), "ok");
+  }
+  // What C++ answers.
+  const SphereTree fixed_tree_ = build_tree(icosphere(4, 4), {.voxel_size = 0.5});
+  const SphereTree moving_tree_ = build_tree(icosphere(3, 2), {.voxel_size = 0.5});
+  Query cpp_{fixed_tree_, moving_tree_};
+  ist_tree* fixed_ = c_tree(icosphere(4, 4), 0.5);
+  ist_tree* moving_ = c_tree(icosphere(3, 2), 0.5);
+  ist_query* query_ = nullptr;
+};
+
+TEST_F(CMeasure, SignedDistancesAreThoseOfCpp) {
+  const std::vector<double> points = {0, 0, 5, 1, 2, 3, 0, 0, 3.5, 9, 9, 9};
+  std::vector<Eigen::Vector3d> at;
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    at.emplace_back(points[i], points[i + 1], points[i + 2]);
+  }
+  const auto wanted = signed_distance(fixed_tree_, at, 2);
+  std::vector<ist_surface_distance> found(4);
+  ASSERT_EQ(name(ist_tree_signed_distance(fixed_, points.data(), 4, 2, nullptr, found.data())),
+            "ok");
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(found[i].distance, wanted[i].distance);
+    EXPECT_EQ(found[i].triangle, wanted[i].triangle);
+    EXPECT_EQ(found[i].is_signed, 1);
+    EXPECT_EQ(found[i].closest[2], wanted[i].closest[2]);
+  }
+  EXPECT_TRUE(std::isnan(found[3].distance));
+  EXPECT_EQ(found[3].triangle, IST_NO_TRIANGLE);
+  EXPECT_EQ(name(ist_tree_signed_distance(fixed_, points.data(), 4, 0, nullptr, found.data())),
+            "argument-invalid");
+  EXPECT_EQ(name(ist_tree_signed_distance(fixed_, nullptr, 4, 1, nullptr, found.data())),
+            "null-argument");
+  EXPECT_EQ(name(ist_tree_signed_distance(fixed_, nullptr, 0, 1, nullptr, nullptr)), "ok");
+}
+
+TEST_F(CMeasure, ADistanceMapFillsWhatThereIsRoomFor) {
+  const auto pose = down_by(0, 0, 5.8);
+  std::vector<ist_surface_distance> found(10);
+  uint64_t vertices = 0;
+  ASSERT_EQ(name(ist_tree_distance_map(moving_, fixed_, pose.data(), 50, nullptr, found.data(),
+                                       found.size(), &vertices)),
+            "ok");
+  const auto wanted = distance_map(moving_tree_, fixed_tree_,
+                                   Eigen::Isometry3d(Eigen::Translation3d(0, 0, 5.8)), 50);
+  EXPECT_EQ(vertices, wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].distance, wanted[i].distance);
+  int left = 1;
+  const auto progress = sized<ist_progress>({0, count_and_stop, &left});
+  EXPECT_EQ(name(ist_tree_distance_map(moving_, fixed_, pose.data(), 50, &progress, found.data(),
+                                       10, &vertices)),
+            "cancelled");
+  EXPECT_EQ(vertices, 0U);
+}
+
+TEST_F(CMeasure, PenetrationIsThatOfCppAndGoesOnFromTheLast) {
+  const auto pose = down_by(0.3, 0, 5.5);
+  auto result = sized<ist_penetration>();
+  ASSERT_EQ(
+      name(ist_query_penetration(query_, pose.data(), 1e-3, nullptr, nullptr, nullptr, &result)),
+      "ok");
+  const Penetration wanted =
+      penetration(cpp_, Eigen::Isometry3d(Eigen::Translation3d(0.3, 0, 5.5)), 1e-3);
+  EXPECT_EQ(result.lower, wanted.lower);
+  EXPECT_EQ(result.upper, wanted.upper);
+  EXPECT_EQ(result.points, wanted.points);
+  EXPECT_EQ(result.complete, 1);
+  EXPECT_EQ(result.not_closed, IST_CLOSED);
+  EXPECT_EQ(result.point[2], wanted.point[2]);
+  // Into the same struct.
+  ASSERT_EQ(
+      name(ist_query_penetration(query_, pose.data(), 1e-3, &result, nullptr, nullptr, &result)),
+      "ok");
+  EXPECT_LE(result.lower, wanted.upper);
+  EXPECT_GE(result.upper, wanted.lower);
+  const auto few = sized<ist_budget>({0, 5, 0});
+  ASSERT_EQ(name(ist_query_penetration(query_, pose.data(), 1e-3, nullptr, &few, nullptr, &result)),
+            "ok");
+  EXPECT_EQ(result.complete, 0);
+  EXPECT_GE(result.upper, wanted.lower);
+  EXPECT_EQ(
+      name(ist_query_penetration(query_, pose.data(), -1, nullptr, nullptr, nullptr, &result)),
+      "argument-invalid");
+  EXPECT_EQ(result.upper, 0);
+  ist_query* open = c_query(c_tree(open_strip(3), 0.5));
+  ASSERT_EQ(name(ist_query_penetration(open, pose.data(), 1, nullptr, nullptr, nullptr, &result)),
+            "ok");
+  EXPECT_EQ(result.not_closed, IST_FIXED_NOT_CLOSED);
+  EXPECT_EQ(name(ist_query_free(open)), "ok");
+}
+
+TEST_F(CMeasure, FirstContactIsThatOfCpp) {
+  const auto from = down_by(0, 0, 12), to = down_by(0, 0, 0);
+  auto motion = sized<ist_motion>();
+  motion.from = from.data();
+  motion.to = to.data();
+  auto result = sized<ist_first_contact>();
+  ASSERT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)), "ok");
+  const FirstContact wanted = first_contact(cpp_, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 12)),
+                                            Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0)), 1e-4);
+  EXPECT_EQ(result.outcome, IST_FIRST_CONTACT);
+  EXPECT_EQ(result.lower, wanted.lower);
+  EXPECT_EQ(result.upper, wanted.upper);
+  EXPECT_EQ(result.triangles_known, 1);
+  EXPECT_EQ(result.moving, wanted.triangles->moving);
+  // A screw, and one that is stopped.
+  motion.to = nullptr;
+  EXPECT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)),
+            "argument-invalid")
+      << "a direction without a length";
+  motion.direction[2] = 1;
+  motion.along = -12;
+  motion.angle = 7;
+  ASSERT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)), "ok");
+  EXPECT_EQ(result.outcome, IST_FIRST_CONTACT);
+  int left = 2;
+  const auto progress = sized<ist_progress>({0, count_and_stop, &left});
+  ASSERT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, &progress, &result)),
+            "ok");
+  EXPECT_EQ(result.outcome, IST_FIRST_STOPPED);
+  motion.from = nullptr;
+  EXPECT_EQ(name(ist_query_first_contact(query_, &motion, 1e-4, nullptr, nullptr, &result)),
+            "null-argument");
+  EXPECT_EQ(result.outcome, IST_FIRST_UNKNOWN);
+}
+
+TEST_F(CMeasure, OcclusionIsThatOfCppInArraysOfTheCaller) {
+  const auto pose = down_by(0, 0, 5.7);
+  const std::vector<double> limits = {0.05, 0.2};
+  auto options = sized<ist_occlusion_options>();
+  options.limits = limits.data();
+  options.limit_count = limits.size();
+  std::vector<ist_surface_distance> distances(7);
+  std::vector<ist_contact_region> regions(3);
+  std::vector<double> areas(2);
+  auto arrays = sized<ist_occlusion_arrays>();
+  arrays.distances = distances.data();
+  arrays.distance_capacity = distances.size();
+  arrays.regions = regions.data();
+  arrays.region_capacity = regions.size();
+  arrays.areas = areas.data();
+  auto fixed = sized<ist_occlusion>(), moving = sized<ist_occlusion>();
+  ASSERT_EQ(name(ist_query_occlusion(query_, pose.data(), &options, nullptr, nullptr, &arrays,
+                                     &fixed, &moving)),
+            "ok")
+      << ist_last_error_message();
+  const Occlusion wanted =
+      occlusion(cpp_, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 5.7)), {.limits = limits});
+  EXPECT_EQ(areas, wanted.moving.areas);
+  EXPECT_EQ(moving.regions, wanted.moving.regions.size());
+  EXPECT_EQ(moving.vertices, wanted.moving.vertices.size());
+  EXPECT_EQ(fixed.penetrating_area, wanted.fixed.penetrating_area);
+  ASSERT_EQ(moving.regions, 1U);
+  EXPECT_EQ(regions[0].area, wanted.moving.regions[0].area);
+  EXPECT_EQ(regions[0].partner, 0);
+  EXPECT_EQ(regions[0].centre[2], wanted.moving.regions[0].centre[2]);
+  EXPECT_EQ(std::isnan(distances[0].distance), std::isnan(wanted.moving.vertices[0].distance));
+  int left = 2;
+  const auto progress = sized<ist_progress>({0, count_and_stop, &left});
+  EXPECT_EQ(name(ist_query_occlusion(query_, pose.data(), nullptr, &progress, nullptr, nullptr,
+                                     &fixed, &moving)),
+            "cancelled");
+  EXPECT_EQ(moving.vertices, 0U);
+  options.contact = std::nan("");
+  EXPECT_EQ(name(ist_query_occlusion(query_, pose.data(), &options, nullptr, nullptr, nullptr,
+                                     &fixed, &moving)),
+            "argument-invalid");
+  EXPECT_EQ(name(ist_query_occlusion(query_, pose.data(), nullptr, nullptr, nullptr, nullptr,
+                                     nullptr, &moving)),
+            "null-argument");
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,244 @@
+#include "ist/measure/first_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "ist/models/models.h"
+#include "query/query_cases.h"
+#include "simd/targets.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Pose = Eigen::Isometry3d;
+using ContactStatus = FirstContact::Status;
+
+Pose place(const Vector& place) { return Pose(Eigen::Translation3d(place)); }
+
+struct BodyPair {
+  BodyPair(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
+      : fixed(build_tree(a, {.voxel_size = voxel_size})),
+        moving(build_tree(b, {.voxel_size = voxel_size})),
+        query(fixed, moving) {}
+  [[nodiscard]] bool meet(const Pose& pose) {
+    return query.intersects(pose).answer == Answer::kYes;
+  }
+
+  SphereTree fixed, moving;
+  Query query;
+};
+
+// The interval is as narrow as was asked for, and at its end triangles intersect.
+void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
+                    const FirstContact& found) {
+  EXPECT_EQ(found.status, ContactStatus::kContact) << to_string(found.status);
+  EXPECT_TRUE(pair.meet(motion.at(found.upper)));
+  EXPECT_LE(found.lower, found.upper);
+  ASSERT_TRUE(found.triangles.has_value());
+  if (found.grazed) return;
+  const double way = motion.longest_way(pair.moving.triangles()->vertices);
+  EXPECT_LE((found.upper - found.lower) * way, std::max(tolerance, found.narrowest) * 1.0001);
+  EXPECT_FALSE(pair.meet(motion.at(found.lower)));
+}
+
+TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  const Motion motion = Motion::between(place({0.3, 0.2, 4}), place({0.3, 0.2, -2}));
+  for (const double tolerance : {0.1, 1e-3, 1e-6, 1e-9}) {
+    const FirstContact found = first_contact(pair.query, motion, tolerance);
+    expect_contact(pair, motion, tolerance, found);
+    EXPECT_LE(found.lower, 0.5);
+    EXPECT_GE(found.upper, 0.5);
+    EXPECT_LT(found.distances, 20U);
+  }
+  // Less than arithmetic can give: as little as it can.
+  const FirstContact least = first_contact(pair.query, motion, 0);
+  expect_contact(pair, motion, least.narrowest, least);
+  EXPECT_LT(least.narrowest, 1e-5);
+}
+
+TEST(FirstContact, HasAStatusForEveryEnd) {
+  BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const auto status = [&](const Vector& from, const Vector& until) {
+    const FirstContact found = first_contact(pair.query, place(from), place(until), 1e-3);
+    return std::string(to_string(found.status));
+  };
+  EXPECT_EQ(status({0, 0, 2}, {0, 0, 9}), "touches-at-start");
+  EXPECT_EQ(status({0, 0, 2.5}, {0, 0, 9}), "touches-at-start") << "faces on each other";
+  EXPECT_EQ(status({0, 0, 0}, {0, 0, 9}), "inside-at-start");
+  EXPECT_EQ(status({0, 0, 9}, {0, 9, 9}), "none");
+  EXPECT_EQ(status({0, 0, 9}, {0, 0, 9}), "none") << "a motion that is none";
+  EXPECT_EQ(status({0, 0, 9}, {0, 0, 2.5}), "contact") << "at the last pose";
+  EXPECT_EQ(status({-9, 0, 2.50001}, {9, 0, 2.50001}), "grazing");
+  EXPECT_EQ(status({0, 0, 9}, {0, 0, 2.50001}), "none") << "just not at the last pose";
+  const FirstContact none = first_contact(pair.query, place({0, 0, 9}), place({0, 9, 9}), 1e-3);
+  EXPECT_EQ(none.lower, 1);
+  EXPECT_EQ(none.upper, 1);
+}
+
+// Along a face, nearer to it than a sixteenth of the tolerance, and then against a step.
+TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
+  BodyPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
+                box({-1, -1, 0}, {1, 1, 1}));
+  const Motion motion = Motion::between(place({-8, 0, 1e-4}), place({8, 0, 1e-4}));
+  const FirstContact found = first_contact(pair.query, motion, 0.01);
+  expect_contact(pair, motion, 0.01, found);
+  EXPECT_TRUE(found.grazed);
+  EXPECT_LE(found.lower, 1e-3);
+  EXPECT_NEAR(found.upper, 0.75, 1e-3);
+  const FirstContact sharp = first_contact(pair.query, motion, 1e-3);
+  expect_contact(pair, motion, 1e-3, sharp);
+  EXPECT_FALSE(sharp.grazed);
+  EXPECT_NEAR(sharp.lower, 0.75, 1e-4);
+}
+
+TEST(FirstContact, PassesThroughNothingHoweverThin) {
+  for (const double thick : {1e-2, 1e-5, 1e-8}) {
+    BodyPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
+    const Motion motion = Motion::between(place({0.1, 0.2, 500}), place({0.3, -0.2, -700}));
+    const FirstContact found = first_contact(plate.query, motion, 1e-3);
+    // Thinner than distances are certain to within, it is said to graze there.
+    if (thick > 1e-7) expect_contact(plate, motion, 1e-3, found);
+    EXPECT_TRUE(found.status == ContactStatus::kContact || found.status == ContactStatus::kGrazing);
+    EXPECT_NEAR(motion.at(found.lower).translation()[2], 0, 1e-3 + thick) << thick;
+    EXPECT_NEAR(motion.at(found.upper).translation()[2], 0, 1e-3 + thick) << thick;
+  }
+}
+
+// A needle goes down between two teeth that are 0.02 apart, and beside it into one.
+TEST(FirstContact, OfANeedleBetweenTeeth) {
+  BodyPair pair(joined(box({-4, -2, 0}, {-0.01, 2, 3}), box({0.01, -2, 0}, {4, 2, 3})),
+                box({-0.005, -0.005, 0}, {0.005, 0.005, 8}));
+  const auto down = [&](double x) {
+    return first_contact(pair.query, place({x, 0.3, 5}), place({x, 0.3, -9}), 1e-3).status;
+  };
+  EXPECT_EQ(down(0), ContactStatus::kNone);
+  EXPECT_EQ(down(0.004), ContactStatus::kNone);
+  EXPECT_EQ(down(0.006), ContactStatus::kContact);
+  EXPECT_EQ(down(-1), ContactStatus::kContact);
+}
+
+TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
+  // A rod that turns about z comes to a post from behind: after 350 degrees less their widths.
+  BodyPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
+  const Motion motion =
+      Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, -4 * std::numbers::pi, 20);
+  const FirstContact found = first_contact(pair.query, motion, 1e-4);
+  expect_contact(pair, motion, 1e-4, found);
+  EXPECT_NEAR(found.upper * 4 * std::numbers::pi, 1.5 * std::numbers::pi, 0.05)
+      << "it is at 12 o'clock after three quarters";
+  // The shortest way there, half a turn at most, goes the other way round.
+  const FirstContact shortest = first_contact(pair.query, place({0, 0, 0}), motion.at(0.4), 1e-4);
+  EXPECT_NE(shortest.upper, found.upper);
+}
+
+TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
+  Random random(83);
+  int contacts = 0;
+  for (int i = 0; i < 60; ++i) {
+    BodyPair pair(random_mesh(random), random_mesh(random));
+    Pose from = Pose::Identity(), until = Pose::Identity();
+    from.linear() = random.rotation();
+    const Eigen::AngleAxisd turn(i % 3 == 0 ? 0 : 0.3, random.direction());
+    until.linear() = turn.toRotationMatrix() * from.linear();
+    // A vertex of each would meet half way.
+    const auto any = [&](const SphereTree& tree) {
+      const auto& vertices = tree.triangles()->vertices;
+      return vertices[random.below(vertices.size())];
+    };
+    const Vector there = any(pair.fixed), mine = any(pair.moving), way = 9 * random.direction();
+    from.translation() = there - from.linear() * mine + way;
+    until.translation() = there - until.linear() * mine - way;
+    const Motion motion = i % 2 == 0
+                              ? Motion::between(from, until)
+                              : Motion::screw(from, random.point(-2, 2), random.direction(),
+                                              random.uniform(-9, 9), random.uniform(-20, 20));
+    const FirstContact found = first_contact(pair.query, motion, 1e-3);
+    if (found.status == ContactStatus::kContact) {
+      expect_contact(pair, motion, 1e-3, found);
+      ++contacts;
+    }
+    constexpr int kSamples = 1000;
+    for (int k = 0; k <= kSamples; ++k) {
+      const double at = static_cast<double>(k) / kSamples;
+      if (at >= found.lower && (found.status == ContactStatus::kContact || at <= found.upper))
+        continue;
+      EXPECT_FALSE(pair.meet(motion.at(at))) << i << ' ' << at << ' ' << to_string(found.status);
+    }
+  }
+  EXPECT_GT(contacts, 15);
+}
+
+TEST(FirstContact, OfClosingJawsTakesFewDistances) {
+  BodyPair jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
+  const Motion motion = Motion::between(place({0, 0, -7}), place({0, 0, 0}));
+  const FirstContact found = first_contact(jaws.query, motion, 1e-3);
+  expect_contact(jaws, motion, 1e-3, found);
+  EXPECT_LT(found.distances, 40U);
+  EXPECT_LE(found.distance.lower, found.distance.upper);
+  EXPECT_LE(found.distance.lower, 1e-3);
+}
+
+TEST(FirstContact, HasTheSameBitsOnEveryTargetWhateverWasAskedBefore) {
+  const SphereTree fixed = build_tree(torus(3, 1, 18, 9), {.voxel_size = 0.5});
+  const SphereTree moving = build_tree(icosphere(2, 1), {.voxel_size = 0.5});
+  Query best(fixed, moving);
+  const Motion motion = Motion::screw(place({8, 1, 0}), {0, 2, 0}, {0, 1, 1}, 5, -3);
+  const FirstContact truth = first_contact(best, motion, 1e-4);
+  for (const std::string& target : all_targets()) {
+    Query query(fixed, moving, {.target = target});
+    static_cast<void>(query.distance(place({4, 0, 0}), 0.1));
+    const FirstContact found = first_contact(query, motion, 1e-4);
+    EXPECT_EQ(found.status, truth.status);
+    EXPECT_EQ(found.lower, truth.lower) << target;
+    EXPECT_EQ(found.upper, truth.upper) << target;
+    EXPECT_EQ(found.distances, truth.distances);
+  }
+}
+
+TEST(FirstContact, EndsWhereItIsTold) {
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), icosphere(3, 1));
+  const Motion motion = Motion::between(place({5, 5, 5}), place({0, 0, 0}));
+  const FirstContact truth = first_contact(pair.query, motion, 1e-6);
+  double last = -1;
+  const FirstContact stopped =
+      first_contact(pair.query, motion, 1e-6, {.proceed = [&](double part) {
+                      EXPECT_GT(part, last);
+                      last = part;
+                      return part < 0.3;
+                    }});
+  EXPECT_EQ(stopped.status, ContactStatus::kStopped);
+  EXPECT_GE(stopped.lower, 0.3);
+  EXPECT_LE(stopped.lower, truth.upper);
+  EXPECT_EQ(stopped.upper, 1);
+  const FirstContact one = first_contact(pair.query, motion, 1e-6, {.budget = {.tests = 1}});
+  EXPECT_EQ(one.status, ContactStatus::kStopped);
+  EXPECT_EQ(one.distances, 1U);
+  EXPECT_LE(one.lower, truth.upper);
+}
+
+TEST(FirstContact, RefusesWhatIsNoQuestion) {
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  for (const double tolerance : {-1.0, std::nan("")}) {
+    EXPECT_EQ(error_name([&] {
+                static_cast<void>(
+                    first_contact(pair.query, Pose::Identity(), Pose::Identity(), tolerance));
+              }),
+              "argument-invalid");
+  }
+  const SphereTree bare =
+      build_tree(box({0, 0, 0}, {1, 1, 1}), {.voxel_size = 0.5, .keep_triangles = false});
+  Query query(pair.fixed, bare);
+  EXPECT_EQ(error_name([&] {
+              static_cast<void>(first_contact(query, Pose::Identity(), Pose::Identity(), 1));
+            }),
+            "triangles-missing");
+}
+
+}  // namespace
+}  // namespace ist::test

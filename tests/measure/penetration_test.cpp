@@ -1,0 +1,232 @@
+#include "ist/measure/penetration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ist/measure/signed_distance.h"
+#include "ist/models/models.h"
+#include "query/query_cases.h"
+#include "simd/targets.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Pose = Eigen::Isometry3d;
+using DepthStatus = Penetration::Status;
+
+Pose shift(const Vector& by) { return Pose(Eigen::Translation3d(by)); }
+
+struct Bodies {
+  Bodies(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
+      : fixed(build_tree(a, {.voxel_size = voxel_size})),
+        moving(build_tree(b, {.voxel_size = voxel_size})),
+        query(fixed, moving) {}
+  [[nodiscard]] Penetration at(const Pose& pose, double tolerance,
+                               const PenetrationOptions& options = {}) {
+    return penetration(query, pose, tolerance, options);
+  }
+
+  SphereTree fixed, moving;
+  Query query;
+};
+
+// A point and its direction say what the interval does.
+void expect_consistent(const Bodies& bodies, const Pose& pose, const Penetration& found,
+                       double tolerance) {
+  EXPECT_EQ(found.status, DepthStatus::kDone);
+  EXPECT_TRUE(found.complete);
+  EXPECT_LE(found.lower, found.upper);
+  EXPECT_LE(found.upper - found.lower, std::max(tolerance, found.narrowest) * (1 + 1e-12));
+  if (found.lower <= 0) return;
+  const Vector at = found.of_moving ? found.point : Vector(pose.inverse() * found.point);
+  const SphereTree& body = found.of_moving ? bodies.fixed : bodies.moving;
+  const SphereTree& surface = found.of_moving ? bodies.moving : bodies.fixed;
+  const SurfaceDistance inside = signed_distance(body, std::vector<Vector>{at}, HUGE_VAL)[0];
+  EXPECT_NEAR(inside.distance, -found.lower, found.narrowest + 1e-12);
+  const Vector on = found.of_moving ? Vector(pose.inverse() * found.point) : found.point;
+  EXPECT_NEAR(signed_distance(surface, std::vector<Vector>{on}, HUGE_VAL)[0].distance, 0, 1e-12);
+  const Vector out =
+      found.of_moving ? Vector(inside.closest - at) : Vector(pose.linear() * (inside.closest - at));
+  EXPECT_NEAR(found.direction.dot(out), found.lower, 1e-9);
+  EXPECT_NEAR(found.direction.norm(), 1, 1e-12);
+}
+
+TEST(Penetration, OfSpheresIsTheirClosedForm) {
+  Bodies bodies(icosphere(5, 4), icosphere(5, 2));
+  constexpr double kFacets = 0.006;
+  for (const double apart : {5.9, 5.5, 4.0, 2.5, 2.0}) {
+    const Pose pose = shift(apart * Vector(0.6, 0, 0.8));
+    const Penetration found = bodies.at(pose, 1e-3);
+    expect_consistent(bodies, pose, found, 1e-3);
+    EXPECT_NEAR(found.lower, 6 - apart, kFacets) << apart;
+  }
+  // One wholly inside the other, whose surfaces do not meet.
+  const Penetration inside = bodies.at(shift({0, 1.5, 0}), 1e-3);
+  EXPECT_NEAR(inside.lower, 3.5, kFacets) << "its nearest point to the middle is 0.5 from there";
+  expect_consistent(bodies, shift({0, 1.5, 0}), inside, 1e-3);
+}
+
+TEST(Penetration, OfBoxesIsExact) {
+  Bodies bodies(box({0, 0, 0}, {4, 4, 4}), box({0, 0, 0}, {1, 1, 1}));
+  const Penetration face = bodies.at(shift({1.5, 1.5, 3.5}), 1e-6);
+  expect_consistent(bodies, shift({1.5, 1.5, 3.5}), face, 1e-6);
+  EXPECT_LE(face.lower, 0.5);
+  EXPECT_GE(face.upper, 0.5);
+  EXPECT_TRUE(face.of_moving);
+  EXPECT_NEAR(face.direction[2], 1, 1e-6);
+  // A corner in a corner: the least way out is along one axis.
+  const Penetration corner = bodies.at(shift({3.75, 3.5, 3.25}), 1e-6);
+  EXPECT_NEAR(corner.lower, 0.25, 1e-6);
+  // The small one in the middle: each of its faces is 1.5 deep.
+  const Penetration middle = bodies.at(shift({1.5, 1.5, 1.5}), 1e-4);
+  EXPECT_NEAR(middle.lower, 1.5, 1e-4);
+}
+
+TEST(Penetration, OfATorusInATorusIsItsClosedForm) {
+  Bodies bodies(torus(8, 3, 160, 80), torus(8, 1, 160, 40));
+  const Pose pose = shift({0, 0, 1.5});
+  const Penetration found = bodies.at(pose, 0.005);
+  expect_consistent(bodies, pose, found, 0.005);
+  EXPECT_NEAR(found.lower, 2.5, 0.015) << "3 less the nearest point to the ring, 1.5 - 1";
+}
+
+TEST(Penetration, IsNoneWhereBodiesAreApart) {
+  Bodies bodies(torus(8, 2, 40, 20), icosphere(3, 1));
+  for (const Vector& at : {Vector(0, 0, 0), Vector(0, 0, 30), Vector(11.2, 0, 0)}) {
+    const Penetration found = bodies.at(shift(at), 1e-3);
+    EXPECT_EQ(found.lower, 0) << at.transpose();
+    EXPECT_EQ(found.upper, 0) << at.transpose();
+    EXPECT_TRUE(found.complete);
+  }
+}
+
+// The largest depth of many points of both surfaces, and how far the next one may be.
+double deepest_sample(const Bodies& bodies, const Pose& pose, double spacing) {
+  double deepest = 0;
+  const auto look = [&](const SphereTree& surface, const SphereTree& body, const Pose& to_body) {
+    std::vector<Vector> points;
+    const TriangleMesh& mesh = *surface.triangles();
+    for (const Triangle& t : mesh.triangles) {
+      const Vector a = to_body * mesh.vertices[t[0]], b = to_body * mesh.vertices[t[1]];
+      const Vector c = to_body * mesh.vertices[t[2]];
+      const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+      const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
+      for (int i = 0; i <= n; ++i) {
+        for (int j = 0; i + j <= n; ++j) {
+          points.push_back(a + double(i) / n * (b - a) + double(j) / n * (c - a));
+        }
+      }
+    }
+    for (const SurfaceDistance& one : signed_distance(body, points, HUGE_VAL)) {
+      deepest = std::max(deepest, -one.distance);
+    }
+  };
+  look(bodies.moving, bodies.fixed, pose);
+  look(bodies.fixed, bodies.moving, pose.inverse());
+  return deepest;
+}
+
+TEST(Penetration, HoldsTheDeepestOfManySamples) {
+  Random random(61);
+  constexpr double kSpacing = 0.05, kTolerance = 0.01;
+  const TriangleMesh shapes[] = {icosphere(2, 2), torus(3, 1, 18, 9), box({-2, -1, -1}, {2, 1, 1}),
+                                 plate_with_holes(2), tube(1, 2, 1.5, 0.7)};
+  for (const TriangleMesh& a : shapes) {
+    for (const TriangleMesh& b : shapes) {
+      Bodies bodies(a, b);
+      for (int i = 0; i < 3; ++i) {
+        Pose pose = Pose::Identity();
+        pose.linear() = random.rotation();
+        pose.translation() = random.uniform(0, 3) * random.direction();
+        const Penetration found = bodies.at(pose, kTolerance);
+        expect_consistent(bodies, pose, found, kTolerance);
+        const double sample = deepest_sample(bodies, pose, kSpacing);
+        EXPECT_GE(found.upper, sample - 1e-9);
+        EXPECT_LE(found.lower, sample + kSpacing);
+      }
+    }
+  }
+}
+
+TEST(Penetration, OfJawsHoldsTheDeepestOfTheirVerticesAndIsWarmAsTrueAsCold) {
+  Bodies jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
+  Penetration last;
+  for (const double dz : {0.0, -0.02, -0.3, -0.9, -3.0, 0.2}) {
+    const Pose pose = shift({0, 0, dz});
+    const Penetration cold = jaws.at(pose, 0.01), warm = jaws.at(pose, 0.01, {.last = &last});
+    expect_consistent(jaws, pose, cold, 0.01);
+    expect_consistent(jaws, pose, warm, 0.01);
+    EXPECT_LE(std::max(cold.lower, warm.lower), std::min(cold.upper, warm.upper)) << dz;
+    double vertices = 0;
+    for (const auto& one : distance_map(jaws.moving, jaws.fixed, pose, 5)) {
+      if (one.distance < -vertices) vertices = -one.distance;
+    }
+    EXPECT_GE(cold.upper, vertices);
+    last = warm;
+  }
+}
+
+TEST(Penetration, HasTheSameBitsOnEveryTarget) {
+  const TriangleMesh a = torus(3, 1, 18, 9), b = icosphere(3, 2);
+  const SphereTree fixed = build_tree(a, {.voxel_size = 0.5}),
+                   moving = build_tree(b, {.voxel_size = 0.5});
+  Query best(fixed, moving);
+  const Pose pose = shift({1.9, 0.4, 0.7});
+  const Penetration truth = penetration(best, pose, 1e-3);
+  for (const std::string& target : all_targets()) {
+    Query query(fixed, moving, {.target = target});
+    const Penetration found = penetration(query, pose, 1e-3);
+    EXPECT_EQ(found.lower, truth.lower) << target;
+    EXPECT_EQ(found.upper, truth.upper) << target;
+    EXPECT_EQ(found.point, truth.point) << target;
+    EXPECT_EQ(found.points, truth.points) << target;
+  }
+}
+
+TEST(Penetration, IsTrueAndWiderWhereABudgetEndsIt) {
+  Bodies bodies(icosphere(4, 4), torus(3, 1, 36, 18));
+  const Pose pose = shift({2, 0, 0.5});
+  const Penetration truth = bodies.at(pose, 1e-4);
+  double width = HUGE_VAL;
+  for (const std::uint64_t points : {0U, 10U, 100U, 1000U, 100000U}) {
+    const Penetration some = bodies.at(pose, 1e-4, {.budget = {.tests = points}});
+    EXPECT_LE(some.lower, truth.upper);
+    EXPECT_GE(some.upper, truth.lower);
+    EXPECT_EQ(some.complete, some.upper - some.lower <= 1e-4) << points;
+    EXPECT_LE(some.upper - some.lower, width);
+    width = some.upper - some.lower;
+  }
+  EXPECT_FALSE(bodies.at(pose, 1e-4, {.budget = {.tests = 10}}).complete);
+  EXPECT_FALSE(
+      bodies.at(pose, 1e-4, {.budget = {.deadline = Budget::Clock::time_point::min()}}).complete);
+}
+
+TEST(Penetration, SaysWhatIsNoQuestion) {
+  const TriangleMesh closed = box({0, 0, 0}, {1, 1, 1});
+  Bodies open_fixed(open_strip(3), closed), open_moving(closed, open_strip(3));
+  EXPECT_EQ(open_fixed.at(Pose::Identity(), 0.1).status, DepthStatus::kFixedNotClosed);
+  EXPECT_EQ(open_moving.at(Pose::Identity(), 0.1).status, DepthStatus::kMovingNotClosed);
+  Bodies bodies(closed, closed);
+  Pose sheared = Pose::Identity();
+  sheared(0, 1) = 0.1;
+  EXPECT_EQ(bodies.at(sheared, 0.1).status, DepthStatus::kInvalidPose);
+  for (const double tolerance : {-1.0, std::nan("")}) {
+    EXPECT_EQ(error_name([&] { static_cast<void>(bodies.at(Pose::Identity(), tolerance)); }),
+              "argument-invalid");
+  }
+  const SphereTree bare = build_tree(closed, {.voxel_size = 0.5, .keep_triangles = false});
+  Query query(bodies.fixed, bare);
+  EXPECT_EQ(error_name([&] { static_cast<void>(penetration(query, Pose::Identity(), 0.1)); }),
+            "triangles-missing");
+  // Inside out at first: turned outward when the tree was built.
+  Bodies turned(closed, inside_out(closed));
+  EXPECT_NEAR(turned.at(shift({0.75, 0, 0}), 1e-6).lower, 0.25, 1e-6);
+  EXPECT_STREQ(to_string(DepthStatus::kMovingNotClosed), "moving-not-closed");
+}
+
+}  // namespace
+}  // namespace ist::test

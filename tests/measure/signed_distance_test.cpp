@@ -1,0 +1,154 @@
+#include "ist/measure/signed_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "ist/base/parallel.h"
+#include "ist/mesh/winding_number.h"
+#include "ist/models/models.h"
+#include "query/query_cases.h"
+#include "support/errors.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Vector = Eigen::Vector3d;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+SphereTree body(const TriangleMesh& mesh, double voxel_size = 0.5) {
+  return build_tree(mesh, {.voxel_size = voxel_size});
+}
+
+std::vector<Vector> points_about(const TriangleMesh& mesh, int count, double far, Random& random) {
+  std::vector<Vector> points;
+  for (int k = 0; k < count; ++k) {
+    points.push_back(mesh.vertices[random.below(mesh.vertices.size())] +
+                     random.uniform(0, far) * random.direction());
+  }
+  return points;
+}
+
+bool lies_inside(const TriangleMesh& mesh, const Vector& p) {
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return winding_number(mesh, all, p).value() > 0;
+}
+
+TEST(SignedDistance, OfASphereIsItsClosedFormWithinTheFacets) {
+  const SphereTree tree = body(icosphere(5, 10));
+  Random random(3);
+  std::vector<Vector> points;
+  for (int k = 0; k < 500; ++k) points.push_back(random.uniform(0, 20) * random.direction());
+  const auto found = signed_distance(tree, points, kInfinite);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_TRUE(found[i].is_signed);
+    EXPECT_NEAR(found[i].distance, points[i].norm() - 10, 0.01);
+    EXPECT_NEAR((found[i].closest - points[i]).norm(), std::abs(found[i].distance), 1e-13);
+  }
+}
+
+TEST(SignedDistance, HasTheSignOfTheWindingNumber) {
+  Random random(5);
+  for (const TriangleMesh& mesh :
+       {make_jaw(Jaw::kUpper, 2), torus(5, 2, 24, 12), box({0, 0, 0}, {1, 4, 9}),
+        plate_with_holes(3), joined(icosphere(3, 4), inside_out(icosphere(3, 2))),
+        pipe(6, 2, 3, 8)}) {
+    const SphereTree tree = body(mesh);
+    const std::vector<Vector> points = points_about(mesh, 150, 2, random);
+    const auto found = signed_distance(tree, points, kInfinite);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_TRUE(found[i].is_signed);
+      EXPECT_EQ(found[i].distance < 0, lies_inside(mesh, points[i])) << points[i].transpose();
+    }
+  }
+}
+
+TEST(SignedDistance, IsNotANumberBeyondTheReach) {
+  const SphereTree tree = body(box({-1, -1, -1}, {1, 1, 1}));
+  const std::vector<Vector> points = {{0, 0, 3}, {0, 0, 2.5}, {0, 0, 1.5}, {0, 0, 0}, {0, 0, 0.5}};
+  const auto found = signed_distance(tree, points, 1.5);
+  EXPECT_TRUE(std::isnan(found[0].distance) && std::isnan(found[0].closest[1]));
+  EXPECT_EQ(found[0].triangle, SurfaceDistance::kNoTriangle);
+  EXPECT_FALSE(found[0].is_signed);
+  EXPECT_EQ(found[1].distance, 1.5) << "the reach itself is within";
+  EXPECT_EQ(found[2].distance, 0.5);
+  EXPECT_EQ(found[3].distance, -1);
+  EXPECT_EQ(found[4].distance, -0.5);
+  EXPECT_EQ(found[4].closest, Vector(0, 0, 1));
+}
+
+TEST(SignedDistance, HasNoSignAtAnOpenBorder) {
+  const SphereTree tree = body(open_strip(4));
+  const auto found = signed_distance(
+      tree, std::vector<Vector>{{1.3, 0.5, 1}, {1.3, 0.5, -1}, {-1, 0.5, -1}}, kInfinite);
+  EXPECT_EQ(found[0].distance, 1);
+  EXPECT_EQ(found[1].distance, -1);
+  EXPECT_TRUE(found[0].is_signed && found[1].is_signed);
+  EXPECT_FALSE(found[2].is_signed);
+  EXPECT_NEAR(found[2].distance, std::sqrt(2), 1e-15) << "positive where there is no sign";
+}
+
+TEST(SignedDistance, HasTheSameBitsForAnyNumberOfThreads) {
+  const SphereTree tree = body(make_jaw(Jaw::kLower, 1), 1);
+  Random random(7);
+  const std::vector<Vector> points = points_about(*tree.triangles(), 5000, 3, random);
+  const auto all = signed_distance(tree, points, 2);
+  const ScopedThreadLimit one(1);
+  const auto single = signed_distance(tree, points, 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(std::memcmp(&all[i].distance, &single[i].distance, sizeof(double)), 0);
+    EXPECT_EQ(all[i].triangle, single[i].triangle);
+  }
+}
+
+TEST(DistanceMap, MovesTheVerticesOfOneBodyToTheOther) {
+  const SphereTree fixed = body(box({0, 0, 0}, {4, 4, 4}));
+  const SphereTree moving = body(box({0, 0, 0}, {1, 1, 1}));
+  const Eigen::Isometry3d pose(Eigen::Translation3d(1, 1, 3.5));
+  const auto to_fixed = distance_map(moving, fixed, pose, 10);
+  ASSERT_EQ(to_fixed.size(), 8U);
+  for (std::size_t v = 0; v < 8; ++v) {
+    const Vector at = pose * moving.triangles()->vertices[v];
+    EXPECT_EQ(to_fixed[v].distance, at[2] - 4) << at.transpose();
+    EXPECT_EQ(to_fixed[v].closest, Vector(at[0], at[1], 4));
+  }
+  const auto to_moving = distance_map(fixed, moving, pose.inverse(), 0.5);
+  for (const SurfaceDistance& one : to_moving) EXPECT_TRUE(std::isnan(one.distance));
+}
+
+TEST(SignedDistance, RefusesWhatIsNoQuestion) {
+  const SphereTree tree = body(box({0, 0, 0}, {1, 1, 1}));
+  const std::vector<Vector> fine = {{0, 0, 0}};
+  for (const double reach : {0.0, -1.0, std::nan(""), -kInfinite}) {
+    EXPECT_EQ(error_name([&] { static_cast<void>(signed_distance(tree, fine, reach)); }),
+              "argument-invalid");
+  }
+  for (const double bad : {std::nan(""), kInfinite, -2e30}) {
+    const std::vector<Vector> points = {{0, 0, 0}, {0, bad, 0}};
+    const auto error = error_of([&] { static_cast<void>(signed_distance(tree, points, 1)); });
+    ASSERT_TRUE(error.has_value());
+    EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+    EXPECT_NE(std::string(error->what()).find("point 1"), std::string::npos) << error->what();
+  }
+  const SphereTree bare =
+      build_tree(box({0, 0, 0}, {1, 1, 1}), {.voxel_size = 1, .keep_triangles = false});
+  EXPECT_EQ(error_name([&] { static_cast<void>(signed_distance(bare, fine, 1)); }),
+            "triangles-missing");
+  Eigen::Isometry3d sheared = Eigen::Isometry3d::Identity();
+  sheared(0, 1) = 0.5;
+  EXPECT_EQ(error_name([&] { static_cast<void>(distance_map(tree, tree, sheared, 1)); }),
+            "pose-invalid");
+  EXPECT_EQ(error_name([&] {
+              static_cast<void>(distance_map(tree, bare, Eigen::Isometry3d::Identity(), 1));
+            }),
+            "triangles-missing");
+  EXPECT_TRUE(signed_distance(tree, {}, 1).empty());
+}
+
+}  // namespace
+}  // namespace ist::test
