@@ -23,6 +23,7 @@ BINS = "src/ist/voxel/triangle_bins.cpp"
 BOX = "src/ist/voxel/triangle_box.h"
 EXACT = "src/ist/query/exact/"
 CONTACTS = "src/ist/query/contacts/"
+MEASURE = "src/ist/measure/"
 COHERENT = "src/ist/query/coherent/"
 FRONT_INL = "simd/front-inl.h"
 FRONT_STEP = "simd/front_step.h"
@@ -373,6 +374,30 @@ MUTANTS = [
     Mutant("helped-pair-lost", "the last pair of each of the worker's chunks is lost",
            [(EXACT + "shared_pairs.cpp", "k < part.begin + part.count; ++k", "k + 1 < part.begin + part.count; ++k")],
            ["search_test SharedPairs*"]),
+    Mutant("normals-without-angles", "a vertex's normal is the plain sum of its faces'",
+           [("src/ist/mesh/pseudonormals.cpp", "add_to(of_vertex_[mesh.triangles[triangle][i]], scaled(angle, normal));",
+             "add_to(of_vertex_[mesh.triangles[triangle][i]], angle > 0 ? normal : scaled(angle, normal));")],
+           ["mesh_test Pseudonormals*"]),
+    Mutant("nearest-too-near", "triangles as near as the nearest so far, to within a thousandth, are left out",
+           [(MEASURE + "point_search.cpp", "far_ = std::min(far_, rounded_up(square));", "far_ = std::min(far_, rounded_up(0.998 * square));")],
+           ["measure_test *PointSearch*"]),
+    Mutant("node-as-its-middle", "no point of a node is deeper than its middle",
+           [(MEASURE + "depth_search.cpp", "push({measured.depth + radius,", "push({measured.depth,")], ["measure_test Penetration*"]),
+    Mutant("corners-do-not-bound", "a piece of a triangle is no deeper than half way to its deepest corner",
+           [(MEASURE + "depth_search.cpp", "std::min(measured.depth + radius, farthest)", "std::min(measured.depth + radius, 0.5 * (farthest + measured.depth))")],
+           ["measure_test Penetration*"]),
+    Mutant("contact-run-past", "a body goes on by half as much again as the surfaces are apart",
+           [(MEASURE + "first_contact.cpp", "at + by / way_", "at + 1.5 * by / way_")], ["measure_test FirstContact*"]),
+    Mutant("thin-things-passed", "within the tolerance nothing is looked for but at its end",
+           [(MEASURE + "first_contact.cpp", "constexpr double kAhead = 2;", "constexpr double kAhead = 1e9;")], ["measure_test FirstContact*"]),
+    Mutant("isoline-at-the-middle", "areas are cut at the middle of an edge",
+           [(MEASURE + "level_cut.h", "const double part = (level - a.distance) / (b.distance - a.distance);", "const double part = 0.5;")],
+           ["measure_test Occlusion*"]),
+    Mutant("deep-is-outside", "vertices inside and beyond the reach count as outside",
+           [(MEASURE + "far_inside.cpp", "inside[asked[k]] = first[k].distance < 0;", "inside[asked[k]] = false;")], ["measure_test Occlusion*"]),
+    Mutant("partners-one-way", "a region is a partner though its own lies elsewhere",
+           [(MEASURE + "contact_regions.cpp", "if (!other || faced(moving, *other, fixed) != k) continue;", "if (!other) continue;")],
+           ["measure_test ContactRegions*"]),
     Mutant("slabs-not-weighed", "a contact does not fade where a ball leaves a slab",
            [("simd/contact_lanes.h", "return balls * lesser(lesser(fixed, moving), 1);",
              "return balls * lesser(lesser(fixed, moving) + 1e30F, 1);")],

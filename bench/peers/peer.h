@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,8 +71,12 @@ using Peers = std::vector<std::unique_ptr<Peer>>;
 /// A library, and its contestants of a fixed and a moving mesh, which share what is built of these
 /// and may refer to them.
 struct Library {
+  /// Measures how far points are from a mesh.
+  using MeasurePoints = std::function<void(std::span<const Eigen::Vector3d>, std::span<double>)>;
+
   std::string name, version;
   std::function<Peers(const TriangleMesh& fixed, const TriangleMesh& moving)> make;
+  std::function<MeasurePoints(const TriangleMesh& mesh)> points = {};  ///< if it has such an answer
 };
 
 }  // namespace ist::bench

@@ -5,6 +5,7 @@
 //   peers/QUESTION/CONTESTANT/POSE     what an answer takes, over n rounds, and what it says
 //   turned/QUESTION/CONTESTANT/POSE    the same poses, with both meshes in turned frames
 //   cold/QUESTION/CONTESTANT/POSE      the same poses, with cold caches
+//   points/distances/LIBRARY/POSE      how far the vertices within 2 mm are from the other body
 //   avx2/QUESTION/CONTESTANT/POSE      the closing, asked of IST with AVX2 alone, where it has more
 //
 //   IST_PEERS_SECONDS   for how long each question of `peers` is asked, at least 5 rounds; by
@@ -21,6 +22,7 @@
 #include "peers/contest.h"
 #include "peers/ist_peer.h"
 #include "peers/libraries.h"
+#include "peers/points.h"
 #include "peers/turned.h"
 #include "support/bodies.h"
 #include "support/effort.h"
@@ -186,6 +188,7 @@ int main(int argc, char** argv) {
                                {"cold", pointers(all_cold), peer_poses(), 0.3}};
   if (avx2) asked.push_back({"avx2", {all.front().get(), avx2.get()}, closing_poses(), 0.1});
   for (const Series& each : asked) add_series(each);
+  add_points(seconds_a_question());
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -31,7 +31,7 @@ def chapter(results, pictures):
         lines += [f"### {title}", ""] + medians(question, answers[question]) + verdict(answers[question]) + [""]
         lines += peers_elsewhere.native_fcl(question, answers[question])
     lines += plot(answers, poses, pictures) + tails(answers)
-    lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers) + peers_otherwise.avx2(results)
+    lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers) + peers_otherwise.avx2(results) + peers_otherwise.points(results)
     lines += sampled(answers) + builds(results) + cannot(answers)
     return lines
 

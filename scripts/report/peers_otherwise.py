@@ -64,6 +64,24 @@ def cold(results, answers):
             *table(["question", "", *poses, "n"], rows), ""]
 
 
+def points(results):
+    if not results.has("peers_bench", "points"):
+        return []
+    runs = results.runs("peers_bench", "points", "distances")
+    poses = list(dict.fromkeys(run.parts[3] for run in runs))
+    by = {(run.parts[2], run.parts[3]): run for run in runs}
+    players = list(dict.fromkeys(run.parts[2] for run in runs))
+    rows = [["vertices", *(f"{by[players[0], pose]['points']:,.0f}" for pose in poses), ""]]
+    for player in players:
+        cells = [number(by[player, pose]["p50_us"] / 1e3) + (f" ({by[player, pose]['p50_us'] / by['ist', pose]['p50_us']:.1f})" if player != "ist" else "")
+                 for pose in poses]
+        rows.append([player, *cells, str(int(by[player, poses[0]]["n"]))])
+    return ["### How far is each vertex?", "",
+            "The vertices of both jaws that are within 2 mm of the other one, at the closing. IST says the sign, the triangle and its point too; "
+            "CGAL's `AABB_tree`, with its tree of points, how far alone. Both are right to within rounding, or the run fails. Median, ms, and in brackets how many times as "
+            "long as IST:", "", *table(["", *poses, "n"], rows), ""]
+
+
 def avx2(results):
     title = ["### IST without AVX-512", ""]
     asked = asked_in(results, "avx2")

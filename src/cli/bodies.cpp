@@ -87,4 +87,14 @@ Bodies load_bodies(const BodyFiles& files) {
   return bodies;
 }
 
+void require_triangles(const Bodies& bodies) {
+  for (const auto& [tree, name] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
+    if (tree->triangles()) continue;
+    throw Error(
+        ErrorCode::kTrianglesMissing,
+        fmt::format("{}: the tree has no triangles: build it with --exact, or name the mesh",
+                    name));
+  }
+}
+
 }  // namespace ist::cli

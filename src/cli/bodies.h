@@ -47,4 +47,7 @@ struct BodyFiles {
 /// trees.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
+/// Throws kTrianglesMissing, naming the body, where a tree holds no triangles.
+void require_triangles(const Bodies& bodies);
+
 }  // namespace ist::cli

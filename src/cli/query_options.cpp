@@ -70,6 +70,7 @@ void QueryOptions::check() const {
               fmt::format("{} is named twice", name));
   }
   refuse_if(gap && !std::isfinite(*gap), "--gap", "give a finite tolerance in mesh units");
+  refuse_if(depth && !std::isfinite(*depth), "--depth", "give a finite tolerance in mesh units");
   refuse_if(max_tests && exact, "--max-tests", "contradicts --exact, which makes all tests");
   refuse_if(max_tests && gap, "--max-tests",
             "contradicts --gap, which makes the tests that its tolerance needs");
@@ -91,7 +92,7 @@ void QueryOptions::check() const {
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
-  named.keep_triangles = verify || exact || gap.has_value();
+  named.keep_triangles = verify || exact || gap || depth;
   return named;
 }
 
@@ -132,6 +133,14 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       .add_option("--gap", options.gap,
                   "find the distance between the surfaces, to within this tolerance in mesh units; "
                   "without triangles, as sharply as the voxels allow")
+      ->check(CLI::Range(0.0, std::numeric_limits<double>::max()));
+  command
+      .add_option(
+          "--depth", options.depth,
+          "find the penetration depth, to within this tolerance in mesh units: how deep the "
+          "deepest point of either surface lies in the other body; also of the vertices "
+          "alone, and of the deepest contact point. Needs closed meshes, or trees of "
+          "these built with --exact")
       ->check(CLI::Range(0.0, std::numeric_limits<double>::max()));
   command
       .add_option("--max-tests", options.max_tests,

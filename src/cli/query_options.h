@@ -44,13 +44,13 @@ struct QueryOptions {
   std::filesystem::path leaf_pairs;  ///< file for leaf pairs and contacts; empty: not written
   bool exact = false;
   std::optional<std::uint64_t> max_tests;
-  std::optional<double> gap;
+  std::optional<double> gap, depth;  ///< tolerances, mesh units
   bool verify = false;
   bool json = false;
 
   /// Throws CLI::ValidationError if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns the files with the chosen policy; keeps triangles for --verify, --exact and --gap.
+  /// Returns the files with the chosen policy; keeps triangles for what needs or tells them.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/contact_writer.h"
+#include "cli/depth_meter.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
 #include "cli/progress_bar.h"
@@ -26,6 +27,7 @@ namespace {
 struct Answer {
   Engine::Answer last;
   std::optional<Inside> inside;  // if requested, and no triangles intersect
+  std::optional<Depth> depth;    // if requested
   std::vector<double> microseconds;
 
   // Returns nothing if the query stopped before it knew.
@@ -72,6 +74,12 @@ nlohmann::ordered_json json_line(std::size_t index, const Engine& engine, const 
   if (options.exact) line["triangle_pairs"] = or_null(answer.last.triangle_pairs);
   line["gap_lower"] = gap ? nlohmann::ordered_json(gap->lower) : nullptr;
   line["gap_upper"] = gap ? nlohmann::ordered_json(gap->upper) : nullptr;
+  if (answer.depth) {
+    line["depth_lower"] = answer.depth->lower;
+    line["depth_upper"] = answer.depth->upper;
+    line["depth_at_vertices"] = answer.depth->at_vertices;
+    line["contact_depth"] = or_null(answer.depth->of_contact);
+  }
   line["sphere_tests"] = r.sphere_tests;
   line["microseconds_min"] = answer.fastest();
   line["microseconds_median"] = answer.median();
@@ -92,18 +100,14 @@ void print_beside(const Answer& answer) {
   if (last.gap) {
     add(fmt::format("gap {:.6g} to {:.6g}", last.gap->lower, last.gap->upper));
   }
+  if (answer.depth) {
+    const Depth& depth = *answer.depth;
+    add(fmt::format("penetration depth {:.6g} to {:.6g}, {:.6g} at vertices", depth.lower,
+                    depth.upper, depth.at_vertices));
+    if (depth.of_contact) add(fmt::format("contact depth {:.6g}", *depth.of_contact));
+  }
   if (!last.result.complete) add(fmt::format("stopped at level {}", last.result.level));
   if (!words.empty()) fmt::print("{:>5}  {}\n", "", words);
-}
-
-void require_triangles(const Bodies& bodies) {
-  for (const auto& [tree, name] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
-    if (tree->triangles()) continue;
-    throw Error(
-        ErrorCode::kTrianglesMissing,
-        fmt::format("{}: the tree has no triangles: build it with --exact, or name the mesh",
-                    name));
-  }
 }
 
 // By pose, then by engine.
@@ -134,7 +138,8 @@ void print_table(const Engines& engines, const Bodies& bodies, const Answers& an
 }
 
 Answers ask(Engines& engines, std::span<const Eigen::Isometry3d> poses, int repeat,
-            const std::optional<InsideTest>& inside, std::optional<ContactWriter>& writer) {
+            const std::optional<InsideTest>& inside, std::optional<DepthMeter>& depth,
+            std::optional<ContactWriter>& writer) {
   Answers answers(poses.size(), std::vector<Answer>(engines.size()));
   ProgressBar progress;
   progress.begin_stage("asking", static_cast<std::uint64_t>(repeat) * poses.size());
@@ -146,6 +151,9 @@ Answers ask(Engines& engines, std::span<const Eigen::Isometry3d> poses, int repe
         answer.microseconds.push_back(answer.last.microseconds);
         if (inside && round == 0 && answer.last.triangle_pairs == 0U) {
           answer.inside = inside->at(*project_to_rigid(poses[i]));
+        }
+        if (depth && round == 0) {
+          answer.depth = e == 0 ? depth->ask(poses[i]) : *answers[i][0].depth;
         }
         if (writer && round == 0 && e == 0) {
           writer->write(i, poses[i], engines[e].leaf_pairs(), answer.last.result.complete);
@@ -208,9 +216,11 @@ void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
                          EngineOptions{bodies.policy, options.target, options.workers,
                                        options.exact, options.max_tests, options.gap});
   }
+  std::optional<DepthMeter> depth;
+  if (options.depth) depth.emplace(bodies, *options.depth);
   std::optional<ContactWriter> writer;
   if (!options.leaf_pairs.empty()) writer.emplace(options.leaf_pairs, bodies);
-  const Answers answers = ask(engines, poses, options.repeat, inside, writer);
+  const Answers answers = ask(engines, poses, options.repeat, inside, depth, writer);
   if (options.verify) verify(engines, bodies, poses);
   if (writer) writer->commit();
   if (!options.json) return print_table(engines, bodies, answers);

@@ -73,6 +73,53 @@ TEST_F(Certified, GapHoldsTheDistance) {
   EXPECT_GE(lines[2]["gap_lower"], 0.45);
 }
 
+TEST_F(Certified, DepthIsThatOfTheDeepestPoint) {
+  const std::string small = mesh("small.stl", box({-0.5, -0.5, 1.5}, {0.5, 0.5, 2.5}));
+  const auto lines = ask(ball_, small, {"--voxel-size", "0.2", "--depth", "0.001"});
+  const json& stored = lines[0];
+  EXPECT_LE(stored["depth_upper"].get<double>() - stored["depth_lower"].get<double>(), 0.00101);
+  EXPECT_LE(stored["depth_at_vertices"], stored["depth_upper"]);
+  EXPECT_TRUE(stored["contact_depth"].is_number());
+  for (const json& line : lines) {
+    EXPECT_EQ(line["depth_upper"] == 0, line["contact_depth"].is_null() || !line["colliding"]);
+  }
+  const CommandResult words = ist_well(
+      {"collide", ball_, small, "--poses", list_, "--voxel-size", "0.2", "--depth", "0.01"});
+  EXPECT_TRUE(says(words.out, "penetration depth "));
+  EXPECT_TRUE(says(words.out, "at vertices"));
+}
+
+TEST_F(Certified, DepthNeedsClosedBodies) {
+  const std::string open = mesh("open.stl", open_strip(4));
+  const CommandResult result =
+      ist({"collide", ball_, open, "--poses", list_, "--voxel-size", "0.5", "--depth", "0.1"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(says(result.err, "MOVING"));
+  EXPECT_TRUE(says(result.err, "ist info"));
+}
+
+TEST_F(Certified, FirstContactIsFoundBetweenTheSteps) {
+  const std::string small = mesh("small.stl", box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  const std::string plate = mesh("plate.stl", box({-3, -3, 0}, {3, 3, 1}));
+  const std::vector<std::string> words = {"close", plate,    small, "--voxel-size", "0.5", "--axis",
+                                          "z",     "--from", "9",   "--to",         "-9",  "--step",
+                                          "6"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return ist_well(all).out;
+  };
+  const std::string told = with({"--first-contact", "1e-4", "--json"});
+  const json last = json::parse(told.substr(told.rfind('{', told.size() - 3)));
+  EXPECT_EQ(last["first_contact"], "contact");
+  EXPECT_GE(last["displacement_lower"].get<double>(), 1.5);
+  EXPECT_LE(last["displacement_upper"].get<double>(), 1.5);
+  EXPECT_LE(last["displacement_lower"].get<double>() - last["displacement_upper"].get<double>(),
+            1.01e-4);
+  EXPECT_EQ(last["triangles"].size(), 2U);
+  EXPECT_TRUE(says(with({"--first-contact", "0.01"}), "first contact: displacement 1.5"));
+}
+
 TEST_F(Certified, MaxTestsStopsAndSaysWhatIsKnown) {
   const auto all = ask(ball_, ball_, {"--voxel-size", "0.5"});
   for (const char* tests : {"0", "1", "40", "1000000"}) {

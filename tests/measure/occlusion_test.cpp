@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "ist/base/parallel.h"
+#include "ist/measure/contact_regions.h"
 #include "ist/models/models.h"
 #include "query/query_cases.h"
 #include "support/errors.h"
@@ -150,6 +151,22 @@ TEST(Occlusion, PairsRegionsThatFaceEachOther) {
   EXPECT_NEAR(shares, 1, 1e-12);
   EXPECT_LT(found.moving.regions[0].centre[0], 0) << "the lower one is the larger";
   EXPECT_GT(found.moving.regions[0].share_thinner, found.moving.regions[0].share_thicker);
+}
+
+// The closest vertex of each says which region it faces: the second moving one is faced by none.
+TEST(ContactRegions, ArePartnersWhereEachFacesTheOther) {
+  ContactRegions fixed{std::vector<ContactRegion>(2), {10, 99}, {{1, 2}, {3}}};
+  ContactRegions moving{std::vector<ContactRegion>(2), {2, 1}, {{10, 11}, {12}}};
+  pair_regions(fixed, moving);
+  EXPECT_EQ(fixed.regions[0].partner, 0U);
+  EXPECT_EQ(moving.regions[0].partner, 0U);
+  EXPECT_FALSE(fixed.regions[1].partner.has_value()) << "nothing touches where it is nearest";
+  EXPECT_FALSE(moving.regions[1].partner.has_value());
+  ContactRegions one_way{std::vector<ContactRegion>(1), {12}, {{1}}};
+  ContactRegions other{std::vector<ContactRegion>(2), {1, 77}, {{10}, {12}}};
+  pair_regions(one_way, other);
+  EXPECT_FALSE(one_way.regions[0].partner.has_value());
+  EXPECT_FALSE(other.regions[1].partner.has_value());
 }
 
 TEST(Occlusion, LeavesOutSmallRegionsAndWhatIsFar) {
