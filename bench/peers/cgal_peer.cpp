@@ -165,7 +165,7 @@ Peers make_peers(const TriangleMesh& fixed, const TriangleMesh& moving) {
 
 // Unsigned, by the tree's own search, which a tree of points speeds up.
 Library::MeasurePoints measure_points(const TriangleMesh& mesh) {
-  const auto body = std::make_shared<const Body>(mesh);
+  const auto body = std::make_shared<Body>(mesh);
   body->tree.accelerate_distance_queries();
   return [body](std::span<const Eigen::Vector3d> points, std::span<double> distances) {
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -143,6 +143,36 @@ TEST_P(TriangleDecision, IsRightWhateverTheCoordinatesErr) {
   }
 }
 
+// Coordinates that floats hold err by nothing: there is only the rounding of determinants, most of
+// which are nearly or exactly 0 here.
+TEST_P(TriangleDecision, IsRightWhereRoundingAloneErrs) {
+  Seeded seeded(19);
+  Decider decider(GetParam());
+  std::vector<bool> truth;
+  const auto narrowed = [](TriangleCorners& t) {
+    LaneTriangle lane;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        double& x = t[k][static_cast<Eigen::Index>(j)];
+        lane[k][j] = static_cast<float>(x);
+        x = double{lane[k][j]};
+      }
+    }
+    return lane;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    PairOfTriangles pair = random_pair(seeded, 1);
+    const LaneTriangle a = narrowed(pair.a), b = narrowed(pair.b);
+    truth.push_back(triangles_meet(pair.a, pair.b));
+    decider.add(a, b, 0);
+  }
+  const std::vector<int>& answers = decider.answers();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (answers[i] < 0) continue;
+    ASSERT_EQ(answers[i] > 0, truth[i]) << i;
+  }
+}
+
 // Far from any doubt nothing is open.
 TEST_P(TriangleDecision, LeavesNothingOpenThatIsPlain) {
   Decider decider(GetParam());
