@@ -208,6 +208,21 @@ TEST(Occlusion, EndsWhereItIsToldAndRefusesWhatIsNoQuestion) {
   const Bite bite(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   const Occlusion stopped = bite.at({0, 0, 1}, {.proceed = [](double part) { return part < 0.1; }});
   EXPECT_FALSE(stopped.complete);
+  // Wherever it is ended, nothing is left half done.
+  int asked = 0;
+  EXPECT_TRUE(bite.at({0, 0, 1}, {.proceed =
+                                      [&](double part) {
+                                        ++asked;
+                                        return part >= 0 && part < 1;
+                                      }})
+                  .complete);
+  EXPECT_GE(asked, 4);
+  for (int most = 1; most < asked; ++most) {
+    int left = most;
+    const Occlusion ended = bite.at({0, 0, 1}, {.proceed = [&](double) { return --left > 0; }});
+    EXPECT_FALSE(ended.complete);
+    EXPECT_TRUE(ended.fixed.vertices.empty());
+  }
   EXPECT_TRUE(stopped.moving.vertices.empty());
   const auto name = [&](const OcclusionOptions& options) {
     return error_name([&] { static_cast<void>(bite.at({0, 0, 1}, options)); });

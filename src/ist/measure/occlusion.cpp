@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
@@ -20,6 +22,9 @@ namespace ist {
 namespace {
 
 using Vector = Eigen::Vector3d;
+
+// The part of a surface's time that its vertices take.
+constexpr double kVertices = 0.4;
 
 void require(bool fine, const char* name, double value, const char* remedy) {
   if (fine) return;
@@ -54,15 +59,20 @@ struct MeasuredSurface {
   ContactRegions regions;
 };
 
-MeasuredSurface measure_surface(const SurfaceInBody& side, const RigidMove& to_fixed,
-                                const OcclusionOptions& options) {
+// Returns nothing where `proceed` ended it.
+std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const RigidMove& to_fixed,
+                                               const OcclusionOptions& options,
+                                               const Proceed& proceed) {
   const TriangleMesh& mesh = *side.surface.triangles();
   std::vector<Vector> points;
   points.reserve(mesh.vertices.size());
   for (const Vector& v : mesh.vertices) points.push_back(side.to_body(v));
   const double near = farthest_level(options);
   const double reach = std::max(options.reach, near + options.longest_edge);
-  std::vector<SurfaceDistance> found = distances_of(side.body, side.search, points, reach);
+  std::vector<SurfaceDistance> found =
+      distances_of(side.body, side.search, points, reach,
+                   [&](double part) { return proceed(kVertices * part); });
+  if (found.size() < points.size()) return {};
   measure_far_inside(side, points, reach, found);
   MeasuredSurface out;
   SurfaceOcclusion& surface = out.surface;
@@ -80,7 +90,9 @@ MeasuredSurface measure_surface(const SurfaceInBody& side, const RigidMove& to_f
     }
   }
   surface.vertices = std::move(found);
-  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge);
+  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge,
+                               [&](double) { return proceed(kVertices); });
+  if (!refined.complete()) return {};
   surface.areas.assign(options.limits.size(), 0);
   for (const RefinedTriangle& triangle : refined.triangles()) {
     const LevelTriangle corners = refined.corners(triangle);
@@ -116,16 +128,16 @@ Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
   const PointSearch in_fixed(fixed, kernels), in_moving(moving, kernels);
   const RigidMove to_fixed(rigid), to_moving(back), stay(Eigen::Isometry3d::Identity());
   const auto goes_on = [&](double part) { return !options.proceed || options.proceed(part); };
-
-  if (!goes_on(0)) return {};
-  MeasuredSurface of_fixed =
-      measure_surface({fixed, moving, in_moving, to_moving}, to_fixed, options);
-  if (!goes_on(0.5)) return {};
-  MeasuredSurface of_moving = measure_surface({moving, fixed, in_fixed, to_fixed}, stay, options);
-  pair_regions(of_fixed.regions, of_moving.regions);
-  of_fixed.surface.regions = std::move(of_fixed.regions.regions);
-  of_moving.surface.regions = std::move(of_moving.regions.regions);
-  return {true, std::move(of_fixed.surface), std::move(of_moving.surface)};
+  auto of_fixed = measure_surface({fixed, moving, in_moving, to_moving}, to_fixed, options,
+                                  [&](double part) { return goes_on(0.5 * part); });
+  if (!of_fixed) return {};
+  auto of_moving = measure_surface({moving, fixed, in_fixed, to_fixed}, stay, options,
+                                   [&](double part) { return goes_on(0.5 + 0.5 * part); });
+  if (!of_moving) return {};
+  pair_regions(of_fixed->regions, of_moving->regions);
+  of_fixed->surface.regions = std::move(of_fixed->regions.regions);
+  of_moving->surface.regions = std::move(of_moving->regions.regions);
+  return {true, std::move(of_fixed->surface), std::move(of_moving->surface)};
 }
 
 }  // namespace ist

@@ -28,7 +28,7 @@ struct OcclusionOptions {
   /// The depth of the elastic foundation of which shares are made, and by how much it is changed
   /// to show what they hang on.
   double foundation = 0.1, change = 0.05;
-  Proceed proceed = {};  ///< asked before each surface
+  Proceed proceed = {};  ///< asked every 16,384 points, and before each round of splitting
 };
 
 /// A part of a surface that touches the other body, connected by edges: where the signed distance

@@ -21,7 +21,7 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices, double near,
-                               double longest_edge)
+                               double longest_edge, const Proceed& proceed)
     : vertices_(std::move(vertices)) {
   const TriangleMesh& mesh = *side.surface.triangles();
   std::vector<RefinedTriangle> open;
@@ -77,19 +77,22 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
       const std::uint32_t c = middle_of(v[2], v[0]);
       next.insert(next.end(), {{{v[0], a, c}, of}, {{c, b, v[2]}, of}, {{a, b, c}, of}});
     }
-    add_vertices(side, points, reach);
+    complete_ = proceed(0) && add_vertices(side, points, reach, proceed);
+    if (!complete_) return;
     open = std::move(next);
   }
 }
 
-void RefinedSurface::add_vertices(const SurfaceInBody& side, std::span<const Vector> points,
-                                  double reach) {
-  const std::vector<SurfaceDistance> measured = distances_of(side.body, side.search, points, reach);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+bool RefinedSurface::add_vertices(const SurfaceInBody& side, std::span<const Vector> points,
+                                  double reach, const Proceed& proceed) {
+  const std::vector<SurfaceDistance> measured =
+      distances_of(side.body, side.search, points, reach, proceed);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
     const SurfaceDistance& one = measured[i];
     const bool is_far = one.triangle == SurfaceDistance::kNoTriangle;
     vertices_.push_back({points[i], is_far ? reach : one.distance, one.triangle});
   }
+  return measured.size() == points.size();
 }
 
 bool RefinedSurface::may_be_near(const RefinedTriangle& triangle, double near) const noexcept {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "ist/base/progress.h"
 #include "ist/measure/inside_parts.h"
 #include "ist/measure/level_cut.h"
 
@@ -31,8 +32,11 @@ class RefinedSurface {
   /// @param vertices     the mesh's, with their distances
   /// @param near         what is farther is left out
   /// @param longest_edge longer ones are split
+  /// @param proceed      may end it: then it is not complete
   RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices, double near,
-                 double longest_edge);
+                 double longest_edge, const Proceed& proceed);
+
+  [[nodiscard]] bool complete() const noexcept { return complete_; }
 
   [[nodiscard]] const std::vector<Vertex>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] const std::vector<RefinedTriangle>& triangles() const noexcept {
@@ -41,14 +45,16 @@ class RefinedSurface {
   [[nodiscard]] LevelTriangle corners(const RefinedTriangle& triangle) const noexcept;
 
  private:
-  void add_vertices(const SurfaceInBody& side, std::span<const Eigen::Vector3d> points,
-                    double reach);
+  [[nodiscard]] bool add_vertices(const SurfaceInBody& side,
+                                  std::span<const Eigen::Vector3d> points, double reach,
+                                  const Proceed& proceed);
   [[nodiscard]] bool may_be_near(const RefinedTriangle& triangle, double near) const noexcept;
   [[nodiscard]] double longest_edge_of(const RefinedTriangle& triangle) const noexcept;
   [[nodiscard]] double length_squared(std::uint32_t a, std::uint32_t b) const noexcept;
 
   std::vector<Vertex> vertices_;
   std::vector<RefinedTriangle> triangles_;
+  bool complete_ = true;
 };
 
 }  // namespace ist
