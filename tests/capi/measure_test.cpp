@@ -114,6 +114,14 @@ TEST_F(CMeasure, PenetrationIsThatOfCppAndGoesOnFromTheLast) {
       name(ist_query_penetration(query_, pose.data(), -1, nullptr, nullptr, nullptr, &result)),
       "argument-invalid");
   EXPECT_EQ(result.upper, 0);
+  auto strange = sized<ist_penetration>();
+  strange.struct_size = 7;
+  result.lower = result.upper = 9;
+  EXPECT_EQ(
+      name(ist_query_penetration(query_, pose.data(), 1, &strange, nullptr, nullptr, &result)),
+      "struct-size");
+  EXPECT_EQ(result.lower, 0);
+  EXPECT_EQ(result.upper, 0);
   ist_query* open = c_query(c_tree(open_strip(3), 0.5));
   ASSERT_EQ(name(ist_query_penetration(open, pose.data(), 1, nullptr, nullptr, nullptr, &result)),
             "ok");

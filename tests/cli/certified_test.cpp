@@ -112,9 +112,9 @@ TEST_F(Certified, FirstContactIsFoundBetweenTheSteps) {
   const std::string told = with({"--first-contact", "1e-4", "--json"});
   const json last = json::parse(told.substr(told.rfind('{', told.size() - 3)));
   EXPECT_EQ(last["first_contact"], "contact");
-  EXPECT_GE(last["displacement_lower"].get<double>(), 1.5);
-  EXPECT_LE(last["displacement_upper"].get<double>(), 1.5);
-  EXPECT_LE(last["displacement_lower"].get<double>() - last["displacement_upper"].get<double>(),
+  EXPECT_LE(last["displacement_lower"].get<double>(), 1.5);
+  EXPECT_GE(last["displacement_upper"].get<double>(), 1.5);
+  EXPECT_LE(last["displacement_upper"].get<double>() - last["displacement_lower"].get<double>(),
             1.01e-4);
   EXPECT_EQ(last["triangles"].size(), 2U);
   EXPECT_TRUE(says(with({"--first-contact", "0.01"}), "first contact: displacement 1.5"));

@@ -97,6 +97,17 @@ TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
   EXPECT_NEAR(sharp.lower, 0.75, 1e-4);
 }
 
+// Two plates thinner than any distance is certain: it may have met either.
+TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
+  BodyPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
+                box({0, 0, 0}, {1, 1, 1e-9}));
+  const Motion motion = Motion::between(place({0, 0, 9}), place({0.1, 0, -9}));
+  const FirstContact found = first_contact(pair.query, motion, 1e-3);
+  EXPECT_EQ(found.status, ContactStatus::kGrazing);
+  EXPECT_LE(found.lower, 1.0 / 3);
+  EXPECT_GE(found.upper, 0.5);
+}
+
 TEST(FirstContact, PassesThroughNothingHoweverThin) {
   for (const double thick : {1e-2, 1e-5, 1e-8}) {
     BodyPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
@@ -134,7 +145,7 @@ TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
       << "it is at 12 o'clock after three quarters";
   // The shortest way there, half a turn at most, goes the other way round.
   const FirstContact shortest = first_contact(pair.query, place({0, 0, 0}), motion.at(0.4), 1e-4);
-  EXPECT_NE(shortest.upper, found.upper);
+  EXPECT_NE(shortest.status, ContactStatus::kContact) << "at 72 degrees it is past nothing";
 }
 
 TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
@@ -220,6 +231,20 @@ TEST(FirstContact, EndsWhereItIsTold) {
   EXPECT_EQ(one.status, ContactStatus::kStopped);
   EXPECT_EQ(one.distances, 1U);
   EXPECT_LE(one.lower, truth.upper);
+}
+
+TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
+  BodyPair pair(icosphere(2, 1), icosphere(2, 1));
+  const FirstContact far =
+      first_contact(pair.query, place({1e14, 3e13, 0}), place({1e14, 4e13, 0}), 1);
+  EXPECT_EQ(far.status, ContactStatus::kNone) << to_string(far.status);
+  for (const double much : {1e16, 1e155}) {
+    EXPECT_EQ(
+        error_name([&] {
+          static_cast<void>(first_contact(pair.query, place({much, 0, 0}), place({0, 0, 0}), 1));
+        }),
+        "argument-invalid");
+  }
 }
 
 TEST(FirstContact, RefusesWhatIsNoQuestion) {

@@ -179,6 +179,33 @@ TEST(Occlusion, LeavesOutSmallRegionsAndWhatIsFar) {
   for (const SurfaceDistance& one : apart.moving.vertices) EXPECT_TRUE(std::isnan(one.distance));
 }
 
+TEST(Occlusion, OfFarOrLargeBodiesEnds) {
+  const Bite bite(icosphere(2, 1), icosphere(2, 1));
+  const Occlusion far = bite.at({1e16, 3e15, 0});
+  EXPECT_TRUE(far.complete);
+  EXPECT_TRUE(far.moving.regions.empty());
+  const Bite nested(box({-1000, -1000, -1000}, {1000, 1000, 1000}),
+                    box({-800, -800, -800}, {800, 800, 800}), 100);
+  EXPECT_EQ(error_name([&] {
+              static_cast<void>(nested.at({0, 0, 0}, {.longest_edge = 0.01}));
+            }),
+            "memory-limit");
+}
+
+// A foundation that is deeper than regions go presses on what they hold alone.
+TEST(Occlusion, SharesHangOnRegionsAloneHoweverFineTheyAreSplit) {
+  const TriangleMesh bumps =
+      joined(moved(icosphere(4, 1), {-3, 0, 0}), moved(icosphere(4, 1), {3, 0, 0.04}));
+  const Bite bite(box({-6, -6, -2}, {6, 6, 0}), bumps);
+  const auto thicker = [&](double edge) {
+    return bite.at({0, 0, 0.98}, {.longest_edge = edge, .change = 0.1})
+        .moving.regions[0]
+        .share_thicker;
+  };
+  EXPECT_NEAR(thicker(0.1), thicker(0.05), 2e-4);
+  EXPECT_NEAR(thicker(0.05), thicker(0.025), 5e-5);
+}
+
 TEST(Occlusion, OfJawsHasTheSameBitsForAnyNumberOfThreadsAndTargets) {
   const SphereTree upper = build_tree(make_jaw(Jaw::kUpper, 1), {.voxel_size = 1});
   const SphereTree lower = build_tree(make_jaw(Jaw::kLower, 1), {.voxel_size = 1});

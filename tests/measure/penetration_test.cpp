@@ -8,8 +8,10 @@
 #include "ist/models/models.h"
 #include "query/query_cases.h"
 #include "simd/targets.h"
+#include "support/data_dir.h"
 #include "support/errors.h"
 #include "support/shapes.h"
+#include "support/skip.h"
 
 namespace ist::test {
 namespace {
@@ -203,6 +205,34 @@ TEST(Penetration, IsTrueAndWiderWhereABudgetEndsIt) {
   EXPECT_FALSE(bodies.at(pose, 1e-4, {.budget = {.tests = 10}}).complete);
   EXPECT_FALSE(
       bodies.at(pose, 1e-4, {.budget = {.deadline = Budget::Clock::time_point::min()}}).complete);
+}
+
+TEST(Penetration, IsNoneHoweverFarBodiesAre) {
+  Bodies bodies(icosphere(2, 1), icosphere(2, 1));
+  for (const double far : {1e5, 1e12, 1e16, 1e155}) {
+    const Penetration found = bodies.at(shift({far, 0.3 * far, 0}), 1e-3);
+    EXPECT_EQ(found.upper, 0) << far;
+    EXPECT_TRUE(found.complete);
+  }
+}
+
+// The real pair as stored. Its deepest vertices are known from VTK's implicit distance: 1.0214 mm
+// of the mandible, 1.0523 of the maxilla.
+TEST(Penetration, OfTheRealJawsHoldsTheDepthOfTheirVertices) {
+  const std::filesystem::path folder = data_dir();
+  if (!std::filesystem::exists(folder)) IST_SKIP("no real meshes at " << folder);
+  Bodies jaws(read_mesh(folder / "human_maxilla.stl"), read_mesh(folder / "human_mandible.stl"), 2);
+  const Penetration found = jaws.at(Pose::Identity(), 0.01);
+  expect_consistent(jaws, Pose::Identity(), found, 0.01);
+  EXPECT_GE(found.upper, 1.0523);
+  EXPECT_LE(found.upper, 1.1);
+  const auto deepest = [](const std::vector<SurfaceDistance>& map) {
+    double least = 0;
+    for (const SurfaceDistance& one : map) least = one.distance < least ? one.distance : least;
+    return -least;
+  };
+  EXPECT_NEAR(deepest(distance_map(jaws.moving, jaws.fixed, Pose::Identity(), 2)), 1.02136, 1e-5);
+  EXPECT_NEAR(deepest(distance_map(jaws.fixed, jaws.moving, Pose::Identity(), 2)), 1.05233, 1e-5);
 }
 
 TEST(Penetration, SaysWhatIsNoQuestion) {

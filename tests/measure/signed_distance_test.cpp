@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "ist/base/parallel.h"
 #include "ist/mesh/winding_number.h"
@@ -103,6 +104,69 @@ TEST(SignedDistance, HasTheSameBitsForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(std::memcmp(&all[i].distance, &single[i].distance, sizeof(double)), 0);
     EXPECT_EQ(all[i].triangle, single[i].triangle);
+  }
+}
+
+// Far away all triangles are equally near, to within rounding; what is outside the box is outside.
+TEST(SignedDistance, IsPositiveFarAway) {
+  const SphereTree tree = body(box({-1, -1, 0}, {1, 1, 1e-3}));
+  Random random(11);
+  for (const double far : {1e3, 1e8, 1e14}) {
+    std::vector<Vector> points;
+    for (int k = 0; k < 50; ++k) points.push_back(far * random.direction());
+    for (const SurfaceDistance& one : signed_distance(tree, points, kInfinite)) {
+      EXPECT_TRUE(one.is_signed);
+      EXPECT_NEAR(one.distance / far, 1, 0.01);
+    }
+  }
+}
+
+// Threads that ask a new tree at once make its normals once, and all wait for them.
+TEST(SignedDistance, MayBeAskedFirstByManyThreads) {
+  const TriangleMesh mesh = make_jaw(Jaw::kLower, 4);
+  Random random(13);
+  const std::vector<Vector> points = points_about(mesh, 200, 2, random);
+  const auto truth = signed_distance(body(mesh, 2), points, 5);
+  const SphereTree fresh = body(mesh, 2);
+  std::vector<std::vector<SurfaceDistance>> found(4);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& one : found) {
+      threads.emplace_back([&] { one = signed_distance(fresh, points, 5); });
+    }
+  }
+  for (const auto& one : found) {
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(one[i].distance, truth[i].distance);
+  }
+}
+
+// A closed body some of whose triangles have no area: an apex given twice, and joined; a corner on
+// a ridge; and a triangle with two equal indices on an edge.
+TEST(SignedDistance, IsRightBesideTrianglesWithoutAnArea) {
+  TriangleMesh twice;
+  twice.vertices = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 2}, {0, 0, 2}};
+  twice.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 5}, {3, 0, 5},
+                     {4, 2, 5}, {5, 0, 4}, {0, 3, 2}, {0, 2, 1}};
+  TriangleMesh ridge;
+  ridge.vertices = {{0, 0, 1}, {4, 0, 1}, {2, 0, 1}, {0, 2, 0}, {4, 2, 0}, {0, -2, 0}, {4, -2, 0}};
+  ridge.triangles = {{0, 2, 3}, {2, 4, 3}, {2, 1, 4}, {0, 1, 2}, {1, 0, 5},
+                     {1, 5, 6}, {3, 4, 6}, {3, 6, 5}, {0, 3, 5}, {1, 6, 4}};
+  TriangleMesh needle = box({0, 0, 0}, {1, 1, 1});
+  const Triangle first = needle.triangles[0];
+  needle.triangles.insert(needle.triangles.begin(), {first[0], first[1], first[1]});
+  Random random(17);
+  for (const TriangleMesh& mesh : {twice, ridge, needle}) {
+    const SphereTree tree = body(mesh);
+    const std::vector<Vector> points = points_about(mesh, 600, 2, random);
+    const auto found = signed_distance(tree, points, kInfinite);
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!found[i].is_signed) continue;
+      ++known;
+      ASSERT_EQ(found[i].distance < 0, lies_inside(*tree.triangles(), points[i]))
+          << points[i].transpose() << " of " << mesh.vertices.size();
+    }
+    EXPECT_EQ(known, points.size()) << mesh.vertices.size();
   }
 }
 

@@ -49,7 +49,6 @@ Eigen::Isometry3d displaced(const CloseArguments& options, double displacement) 
 }
 
 FirstContact find_first_contact(const Bodies& bodies, const CloseArguments& options) {
-  require_triangles(bodies);
   Query query(bodies.fixed, bodies.moving);
   ProgressBar progress;
   progress.begin_stage("looking for the first contact", 1000);
@@ -70,8 +69,8 @@ void print_first_contact(const FirstContact& found, const CloseArguments& option
   };
   if (options.query.json) {
     nlohmann::ordered_json line{{"first_contact", to_string(found.status)},
-                                {"displacement_lower", at(found.lower)},
-                                {"displacement_upper", at(found.upper)},
+                                {"displacement_lower", std::min(at(found.lower), at(found.upper))},
+                                {"displacement_upper", std::max(at(found.lower), at(found.upper))},
                                 {"grazed", found.grazed}};
     line["triangles"] = nullptr;
     if (found.triangles) line["triangles"] = {found.triangles->fixed, found.triangles->moving};
@@ -133,6 +132,7 @@ void add_close(CLI::App& app) {
     BodyFiles files = query.body_files();
     files.keep_triangles = files.keep_triangles || options->first_contact;
     const Bodies bodies = load_bodies(files);
+    if (options->first_contact) require_triangles(bodies);
     run_queries(bodies, poses, query);
     if (options->first_contact) print_first_contact(find_first_contact(bodies, *options), *options);
   });

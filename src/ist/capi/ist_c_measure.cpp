@@ -153,10 +153,9 @@ ist_status ist_query_penetration(ist_query* query, const double pose[16], double
   return guarded(__func__, [&](const Call& call) -> ist_status {
     // Read before the result is cleared: it may be the same struct.
     ist_penetration known{};
-    if (last != nullptr) {
-      if (const ist_status wrong = read_sized(call, "last", *last, known)) return wrong;
-    }
+    const ist_status wrong_last = last == nullptr ? IST_OK : read_sized(call, "last", *last, known);
     if (const ist_status wrong = clear_sized(call, "result", result)) return wrong;
+    if (wrong_last != IST_OK) return wrong_last;
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
     ist::PenetrationOptions options;
     if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;

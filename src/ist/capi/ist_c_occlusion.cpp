@@ -19,12 +19,11 @@ ist_status read_options(const Call& call, const ist_occlusion_options* given,
     return wrong;
   }
   const auto take = [](double value, double& option) {
-    if (value != 0) option = value;  // a NaN too, which is refused below
+    if (value != 0) option = value == -1 ? 0 : value;  // a NaN too, which is refused below
   };
   take(known.reach, options.reach);
   take(known.contact, options.contact);
   take(known.least_area, options.least_area);
-  if (known.least_area == -1) options.least_area = 0;
   take(known.longest_edge, options.longest_edge);
   take(known.foundation, options.foundation);
   take(known.change, options.change);

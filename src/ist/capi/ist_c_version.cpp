@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kNames[] = {
     "ok",           "null-argument",  "struct-size",  "argument-invalid", "not-a-handle",
     "handle-kind",  "handle-freed",   "handle-busy",  "too-many-handles", "out-of-memory",
-    "system-error", "internal-error", "not-prepared", "servo-fault", "cancelled"};
+    "system-error", "internal-error", "not-prepared", "servo-fault",      "cancelled"};
 static_assert(IST_OK == 0 && std::size(kNames) == IST_CANCELLED + 1);
 
 }  // namespace

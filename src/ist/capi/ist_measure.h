@@ -123,11 +123,11 @@ IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion*
 typedef struct ist_occlusion_options {
   size_t struct_size;
   double reach;         /* of the distance maps; default 2 */
-  double contact;       /* surfaces no farther apart touch; default 0.1 */
-  double least_area;    /* of a region; default 0.01; -1: all */
+  double contact;       /* surfaces no farther apart touch; default 0.1; -1: 0 */
+  double least_area;    /* of a region; default 0.01; -1: 0, all regions */
   double longest_edge;  /* longer ones are split; default 0.2 */
-  double foundation;    /* of the shares; default 0.1 */
-  double change;        /* of the foundation; default 0.05 */
+  double foundation;    /* of the shares; default 0.1; -1: 0 */
+  double change;        /* of the foundation; default 0.05; -1: 0 */
   const double* limits; /* distances whose areas are measured; may be NULL */
   size_t limit_count;
 } ist_occlusion_options;
@@ -161,7 +161,7 @@ typedef struct ist_occlusion {
 
 /* Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for
  * each surface. `options`, and the arrays of a surface, may be NULL. Errors: IST_POSE_INVALID,
- * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 0.1 s for jaws. */
+ * IST_ARGUMENT_INVALID, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 0.1 s for jaws. */
 IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16],
                                          const ist_occlusion_options* options,
                                          const ist_progress* progress,

@@ -51,9 +51,14 @@ void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
   add_to(sum.moment, touching.moment);
   region.penetrating_area += inside.area;
   region.depth_integral += inside.below;
-  region.share += cut_at(corners, options.foundation).below;
-  region.share_thinner += cut_at(corners, options.foundation - options.change).below;
-  region.share_thicker += cut_at(corners, options.foundation + options.change).below;
+  // Of a foundation that reaches farther than the region, no more than there is of that.
+  const auto pressed = [&](double depth) {
+    if (depth <= options.contact) return cut_at(corners, depth).below;
+    return touching.below + (depth - options.contact) * touching.area;
+  };
+  region.share += pressed(options.foundation);
+  region.share_thinner += pressed(options.foundation - options.change);
+  region.share_thicker += pressed(options.foundation + options.change);
   for (const std::uint32_t v : triangle.vertex) {
     const RefinedSurface::Vertex& vertex = surface.vertices()[v];
     if (vertex.distance >= region.least_distance) continue;

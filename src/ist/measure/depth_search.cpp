@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ist/base/ordered_vector.h"
+#include "ist/measure/point_side.h"
 
 namespace ist {
 namespace {
@@ -114,11 +115,10 @@ DepthSearch::Measured DepthSearch::measure(std::uint32_t side, const Vector& at,
   ++points_;
   const SurfaceInBody& of = sides_[side];
   const NearestTriangle nearest = *of.search.nearest(at, HUGE_VAL, hint);
-  const LeafTriangles& body = *of.body.parts().triangles;
-  const auto normal = body.normals().at(body.mesh, nearest.triangle, nearest.on);
-  const bool outside = normal && dot_in_order(*normal, difference(at, nearest.on.point)) > 0;
+  const Side side_there = side_of(*of.body.parts().triangles, nearest, at);
   const double distance = std::sqrt(nearest.square);
-  return {outside ? -distance : distance, normal.has_value(), nearest};
+  return {side_there == Side::kOutside ? -distance : distance, side_there != Side::kUnknown,
+          nearest};
 }
 
 void DepthSearch::offer(std::uint32_t side, std::uint32_t triangle, const Vector& at,

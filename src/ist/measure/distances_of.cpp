@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
+#include "ist/measure/point_side.h"
 
 namespace ist {
 namespace {
@@ -20,10 +20,10 @@ constexpr std::size_t kAtOnce = 1 << 14;
 
 SurfaceDistance with_sign(const LeafTriangles& body, const NearestTriangle& nearest,
                           const Vector& point) {
-  const auto normal = body.normals().at(body.mesh, nearest.triangle, nearest.on);
-  const bool inside = normal && dot_in_order(*normal, difference(point, nearest.on.point)) < 0;
+  const Side side = side_of(body, nearest, point);
   const double distance = std::sqrt(nearest.square);
-  return {inside ? -distance : distance, nearest.on.point, nearest.triangle, normal.has_value()};
+  return {side == Side::kInside ? -distance : distance, nearest.on.point, nearest.triangle,
+          side != Side::kUnknown};
 }
 
 }  // namespace

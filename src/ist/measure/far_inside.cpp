@@ -10,8 +10,9 @@
 
 namespace ist {
 
-void measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector3d> points,
-                        double reach, std::span<SurfaceDistance> distances) {
+bool measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector3d> points,
+                        double reach, std::span<SurfaceDistance> distances,
+                        const Proceed& proceed) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   const auto is_far = [&](std::uint32_t v) {
     return distances[v].triangle == SurfaceDistance::kNoTriangle;
@@ -36,9 +37,10 @@ void measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector
     std::vector<Eigen::Vector3d> at;
     at.reserve(of.size());
     for (const std::uint32_t v : of) at.push_back(points[v]);
-    return distances_of(side.body, side.search, at, kEverywhere);
+    return distances_of(side.body, side.search, at, kEverywhere, proceed);
   };
   const std::vector<SurfaceDistance> first = measured(asked);
+  if (first.size() < asked.size()) return false;
   std::vector<bool> inside(points.size());
   for (std::size_t k = 0; k < asked.size(); ++k) {
     inside[asked[k]] = first[k].distance < 0;
@@ -46,7 +48,8 @@ void measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector
   }
   std::erase_if(all, [&](std::uint32_t v) { return !inside[sets.find(v)]; });
   const std::vector<SurfaceDistance> rest = measured(all);
-  for (std::size_t k = 0; k < all.size(); ++k) distances[all[k]] = rest[k];
+  for (std::size_t k = 0; k < rest.size(); ++k) distances[all[k]] = rest[k];
+  return rest.size() == all.size();
 }
 
 }  // namespace ist

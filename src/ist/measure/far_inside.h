@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "ist/base/progress.h"
 #include "ist/measure/inside_parts.h"
 #include "ist/measure/signed_distance.h"
 
@@ -12,9 +13,12 @@ namespace ist {
 /// vertices that hang together by edges shorter than the reach, and are all beyond it, one says
 /// for all whether they are inside: no way between them meets the body's surface.
 ///
+/// Returns false where `proceed` ended it.
+///
 /// @param points    the vertices of the surface, the body's coordinates
 /// @param distances theirs, within the reach; completed
-void measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector3d> points,
-                        double reach, std::span<SurfaceDistance> distances);
+[[nodiscard]] bool measure_far_inside(const SurfaceInBody& side,
+                                      std::span<const Eigen::Vector3d> points, double reach,
+                                      std::span<SurfaceDistance> distances, const Proceed& proceed);
 
 }  // namespace ist

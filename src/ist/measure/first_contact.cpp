@@ -101,7 +101,8 @@ class Advance {
         at = safe;
         continue;
       }
-      if (!found_.grazed) graze_ = {at, near};
+      if (!found_.grazed) graze_.first = at;
+      graze_.second = near;
       found_.grazed = true;
       at = near;
     }
@@ -116,7 +117,7 @@ class Advance {
     found_.upper = upper;
     return found_;
   }
-  // Where the surfaces were first within the tolerance, and may have met.
+  // Where the surfaces first were so near that they may have met unseen.
   [[nodiscard]] double grazed_at(double at) const { return found_.grazed ? graze_.first : at; }
   [[nodiscard]] bool goes_on(double at) const {
     if (found_.distances >= options_.budget.tests || options_.budget.is_past()) return false;

@@ -50,7 +50,8 @@ struct FirstContact {
     kContact,  ///< at `upper` triangles intersect, before `lower` none do
     kNone,     ///< none intersect on the whole motion
     kGrazing,  ///< at `lower` the surfaces are no farther apart than the tolerance; triangles
-               ///< may intersect from there to `upper`, were not found to, and do not elsewhere
+               ///< may intersect at times from there to `upper`, were not found to, and do not
+               ///< elsewhere
     kTouchesAtStart,  ///< triangles intersect at the first pose
     kInsideAtStart,   ///< none do there, but a body lies inside the other, or a part of it
     kStopped,         ///< the budget or the caller ended the search: before `lower` none intersect
@@ -75,7 +76,7 @@ struct FirstContact {
 
 struct FirstContactOptions {
   Budget budget = {};    ///< `tests` counts distances
-  Proceed proceed = {};  ///< asked after each distance
+  Proceed proceed = {};  ///< asked before each distance
 };
 
 /// Finds the first contact along a motion: conservative advancement. A certified distance of the

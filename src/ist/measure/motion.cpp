@@ -16,6 +16,16 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
+// Farther poses, and longer ways, cannot be told from each other.
+constexpr double kFarthestPose = 1e15;
+
+void require_near(double number, const char* name) {
+  if (std::abs(number) <= kFarthestPose) return;  // no NaN
+  throw Error(ErrorCode::kArgumentInvalid,
+              fmt::format("{}: {} is not finite, or beyond {:g}: give a nearer motion", name,
+                          number, kFarthestPose));
+}
+
 void store(const Vector& from, double (&to)[3]) {
   for (Eigen::Index i = 0; i < 3; ++i) to[i] = from[i];
 }
@@ -27,6 +37,7 @@ Vector vector(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
 Motion Motion::between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
   const ScopedFloatEnvironment environment;
   const Eigen::Isometry3d first = require_rigid(from, "from"), last = require_rigid(to, "to");
+  require_near(last.translation().cwiseAbs().maxCoeff(), "to");
   Eigen::Quaterniond turn(Eigen::Matrix3d(last.linear() * first.linear().transpose()));
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
   const Vector imaginary = turn.vec();
@@ -56,10 +67,11 @@ Motion Motion::screw(const Eigen::Isometry3d& from, const Vector& point, const V
   const ScopedFloatEnvironment environment;
   const Eigen::Isometry3d first = require_rigid(from, "from");
   const double length = std::sqrt(dot_in_order(direction, direction));
-  if (!point.allFinite() || !std::isfinite(length) || !std::isfinite(angle) ||
-      !std::isfinite(along)) {
-    throw Error(ErrorCode::kArgumentInvalid, "screw: a number is not finite: give finite ones");
-  }
+  require_near(first.translation().cwiseAbs().maxCoeff(), "from");
+  require_near(point.cwiseAbs().maxCoeff(), "point");
+  require_near(length, "direction");
+  require_near(angle, "angle");
+  require_near(along, "along");
   if (!(length > 0)) {
     throw Error(ErrorCode::kArgumentInvalid,
                 "screw: the axis' direction has no length: give another, or a translation");

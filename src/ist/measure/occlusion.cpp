@@ -73,7 +73,8 @@ std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const 
       distances_of(side.body, side.search, points, reach,
                    [&](double part) { return proceed(kVertices * part); });
   if (found.size() < points.size()) return {};
-  measure_far_inside(side, points, reach, found);
+  const Proceed proceed_here = [&](double) { return proceed(kVertices); };
+  if (!measure_far_inside(side, points, reach, found, proceed_here)) return {};
   MeasuredSurface out;
   SurfaceOcclusion& surface = out.surface;
   std::vector<RefinedSurface::Vertex> vertices;
@@ -90,8 +91,7 @@ std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const 
     }
   }
   surface.vertices = std::move(found);
-  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge,
-                               [&](double) { return proceed(kVertices); });
+  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge, proceed_here);
   if (!refined.complete()) return {};
   surface.areas.assign(options.limits.size(), 0);
   for (const RefinedTriangle& triangle : refined.triangles()) {

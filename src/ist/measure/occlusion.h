@@ -39,10 +39,11 @@ struct ContactRegion {
   double least_distance = 0;    ///< signed, of its vertices
   Eigen::Vector3d closest;      ///< the vertex that has it
   std::uint32_t triangle = 0;   ///< of the surface, one that holds that vertex
-  double penetrating_area = 0;  ///< where the distance is negative
+  double penetrating_area = 0;  ///< where the distance is at most 0
   double depth_integral = 0;    ///< of the depth over that area, units cubed: no volume
-  /// The part of the sum of all regions' ∫ max(foundation - d, 0) dA, 0 to 1. A geometric share,
-  /// no force; and the same with a foundation that is thinner and thicker by the change.
+  /// The part of the sum of all regions' ∫ max(foundation - d, 0) dA over their areas, 0 to 1. A
+  /// geometric share, no force; and the same with a foundation that is thinner and thicker by the
+  /// change.
   double share = 0, share_thinner = 0, share_thicker = 0;
   /// The region of the other surface, by its index there, in which the nearest triangle of this
   /// one's closest vertex lies, where the same holds the other way round.
@@ -55,7 +56,7 @@ struct SurfaceOcclusion {
   std::vector<SurfaceDistance> vertices;
   std::vector<double> areas;    ///< of each limit: the area whose distance is at most that
   double total_area = 0;        ///< of the mesh
-  double penetrating_area = 0;  ///< whose distance is negative
+  double penetrating_area = 0;  ///< whose distance is at most 0
   double depth_integral = 0;    ///< units cubed
   /// The largest depth of a vertex of the mesh; 0 where all lie outside.
   double depth_at_vertices = 0;
@@ -78,7 +79,7 @@ struct Occlusion {
 /// any number of threads. Cost: 0.05 to 0.2 s for two jaws in occlusion, on one core; the first
 /// time for a tree, 0.5 µs a triangle more. Throws kPoseInvalid, kTrianglesMissing, and
 /// kArgumentInvalid for an option that is NaN, negative, or a reach, limit, or edge of nothing or
-/// without end.
+/// without end; kMemoryLimit where one surface would be over 8 million triangles.
 [[nodiscard]] IST_API Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
                                           const OcclusionOptions& options = {});
 

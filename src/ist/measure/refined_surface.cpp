@@ -1,9 +1,12 @@
 #include "ist/measure/refined_surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
+#include "ist/base/error.h"
 #include "ist/measure/distances_of.h"
 
 namespace ist {
@@ -13,6 +16,9 @@ using Vector = Eigen::Vector3d;
 
 // A point of a triangle is no farther than this part of the longest edge from its nearest corner.
 constexpr double kToCorner = 0.5774;
+constexpr double kRounding = 0x1p-40;
+// Of one surface: some 0.5 GB.
+constexpr std::size_t kMostTriangles = std::size_t{1} << 23;
 
 std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
@@ -29,7 +35,12 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
     const Triangle& t = mesh.triangles[k];
     open.push_back({{t[0], t[1], t[2]}, k});
   }
-  const double longest = longest_edge * longest_edge;
+  // Edges as short as the rounding of coordinates cannot be split.
+  double size = longest_edge;
+  for (const Vertex& vertex : vertices_) {
+    size = std::max(size, kRounding * vertex.at.cwiseAbs().maxCoeff());
+  }
+  const double longest = size * size;
   while (!open.empty()) {
     std::vector<RefinedTriangle> next;
     std::unordered_map<std::uint64_t, std::uint32_t> middles;  // of this round's edges
@@ -76,6 +87,12 @@ RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> ve
       }
       const std::uint32_t c = middle_of(v[2], v[0]);
       next.insert(next.end(), {{{v[0], a, c}, of}, {{c, b, v[2]}, of}, {{a, b, c}, of}});
+    }
+    if (triangles_.size() + next.size() > kMostTriangles) {
+      throw Error(ErrorCode::kMemoryLimit,
+                  fmt::format("longest_edge: with {} the surfaces near each other are over {} "
+                              "triangles: give a longer one",
+                              longest_edge, kMostTriangles));
     }
     complete_ = proceed(0) && add_vertices(side, points, reach, proceed);
     if (!complete_) return;

@@ -16,7 +16,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double kFarthest = 1e30;
+constexpr double kFarthestPoint = 1e15;
 
 void require_reach(double reach) {
   if (reach > 0) return;  // no NaN
@@ -26,15 +26,17 @@ void require_reach(double reach) {
                           reach));
 }
 
+bool is_fit(const Vector& p) {
+  return std::abs(p[0]) <= kFarthestPoint && std::abs(p[1]) <= kFarthestPoint &&
+         std::abs(p[2]) <= kFarthestPoint;
+}
+
 void require_points(std::span<const Vector> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector& p = points[i];
-    if (std::abs(p[0]) <= kFarthest && std::abs(p[1]) <= kFarthest && std::abs(p[2]) <= kFarthest) {
-      continue;
-    }
+    if (is_fit(points[i])) continue;
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("point {}: ({}, {}, {}) is not finite, or beyond {:g}: leave it out", i,
-                            p[0], p[1], p[2], kFarthest));
+                            points[i][0], points[i][1], points[i][2], kFarthestPoint));
   }
 }
 
@@ -60,9 +62,19 @@ std::vector<SurfaceDistance> distance_map(const SphereTree& body, const SphereTr
   std::vector<Vector> moved;
   moved.reserve(body.triangles()->vertices.size());
   for (const Vector& vertex : body.triangles()->vertices) moved.push_back(move(vertex));
-  require_points(moved);
-  return distances_of(other, PointSearch(other, select_kernels({}).clusters), moved, reach,
-                      proceed);
+  // A vertex that no triangle uses may lie anywhere.
+  std::vector<std::size_t> nowhere;
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    if (is_fit(moved[v])) continue;
+    nowhere.push_back(v);
+    moved[v] = Vector(0, 0, 0);
+  }
+  std::vector<SurfaceDistance> out =
+      distances_of(other, PointSearch(other, select_kernels({}).clusters), moved, reach, proceed);
+  for (const std::size_t v : nowhere) {
+    if (v < out.size()) out[v] = beyond_reach();
+  }
+  return out;
 }
 
 }  // namespace ist

@@ -27,8 +27,8 @@ struct SurfaceDistance {
 
 /// Measures the distances of points from the surface of a body, with the sign of the outer normal
 /// at the nearest point (an angle-weighted pseudonormal: Baerentzen and Aanaes 2005). The sign says
-/// whether a point lies inside where the surface is closed and does not cross itself; `orientation`
-/// of the tree says whether its outer side is known.
+/// whether a point lies inside where the surface is closed, and neither touches nor crosses itself;
+/// `orientation` of the tree says whether its outer side is known.
 ///
 /// @param points  mesh coordinates of the body, finite
 /// @param reach   farther points are not measured; infinity measures all
@@ -37,7 +37,7 @@ struct SurfaceDistance {
 /// Right to within 1e-13 of the coordinates: 1e-11 mm for 100 mm. The same bits on every
 /// instruction set and for any number of threads. Cost: 0.3 µs a point that is within reach, on
 /// each core, less beyond; the first time for a tree, 0.3 µs a triangle more. Throws
-/// kTrianglesMissing, and kArgumentInvalid for a point that is not finite or beyond 1e30, or a
+/// kTrianglesMissing, and kArgumentInvalid for a point that is not finite or beyond 1e15, or a
 /// reach that is not positive.
 [[nodiscard]] IST_API std::vector<SurfaceDistance> signed_distance(
     const SphereTree& tree, std::span<const Eigen::Vector3d> points, double reach,

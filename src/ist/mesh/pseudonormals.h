@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/nearest_point.h"
 
@@ -15,7 +17,8 @@ namespace ist {
 /// the sum of both faces', of a vertex that of all its faces', weighted by their angles. A point
 /// lies outside where the way to it from its nearest point has a component along the normal there.
 ///
-/// Triangles without an area have no normal: over them the neighbours beyond count.
+/// Triangles without an area have no normal: over them the neighbours beyond count, and vertices at
+/// one position that they join count as one.
 /// Source: J. A. Baerentzen, H. Aanaes, Signed distance computation using the angle weighted
 /// pseudonormal, IEEE Transactions on Visualization and Computer Graphics 11(3), 2005.
 class Pseudonormals {
@@ -35,6 +38,11 @@ class Pseudonormals {
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+  std::vector<bool> join_neighbours(const TriangleMesh& mesh, std::span<const EdgeUse> uses);
+  void add_angles(const TriangleMesh& mesh, std::uint32_t triangle, DisjointSets& places);
+  [[nodiscard]] std::optional<Eigen::Vector3d> at_edge_below(const TriangleMesh& mesh,
+                                                             std::uint32_t triangle,
+                                                             const NearestPoint& on) const noexcept;
   [[nodiscard]] Eigen::Vector3d beyond(const TriangleMesh& mesh, std::uint32_t triangle,
                                        std::uint32_t from,
                                        const Eigen::Vector3d& at) const noexcept;

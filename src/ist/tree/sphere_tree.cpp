@@ -69,6 +69,9 @@ TreeParts measured(TreeParts parts) {
 const LeafTriangles::Lazy& LeafTriangles::made() const {
   std::call_once(lazy_->once, [this] {
     lazy_->normals.emplace(mesh);
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t v : triangle) lazy_->box.extend(mesh.vertices[v]);
+    }
     for (const Component& component : components_of(mesh)) {
       lazy_->component_points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
     }

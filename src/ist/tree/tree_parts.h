@@ -30,9 +30,11 @@ struct LeafTriangles {
   TriangleLists lists;        ///< one list a leaf
   TriangleClusters clusters;  ///< about the tree's origin
 
-  /// Returns the normals that tell inside from outside; and a vertex of each component. Both are
-  /// made by the first call of either, of any thread, in 0.5 µs a triangle.
+  /// Returns the normals that tell inside from outside; and a vertex of each component. All are
+  /// made by the first call of any, of any thread, in 0.5 µs a triangle.
   [[nodiscard]] const Pseudonormals& normals() const { return *made().normals; }
+  /// Returns the box round all vertices in use.
+  [[nodiscard]] const Eigen::AlignedBox3d& box() const { return made().box; }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& component_points() const {
     return made().component_points;
   }
@@ -42,6 +44,7 @@ struct LeafTriangles {
     std::once_flag once;
     std::optional<Pseudonormals> normals;
     std::vector<Eigen::Vector3d> component_points;
+    Eigen::AlignedBox3d box;
   };
   [[nodiscard]] const Lazy& made() const;
 
