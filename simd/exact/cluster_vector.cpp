@@ -157,7 +157,7 @@ namespace ist::simd {
         HWY_CHOOSE_##TARGET(ListLanes), HWY_CHOOSE_##TARGET(MeetChildren),       \
         HWY_CHOOSE_##TARGET(ScoreChildren), HWY_CHOOSE_##TARGET(MeetClusters),   \
         HWY_CHOOSE_##TARGET(DecideTriangles), HWY_CHOOSE_##TARGET(NearClusters), \
-        HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles)     \
+        HWY_CHOOSE_##TARGET(NearNodes), HWY_CHOOSE_##TARGET(NearTriangles)       \
   }
 
 ClusterKernels cluster_kernels(std::int64_t target) {

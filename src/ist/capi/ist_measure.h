@@ -5,7 +5,7 @@
  * Measures of two bodies that take milliseconds: signed distances of points, penetration depth,
  * first contact along a motion, occlusion. The conventions of ist_c.h apply. All need trees with
  * triangles (IST_TRIANGLES_MISSING), allocate memory, and use all cores for many points. The first
- * call for a tree takes 0.5 us per triangle more. A query first forgets what earlier poses left.
+ * call for a tree takes 0.3 us per triangle more.
  */
 
 #include "ist/capi/ist_c.h"
@@ -37,7 +37,7 @@ typedef struct ist_surface_distance {
 /* Measures the distances of `count` points, 3 mesh coordinates each, from the surface of a tree.
  * Farther ones than `reach`, which may be INFINITY, are not looked for. Errors:
  * IST_ARGUMENT_INVALID for a point that is not finite or a reach that is not positive;
- * IST_CANCELLED. Cost: 0.3 us per point within reach and core. */
+ * IST_CANCELLED. Cost: 0.9 us per point within reach and core. */
 IST_C_API ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points,
                                               size_t count, double reach,
                                               const ist_progress* progress,
@@ -71,8 +71,8 @@ typedef struct ist_penetration {
 /* Bounds the depth of the deepest point of either surface inside the other body by an interval no
  * wider than `tolerance`. `last` may be an earlier answer, from which the search goes on in less
  * time, or NULL. Of `budget` the tests are points; it and `progress` may end the search: then
- * `complete` is 0 and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: 1
- * to 10 ms for jaws. */
+ * `complete` is 0 and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: 5
+ * to 10 ms for jaws in occlusion. */
 IST_C_API ist_status ist_query_penetration(ist_query* query, const double pose[16],
                                            double tolerance, const ist_penetration* last,
                                            const ist_budget* budget, const ist_progress* progress,
@@ -113,7 +113,8 @@ typedef struct ist_first_contact {
 } ist_first_contact;
 
 /* Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes
- * farther than `tolerance`, mesh units. Of `budget` the tests are distances. Errors:
+ * farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
+ * query forgets what earlier poses left. Errors:
  * IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: some 10 to 40 distances for jaws that close. */
 IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion,
                                              double tolerance, const ist_budget* budget,

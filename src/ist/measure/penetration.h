@@ -50,9 +50,10 @@ struct PenetrationOptions {
 ///
 /// The bound of a node is its centre's signed distance and its radius; of a piece of a triangle,
 /// also the distance of its corners from the triangle that is nearest to its middle: a distance
-/// from one triangle is a convex function. Allocates. Cost: 5 ms for jaws in occlusion to 0.01
-/// mm, hardly less from the last answer. Ends incomplete after 4 million pieces of triangles, as it
-/// may where the side of many points is unknown; the first time for a tree, 0.5 µs a triangle more.
+/// from one triangle is a convex function. Allocates. Cost: 5 to 10 ms for jaws in occlusion to
+/// 0.01 mm, hardly less from the last answer; the first time for a tree, 0.3 µs a triangle more.
+/// The search ends incomplete after 4 million pieces of triangles, which it may need where the side
+/// of many points is unknown.
 /// Throws kTrianglesMissing, and kArgumentInvalid for a tolerance that is negative or NaN.
 [[nodiscard]] IST_API Penetration penetration(Query& query, const Eigen::Isometry3d& pose,
                                               double tolerance,

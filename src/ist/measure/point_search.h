@@ -27,8 +27,8 @@ class PointSearch {
   PointSearch(const SphereTree& tree, const ClusterKernels& kernels) noexcept;
 
   /// Returns the triangle nearest to `point`, the first of them by its index, if it is no farther
-  /// than `within`. `hint` is a triangle that may be near, and changes the time alone. Cost: 0.2 to
-  /// 0.5 µs.
+  /// than `within`. `hint` is a triangle that may be near, and changes the time alone. Cost: 0.7 µs
+  /// for a point 2 mm from a jaw.
   [[nodiscard]] std::optional<NearestTriangle> nearest(
       const Eigen::Vector3d& point, double within,
       std::optional<std::uint32_t> hint = {}) const noexcept;

@@ -8,10 +8,10 @@
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/mesh/nearest_point.h"
 #include "ist/tree/nested_bounds.h"
 #include "ist/tree/node_bounds.h"
 #include "ist/voxel/morton.h"
-#include "ist/mesh/nearest_point.h"
 #include "ist/voxel/triangle_bins.h"
 #include "ist/voxel/triangle_clip.h"
 

@@ -95,7 +95,7 @@ class IST_API SphereTree {
   [[nodiscard]] double bounding_radius() const noexcept;
   /// The radius of the largest leaf sphere. Precondition: has(policy).
   [[nodiscard]] double largest_leaf_radius(SpherePolicy policy) const noexcept;
-  /// Bytes in memory, without the 40 a triangle that ist/measure.h adds when it is first asked.
+  /// Bytes in memory, without the 24 a triangle that ist/measure.h adds at its first use.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
   /// The tree's content, for the library's own code: no installed header defines it.
