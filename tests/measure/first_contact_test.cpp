@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "ist/models/models.h"
+#include "measure/body_pair.h"
 #include "query/query_cases.h"
 #include "simd/targets.h"
 #include "support/errors.h"
@@ -17,21 +18,6 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using ContactStatus = FirstContact::Status;
-
-Pose place(const Vector& place) { return Pose(Eigen::Translation3d(place)); }
-
-struct BodyPair {
-  BodyPair(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
-      : fixed(build_tree(a, {.voxel_size = voxel_size})),
-        moving(build_tree(b, {.voxel_size = voxel_size})),
-        query(fixed, moving) {}
-  [[nodiscard]] bool meet(const Pose& pose) {
-    return query.intersects(pose).answer == Answer::kYes;
-  }
-
-  SphereTree fixed, moving;
-  Query query;
-};
 
 // The interval is as narrow as was asked for, and at its end triangles intersect.
 void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,

@@ -8,6 +8,7 @@
 #include "ist/base/parallel.h"
 #include "ist/measure/contact_regions.h"
 #include "ist/models/models.h"
+#include "measure/body_pair.h"
 #include "query/query_cases.h"
 #include "support/errors.h"
 #include "support/shapes.h"
@@ -18,17 +19,11 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 
-struct Bite {
-  Bite(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
-      : fixed(build_tree(a, {.voxel_size = voxel_size})),
-        moving(build_tree(b, {.voxel_size = voxel_size})),
-        query(fixed, moving) {}
-  [[nodiscard]] Occlusion at(const Vector& place, const OcclusionOptions& options = {}) const {
-    return occlusion(query, Pose(Eigen::Translation3d(place)), options);
+struct Bite : BodyPair {
+  using BodyPair::BodyPair;
+  [[nodiscard]] Occlusion at(const Vector& to, const OcclusionOptions& options = {}) const {
+    return occlusion(query, place(to), options);
   }
-
-  SphereTree fixed, moving;
-  Query query;
 };
 
 // The part of a sphere of radius `r` whose distance from a sphere of radius `other` is at most

@@ -6,6 +6,7 @@
 
 #include "ist/measure/signed_distance.h"
 #include "ist/models/models.h"
+#include "measure/body_pair.h"
 #include "query/query_cases.h"
 #include "simd/targets.h"
 #include "support/data_dir.h"
@@ -20,20 +21,12 @@ using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using DepthStatus = Penetration::Status;
 
-Pose shift(const Vector& by) { return Pose(Eigen::Translation3d(by)); }
-
-struct Bodies {
-  Bodies(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
-      : fixed(build_tree(a, {.voxel_size = voxel_size})),
-        moving(build_tree(b, {.voxel_size = voxel_size})),
-        query(fixed, moving) {}
+struct Bodies : BodyPair {
+  using BodyPair::BodyPair;
   [[nodiscard]] Penetration at(const Pose& pose, double tolerance,
                                const PenetrationOptions& options = {}) {
     return penetration(query, pose, tolerance, options);
   }
-
-  SphereTree fixed, moving;
-  Query query;
 };
 
 // A point and its direction say what the interval does.
@@ -61,36 +54,36 @@ TEST(Penetration, OfSpheresIsTheirClosedForm) {
   Bodies bodies(icosphere(5, 4), icosphere(5, 2));
   constexpr double kFacets = 0.006;
   for (const double apart : {5.9, 5.5, 4.0, 2.5, 2.0}) {
-    const Pose pose = shift(apart * Vector(0.6, 0, 0.8));
+    const Pose pose = place(apart * Vector(0.6, 0, 0.8));
     const Penetration found = bodies.at(pose, 1e-3);
     expect_consistent(bodies, pose, found, 1e-3);
     EXPECT_NEAR(found.lower, 6 - apart, kFacets) << apart;
   }
   // One wholly inside the other, whose surfaces do not meet.
-  const Penetration inside = bodies.at(shift({0, 1.5, 0}), 1e-3);
+  const Penetration inside = bodies.at(place({0, 1.5, 0}), 1e-3);
   EXPECT_NEAR(inside.lower, 3.5, kFacets) << "its nearest point to the middle is 0.5 from there";
-  expect_consistent(bodies, shift({0, 1.5, 0}), inside, 1e-3);
+  expect_consistent(bodies, place({0, 1.5, 0}), inside, 1e-3);
 }
 
 TEST(Penetration, OfBoxesIsExact) {
   Bodies bodies(box({0, 0, 0}, {4, 4, 4}), box({0, 0, 0}, {1, 1, 1}));
-  const Penetration face = bodies.at(shift({1.5, 1.5, 3.5}), 1e-6);
-  expect_consistent(bodies, shift({1.5, 1.5, 3.5}), face, 1e-6);
+  const Penetration face = bodies.at(place({1.5, 1.5, 3.5}), 1e-6);
+  expect_consistent(bodies, place({1.5, 1.5, 3.5}), face, 1e-6);
   EXPECT_LE(face.lower, 0.5);
   EXPECT_GE(face.upper, 0.5);
   EXPECT_TRUE(face.of_moving);
   EXPECT_NEAR(face.direction[2], 1, 1e-6);
   // A corner in a corner: the least way out is along one axis.
-  const Penetration corner = bodies.at(shift({3.75, 3.5, 3.25}), 1e-6);
+  const Penetration corner = bodies.at(place({3.75, 3.5, 3.25}), 1e-6);
   EXPECT_NEAR(corner.lower, 0.25, 1e-6);
   // The small one in the middle: each of its faces is 1.5 deep.
-  const Penetration middle = bodies.at(shift({1.5, 1.5, 1.5}), 1e-4);
+  const Penetration middle = bodies.at(place({1.5, 1.5, 1.5}), 1e-4);
   EXPECT_NEAR(middle.lower, 1.5, 1e-4);
 }
 
 TEST(Penetration, OfATorusInATorusIsItsClosedForm) {
   Bodies bodies(torus(8, 3, 160, 80), torus(8, 1, 160, 40));
-  const Pose pose = shift({0, 0, 1.5});
+  const Pose pose = place({0, 0, 1.5});
   const Penetration found = bodies.at(pose, 0.005);
   expect_consistent(bodies, pose, found, 0.005);
   EXPECT_NEAR(found.lower, 2.5, 0.015) << "3 less the nearest point to the ring, 1.5 - 1";
@@ -99,7 +92,7 @@ TEST(Penetration, OfATorusInATorusIsItsClosedForm) {
 TEST(Penetration, IsNoneWhereBodiesAreApart) {
   Bodies bodies(torus(8, 2, 40, 20), icosphere(3, 1));
   for (const Vector& at : {Vector(0, 0, 0), Vector(0, 0, 30), Vector(11.2, 0, 0)}) {
-    const Penetration found = bodies.at(shift(at), 1e-3);
+    const Penetration found = bodies.at(place(at), 1e-3);
     EXPECT_EQ(found.lower, 0) << at.transpose();
     EXPECT_EQ(found.upper, 0) << at.transpose();
     EXPECT_TRUE(found.complete);
@@ -158,7 +151,7 @@ TEST(Penetration, OfJawsHoldsTheDeepestOfTheirVerticesAndIsWarmAsTrueAsCold) {
   Bodies jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
   Penetration last;
   for (const double dz : {0.0, -0.02, -0.3, -0.9, -3.0, 0.2}) {
-    const Pose pose = shift({0, 0, dz});
+    const Pose pose = place({0, 0, dz});
     const Penetration cold = jaws.at(pose, 0.01), warm = jaws.at(pose, 0.01, {.last = &last});
     expect_consistent(jaws, pose, cold, 0.01);
     expect_consistent(jaws, pose, warm, 0.01);
@@ -177,7 +170,7 @@ TEST(Penetration, HasTheSameBitsOnEveryTarget) {
   const SphereTree fixed = build_tree(a, {.voxel_size = 0.5}),
                    moving = build_tree(b, {.voxel_size = 0.5});
   Query best(fixed, moving);
-  const Pose pose = shift({1.9, 0.4, 0.7});
+  const Pose pose = place({1.9, 0.4, 0.7});
   const Penetration truth = penetration(best, pose, 1e-3);
   for (const std::string& target : all_targets()) {
     Query query(fixed, moving, {.target = target});
@@ -191,7 +184,7 @@ TEST(Penetration, HasTheSameBitsOnEveryTarget) {
 
 TEST(Penetration, IsTrueAndWiderWhereABudgetEndsIt) {
   Bodies bodies(icosphere(4, 4), torus(3, 1, 36, 18));
-  const Pose pose = shift({2, 0, 0.5});
+  const Pose pose = place({2, 0, 0.5});
   const Penetration truth = bodies.at(pose, 1e-4);
   double width = HUGE_VAL;
   for (const std::uint64_t points : {0U, 10U, 100U, 1000U, 100000U}) {
@@ -210,7 +203,7 @@ TEST(Penetration, IsTrueAndWiderWhereABudgetEndsIt) {
 TEST(Penetration, IsNoneHoweverFarBodiesAre) {
   Bodies bodies(icosphere(2, 1), icosphere(2, 1));
   for (const double far : {1e5, 1e12, 1e16, 1e155}) {
-    const Penetration found = bodies.at(shift({far, 0.3 * far, 0}), 1e-3);
+    const Penetration found = bodies.at(place({far, 0.3 * far, 0}), 1e-3);
     EXPECT_EQ(found.upper, 0) << far;
     EXPECT_TRUE(found.complete);
   }
@@ -254,7 +247,7 @@ TEST(Penetration, SaysWhatIsNoQuestion) {
             "triangles-missing");
   // Inside out at first: turned outward when the tree was built.
   Bodies turned(closed, inside_out(closed));
-  EXPECT_NEAR(turned.at(shift({0.75, 0, 0}), 1e-6).lower, 0.25, 1e-6);
+  EXPECT_NEAR(turned.at(place({0.75, 0, 0}), 1e-6).lower, 0.25, 1e-6);
   EXPECT_STREQ(to_string(DepthStatus::kMovingNotClosed), "moving-not-closed");
 }
 
