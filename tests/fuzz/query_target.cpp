@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "fuzz/fuzz_target.h"
+#include "fuzz/measure_checks.h"
 #include "fuzz/query_checks.h"
 #include "query/exact/exact_tree.h"
 #include "support/shapes.h"
@@ -37,20 +38,22 @@ struct Pair {
   Pair(const TriangleMesh& a, double size_a, const TriangleMesh& b, double size_b)
       : fixed(tree_with_triangles(a, size_a)),
         moving(tree_with_triangles(b, size_b)),
-        checks(fixed, moving, QueryChecks::Trees::kBuilt) {}
+        checks(fixed, moving, QueryChecks::Trees::kBuilt),
+        measures(fixed, moving, QueryChecks::Trees::kBuilt) {}
   SphereTree fixed, moving;
   QueryChecks checks;
+  MeasureChecks measures;
 };
 
 // A ball and a block, a sliver in a block, and a far strip beside a coarse triangle.
-QueryChecks& pair_checks(unsigned which) {
+Pair& pair(unsigned which) {
   static std::array<Pair, 3> pairs{
       Pair{icosphere(1, 1), 0.5, box({-0.5, -0.75, -1}, {0.5, 0.75, 1}), 0.5},
       Pair{triangle({-1, 0, 0}, {1, 1e-6, 0}, {1, -1e-6, 1e-6}), 0.125, box({0, 0, 0}, {1, 1, 1}),
            0.5},
       Pair{moved(open_strip(2), {1000, 0, -1000}), 0.25,
            triangle({0, 0, 0}, {1, 0, 0}, {0.25, 1, 0.5}), 1}};
-  return pairs[which % pairs.size()].checks;
+  return pairs[which % pairs.size()];
 }
 
 Eigen::Isometry3d pose_of(Eigen::Vector4d q, const Eigen::Vector3d& translation) {
@@ -90,8 +93,10 @@ Eigen::Isometry3d next_pose(unsigned form, Bytes& bytes) {
 std::string fuzz_query(std::string_view text) {
   Bytes bytes(text);
   const unsigned head = bytes.next<std::uint8_t>();
-  QueryChecks& checks = pair_checks(head & 3U);
-  const auto intersects = checks.at(next_pose(head >> 4 & 3U, bytes), head >> 2 & 3U);
+  Pair& asked = pair(head & 3U);
+  const Eigen::Isometry3d pose = next_pose(head >> 4 & 3U, bytes);
+  const auto intersects = asked.checks.at(pose, head >> 2 & 3U);
+  asked.measures.at(pose);
   if (!intersects) return "invalid";
   return *intersects ? "touching" : "apart";
 }

@@ -2,6 +2,7 @@
 // nothing behind them would ever be looked at. What the second one came to is the outcome.
 
 #include "fuzz/fuzz_target.h"
+#include "fuzz/measure_checks.h"
 #include "fuzz/query_checks.h"
 #include "ist/base/error.h"
 #include "support/tree_file.h"
@@ -25,10 +26,13 @@ std::string outcome(const std::string& bytes) {
   }
   require(file_of(*tree) == bytes, "a tree is not saved as it was read");
   QueryChecks checks(*tree, *tree, QueryChecks::Trees::kRead);
+  std::optional<MeasureChecks> measures;
+  if (tree->triangles() != nullptr) measures.emplace(*tree, *tree, QueryChecks::Trees::kRead);
   const double s = tree->voxel_size();
   for (const Eigen::Isometry3d& pose :
        {Eigen::Isometry3d::Identity(), turn_and_shift(0), turn_and_shift(0.7 * s)}) {
     require(checks.at(pose).has_value(), "a rigid pose is none");
+    if (measures) measures->at(pose);
   }
   return "fine";
 }
