@@ -6,10 +6,11 @@
 #include <cstdio>
 
 #include "cli/progress_bar.h"
-#include "cli/query_options.h"
+#include "cli/refusals.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
+#include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
 namespace {
@@ -20,7 +21,6 @@ SphereTree load_body(const std::filesystem::path& file, bool is_tree, const Body
   BuildOptions options;
   options.voxel_size = *files.voxel_size;
   options.spheres = files.policy.value_or(options.spheres);
-  options.keep_triangles = files.keep_triangles;
   options.max_memory = files.max_memory;
   SphereTree tree =
       build_with_progress(file.string(), std::move(checked.mesh), options, checked.warnings);
@@ -70,6 +70,13 @@ SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
   return tree;
 }
 
+double Bodies::extent() const {
+  const auto largest = [](const SphereTree& tree) {
+    return tree.voxel_size() * static_cast<double>(tree.parts().lattice.cells);
+  };
+  return std::min(largest(fixed), largest(moving));
+}
+
 Bodies load_bodies(const BodyFiles& files) {
   const bool fixed_is_tree = is_tree_file(files.fixed), moving_is_tree = is_tree_file(files.moving);
   const bool both_are_trees = fixed_is_tree && moving_is_tree;
@@ -92,8 +99,9 @@ void require_triangles(const Bodies& bodies) {
     if (tree->triangles()) continue;
     throw Error(
         ErrorCode::kTrianglesMissing,
-        fmt::format("{}: the tree has no triangles: build it with --exact, or name the mesh",
-                    name));
+        fmt::format(
+            "{}: the tree has no triangles: build it without --no-triangles, or name the mesh",
+            name));
   }
 }
 

@@ -32,6 +32,9 @@ void print_warnings(const std::vector<std::string>& warnings);
 struct Bodies {
   SphereTree fixed, moving;
   SpherePolicy policy;
+
+  /// Returns the largest extent of the smaller body, mesh units.
+  [[nodiscard]] double extent() const;
 };
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
@@ -39,7 +42,6 @@ struct BodyFiles {
   std::filesystem::path fixed, moving;
   std::optional<double> voxel_size;    ///< of meshes, mesh units
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have
-  bool keep_triangles = false;         ///< of meshes
   std::uint64_t max_memory = BuildOptions{}.max_memory;
 };
 

@@ -32,12 +32,16 @@ void ContactWriter::write(std::size_t index, const Eigen::Isometry3d& pose,
   for (const LeafPair& pair : leaf_pairs) {
     const Eigen::Vector3d fixed = bodies_.fixed.origin() + fixed_[pair.fixed].centre;
     const Eigen::Vector3d moving = rigid * (bodies_.moving.origin() + moving_[pair.moving].centre);
-    add({{"index", index}, {"fixed_centre", triple(fixed)}, {"moving_centre", triple(moving)}});
+    add({{"index", index},
+         {"kind", "leaf pair"},
+         {"fixed_centre", triple(fixed)},
+         {"moving_centre", triple(moving)}});
   }
   if (complete) {
     static_cast<void>(query_.contacts(pose, points_));
     for (const Contact& point : points_.points()) {
       add({{"index", index},
+           {"kind", "contact"},
            {"position", triple(point.position)},
            {"normal", triple(point.normal)},
            {"depth", point.depth},

@@ -22,19 +22,15 @@ struct EngineOptions {
   SpherePolicy policy = SpherePolicy::kTable;
   std::string target = {};  ///< instruction set; empty: IST_TARGET's, or the best
   int workers = 1;
-  bool exact = false;                           ///< also find the pairs of triangles that intersect
   std::optional<std::uint64_t> max_tests = {};  ///< most sphere tests of a query
-  std::optional<double> gap = {};  ///< tolerance of the distance, mesh units; empty: not computed
 };
 
-/// A query on a pair of trees, with a span that grows until every leaf pair fits.
+/// A query of leaf pairs on a pair of trees, with a span that grows until every pair fits.
 class Engine {
  public:
   struct Answer {
     QueryResult result;
-    double microseconds;  ///< of the query alone, with large enough spans, without the distance
-    std::optional<std::uint64_t> triangle_pairs = {};  ///< if requested
-    std::optional<DistanceInterval> gap = {};  ///< between the surfaces, if requested or bounded
+    double microseconds;  ///< of the query alone, with a span that is large enough
   };
 
   /// Makes the engine of a name in kEngineNames; both trees must outlive it. Throws kPolicyMissing,
@@ -57,9 +53,8 @@ class Engine {
   std::optional<Query> simd_;
   std::optional<ReferenceQuery> reference_;  // exactly one of both
   bool nested_ = true;
-  EngineOptions options_;
+  Budget budget_;
   std::vector<LeafPair> leaf_pairs_ = std::vector<LeafPair>(1 << 16);
-  std::vector<TrianglePair> pairs_;
   std::size_t count_ = 0;
 };
 

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +12,8 @@
 #include "cli/commands/commands.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
+#include "cli/version.h"
+#include "cli/words.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
@@ -36,33 +39,34 @@ ExitCode exit_code(ErrorCode code) {
 int run(int argc, char** argv) {
   install_signal_handlers();
   CLI::App app(
-      "Finds where two rigid triangle meshes touch. Try 'ist demo' first: it needs no files.\n"
+      "Finds where two rigid triangle meshes touch, how deep and how far apart they are.\n"
+      "Try 'ist demo' first: it needs no files.\n"
       "Lengths are in the unit of the mesh files, millimetres by habit.",
       "ist");
   app.require_subcommand(1);
-  app.set_version_flag("--version", IST_VERSION);
+  app.set_version_flag("-V,--version", version_lines());
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
       "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n"
-      "5 a result breaks a guarantee (--verify), or differs from the model (table --check).\n"
+      "5 a result breaks a guarantee (--verify), or differs from the model (table --check),\n"
+      "6 touching (--fail-if-touching), 130 interrupted.\n"
       "Research software, not a medical device.");
   add_demo(app);
   add_build(app);
   add_info(app);
   add_export(app);
   add_collide(app);
-  add_close(app);
+  add_approach(app);
   add_run(app);
   add_advise(app);
   add_table(app);
+  std::vector<std::string> words = words_of(argc, argv);
+  refuse_unknown_words(app, words);
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::Success& help) {  // or the version, which its own command prints
     return app.exit(help);
-  } catch (const CLI::RequiredError&) {
-    const std::vector<std::string> strange = app.remaining();
-    if (!app.get_subcommands().empty() || strange.empty()) throw;
-    throw CLI::ValidationError(strange.front(), "no such subcommand or option");
   }
   // An earlier write that failed, as on a full disk, shows here at the latest.
   if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
@@ -80,7 +84,8 @@ bool is_lack_of_threads(const std::exception& error) {
 int main(int argc, char** argv) try {
   return ist::cli::run(argc, argv);
 } catch (const CLI::ParseError& error) {
-  std::fprintf(stderr, "ist: %s\nTry 'ist --help', or 'ist SUBCOMMAND --help'.\n", error.what());
+  const std::string command = ist::cli::subcommand_among(argc, argv);
+  std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(), command.c_str());
   return ist::cli::kUsage;
 } catch (const ist::Error& error) {
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));

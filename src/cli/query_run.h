@@ -1,18 +1,29 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <span>
+#include <optional>
+#include <vector>
 
+#include "cli/answers/answer.h"
 #include "cli/bodies.h"
 #include "cli/query_options.h"
 
 namespace ist::cli {
 
-/// Runs every engine at every pose, `repeat` times round the whole list with the engines in turn,
-/// and prints a line for each pose and engine; writes the first engine's leaf pairs and contacts if
-/// a file is named. With --verify, runs each engine at each pose once more and checks those answers
-/// before a line is printed or the file appears.
-void run_queries(const Bodies& bodies, std::span<const Eigen::Isometry3d> poses,
-                 const QueryOptions& options);
+/// A pose to ask for, and along a path its displacement, mesh units.
+struct AskedPose {
+  Eigen::Isometry3d pose;
+  std::optional<double> displacement{};
+};
+
+/// Asks people's questions once at each pose, and runs every engine `repeat` times round the whole
+/// list with the engines in turn; prints the answers, and writes contacts if a file is named. With
+/// --verify, runs each engine at each pose once more and checks those answers before a line is
+/// printed or the file appears. Returns whether the bodies touch, or may, at any pose.
+[[nodiscard]] bool run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
+                               const QueryOptions& options);
+
+/// Throws a Failure of kTouching if the option asks for it and the bodies touch.
+void fail_if_touching(bool touching, const QueryOptions& options);
 
 }  // namespace ist::cli

@@ -39,7 +39,7 @@ class CliTest : public ::testing::Test {
   /// Shifts along x as a file of poses.
   [[nodiscard]] std::string poses(const std::vector<double>& shifts) const;
 
-  /// The lines of a text, each an object of JSON.
+  /// The lines of a text, each an object of JSON, without the header.
   static std::vector<nlohmann::json> json_lines(const std::string& text);
 
   const TempDir dir_;

@@ -50,7 +50,7 @@ std::string cannot(const std::string& doing, const std::string& file, const std:
 std::vector<std::vector<std::string>> writers(const std::string& mesh, const std::string& tree) {
   return {{"build", mesh, "--voxel-size", "0.1", "-o"},
           {"export", tree, "--what", "voxels", "--level", "0", "-o"},
-          {"close", tree, tree, "--axis", "z", "--from", "0", "--to", "2", "--step", "0.5",
+          {"approach", tree, tree, "--axis", "z", "--from", "0", "--to", "2", "--step", "0.5",
            "--contacts"}};
 }
 

@@ -18,9 +18,8 @@ using nlohmann::json;
 class Files : public CliTest {};
 
 TEST_F(Files, BuildSaysWhatItMade) {
-  const CommandResult result =
-      ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5", "--json", "--exact",
-                "--classes", "surface,proximity"});
+  const CommandResult result = ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size",
+                                         "0.5", "--json", "--classes", "surface,proximity"});
   const auto lines = json_lines(result.out);
   ASSERT_EQ(lines.size(), 1u);
   const json& line = lines[0];
@@ -127,7 +126,7 @@ TEST_F(Files, InfoOfATree) {
   EXPECT_EQ(line["depth"], 3);
   EXPECT_EQ(line["voxels"], tree.leaf_count());
   EXPECT_EQ(line["orientation"], "outward");
-  EXPECT_EQ(line["triangles"], false);
+  EXPECT_EQ(line["triangles"], true);
   EXPECT_EQ(line["proximity"], false);
   ASSERT_EQ(line["levels"].size(), 4u);
   for (std::size_t level = 0; level < 4; ++level) {
@@ -221,7 +220,7 @@ TEST_F(Files, AnInputIsNeverOverwritten) {
   const std::string mesh_before = file_content(mesh), tree_before = file_content(tree);
   EXPECT_EQ(ist({"build", mesh, "-o", mesh, "--voxel-size", "0.5"}).exit_code, 2);
   EXPECT_EQ(ist({"export", tree, "--what", "voxels", "--level", "0", "-o", tree}).exit_code, 2);
-  EXPECT_EQ(ist({"close", tree, tree, "--axis", "z", "--from", "0", "--to", "1", "--step", "1",
+  EXPECT_EQ(ist({"approach", tree, tree, "--axis", "z", "--from", "0", "--to", "1", "--step", "1",
                  "--contacts", tree})
                 .exit_code,
             2);
@@ -238,14 +237,14 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const json& line = lines[i];
     for (const char* key : {"voxel_size", "spheres", "engine", "target", "workers", "displacement",
-                            "contacts", "sphere_tests", "microseconds_median", "hertz"}) {
+                            "leaf_pairs", "sphere_tests", "microseconds_median", "hertz"}) {
       EXPECT_TRUE(line.contains(key)) << key;
     }
     EXPECT_EQ(line["engine"], i < 7 ? "reference" : "simd");
     EXPECT_EQ(line["workers"], i < 14 ? 1 : 2);
-    EXPECT_EQ(line["contacts"], lines[i < 14 ? i : i - 7]["contacts"]);
+    EXPECT_EQ(line["leaf_pairs"], lines[i < 14 ? i : i - 7]["leaf_pairs"]);
     EXPECT_EQ(line["voxel_size"], 3);
-    EXPECT_TRUE(line["displacement"] != 0 || line["contacts"] > 0);
+    EXPECT_TRUE(line["displacement"] != 0 || line["leaf_pairs"] > 0);
   }
   EXPECT_EQ(dir_.entries(), 2u);
   const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
@@ -258,13 +257,14 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
       ist_well({"build", upper, "-o", path("upper.ist"), "--voxel-size", "2"});
   EXPECT_EQ(built.err, "");
   const CommandResult closed =
-      ist_well({"close", path("upper.ist"), lower, "--voxel-size", "2", "--axis", "z", "--from",
+      ist_well({"approach", path("upper.ist"), lower, "--voxel-size", "2", "--axis", "z", "--from",
                 "-12", "--to", "0", "--step", "3", "--json"});
   EXPECT_EQ(closed.err, "");
   const auto path_lines = json_lines(closed.out);
-  ASSERT_EQ(path_lines.size(), 5u);
-  EXPECT_EQ(path_lines.front()["colliding"], false);
-  EXPECT_EQ(path_lines.back()["colliding"], true);
+  ASSERT_EQ(path_lines.size(), 6u);
+  EXPECT_EQ(path_lines.front()["touch"], "no");
+  EXPECT_EQ(path_lines[4]["touch"], "yes");
+  EXPECT_EQ(path_lines.back()["first_contact"], "contact");
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ class Interruption : public CliTest {
  protected:
   // A query that goes on for minutes, and writes its contacts into the folder all the while.
   [[nodiscard]] std::vector<std::string> long_query(const std::string& tree) const {
-    return {"close", tree,     tree,   "--axis",   "z",       "--from",     "0",      "--to",
-            "1",     "--step", "0.01", "--repeat", "1000000", "--contacts", path("c")};
+    return {"approach", tree,     tree,   "--axis",   "z",       "--from",     "0",      "--to",
+            "1",        "--step", "0.01", "--repeat", "1000000", "--contacts", path("c")};
   }
   // Waits until it holds so many entries, or the process has ended.
   void await_entries(std::size_t entries, Process& process) const {

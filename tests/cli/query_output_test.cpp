@@ -15,7 +15,7 @@ class QueryOutput : public CliTest {
  protected:
   // A contact point of two balls of radius 2, of voxels of 0.5 and 0.4, the second moved along x.
   static void check_point(const json& point, double shift) {
-    EXPECT_EQ(point.size(), 5u) << point;
+    EXPECT_EQ(point.size(), 6u) << point;
     const auto p = point["position"].get<std::vector<double>>(),
                n = point["normal"].get<std::vector<double>>();
     ASSERT_TRUE(p.size() == 3 && n.size() == 3);
@@ -30,35 +30,53 @@ class QueryOutput : public CliTest {
     EXPECT_GT(n[0], 0);
   }
 
-  // Every key of a line, and no other, with its type.
+  // Every key of a line, and no other, with its type, for balls that are closed.
   static void check_line(const json& line) {
     using Type = json::value_t;
-    const std::map<std::string, Type> keys = {{"index", Type::number_unsigned},
-                                              {"engine", Type::string},
-                                              {"spheres", Type::string},
-                                              {"target", Type::string},
-                                              {"workers", Type::number_unsigned},
-                                              {"voxel_size", Type::array},
-                                              {"resolution", Type::number_float},
-                                              {"complete", Type::boolean},
-                                              {"truncated", Type::boolean},
-                                              {"level", Type::number_unsigned},
-                                              {"colliding", Type::boolean},
-                                              {"inside", Type::null},
-                                              {"contacts", Type::number_unsigned},
-                                              {"gap_lower", Type::null},
-                                              {"gap_upper", Type::null},
-                                              {"sphere_tests", Type::number_unsigned},
-                                              {"microseconds_min", Type::number_float},
-                                              {"microseconds_median", Type::number_float}};
+    const bool touches = line["touch"] == "yes", deep = line["depth_lower"] > 0;
+    std::map<std::string, Type> keys = {
+        {"index", Type::number_unsigned},
+        {"pose", Type::array},
+        {"engine", Type::string},
+        {"spheres", Type::string},
+        {"target", Type::string},
+        {"workers", Type::number_unsigned},
+        {"voxel_size", Type::array},
+        {"resolution", Type::number_float},
+        {"complete", Type::boolean},
+        {"truncated", Type::boolean},
+        {"level", Type::number_unsigned},
+        {"touch", Type::string},
+        {"inside", Type::string},
+        {"leaf_pairs", Type::number_unsigned},
+        {"triangle_pairs", Type::null},
+        {"distance_lower", Type::number_float},
+        {"distance_upper", Type::number_float},
+        {"distance_narrowest", Type::number_float},
+        {"depth_lower", Type::number_float},
+        {"depth_upper", Type::number_float},
+        {"depth_at_vertices", Type::number_float},
+        {"depth_point", deep ? Type::array : Type::null},
+        {"contacts", Type::number_unsigned},
+        {"contact_depth", line["contacts"] > 0 ? Type::number_float : Type::null},
+        {"area", Type::number_float},
+        {"sphere_tests", Type::number_unsigned},
+        {"microseconds_min", Type::number_float},
+        {"microseconds_median", Type::number_float},
+        {"notes", Type::array}};
+    if (line.contains("displacement")) keys["displacement"] = Type::number_float;
     EXPECT_EQ(line.size(), keys.size()) << line;
     for (const auto& [key, type] : keys) {
       ASSERT_TRUE(line.contains(key)) << key;
       EXPECT_EQ(line[key].type(), type) << key << " in " << line;
     }
+    EXPECT_EQ(line["pose"].size(), 16u);
     ASSERT_EQ(line["voxel_size"].size(), 2u);
     EXPECT_TRUE(line["voxel_size"][0].is_number() && line["voxel_size"][1].is_number());
-    EXPECT_EQ(line["colliding"], line["contacts"] > 0);
+    EXPECT_TRUE(!touches || line["leaf_pairs"] > 0);
+    EXPECT_EQ(touches, line["distance_upper"] == 0);
+    EXPECT_LE(line["depth_lower"], line["depth_upper"]);
+    EXPECT_TRUE(line["area"] > 0 || line["depth_at_vertices"] == 0) << line;
     EXPECT_EQ(line["complete"], true);
     EXPECT_EQ(line["truncated"], false);
     EXPECT_EQ(line["level"], 0);
@@ -67,6 +85,7 @@ class QueryOutput : public CliTest {
     EXPECT_GE(line["sphere_tests"], 1);
     EXPECT_GT(line["microseconds_min"], 0);
     EXPECT_LE(line["microseconds_min"], line["microseconds_median"]);
+    EXPECT_TRUE(line["notes"].empty()) << line;
   }
 };
 
@@ -83,10 +102,10 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
     EXPECT_EQ(lines[i]["engine"], "simd");
     EXPECT_EQ(lines[i]["spheres"], to_string(BuildOptions{}.spheres));
     EXPECT_EQ(lines[i]["voxel_size"], (json{0.5, 0.5}));
-    EXPECT_EQ(lines[i]["colliding"], i != 1);
+    EXPECT_EQ(lines[i]["touch"], i != 1 ? "yes" : "no");
   }
   EXPECT_EQ(lines[1]["sphere_tests"], 1);
-  EXPECT_EQ(lines[0]["contacts"], lines[3]["contacts"]);
+  EXPECT_EQ(lines[0]["leaf_pairs"], lines[3]["leaf_pairs"]);
 }
 
 TEST_F(QueryOutput, LinesGoByIndexThenByEngineHoweverOftenTheyAreAsked) {
@@ -122,22 +141,30 @@ TEST_F(QueryOutput, EveryPolicyAndATableForPeople) {
     for (const json& line : json_lines(as_json.out)) EXPECT_EQ(line["spheres"], spheres);
     const CommandResult plain =
         ist_well({"collide", tree, tree, "--poses", list, "--spheres", spheres});
-    EXPECT_TRUE(says(plain.out, "spheres " + spheres));
-    EXPECT_TRUE(says(plain.out, "contacts"));
-    EXPECT_EQ(std::count(plain.out.begin(), plain.out.end(), '\n'), 4);
+    EXPECT_TRUE(says(plain.out, "touch "));
+    EXPECT_EQ(std::count(plain.out.begin(), plain.out.end(), '\n'), 3);
+    const CommandResult timed =
+        ist_well({"collide", tree, tree, "--poses", list, "--spheres", spheres, "--timing"});
+    EXPECT_TRUE(says(timed.out, "spheres " + spheres));
+    EXPECT_TRUE(says(timed.out, "leaf pairs"));
+    EXPECT_EQ(std::count(timed.out.begin(), timed.out.end(), '\n'), 3 + 5);
   }
 }
 
-TEST_F(QueryOutput, CloseGoesAlongItsPath) {
+TEST_F(QueryOutput, ApproachGoesAlongItsPath) {
   std::string tree;
-  const auto close = [&](const std::string& from, const std::string& to, const std::string& step) {
-    const CommandResult result = ist_well(
-        {"close", tree, tree, "--axis", "y", "--from", from, "--to", to, "--step", step, "--json"});
-    return json_lines(result.out);
+  const auto approach = [&](const std::string& from, const std::string& to,
+                            const std::string& step) {
+    const CommandResult result = ist_well({"approach", tree, tree, "--axis", "y", "--from", from,
+                                           "--to", to, "--step", step, "--json"});
+    auto lines = json_lines(result.out);
+    EXPECT_TRUE(lines.back().contains("first_contact"));
+    lines.pop_back();
+    return lines;
   };
   for (const char* spheres : {"tight", "slab"}) {
     tree = ball_tree("ball.ist", spheres);
-    const auto down = close("6", "0", "0.5");
+    const auto down = approach("6", "0", "0.5");
     ASSERT_EQ(down.size(), 13u);
     for (std::size_t i = 0; i < down.size(); ++i) {
       check_line(down[i]);
@@ -145,19 +172,20 @@ TEST_F(QueryOutput, CloseGoesAlongItsPath) {
       EXPECT_EQ(down[i]["spheres"], spheres);
       // Balls of radius 2: they touch at 4, and are free where farther apart than the resolution.
       const double distance = 6 - 0.5 * static_cast<double>(i) - 4;
-      EXPECT_TRUE(down[i]["colliding"] == true || distance > -0.05 || distance < -3.5) << i;
-      EXPECT_TRUE(down[i]["colliding"] == false || distance <= down[i]["resolution"]) << i;
+      EXPECT_EQ(down[i]["displacement"], 6 - 0.5 * static_cast<double>(i));
+      EXPECT_TRUE(down[i]["touch"] == "yes" || distance > -0.05) << i;
+      EXPECT_TRUE(down[i]["touch"] == "no" || distance <= 0) << i;
     }
-    const auto up = close("0", "6", "0.5");
+    const auto up = approach("0", "6", "0.5");
     ASSERT_EQ(up.size(), 13u);
     for (std::size_t i = 0; i < up.size(); ++i) {
-      EXPECT_EQ(up[i]["contacts"], down[12 - i]["contacts"]);
+      EXPECT_EQ(up[i]["leaf_pairs"], down[12 - i]["leaf_pairs"]);
     }
   }
-  EXPECT_EQ(close("1", "1", "0.5").size(), 1u);
-  EXPECT_EQ(close("0", "0.3", "0.1").size(), 4u);  // though 0.3 / 0.1 is less than 3 in double
-  EXPECT_EQ(close("0", "1", "0.3").size(), 4u);
-  EXPECT_EQ(close("0", "1", "7").size(), 1u);
+  EXPECT_EQ(approach("1", "1", "0.5").size(), 1u);
+  EXPECT_EQ(approach("0", "0.3", "0.1").size(), 4u);  // though 0.3 / 0.1 is less than 3 in double
+  EXPECT_EQ(approach("0", "1", "0.3").size(), 4u);
+  EXPECT_EQ(approach("0", "1", "7").size(), 1u);
 }
 
 TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
@@ -176,11 +204,12 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
       const auto index = leaf_pair["index"].get<std::size_t>();
       EXPECT_GE(index, last);
       last = index;
-      if (leaf_pair.contains("position")) {
+      if (leaf_pair["kind"] == "contact") {
         points[index].push_back(leaf_pair);
         continue;
       }
-      EXPECT_EQ(leaf_pair.size(), 3u);
+      EXPECT_EQ(leaf_pair["kind"], "leaf pair");
+      EXPECT_EQ(leaf_pair.size(), 4u);
       EXPECT_EQ(points.count(index), 0u);  // they come after all leaf pairs of a pose
       ++count[index];
       const auto fixed = leaf_pair["fixed_centre"].get<std::vector<double>>();
@@ -195,7 +224,8 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
       EXPECT_NEAR(std::hypot(moving[0] - shift, moving[1], moving[2]), 2, 0.5);
     }
     for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_EQ(lines[2 * i]["contacts"], count[i]);
+      EXPECT_EQ(lines[2 * i]["leaf_pairs"], count[i]);
+      EXPECT_EQ(lines[2 * i]["contacts"], points[i].size());
       EXPECT_EQ(points[i].empty(), count[i] == 0);
       for (const json& point : points[i]) check_point(point, i == 0 ? 3.5 : 1);
     }
@@ -210,7 +240,7 @@ TEST_F(QueryOutput, ContactPointsAreThoseOfAWholeAnswer) {
     ist_well(
         {"collide", tree, tree, "--poses", poses({3.5}), "--contacts", file, "--max-tests", tests});
     std::size_t count = 0;
-    for (const json& line : json_lines(file_content(file))) count += line.contains("position");
+    for (const json& line : json_lines(file_content(file))) count += line["kind"] == "contact";
     return count;
   };
   EXPECT_GT(points("1000000"), 1u);

@@ -31,15 +31,39 @@ TEST_F(Usage, HelpTeaches) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
       {"build",
-       {"MESH", "--output", "--voxel-size", "--spheres", "--exact", "--classes", "--max-memory",
-        "--json", "Example: ist build"}},
+       {"MESH", "--output", "--voxel-size", "--spheres", "--no-triangles", "--classes",
+        "--max-memory", "--json", "Example: ist build"}},
       {"info", {"FILE", "--json"}},
       {"export", {"TREE", "--what", "--level", "--spheres", "--output", "Example: ist export"}},
       {"collide",
-       {"FIXED", "MOVING", "--poses", "column-major", "--voxel-size", "--spheres", "--engine",
-        "--workers", "--target", "IST_TARGET", "--repeat", "--verify", "--contacts", "--json",
-        "Example: ist collide"}},
-      {"close", {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "Example: ist close"}},
+       {"FIXED",
+        "MOVING",
+        "--move",
+        "--turn",
+        "--matrix",
+        "row by row",
+        "--poses",
+        "column by column",
+        "--voxel-size",
+        "--distance",
+        "--depth",
+        "--exact",
+        "--spheres",
+        "--engine",
+        "--workers",
+        "--target",
+        "IST_TARGET",
+        "--repeat",
+        "--max-tests",
+        "--timing",
+        "--verify",
+        "--contacts",
+        "--fail-if-touching",
+        "--json",
+        "Examples: ist collide"}},
+      {"approach",
+       {"FIXED", "MOVING", "--axis", "--from", "--to", "--step", "--first-contact", "--move",
+        "Example: ist approach"}},
       {"run",
        {"SCENE", "--check", "--explain", "--rate", "--seconds", "--allow-missed", "--record",
         "--replay", "--unpaced", "--cpu", "--json", "Example: ist run"}},
@@ -57,25 +81,42 @@ TEST_F(Usage, HelpTeaches) {
   }
 }
 
-TEST_F(Usage, Version) {
-  const CommandResult result = ist_well({"--version"});
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '.'), 2) << result.out;
-  EXPECT_EQ(result.out.find_first_not_of("0123456789.\n"), std::string::npos) << result.out;
+TEST_F(Usage, HelpAndVersionAreWordsToo) {
+  EXPECT_EQ(ist_well({"help"}).out, ist_well({"--help"}).out);
+  EXPECT_EQ(ist_well({"help", "approach"}).out, ist_well({"approach", "--help"}).out);
+  const std::string version = ist_well({"--version"}).out;
+  EXPECT_EQ(ist_well({"version"}).out, version);
+  EXPECT_EQ(ist_well({"-V"}).out, version);
+  for (const char* part : {"ist 0.", "\ncommit ", "\ncompiler ", "\ninstruction sets ", "scalar",
+                           "\ntree file version "}) {
+    EXPECT_TRUE(says(version, part));
+  }
 }
 
 TEST_F(Usage, SubcommandsAndFlagsThatAreNotThere) {
   refuses({}, "subcommand is required");
-  refuses({"nonsense"}, "nonsense: no such subcommand");
-  refuses({"--nonsense"}, "--nonsense: no such");
+  refuses({"nonsense"}, "nonsense: no such subcommand\nTry");
+  refuses({"--nonsense"}, "--nonsense: no such option");
+  refuses({"help", "nonsense"}, "nonsense: no such subcommand");
   for (const char* command :
-       {"demo", "build", "info", "export", "collide", "close", "advise", "table"}) {
+       {"demo", "build", "info", "export", "collide", "approach", "advise", "table", "run"}) {
     const CommandResult result = ist({command, "--nonsense", "1"});
     EXPECT_EQ(result.exit_code, 2) << command;
     EXPECT_EQ(result.out, "");
-    EXPECT_TRUE(says(result.err, "--help"));
+    EXPECT_TRUE(says(result.err, std::string("Try 'ist ") + command + " --help'"));
   }
   refuses({"info", ball(), "--nonsense"}, "--nonsense");
   refuses({"info", ball(), "more"}, "more");
+}
+
+// Before anything that is missing.
+TEST_F(Usage, AMisspelledWordIsNamedWithItsNearest) {
+  refuses({"colide"}, "colide: no such subcommand; did you mean collide?");
+  refuses({"aproach", "x"}, "did you mean approach?");
+  refuses({"collide", "--voxelsize", "0.5"},
+          "--voxelsize: no such option; did you mean --voxel-size?");
+  refuses({"collide", "--pose=x"}, "--pose: no such option; did you mean --poses?");
+  refuses({"build", "--ouput", "x"}, "did you mean --output?");
 }
 
 TEST_F(Usage, VoxelSizes) {
@@ -126,21 +167,20 @@ TEST_F(Usage, OptionsOfQueries) {
   refuses_with("--repeat", "1.5", "--repeat");
   refuses_with("--engine", "nonsense", "reference");
   refuses_with("--spheres", "nonsense", "simple,table,tight,slab");
-  refuses({"collide", mesh, mesh, "--voxel-size", "0.5"}, "--poses");
   refuses({"collide", mesh, "--poses", list, "--voxel-size", "0.5"}, "MOVING");
 }
 
-TEST_F(Usage, OptionsOfClose) {
+TEST_F(Usage, OptionsOfApproach) {
   const std::string mesh = ball();
   const auto refuses_with = [&](const std::string& axis, const std::string& from,
                                 const std::string& to, const std::string& step,
                                 const std::string& part) {
-    refuses({"close", mesh, mesh, "--voxel-size", "0.5", "--axis", axis, "--from", from, "--to", to,
-             "--step", step},
+    refuses({"approach", mesh, mesh, "--voxel-size", "0.5", "--axis", axis, "--from", from, "--to",
+             to, "--step", step},
             part);
   };
-  refuses_with("w", "0", "1", "0.1", "x,y,z");
-  refuses_with("xy", "0", "1", "0.1", "x,y,z");
+  refuses_with("w", "0", "1", "0.1", "x, y, z");
+  refuses_with("xy", "0", "1", "0.1", "--axis");
   for (const char* step : {"0", "-0.1", "nan", "1e-9", "1e-320"}) {
     refuses_with("x", "0", "1", step, "--step");
   }
@@ -173,9 +213,6 @@ TEST_F(Usage, OptionsOfDemo) {
 // The voxel size is for meshes: needed where there is one, refused where there is none.
 TEST_F(Usage, VoxelSizeGoesWithMeshes) {
   const std::string mesh = ball(), tree = ball_tree(), list = poses({0});
-  refuses({"collide", mesh, mesh, "--poses", list}, "ball.stl is a mesh");
-  refuses({"collide", tree, mesh, "--poses", list}, "ball.stl is a mesh");
-  refuses({"collide", mesh, tree, "--poses", list}, "ball.stl is a mesh");
   refuses({"collide", tree, tree, "--poses", list, "--voxel-size", "0.5"}, "both bodies are trees");
   const auto sizes = [&](const std::string& fixed, const std::string& moving) {
     const auto result =

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/poses.h"
+#include "cli/poses/pose_file.h"
 #include "fuzz/fuzz_target.h"
 #include "ist/base/error.h"
 #include "ist/base/pose.h"

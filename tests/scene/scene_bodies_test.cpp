@@ -105,7 +105,7 @@ TEST_F(SceneBodies, WithoutTrianglesCannotTellWhatIsInside) {
       error_of([&] { static_cast<void>(built(inside("exact.ist"))); });
   ASSERT_TRUE(error);
   EXPECT_NE(std::string(error->what()).find("one body is inside the other"), std::string::npos);
-  EXPECT_TRUE(warns(built(inside("plain.ist")), "build it with --exact"));
+  EXPECT_TRUE(warns(built(inside("plain.ist")), "build it without --no-triangles"));
 }
 
 TEST_F(SceneBodies, ProximityNeedsTheTrianglesOfATree) {
@@ -116,7 +116,7 @@ TEST_F(SceneBodies, ProximityNeedsTheTrianglesOfATree) {
       error_of([&] { static_cast<void>(built(with_ball("file = \"plain.ist\"\n") + proximity)); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
-  for (const char* part : {"scene.toml:17: proximity needs triangles", "plain.ist", "--exact"}) {
+  for (const char* part : {"scene.toml:17: proximity needs triangles", "plain.ist", "--no-triangles"}) {
     EXPECT_NE(std::string(error->what()).find(part), std::string::npos) << error->what();
   }
   const BuiltScene scene = built(with_ball("file = \"exact.ist\"\n") + proximity);

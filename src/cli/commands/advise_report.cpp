@@ -80,7 +80,7 @@ std::string why_none(const VoxelAdvice& advice, const AdviceGoal& goal) {
   const SizeMeasure& finest = advice.measured.back();
   return fmt::format(
       "no voxel size keeps an error of {:g}, which is 80 % of --error: voxels of {:g} have an "
-      "error of {:.4g}, and {}: raise --error, or use triangles (--exact)",
+      "error of {:.4g}, and {}: raise --error, or use triangles, which have none",
       goal.limit, finest.voxel_size, finest.error,
       advice.too_fine ? fmt::format("{:g} needs more memory than --max-memory allows, or is too "
                                     "fine for a lattice",

@@ -7,7 +7,8 @@
 
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
-#include "cli/query_options.h"
+#include "cli/common_options.h"
+#include "cli/refusals.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -69,7 +70,6 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
-  options->build.keep_triangles = false;
   command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();
@@ -80,8 +80,8 @@ void add_build(CLI::App& app) {
                    "bounds to save beside simple and table, which need no saving")
       ->check(CLI::IsMember(policy_names()))
       ->capture_default_str();
-  command->add_flag("--exact", options->build.keep_triangles,
-                    "keep the triangles, for exact answers");
+  command->add_flag("!--no-triangles", options->build.keep_triangles,
+                    "leave the triangles out: smaller, but no exact answers");
   command
       ->add_option("--classes", options->classes,
                    "classes of voxels: surface, or surface,proximity")

@@ -1,38 +1,51 @@
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <memory>
 
 #include "cli/commands/commands.h"
-#include "cli/poses.h"
+#include "cli/common_options.h"
+#include "cli/poses/pose_options.h"
 #include "cli/query_options.h"
 #include "cli/query_run.h"
+#include "cli/refusals.h"
 
 namespace ist::cli {
+namespace {
+
+struct CollideArguments {
+  QueryOptions query;
+  PoseOptions pose;
+};
+
+void run(const CollideArguments& options) {
+  const QueryOptions& query = options.query;
+  query.check();
+  refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix,
+                                       options.pose.poses});
+  std::vector<AskedPose> poses;
+  for (const Eigen::Isometry3d& pose : options.pose.poses_named()) poses.push_back({pose});
+  const Bodies bodies = load_bodies(query.body_files());
+  if (!query.json && poses.size() == 1 && options.pose.is_named()) {
+    fmt::print(stderr, "pose, moving to fixed coordinates:\n{}", matrix_lines(poses.front().pose));
+  }
+  fail_if_touching(run_queries(bodies, poses, query), query);
+}
+
+}  // namespace
 
 void add_collide(CLI::App& app) {
-  struct Options {
-    QueryOptions query;
-    std::filesystem::path poses;
-  };
-  CLI::App* command =
-      app.add_subcommand("collide", "Find where two bodies touch, at poses from a file");
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "collide", "Find where two bodies touch, how deep and how far, at one pose or many");
+  const auto options = std::make_shared<CollideArguments>();
   add_query_options(*command, options->query);
-  command
-      ->add_option("--poses", options->poses,
-                   "JSON: an array of objects with \"pose\", 16 numbers, column-major, which map "
-                   "moving to fixed coordinates")
-      ->required();
-  add_example(
-      *command,
-      "contacts: leaf pairs, pairs of voxels whose bounds overlap; their surfaces are no farther\n"
-      "apart than \"resolution\".\n"
-      "Example: ist collide maxilla.stl mandible.stl --voxel-size 0.4 --poses poses.json --json");
-  command->callback([options] {
-    const QueryOptions& query = options->query;
-    query.check();
-    refuse_to_overwrite(query.leaf_pairs, {query.files.fixed, query.files.moving, options->poses});
-    const auto poses = read_poses(options->poses);
-    run_queries(load_bodies(query.body_files()), poses, query);
-  });
+  add_pose_options(*command, options->pose, Poses::kMany);
+  add_example(*command,
+              "touch is yes or no by triangles; near where there are none, or where --max-tests "
+              "ended the search.\n"
+              "Examples: ist collide upper.stl lower.stl\n"
+              "          ist collide upper.stl lower.stl --move 0,0,-1.5 --turn x,2@0,40,0");
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace ist::cli

@@ -10,8 +10,9 @@
 
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
+#include "cli/common_options.h"
 #include "cli/engine.h"
-#include "cli/query_options.h"
+#include "cli/refusals.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "simd/dispatch.h"
@@ -70,7 +71,7 @@ void print_json(const Engine& engine, SpherePolicy policy, double size, const Ro
                                       {"target", engine.target()},
                                       {"workers", engine.workers()},
                                       {"displacement", kClosing[i]},
-                                      {"contacts", rows[i].result.leaf_pairs},
+                                      {"leaf_pairs", rows[i].result.leaf_pairs},
                                       {"sphere_tests", rows[i].result.sphere_tests},
                                       {"microseconds_median", rows[i].microseconds},
                                       {"hertz", 1e6 / rows[i].microseconds}};
@@ -105,12 +106,12 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, bool json) {
     if (json) print_json(engine, options.policy, size, rows.back());
   }
   if (json) return;
-  fmt::print("{:>6} {:>9} {:>13} {:>10} {:>10} {:>7}\n", "dz", "contacts", "published µs",
+  fmt::print("{:>6} {:>10} {:>13} {:>10} {:>10} {:>7}\n", "dz", "leaf pairs", "published µs",
              "1 worker", "2 workers", "faster");
   for (std::size_t i = 0; i < kClosing.size(); ++i) {
     const double published = rows[0][i].microseconds, one = rows[1][i].microseconds,
                  two = rows[2][i].microseconds;
-    fmt::print("{:>6.1f} {:>9} {:>13.1f} {:>10.1f} {:>10.1f} {:>6.1f}x  {:<36} {:.0f} Hz\n",
+    fmt::print("{:>6.1f} {:>10} {:>13.1f} {:>10.1f} {:>10.1f} {:>6.1f}x  {:<36} {:.0f} Hz\n",
                kClosing[i], rows[1][i].result.leaf_pairs, published, one, two, published / one,
                rate_bar(1e6 / one), 1e6 / one);
   }

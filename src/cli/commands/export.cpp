@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "cli/commands/commands.h"
-#include "cli/query_options.h"
+#include "cli/common_options.h"
+#include "cli/refusals.h"
 #include "ist/base/files.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"

@@ -5,7 +5,8 @@
 
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
-#include "cli/query_options.h"
+#include "cli/common_options.h"
+#include "cli/refusals.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"

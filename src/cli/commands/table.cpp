@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "cli/commands/commands.h"
+#include "cli/common_options.h"
 #include "cli/exit_code.h"
-#include "cli/query_options.h"
+#include "cli/refusals.h"
 #include "hardware/table_export.h"
 #include "hardware/vector_file.h"
 #include "ist/base/files.h"

@@ -117,7 +117,7 @@ void Builder::place() {
   if (!fixed_.mesh || !held_.mesh) {
     built_.warnings.push_back(
         fmt::format("{}: the tree has no triangles, so a start inside the other body cannot be "
-                    "detected: build it with --exact",
+                    "detected: build it without --no-triangles",
                     (fixed_.mesh ? held_ : fixed_).name));
   }
   if (state == FreeStart::State::kFree) return;

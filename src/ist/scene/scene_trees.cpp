@@ -60,7 +60,7 @@ void TreeBuilder::check_tree(const LoadedBody& body, const SceneBody& named, boo
   if (triangles && body.tree->triangles() == nullptr) {
     fail_at(scene_, fmt::format("{}.file", body.table),
             fmt::format("an effect needs triangles, and {} has none: name the mesh, or build the "
-                        "tree with --exact",
+                        "tree without --no-triangles",
                         body.name));
   }
   if (!named.spheres || body.tree->has(*named.spheres)) return;
@@ -96,7 +96,7 @@ double TreeBuilder::near_voxel_size(const LoadedBody& fixed, const LoadedBody& h
     if (!body->mesh) {
       fail_at(scene_, "effects.proximity",
               fmt::format("proximity needs triangles, and {} has none: name the mesh, or "
-                          "build the tree with --exact",
+                          "build the tree without --no-triangles",
                           body->name));
     }
     if (const std::optional<Error> flaw = lattice_flaw(*body->mesh, size)) {

@@ -1,4 +1,4 @@
-#include "cli/poses.h"
+#include "cli/poses/pose_file.h"
 
 #include <fmt/format.h>
 

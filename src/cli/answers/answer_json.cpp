@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/answers/answer_lines.h"
+
+namespace ist::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <class Number>
+ordered_json or_null(const std::optional<Number>& number) {
+  return number ? ordered_json(*number) : ordered_json(nullptr);
+}
+
+ordered_json array_of(const Eigen::Isometry3d& pose) {
+  ordered_json numbers = ordered_json::array();
+  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix().data()[i]);
+  return numbers;
+}
+
+ordered_json triple(const std::optional<Eigen::Vector3d>& point) {
+  return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
+}
+
+const char* name_of(Answer touch) {
+  return touch == Answer::kYes ? "yes" : touch == Answer::kNo ? "no" : "near";
+}
+
+ordered_json line_of(std::size_t index, const PoseAnswer& answer, const Engine& engine,
+                     const EngineAnswer& timed, const Bodies& bodies) {
+  const Findings& found = answer.findings;
+  const QueryResult& result = timed.result;
+  const auto lower = [](const std::optional<DistanceInterval>& interval) {
+    return interval ? ordered_json(interval->lower) : ordered_json(nullptr);
+  };
+  const auto upper = [](const std::optional<DistanceInterval>& interval) {
+    return interval ? ordered_json(interval->upper) : ordered_json(nullptr);
+  };
+  ordered_json line{{"index", index}, {"pose", array_of(answer.pose)}};
+  if (answer.displacement) line["displacement"] = *answer.displacement;
+  line["engine"] = engine.name();
+  line["spheres"] = to_string(bodies.policy);
+  line["target"] = engine.target();
+  line["workers"] = engine.workers();
+  line["voxel_size"] = {bodies.fixed.voxel_size(), bodies.moving.voxel_size()};
+  line["resolution"] = result.resolution;
+  line["complete"] = result.complete;
+  line["truncated"] = result.truncated;
+  line["level"] = result.level;
+  line["touch"] = name_of(found.touch);
+  line["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
+  line["leaf_pairs"] = result.leaf_pairs;
+  line["triangle_pairs"] = or_null(found.triangle_pairs);
+  line["distance_lower"] = lower(found.distance);
+  line["distance_upper"] = upper(found.distance);
+  line["distance_narrowest"] = or_null(found.narrowest);
+  line["depth_lower"] = lower(found.depth.certain);
+  line["depth_upper"] = upper(found.depth.certain);
+  line["depth_at_vertices"] = or_null(found.depth.at_vertices);
+  line["depth_point"] = triple(found.depth.point);
+  line["contacts"] = or_null(found.contacts);
+  line["contact_depth"] = or_null(found.contact_depth);
+  line["area"] = or_null(found.depth.area);
+  line["sphere_tests"] = result.sphere_tests;
+  line["microseconds_min"] = timed.fastest();
+  line["microseconds_median"] = timed.median();
+  line["notes"] = found.notes;
+  return line;
+}
+
+}  // namespace
+
+void print_answer_lines(const Engines& engines, const Bodies& bodies,
+                        const std::vector<PoseAnswer>& answers) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const ordered_json line = line_of(i, answers[i], engines[e], answers[i].engines[e], bodies);
+      fmt::print("{}\n", line.dump());
+    }
+  }
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "cli/answers/answer_lines.h"
+#include "cli/terminal.h"
+
+namespace ist::cli {
+namespace {
+
+std::string word_of(Answer touch, int width) {
+  switch (touch) {
+    case Answer::kYes:
+      return painted(fmt::format("{:<{}}", "yes", width), Colour::kRed);
+    case Answer::kNear:
+      return painted(fmt::format("{:<{}}", "near", width), Colour::kYellow);
+    default:
+      return fmt::format("{:<{}}", "no", width);
+  }
+}
+
+std::string words_of(const DistanceInterval& interval) {
+  if (interval.upper == 0) return "0";
+  return fmt::format("{:.6g} to {:.6g}", interval.lower, interval.upper);
+}
+
+std::string words_of(const Depth& depth) {
+  if (depth.certain) return words_of(*depth.certain);
+  if (!depth.at_vertices) return "-";
+  return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
+}
+
+std::string words_of(const std::optional<double>& number) {
+  return number ? fmt::format("{:.4g}", *number) : "-";
+}
+
+std::string words_of(const std::optional<std::uint64_t>& count) {
+  return count ? fmt::format("{}", *count) : "-";
+}
+
+std::string inside_of(const Findings& found) {
+  if (!found.inside || *found.inside == Inside::kNone) return {};
+  return fmt::format("the {} body is inside", to_string(*found.inside));
+}
+
+// Notes, and what has no column of its own.
+std::string rest_of(const Findings& found) {
+  std::string rest = inside_of(found);
+  for (const std::string& note : found.notes) rest += (rest.empty() ? "" : "; ") + note;
+  return rest;
+}
+
+void print_one(const PoseAnswer& answer) {
+  const Findings& found = answer.findings;
+  const auto line = [](const char* name, const std::string& value) {
+    fmt::print("{:<10} {}\n", name, value);
+  };
+  line("touch", word_of(found.touch, 0));
+  line("distance", found.distance ? words_of(*found.distance) : "-");
+  std::string depth = words_of(found.depth);
+  if (found.depth.point) {
+    const Eigen::Vector3d& p = *found.depth.point;
+    depth += fmt::format(" at ({:.5g}, {:.5g}, {:.5g})", p[0], p[1], p[2]);
+  }
+  line("depth", depth);
+  line("area", words_of(found.depth.area));
+  if (found.triangle_pairs) line("triangles", fmt::format("{} pairs meet", *found.triangle_pairs));
+  if (const std::string inside = inside_of(found); !inside.empty()) line("inside", inside);
+  for (const std::string& note : found.notes) line("note", note);
+}
+
+void print_rows(const std::vector<PoseAnswer>& answers) {
+  const bool path = answers.front().displacement.has_value();
+  const bool triangles = answers.front().findings.triangle_pairs.has_value();
+  std::size_t wide = 8;  // of depth, which may be a sentence
+  for (const PoseAnswer& answer : answers) {
+    wide = std::max(wide, words_of(answer.findings.depth).size());
+  }
+  fmt::print("{:>12} {:<5} {:<24} {:<{}} {:>9}{}\n", path ? "displacement" : "index", "touch",
+             "distance", "depth", wide, "area", triangles ? " triangles" : "");
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Findings& found = answers[i].findings;
+    fmt::print("{:>12} {} {:<24} {:<{}} {:>9}",
+               path ? fmt::format("{:.6g}", *answers[i].displacement) : fmt::format("{}", i),
+               word_of(found.touch, 5), found.distance ? words_of(*found.distance) : "-",
+               words_of(found.depth), wide, words_of(found.depth.area));
+    if (triangles) fmt::print(" {:>9}", words_of(found.triangle_pairs));
+    const std::string rest = rest_of(found);
+    fmt::print("{}{}\n", rest.empty() ? "" : "  ", rest);
+  }
+}
+
+void print_times(const Engines& engines, const Bodies& bodies,
+                 const std::vector<PoseAnswer>& answers) {
+  fmt::print("\nspheres {}, voxel size {:.6g} and {:.6g}", to_string(bodies.policy),
+             bodies.fixed.voxel_size(), bodies.moving.voxel_size());
+  for (const Engine& engine : engines) {
+    fmt::print("; {}: {}, {} worker{}", engine.name(), engine.target(), engine.workers(),
+               engine.workers() == 1 ? "" : "s");
+  }
+  fmt::print("\n{:>5}  {:<10} {:>10} {:>8} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine",
+             "leaf pairs", "contacts", "tests", "median µs", "min µs", "rate Hz");
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const EngineAnswer& timed = answers[i].engines[e];
+      fmt::print(
+          "{:>5}  {:<10} {:>10} {:>12} {:>12.1f} {:>10.1f} {:>10.0f}{}\n", i, engines[e].name(),
+          timed.result.leaf_pairs, timed.result.sphere_tests, timed.median(), timed.fastest(),
+          1e6 / timed.median(),
+          timed.result.complete ? "" : fmt::format("  stopped at level {}", timed.result.level));
+    }
+  }
+}
+
+}  // namespace
+
+void print_answers(const Engines& engines, const Bodies& bodies,
+                   const std::vector<PoseAnswer>& answers, bool timing) {
+  const bool one = answers.size() == 1 && !answers.front().displacement;
+  one ? print_one(answers.front()) : print_rows(answers);
+  if (timing) print_times(engines, bodies, answers);
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,79 @@
+#include "cli/answers/depth_meter.h"
+
+#include <algorithm>
+
+#include "ist/base/pose.h"
+#include "ist/measure/occlusion.h"
+#include "ist/measure/penetration.h"
+
+namespace ist::cli {
+namespace {
+
+// Vertices behind an open surface, farther than this part of the extent, are hardly in the body: 2
+// of 100 mm.
+constexpr double kOpenReach = 0.02;
+// Triangles with longer edges, as a part of the extent, are split to measure areas: 2 of 100 mm.
+constexpr double kLongestEdge = 0.02;
+
+// Where the vertex lies that is deepest in the other body, fixed coordinates; nothing where none
+// lies inside.
+std::optional<Eigen::Vector3d> deepest_vertex(const Query& query, const Occlusion& bite,
+                                              const Eigen::Isometry3d& pose) {
+  std::optional<Eigen::Vector3d> deepest;
+  double least = 0;
+  const auto look = [&](const SurfaceOcclusion& side, const TriangleMesh& mesh,
+                        const Eigen::Isometry3d& to_fixed) {
+    for (std::size_t i = 0; i < side.vertices.size(); ++i) {
+      if (!(side.vertices[i].distance < least)) continue;  // NaN beyond the reach
+      least = side.vertices[i].distance;
+      deepest = to_fixed * mesh.vertices[i];
+    }
+  };
+  look(bite.fixed, *query.fixed().triangles(), Eigen::Isometry3d::Identity());
+  look(bite.moving, *query.moving().triangles(), pose);
+  return deepest;
+}
+
+}  // namespace
+
+DepthMeter::DepthMeter(Query& query, double tolerance, double extent)
+    : query_(query), tolerance_(tolerance), extent_(extent) {
+  for (const auto& [tree, name] :
+       {std::pair(&query.fixed(), "FIXED"), {&query.moving(), "MOVING"}}) {
+    if (!why_none_.empty()) continue;
+    if (tree->triangles() == nullptr) {
+      why_none_ = std::string(name) + " holds no triangles: build it without --no-triangles";
+    } else if (tree->orientation() != Orientation::kOutward) {
+      why_none_ = std::string(name) + " is open or not wound consistently";
+    }
+  }
+}
+
+Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool intersect, const Budget& budget) const {
+  Depth depth;
+  if (!query_.has_triangles()) return depth;
+  OcclusionOptions areas;
+  areas.reach = kOpenReach * extent_;
+  areas.limits.clear();
+  areas.contact = areas.foundation = areas.change = 0;
+  areas.longest_edge = kLongestEdge * extent_;
+  if (why_none_.empty()) {
+    const Penetration found = penetration(query_, pose, tolerance_, {.budget = budget});
+    depth.certain = {found.lower, found.upper};
+    if (found.upper == 0) {
+      depth.at_vertices = depth.area = 0;
+      return depth;
+    }
+    if (found.lower > 0) depth.point = found.point;
+    areas.reach = found.upper;
+  } else if (!intersect) {
+    return depth;
+  }
+  const Occlusion bite = occlusion(query_, pose, areas);
+  depth.at_vertices = std::max(bite.fixed.depth_at_vertices, bite.moving.depth_at_vertices);
+  depth.area = 0.5 * (bite.fixed.penetrating_area + bite.moving.penetrating_area);
+  if (!depth.certain) depth.point = deepest_vertex(query_, bite, *project_to_rigid(pose));
+  return depth;
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "cli/bodies.h"
+#include "ist/query/query.h"
+
+namespace ist::cli {
+
+/// How deep two bodies are in each other at one pose, and how much of them, mesh units.
+struct Depth {
+  /// The penetration depth; empty where a body is open, or holds no triangles.
+  std::optional<DistanceInterval> certain{};
+  /// The depth of the deepest vertex of either body; empty with open bodies that do not touch.
+  std::optional<double> at_vertices{};
+  /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty
+  /// likewise.
+  std::optional<double> area{};
+  /// A point that is as deep as the lower end of the interval, or that vertex; fixed coordinates.
+  std::optional<Eigen::Vector3d> point{};
+};
+
+/// Measures how deep the bodies of a query are in each other.
+class DepthMeter {
+ public:
+  /// `query` must outlive it; `extent` is the smaller body's largest, mesh units.
+  DepthMeter(Query& query, double tolerance, double extent);
+
+  /// `intersect`: whether the surfaces do. A budget counts points; with one the interval may be wider.
+  [[nodiscard]] Depth at(const Eigen::Isometry3d& pose, bool intersect, const Budget& budget) const;
+
+  /// Why there is no certain depth; empty where there is one.
+  [[nodiscard]] const std::string& why_none() const { return why_none_; }
+
+ private:
+  Query& query_;
+  double tolerance_, extent_;
+  std::string why_none_;
+};
+
+}  // namespace ist::cli

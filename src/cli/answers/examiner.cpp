@@ -1,0 +1,119 @@
+#include "cli/answers/examiner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ist/base/pose.h"
+
+namespace ist::cli {
+namespace {
+
+// A person reads no finer: 0.01 mm of a jaw of 100 mm.
+constexpr double kDefaultTolerance = 1e-4;
+
+// The box of a body that has no certain inside; else an empty box.
+Eigen::AlignedBox3d open_box(const SphereTree& body) {
+  Eigen::AlignedBox3d box;
+  if (body.orientation() == Orientation::kOutward) return box;
+  for (const Eigen::Vector3d& vertex : body.triangles()->vertices) box.extend(vertex);
+  return box;
+}
+
+}  // namespace
+
+Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
+    : questions_(questions),
+      budget_{questions.max_tests.value_or(Budget().tests)},
+      distance_tolerance_(questions.distance.value_or(kDefaultTolerance * bodies.extent())),
+      depth_tolerance_(questions.depth.value_or(kDefaultTolerance * bodies.extent())),
+      query_(bodies.fixed, bodies.moving, {.policy = bodies.policy, .target = target}),
+      manifold_(bodies.fixed, bodies.moving, bodies.policy) {
+  if (questions.triangle_pairs || questions.depth) require_triangles(bodies);
+  depth_.emplace(query_, depth_tolerance_, bodies.extent());
+  if (query_.has_triangles()) {
+    inside_.emplace(*bodies.fixed.triangles(), *bodies.moving.triangles());
+    open_fixed_ = open_box(bodies.fixed);
+    open_moving_ = open_box(bodies.moving);
+  }
+}
+
+Findings Examiner::at(const Eigen::Isometry3d& pose) {
+  query_.forget();
+  Findings found;
+  find_distance(pose, found);
+  find_touch(pose, found);
+  find_inside(pose, found);
+  found.depth = depth_->at(pose, found.touch == Answer::kYes, budget_);
+  if (!found.depth.certain && found.touch != Answer::kNo) {
+    found.notes.push_back("no certain depth: " + depth_->why_none());
+  }
+  find_contacts(pose, found);
+  if (questions_.triangle_pairs) count_triangles(pose, found);
+  return found;
+}
+
+void Examiner::find_distance(const Eigen::Isometry3d& pose, Findings& found) {
+  const DistanceResult result = query_.distance(pose, distance_tolerance_, budget_);
+  found.distance = result.distance;
+  found.narrowest = result.narrowest;
+  if (result.complete || !questions_.distance) return;
+  const double width = result.distance.upper - result.distance.lower;
+  found.notes.push_back(fmt::format(
+      "distance: asked to {:g}, reached {:.3g}: {}", distance_tolerance_, width,
+      questions_.max_tests
+          ? "allow more --max-tests"
+          : (query_.has_triangles() ? "the rest is rounding" : "build with triangles")));
+}
+
+void Examiner::find_touch(const Eigen::Isometry3d& pose, Findings& found) {
+  const IntersectionResult result = query_.intersects(pose, budget_);
+  found.touch = result.answer;
+  // Within a budget nothing is called free that is not known to have a distance.
+  const bool free = found.touch == Answer::kNo && found.distance->lower > 0;
+  if (questions_.max_tests && found.touch != Answer::kYes && !free) found.touch = Answer::kNear;
+  if (found.touch != Answer::kNear) return;
+  found.notes.push_back(questions_.max_tests
+                            ? fmt::format("stopped: {:.3g} to {:.3g} apart", found.distance->lower,
+                                          found.distance->upper)
+                            : fmt::format("at most {:.3g} apart", result.resolution));
+}
+
+void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const {
+  if (found.touch == Answer::kYes) found.inside = Inside::kNone;
+  if (found.touch != Answer::kNo) return;
+  if (!inside_) {
+    // Bodies whose roots are apart cannot tell either: a shell's root holds what is inside it.
+    found.notes.emplace_back("inside is not known without triangles");
+    return;
+  }
+  const Eigen::Isometry3d to_fixed = *project_to_rigid(pose),
+                          to_moving = to_fixed.inverse(Eigen::Isometry);
+  const Inside inside = inside_->at(to_fixed);
+  const bool fixed_might =
+      open_fixed_.contains(to_fixed * query_.moving().triangles()->vertices.front());
+  const bool moving_might =
+      open_moving_.contains(to_moving * query_.fixed().triangles()->vertices.front());
+  if (fixed_might || (moving_might && inside != Inside::kMoving)) {
+    found.notes.push_back(fmt::format("inside is not known: {} is open or not wound consistently",
+                                      fixed_might ? "FIXED" : "MOVING"));
+    return;
+  }
+  found.inside = inside;
+}
+
+void Examiner::find_contacts(const Eigen::Isometry3d& pose, Findings& found) {
+  const QueryResult result = query_.contacts(pose, manifold_, budget_);
+  if (!result.complete) return;
+  found.contacts = manifold_.points().size();
+  for (const Contact& contact : manifold_.points()) {
+    found.contact_depth = std::max(found.contact_depth.value_or(contact.depth), contact.depth);
+  }
+}
+
+void Examiner::count_triangles(const Eigen::Isometry3d& pose, Findings& found) {
+  const TrianglePairsResult result = query_.triangle_pairs(pose, {}, budget_);
+  if (result.complete) found.triangle_pairs = result.triangle_pairs;
+}
+
+}  // namespace ist::cli

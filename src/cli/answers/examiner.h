@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/answers/depth_meter.h"
+#include "cli/bodies.h"
+#include "ist/query/query.h"
+
+namespace ist::cli {
+
+/// How sharply people ask, and how much they give for it.
+struct Questions {
+  /// Tolerances, mesh units; by default a 10,000th of the smaller body's largest extent.
+  std::optional<double> distance, depth;
+  bool triangle_pairs = false;  ///< count all that intersect
+  /// The most tests of bounds, and points of depth, that each question may take.
+  std::optional<std::uint64_t> max_tests;
+};
+
+/// Everything known of two bodies at one pose, in mesh units. A member is empty where it cannot be
+/// known or was not asked for; `notes` say why.
+struct Findings {
+  Answer touch = Answer::kNo;
+  std::optional<Inside> inside{};
+  std::optional<std::uint64_t> triangle_pairs{};
+  std::optional<DistanceInterval> distance{};
+  std::optional<double> narrowest{};  ///< the width below which the distance cannot be told
+  Depth depth;
+  std::optional<std::uint64_t> contacts{};  ///< contact points
+  std::optional<double> contact_depth{};    ///< of the deepest of them
+  std::vector<std::string> notes{};         ///< for people, a few words each
+};
+
+/// Answers people: where, how deep, how far. Each answer stands for itself and depends on no pose
+/// that was asked before.
+class Examiner {
+ public:
+  /// `bodies` must outlive it. `target`: the instruction set; empty: IST_TARGET's, or the best.
+  /// Throws kTargetMissing, and kTrianglesMissing where a question needs them that was asked
+  /// by name.
+  Examiner(const Bodies& bodies, const Questions& questions, const std::string& target);
+
+  [[nodiscard]] Findings at(const Eigen::Isometry3d& pose);
+
+  [[nodiscard]] double distance_tolerance() const { return distance_tolerance_; }
+  [[nodiscard]] double depth_tolerance() const { return depth_tolerance_; }
+
+ private:
+  void find_touch(const Eigen::Isometry3d& pose, Findings& found);
+  void find_inside(const Eigen::Isometry3d& pose, Findings& found) const;
+  void find_distance(const Eigen::Isometry3d& pose, Findings& found);
+  void find_contacts(const Eigen::Isometry3d& pose, Findings& found);
+  void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
+
+  Questions questions_;
+  Budget budget_;
+  double distance_tolerance_, depth_tolerance_;
+  Query query_;
+  ContactManifold manifold_;
+  std::optional<InsideTest> inside_;              // with triangles
+  Eigen::AlignedBox3d open_fixed_, open_moving_;  // of a body without a certain inside, else empty
+  std::optional<DepthMeter> depth_;
+};
+
+}  // namespace ist::cli

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands/commands.h"
+#include "cli/common_options.h"
+#include "cli/poses/pose_options.h"
+#include "cli/progress_bar.h"
+#include "cli/query_options.h"
+#include "cli/query_run.h"
+#include "cli/refusals.h"
+#include "ist/measure/first_contact.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr double kMostSteps = 1e6;
+constexpr double kDefaultSteps = 20;
+// As sharp as a person reads: a micrometre of a jaw of 100 mm.
+constexpr double kDefaultTolerance = 1e-5;
+
+struct ApproachArguments {
+  QueryOptions query;
+  PoseOptions pose;
+  std::string axis;
+  double from = 0, to = 0;
+  std::optional<double> step, first_contact;  // mesh units
+};
+
+// The straight way of the moving body: `start` is where it is named to be.
+struct Path {
+  Eigen::Isometry3d start;
+  Eigen::Vector3d axis;
+  double from, to;
+
+  [[nodiscard]] Eigen::Isometry3d at(double displacement) const {
+    Eigen::Isometry3d pose = start;
+    pose.translation() += displacement * axis;
+    return pose;
+  }
+};
+
+Path path_of(const ApproachArguments& options) {
+  refuse_if(!std::isfinite(options.from) || !std::isfinite(options.to), "--from, --to",
+            "give finite numbers");
+  return {options.pose.poses_named().front(), axis_named(options.axis, "--axis"), options.from,
+          options.to};
+}
+
+std::vector<AskedPose> poses_along(const Path& path, const std::optional<double>& asked) {
+  const double length = std::abs(path.to - path.from);
+  const double step = asked.value_or(length > 0 ? length / kDefaultSteps : 1);
+  refuse_if(!(step > 0) || !(length / step <= kMostSteps), "--step",
+            fmt::format("give a positive number that makes at most {:.0f} steps", kMostSteps));
+  const auto steps = static_cast<int>(std::floor(length / step * (1 + 1e-12)));
+  std::vector<AskedPose> poses;
+  for (int i = 0; i <= steps; ++i) {
+    const double displacement = path.from + (path.to < path.from ? -i : i) * step;
+    poses.push_back({path.at(displacement), displacement});
+  }
+  return poses;
+}
+
+FirstContact find_first_contact(const Bodies& bodies, const Path& path, double tolerance) {
+  Query query(bodies.fixed, bodies.moving);
+  ProgressBar progress;
+  progress.begin_stage("looking for the first contact", 1000);
+  std::uint64_t told = 0;
+  return first_contact(query, path.at(path.from), path.at(path.to), tolerance,
+                       {.proceed = [&](double part) {
+                         const auto done = static_cast<std::uint64_t>(1000 * part);
+                         progress.add(done - told);
+                         told = done;
+                         return true;
+                       }});
+}
+
+double displacement_at(const Path& path, double parameter) {
+  return path.from + parameter * (path.to - path.from);
+}
+
+void print_first_contact_json(const FirstContact& found, const Path& path) {
+  const double a = displacement_at(path, found.lower), b = displacement_at(path, found.upper);
+  nlohmann::ordered_json line{{"first_contact", to_string(found.status)},
+                              {"displacement_lower", std::min(a, b)},
+                              {"displacement_upper", std::max(a, b)},
+                              {"grazed", found.grazed},
+                              {"triangles", nullptr},
+                              {"distances", found.distances}};
+  if (found.triangles) line["triangles"] = {found.triangles->fixed, found.triangles->moving};
+  fmt::print("{}\n", line.dump());
+}
+
+void print_first_contact(const FirstContact& found, const Path& path) {
+  switch (found.status) {
+    case FirstContact::Status::kNone:
+      fmt::print("first contact: none from {:g} to {:g}\n", path.from, path.to);
+      return;
+    case FirstContact::Status::kTouchesAtStart:
+      fmt::print("first contact: at the start, {:g}: triangles intersect there\n", path.from);
+      return;
+    case FirstContact::Status::kInsideAtStart:
+      fmt::print("first contact: at the start, {:g}: one body is inside the other\n", path.from);
+      return;
+    default:
+      fmt::print("first contact: {}displacement {:.9g} to {:.9g}",
+                 found.status == FirstContact::Status::kGrazing ? "only grazing, " : "",
+                 displacement_at(path, found.lower), displacement_at(path, found.upper));
+  }
+  if (found.triangles) {
+    fmt::print(", triangles {} and {}", found.triangles->fixed, found.triangles->moving);
+  }
+  fmt::print("\n");
+}
+
+// Without triangles there is no first contact to tell, unless it was asked by name.
+void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachArguments& options) {
+  const bool triangles =
+      bodies.fixed.triangles() != nullptr && bodies.moving.triangles() != nullptr;
+  if (!triangles && !options.first_contact) {
+    fmt::print("{}\n", options.query.json ? R"({"first_contact":null})"
+                                          : "first contact: not known without triangles");
+    return;
+  }
+  const double tolerance = options.first_contact.value_or(kDefaultTolerance * bodies.extent());
+  const FirstContact found = find_first_contact(bodies, path, tolerance);
+  options.query.json ? print_first_contact_json(found, path) : print_first_contact(found, path);
+}
+
+void run(const ApproachArguments& options) {
+  const QueryOptions& query = options.query;
+  query.check();
+  refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix});
+  const Path path = path_of(options);
+  const std::vector<AskedPose> poses = poses_along(path, options.step);
+  const Bodies bodies = load_bodies(query.body_files());
+  if (options.first_contact) require_triangles(bodies);
+  const bool touching = run_queries(bodies, poses, query);
+  tell_first_contact(bodies, path, options);
+  fail_if_touching(touching, query);
+}
+
+}  // namespace
+
+void add_approach(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "approach", "The same along a straight path, and where on it the bodies first touch");
+  const auto options = std::make_shared<ApproachArguments>();
+  command->add_option("--axis", options->axis, "direction of the path: x, y, z, -x, -y or -z")
+      ->required();
+  command->add_option("--from", options->from, "first displacement along it, mesh units")
+      ->required();
+  command->add_option("--to", options->to, "last displacement, mesh units")->required();
+  command->add_option("--step", options->step,
+                      "from one pose to the next, mesh units; by default a 20th of the path");
+  command
+      ->add_option(
+          "--first-contact", options->first_contact,
+          "how sharp the first contact shall be, mesh units, whatever the step; by default "
+          "a 100,000th of the smaller body's largest extent")
+      ->check(tolerance());
+  add_query_options(*command, options->query);
+  add_pose_options(*command, options->pose, Poses::kOne);
+  add_example(*command,
+              "The pose that is named, or as stored, is displacement 0. Line i is the answer i "
+              "steps from --from\n"
+              "towards --to, which is reached if it is a whole number of steps away.\n"
+              "Example: ist approach upper.stl lower.stl --axis -z --from 3 --to 0");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ist::cli {
+
+/// Returns the values of --spheres.
+[[nodiscard]] std::vector<std::string> policy_names();
+
+/// Adds an example to the end of a subcommand's help, before the common footer.
+void add_example(CLI::App& command, const std::string& example);
+
+/// Adds --max-memory, bytes.
+void add_max_memory(CLI::App& command, std::uint64_t& bytes);
+
+}  // namespace ist::cli

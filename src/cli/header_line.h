@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/bodies.h"
+
+namespace ist::cli {
+
+/// A file that a command reads, by what it is to the command: `fixed`, `mesh`, `tree` and so on.
+using NamedFiles = std::vector<std::pair<std::string, std::filesystem::path>>;
+
+/// Prints the first line of --json: version, commit, subcommand, and of each file its base name and
+/// its hash (XXH3 of 64 bits; null for what is no regular file); of bodies, their unit and voxel
+/// sizes.
+void print_header(const std::string& subcommand, const NamedFiles& files);
+void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies);
+
+}  // namespace ist::cli

@@ -1,0 +1,26 @@
+#include "cli/poses/numbers.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace ist::cli {
+
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+  constexpr std::string_view kBetween = " \t\r\n,;";
+  std::vector<double> numbers;
+  for (std::size_t at = text.find_first_not_of(kBetween); at != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kBetween, at), text.size());
+    std::string_view word = text.substr(at, end - at);
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double number = 0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || rest != word.data() + word.size() || !std::isfinite(number)) {
+      return std::nullopt;
+    }
+    numbers.push_back(number);
+    at = text.find_first_not_of(kBetween, end);
+  }
+  return numbers;
+}
+
+}  // namespace ist::cli

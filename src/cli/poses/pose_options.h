@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ist::cli {
+
+/// Where the moving body is, as a user says it; nowhere else than its file says, where all is
+/// empty.
+struct PoseOptions {
+  std::string move;              ///< x,y,z
+  std::string turn;              ///< axis,degrees[@x,y,z]
+  std::filesystem::path matrix;  ///< 4 × 4 numbers, or a transform of ITK
+  std::filesystem::path poses;   ///< JSON, many poses
+
+  /// Returns whether any motion is named.
+  [[nodiscard]] bool is_named() const;
+  /// Returns one pose, or those of the file. Throws CLI::ValidationError for words that are no
+  /// motion, and as read_poses() and read_matrix().
+  [[nodiscard]] std::vector<Eigen::Isometry3d> poses_named() const;
+};
+
+/// How many poses a command takes.
+enum class Poses { kOne, kMany };
+
+/// Adds --move, --turn, --matrix, and of many poses --poses.
+void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses);
+
+/// Returns a direction of unit length: of x, y, z, -x, -y or -z. Throws CLI::ValidationError, which
+/// begins with `option`.
+[[nodiscard]] Eigen::Vector3d axis_named(const std::string& word, const std::string& option);
+
+/// Returns a pose as four lines of four numbers.
+[[nodiscard]] std::string matrix_lines(const Eigen::Isometry3d& pose);
+
+}  // namespace ist::cli

@@ -1,0 +1,27 @@
+#include "cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace ist::cli {
+namespace {
+
+bool has_colours() {
+  const char* refused = std::getenv("NO_COLOR");
+  const char* kind = std::getenv("TERM");
+  return isatty(STDOUT_FILENO) != 0 && (refused == nullptr || *refused == '\0') &&
+         (kind == nullptr || std::string_view(kind) != "dumb");
+}
+
+}  // namespace
+
+std::string painted(std::string_view text, Colour colour) {
+  static const bool colours = has_colours();
+  if (!colours) return std::string(text);
+  const char* code = colour == Colour::kRed ? "31" : colour == Colour::kYellow ? "33" : "1";
+  return fmt::format("\033[{}m{}\033[0m", code, text);
+}
+
+}  // namespace ist::cli

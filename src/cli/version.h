@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace ist::cli {
+
+/// Returns name and version, commit, compiler, instruction sets of this processor, and the version
+/// of tree files: a line each.
+[[nodiscard]] std::string version_lines();
+
+}  // namespace ist::cli

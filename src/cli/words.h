@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace ist::cli {
+
+/// Returns the words of a command line after the program's name. `help` as the first of them means
+/// --help: `help run` reads `run --help`. `version` means --version.
+[[nodiscard]] std::vector<std::string> words_of(int argc, char** argv);
+
+/// Throws CLI::ValidationError for a subcommand or an option that `app` does not have, and names
+/// the one that is spelled most like it. Otherwise CLI11 would first ask for what is required.
+void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& words);
+
+/// Returns the first word and a space, where it is no option: the subcommand; else nothing.
+[[nodiscard]] std::string subcommand_among(int argc, char** argv);
+
+}  // namespace ist::cli

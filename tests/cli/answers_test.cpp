@@ -1,0 +1,278 @@
+#include "cli/cli_case.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+// What collide and approach tell people.
+class Answers : public CliTest {
+ protected:
+  std::vector<json> ask(const std::string& fixed, const std::string& moving,
+                        std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"collide", fixed, moving, "--poses", list_, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json_lines(ist_well(arguments).out);
+  }
+  void refuses(std::vector<std::string> more, const std::string& part) const {
+    std::vector<std::string> arguments{"collide", ball_,          ball_, "--poses",
+                                       list_,     "--voxel-size", "0.5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_TRUE(says(result.err, part));
+  }
+  [[nodiscard]] std::string tree_without_triangles(const std::string& name) const {
+    ist_well({"build", ball_, "-o", path(name), "--voxel-size", "0.5", "--no-triangles"});
+    return path(name);
+  }
+  [[nodiscard]] std::string cube(double half) const {
+    return mesh("cube.stl", box({-half, -half, -half}, {half, half, half}));
+  }
+  static bool has_note(const json& line, const std::string& part) {
+    for (const json& note : line["notes"]) {
+      if (note.get<std::string>().find(part) != std::string::npos) return true;
+    }
+    return false;
+  }
+
+  const std::string ball_ = ball();  // of radius 2
+  const std::string list_ = poses({0, 3.5, 4.5, 100});
+};
+
+TEST_F(Answers, TouchIsCertainByDefault) {
+  for (const json& line : ask(ball_, ball_, {"--voxel-size", "0.5"})) {
+    const bool meets = line["index"] < 2;
+    EXPECT_EQ(line["touch"], meets ? "yes" : "no");
+    EXPECT_EQ(line["inside"], "none");
+    EXPECT_TRUE(line["triangle_pairs"].is_null());
+    EXPECT_TRUE(line["notes"].empty());
+  }
+  // Voxels overlap long before the surfaces meet.
+  const auto coarse = ask(ball_, ball_, {"--voxel-size", "2"});
+  EXPECT_GT(coarse[2]["leaf_pairs"], 0);
+  EXPECT_EQ(coarse[2]["touch"], "no");
+}
+
+TEST_F(Answers, NearIsSaidWithoutTriangles) {
+  const std::string plain = tree_without_triangles("plain.ist");
+  const auto lines = ask(plain, plain, {"--distance", "0.01"});
+  EXPECT_EQ(lines[1]["touch"], "near");
+  EXPECT_TRUE(has_note(lines[1], "at most "));
+  EXPECT_EQ(lines[3]["touch"], "no");
+  for (const json& line : lines) {
+    EXPECT_TRUE(line["depth_lower"].is_null() && line["depth_upper"].is_null());
+    EXPECT_TRUE(line["area"].is_null());
+    EXPECT_TRUE(line["inside"].is_null());
+    EXPECT_EQ(line["touch"] != "no", has_note(line, "no certain depth: FIXED holds no triangles"));
+    EXPECT_EQ(line["touch"] == "no", has_note(line, "inside is not known without triangles"));
+    EXPECT_LE(line["distance_lower"], line["distance_upper"]);
+  }
+  EXPECT_TRUE(has_note(lines[2], "asked to 0.01, reached "));
+  EXPECT_TRUE(has_note(lines[2], "build with triangles"));
+  const CommandResult words = ist_well({"collide", plain, plain, "--move", "3.5,0,0"});
+  EXPECT_TRUE(says(words.out, "near"));
+  EXPECT_TRUE(says(words.out, " apart"));
+}
+
+TEST_F(Answers, ExactCountsTheTrianglesThatMeet) {
+  const auto lines = ask(ball_, ball_, {"--voxel-size", "0.5", "--exact"});
+  ASSERT_EQ(lines.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(lines[i]["triangle_pairs"] > 0, i < 2);
+  const CommandResult words =
+      ist_well({"collide", ball_, ball_, "--voxel-size", "0.5", "--move", "3.5,0,0", "--exact"});
+  EXPECT_TRUE(says(words.out, " pairs meet"));
+  const std::string plain = tree_without_triangles("plain.ist");
+  for (const std::vector<std::string>& asked :
+       {std::vector<std::string>{"--exact"}, {"--depth", "0.1"}}) {
+    std::vector<std::string> arguments{"collide", plain, plain};
+    arguments.insert(arguments.end(), asked.begin(), asked.end());
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(says(result.err, "FIXED"));
+    EXPECT_TRUE(says(result.err, "--no-triangles"));
+  }
+}
+
+TEST_F(Answers, InsideIsTold) {
+  const std::string small = cube(0.5);
+  const auto in_ball = ask(ball_, small, {"--voxel-size", "0.5"});
+  EXPECT_EQ(in_ball[0]["inside"], "moving");
+  EXPECT_EQ(in_ball[0]["touch"], "no");
+  EXPECT_GT(in_ball[0]["distance_lower"], 1);
+  EXPECT_GT(in_ball[0]["depth_lower"], 1.4);               // its far corner's way out
+  EXPECT_NEAR(in_ball[0]["area"].get<double>(), 3, 1e-6);  // the mean of 6 and nothing
+  EXPECT_EQ(ask(small, ball_, {"--voxel-size", "0.5"})[0]["inside"], "fixed");
+  EXPECT_EQ(in_ball[3]["inside"], "none");
+  const CommandResult words = ist_well({"collide", ball_, small, "--voxel-size", "0.5"});
+  EXPECT_TRUE(says(words.out, "the moving body is inside"));
+}
+
+// An open body has no inside: nothing is told of what might be in it.
+TEST_F(Answers, AnOpenBodyHasNoInsideAndADepthByVertices) {
+  TriangleMesh open = box({-2, -2, -2}, {2, 2, 2});
+  open.triangles.pop_back();
+  const std::string shell = mesh("shell.stl", open), small = cube(0.5);
+  const auto lines = ask(shell, small, {"--voxel-size", "0.25"});
+  EXPECT_EQ(lines[0]["touch"], "no");
+  EXPECT_TRUE(lines[0]["inside"].is_null());
+  EXPECT_TRUE(has_note(lines[0], "inside is not known: FIXED is open"));
+  EXPECT_EQ(lines[3]["inside"], "none");
+  EXPECT_TRUE(lines[3]["notes"].empty());
+  // A corner of the cube, 0.01 behind a face: within the reach of an open body.
+  const CommandResult words =
+      ist_well({"collide", shell, small, "--voxel-size", "0.25", "--move", "2.49,0,0"});
+  EXPECT_TRUE(says(words.out, "at least 0.01 (open surface, by vertices)"));
+  const json met = json_lines(ist_well({"collide", shell, small, "--voxel-size", "0.25", "--move",
+                                        "2.49,0,0", "--json"})
+                                  .out)
+                       .at(0);
+  EXPECT_EQ(met["touch"], "yes");
+  EXPECT_TRUE(met["depth_lower"].is_null() && met["depth_upper"].is_null());
+  EXPECT_NEAR(met["depth_at_vertices"].get<double>(), 0.01, 1e-6);
+  EXPECT_NEAR(met["depth_point"][0].get<double>(), 1.99, 1e-6);
+  EXPECT_TRUE(has_note(met, "no certain depth: FIXED is open"));
+}
+
+TEST_F(Answers, DistanceIsAsSharpAsAsked) {
+  const auto lines = ask(ball_, ball_, {"--voxel-size", "0.5", "--distance", "0.01"});
+  EXPECT_EQ(lines[1]["distance_upper"], 0);
+  EXPECT_NEAR(lines[3]["distance_lower"].get<double>(), 96, 0.1);
+  EXPECT_LE(lines[2]["distance_upper"].get<double>() - lines[2]["distance_lower"].get<double>(),
+            0.0101);
+  EXPECT_GE(lines[2]["distance_lower"], 0.45);
+  // A tolerance below rounding is reached as far as there are digits, and the narrowest is told.
+  const auto sharp = ask(ball_, ball_, {"--voxel-size", "0.5", "--distance", "0"});
+  EXPECT_LE(sharp[2]["distance_upper"].get<double>() - sharp[2]["distance_lower"].get<double>(),
+            sharp[2]["distance_narrowest"]);
+  EXPECT_GT(sharp[2]["distance_narrowest"], 0);
+}
+
+TEST_F(Answers, DepthIsThatOfTheDeepestPoint) {
+  const std::string small = mesh("small.stl", box({-0.5, -0.5, 1.5}, {0.5, 0.5, 2.5}));
+  const auto lines = ask(ball_, small, {"--voxel-size", "0.2", "--depth", "0.001"});
+  const json& stored = lines[0];
+  EXPECT_LE(stored["depth_upper"].get<double>() - stored["depth_lower"].get<double>(), 0.00101);
+  EXPECT_LE(stored["depth_at_vertices"], stored["depth_upper"]);
+  EXPECT_EQ(stored["depth_point"].size(), 3u);
+  EXPECT_TRUE(stored["contact_depth"].is_number());
+  EXPECT_GT(stored["area"], 0);
+  for (const json& line : lines) {
+    EXPECT_EQ(line["depth_upper"] == 0, line["contact_depth"].is_null() || line["touch"] == "no");
+  }
+  // Neither depends on the voxels.
+  const auto coarse = ask(ball_, small, {"--voxel-size", "0.5", "--depth", "0.001"});
+  for (const char* key : {"depth_lower", "depth_upper", "area"}) {
+    EXPECT_NEAR(coarse[0][key].get<double>(), stored[key].get<double>(), 1e-9) << key;
+  }
+  const CommandResult words = ist_well({"collide", ball_, small, "--voxel-size", "0.2"});
+  EXPECT_TRUE(says(words.out, "depth "));
+  EXPECT_TRUE(says(words.out, " at ("));
+}
+
+TEST_F(Answers, FirstContactIsFoundBetweenTheSteps) {
+  const std::string small = cube(0.5), plate = mesh("plate.stl", box({-3, -3, 0}, {3, 3, 1}));
+  const std::vector<std::string> words = {"approach", plate,    small,    "--voxel-size", "0.5",
+                                          "--axis",   "-z",     "--from", "-9",           "--to",
+                                          "9",        "--step", "6"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return ist_well(all).out;
+  };
+  const auto lines = json_lines(with({"--first-contact", "1e-4", "--json"}));
+  const json& last = lines.back();
+  EXPECT_EQ(last["first_contact"], "contact");
+  EXPECT_LE(last["displacement_lower"].get<double>(), -1.5);
+  EXPECT_GE(last["displacement_upper"].get<double>(), -1.5);
+  EXPECT_LE(last["displacement_upper"].get<double>() - last["displacement_lower"].get<double>(),
+            1.01e-4);
+  EXPECT_EQ(last["triangles"].size(), 2U);
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0]["displacement"], -9);
+  EXPECT_EQ(lines[0]["pose"][14], 9);  // along -z
+  EXPECT_TRUE(says(with({"--first-contact", "0.01"}), "first contact: displacement -1.5"));
+  EXPECT_TRUE(says(with({}), "first contact: displacement -1.5"));
+  // From the pose that is named on: half a unit is gone already.
+  EXPECT_TRUE(says(with({"--move", "0,0,-0.5"}), "first contact: displacement -2.0"));
+  const std::string plain = tree_without_triangles("plain.ist");
+  EXPECT_TRUE(
+      says(ist_well({"approach", plain, plain, "--axis", "x", "--from", "9", "--to", "8"}).out,
+           "not known without triangles"));
+}
+
+TEST_F(Answers, MaxTestsStopsAndSaysHowFar) {
+  const auto all = ask(ball_, ball_, {"--voxel-size", "0.5", "--exact"});
+  for (const char* tests : {"0", "1", "40", "1000000"}) {
+    const auto lines = ask(ball_, ball_, {"--voxel-size", "0.5", "--max-tests", tests, "--exact"});
+    for (std::size_t i = 0; i < 4; ++i) {
+      const json& line = lines[i];
+      EXPECT_LE(line["sphere_tests"], std::max(1, std::stoi(tests)));
+      EXPECT_LE(line["distance_lower"], all[i]["distance_upper"]);
+      EXPECT_GE(line["distance_upper"], all[i]["distance_lower"]);
+      EXPECT_LE(line["depth_lower"], all[i]["depth_upper"]);
+      EXPECT_GE(line["depth_upper"], all[i]["depth_lower"]);
+      EXPECT_TRUE(line["touch"] == "near" || line["touch"] == all[i]["touch"]);
+      EXPECT_EQ(line["touch"] == "near", has_note(line, "stopped: "));
+      EXPECT_TRUE(line["triangle_pairs"].is_null() ||
+                  line["triangle_pairs"] == all[i]["triangle_pairs"]);
+      EXPECT_EQ(line["contacts"].is_null(), line["complete"] == false);
+      if (line["complete"]) {
+        EXPECT_EQ(line["leaf_pairs"], all[i]["leaf_pairs"]);
+        EXPECT_EQ(line["level"], 0);
+      } else {
+        EXPECT_GT(line["level"], 0);
+      }
+    }
+    EXPECT_EQ(lines[0]["complete"], std::stoi(tests) == 1000000);
+    EXPECT_TRUE(lines[3]["complete"]);  // the roots are apart
+    EXPECT_EQ(lines[3]["touch"], "no");
+  }
+  const CommandResult words = ist_well({"collide", ball_, ball_, "--poses", list_, "--voxel-size",
+                                        "0.5", "--max-tests", "40", "--timing"});
+  EXPECT_TRUE(says(words.out, "stopped at level"));
+}
+
+TEST_F(Answers, TouchingFailsWhereItIsAskedTo) {
+  const auto code = [&](const std::string& shift, const std::string& body) {
+    return ist({"collide", body, body, "--move", shift + ",0,0", "--fail-if-touching"}).exit_code;
+  };
+  const std::string plain = tree_without_triangles("plain.ist"), tree = ball_tree();
+  EXPECT_EQ(code("3.9", tree), 6);
+  EXPECT_EQ(code("4.1", tree), 0);
+  EXPECT_EQ(code("4.1", plain), 6);  // may touch
+  EXPECT_EQ(code("9", plain), 0);
+  EXPECT_EQ(
+      ist({"approach", tree, tree, "--axis", "x", "--from", "9", "--to", "3", "--fail-if-touching"})
+          .exit_code,
+      6);
+}
+
+TEST_F(Answers, ContradictionsAreRefused) {
+  refuses({"--max-tests", "5", "--verify"}, "contradicts");
+  refuses({"--timing", "--json"}, "contradicts");
+  refuses({"--max-tests", "-5"}, "decimal digits");
+  refuses({"--max-tests", "010"}, "decimal digits");
+  refuses({"--max-tests", "1.5"}, "--max-tests");
+  for (const char* flag : {"--distance", "--depth"}) {
+    for (const char* value : {"-1", "nan", "inf", "x", "1e400"}) refuses({flag, value}, flag);
+  }
+  refuses({"--max-tests", "1", "--engine", "reference"}, "--engine simd");
+}
+
+// A year on, a line can be understood: the first one says of what it is.
+TEST_F(Answers, TheFirstLineSaysOfWhat) {
+  const std::string out =
+      ist_well({"collide", ball_, ball_tree(), "--voxel-size", "0.25", "--json"}).out;
+  const json header = json::parse(out.substr(0, out.find('\n')));
+  EXPECT_TRUE(header["ist"].is_string() && header["commit"].is_string());
+  EXPECT_EQ(header["subcommand"], "collide");
+  EXPECT_EQ(header["fixed"]["file"], "ball.stl");  // no path
+  EXPECT_EQ(header["fixed"]["hash"].get<std::string>().size(), 16u);
+  EXPECT_NE(header["fixed"]["hash"], header["moving"]["hash"]);
+  EXPECT_EQ(header["voxel_size"], (json{0.25, 0.5}));
+}
+
+}  // namespace
+}  // namespace ist::test
