@@ -158,15 +158,15 @@ TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
       EXPECT_EQ(lines[0]["what"], "spheres");
       EXPECT_EQ(lines[0]["level"], level);
       EXPECT_TRUE(ply.faces.empty());
-      const float circumradius = std::ldexp(0.5f, level) * 0.8660254f;
+      const double circumradius = std::ldexp(0.8660254037844386, level - 1);
       for (const auto& sphere : ply.vertices) {
         ASSERT_EQ(sphere.size(), 4u);
         // Each comes to the surface of the ball, and none is larger than its cube asks for.
-        const float distance = std::hypot(sphere.at("x"), sphere.at("y"), sphere.at("z"));
+        const double distance = std::hypot(sphere.at("x"), sphere.at("y"), sphere.at("z"));
         EXPECT_LE(std::abs(distance - 2), sphere.at("radius") + 0.1);
-        EXPECT_LE(sphere.at("radius"), circumradius * 1.01f);
+        EXPECT_LE(sphere.at("radius"), circumradius * 1.01);
         if (std::string(spheres) == "simple") {
-          EXPECT_FLOAT_EQ(sphere.at("radius"), circumradius);
+          EXPECT_EQ(sphere.at("radius"), static_cast<float>(circumradius));
         }
       }
     }
@@ -183,11 +183,11 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
     EXPECT_EQ(ply.vertices.size(), 8u * tree.parts().octree.node_count(level));
     const auto place = [&](std::uint32_t vertex) {
       const auto& v = ply.vertices.at(vertex);
-      return std::array<float, 3>{v.at("x"), v.at("y"), v.at("z")};
+      return std::array<double, 3>{v.at("x"), v.at("y"), v.at("z")};
     };
     // How often each edge runs forward, less how often back; and the volume under the faces.
-    std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, std::pair<int, int>> edges;
-    std::set<std::set<std::array<float, 3>>> places;
+    std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, std::pair<int, int>> edges;
+    std::set<std::set<std::array<double, 3>>> places;
     double volume = 0;
     for (const auto& face : ply.faces) {
       ASSERT_EQ(face.size(), 4u);

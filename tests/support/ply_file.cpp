@@ -12,7 +12,6 @@ PlyFile parse_ply(const std::string& bytes) {
   if (header_end == std::string::npos) throw std::runtime_error("no end of the header");
   std::istringstream header(bytes.substr(0, header_end));
   PlyFile ply;
-  std::vector<std::string> properties;
   std::string line;
   std::size_t vertices = 0, faces = 0;
   bool lists = false;
@@ -27,9 +26,11 @@ PlyFile parse_ply(const std::string& bytes) {
       vertices = std::stoul(third);
     } else if (first == "element" && second == "face") {
       faces = std::stoul(third);
-    } else if (first == "property" && second == "float" && faces == 0) {
-      properties.push_back(third);
-    } else if (line == "property list uchar uint vertex_indices" && faces != 0) {
+    } else if (first == "property" && second != "list" && faces == 0) {
+      ply.properties.emplace_back(second, third);
+    } else if ((line == "property list uchar int vertex_indices" ||
+                line == "property list uchar uint vertex_indices") &&
+               faces != 0) {
       lists = true;
     } else {
       throw std::runtime_error("strange line: " + line);
@@ -38,20 +39,29 @@ PlyFile parse_ply(const std::string& bytes) {
   if (lists != (faces != 0)) throw std::runtime_error("faces without indices");
 
   std::size_t at = header_end + end.size();
-  const auto take = [&](void* value, std::size_t size) {
-    if (at + size > bytes.size()) throw std::runtime_error("it ends too early");
-    std::memcpy(value, bytes.data() + at, size);
-    at += size;
+  const auto take = [&](auto value) {
+    if (at + sizeof value > bytes.size()) throw std::runtime_error("it ends too early");
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    at += sizeof value;
+    return value;
   };
   for (std::size_t i = 0; i < vertices; ++i) {
     auto& vertex = ply.vertices.emplace_back();
-    for (const std::string& name : properties) take(&vertex[name], sizeof(float));
+    for (const auto& [kind, name] : ply.properties) {
+      if (kind == "float") {
+        vertex[name] = take(float{});
+      } else if (kind == "int") {
+        vertex[name] = take(std::int32_t{});
+      } else if (kind == "uchar") {
+        vertex[name] = take(std::uint8_t{});
+      } else {
+        throw std::runtime_error("strange kind of a property: " + kind);
+      }
+    }
   }
   for (std::size_t i = 0; i < faces; ++i) {
-    std::uint8_t corners = 0;
-    take(&corners, 1);
-    auto& face = ply.faces.emplace_back(corners);
-    for (std::uint32_t& corner : face) take(&corner, sizeof(std::uint32_t));
+    auto& face = ply.faces.emplace_back(take(std::uint8_t{}));
+    for (std::uint32_t& corner : face) corner = take(std::uint32_t{});
   }
   if (at != bytes.size()) throw std::runtime_error("it ends too late");
   return ply;

@@ -1,0 +1,44 @@
+#include "cli/formats/csv_writer.h"
+
+#include "ist/base/assert.h"
+
+namespace ist::cli {
+
+CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns)
+    : file_(file), columns_(columns.size()) {
+  for (const std::string& column : columns) add(column);
+  end_row();
+}
+
+void CsvWriter::add(std::string_view text) {
+  // An empty text is quoted, so that it differs from what is not known.
+  if (!text.empty() && text.find_first_of(",\"\r\n") == text.npos) return add_raw(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  add_raw(quoted + "\"");
+}
+
+void CsvWriter::add_raw(std::string_view text) {
+  if (fields_++ > 0) rows_ += ',';
+  rows_ += text;
+}
+
+void CsvWriter::end_row() {
+  IST_ASSERT(fields_ == columns_);
+  fields_ = 0;
+  rows_ += '\n';
+  if (rows_.size() > (1 << 20)) flush();
+}
+
+void CsvWriter::commit() {
+  IST_ASSERT(fields_ == 0);
+  flush();
+  file_.commit();
+}
+
+void CsvWriter::flush() {
+  file_.write(rows_.data(), rows_.size());
+  rows_.clear();
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <concepts>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ist/base/files.h"
+
+namespace ist::cli {
+
+/// Writes a table as CSV: a header row, then a row at a time. Fields are quoted as RFC 4180 says;
+/// rows end in a line feed alone, as tools for lines expect. A number has the fewest digits that
+/// read back as the same number, whatever the locale; one that is not known is an empty field. The
+/// file appears, complete, after commit().
+///
+/// Every function throws kFileUnwritable.
+class CsvWriter {
+ public:
+  /// Opens the file and writes the header row.
+  CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns);
+
+  /// Writes a row: as many fields as columns, each a number, a text, or an optional one.
+  template <typename... Fields>
+  void row(const Fields&... fields) {
+    (add(fields), ...);
+    end_row();
+  }
+
+  /// Appends a field to the row, for rows whose columns are counted at run time.
+  void add(std::string_view text);
+  template <typename Number>
+  requires std::integral<Number> || std::floating_point<Number>
+  void add(Number number) { add_raw(fmt::format("{}", number)); }
+  template <typename Field>
+  void add(const std::optional<Field>& field) {
+    field ? add(*field) : add_raw("");
+  }
+  /// Ends the row. Precondition: it has as many fields as there are columns.
+  void end_row();
+
+  void commit();
+
+ private:
+  void add_raw(std::string_view text);
+  void flush();
+
+  OutputFile file_;
+  std::size_t columns_, fields_ = 0;  // fields_: of the row that is being written
+  std::string rows_;                  // not yet written
+};
+
+}  // namespace ist::cli
