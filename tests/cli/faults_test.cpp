@@ -56,13 +56,14 @@ std::vector<std::vector<std::string>> writers(const std::string& mesh, const std
 
 TEST_F(Faults, ADiskThatFillsUpLeavesTheOlderFile) {
   StabilityCase seen("faults", "disk full", "wrong outcomes");
-  const std::string mesh = ball(), tree = ball_tree(), target = write("target", "older");
+  const std::string mesh = ball(), tree = ball_tree(), target = write("target.ply", "older");
+  const std::string device = path("device.ply");
   for (std::vector<std::string> command : writers(mesh, tree)) {
     command.push_back(target);
     const std::string full = cannot("write", target, "File too large");
     std::uintmax_t blocks = 1;  // of 512 bytes, as `ulimit -f` counts
     for (bool fits = false; !fits; blocks *= 8) {
-      dir_.write("target", "older");
+      dir_.write("target.ply", "older");
       const auto before = folder();
       const CommandResult result =
           ist_behind("ulimit -f " + std::to_string(blocks) + " && exec", command);
@@ -73,10 +74,12 @@ TEST_F(Faults, ADiskThatFillsUpLeavesTheOlderFile) {
     }
     EXPECT_GT(blocks, 64u) << command[0] << " was never refused";
 
-    command.back() = "/dev/full";
+    std::filesystem::create_symlink("/dev/full", device);
+    command.back() = device;
     const CommandResult result = ist(command);
-    const bool told = result.exit_code == 1 &&
-                      result.err == cannot("write", "/dev/full", "No space left on device");
+    std::filesystem::remove(device);
+    const bool told =
+        result.exit_code == 1 && result.err == cannot("write", device, "No space left on device");
     seen.sample(!told, 0, command[0] + ": " + result.err);
   }
 }
@@ -89,10 +92,10 @@ TEST_F(Faults, AReadOnlyFolderIsLeftAsItWas) {
     IST_SKIP("root may not give up its right to write everywhere");
   }
   StabilityCase seen("faults", "read-only folder", "wrong outcomes");
-  const std::string mesh = ball(), tree = ball_tree(), older = write("older", "older");
+  const std::string mesh = ball(), tree = ball_tree(), older = write("older.ply", "older");
   const auto before = folder();
   ASSERT_EQ(::chmod(dir_.path().c_str(), 0555), 0);
-  for (const std::string& target : {older, path("new")}) {
+  for (const std::string& target : {older, path("new.ply")}) {
     for (std::vector<std::string> command : writers(mesh, tree)) {
       command.push_back(target);
       const CommandResult result = ist_behind(bound, command);

@@ -34,9 +34,10 @@ TEST_F(Input, MeshesThatAreNone) {
     refuses({"info", file}, file, "");
     refuses({"collide", file, good, "--voxel-size", "0.5", "--poses", list}, file, "");
     refuses({"collide", good, file, "--voxel-size", "0.5", "--poses", list}, file, "");
-    refuses({"export", file, "--what", "voxels", "--level", "0", "-o", out}, file, "");
+    refuses({"export", file, "--what", "voxels", "--level", "0", "-o", path("out.ply")}, file, "");
   }
-  refuses({"export", good, "--what", "voxels", "--level", "0", "-o", out}, good, "ist build");
+  refuses({"export", good, "--what", "voxels", "--level", "0", "-o", path("out.ply")}, good,
+          "ist build");
 }
 
 TEST_F(Input, TreesThatAreBroken) {

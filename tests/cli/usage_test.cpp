@@ -203,6 +203,21 @@ TEST_F(Usage, OptionsOfExport) {
           "build it with --spheres tight");
   refuses({"export", tree, "--what", "spheres", "--level", "0", "--spheres", "slab", "-o", out},
           "build it with --spheres slab");
+  const auto refuses_name = [&](const char* what, const std::string& name, const char* remedy) {
+    refuses({"export", tree, "--what", what, "--level", "0", "-o", name}, "-o " + name + remedy);
+    EXPECT_FALSE(std::filesystem::exists(name));
+  };
+  refuses_name("voxels", path("v.stl"),
+               ": .stl cannot be written here: name a file that ends in .vtp, .ply or .glb");
+  refuses_name("spheres", path("v.glb"),
+               ": .glb cannot be written here: name a file that ends in .vtp or .ply");
+  refuses_name("spheres", path("v"),
+               ": a name without an ending says no format: name a file that ends in .vtp or .ply");
+  refuses({"export", tree, "--what", "voxels", "--level", "0", "--unit", "cm", "-o", out},
+          "--unit: goes with a .glb");
+  refuses(
+      {"export", tree, "--what", "voxels", "--level", "0", "--unit", "mile", "-o", path("v.glb")},
+      "--unit");
 }
 
 TEST_F(Usage, OptionsOfDemo) {

@@ -28,9 +28,7 @@ PlyFile parse_ply(const std::string& bytes) {
       faces = std::stoul(third);
     } else if (first == "property" && second != "list" && faces == 0) {
       ply.properties.emplace_back(second, third);
-    } else if ((line == "property list uchar int vertex_indices" ||
-                line == "property list uchar uint vertex_indices") &&
-               faces != 0) {
+    } else if (line == "property list uchar int vertex_indices" && faces != 0) {
       lists = true;
     } else {
       throw std::runtime_error("strange line: " + line);

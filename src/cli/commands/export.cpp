@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/commands/commands.h"
+#include "cli/commands/level_geometry.h"
 #include "cli/common_options.h"
+#include "cli/formats/format.h"
+#include "cli/formats/glb_writer.h"
+#include "cli/formats/ply_writer.h"
+#include "cli/formats/vtp_writer.h"
 #include "cli/refusals.h"
-#include "ist/base/files.h"
-#include "ist/tree/saved_spheres.h"
+#include "ist/scene/ranges.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -21,110 +24,54 @@ namespace {
 struct ExportArguments {
   std::filesystem::path tree, output;
   std::string what, spheres;
+  std::optional<std::string> unit;
   int level = 0;
   bool json = false;
 };
 
-// A binary PLY file, made in memory because it is small enough to look at.
-class PlyFile {
- public:
-  explicit PlyFile(const std::string& header)
-      : bytes_("ply\nformat binary_little_endian 1.0\n" + header + "end_header\n") {}
+constexpr std::array kSurfaceFormats{FileFormat::kVtp, FileFormat::kPly, FileFormat::kGlb};
+constexpr std::array kPointFormats{FileFormat::kVtp, FileFormat::kPly};  // a GLB knows no radius
 
-  template <typename T>
-  void add(T value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-  }
-  void write(const std::filesystem::path& file) const {
-    OutputFile output(file);
-    output.write(bytes_.data(), bytes_.size());
-    output.commit();
-  }
-
- private:
-  std::string bytes_;
-};
-
-std::size_t write_spheres(const SphereTree& tree, SpherePolicy policy,
-                          const ExportArguments& options) {
-  const std::vector<Ball> spheres = level_spheres(tree, policy, options.level);
-  PlyFile ply(
-      fmt::format("comment {} spheres of level {}: points with a radius\n"
-                  "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-                  "property float radius\n",
-                  to_string(policy), options.level, spheres.size()));
-  for (const Ball& ball : spheres) {
-    const Eigen::Vector3d centre = tree.origin() + ball.centre;
-    for (Eigen::Index i = 0; i < 3; ++i) ply.add(static_cast<float>(centre[i]));
-    ply.add(static_cast<float>(ball.radius));
-  }
-  ply.write(options.output);
-  return spheres.size();
+FileFormat format_of(const ExportArguments& options) {
+  if (options.what == "voxels") return format_by_ending("-o", options.output, kSurfaceFormats);
+  return format_by_ending("-o", options.output, kPointFormats);
 }
 
-// Writes the faces of the cubes that no neighbour hides; returns the number of cubes.
-std::size_t write_voxels(const SphereTree& tree, const ExportArguments& options) {
-  struct Face {
-    std::uint32_t first;
-    int axis, side;
-  };
-  const std::vector<std::uint64_t> codes = tree.parts().octree.codes(options.level);
-  const std::uint32_t end = 1u << (tree.depth() - options.level);
-  std::vector<Face> faces;
-  for (std::uint32_t i = 0; i < codes.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int side : {0, 1}) {
-        Cell neighbour = morton_decode(codes[i]);
-        std::uint32_t& index = neighbour[static_cast<std::size_t>(axis)];
-        index += side == 1 ? 1u : ~0u;
-        if (index < end &&
-            std::binary_search(codes.begin(), codes.end(), morton_encode(neighbour))) {
-          continue;
-        }
-        faces.push_back({i * 8, axis, side});
-      }
-    }
-  }
-  PlyFile ply(
-      fmt::format("comment voxels of level {}: cubes, inner faces left out\n"
-                  "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-                  "element face {}\nproperty list uchar uint vertex_indices\n",
-                  options.level, 8 * codes.size(), faces.size()));
-  const double half = 0.5 * tree.parts().lattice.edge(options.level);
-  for (const std::uint64_t code : codes) {
-    const Eigen::Vector3d centre =
-        tree.origin() + tree.voxel_size() * cube_centre(tree.parts().lattice, options.level, code);
-    for (int corner = 0; corner < 8; ++corner) {
-      for (int i = 0; i < 3; ++i) {
-        ply.add(static_cast<float>(centre[i] + ((corner >> i & 1) != 0 ? half : -half)));
-      }
-    }
-  }
-  for (const Face& face : faces) {
-    // Counter-clockwise as seen from outside.
-    const int u = 1 << (face.axis + 1) % 3, v = 1 << (face.axis + 2) % 3;
-    const int base = face.side << face.axis;
-    std::array<int, 4> corners{base, base + u, base + u + v, base + v};
-    if (face.side == 0) std::reverse(corners.begin(), corners.end());
-    ply.add(std::uint8_t{4});
-    for (const int corner : corners) ply.add(face.first + static_cast<std::uint32_t>(corner));
-  }
-  ply.write(options.output);
-  return codes.size();
+void write(PolyData data, FileFormat format, const std::string& comment,
+           const ExportArguments& options) {
+  if (format == FileFormat::kVtp) return write_vtp(data, options.output);
+  if (format == FileFormat::kPly) return write_ply(data, options.output, comment);
+  const std::array body{
+      NamedPolyData{fmt::format("{} of level {}", options.what, options.level), std::move(data)}};
+  write_glb(body, *metres_in(options.unit.value_or("mm")), options.output);
+}
+
+void write_voxels(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
+  write(level_cubes(tree, options.level), format,
+        fmt::format("voxels of level {}: cubes, inner faces left out", options.level), options);
+}
+
+void write_spheres(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
+  const SpherePolicy policy =
+      options.spheres.empty() ? tree.tightest() : *sphere_policy(options.spheres);
+  tree.require(policy, options.tree.string());
+  const std::string comment =
+      fmt::format("{} spheres of level {}: points with a radius", to_string(policy), options.level);
+  write(level_centres(tree, policy, options.level), format, comment, options);
 }
 
 void run(const ExportArguments& options) {
   refuse_if(options.what == "voxels" && !options.spheres.empty(), "--spheres",
             "goes with --what spheres");
+  const FileFormat format = format_of(options);
+  refuse_if(options.unit && format != FileFormat::kGlb, "--unit",
+            "goes with a .glb, which is in metres; .vtp and .ply keep the mesh's unit");
   refuse_to_overwrite(options.output, {options.tree});
   const SphereTree tree = read_tree(options.tree);
   refuse_if(options.level > tree.depth(), "--level",
             fmt::format("the tree has levels 0 to {}", tree.depth()));
-  const SpherePolicy policy =
-      options.spheres.empty() ? tree.tightest() : *sphere_policy(options.spheres);
-  tree.require(policy, options.tree.string());
-  const std::size_t count =
-      options.what == "voxels" ? write_voxels(tree, options) : write_spheres(tree, policy, options);
+  (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
+  const std::uint32_t count = tree.parts().octree.node_count(options.level);
   if (options.json) {
     const nlohmann::ordered_json line{{"file", options.output.string()},
                                       {"what", options.what},
@@ -140,10 +87,13 @@ void run(const ExportArguments& options) {
 
 void add_export(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "export", "Write a level of a tree as PLY, for ParaView, MeshLab or Blender");
+      "export",
+      "Write a level of a tree for viewers: .vtp for ParaView, .ply for MeshLab and CloudCompare, "
+      ".glb for Blender and browsers");
   const auto options = std::make_shared<ExportArguments>();
   command->add_option("TREE", options->tree, "tree file")->required();
-  command->add_option("--what", options->what, "cubes, or points with a property 'radius'")
+  command
+      ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
       ->check(CLI::IsMember({"voxels", "spheres"}));
   command->add_option("--level", options->level, "0 for the leaves")
@@ -153,11 +103,18 @@ void add_export(CLI::App& app) {
       ->add_option("--spheres", options->spheres,
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
       ->check(CLI::IsMember(policy_names()));
-  command->add_option("-o,--output", options->output, "the PLY file to write")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
+      ->required();
+  command
+      ->add_option("--unit", options->unit,
+                   "unit of the tree, which a .glb turns into metres; mm if not given")
+      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(
       *command,
-      "Example: ist export jaw.ist --what spheres --spheres table --level 2 -o spheres.ply");
+      "Example: ist export jaw.ist --what spheres --spheres table --level 2 -o spheres.vtp");
   command->callback([options] { run(*options); });
 }
 
