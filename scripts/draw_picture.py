@@ -6,6 +6,7 @@
 All that is drawn comes from the command: the built-in lower jaw, its trees, and their exports. Needs Debian's
 python3-matplotlib, so run it with the system's python3.
 """
+import json
 import pathlib
 import subprocess
 import sys
@@ -31,7 +32,7 @@ def read_ply(file):
     vertices = np.frombuffer(body, "<f4", counts["vertex"] * columns).reshape(-1, columns)
     faces = None
     if "face" in counts:
-        rows = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<u4", 4)]), counts["face"], counts["vertex"] * columns * 4)
+        rows = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 4)]), counts["face"], counts["vertex"] * columns * 4)
         faces = rows["i"]
     return vertices.astype(float), faces
 
@@ -118,13 +119,16 @@ def main(ist, output):
         folder = pathlib.Path(name)
 
         def run(*arguments):
-            subprocess.run([ist, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+            done = subprocess.run([ist, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True)
+            return done.stdout
 
         run("demo", "--keep", folder, "--voxel-size", 8)
         mesh = folder / "lower_jaw.stl"
+        voxels = {}
         for size in (4, 1):
             run("build", mesh, "-o", folder / f"{size}.ist", "--voxel-size", size)
-            run("export", folder / f"{size}.ist", "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply")
+            told = run("export", folder / f"{size}.ist", "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply", "--json")
+            voxels[size] = json.loads(told)["count"]
         for policy in ("simple", "table", "tight"):
             run("export", folder / "1.ist", "--what", "spheres", "--spheres", policy, "--level", LEVEL, "-o", folder / f"{policy}.ply")
 
@@ -134,7 +138,7 @@ def main(ist, output):
             vertices, faces = read_ply(folder / f"{size}.ply")
             quads = vertices[faces]
             both = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-            panels.append((f"voxels of {size} mm, {len(vertices) // 8:,}", (0.72, 0.82, 0.93), lambda c, b=both: c.add_triangles(b)))
+            panels.append((f"voxels of {size} mm, {voxels[size]:,}", (0.72, 0.82, 0.93), lambda c, b=both: c.add_triangles(b)))
         for policy in ("simple", "table", "tight"):
             spheres, _ = read_ply(folder / f"{policy}.ply")
             volume = 4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / 1000

@@ -7,6 +7,7 @@
 #   scripts/setup.sh --peers     also the libraries that bench/peers compares with
 #   scripts/setup.sh --fuzz      also what the fuzzers need
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
+#   scripts/setup.sh --oracles   also what reads the files that the command writes
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
@@ -23,7 +24,8 @@ for argument in "$@"; do
       libbullet-dev libcgal-dev libopenvdb-dev) ;;
     --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
-    -h | --help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
+    -h | --help) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

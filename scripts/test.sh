@@ -20,8 +20,8 @@ case ${1:-} in
   -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=()
-[ "${IST_REQUIRE_ALL:-}" != 1 ] || setup=(--hardware)
+setup=(--oracles)
+[ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
@@ -39,7 +39,7 @@ run() {  # preset, targets to build, then arguments for ctest
 }
 
 run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
-run sanitize "capi_test ist_c11_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
+run sanitize "capi_test ist_c11_test formats_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
 $long || exit 0
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -23,9 +24,9 @@ class GlbFile {
     cli::write_glb(bodies, metres_per_unit, dir.path() / "data.glb");
     const std::string content = file_content(dir.path() / "data.glb");
     const auto word = [&content](std::size_t at) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, content.data() + at, sizeof word);
-      return word;
+      std::uint32_t number = 0;
+      std::memcpy(&number, content.data() + at, sizeof number);
+      return number;
     };
     EXPECT_EQ(content.substr(0, 4), "glTF");
     EXPECT_EQ(word(4), 2u);
