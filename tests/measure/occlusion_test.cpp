@@ -144,6 +144,20 @@ TEST(Occlusion, PairsRegionsThatFaceEachOther) {
     EXPECT_LT((other.centre - one.centre).norm(), 0.2);
   }
   EXPECT_NEAR(shares, 1, 1e-12);
+  // Triangles are told once each, and make up their regions.
+  double pressed = 0, of_second = 0, area = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& triangles = found.moving.regions[k].triangles;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      EXPECT_TRUE(i == 0 || triangles[i - 1].triangle < triangles[i].triangle);
+      EXPECT_GE(triangles[i].pressed_thicker, triangles[i].pressed);
+      EXPECT_GE(triangles[i].pressed, triangles[i].pressed_thinner);
+      pressed += triangles[i].pressed;
+      (k == 1 ? of_second : area) += k == 1 ? triangles[i].pressed : triangles[i].area;
+    }
+  }
+  EXPECT_NEAR(of_second / pressed, found.moving.regions[1].share, 1e-12);
+  EXPECT_NEAR(area, found.moving.regions[0].area, 1e-12);
   EXPECT_LT(found.moving.regions[0].centre[0], 0) << "the lower one is the larger";
   EXPECT_GT(found.moving.regions[0].share_thinner, found.moving.regions[0].share_thicker);
 }

@@ -39,7 +39,6 @@ struct Sum {
   ContactRegion region;
   Vector moment = Vector::Zero();
   std::uint32_t nearest = 0;
-  std::vector<std::uint32_t> triangles;
 };
 
 void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
@@ -56,9 +55,9 @@ void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
     if (depth <= options.contact) return cut_at(corners, depth).below;
     return touching.below + (depth - options.contact) * touching.area;
   };
-  region.share += pressed(options.foundation);
-  region.share_thinner += pressed(options.foundation - options.change);
-  region.share_thicker += pressed(options.foundation + options.change);
+  region.triangles.push_back({triangle.of, touching.area, pressed(options.foundation),
+                              pressed(options.foundation - options.change),
+                              pressed(options.foundation + options.change)});
   for (const std::uint32_t v : triangle.vertex) {
     const RefinedSurface::Vertex& vertex = surface.vertices()[v];
     if (vertex.distance >= region.least_distance) continue;
@@ -67,7 +66,30 @@ void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
     region.triangle = triangle.of;
     sum.nearest = vertex.nearest;
   }
-  sum.triangles.push_back(triangle.of);
+}
+
+// Joins the pieces of each triangle of the mesh, and adds up the region's shares.
+void join_pieces(ContactRegion& region) {
+  std::vector<ContactTriangle>& pieces = region.triangles;
+  std::stable_sort(
+      pieces.begin(), pieces.end(),
+      [](const ContactTriangle& a, const ContactTriangle& b) { return a.triangle < b.triangle; });
+  std::size_t count = 0;
+  for (const ContactTriangle& piece : pieces) {
+    region.share += piece.pressed;
+    region.share_thinner += piece.pressed_thinner;
+    region.share_thicker += piece.pressed_thicker;
+    if (count == 0 || pieces[count - 1].triangle != piece.triangle) {
+      pieces[count++] = piece;
+      continue;
+    }
+    ContactTriangle& whole = pieces[count - 1];
+    whole.area += piece.area;
+    whole.pressed += piece.pressed;
+    whole.pressed_thinner += piece.pressed_thinner;
+    whole.pressed_thicker += piece.pressed_thicker;
+  }
+  pieces.resize(count);
 }
 
 }  // namespace
@@ -92,7 +114,8 @@ ContactRegions contact_regions(const RefinedSurface& surface, const OcclusionOpt
   std::stable_sort(sums.begin(), sums.end(),
                    [](const Sum& a, const Sum& b) { return a.region.area > b.region.area; });
   double all = 0, thinner = 0, thicker = 0;
-  for (const Sum& sum : sums) {
+  for (Sum& sum : sums) {
+    join_pieces(sum.region);
     all += sum.region.share;
     thinner += sum.region.share_thinner;
     thicker += sum.region.share_thicker;
@@ -104,10 +127,8 @@ ContactRegions contact_regions(const RefinedSurface& surface, const OcclusionOpt
     region.share = all > 0 ? region.share / all : 0;
     region.share_thinner = thinner > 0 ? region.share_thinner / thinner : 0;
     region.share_thicker = thicker > 0 ? region.share_thicker / thicker : 0;
-    out.regions.push_back(region);
+    out.regions.push_back(std::move(region));
     out.nearest.push_back(sum.nearest);
-    std::sort(sum.triangles.begin(), sum.triangles.end());
-    out.triangles.push_back(std::move(sum.triangles));
   }
   return out;
 }
@@ -117,8 +138,11 @@ void pair_regions(ContactRegions& fixed, ContactRegions& moving) {
   const auto faced = [](const ContactRegions& one, std::size_t k,
                         const ContactRegions& others) -> std::optional<std::uint32_t> {
     for (std::uint32_t other = 0; other < others.regions.size(); ++other) {
-      const auto& triangles = others.triangles[other];
-      if (std::binary_search(triangles.begin(), triangles.end(), one.nearest[k])) return other;
+      const auto& triangles = others.regions[other].triangles;
+      const auto at = std::lower_bound(
+          triangles.begin(), triangles.end(), one.nearest[k],
+          [](const ContactTriangle& each, std::uint32_t triangle) { return each.triangle < triangle; });
+      if (at != triangles.end() && at->triangle == one.nearest[k]) return other;
     }
     return {};
   };

@@ -13,8 +13,6 @@ struct ContactRegions {
   std::vector<ContactRegion> regions;  ///< the largest first; in the body's coordinates
   /// Of each region, the body's triangle that is nearest to its closest vertex.
   std::vector<std::uint32_t> nearest;
-  /// Of each region, the triangles of the surface that it lies in, sorted.
-  std::vector<std::vector<std::uint32_t>> triangles;
 };
 
 [[nodiscard]] ContactRegions contact_regions(const RefinedSurface& surface,

@@ -31,6 +31,15 @@ struct OcclusionOptions {
   Proceed proceed = {};  ///< asked every 16,384 points, and before each round of splitting
 };
 
+/// The part of a contact region in one triangle of the mesh.
+struct ContactTriangle {
+  std::uint32_t triangle = 0;
+  double area = 0;  ///< of the part, units squared
+  /// ∫ max(foundation - d, 0) dA over the part, units cubed; and with a foundation that is thinner
+  /// and thicker by the change. Shares by side or by tooth are sums of these.
+  double pressed = 0, pressed_thinner = 0, pressed_thicker = 0;
+};
+
 /// A part of a surface that touches the other body, connected by edges: where the signed distance
 /// is at most OcclusionOptions::contact. Fixed coordinates.
 struct ContactRegion {
@@ -48,6 +57,7 @@ struct ContactRegion {
   /// The region of the other surface, by its index there, in which the nearest triangle of this
   /// one's closest vertex lies, where the same holds the other way round.
   std::optional<std::uint32_t> partner = std::nullopt;
+  std::vector<ContactTriangle> triangles;  ///< by their indices
 };
 
 /// Distances, areas and contact regions of one surface against the other body.

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/answers/examiner.h"
+#include "cli/occlusion/balance.h"
+#include "cli/occlusion/preset.h"
+#include "cli/occlusion/teeth.h"
+#include "ist/measure/occlusion.h"
+#include "ist/mesh/mesh.h"
+
+namespace ist::cli {
+
+/// One body of a bite.
+struct BiteBody {
+  std::string name;                 ///< the file's base name; "fixed" or "moving" with --no-names
+  std::optional<std::string> hash;  ///< of the file: XXH3 of 64 bits, as 16 digits
+  const TriangleMesh* mesh = nullptr;
+  Eigen::Isometry3d to_fixed = Eigen::Isometry3d::Identity();
+  bool closed = false;  ///< closed and wound consistently: depth is certain
+  SurfaceOcclusion surface;
+  std::vector<double> areas;        ///< of each limit of the preset: where d is at most that
+  std::optional<Balance> sides;     ///< by `Bite::sides`; empty where nothing touches
+  std::optional<Balance> fore_aft;  ///< by `Bite::fore_aft`, likewise
+  std::vector<Tooth> teeth;         ///< with labels
+};
+
+/// The occlusion of two bodies, as all outputs of `ist occlusion` tell it. Lengths are in mesh
+/// units, unless a name says micrometres.
+struct Bite {
+  BiteBody fixed, moving;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  std::string unit;  ///< "mm", "m", "inch" or "µm"
+  bool unit_assumed = false;
+  double units_per_mm = 1;
+  double reach = 2;
+  const Preset* preset = nullptr;
+  double scanner_band = 50;  ///< ± micrometres that scanning is assumed to err by
+  double contact = 0.1, foundation = 0.1, change = 0.05;
+  Findings findings;  ///< touch, distance, depth
+  Division sides, fore_aft;
+  std::optional<ToothNumbers> numbers;
+  std::vector<std::string> checks;  ///< sentences for people: overlap, unit, sides, open bodies
+
+  [[nodiscard]] double units_per_micrometre() const { return 1e-3 * units_per_mm; }
+};
+
+/// The text that stands in every report and help of an occlusion.
+inline constexpr const char* kCaveat =
+    "Research software, not a medical device, not for diagnosis or treatment decisions. These are "
+    "distances between the two meshes as given, in the pose given. They hold none of the errors of "
+    "scanning, segmentation or registration; ± 50 µm is an assumption, not a measurement of these "
+    "scans. Geometric shares are not forces. Published agreement of such maps with marks in the "
+    "mouth is low (κ 0.07–0.29).";
+
+}  // namespace ist::cli

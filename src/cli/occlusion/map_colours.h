@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/formats/poly_data.h"
+#include "cli/occlusion/bite.h"
+
+namespace ist::cli {
+
+/// A band of a distance map: distances above `from` to `to`, mesh units.
+struct MapBand {
+  double from, to;
+  Colour colour;
+  std::string words;      ///< for the legend, such as "0 to 100 µm"
+  bool below_scan_error;  ///< drawn hatched: "below the error assumed for scanning"
+};
+
+/// Returns the bands of a bite's preset: what overlaps, one for each limit, and one to the reach.
+[[nodiscard]] std::vector<MapBand> map_bands(const Bite& bite);
+
+/// Returns the colour of a signed distance; that of the bare surface for NaN, and beyond the bands.
+[[nodiscard]] Colour map_colour(double distance, std::span<const MapBand> bands);
+
+inline constexpr Colour kBareSurface{214, 208, 196};
+
+}  // namespace ist::cli
