@@ -19,17 +19,18 @@ consteval auto numbers_of(auto... places) {
 /// matrices, as the code that includes this sees them. In a section of its own: who compares reads
 /// it from the object, also of code for another processor.
 [[gnu::used, gnu::section("ist_layout")]] constexpr auto kNumbers =
-    numbers_of<ist::TriangleMesh, ist::SphereTree, ist::BuildOptions, ist::BuildReport,
-               ist::QueryOptions, ist::Query, ist::ReferenceQuery, ist::ContactManifold,
-               ist::Contact, ist::ContactSums, ist::QueryResult, ist::TrianglePairsResult,
-               ist::DistanceResult, ist::Budget, ist::Placement, ist::Vector6, ist::Response,
-               ist::ToolContacts, ist::Simulation, ist::Tick, ist::TickRecord, ist::HandSettings,
-               ist::FrictionSettings, ist::GravitySettings, ist::SnapSettings, ist::ServoCallback,
-               ist::LatencyHistogram, ist::ServoOptions, ist::ServoOutputs, ist::ServoReport,
-               ist::Snapshot<ist::TickRecord>, ist::TickRing<ist::TickRecord>, ist::Scene,
-               ist::BuiltScene, ist::SurfaceDistance, ist::Penetration, ist::PenetrationOptions,
-               ist::Motion, ist::FirstContact, ist::FirstContactOptions, ist::ContactRegion,
-               ist::SurfaceOcclusion, ist::Occlusion, ist::OcclusionOptions>(
+    numbers_of<ist::TriangleMesh, ist::MeshSource, ist::SphereTree, ist::BuildOptions,
+               ist::BuildReport, ist::QueryOptions, ist::Query, ist::ReferenceQuery,
+               ist::ContactManifold, ist::Contact, ist::ContactSums, ist::QueryResult,
+               ist::TrianglePairsResult, ist::DistanceResult, ist::Budget, ist::Placement,
+               ist::Vector6, ist::Response, ist::ToolContacts, ist::Simulation, ist::Tick,
+               ist::TickRecord, ist::HandSettings, ist::FrictionSettings, ist::GravitySettings,
+               ist::SnapSettings, ist::ServoCallback, ist::LatencyHistogram, ist::ServoOptions,
+               ist::ServoOutputs, ist::ServoReport, ist::Snapshot<ist::TickRecord>,
+               ist::TickRing<ist::TickRecord>, ist::Scene, ist::BuiltScene, ist::SurfaceDistance,
+               ist::Penetration, ist::PenetrationOptions, ist::Motion, ist::FirstContact,
+               ist::FirstContactOptions, ist::ContactRegion, ist::SurfaceOcclusion, ist::Occlusion,
+               ist::OcclusionOptions>(
         offsetof(ist::TriangleMesh, triangles), offsetof(ist::Contact, weight),
         offsetof(ist::ContactSums, spring), offsetof(ist::QueryResult, pad),
         offsetof(ist::Placement, translation), offsetof(ist::Response, stiffness),

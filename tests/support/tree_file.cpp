@@ -19,7 +19,8 @@ TreeFile::TreeFile(const SphereTree& tree) : bytes(file_of(tree)) {
     return of_masks + of.node_count() - of.leaf_count();
   };
   const std::size_t leaf_count = tree.leaf_count();
-  normals = octree(kNodes, tree.parts().octree, leaves, masks);
+  nodes = kName + tree.source().name.size();
+  normals = octree(nodes, tree.parts().octree, leaves, masks);
   balls = normals + 4 * leaf_count;
   slabs = balls + 8 * tree.parts().octree.node_count();
   counts = slabs + 5 * tree.parts().octree.node_count();

@@ -17,14 +17,15 @@ class TreeFile {
                                kChecksum = 24, kBody = 32;
   static constexpr std::size_t kCorner = kBody, kVoxelSize = kBody + 24, kCells = kBody + 32,
                                kDepth = kBody + 36, kOrientation = kBody + 40,
-                               kSections = kBody + 44, kNodes = kBody + 48;
+                               kSections = kBody + 44, kHash = kBody + 48, kUnit = kBody + 56,
+                               kNameBytes = kBody + 60, kName = kBody + 64;
 
   /// The file of a tree that has all sections.
   explicit TreeFile(const SphereTree& tree);
 
   std::string bytes;
-  /// Of the arrays, in the order of the file. Nodes at levels 1 … depth begin at kNodes.
-  std::size_t leaves, masks, normals, balls, slabs, counts, vertices, triangles, list_begins,
+  /// Of the arrays, in the order of the file. Nodes of the octree begin with those at level 1.
+  std::size_t nodes, leaves, masks, normals, balls, slabs, counts, vertices, triangles, list_begins,
       list_ids, proximity_depth, proximity_nodes, proximity_leaves, proximity_masks;
 
   template <typename T>

@@ -31,6 +31,7 @@ const SphereTree& small_tree() {
     options.spheres = SpherePolicy::kSlab;
     options.keep_triangles = true;
     options.proximity = true;
+    options.source = {"bär.stl", 0x123456789ABCDEF0, LengthUnit::kMillimetre};
     return build_tree(test::box({0, 0, 0}, {2, 1, 1}), options);
   }();
   return tree;
@@ -119,9 +120,21 @@ const std::vector<Damage>& damages() {
       put("SectionUnknown", F::kSections, 31u),
       put("SectionMissing", F::kSections, 11u),
       {"SlabsWithoutBalls", drop_balls},
+      put("UnitUnknown", F::kUnit, 5u),
+      put("UnitBeyondAByte", F::kUnit, 0x101u),
+      put("NameLongerThanNamesAre", F::kNameBytes, 256u),
+      put("NameLengthHuge", F::kNameBytes, kMany),
+      put("NameLongerThanTheFile", F::kNameBytes, 255u, "tree-truncated"),
+      put("NameOneByteShorter", F::kNameBytes, 7u, "tree-truncated"),
+      put("NameInAFolder", F::kName, '/'),
+      put("NameInAFolderOfWindows", F::kName, '\\'),
+      put("NameWithALineBreak", F::kName, '\n'),
+      put("NameWithDelete", F::kName, '\x7F'),
+      put("NameWithAControlOfLatin1", F::kName + 1, std::array<std::uint8_t, 2>{0xC2, 0x85}),
+      put("NameNotUtf8", F::kName + 2, 'a'),
       add("NodeCountOneMore", &F::leaves, static_cast<std::size_t>(-8), 1u, "tree-truncated"),
       add("NodeCountOneLess", &F::leaves, static_cast<std::size_t>(-8), kMany, "tree-truncated"),
-      put("NodeCountHuge", F::kNodes, kMany, "tree-truncated"),
+      put("NodeCountHuge", &F::nodes, 0, kMany, "tree-truncated"),
       add("LeafCountOneMore", &F::leaves, 0, 1u),
       add("LeafCountOneLess", &F::leaves, 0, kMany, "tree-truncated"),
       put("LeafCountHuge", &F::leaves, 0, kMany, "tree-truncated"),
@@ -178,24 +191,24 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
     return error_of_bytes(file.bytes);
   };
   EXPECT_EQ(with(TreeFile::kMagic, 'x'), "not-a-tree");
-  EXPECT_EQ(with(TreeFile::kVersion, 4u), "tree-version");
+  EXPECT_EQ(with(TreeFile::kVersion, 5u), "tree-version");
   EXPECT_EQ(with(TreeFile::kVersion, 0u), "tree-version");
   EXPECT_EQ(with(TreeFile::kByteOrder, 0x04030201u), "not-a-tree");
   EXPECT_EQ(with(TreeFile::kBytes, std::uint64_t{32}), "tree-truncated");
   EXPECT_EQ(with(TreeFile::kChecksum, std::uint64_t{0}), "tree-corrupt");
 }
 
-// Files of version 2 look the same, but their inner bounds are not nested.
-TEST(DamagedTree, OfVersion2IsRefusedWithTheRemedy) {
+// Files of version 3 have no source.
+TEST(DamagedTree, OfVersion3IsRefusedWithTheRemedy) {
   TreeFile file = small_file();
-  file.put(TreeFile::kVersion, 2u);
+  file.put(TreeFile::kVersion, 3u);
   const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kTreeVersion);
   const std::string what = error->what();
   EXPECT_NE(
       what.find(
-          "it is of version 2, and this program reads version 3: build it again from the mesh"),
+          "it is of version 3, and this program reads version 4: build it again from the mesh"),
       std::string::npos)
       << what;
 }

@@ -36,6 +36,7 @@ void expect_equal(const SphereTree& a, const SphereTree& b) {
   EXPECT_EQ(a.parts().lattice, b.parts().lattice);
   EXPECT_EQ(a.orientation(), b.orientation());
   EXPECT_EQ(a.bounding_radius(), b.bounding_radius());
+  EXPECT_EQ(a.source(), b.source());
   expect_equal(a.parts().octree, b.parts().octree);
   expect_same_bytes(std::span(a.parts().normals), std::span(b.parts().normals));
   ASSERT_EQ(a.tightest(), b.tightest());
@@ -82,6 +83,24 @@ TEST(TreeFile, EveryCombinationOfSectionsComesBackAsItWas) {
   }
 }
 
+TEST(TreeFile, EverySourceComesBackAsItWas) {
+  BuildOptions options;
+  options.voxel_size = 0.3;
+  for (const MeshSource& source :
+       {MeshSource{"upper jaw.stl", 0xFEDCBA9876543210, LengthUnit::kMillimetre},
+        MeshSource{"Zähne–верх.ply", 1, LengthUnit::kMicrometre},
+        MeshSource{std::string(255, 'x'), 0, LengthUnit::kInch}, MeshSource{"", 7},
+        MeshSource{"..", 0, LengthUnit::kMetre}}) {
+    options.source = source;
+    const SphereTree tree = build_tree(test::icosphere(1, 1), options);
+    EXPECT_EQ(tree.source(), source);
+    const std::string bytes = test::file_of(tree);
+    const SphereTree back = test::tree_of_bytes(bytes);
+    EXPECT_EQ(back.source(), source);
+    EXPECT_EQ(test::file_of(back), bytes);
+  }
+}
+
 TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
   const test::TempDir folder;
   const auto file = folder.path() / "tree.ist";
@@ -96,7 +115,7 @@ TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
 
 TEST(TreeFile, BeginsAsItsDescriptionSays) {
   const std::string bytes = test::file_of(tree_of(test::icosphere(1, 1), 0.3, 15));
-  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\3\0\0\0\4\3\2\1", 16));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89IST\r\n\x1A\n\4\0\0\0\4\3\2\1", 16));
 }
 
 TEST(TreeFile, IsKnownByItsBeginning) {

@@ -10,6 +10,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/mesh/components.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
 
@@ -44,6 +45,7 @@ TreeParts measured(TreeParts parts) {
   IST_ASSERT(parts.normals.size() == parts.octree.leaf_count());
   IST_ASSERT(fit(parts.bounds.balls, parts.octree) && fit(parts.bounds.slabs, parts.octree));
   IST_ASSERT(parts.bounds.slabs.empty() || !parts.bounds.balls.empty());
+  IST_ASSERT(source_flaw(parts.source) == nullptr);
   IST_ASSERT(!parts.triangles || parts.triangles->lists.size() == parts.octree.leaf_count());
   parts.bounding_radius = implicit_bounding_radius(parts.lattice);
   if (parts.bounds.balls.empty()) return parts;
@@ -86,6 +88,7 @@ double SphereTree::voxel_size() const noexcept { return parts_->lattice.voxel_si
 std::uint32_t SphereTree::leaf_count() const noexcept { return parts_->octree.leaf_count(); }
 int SphereTree::depth() const noexcept { return parts_->octree.depth(); }
 Orientation SphereTree::orientation() const noexcept { return parts_->orientation; }
+const MeshSource& SphereTree::source() const noexcept { return parts_->source; }
 bool SphereTree::has_proximity() const noexcept { return parts_->proximity.has_value(); }
 Eigen::Vector3d SphereTree::origin() const noexcept { return parts_->lattice.origin(); }
 double SphereTree::bounding_radius() const noexcept { return parts_->bounding_radius; }
@@ -123,8 +126,8 @@ double SphereTree::largest_leaf_radius(SpherePolicy policy) const noexcept {
 
 std::uint64_t SphereTree::bytes() const noexcept {
   const auto size = [](const auto& vector) { return vector.capacity() * sizeof(*vector.data()); };
-  std::uint64_t bytes =
-      sizeof(*this) + sizeof(*parts_) + parts_->octree.bytes() + size(parts_->normals);
+  std::uint64_t bytes = sizeof(*this) + sizeof(*parts_) + parts_->source.name.capacity() +
+                        parts_->octree.bytes() + size(parts_->normals);
   for (const auto& level : parts_->bounds.balls) bytes += size(level);
   for (const auto& level : parts_->bounds.slabs) bytes += size(level);
   if (parts_->triangles) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -48,6 +49,48 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
   return std::nullopt;
 }
 
+/// The unit of a mesh's lengths, which most mesh files do not tell. No length is ever converted.
+/// Tree files and the C interface hold the numbers.
+enum class LengthUnit : std::uint8_t { kUnknown, kMillimetre, kMetre, kInch, kMicrometre };
+
+/// All units but kUnknown.
+inline constexpr std::array kLengthUnits = {LengthUnit::kMillimetre, LengthUnit::kMetre,
+                                            LengthUnit::kInch, LengthUnit::kMicrometre};
+
+/// Returns "mm", "m", "inch" or "µm"; "unknown" for kUnknown.
+[[nodiscard]] constexpr std::string_view to_string(LengthUnit unit) noexcept {
+  constexpr std::array<std::string_view, 5> kNames = {"unknown", "mm", "m", "inch", "µm"};
+  const auto at = static_cast<std::size_t>(unit);
+  return at < kNames.size() ? kNames[at] : "";
+}
+
+/// Returns the unit of that name, which may be "um" too, or nullopt for another text.
+[[nodiscard]] constexpr std::optional<LengthUnit> length_unit(std::string_view name) noexcept {
+  if (name == "um") return LengthUnit::kMicrometre;
+  for (const LengthUnit unit : kLengthUnits) {
+    if (name == to_string(unit)) return unit;
+  }
+  return std::nullopt;
+}
+
+/// Returns the metres in a unit; 0 for kUnknown.
+[[nodiscard]] constexpr double metres_per_unit(LengthUnit unit) noexcept {
+  constexpr std::array<double, 5> kMetres = {0, 1e-3, 1, 0.0254, 1e-6};
+  const auto at = static_cast<std::size_t>(unit);
+  return at < kMetres.size() ? kMetres[at] : 0;
+}
+
+/// The file that a mesh was read from, and the unit of the mesh's lengths.
+struct MeshSource {
+  /// The file's name without its folder, empty where unknown: UTF-8, at most 255 bytes, none of
+  /// them a control character, a slash or a backslash.
+  std::string name = {};
+  std::uint64_t hash = 0;  ///< XXH3-64 of the file's bytes; 0 where unknown
+  LengthUnit unit = LengthUnit::kUnknown;
+
+  friend bool operator==(const MeshSource&, const MeshSource&) = default;
+};
+
 /// A leaf of the fixed tree and a leaf of the moving tree whose bounds overlap, by their indices.
 /// The surfaces in the two leaves are no farther apart than the answer's `resolution`.
 struct LeafPair {
@@ -86,6 +129,8 @@ class IST_API SphereTree {
   /// The triangles that the tree was built with keep_triangles to hold, as oriented at build; null
   /// where it was built without.
   [[nodiscard]] const TriangleMesh* triangles() const noexcept;
+  /// The mesh's file and unit, as BuildOptions::source told them.
+  [[nodiscard]] const MeshSource& source() const noexcept;
   /// Whether the tree holds proximity voxels (BuildOptions::proximity).
   [[nodiscard]] bool has_proximity() const noexcept;
 
@@ -113,6 +158,7 @@ struct BuildOptions {
   bool keep_triangles = true;
   bool proximity = false;                             ///< proximity voxels besides surface voxels
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
+  MeshSource source = {};                             ///< kept by the tree; nothing is converted
 };
 
 struct BuildReport {
@@ -131,7 +177,8 @@ struct BuildReport {
 ///
 /// Cost: on two cores, for a jaw of 107,000 triangles and 1.76 million voxels, 0.5 s; with kTight
 /// 1.3 s more, with kSlab 2 s more. Throws kMeshEmpty, kMeshPointsOnly, kMeshNotFinite,
-/// kMeshBadIndex, kMeshExtent, kVoxelSizeInvalid, kVoxelSizeTooSmall, kMemoryLimit.
+/// kMeshBadIndex, kMeshExtent, kVoxelSizeInvalid, kVoxelSizeTooSmall, kMemoryLimit, and
+/// kArgumentInvalid for a source whose name is not as MeshSource says, or whose unit is not one.
 [[nodiscard]] IST_API SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options,
                                             BuildReport* report = nullptr,
                                             Progress* progress = nullptr);
@@ -142,7 +189,7 @@ struct BuildReport {
                                           Progress* progress = nullptr);
 
 /// The version of the tree file (`.ist`) that this library writes and reads.
-inline constexpr std::uint32_t kTreeFileVersion = 3;
+inline constexpr std::uint32_t kTreeFileVersion = 4;
 
 /// Writes the file whole or not at all. Throws kFileUnwritable. Cost: bound by the disk.
 /// Returns the bytes written.

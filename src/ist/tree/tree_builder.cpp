@@ -1,10 +1,14 @@
+#include <fmt/format.h>
+
 #include <bit>
 #include <chrono>
 #include <optional>
 
+#include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/bound_builder.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/nested_bounds.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
@@ -59,6 +63,11 @@ std::optional<ProximityTree> make_proximity_tree(const TriangleMesh& mesh,
 SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildReport* report,
                       Progress* progress) {
   const ScopedFloatEnvironment environment;
+  if (const char* flaw = source_flaw(options.source)) {
+    throw Error(
+        ErrorCode::kArgumentInvalid,
+        fmt::format("source: {}: give a file's name without its folder, and a LengthUnit", flaw));
+  }
   require_valid(mesh);
   auto begin = std::chrono::steady_clock::now();
   const auto end_stage = [&](const char* name) {
@@ -82,7 +91,8 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                   std::move(voxels.normals),
                   {},
                   std::nullopt,
-                  std::nullopt};
+                  std::nullopt,
+                  options.source};
   end_stage("octree");
 
   if (!is_implicit(options.spheres)) {

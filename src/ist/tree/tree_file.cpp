@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "ist/tree/tree_stream.h"
 
-// The tree file, `.ist`, version 3. Little-endian, packed, in this order:
+// The tree file, `.ist`, version 4. Little-endian, packed, in this order:
 //
 //     8 bytes   magic 89 49 53 54 0D 0A 1A 0A
 //     u32       version
@@ -21,6 +22,9 @@
 //     f64 × 3   the grid's corner      f64  voxel size
 //     u32       cells an axis          u32  depth
 //     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
+//     u64       hash of the mesh's file, 0 where unknown
+//     u32       unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
+//     u32, u8 … bytes in the name of the mesh's file, at most 255; the name (MeshSource)
 //     u32 × depth, u32                 nodes at levels 1 … depth; leaves
 //     u8 …      masks of level 1, 2 … depth
 //     u32 …     normals, one a leaf (PackedNormal)
@@ -32,8 +36,7 @@
 //     proximity:  u32, u32 × depth, u32, u8 …   depth, nodes, leaves, masks
 //
 // Children's indices and cubes are not stored: they follow from the masks. Balls and slabs hold the
-// numbers of PackedBall and PackedSlab. Files of version 2 look the same, but their inner bounds
-// are not nested.
+// numbers of PackedBall and PackedSlab.
 namespace ist {
 namespace {
 
@@ -48,8 +51,10 @@ struct Header {
   std::array<double, 3> corner;
   double voxel_size;
   std::uint32_t cells, depth, orientation, sections;
+  std::uint64_t hash;
+  std::uint32_t unit, name_bytes;
 };
-static_assert(sizeof(Header) == 48);
+static_assert(sizeof(Header) == 64);
 
 void write_octree(TreeWriter& writer, const LinearOctree& octree) {
   for (int level = 1; level <= octree.depth(); ++level) writer.value(octree.node_count(level));
@@ -106,6 +111,18 @@ bool all_finite(const Float* values, std::size_t count) {
     bad |= static_cast<unsigned>(!(std::abs(values[i]) <= std::numeric_limits<Float>::max()));
   }
   return bad == 0;
+}
+
+// The length of the name is verified at once, and all else by verify_source().
+MeshSource read_source(TreeReader& reader, const Header& header) {
+  reader.require(header.name_bytes <= kMaxSourceName, "the mesh's name is longer than 255 bytes");
+  const std::vector<char> name = reader.array<char>(header.name_bytes);
+  return {{name.begin(), name.end()}, header.hash, static_cast<LengthUnit>(header.unit)};
+}
+
+void verify_source(const TreeReader& reader, const Header& header, const MeshSource& source) {
+  reader.require(header.unit <= kLengthUnits.size(), "the unit of length is out of range");
+  if (const char* flaw = source_flaw(source)) reader.require(false, flaw);
 }
 
 void verify_lattice(const TreeReader& reader, const Lattice& lattice) {
@@ -199,14 +216,17 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
 std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
   const ScopedFloatEnvironment environment;
   const Lattice& lattice = tree.parts().lattice;
+  const MeshSource& source = tree.source();
   TreeWriter writer(file);
   const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
                                  (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
                                  (tree.parts().proximity ? kProximitySection : 0u);
-  writer.value(Header{lattice.corner, lattice.voxel_size, lattice.cells,
-                      static_cast<std::uint32_t>(lattice.depth),
-                      static_cast<std::uint32_t>(tree.orientation()), sections});
+  writer.value(Header{
+      lattice.corner, lattice.voxel_size, lattice.cells, static_cast<std::uint32_t>(lattice.depth),
+      static_cast<std::uint32_t>(tree.orientation()), sections, source.hash,
+      static_cast<std::uint32_t>(source.unit), static_cast<std::uint32_t>(source.name.size())});
+  writer.array(source.name);
   write_octree(writer, tree.parts().octree);
   writer.array(tree.parts().normals);
   if (tree.has(SpherePolicy::kTight)) {
@@ -237,9 +257,12 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
 SphereTree read_tree(const std::filesystem::path& file) {
   const ScopedFloatEnvironment environment;
   TreeReader reader(file);
-  const auto [corner, voxel_size, cells, depth, orientation, sections] = reader.value<Header>();
-  const Lattice lattice{corner, voxel_size, cells, static_cast<int>(depth)};
-  StoredOctree stored = read_octree(reader, depth);
+  const auto header = reader.value<Header>();
+  const auto sections = header.sections;
+  const Lattice lattice{header.corner, header.voxel_size, header.cells,
+                        static_cast<int>(header.depth)};
+  MeshSource source = read_source(reader, header);
+  StoredOctree stored = read_octree(reader, header.depth);
   std::vector<PackedNormal> normals = reader.array<PackedNormal>(stored.leaves);
 
   Levels<PackedBall> balls;
@@ -265,17 +288,19 @@ SphereTree read_tree(const std::filesystem::path& file) {
   reader.verify_checksum();
   reader.require(sections <= 15, "it lists an unknown section");
   reader.require(slabs.empty() || !balls.empty(), "it has slabs without balls");
-  reader.require(orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
+  reader.require(header.orientation <= static_cast<std::uint32_t>(Orientation::kAssumed),
                  "its orientation is unknown");
+  verify_source(reader, header, source);
   verify_lattice(reader, lattice);
   if (triangles) verify_triangles(reader, lattice, triangles->first, triangles->second);
   TreeParts parts{lattice,
                   verified(reader, std::move(stored)),
-                  static_cast<Orientation>(orientation),
+                  static_cast<Orientation>(header.orientation),
                   std::move(normals),
                   {},
                   std::nullopt,
-                  std::nullopt};
+                  std::nullopt,
+                  std::move(source)};
   if (triangles) {
     parts.triangles.emplace(std::move(triangles->first), std::move(triangles->second),
                             lattice.origin());

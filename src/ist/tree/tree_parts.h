@@ -13,6 +13,7 @@
 #include "ist/tree/clusters/triangle_clusters.h"
 #include "ist/tree/implicit_ball.h"
 #include "ist/tree/linear_octree.h"
+#include "ist/tree/sphere_tree.h"
 #include "ist/voxel/classify.h"
 #include "ist/voxel/lattice.h"
 #include "ist/voxel/packed_normal.h"
@@ -71,6 +72,7 @@ struct TreeParts {
   BoundBlocks bounds;                      ///< empty if not built
   std::optional<LeafTriangles> triangles;  ///< only with keep_triangles
   std::optional<ProximityTree> proximity;  ///< only if requested and not empty
+  MeshSource source = {};                  ///< as source_flaw() allows it
   /// The largest radius of a saved leaf ball, mesh units; set by SphereTree's constructor.
   double largest_saved_leaf = 0;
   /// The bounding radius of all spheres round the tree's origin, mesh units; set by SphereTree's

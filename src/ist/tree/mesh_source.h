@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "ist/tree/sphere_tree.h"
+
+namespace ist {
+
+/// The largest length of MeshSource::name, bytes.
+inline constexpr std::size_t kMaxSourceName = 255;
+
+/// Returns `text` as a name that MeshSource allows: '?' stands for each byte of a control
+/// character, of a slash or backslash and of text that is not UTF-8, and the end is cut off between
+/// two characters. An allowed name stays as it is.
+[[nodiscard]] std::string source_name(std::string_view text);
+
+/// Returns the reason why MeshSource does not allow a name or a unit, a clause without a full stop;
+/// nullptr for an allowed source.
+[[nodiscard]] const char* source_flaw(const MeshSource& source);
+
+}  // namespace ist
