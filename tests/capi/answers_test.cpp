@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "capi/c_bodies.h"
@@ -13,6 +14,7 @@
 #include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
 #include "support/shapes.h"
+#include "support/temp_dir.h"
 
 namespace ist::test {
 namespace {
@@ -320,6 +322,21 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
   }
   EXPECT_TRUE(cut);
   EXPECT_GT(met, 100u);
+}
+
+TEST(CTrees, TellTheUnitOfTheirFile) {
+  const TempDir folder;
+  const std::string file = folder.path() / "unit.ist";
+  for (std::int32_t unit = 0; unit <= 4; ++unit) {
+    const MeshSource source{"ball.stl", 1, static_cast<LengthUnit>(unit)};
+    write_tree(build_tree(icosphere(1, 1), {.voxel_size = 0.5, .source = source}), file);
+    ist_tree* tree = nullptr;
+    ASSERT_EQ(name(ist_tree_load(file.c_str(), &tree)), "ok");
+    auto info = sized<ist_tree_info>();
+    EXPECT_EQ(name(ist_tree_get_info(tree, &info)), "ok");
+    EXPECT_EQ(info.unit, unit);
+    EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+  }
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ AT(ist_tree_info, spheres, 44);
 AT(ist_tree_info, has_triangles, 48);
 AT(ist_tree_info, has_proximity, 52);
 AT(ist_tree_info, outward, 56);
-AT(ist_tree_info, reserved, 60);
+AT(ist_tree_info, unit, 60);
 AT(ist_tree_info, origin, 64);
 AT(ist_tree_info, bounding_radius, 88);
 AT(ist_tree_info, largest_leaf_radius, 96);

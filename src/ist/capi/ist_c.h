@@ -205,7 +205,7 @@ typedef struct ist_tree_info {
   int32_t has_triangles;      /* 1: the tree keeps its triangles */
   int32_t has_proximity;      /* 1: the tree has the voxels near the outside */
   int32_t outward;            /* 1: the mesh is closed and consistent, outside is known */
-  int32_t reserved;           /* zero */
+  int32_t unit;               /* of lengths: 0 unknown, 1 mm, 2 m, 3 inch, 4 micrometre */
   double origin[3];           /* of the tree's frame: the root cube's centre, mesh coordinates */
   double bounding_radius;     /* around the origin; contains every sphere */
   double largest_leaf_radius; /* of the tightest spheres */

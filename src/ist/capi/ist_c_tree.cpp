@@ -46,6 +46,7 @@ ist_tree_info tree_info_of(const Tree& object) {
   info.has_triangles = tree.triangles() != nullptr;
   info.has_proximity = tree.has_proximity();
   info.outward = tree.orientation() == Orientation::kOutward;
+  info.unit = static_cast<std::int32_t>(tree.source().unit);
   const Eigen::Vector3d origin = tree.origin();
   std::copy_n(origin.data(), 3, info.origin);
   info.bounding_radius = tree.bounding_radius();
