@@ -99,9 +99,9 @@ void require_triangles(const Bodies& bodies) {
     if (tree->triangles()) continue;
     throw Error(
         ErrorCode::kTrianglesMissing,
-        fmt::format(
-            "{}: the tree has no triangles: build it without --no-triangles, or name the mesh",
-            name));
+        fmt::format("{}: the tree has no triangles: build it without --no-triangles, or name the "
+                    "mesh",
+                    name));
   }
 }
 

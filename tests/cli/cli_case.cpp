@@ -1,5 +1,6 @@
 #include "cli/cli_case.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "ist/mesh/mesh.h"
@@ -18,10 +19,20 @@ std::string CliTest::mesh(const std::string& name, const TriangleMesh& mesh) con
   return path(name);
 }
 
+std::string CliTest::needle(const std::string& name, double length) const {
+  return mesh(name, box({0, 0, 0}, {length, length / 100, length / 100}));
+}
+
 std::string CliTest::ball() const { return mesh("ball.stl", icosphere(2, 2)); }
 
-std::string CliTest::ball_tree(const std::string& name, const std::string& spheres) const {
-  ist_well({"build", ball(), "-o", path(name), "--voxel-size", "0.5", "--spheres", spheres});
+std::string CliTest::ball_tree(const std::string& name, const std::string& spheres,
+                               const std::vector<std::string>& more) const {
+  std::vector<std::string> arguments{"build", ball(), "-o", path(name), "--spheres", spheres};
+  if (std::find(more.begin(), more.end(), "--voxel-size") == more.end()) {
+    arguments.insert(arguments.end(), {"--voxel-size", "0.5"});
+  }
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  ist_well(arguments);
   return path(name);
 }
 

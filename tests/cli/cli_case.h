@@ -33,9 +33,13 @@ class CliTest : public ::testing::Test {
   [[nodiscard]] std::string mesh(const std::string& name, const TriangleMesh& mesh) const;
   /// A ball of radius 2 round the origin, closed and consistent.
   [[nodiscard]] std::string ball() const;
-  /// A tree of it, at voxel size 0.5.
+  /// Writes a closed needle of that length along x, and returns its path: few voxels fill it, also
+  /// where they are small beside its extent.
+  [[nodiscard]] std::string needle(const std::string& name, double length) const;
+  /// A tree of the ball, at voxel size 0.5 unless `more` arguments of build name another.
   [[nodiscard]] std::string ball_tree(const std::string& name = "ball.ist",
-                                      const std::string& spheres = "tight") const;
+                                      const std::string& spheres = "tight",
+                                      const std::vector<std::string>& more = {}) const;
   /// Shifts along x as a file of poses.
   [[nodiscard]] std::string poses(const std::vector<double>& shifts) const;
 

@@ -38,6 +38,8 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_GT(line["milliseconds"].size(), 2u);
   for (const json& stage : line["milliseconds"]) EXPECT_TRUE(stage.is_number());
   EXPECT_TRUE(tree.triangles());
+  EXPECT_EQ(line["unit"], nullptr);
+  EXPECT_EQ(line["source"]["name"], "ball.stl");
 
   const CommandResult plain =
       ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5"});
@@ -115,7 +117,7 @@ TEST_F(Files, InfoOfAMesh) {
 }
 
 TEST_F(Files, InfoOfATree) {
-  const std::string file = ball_tree();
+  const std::string file = ball_tree("ball.ist", "tight", {"--no-triangles"});
   const SphereTree tree = read_tree(file);
   const auto lines = json_lines(ist_well({"info", file, "--json"}).out);
   ASSERT_EQ(lines.size(), 1u);

@@ -52,6 +52,16 @@ TEST_F(Input, TreesThatAreBroken) {
   }
 }
 
+TEST_F(Input, TreesOfAnotherVersionAreRefusedWithTheRemedy) {
+  std::string older = file_content(ball_tree());
+  older[8] = 3;
+  const std::string file = write("older.ist", older);
+  const std::string why =
+      "it is of version 3, and this program reads version 4: build it again from the mesh";
+  refuses({"info", file}, file, why);
+  refuses({"collide", file, ball(), "--poses", poses({0})}, file, why);
+}
+
 TEST_F(Input, PosesThatAreNone) {
   const std::string mesh = ball();
   const std::string good = R"({"pose":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";

@@ -31,7 +31,7 @@ TEST_F(Usage, HelpTeaches) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> taught = {
       {"demo", {"--voxel-size", "--seed", "--keep", "--json"}},
       {"build",
-       {"MESH", "--output", "--voxel-size", "--spheres", "--no-triangles", "--classes",
+       {"MESH", "--output", "--voxel-size", "--unit", "--spheres", "--no-triangles", "--classes",
         "--max-memory", "--json", "Example: ist build"}},
       {"info", {"FILE", "--json"}},
       {"export", {"TREE", "--what", "--level", "--spheres", "--output", "Example: ist export"}},
@@ -131,7 +131,6 @@ TEST_F(Usage, VoxelSizes) {
     refuses({"build", mesh, "-o", tree, "--voxel-size", size}, part);
     refuses({"collide", mesh, mesh, "--poses", list, "--voxel-size", size}, part);
   }
-  refuses({"build", mesh, "-o", tree}, "--voxel-size");
   for (const char* size : {"0", "-3", "nan", "inf", "3,0", "x"}) {
     refuses({"demo", "--voxel-size", size}, "--voxel-size");
   }
@@ -148,6 +147,8 @@ TEST_F(Usage, OptionsOfBuild) {
   refuses_with("--classes", "surface,nonsense", "nonsense");
   refuses_with("--classes", "proximity", "surface voxels are always made");
   refuses_with("--spheres", "cubes", "simple,table,tight,slab");
+  refuses_with("--unit", "furlong", "mm,m,inch,um");
+  refuses_with("--unit", "", "mm,m,inch,um");
   refuses_with("--max-memory", "10", "allow more");
   refuses_with("--max-memory", "-5", "positive");
   refuses_with("--max-memory", "lots", "--max-memory");

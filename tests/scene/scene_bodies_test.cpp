@@ -116,7 +116,8 @@ TEST_F(SceneBodies, ProximityNeedsTheTrianglesOfATree) {
       error_of([&] { static_cast<void>(built(with_ball("file = \"plain.ist\"\n") + proximity)); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
-  for (const char* part : {"scene.toml:17: proximity needs triangles", "plain.ist", "--no-triangles"}) {
+  for (const char* part :
+       {"scene.toml:17: proximity needs triangles", "plain.ist", "--no-triangles"}) {
     EXPECT_NE(std::string(error->what()).find(part), std::string::npos) << error->what();
   }
   const BuiltScene scene = built(with_ball("file = \"exact.ist\"\n") + proximity);

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
+#include "cli/extents.h"
 #include "cli/refusals.h"
+#include "cli/source_file.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -18,7 +21,10 @@ namespace {
 struct BuildArguments {
   std::filesystem::path mesh, output;
   BuildOptions build;
+  std::optional<double> voxel_size;  // empty: 1/500 of the largest extent
   std::string spheres{to_string(BuildOptions{}.spheres)};
+  std::string unit;  // empty: unknown
+  bool no_triangles = false;
   std::vector<std::string> classes{"surface"};
   bool json = false;
 };
@@ -32,7 +38,14 @@ void run(BuildArguments options) {
             "surface voxels are always made: give surface,proximity");
   options.build.proximity = names("proximity");
   refuse_to_overwrite(options.output, {options.mesh});
+  options.build.source = source_of(options.mesh);
+  options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
+  options.build.keep_triangles = !options.no_triangles;
   CheckedMesh checked = load_mesh(options.mesh);
+  options.build.voxel_size =
+      options.voxel_size
+          ? *options.voxel_size
+          : default_voxel_size(largest_extent(box_of(checked.mesh)), "the largest extent");
   const std::size_t triangles = checked.mesh.triangles.size();
   BuildReport report;
   const SphereTree tree = build_with_progress(options.mesh.string(), std::move(checked.mesh),
@@ -42,11 +55,13 @@ void run(BuildArguments options) {
 
   const LinearOctree& octree = tree.parts().octree;
   if (options.json) {
-    nlohmann::ordered_json line{{"file", options.output.string()}, {"triangles", triangles},
-                                {"voxel_size", tree.voxel_size()}, {"spheres", options.spheres},
-                                {"voxels", octree.leaf_count()},   {"nodes", octree.node_count()},
-                                {"depth", octree.depth()},         {"bytes", bytes},
-                                {"memory", tree.bytes()}};
+    nlohmann::ordered_json line{
+        {"file", options.output.string()}, {"triangles", triangles},
+        {"voxel_size", tree.voxel_size()}, {"spheres", options.spheres},
+        {"voxels", octree.leaf_count()},   {"nodes", octree.node_count()},
+        {"depth", octree.depth()},         {"bytes", bytes},
+        {"memory", tree.bytes()},          {"unit", json_of(tree.source().unit)},
+        {"source", json_of(tree.source())}};
     if (tree.parts().proximity)
       line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
     for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
@@ -73,15 +88,19 @@ void add_build(CLI::App& app) {
   command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();
-  command->add_option("--voxel-size", options->build.voxel_size, "edge of a voxel, in mesh units")
-      ->required();
+  command->add_option("--voxel-size", options->voxel_size,
+                      "edge of a voxel, in mesh units; by default 1/500 of the largest extent");
+  command
+      ->add_option("--unit", options->unit,
+                   "unit of the mesh's lengths, which the tree remembers; nothing is converted")
+      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
   command
       ->add_option("--spheres", options->spheres,
                    "bounds to save beside simple and table, which need no saving")
       ->check(CLI::IsMember(policy_names()))
       ->capture_default_str();
-  command->add_flag("!--no-triangles", options->build.keep_triangles,
-                    "leave the triangles out: smaller, but no exact answers");
+  command->add_flag("--no-triangles", options->no_triangles,
+                    "make a smaller tree without the triangles, which exact answers need");
   command
       ->add_option("--classes", options->classes,
                    "classes of voxels: surface, or surface,proximity")
@@ -90,7 +109,7 @@ void add_build(CLI::App& app) {
       ->capture_default_str();
   add_max_memory(*command, options->build.max_memory);
   command->add_flag("--json", options->json, "print one JSON object");
-  add_example(*command, "Example: ist build jaw.stl -o jaw.ist --voxel-size 0.2");
+  add_example(*command, "Example: ist build jaw.stl -o jaw.ist --voxel-size 0.2 --unit mm");
   command->callback([options] { run(*options); });
 }
 

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "cli/bodies.h"
 #include "cli/commands/commands.h"
+#include "cli/commands/info_text.h"
 #include "cli/common_options.h"
-#include "cli/refusals.h"
+#include "cli/extents.h"
+#include "cli/source_file.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
@@ -22,84 +25,71 @@ struct InfoArguments {
   bool json = false;
 };
 
-void show_mesh(const InfoArguments& options) {
-  const TriangleMesh mesh = read_mesh(options.file);
-  const MeshReport report = check_mesh(mesh);
-  const Eigen::Vector3d low = report.box_min, high = report.box_max;
-  if (options.json) {
-    fmt::print("{}\n", ordered_json{{"file", options.file.string()},
-                                    {"kind", "mesh"},
-                                    {"vertices", report.vertices},
-                                    {"triangles", report.triangles},
-                                    {"components", report.components},
-                                    {"boundary_edges", report.boundary_edges},
-                                    {"non_manifold_edges", report.non_manifold_edges},
-                                    {"duplicate_triangles", report.duplicate_triangles},
-                                    {"degenerate_triangles", report.degenerate_triangles},
-                                    {"inconsistent_edges", report.inconsistent_edges},
-                                    {"box_min", {low[0], low[1], low[2]}},
-                                    {"box_max", {high[0], high[1], high[2]}},
-                                    {"warnings", warnings(report)}}
-                           .dump());
-    return;
+ordered_json numbers(const Eigen::Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
+
+// Adds the keys that a mesh and a tree share; without a report the surface's are null.
+void add_measures(ordered_json& line, const Eigen::Vector3d& extent,
+                  const std::optional<MeshReport>& report, const MeshSource& source) {
+  line["extent"] = numbers(extent);
+  for (const char* key : {"closed", "consistent", "volume"}) line[key] = nullptr;
+  if (report) {
+    line["closed"] = report->closed;
+    line["consistent"] = report->consistent;
+    if (report->closed && report->consistent) line["volume"] = report->signed_volume;
   }
-  fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", options.file.string(),
-             report.triangles, report.vertices, report.components,
-             report.components == 1 ? "" : "s");
-  fmt::print("box [{}, {}] [{}, {}] [{}, {}]\n", low[0], high[0], low[1], high[1], low[2], high[2]);
-  print_warnings(warnings(report));
+  line["unit"] = json_of(source.unit);
+  line["source"] = json_of(source);
+}
+
+void show_mesh(const InfoArguments& options) {
+  const MeshReport report = check_mesh(read_mesh(options.file));
+  if (!options.json) return print_mesh(options.file, report);
+  ordered_json line{{"file", options.file.string()},
+                    {"kind", "mesh"},
+                    {"vertices", report.vertices},
+                    {"triangles", report.triangles},
+                    {"components", report.components},
+                    {"boundary_edges", report.boundary_edges},
+                    {"non_manifold_edges", report.non_manifold_edges},
+                    {"duplicate_triangles", report.duplicate_triangles},
+                    {"degenerate_triangles", report.degenerate_triangles},
+                    {"inconsistent_edges", report.inconsistent_edges},
+                    {"box_min", numbers(report.box_min)},
+                    {"box_max", numbers(report.box_max)},
+                    {"warnings", warnings(report)}};
+  add_measures(line, report.box_max - report.box_min, report, source_of(options.file));
+  fmt::print("{}\n", line.dump());
 }
 
 void show_tree(const InfoArguments& options) {
   const SphereTree tree = read_tree(options.file);
   const std::vector<LevelStatistics> levels = level_statistics(tree);
-  const char* orientation = tree.orientation() == Orientation::kOutward ? "outward" : "assumed";
-  if (options.json) {
-    ordered_json line{{"file", options.file.string()},
-                      {"kind", "tree"},
-                      {"voxel_size", tree.voxel_size()},
-                      {"cells", tree.parts().lattice.cells},
-                      {"depth", tree.depth()},
-                      {"voxels", tree.leaf_count()},
-                      {"nodes", tree.parts().octree.node_count()},
-                      {"memory", tree.bytes()},
-                      {"orientation", orientation},
-                      {"triangles", tree.triangles() != nullptr},
-                      {"proximity", tree.has_proximity()},
-                      {"levels", ordered_json::array()}};
-    for (const LevelStatistics& level : levels) {
-      ordered_json row{{"level", level.level}, {"edge", level.edge}, {"nodes", level.nodes}};
-      for (const LevelSpheres& spheres : level.spheres) {
-        row["volume"][std::string(to_string(spheres.policy))] = spheres.volume;
-        row["milliseconds"][std::string(to_string(spheres.policy))] = spheres.milliseconds;
-      }
-      line["levels"].push_back(row);
-    }
-    fmt::print("{}\n", line.dump());
-    return;
-  }
-  fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n",
-             options.file.string(), tree.leaf_count(), tree.voxel_size(),
-             tree.parts().octree.node_count(), static_cast<double>(tree.bytes()) / 1e6);
-  fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n", orientation,
-             tree.triangles() ? tree.parts().triangles->mesh.triangles.size() : 0,
-             tree.parts().proximity ? tree.parts().proximity->octree.leaf_count() : 0);
-  fmt::print(
-      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight "
-      "and slab: to read them)\n");
-  fmt::print("{:>5} {:>10} {:>10}", "level", "edge", "nodes");
-  for (const LevelSpheres& spheres : levels.front().spheres) {
-    fmt::print(" {:>14} {:>9}", to_string(spheres.policy), "ms");
-  }
-  fmt::print("\n");
-  const double unit = unit_ball_volume(tree.voxel_size());
+  std::optional<MeshReport> triangles;
+  if (tree.triangles() != nullptr) triangles = check_mesh(*tree.triangles());
+  if (!options.json) return print_tree(options.file, tree, triangles, levels);
+  ordered_json line{
+      {"file", options.file.string()},
+      {"kind", "tree"},
+      {"voxel_size", tree.voxel_size()},
+      {"cells", tree.parts().lattice.cells},
+      {"depth", tree.depth()},
+      {"voxels", tree.leaf_count()},
+      {"nodes", tree.parts().octree.node_count()},
+      {"memory", tree.bytes()},
+      {"orientation", tree.orientation() == Orientation::kOutward ? "outward" : "assumed"},
+      {"triangles", tree.triangles() != nullptr},
+      {"proximity", tree.has_proximity()}};
+  add_measures(line, box_of(tree).sizes(), triangles, tree.source());
+  line["levels"] = ordered_json::array();
   for (const LevelStatistics& level : levels) {
-    fmt::print("{:>5} {:>10.4g} {:>10}", level.level, level.edge, level.nodes);
+    ordered_json row{{"level", level.level}, {"edge", level.edge}, {"nodes", level.nodes}};
     for (const LevelSpheres& spheres : level.spheres) {
-      fmt::print(" {:>14.0f} {:>9.3f}", spheres.volume / unit, spheres.milliseconds);
+      row["volume"][std::string(to_string(spheres.policy))] = spheres.volume;
+      row["milliseconds"][std::string(to_string(spheres.policy))] = spheres.milliseconds;
     }
-    fmt::print("\n");
+    line["levels"].push_back(row);
   }
+  fmt::print("{}\n", line.dump());
 }
 
 }  // namespace

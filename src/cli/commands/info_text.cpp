@@ -1,0 +1,88 @@
+#include "cli/commands/info_text.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "cli/bodies.h"
+#include "cli/extents.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist::cli {
+namespace {
+
+void print_extent(const Eigen::AlignedBox3d& box, LengthUnit unit) {
+  const Eigen::Vector3d sides = box.sizes();
+  if (unit == LengthUnit::kUnknown) {
+    fmt::print("extent {} (as mm: {}; as inches: {})\n", sides_text(sides),
+               size_text(sides, LengthUnit::kMillimetre), size_text(sides, LengthUnit::kInch));
+  } else {
+    fmt::print("extent {} {} ({})\n", sides_text(sides), to_string(unit), size_text(sides, unit));
+  }
+  fmt::print("box {}\n", box_text(box));
+}
+
+void print_topology(const MeshReport& report, LengthUnit unit) {
+  fmt::print("{}, {}", report.closed ? "closed" : "open",
+             report.consistent ? "wound consistently" : "not wound consistently");
+  if (report.closed && report.consistent) {
+    fmt::print(", volume {}", number_text(report.signed_volume));
+    if (unit != LengthUnit::kUnknown) fmt::print(" {}³", to_string(unit));
+  }
+  fmt::print("\n");
+}
+
+void print_source(const MeshSource& source) {
+  fmt::print("built of {}", source.name.empty() ? "a mesh of unknown name" : source.name);
+  if (source.hash != 0) fmt::print(", XXH3 {:016x}", source.hash);
+  fmt::print(", unit {}\n", to_string(source.unit));
+}
+
+void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& levels) {
+  fmt::print(
+      "volume of the spheres, in circumspheres of a voxel, and time to make them (tight "
+      "and slab: to read them)\n");
+  fmt::print("{:>5} {:>10} {:>10}", "level", "edge", "nodes");
+  for (const LevelSpheres& spheres : levels.front().spheres) {
+    fmt::print(" {:>14} {:>9}", to_string(spheres.policy), "ms");
+  }
+  fmt::print("\n");
+  const double unit = unit_ball_volume(tree.voxel_size());
+  for (const LevelStatistics& level : levels) {
+    fmt::print("{:>5} {:>10.4g} {:>10}", level.level, level.edge, level.nodes);
+    for (const LevelSpheres& spheres : level.spheres) {
+      fmt::print(" {:>14.0f} {:>9.3f}", spheres.volume / unit, spheres.milliseconds);
+    }
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+void print_mesh(const std::filesystem::path& file, const MeshReport& report) {
+  fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
+             report.triangles, report.vertices, report.components,
+             report.components == 1 ? "" : "s");
+  print_extent({report.box_min, report.box_max}, LengthUnit::kUnknown);
+  print_topology(report, LengthUnit::kUnknown);
+  print_warnings(warnings(report));
+}
+
+void print_tree(const std::filesystem::path& file, const SphereTree& tree,
+                const std::optional<MeshReport>& triangles,
+                const std::vector<LevelStatistics>& levels) {
+  fmt::print("{}: a tree of {} voxels of edge {}, {} nodes, {:.1f} MB in memory\n", file.string(),
+             tree.leaf_count(), tree.voxel_size(), tree.parts().octree.node_count(),
+             static_cast<double>(tree.bytes()) / 1e6);
+  print_source(tree.source());
+  print_extent(box_of(tree), tree.source().unit);
+  if (triangles) print_topology(*triangles, tree.source().unit);
+  fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
+             tree.orientation() == Orientation::kOutward ? "outward" : "assumed",
+             triangles ? triangles->triangles : 0,
+             tree.parts().proximity ? tree.parts().proximity->octree.leaf_count() : 0);
+  print_levels(tree, levels);
+}
+
+}  // namespace ist::cli
