@@ -4,28 +4,80 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
+#include "cli/extents.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
+#include "cli/source_file.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
-#include "ist/tree/tree_parts.h"
 
 namespace ist::cli {
 namespace {
 
-SphereTree load_body(const std::filesystem::path& file, bool is_tree, const BodyFiles& files) {
-  if (is_tree) return read_tree(file);
-  CheckedMesh checked = load_mesh(file);
+// A body before its tree is built.
+struct LoadedBody {
+  explicit LoadedBody(const std::filesystem::path& path) : file(path) {
+    if (is_tree_file(file)) {
+      tree = read_tree(file);
+    } else {
+      source = source_of(file);
+      checked = load_mesh(file);
+    }
+    extent = largest_extent(tree ? box_of(*tree) : box_of(checked.mesh));
+  }
+  [[nodiscard]] std::string name() const { return file.string(); }
+
+  std::filesystem::path file;
+  std::optional<SphereTree> tree;  // empty of a mesh
+  CheckedMesh checked;
+  MeshSource source;
+  double extent = 0;
+};
+
+// Takes the tree out of `body`, or builds it of its mesh.
+SphereTree take_tree(LoadedBody& body, const BodyFiles& files, double voxel_size) {
+  if (body.tree) return std::move(*body.tree);
   BuildOptions options;
-  options.voxel_size = *files.voxel_size;
+  options.voxel_size = voxel_size;
   options.spheres = files.policy.value_or(options.spheres);
   options.max_memory = files.max_memory;
-  SphereTree tree =
-      build_with_progress(file.string(), std::move(checked.mesh), options, checked.warnings);
-  print_warnings(checked.warnings);
+  options.source = body.source;
+  SphereTree tree = build_with_progress(body.name(), std::move(body.checked.mesh), options,
+                                        body.checked.warnings);
+  print_warnings(body.checked.warnings);
   return tree;
+}
+
+void refuse_different_units(const LoadedBody& fixed, const LoadedBody& moving) {
+  if (!fixed.tree || !moving.tree) return;
+  const LengthUnit one = fixed.tree->source().unit, other = moving.tree->source().unit;
+  constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
+  refuse_if(one != other && one != kUnknown && other != kUnknown, moving.name(),
+            fmt::format("its unit is {}, and that of {} is {}: nothing is converted in silence: "
+                        "convert one of the meshes, and build it again with the other's --unit",
+                        to_string(other), fixed.name(), to_string(one)));
+}
+
+void warn_of_voxels(const LoadedBody& body, double voxel_size) {
+  constexpr double kVoxels = 50;
+  if (!(voxel_size > body.extent / kVoxels)) return;
+  print_warnings(
+      {fmt::format("{}: a voxel of {:.4g} is more than 1/{:.0f} of the largest extent, "
+                   "{:.4g}: take smaller voxels for sharper answers",
+                   body.name(), voxel_size, kVoxels, body.extent)});
+}
+
+void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
+  constexpr double kRatio = 10;
+  const double smaller = std::min(fixed.extent, moving.extent);
+  if (!(std::max(fixed.extent, moving.extent) > kRatio * smaller)) return;
+  print_warnings(
+      {fmt::format("the largest extent of {} is {:.4g}, and that of {} is {:.4g}: are they in one "
+                   "unit?",
+                   fixed.name(), fixed.extent, moving.name(), moving.extent)});
 }
 
 }  // namespace
@@ -71,26 +123,34 @@ SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
 }
 
 double Bodies::extent() const {
-  const auto largest = [](const SphereTree& tree) {
-    return tree.voxel_size() * static_cast<double>(tree.parts().lattice.cells);
-  };
-  return std::min(largest(fixed), largest(moving));
+  return std::min(largest_extent(box_of(fixed)), largest_extent(box_of(moving)));
+}
+
+LengthUnit Bodies::unit() const {
+  const LengthUnit unit = fixed.source().unit;
+  return unit == LengthUnit::kUnknown ? moving.source().unit : unit;
 }
 
 Bodies load_bodies(const BodyFiles& files) {
-  const bool fixed_is_tree = is_tree_file(files.fixed), moving_is_tree = is_tree_file(files.moving);
-  const bool both_are_trees = fixed_is_tree && moving_is_tree;
+  LoadedBody fixed(files.fixed), moving(files.moving);
+  const bool both_are_trees = fixed.tree && moving.tree;
   refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
             "both bodies are trees, which have their own voxel sizes: leave it out");
-  refuse_if(!both_are_trees && !files.voxel_size, "--voxel-size",
-            fmt::format("needed, because {} is a mesh: give the edge of a voxel in mesh units",
-                        fixed_is_tree ? files.moving.string() : files.fixed.string()));
-  Bodies bodies{load_body(files.fixed, fixed_is_tree, files),
-                load_body(files.moving, moving_is_tree, files), SpherePolicy::kTable};
+  refuse_different_units(fixed, moving);
+  double voxel_size = files.voxel_size.value_or(0);
+  if (!both_are_trees && !files.voxel_size) {
+    voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent),
+                                    "the smaller body's largest extent");
+  }
+  Bodies bodies{take_tree(fixed, files, voxel_size), take_tree(moving, files, voxel_size),
+                SpherePolicy::kTable};
   bodies.policy =
       files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
-  bodies.fixed.require(bodies.policy, files.fixed.string());
-  bodies.moving.require(bodies.policy, files.moving.string());
+  bodies.fixed.require(bodies.policy, fixed.name());
+  bodies.moving.require(bodies.policy, moving.name());
+  warn_of_units(fixed, moving);
+  warn_of_voxels(fixed, bodies.fixed.voxel_size());
+  warn_of_voxels(moving, bodies.moving.voxel_size());
   return bodies;
 }
 

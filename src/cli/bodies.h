@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,20 +34,25 @@ struct Bodies {
   SphereTree fixed, moving;
   SpherePolicy policy;
 
-  /// Returns the largest extent of the smaller body, mesh units.
+  /// Returns the largest extent of the smaller body. Cost: as of box_of().
   [[nodiscard]] double extent() const;
+  /// Returns the unit that a body's tree was told, which is the other's too: load_bodies() refuses
+  /// two that differ. kUnknown where neither was told one.
+  [[nodiscard]] LengthUnit unit() const;
 };
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
 struct BodyFiles {
   std::filesystem::path fixed, moving;
-  std::optional<double> voxel_size;    ///< of meshes, mesh units
+  std::optional<double> voxel_size;    ///< of meshes, mesh units; empty: 1/500 of Bodies::extent()
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have
   std::uint64_t max_memory = BuildOptions{}.max_memory;
 };
 
-/// Loads both bodies. Throws CLI::ValidationError if the voxel size is missing, or given for two
-/// trees.
+/// Loads both bodies; trees of meshes keep their triangles. Says on stderr which voxel size it
+/// takes where none is given. Warns of bodies that seem to be in different units, and of voxels
+/// that are large for their body. Throws CLI::ValidationError for a voxel size of two trees, and
+/// for two trees of different units.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
 /// Throws kTrianglesMissing, naming the body, where a tree holds no triangles.

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
-#include <string_view>
+#include <iterator>
 #include <utility>
 
 namespace ist::cli {

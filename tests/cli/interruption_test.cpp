@@ -33,7 +33,8 @@ class Interruption : public CliTest {
 
 TEST_F(Interruption, OfAQueryLeavesNoContacts) {
   StabilityCase seen("faults", "signal in a query", "wrong outcomes");
-  const std::string tree = ball_tree(), leaf_pairs = write("c", "older");
+  const std::string tree = ball_tree("ball.ist", "tight", {"--voxel-size", "0.05"});
+  const std::string leaf_pairs = write("c", "older");
   const std::size_t entries = dir_.entries();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Process process(IST_COMMAND, long_query(tree));

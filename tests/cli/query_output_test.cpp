@@ -91,8 +91,8 @@ class QueryOutput : public CliTest {
 
 TEST_F(QueryOutput, ALineForEachPoseInOrder) {
   const std::string mesh = ball();
-  const CommandResult result = ist_well(
-      {"collide", mesh, mesh, "--voxel-size", "0.5", "--poses", poses({0, 100, 3.5, 0}), "--json"});
+  const CommandResult result = ist_well({"collide", mesh, mesh, "--voxel-size", "0.05", "--poses",
+                                         poses({0, 100, 3.5, 0}), "--json"});
   EXPECT_EQ(result.err, "");
   const auto lines = json_lines(result.out);
   ASSERT_EQ(lines.size(), 4u);
@@ -101,7 +101,7 @@ TEST_F(QueryOutput, ALineForEachPoseInOrder) {
     EXPECT_EQ(lines[i]["index"], i);
     EXPECT_EQ(lines[i]["engine"], "simd");
     EXPECT_EQ(lines[i]["spheres"], to_string(BuildOptions{}.spheres));
-    EXPECT_EQ(lines[i]["voxel_size"], (json{0.5, 0.5}));
+    EXPECT_EQ(lines[i]["voxel_size"], (json{0.05, 0.05}));
     EXPECT_EQ(lines[i]["touch"], i != 1 ? "yes" : "no");
   }
   EXPECT_EQ(lines[1]["sphere_tests"], 1);

@@ -1,0 +1,105 @@
+// The two bodies of a query: whether their units and sizes fit each other, and their voxels them.
+
+#include <utility>
+
+#include "cli/cli_case.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+class BodySizes : public CliTest {
+ protected:
+  [[nodiscard]] std::string tree(const std::string& name, const std::string& unit) const {
+    std::vector<std::string> arguments{"build",    needle("needle.stl", 4), "-o",
+                                       path(name), "--voxel-size",          "0.02"};
+    if (!unit.empty()) arguments.insert(arguments.end(), {"--unit", unit});
+    ist_well(arguments);
+    return path(name);
+  }
+  [[nodiscard]] CommandResult collide(const std::string& fixed, const std::string& moving,
+                                      const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"collide", fixed, moving, "--poses", poses({0}), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ist(arguments);
+  }
+};
+
+TEST_F(BodySizes, QueriesChooseVoxelsOfTheSmallerBody) {
+  const std::string large = needle("large.stl", 4), small = needle("small.stl", 1);
+  const std::string built = tree("built.ist", "");
+  const std::string said =
+      ": 1/500 of the smaller body's largest extent; --voxel-size names another\n";
+  const auto asks = [&](const std::string& fixed, const std::string& moving,
+                        const std::string& size, const json& sizes) {
+    const CommandResult result = collide(fixed, moving);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "voxel size " + size + said);
+    EXPECT_EQ(json_lines(result.out).at(0)["voxel_size"], sizes);
+  };
+  asks(large, small, "0.002", {0.002, 0.002});
+  asks(small, large, "0.002", {0.002, 0.002});
+  asks(large, large, "0.008", {0.008, 0.008});
+  asks(built, small, "0.002", {0.02, 0.002});
+  asks(large, built, "0.008", {0.008, 0.02});
+  EXPECT_EQ(collide(built, built).err, "");
+}
+
+TEST_F(BodySizes, MeshesKeepTheirTrianglesForAQuery) {
+  const std::string of = needle("needle.stl", 4);
+  EXPECT_GT(json_lines(collide(of, of, {"--exact"}).out).at(0)["triangle_pairs"], 0);
+}
+
+TEST_F(BodySizes, TreesOfDifferentUnitsAreRefused) {
+  const std::string mm = tree("mm.ist", "mm"), inch = tree("inch.ist", "inch"),
+                    plain = tree("plain.ist", ""), mesh = path("needle.stl");
+  const auto refused = [&](const std::string& fixed, const std::string& moving,
+                           const std::string& why) {
+    const CommandResult result = collide(fixed, moving);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, why));
+    EXPECT_TRUE(says(result.err, "nothing is converted in silence"));
+    EXPECT_TRUE(says(result.err, "build it again with the other's --unit"));
+  };
+  refused(mm, inch, inch + ": its unit is inch, and that of " + mm + " is mm");
+  refused(inch, mm, mm + ": its unit is mm, and that of " + inch + " is inch");
+  for (const auto& [fixed, moving] : {std::pair(mm, mm), {mm, plain}, {plain, inch}, {mm, mesh}}) {
+    EXPECT_EQ(collide(fixed, moving).exit_code, 0) << fixed << " " << moving;
+  }
+}
+
+TEST_F(BodySizes, BodiesOfVeryDifferentSizesAreWarnedOf) {
+  const std::string one = needle("one.stl", 4);
+  const auto warning = [&](double length) {
+    const CommandResult result =
+        collide(one, needle("other.stl", length), {"--voxel-size", "0.005"});
+    EXPECT_EQ(result.exit_code, 0);
+    return result.err;
+  };
+  EXPECT_EQ(warning(0.41), "");
+  EXPECT_EQ(warning(39), "");
+  EXPECT_EQ(warning(0.39), "warning: the largest extent of " + one + " is 4, and that of " +
+                               path("other.stl") + " is 0.39: are they in one unit?\n");
+  EXPECT_TRUE(says(warning(41), "is 41: are they in one unit?"));
+}
+
+TEST_F(BodySizes, VoxelsThatAreLargeForTheirBodyAreWarnedOf) {
+  const std::string of = needle("needle.stl", 4), built = tree("fine.ist", "");
+  const auto warning = [&](const char* size) {
+    return collide(built, of, {"--voxel-size", size}).err;
+  };
+  EXPECT_EQ(warning("0.08"), "");
+  EXPECT_EQ(warning("0.081"),
+            "warning: " + of +
+                ": a voxel of 0.081 is more than 1/50 of the largest extent, 4: take smaller "
+                "voxels for sharper answers\n");
+  const CommandResult coarse = collide(ball_tree(), ball_tree());
+  EXPECT_EQ(coarse.exit_code, 0);
+  EXPECT_TRUE(says(coarse.err, "ball.ist: a voxel of 0.5 is more than 1/50"));
+}
+
+}  // namespace
+}  // namespace ist::test
