@@ -134,6 +134,24 @@ TEST(OutputFile, IsNotThereWhereItIsAbandoned) {
   EXPECT_EQ(folder.entries(), 2u);
 }
 
+// Nothing waits for the disk here: a command under a held fsync() shows that (RunLaterSignal).
+TEST(OutputFile, IsNotThereWhereItIsNotWrittenWhole) {
+  const test::TempDir folder;
+  const auto target = folder.write("out", "old"), done = folder.path() / "done";
+  const auto complete = [&] {
+    OutputFile committed(done), half(target);
+    write(committed, "whole");
+    write(half, "half");
+    committed.commit();
+    complete_output_files();
+    ::_exit(7);
+  };
+  EXPECT_EXIT(complete(), ::testing::ExitedWithCode(7), "");
+  EXPECT_EQ(file_content(target), "old");
+  EXPECT_EQ(file_content(done), "whole");
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
 // What another process left behind is not taken for one's own.
 TEST(OutputFile, LeavesAForeignTemporaryFileAlone) {
   const test::TempDir folder;

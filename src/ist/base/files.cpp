@@ -7,8 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -21,7 +21,8 @@ namespace {
 // list is complete for whoever holds the lock.
 struct Temporaries {
   std::mutex mutex;
-  std::set<std::filesystem::path> paths;
+  // By the file's own path, the path that it still waits to get: empty until all is written.
+  std::map<std::filesystem::path, std::filesystem::path> targets;
 
   // Never destroyed: a thread may still write while the process ends.
   static Temporaries& all() {
@@ -94,17 +95,17 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     // Writing to a link must not replace the link.
     const auto real = std::filesystem::canonical(target_, ignored);
     if (!ignored) target_ = real;
-    auto& [mutex, paths] = Temporaries::all();
+    auto& [mutex, targets] = Temporaries::all();
     const std::lock_guard lock(mutex);
     for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
       temporary_ = target_;
       temporary_ += fmt::format(".{}-{}.tmp", ::getpid(), attempt);
-      const auto [listed, is_new] = paths.insert(temporary_);
+      const auto [listed, is_new] = targets.try_emplace(temporary_);
       if (!is_new) continue;
       descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ >= 0) break;
       const int cause = errno;
-      paths.erase(listed);
+      targets.erase(listed);
       errno = cause;
       if (cause != EEXIST) break;
     }
@@ -118,10 +119,10 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (temporary_.empty()) return;
-  auto& [mutex, paths] = Temporaries::all();
+  auto& [mutex, targets] = Temporaries::all();
   const std::lock_guard lock(mutex);
   ::unlink(temporary_.c_str());
-  paths.erase(temporary_);
+  targets.erase(temporary_);
 }
 
 void OutputFile::write(const void* data, std::size_t bytes) {
@@ -149,16 +150,30 @@ void OutputFile::write_at(std::size_t offset, const void* data, std::size_t byte
 }
 
 void OutputFile::commit() {
-  // fsync reports a full disk before an older file is replaced.
-  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail("write");
+  if (!temporary_.empty()) {
+    await_name(target_);
+    // fsync reports a full disk before an older file is replaced.
+    if (::fsync(descriptor_) != 0) {
+      const int cause = errno;
+      await_name({});
+      errno = cause;
+      fail("write");
+    }
+  }
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0) fail("close");
   if (temporary_.empty()) return;
-  auto& [mutex, paths] = Temporaries::all();
+  auto& [mutex, targets] = Temporaries::all();
   const std::lock_guard lock(mutex);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename");
-  paths.erase(temporary_);
+  targets.erase(temporary_);
   temporary_.clear();
+}
+
+void OutputFile::await_name(const std::filesystem::path& name) {
+  auto& [mutex, targets] = Temporaries::all();
+  const std::lock_guard lock(mutex);
+  targets[temporary_] = name;
 }
 
 void OutputFile::fail(const char* doing) const {
@@ -169,9 +184,17 @@ void OutputFile::fail(const char* doing) const {
 }
 
 void abandon_output_files() noexcept {
-  auto& [mutex, paths] = Temporaries::all();
+  auto& [mutex, targets] = Temporaries::all();
   mutex.lock();  // never unlocked: the process is ending
-  for (const std::filesystem::path& path : paths) ::unlink(path.c_str());
+  for (const auto& [path, target] : targets) ::unlink(path.c_str());
+}
+
+void complete_output_files() noexcept {
+  auto& [mutex, targets] = Temporaries::all();
+  mutex.lock();  // never unlocked: the process is ending
+  for (const auto& [path, target] : targets) {
+    if (target.empty() || ::rename(path.c_str(), target.c_str()) != 0) ::unlink(path.c_str());
+  }
 }
 
 }  // namespace ist

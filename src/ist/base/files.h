@@ -54,6 +54,8 @@ class OutputFile {
   void commit();
 
  private:
+  // From now on complete_output_files() gives the file this name; none if it is empty.
+  void await_name(const std::filesystem::path& name);
   [[noreturn]] void fail(const char* doing) const;
 
   std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
@@ -64,5 +66,10 @@ class OutputFile {
 /// destructors. A thread that creates, commits or destroys an OutputFile afterwards blocks for
 /// ever. Not for signal handlers, because it takes a lock.
 void abandon_output_files() noexcept;
+
+/// Removes the same files, except for each whose commit() waits for the disk: that file is whole
+/// and gets its name at once. A power cut or a full network disk may still damage it, and then the
+/// older file of that name is lost.
+void complete_output_files() noexcept;
 
 }  // namespace ist
