@@ -16,8 +16,9 @@ class ProgressBar : public Progress {
   std::jthread thread_;
 };
 
-/// Clears the line of a visible bar before the process ends by a signal; a thread that draws then
-/// waits for ever. Takes a lock, so no signal handler may call it.
+/// Clears the line of a visible bar before the process ends by a signal, unless the terminal takes
+/// no output now; waits at most 0.1 s. A thread that draws then waits for ever. Takes a lock, so no
+/// signal handler may call it.
 void abandon_progress_bar() noexcept;
 
 }  // namespace ist::cli
