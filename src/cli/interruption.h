@@ -4,14 +4,17 @@
 
 namespace ist::cli {
 
-/// Installs the handling of signals. SIGINT, SIGTERM and SIGHUP still end the process by the signal
-/// itself, but unfinished files and the progress bar are removed first; a file that grows beyond
-/// its limit (SIGXFSZ) is an error like a full disk. Must be called before there is any other
-/// thread.
+/// Installs the handling of signals. SIGINT, SIGTERM, SIGHUP and SIGQUIT still end the process by
+/// the signal itself, but unfinished files and the progress bar are removed first; a file that
+/// grows beyond its limit (SIGXFSZ) is an error like a full disk. Must be called before there is
+/// any other thread.
 void install_signal_handlers();
 
 /// Turns the first SIGINT, SIGTERM or SIGHUP during its lifetime into a request to stop: the
-/// command stops and keeps its results. The next signal ends the process. One object at a time.
+/// command stops and keeps its results. Another one within 1 s of the first is the same one, even
+/// after the lifetime: `timeout` signals a process, and then its group. A later one ends the
+/// process within 1 s: it waits for each HoldEnd, and for nothing else. SIGQUIT always ends the
+/// process at once. One object a process.
 class StopOnInterruption {
  public:
   StopOnInterruption() noexcept;
@@ -23,6 +26,21 @@ class StopOnInterruption {
   void ask() noexcept;
   /// Returns a flag that is set by the request.
   [[nodiscard]] const std::atomic<bool>& asked() const noexcept;
+  /// Returns whether a later signal came, so that the process is about to end.
+  [[nodiscard]] bool hurried() const noexcept;
+  /// Waits for that end.
+  [[noreturn]] void await_end() const noexcept;
+};
+
+/// Holds the end of the process after a later signal, for 0.8 s at most, until it is destroyed: by
+/// then a file should be whole. A file that only waits for the disk in OutputFile::commit() after
+/// that time is kept, and any other unfinished file is removed. In any thread.
+class HoldEnd {
+ public:
+  HoldEnd();
+  ~HoldEnd();
+  HoldEnd(const HoldEnd&) = delete;
+  HoldEnd& operator=(const HoldEnd&) = delete;
 };
 
 }  // namespace ist::cli

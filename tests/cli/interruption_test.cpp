@@ -1,6 +1,8 @@
 // Signals that end the command: it dies by them, and leaves nothing half-written.
 
 #include <fcntl.h>
+#include <sys/resource.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -20,6 +22,10 @@ using namespace std::chrono_literals;
 
 class Interruption : public CliTest {
  protected:
+  Interruption() {
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+  }
   // A query that goes on for minutes, and writes its contacts into the folder all the while.
   [[nodiscard]] std::vector<std::string> long_query(const std::string& tree) const {
     return {"approach", tree,     tree,   "--axis",   "z",       "--from",     "0",      "--to",
@@ -36,7 +42,7 @@ TEST_F(Interruption, OfAQueryLeavesNoContacts) {
   const std::string tree = ball_tree("ball.ist", "tight", {"--voxel-size", "0.05"});
   const std::string leaf_pairs = write("c", "older");
   const std::size_t entries = dir_.entries();
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     Process process(IST_COMMAND, long_query(tree));
     await_entries(entries + 1, process);
     process.signal(signal);
@@ -49,21 +55,21 @@ TEST_F(Interruption, OfAQueryLeavesNoContacts) {
 }
 
 TEST_F(Interruption, OfABuildLeavesTheOlderTree) {
-  StabilityCase seen("faults", "SIGINT in a build", "wrong outcomes");
+  StabilityCase seen("faults", "SIGINT and SIGQUIT in a build", "wrong outcomes");
   const std::string ball = mesh("fine.stl", icosphere(4, 2)), tree = path("out.ist");
   const std::vector<std::string> build{"build", ball, "-o", tree, "--voxel-size", "0.02"};
   ist_well(build);
   const std::string whole = file_content(tree);
   int early = 0, while_written = 0;
-  const auto interrupt = [&](auto&& await) {
+  const auto interrupt = [&](int signal, auto&& await) {
     dir_.write("out.ist", "older");
     const std::size_t entries = dir_.entries();
     Process process(IST_COMMAND, build);
     await(process, entries);
     const bool half = dir_.entries() > entries;
-    process.signal(SIGINT);
+    process.signal(signal);
     const CommandResult result = process.wait();
-    const bool ended = result.exit_code == 128 + SIGINT;
+    const bool ended = result.exit_code == 128 + signal;
     // The signal may also come when all is written, and only the end of the process is not there.
     const bool older = file_content(tree) == "older";
     const bool clean = dir_.entries() == entries && (older ? ended : file_content(tree) == whole) &&
@@ -72,23 +78,29 @@ TEST_F(Interruption, OfABuildLeavesTheOlderTree) {
     if (older) ++(half ? while_written : early);
   };
   for (int tenth = 0; tenth < 8; ++tenth) {
-    interrupt([&](Process&, std::size_t) { std::this_thread::sleep_for(20ms * tenth); });
-  }
-  for (int i = 0; i < 20 && while_written == 0; ++i) {
-    interrupt([&](Process& process, std::size_t entries) { await_entries(entries + 1, process); });
+    interrupt(SIGINT, [&](Process&, std::size_t) { std::this_thread::sleep_for(20ms * tenth); });
   }
   EXPECT_GT(early, 0);
-  EXPECT_GT(while_written, 0);
+  for (const int signal : {SIGINT, SIGQUIT}) {
+    while_written = 0;
+    for (int i = 0; i < 20 && while_written == 0; ++i) {
+      interrupt(signal, [&](Process& process, std::size_t entries) {
+        await_entries(entries + 1, process);
+      });
+    }
+    EXPECT_GT(while_written, 0) << signal;
+  }
 }
 
-TEST_F(Interruption, LeavesAnIgnoredSignalIgnored) {
+TEST_F(Interruption, LeavesIgnoredSignalsIgnored) {
   const std::string tree = ball_tree();
   const std::size_t entries = dir_.entries();
   std::vector<std::string> arguments = long_query(tree);
-  arguments.insert(arguments.begin(), {"-c", "trap '' INT; exec \"$@\"", "sh", IST_COMMAND});
+  arguments.insert(arguments.begin(), {"-c", "trap '' INT QUIT; exec \"$@\"", "sh", IST_COMMAND});
   Process process("/bin/sh", arguments);
   await_entries(entries + 1, process);
   process.signal(SIGINT);
+  process.signal(SIGQUIT);
   std::this_thread::sleep_for(50ms);
   EXPECT_TRUE(process.is_running());
   process.signal(SIGTERM);
@@ -96,26 +108,63 @@ TEST_F(Interruption, LeavesAnIgnoredSignalIgnored) {
   EXPECT_EQ(dir_.entries(), entries);
 }
 
+// A terminal, and what a program shows on it.
+class Terminal {
+ public:
+  Terminal() : descriptor_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    EXPECT_EQ(::grantpt(descriptor_), 0);
+    EXPECT_EQ(::unlockpt(descriptor_), 0);
+    name = ::ptsname(descriptor_);
+  }
+  ~Terminal() { ::close(descriptor_); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  // Reads until that is shown, or the programs on it have ended.
+  void await(const std::string& end) {
+    char text[256];
+    while (end.empty() || !shown.ends_with(end)) {
+      const ssize_t got = ::read(descriptor_, text, sizeof text);
+      if (got <= 0) return;
+      shown.append(text, static_cast<std::size_t>(got));
+    }
+  }
+
+  std::string name, shown;
+
+ private:
+  int descriptor_;
+};
+
 TEST_F(Interruption, ClearsTheProgressBar) {
-  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_GE(terminal, 0);
-  ASSERT_EQ(::grantpt(terminal), 0);
-  ASSERT_EQ(::unlockpt(terminal), 0);
-  Process process(IST_COMMAND, long_query(ball_tree()), ::ptsname(terminal));
-  std::string shown;
-  char text[256];
-  while (!shown.ends_with("asking")) {
-    const ssize_t got = ::read(terminal, text, sizeof text);
-    ASSERT_GT(got, 0) << shown;
-    shown.append(text, static_cast<std::size_t>(got));
+  for (const int signal : {SIGINT, SIGQUIT}) {
+    Terminal terminal;
+    Process process(IST_COMMAND, long_query(ball_tree()), terminal.name);
+    terminal.await("asking");
+    process.signal(signal);
+    EXPECT_EQ(process.wait().exit_code, 128 + signal);
+    terminal.await("");
+    EXPECT_TRUE(terminal.shown.ends_with("asking\r\033[K")) << terminal.shown;
   }
+}
+
+TEST_F(Interruption, DoesNotWaitForATerminalThatIsStopped) {
+  const std::string tree = ball_tree();
+  const std::size_t entries = dir_.entries();
+  Terminal terminal;
+  const int user = ::open(terminal.name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(user, 0);
+  Process process(IST_COMMAND, long_query(tree), terminal.name);
+  terminal.await("asking");
+  ASSERT_EQ(::tcflow(user, TCOOFF), 0);  // as Ctrl-S does
+  std::this_thread::sleep_for(500ms);    // the bar is drawn ten times a second
   process.signal(SIGINT);
+  for (int i = 0; i < 3000 && process.is_running(); ++i) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(process.is_running());
+  ASSERT_EQ(::tcflow(user, TCOON), 0);
+  ::close(user);
   EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
-  for (ssize_t got; (got = ::read(terminal, text, sizeof text)) > 0;) {
-    shown.append(text, static_cast<std::size_t>(got));
-  }
-  ::close(terminal);
-  EXPECT_TRUE(shown.ends_with("asking\r\033[K")) << shown;
+  EXPECT_EQ(dir_.entries(), entries);
 }
 
 }  // namespace

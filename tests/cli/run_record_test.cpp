@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <set>
 
 #include "cli/run_case.h"
 
 namespace ist::test {
 namespace {
-
-using namespace std::chrono_literals;
 
 class RunRecord : public RunCase {};
 
@@ -168,39 +165,6 @@ TEST_F(RunRecord, DamagedRecordingsAreRefusedWithFileLineAndRemedy) {
   EXPECT_TRUE(says(missing.err, "none.jsonl: "));
   const CommandResult folder = ist(run(scene, {"--replay", std::string(dir_.path())}));
   EXPECT_EQ(folder.exit_code, 3) << "a folder is no recording";
-}
-
-TEST_F(RunRecord, KeepsARecordingWholeWhereItIsInterrupted) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    const std::string file = path("ticks.jsonl"), scene = boxes();
-    const std::size_t entries = dir_.entries();
-    Process process(IST_COMMAND, run(scene, {"--record", file, "--seconds", "4", "--json",
-                                             "--allow-missed", "1000000"}));
-    await_entries(entries + 1, process);
-    std::this_thread::sleep_for(200ms);
-    process.signal(signal);
-    const CommandResult result = process.wait();
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    const auto report = json_lines(result.out);
-    ASSERT_EQ(report.size(), 1u);
-    const auto lines = json_lines(file_content(file));
-    EXPECT_EQ(report[0]["ticks"], lines.size());
-    EXPECT_GT(lines.size(), 20u);
-    EXPECT_LT(lines.size(), 3000u);
-    std::filesystem::remove(file);
-  }
-}
-
-TEST_F(RunRecord, IsEndedByASecondSignal) {
-  // The disk does not answer: a pipe that nobody reads.
-  const std::string pipe = path("pipe.jsonl");
-  ASSERT_EQ(run_command("/usr/bin/mkfifo", {pipe}).exit_code, 0);
-  Process process(IST_COMMAND, run(boxes(), {"--unpaced", "--record", pipe}));
-  std::this_thread::sleep_for(300ms);
-  process.signal(SIGINT);
-  std::this_thread::sleep_for(100ms);
-  process.signal(SIGINT);
-  EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
 }
 
 TEST_F(RunRecord, AFullDiskEndsTheRun) {

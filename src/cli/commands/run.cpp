@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
-#include <exception>
-#include <future>
+#include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <thread>
+#include <optional>
+#include <stdexcept>
 
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/run_report.h"
 #include "cli/commands/tick_lines.h"
+#include "cli/commands/tick_recorder.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
@@ -23,11 +24,6 @@
 namespace ist::cli {
 namespace {
 
-// Capacity of the ring: enough for some seconds in which the disk does not answer.
-constexpr std::size_t kRingTicks = 1 << 14;
-constexpr std::size_t kTicksAtOnce = 256;
-constexpr std::chrono::milliseconds kNap{5};
-
 struct RunArguments {
   std::filesystem::path scene, record, replay;
   bool check = false, explain = false, unpaced = false, json = false;
@@ -37,87 +33,58 @@ struct RunArguments {
   std::uint64_t max_memory = BuildOptions{}.max_memory;
 };
 
-// Runs an action if an exception ends its scope.
-template <typename Action>
-class OnException {
- public:
-  explicit OnException(Action action) : action_(std::move(action)) {}
-  ~OnException() {
-    if (std::uncaught_exceptions() > before_) action_();
+// A run that a signal may stop, and its recording, if one is asked for.
+struct StoppableRun {
+  explicit StoppableRun(const std::filesystem::path& record)
+      : file(record.empty() ? nullptr : std::make_unique<TickWriter>(record)) {
+    if (file) recorder.emplace(*file, stop);
   }
-  OnException(const OnException&) = delete;
-  OnException& operator=(const OnException&) = delete;
 
- private:
-  Action action_;
-  int before_ = std::uncaught_exceptions();
+  // Opened while a signal still ends the process: open() of a pipe waits for a reader.
+  std::unique_ptr<TickWriter> file;
+  StopOnInterruption stop;
+  std::optional<TickRecorder> recorder;
 };
 
-// Writes ticks from the ring until it is empty and `last` is set. On failure, asks the loop to stop
-// and closes the ring, so that the loop does not wait for room.
-void write_ticks(TickRing<TickRecord>& ring, TickWriter& writer, const std::atomic<bool>& last,
-                 StopOnInterruption& stop) {
-  const OnException give_up([&] {
-    ring.close();
-    stop.ask();
-  });
-  std::vector<TickRecord> ticks(kTicksAtOnce);
-  while (true) {
-    const bool was_last = last.load(std::memory_order_acquire);
-    const std::size_t count = ring.pop(ticks);
-    for (std::size_t i = 0; i < count; ++i) writer.write(ticks[i]);
-    if (count == 0 && was_last) return;
-    if (count == 0) std::this_thread::sleep_for(kNap);
-  }
-}
-
-ServoReport run_recorded(BuiltScene& built, const ServoOptions& servo,
-                         const std::filesystem::path& file) {
-  StopOnInterruption stop;
+ServoReport run_loop(BuiltScene& built, const ServoOptions& servo, StoppableRun& run) {
   ProgressBar progress;
   ServoOutputs outputs;
   outputs.progress = &progress;
-  const auto run = [&] {
-    return run_servo_loop(*built.simulation, *built.device, servo, outputs, stop.asked());
-  };
-  if (file.empty()) return run();
-  TickWriter writer(file);
-  TickRing<TickRecord> ring(kRingTicks);
-  outputs.records = &ring;
-  std::atomic<bool> last{false};
-  // get() rethrows the exceptions of the thread.
-  std::future<void> written =
-      std::async(std::launch::async, [&] { write_ticks(ring, writer, last, stop); });
-  // Ends the thread if the loop throws.
-  const OnException end([&] { last.store(true, std::memory_order_release); });
-  ServoReport report = run();
-  last.store(true, std::memory_order_release);
-  written.get();
-  writer.commit();
+  if (run.recorder) outputs.records = &run.recorder->ring();
+  ServoReport report =
+      run_servo_loop(*built.simulation, *built.device, servo, outputs, run.stop.asked());
+  if (run.recorder) run.recorder->complete();
   return report;
 }
 
 void replay_ticks(BuiltScene& built, const RunArguments& options) {
   TickReader reader(options.replay, built.simulation->dt());
-  std::optional<TickWriter> writer;
-  if (!options.record.empty()) writer.emplace(options.record);
+  StoppableRun run(options.record);
+  const std::atomic<bool>& stop = run.stop.asked();
   ProgressBar progress;
   progress.begin_stage("replaying ticks", reader.bytes());
   std::uint64_t ticks = 0, read = 0;
-  while (const std::optional<RecordedTick> recorded = reader.next()) {
+  while (!stop) {
+    const std::optional<RecordedTick> recorded = reader.next(stop);
+    if (!recorded) break;
     const TickRecord record = replay(*recorded, *built.simulation);
-    if (writer) writer->write(record);
+    if (run.recorder) run.recorder->push(record);
     progress.add(reader.bytes_read() - read);
     read = reader.bytes_read();
     ++ticks;
   }
-  if (ticks == 0) {
+  if (ticks == 0 && !stop) {
     throw Error(ErrorCode::kInputInvalid,
                 fmt::format("{}: it holds no tick: give a file that --record wrote",
                             options.replay.string()));
   }
-  if (writer) writer->commit();
+  if (run.recorder) run.recorder->complete();
   fmt::print(stderr, "replayed {} ticks\n", ticks);
+}
+
+// Prints what is buffered while a signal still cannot end the process amid the report.
+void flush_report() {
+  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
 }
 
 void run(const RunArguments& options) {
@@ -148,8 +115,10 @@ void run(const RunArguments& options) {
   servo.ticks = static_cast<std::uint64_t>(scene.rate * scene.seconds + 0.5);
   servo.paced = !options.unpaced;
   servo.real_time.cpu = options.cpu;
-  const ServoReport report = run_recorded(built, servo, options.record);
+  StoppableRun stoppable(options.record);
+  const ServoReport report = run_loop(built, servo, stoppable);
   print_report(report, scene, *built.simulation, options.json);
+  flush_report();
   if (report.lost_records > 0) {
     throw std::runtime_error(
         fmt::format("{} ticks were not recorded: the disk is slower than the loop: record to "
@@ -214,7 +183,9 @@ void add_run(CLI::App& app) {
       *command,
       "Prints how many ticks searched and how many kept pairs, how late they began, how long\n"
       "they took, and the time of each effect.\n"
-      "Ctrl-C reduces the force to zero and completes the recording.\n"
+      "Ctrl-C reduces the force to zero, completes the recording and prints the report, with\n"
+      "the exit codes of a run that ends by itself. A second Ctrl-C more than 1 s later\n"
+      "completes the recording alone and ends the process within 1 s (exit code 130).\n"
       "Lengths of a recording are metres. README.md lists the keys of a scene and of a\n"
       "recording; tests/data/scenes has scenes to try.\n"
       "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "ist/base/error.h"
 
@@ -100,32 +99,20 @@ void TickWriter::flush() {
   lines_.clear();
 }
 
-TickReader::TickReader(std::filesystem::path file, double dt)
-    : file_(std::move(file)), dt_(dt), in_(file_) {
-  if (!in_) {
-    throw Error(ErrorCode::kFileUnreadable,
-                fmt::format("{}: {}", file_.string(), std::strerror(errno)));
-  }
-  std::error_code none;  // a pipe has no size
-  const std::uintmax_t size = std::filesystem::file_size(file_, none);
-  if (!none) bytes_ = size;
-}
+TickReader::TickReader(std::filesystem::path file, double dt) : lines_(std::move(file)), dt_(dt) {}
 
 void TickReader::refuse(const std::string& what) const {
   throw Error(ErrorCode::kInputInvalid,
               fmt::format("{}:{}: {}: give a file that --record wrote as JSON lines",
-                          file_.string(), line_, what));
+                          lines_.path().string(), line_, what));
 }
 
-std::optional<RecordedTick> TickReader::next() {
-  std::string text;
-  if (!std::getline(in_, text)) {
-    if (in_.bad()) refuse("cannot be read");
-    return std::nullopt;
-  }
+std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
+  const std::optional<std::string> text = lines_.next(stop);
+  if (!text) return std::nullopt;
   ++line_;
-  bytes_read_ += text.size() + 1;
-  const nlohmann::json line = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  bytes_read_ += text->size() + 1;
+  const nlohmann::json line = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!line.is_object()) refuse("not a JSON object");
   RecordedTick tick{};
   const auto value = [&](const char* key) -> const nlohmann::json& {
@@ -153,7 +140,7 @@ std::optional<RecordedTick> TickReader::next() {
         ErrorCode::kInputInvalid,
         fmt::format(
             "{}:{}: it was recorded at {:.6g} Hz, and the scene runs at {:.6g}: give --rate {:.6g}",
-            file_.string(), line_, 1 / dt->get<double>(), 1 / dt_, 1 / dt->get<double>()));
+            lines_.path().string(), line_, 1 / dt->get<double>(), 1 / dt_, 1 / dt->get<double>()));
   }
   const auto device = line.find("device");
   if (device == line.end()) refuse("no key 'device'");

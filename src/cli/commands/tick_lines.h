@@ -1,10 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 
+#include "cli/line_reader.h"
 #include "ist/base/files.h"
 #include "ist/haptics/recording.h"
 
@@ -35,21 +36,21 @@ class TickReader {
   /// @param dt time step of the replay, s
   TickReader(std::filesystem::path file, double dt);
 
-  /// Returns the next tick, or nothing at the end. Throws kInputInvalid, naming file, line and
-  /// remedy, for a line that is no tick or has another time step.
-  [[nodiscard]] std::optional<RecordedTick> next();
+  /// Returns the next tick, or nothing at the end, or when `stop` is set while it waits for a pipe.
+  /// Throws kInputInvalid, naming file, line and remedy, for a line that is no tick or has another
+  /// time step; kFileUnreadable.
+  [[nodiscard]] std::optional<RecordedTick> next(const std::atomic<bool>& stop);
 
   /// The size of the file when it was opened, and the bytes read so far.
-  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return lines_.size(); }
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
 
  private:
   [[noreturn]] void refuse(const std::string& what) const;
 
-  std::filesystem::path file_;
+  LineReader lines_;
   double dt_;
-  std::ifstream in_;
-  std::uint64_t line_ = 0, bytes_ = 0, bytes_read_ = 0;
+  std::uint64_t line_ = 0, bytes_read_ = 0;
 };
 
 }  // namespace ist::cli

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/run_case.h"
+
+namespace ist::test {
+
+/// A test that sends signals to a run which records.
+class RunSignals : public RunCase {
+ protected:
+  RunSignals() {
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+  }
+
+  /// A run that does not end by itself.
+  [[nodiscard]] std::vector<std::string> endless(const std::string& record,
+                                                 std::vector<std::string> more = {}) const {
+    const std::string scene = write("endless.toml",
+                                    "unit = \"mm\"\n[fixed]\nshape = \"box\"\nsize = [8, 8, 4]\n"
+                                    "voxel_size = 1\n[held]\nshape = \"box\"\nsize = [4, 4, 4]\n"
+                                    "voxel_size = 1\ntranslation = [0, 0, 5]\n"
+                                    "[device]\nkind = \"null\"\n[effects.contact]\n");
+    more.insert(more.end(), {"--seconds", "100000", "--json", "--record", record});
+    return run(scene, more);
+  }
+  [[nodiscard]] std::vector<std::string> endless_paced(const std::string& record) const {
+    return endless(record, {"--allow-missed", "100000000"});
+  }
+  /// The same, with a system call that at some time does not return any more.
+  [[nodiscard]] Process with_held_call(const std::string& call, int after,
+                                       const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{"LD_PRELOAD=" IST_HELD_CALLS,
+                                 "ASAN_OPTIONS=verify_asan_link_order=0",
+                                 "IST_HOLD=" + call,
+                                 "IST_HOLD_AFTER=" + std::to_string(after),
+                                 "IST_HOLD_SIGN=" + path("held"),
+                                 IST_COMMAND};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return Process("/usr/bin/env", all);
+  }
+
+  /// How many bytes of recordings that are not whole yet lie in the folder.
+  [[nodiscard]] std::uintmax_t unfinished_bytes() const {
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_.path())) {
+      std::error_code gone;
+      const std::uintmax_t size = std::filesystem::file_size(entry, gone);
+      if (entry.path().extension() == ".tmp" && !gone) bytes += size;
+    }
+    return bytes;
+  }
+  /// Waits until ticks are written, so that a signal comes amid the run.
+  void await_ticks(Process& process) const {
+    while (unfinished_bytes() == 0 && process.is_running())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  /// Waits until that system call does not return.
+  void await_hold(Process& process) const {
+    while (!exists("held") && process.is_running()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::filesystem::remove(path("held"));
+  }
+  [[nodiscard]] std::string pipe(const std::string& name) const {
+    const std::string file = path(name);
+    EXPECT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    return file;
+  }
+
+  /// The number of ticks in a recording, whose lines are ticks that follow each other; the clock
+  /// may have left some out.
+  static std::size_t ticks_in(const std::string& text, bool paced) {
+    EXPECT_TRUE(text.empty() || text.ends_with("}\n"));
+    const std::vector<nlohmann::json> lines = json_lines(text);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const auto tick = lines[i]["tick"].get<std::size_t>();
+      const std::size_t least = i == 0 ? 0 : lines[i - 1]["tick"].get<std::size_t>() + 1;
+      if (paced ? tick < least : tick != i) {
+        ADD_FAILURE() << "tick " << tick << " in line " << i;
+        return 0;
+      }
+    }
+    return lines.size();
+  }
+  /// A run that a signal ended in order: it reports, and its recording has the ticks reported.
+  static void expect_order(const CommandResult& result, const std::string& text, bool paced) {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto report = json_lines(result.out);
+    ASSERT_EQ(report.size(), 1u) << "no report";
+    EXPECT_EQ(report[0]["ticks"], ticks_in(text, paced));
+    EXPECT_GT(report[0]["ticks"], 0);
+  }
+  /// Signals, and expects the end by that signal within 1 s, or 3 s on a machine under load.
+  static void expect_end_by(int signal, Process& process) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+    process.signal(signal);
+    while (process.is_running() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_FALSE(process.is_running());
+    EXPECT_EQ(process.wait().exit_code, 128 + signal);
+  }
+};
+
+/// A pipe, of which a test holds both ends, so that nobody waits to open it.
+class HeldPipe {
+ public:
+  explicit HeldPipe(const std::string& file)
+      : descriptor_(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
+    EXPECT_GE(descriptor_, 0);
+  }
+  ~HeldPipe() { ::close(descriptor_); }
+  HeldPipe(const HeldPipe&) = delete;
+  HeldPipe& operator=(const HeldPipe&) = delete;
+
+  /// Waits until something is written to it, and not read, or all is read.
+  void await(bool filled) const {
+    for (int bytes = filled ? 0 : 1; (bytes > 0) != filled;) {
+      ASSERT_EQ(::ioctl(descriptor_, FIONREAD, &bytes), 0);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  void fill() {
+    const std::string bytes(4096, ' ');
+    while (::write(descriptor_, bytes.data(), bytes.size()) > 0) continue;
+  }
+  void write(const std::string& text) {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t written = ::write(descriptor_, text.data() + done, text.size() - done);
+      if (written > 0) done += static_cast<std::size_t>(written);
+      if (written < 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  /// All that is written until the process has ended.
+  std::string read_to_the_end_of(Process& process) {
+    std::string text;
+    std::vector<char> bytes(1 << 16);
+    for (bool running = true; running;) {
+      running = process.is_running();
+      for (ssize_t got; (got = ::read(descriptor_, bytes.data(), bytes.size())) > 0;) {
+        text.append(bytes.data(), static_cast<std::size_t>(got));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return text;
+  }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace ist::test
