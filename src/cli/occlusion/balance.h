@@ -20,6 +20,7 @@ struct Division {
 /// The geometric shares of one surface on both sides of a division; of a foundation that is thinner
 /// and thicker too. Per cent; they are no forces.
 struct Balance {
+  /// All 0 where nothing is pressed, as a thinner foundation may not be.
   struct Shares {
     double first = 0, second = 0;
     double asymmetry = 0;  ///< 100 |first - second| / (first + second)
@@ -30,7 +31,8 @@ struct Balance {
 };
 
 /// Returns the balance of a surface; nothing where no region has a share. `to_fixed` maps the mesh
-/// to fixed coordinates. A triangle counts to the side that its middle lies on.
+/// to fixed coordinates. A triangle counts to the side that its middle lies on, and on the plane
+/// half to each.
 [[nodiscard]] std::optional<Balance> balance_of(const SurfaceOcclusion& surface,
                                                 const TriangleMesh& mesh,
                                                 const Eigen::Isometry3d& to_fixed,

@@ -17,8 +17,14 @@ struct MapBand {
   bool below_scan_error;  ///< drawn hatched: "below the error assumed for scanning"
 };
 
-/// Returns the bands of a bite's preset: what overlaps, one for each limit, and one to the reach.
+/// Returns the bands of a bite, by distance and without gaps: what overlaps by more than the
+/// scanner band and by less, one for each limit of the preset over 0, and one to the reach. What
+/// touches is warm, what is near goes from green to blue, and the last is pale.
 [[nodiscard]] std::vector<MapBand> map_bands(const Bite& bite);
+
+/// Returns the band of a signed distance; null for NaN, and beyond the bands. A limit belongs to
+/// the band that ends there.
+[[nodiscard]] const MapBand* band_of(double distance, std::span<const MapBand> bands);
 
 /// Returns the colour of a signed distance; that of the bare surface for NaN, and beyond the bands.
 [[nodiscard]] Colour map_colour(double distance, std::span<const MapBand> bands);

@@ -18,8 +18,13 @@ enum class ToothNumbers { kFdi, kUniversal };
 using ToothLabels = std::vector<int>;
 
 /// Reads labels: one whole number a line, for each triangle, or for each vertex, where a triangle
-/// is of the tooth that two of its corners name, else of none. Throws kInputInvalid, naming the
-/// line, for another count and for a number outside the system.
+/// is of the tooth that two of its corners name, else of none. Triangles are in the file's order;
+/// vertices are in the mesh's, which read_mesh() makes by their first use. Lines may be blank at
+/// the end.
+///
+/// Throws kFileUnreadable, and kInputInvalid, naming the line, for a number outside the system or
+/// no number; for another count; and for labels of vertices by which most triangles lie between
+/// teeth, since those are of another order.
 [[nodiscard]] ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
                                       ToothNumbers numbers);
 
@@ -32,7 +37,8 @@ struct Tooth {
   double least_distance = 0;  ///< signed, of its vertices, mesh units; NaN beyond the reach
 };
 
-/// Returns the teeth of a surface by their numbers: all that are labelled.
+/// Returns the teeth of a surface by their numbers: all that are labelled. Precondition: a label
+/// for each triangle.
 [[nodiscard]] std::vector<Tooth> teeth_of(const SurfaceOcclusion& surface, const TriangleMesh& mesh,
                                           const ToothLabels& labels);
 

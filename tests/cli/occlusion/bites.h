@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "cli/occlusion/bite.h"
+#include "ist/query/query.h"
+
+namespace ist::test {
+
+/// A bite, and what it refers to.
+struct MadeBite {
+  SphereTree fixed, moving;
+  cli::Bite bite;
+};
+
+/// Measures the bite of two bodies as the command does: areas at the limits of the preset, touch,
+/// distance and depth, and balances about the planes x = 0 and y = 0, whose sides have the names of
+/// axes. A reach of 2, names "fixed.stl" and "moving.stl".
+[[nodiscard]] std::unique_ptr<MadeBite> bite_of(
+    const TriangleMesh& fixed, const TriangleMesh& moving,
+    const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(),
+    std::string_view preset = "scan");
+
+/// The preset of that name.
+[[nodiscard]] const cli::Preset& preset_of(std::string_view name);
+
+/// A flat plate about the z axis, of squares of two triangles, normals along z.
+[[nodiscard]] TriangleMesh plate(double half, double edge);
+
+/// A sphere of radius 4 over such a plate, whose lowest point is at (x, y, height): the plate is
+/// fixed.
+[[nodiscard]] std::unique_ptr<MadeBite> sphere_over_plate(const Eigen::Vector3d& lowest,
+                                                          std::string_view preset = "scan");
+
+}  // namespace ist::test
