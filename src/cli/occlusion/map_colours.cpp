@@ -11,7 +11,7 @@ namespace {
 
 // Neighbours differ in lightness, or in blue against yellow, so that they differ to all eyes. Cool
 // colours are apart, warm ones touch, and purple overlaps.
-constexpr Colour kDeep{84, 22, 104}, kOverlap{196, 52, 132};
+constexpr Colour kDeep{104, 28, 132}, kOverlap{196, 52, 132};
 constexpr std::array<Colour, 3> kContact{{{196, 54, 22}, {244, 142, 40}, {255, 222, 96}}};
 constexpr std::array<Colour, 3> kNear{{{176, 212, 84}, {72, 172, 172}, {56, 104, 184}}};
 constexpr Colour kBeyond{188, 206, 230};

@@ -1,0 +1,154 @@
+#include "cli/occlusion/bite_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace ist::cli {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Box = Eigen::AlignedBox3d;
+
+// Visits the triangles whose corners are all within the reach: a corner, and twice the area along
+// the outer normal; fixed coordinates.
+template <typename Visit>
+void visit_near(const BiteBody& body, const Visit& visit) {
+  const auto is_near = [&](std::uint32_t v) {
+    return !std::isnan(body.surface.vertices[v].distance);
+  };
+  for (const Triangle& t : body.mesh->triangles) {
+    if (!is_near(t[0]) || !is_near(t[1]) || !is_near(t[2])) continue;
+    const Vector& a = body.mesh->vertices[t[0]];
+    const Vector area = (body.mesh->vertices[t[1]] - a).cross(body.mesh->vertices[t[2]] - a);
+    visit(body.to_fixed * a, Vector(body.to_fixed.linear() * area));
+  }
+}
+
+Vector facing(const BiteBody& body) {
+  Vector sum = Vector::Zero();
+  visit_near(body, [&](const Vector&, const Vector& area) { sum += area; });
+  return sum;
+}
+
+Vector middle_of(const BiteBody& body) {
+  Box box;
+  for (const Vector& v : body.mesh->vertices) box.extend(body.to_fixed * v);
+  return box.center();
+}
+
+// The axis of a vector's largest component.
+Vector nearest_axis(const Vector& vector) {
+  Eigen::Index largest = 0;
+  vector.cwiseAbs().maxCoeff(&largest);
+  Vector axis = Vector::Zero();
+  axis[largest] = vector[largest] < 0 ? -1 : 1;
+  return axis;
+}
+
+// From the fixed body to the moving one.
+Vector direction_between(const Bite& bite) {
+  constexpr double kCosine25 = 0.906;
+  const Vector normal = facing(bite.fixed) - facing(bite.moving);
+  const double length = normal.norm();
+  if (!(length > 0)) return nearest_axis(middle_of(bite.moving) - middle_of(bite.fixed));
+  const Vector direction = normal / length, axis = nearest_axis(direction);
+  return axis.dot(direction) > kCosine25 ? axis : direction;
+}
+
+Vector direction_across(const Bite& bite, const Vector& towards) {
+  const std::array<Vector, 4> choice{bite.sides.direction, bite.fore_aft.direction, Vector::UnitX(),
+                                     Vector::UnitY()};
+  for (const Vector& direction : choice) {
+    const Vector across = direction - towards.dot(direction) * towards;
+    if (across.norm() > 0.5) return across.normalized();
+  }
+  return Vector::UnitZ().cross(towards).normalized();
+}
+
+// Returns the smallest pixels by which a picture of that size holds a box with some room round it.
+double pixel_of(const Box& box, double room, int width, int height) {
+  const double wide = box.sizes()[0], high = box.sizes()[1], around = room * std::max(wide, high);
+  return std::max((wide + 2 * around) / width, (high + 2 * around) / height);
+}
+
+// Where along an axis all but a fiftieth of an area lies, at each end.
+class Middle {
+ public:
+  void add(double at, double area) { parts_.emplace_back(at, area), all_ += area; }
+  [[nodiscard]] bool empty() const { return parts_.empty(); }
+  [[nodiscard]] std::pair<double, double> range() {
+    std::sort(parts_.begin(), parts_.end());
+    return {reached(parts_.begin(), parts_.end()), reached(parts_.rbegin(), parts_.rend())};
+  }
+
+ private:
+  template <typename Iterator>
+  [[nodiscard]] double reached(Iterator part, Iterator end) const {
+    for (double rest = 0.02 * all_; part + 1 != end && (rest -= part->second) > 0;) ++part;
+    return part->first;
+  }
+
+  std::vector<std::pair<double, double>> parts_;
+  double all_ = 0;
+};
+
+// The part of a picture in which the bodies face each other, and all regions touch; empty where
+// nothing does.
+Box opposed(const Bite& bite, const Eigen::Matrix3d& to_picture, const Vector& towards) {
+  Box box;
+  std::array<Middle, 3> middle;
+  for (const BiteBody* body : {&bite.fixed, &bite.moving}) {
+    const Vector outwards = body == &bite.fixed ? towards : Vector(-towards);
+    visit_near(*body, [&](const Vector& corner, const Vector& area) {
+      if (area.dot(outwards) < 0.5 * area.norm()) return;
+      const Vector point = to_picture * corner;
+      for (std::size_t i = 0; i < 3; ++i) middle[i].add(point[static_cast<int>(i)], area.norm());
+    });
+    for (const ContactRegion& region : body->surface.regions) {
+      box.extend(to_picture * region.closest);
+    }
+  }
+  if (middle[0].empty()) return box;
+  const auto [x, y, z] = std::tuple(middle[0].range(), middle[1].range(), middle[2].range());
+  return box.extend(Vector(x.first, y.first, z.first)).extend(Vector(x.second, y.second, z.second));
+}
+
+}  // namespace
+
+BiteViews bite_views(const Bite& bite, int width, int height) {
+  BiteView fixed;
+  fixed.towards = direction_between(bite);
+  fixed.across = direction_across(bite, fixed.towards);
+  fixed.up = fixed.towards.cross(fixed.across);
+  Eigen::Matrix3d axes;
+  axes << fixed.across, fixed.up, fixed.towards;
+  Box shown;
+  for (const BiteBody* body : {&bite.fixed, &bite.moving}) {
+    for (const Vector& v : body->mesh->vertices) {
+      shown.extend(axes.transpose() * (body->to_fixed * v));
+    }
+  }
+  fixed.pixel = pixel_of(shown, 0.03, width, height);
+  if (!(fixed.pixel > 0)) fixed.pixel = 1;  // both are seen as one point
+  const Box part = opposed(bite, axes.transpose(), fixed.towards);
+  if (!part.isEmpty()) {
+    // No larger than three times, so that one sees where it is.
+    const double pixel = std::max(pixel_of(part, 0.12, width, height), fixed.pixel / 3);
+    if (pixel < 0.8 * fixed.pixel) {
+      fixed.pixel = pixel;
+      shown = part;
+    }
+  }
+  fixed.middle = axes * shown.center();
+  BiteView moving = fixed;
+  moving.towards = -fixed.towards;
+  moving.up = -fixed.up;
+  return {fixed, moving};
+}
+
+}  // namespace ist::cli

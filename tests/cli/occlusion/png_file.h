@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "cli/occlusion/map_picture.h"
+
+namespace ist::test {
+
+/// Reads a PNG by libpng's decoder. Throws std::runtime_error where it is none.
+[[nodiscard]] cli::Picture decoded(const std::string& png);
+
+/// The pixel at a place, whose y runs down.
+[[nodiscard]] cli::Colour pixel_at(const cli::Picture& picture, int x, int y);
+
+}  // namespace ist::test
