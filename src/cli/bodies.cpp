@@ -137,8 +137,9 @@ Bodies load_bodies(const BodyFiles& files) {
   refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
             "both bodies are trees, which have their own voxel sizes: leave it out");
   refuse_different_units(fixed, moving);
-  double voxel_size = files.voxel_size.value_or(0);
-  if (!both_are_trees && !files.voxel_size) {
+  const bool voxels = files.voxels == BodyFiles::Voxels::kMade;
+  double voxel_size = files.voxel_size.value_or(std::max(fixed.extent, moving.extent));
+  if (!both_are_trees && !files.voxel_size && voxels) {
     voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent),
                                     "the smaller body's largest extent");
   }
@@ -149,8 +150,10 @@ Bodies load_bodies(const BodyFiles& files) {
   bodies.fixed.require(bodies.policy, fixed.name());
   bodies.moving.require(bodies.policy, moving.name());
   warn_of_units(fixed, moving);
-  warn_of_voxels(fixed, bodies.fixed.voxel_size());
-  warn_of_voxels(moving, bodies.moving.voxel_size());
+  if (voxels) {
+    warn_of_voxels(fixed, bodies.fixed.voxel_size());
+    warn_of_voxels(moving, bodies.moving.voxel_size());
+  }
   return bodies;
 }
 

@@ -43,7 +43,11 @@ struct Bodies {
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
 struct BodyFiles {
+  /// Whether meshes get voxels: a question that needs none is answered of one voxel a body.
+  enum class Voxels : std::uint8_t { kMade, kNone };
+
   std::filesystem::path fixed, moving;
+  Voxels voxels = Voxels::kMade;
   std::optional<double> voxel_size;    ///< of meshes, mesh units; empty: 1/500 of Bodies::extent()
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have
   std::uint64_t max_memory = BuildOptions{}.max_memory;

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "cli/commit.h"
-#include "ist/base/files.h"
-#include "ist/tree/tree_stream.h"
+#include "cli/source_file.h"
 
 namespace ist::cli {
 namespace {
@@ -17,13 +15,9 @@ using nlohmann::ordered_json;
 ordered_json line_of(const std::string& subcommand, const NamedFiles& files) {
   ordered_json line{{"ist", IST_VERSION}, {"commit", IST_COMMIT}, {"subcommand", subcommand}};
   for (const auto& [name, file] : files) {
-    line[name] = {{"file", file.filename().string()}, {"hash", nullptr}};
-    std::error_code unknown;
-    if (!std::filesystem::is_regular_file(file, unknown)) continue;
-    const std::string content = InputFile(file).read_rest();
-    Checksum sum;
-    sum.add(content.data(), content.size());
-    line[name]["hash"] = fmt::format("{:016x}", sum.value());
+    const MeshSource source = source_of(file);
+    line[name] = {{"file", source.name}, {"hash", nullptr}};
+    if (source.hash != 0) line[name]["hash"] = fmt::format("{:016x}", source.hash);
   }
   return line;
 }
@@ -36,6 +30,7 @@ void print_header(const std::string& subcommand, const NamedFiles& files) {
 
 void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies) {
   ordered_json line = line_of(subcommand, files);
+  line["unit"] = json_of(bodies.unit());
   line["voxel_size"] = {bodies.fixed.voxel_size(), bodies.moving.voxel_size()};
   fmt::print("{}\n", line.dump());
 }

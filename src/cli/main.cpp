@@ -57,6 +57,7 @@ int run(int argc, char** argv) {
   add_export(app);
   add_collide(app);
   add_approach(app);
+  add_occlusion(app);
   add_run(app);
   add_advise(app);
   add_table(app);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/common_options.h"
+#include "cli/contacts/contact_file.h"
 #include "cli/refusals.h"
 #include "simd/dispatch.h"
 
@@ -68,6 +69,7 @@ void QueryOptions::check() const {
   }
   refuse_if(questions.max_tests && verify, "--max-tests",
             "contradicts --verify, which checks complete answers");
+  if (!contacts.empty()) check_contact_file(contacts);
   refuse_if(json && timing, "--timing", "contradicts --json, which has all times");
   static_cast<void>(select_kernels(target));  // before anything is built
   if (std::find(engines.begin(), engines.end(), "simd") != engines.end()) return;
@@ -105,9 +107,11 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
-  command.add_option("--contacts", options.contacts,
-                     "write leaf pairs, and the contact points that they are reduced to, at most "
-                     "32 a pose, in fixed coordinates, to this file");
+  command.add_option(
+      "--contacts", options.contacts,
+      "write leaf pairs, and the contact points that they are reduced to, at most "
+      "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
+      "or .ply");
   command.add_flag("--fail-if-touching", options.fail_if_touching,
                    "exit code 6 where the bodies touch, or may, at any pose");
   add_max_memory(command, options.files.max_memory);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/answers/answer_lines.h"
-#include "cli/contact_writer.h"
+#include "cli/contacts/contact_writer.h"
 #include "cli/engine.h"
 #include "cli/exit_code.h"
 #include "cli/header_line.h"

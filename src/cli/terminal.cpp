@@ -17,10 +17,10 @@ bool has_colours() {
 
 }  // namespace
 
-std::string painted(std::string_view text, Colour colour) {
+std::string painted(std::string_view text, TextColour colour) {
   static const bool colours = has_colours();
   if (!colours) return std::string(text);
-  const char* code = colour == Colour::kRed ? "31" : colour == Colour::kYellow ? "33" : "1";
+  const char* code = colour == TextColour::kRed ? "31" : colour == TextColour::kYellow ? "33" : "1";
   return fmt::format("\033[{}m{}\033[0m", code, text);
 }
 

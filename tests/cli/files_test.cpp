@@ -128,7 +128,7 @@ TEST_F(Files, InfoOfATree) {
   EXPECT_EQ(line["depth"], 3);
   EXPECT_EQ(line["voxels"], tree.leaf_count());
   EXPECT_EQ(line["orientation"], "outward");
-  EXPECT_EQ(line["triangles"], true);
+  EXPECT_EQ(line["triangles"], false);
   EXPECT_EQ(line["proximity"], false);
   ASSERT_EQ(line["levels"].size(), 4u);
   for (std::size_t level = 0; level < 4; ++level) {

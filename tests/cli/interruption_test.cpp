@@ -28,8 +28,9 @@ class Interruption : public CliTest {
   }
   // A query that goes on for minutes, and writes its contacts into the folder all the while.
   [[nodiscard]] std::vector<std::string> long_query(const std::string& tree) const {
-    return {"approach", tree,     tree,   "--axis",   "z",       "--from",     "0",      "--to",
-            "1",        "--step", "0.01", "--repeat", "1000000", "--contacts", path("c")};
+    return {"approach", tree,       tree,      "--axis",     "z",
+            "--from",   "0",        "--to",    "1",          "--step",
+            "0.01",     "--repeat", "1000000", "--contacts", path("c.jsonl")};
   }
   // Waits until it holds so many entries, or the process has ended.
   void await_entries(std::size_t entries, Process& process) const {
@@ -40,7 +41,7 @@ class Interruption : public CliTest {
 TEST_F(Interruption, OfAQueryLeavesNoContacts) {
   StabilityCase seen("faults", "signal in a query", "wrong outcomes");
   const std::string tree = ball_tree("ball.ist", "tight", {"--voxel-size", "0.05"});
-  const std::string leaf_pairs = write("c", "older");
+  const std::string leaf_pairs = write("c.jsonl", "older");
   const std::size_t entries = dir_.entries();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     Process process(IST_COMMAND, long_query(tree));

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "cli/cli_case.h"
 #include "ist/tree/sphere_tree.h"
@@ -233,6 +234,51 @@ TEST_F(QueryOutput, ContactsAreWrittenOneByOne) {
   }
 }
 
+// The same contacts in every format.
+TEST_F(QueryOutput, ContactsAreWrittenByTheFilesEnding) {
+  const std::string tree = ball_tree(), list = poses({3.5, 1});
+  const auto ask = [&](const std::string& name) {
+    ist_well({"collide", tree, tree, "--poses", list, "--contacts", path(name)});
+    return file_content(path(name));
+  };
+  const auto lines = json_lines(ask("c.jsonl"));
+  ASSERT_GT(lines.size(), 100u);
+  std::istringstream rows(ask("c.csv"));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row,
+            "index,kind,x,y,z,radius,moving_x,moving_y,moving_z,normal_x,normal_y,normal_z,depth,"
+            "weight");
+  for (const json& line : lines) {
+    const bool contact = line["kind"] == "contact";
+    ASSERT_TRUE(std::getline(rows, row));
+    std::vector<std::string> fields;
+    std::istringstream stream(row);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    fields.resize(14);  // the last ones may be empty
+    EXPECT_EQ(fields[0], std::to_string(line["index"].get<int>()));
+    EXPECT_EQ(fields[1], line["kind"]);
+    const json& at = line[contact ? "position" : "fixed_centre"];
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(std::stod(fields[2 + i]), at[i]);
+      EXPECT_EQ(fields[6 + i].empty(), contact);
+      EXPECT_EQ(fields[9 + i].empty(), !contact);
+    }
+    EXPECT_GT(std::stod(fields[5]), 0);
+    if (!contact) continue;
+    EXPECT_EQ(std::stod(fields[12]), line["depth"]);
+    EXPECT_EQ(std::stod(fields[13]), line["weight"]);
+  }
+  EXPECT_FALSE(std::getline(rows, row));
+  const std::string points = std::to_string(lines.size());
+  EXPECT_TRUE(says(ask("c.ply").substr(0, 400), "element vertex " + points + "\n"));
+  EXPECT_TRUE(says(ask("c.vtp").substr(0, 400), "NumberOfPoints=\"" + points + "\""));
+  const CommandResult refused = ist({"collide", tree, tree, "--contacts", path("c.stl")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(says(refused.err, ".jsonl"));
+  EXPECT_FALSE(exists("c.stl"));
+}
+
 // Forces are not made of a part: an answer that was stopped has no points.
 TEST_F(QueryOutput, ContactPointsAreThoseOfAWholeAnswer) {
   const std::string tree = ball_tree("ball.ist", "slab"), file = path("contacts.jsonl");
@@ -270,10 +316,11 @@ TEST_F(QueryOutput, ContactsAreThereWholeOrNotAtAll) {
 TEST_F(QueryOutput, AFullDiskIsAFailure) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "/dev/full is not there";
   const std::string tree = ball_tree();
+  std::filesystem::create_symlink("/dev/full", path("full.csv"));
   const CommandResult result =
-      ist({"collide", tree, tree, "--poses", poses({0}), "--contacts", "/dev/full"});
+      ist({"collide", tree, tree, "--poses", poses({0}), "--contacts", path("full.csv")});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(says(result.err, "/dev/full: cannot write"));
+  EXPECT_TRUE(says(result.err, "full.csv: cannot write"));
   const CommandResult lost =
       run_command("/bin/sh", {"-c", "exec \"$0\" info \"$1\" > /dev/full", IST_COMMAND, tree});
   EXPECT_EQ(lost.exit_code, 1);

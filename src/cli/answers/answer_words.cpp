@@ -12,9 +12,9 @@ namespace {
 std::string word_of(Answer touch, int width) {
   switch (touch) {
     case Answer::kYes:
-      return painted(fmt::format("{:<{}}", "yes", width), Colour::kRed);
+      return painted(fmt::format("{:<{}}", "yes", width), TextColour::kRed);
     case Answer::kNear:
-      return painted(fmt::format("{:<{}}", "near", width), Colour::kYellow);
+      return painted(fmt::format("{:<{}}", "near", width), TextColour::kYellow);
     default:
       return fmt::format("{:<{}}", "no", width);
   }

@@ -13,6 +13,7 @@ void add_info(CLI::App& app);
 void add_export(CLI::App& app);
 void add_collide(CLI::App& app);
 void add_approach(CLI::App& app);
+void add_occlusion(CLI::App& app);
 void add_run(CLI::App& app);
 void add_advise(CLI::App& app);
 void add_table(CLI::App& app);

@@ -3,20 +3,19 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "cli/bodies.h"
-#include "ist/base/files.h"
+#include "cli/contacts/contact_file.h"
 #include "ist/query/query.h"
 #include "ist/tree/bounds.h"
 
 namespace ist::cli {
 
-/// Writes leaf pairs and contacts in fixed coordinates, one JSON object a line: for each pose all
-/// leaf pairs, as the centres of their spheres, then its contacts. The file appears, complete,
-/// after commit().
+/// Writes leaf pairs and contacts in fixed coordinates: for each pose all leaf pairs, as the
+/// centres of their spheres, then its contacts. The file appears, complete, after commit().
 class ContactWriter {
  public:
   /// Opens the file. `bodies` must outlive the writer.
@@ -26,17 +25,14 @@ class ContactWriter {
   /// is not `complete`, because a part of the leaf pairs would give other ones.
   void write(std::size_t index, const Eigen::Isometry3d& pose, std::span<const LeafPair> leaf_pairs,
              bool complete);
-  void commit() { file_.commit(); }
+  void commit() { file_->commit(); }
 
  private:
-  void flush();
-
-  OutputFile file_;
+  std::unique_ptr<ContactFile> file_;
   const Bodies& bodies_;
   std::vector<Ball> fixed_, moving_;
   Query query_;
   ContactManifold points_;
-  std::string lines_;  // not yet written
 };
 
 }  // namespace ist::cli

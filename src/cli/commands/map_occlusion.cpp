@@ -1,0 +1,248 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/bodies.h"
+#include "cli/commands/commands.h"
+#include "cli/common_options.h"
+#include "cli/exit_code.h"
+#include "cli/formats/format.h"
+#include "cli/formats/glb_writer.h"
+#include "cli/formats/ply_writer.h"
+#include "cli/formats/vtp_writer.h"
+#include "cli/header_line.h"
+#include "cli/occlusion/bite_json.h"
+#include "cli/occlusion/bite_maker.h"
+#include "cli/occlusion/bite_surfaces.h"
+#include "cli/occlusion/bite_tables.h"
+#include "cli/poses/pose_options.h"
+#include "cli/refusals.h"
+#include "cli/source_file.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr std::array kWritable = {FileFormat::kVtp, FileFormat::kPly, FileFormat::kGlb,
+                                  FileFormat::kCsv, FileFormat::kJson};
+
+struct OcclusionArguments {
+  BodyFiles files;
+  PoseOptions pose;
+  std::vector<std::filesystem::path> outputs;
+  BiteQuestions questions;
+  std::string preset{presets().front().name}, unit, numbering, side;
+  std::optional<double> open;  // millimetres
+  bool fail_if_touching = false, json = false;
+};
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.emplace_back(preset.name);
+  return names;
+}
+
+void require_length(double length, const std::string& option) {
+  refuse_if(!(length > 0) || !std::isfinite(length), option,
+            fmt::format("{} is no length: give more than 0", length));
+}
+
+// What the words mean, or why they mean nothing; before any file is read.
+BiteQuestions questions_of(const OcclusionArguments& options) {
+  BiteQuestions questions = options.questions;
+  require_length(questions.reach, "--reach");
+  refuse_if(!(questions.scanner_band >= 0) || !std::isfinite(questions.scanner_band),
+            "--scanner-band", "give micrometres from 0 on");
+  const auto preset = std::find_if(presets().begin(), presets().end(),
+                                   [&](const Preset& each) { return each.name == options.preset; });
+  questions.preset = &*preset;
+  if (!options.unit.empty()) questions.unit = *length_unit(options.unit);
+  const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
+  refuse_if(labels && options.numbering.empty(), "--numbering",
+            "needed with labels: fdi or universal");
+  refuse_if(!labels && !options.numbering.empty(), "--numbering",
+            "goes with --labels-fixed and --labels-moving");
+  if (labels) {
+    questions.numbers = options.numbering == "fdi" ? ToothNumbers::kFdi : ToothNumbers::kUniversal;
+  }
+  return questions;
+}
+
+struct Output {
+  std::filesystem::path file;
+  FileFormat format;
+};
+
+std::vector<Output> outputs_of(const OcclusionArguments& options) {
+  std::vector<Output> outputs;
+  bool surface = false, open = false;
+  for (const std::filesystem::path& file : options.outputs) {
+    const FileFormat format = format_by_ending("-o", file, kWritable);
+    refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
+                               options.questions.labels_fixed, options.questions.labels_moving});
+    open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
+    surface = surface || format == FileFormat::kVtp;
+    outputs.push_back({file, format});
+  }
+  refuse_if(options.open && !open, "--open", "goes with .ply and .glb");
+  refuse_if(!options.side.empty() && !open && !surface, "--side", "goes with .vtp, .ply and .glb");
+  if (options.open) {
+    refuse_if(!(*options.open >= 0) || !std::isfinite(*options.open), "--open",
+              "give millimetres from 0 on");
+  }
+  return outputs;
+}
+
+void write(const Bite& bite, const Output& output, BiteSelection selection) {
+  const std::string comment =
+      fmt::format("signed distances, {}, NaN beyond {:g}; {}", bite.unit, bite.reach, kCaveat);
+  switch (output.format) {
+    case FileFormat::kVtp:
+      selection.open.reset();
+      return write_vtp(joined(bite_arrays(bite, selection)), output.file);
+    case FileFormat::kPly:
+      return write_ply(joined(bite_surfaces(bite, selection)), output.file, comment);
+    case FileFormat::kGlb: {
+      std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
+      for (NamedPolyData& body : bodies) {
+        body.data.normals = vertex_normals(body.data);
+        body.data.point_arrays.clear();
+      }
+      return write_glb(bodies, 1e-3 / bite.units_per_mm, output.file);
+    }
+    case FileFormat::kCsv:
+      return write_bite_csv(bite, output.file);
+    default:
+      return write_bite_json(bite, output.file);
+  }
+}
+
+BiteSources sources_of(const Bodies& bodies, const BodyFiles& files) {
+  const auto named = [](const SphereTree& tree, const std::filesystem::path& file) {
+    return tree.source().name.empty() ? MeshSource{file.filename().string()} : tree.source();
+  };
+  return {named(bodies.fixed, files.fixed), named(bodies.moving, files.moving)};
+}
+
+void run(const OcclusionArguments& options) {
+  const BiteQuestions questions = questions_of(options);
+  const std::vector<Output> outputs = outputs_of(options);
+  refuse_if(outputs.empty() && !options.json, "-o",
+            "name a file that ends in .vtp, .ply, .glb, .csv or .json, or give --json");
+  const Eigen::Isometry3d pose = options.pose.poses_named().front();
+  const Bodies bodies = load_bodies(options.files);
+  const Bite bite = make_bite(bodies, sources_of(bodies, options.files), pose, questions);
+  BiteSelection selection;
+  if (!options.side.empty()) {
+    selection.side = options.side == "fixed" ? BiteSide::kFixed : BiteSide::kMoving;
+  }
+  if (options.open) selection.open = *options.open * bite.units_per_mm;
+  std::vector<std::filesystem::path> written;
+  for (const Output& output : outputs) {
+    write(bite, output, selection);
+    written.push_back(output.file);
+  }
+  if (options.json) {
+    if (!questions.no_names) {
+      print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}});
+    }
+    fmt::print("{}\n", json_of(bite).dump());
+  } else {
+    print_bite(bite, written);
+  }
+  if (options.fail_if_touching && bite.findings.touch != Answer::kNo) {
+    throw Failure(kTouching, "the bodies touch");
+  }
+}
+
+void add_measure_options(CLI::App& command, OcclusionArguments& options) {
+  BiteQuestions& questions = options.questions;
+  command
+      .add_option(
+          "--preset", options.preset,
+          "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, 59, "
+          "89, 149; paper 200; stl 100 to 400; shim 10")
+      ->check(CLI::IsMember(preset_names()))
+      ->capture_default_str();
+  command
+      .add_option("--reach", questions.reach, "millimetres beyond which no distance is measured")
+      ->capture_default_str();
+  command
+      .add_option("--scanner-band", questions.scanner_band,
+                  "micrometres, ±, that scanning is assumed to err by")
+      ->capture_default_str();
+  command.add_option("--unit", options.unit, "of both meshes; of trees, what they hold; else mm")
+      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
+}
+
+void add_patient_options(CLI::App& command, OcclusionArguments& options) {
+  const std::string group = "The patient; nothing is guessed, and sides are +x and -x by default";
+  BiteQuestions& questions = options.questions;
+  command
+      .add_option("--frame", questions.sides.frame,
+                  "lps: +x is the patient's left, +y behind; ras: +x right, +y in front")
+      ->check(CLI::IsMember({"lps", "ras"}))
+      ->group(group);
+  command.add_option("--left", questions.sides.left, "x,y,z: the direction of the patient's left")
+      ->group(group);
+  command
+      .add_option("--front", questions.sides.front, "x,y,z: the direction of the patient's front")
+      ->group(group);
+  command
+      .add_option("--midline", questions.sides.midline,
+                  "x,y,z: a point between left and right; by default the middle of the fixed "
+                  "body's box, assumed")
+      ->group(group);
+  command
+      .add_option("--labels-fixed", questions.labels_fixed,
+                  "the fixed body's tooth numbers: a whole number a line, for each triangle or "
+                  "vertex; 0 for no tooth")
+      ->group(group);
+  command.add_option("--labels-moving", questions.labels_moving, "the moving body's")->group(group);
+  command.add_option("--numbering", options.numbering, "the system of the labels")
+      ->check(CLI::IsMember({"fdi", "universal"}))
+      ->group(group);
+}
+
+}  // namespace
+
+void add_occlusion(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "occlusion",
+      "Map the distance between two jaws: areas, contact regions, shares, files to see");
+  const auto options = std::make_shared<OcclusionArguments>();
+  options->files.voxels = BodyFiles::Voxels::kNone;
+  command->add_option("FIXED", options->files.fixed, "mesh or tree of the body that stays")
+      ->required();
+  command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
+      ->required();
+  command->add_option("-o,--output", options->outputs,
+                      "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
+                      "Blender), .glb (browsers), .csv (a row a region), .json; "
+                      "may be given again");
+  add_measure_options(*command, *options);
+  command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
+      ->check(CLI::IsMember({"fixed", "moving"}));
+  command->add_option("--open", options->open,
+                      "open the pair like a book, with this gap, millimetres: .ply and .glb");
+  command->add_flag("--no-names", options->questions.no_names,
+                    "write fixed and moving for the files' names");
+  command->add_flag("--fail-if-touching", options->fail_if_touching,
+                    "exit code 6 where the bodies touch");
+  add_max_memory(*command, options->files.max_memory);
+  command->add_flag("--json", options->json, "print the measures as JSON");
+  add_patient_options(*command, *options);
+  add_pose_options(*command, options->pose, Poses::kOne);
+  add_example(*command, std::string("Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
+                                    "          ist occlusion upper.stl lower.stl --frame lps -o "
+                                    "bite.ply -o bite.csv\n\n") +
+                            kCaveat);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

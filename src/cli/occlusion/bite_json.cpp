@@ -1,0 +1,122 @@
+#include "cli/occlusion/bite_json.h"
+
+#include <cmath>
+
+namespace ist::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json triple(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+ordered_json or_null(double number) {
+  return std::isfinite(number) ? ordered_json(number) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const ContactRegion& region) {
+  ordered_json out{{"area", region.area},
+                   {"centre", triple(region.centre)},
+                   {"least_distance", region.least_distance},
+                   {"closest", triple(region.closest)},
+                   {"penetrating_area", region.penetrating_area},
+                   {"depth_integral", region.depth_integral},
+                   {"share", region.share},
+                   {"share_thinner", region.share_thinner},
+                   {"share_thicker", region.share_thicker}};
+  out["partner"] = region.partner ? ordered_json(*region.partner) : ordered_json(nullptr);
+  return out;
+}
+
+ordered_json json_of(const Balance::Shares& shares, const Division& division) {
+  return {{division.first, shares.first},
+          {division.second, shares.second},
+          {"asymmetry", shares.asymmetry}};
+}
+
+ordered_json json_of(const std::optional<Balance>& balance, const Division& division) {
+  if (!balance) return nullptr;
+  return {{"per_cent", json_of(balance->shares, division)},
+          {"thinner", json_of(balance->thinner, division)},
+          {"thicker", json_of(balance->thicker, division)},
+          {"centre", triple(balance->centre)}};
+}
+
+ordered_json json_of(const Division& division) {
+  return {{"direction", triple(division.direction)},
+          {"at", division.at},
+          {"assumed", division.assumed}};
+}
+
+ordered_json json_of(const BiteBody& body, const Bite& bite) {
+  const SurfaceOcclusion& surface = body.surface;
+  ordered_json out{{"file", body.name}, {"hash", nullptr}, {"closed", body.closed}};
+  if (body.hash) out["hash"] = *body.hash;
+  out["vertices"] = surface.vertices.size();
+  std::size_t near = 0;
+  for (const SurfaceDistance& one : surface.vertices) near += std::isnan(one.distance) ? 0U : 1U;
+  out["vertices_within_reach"] = near;
+  out["areas"] = ordered_json::array();
+  for (std::size_t i = 0; i < body.areas.size(); ++i) {
+    out["areas"].push_back({{"micrometres", bite.preset->micrometres[i]}, {"area", body.areas[i]}});
+  }
+  out["total_area"] = surface.total_area;
+  out["penetrating_area"] = surface.penetrating_area;
+  out["depth_integral"] = surface.depth_integral;
+  out["depth_at_vertices"] = surface.depth_at_vertices;
+  out["regions"] = ordered_json::array();
+  for (const ContactRegion& region : surface.regions) out["regions"].push_back(json_of(region));
+  out["sides"] = json_of(body.sides, bite.sides);
+  out["fore_aft"] = json_of(body.fore_aft, bite.fore_aft);
+  out["teeth"] = ordered_json::array();
+  for (const Tooth& tooth : body.teeth) {
+    out["teeth"].push_back({{"number", tooth.number},
+                            {"area", tooth.area},
+                            {"share", tooth.share},
+                            {"share_thinner", tooth.share_thinner},
+                            {"share_thicker", tooth.share_thicker},
+                            {"least_distance", or_null(tooth.least_distance)}});
+  }
+  return out;
+}
+
+const char* name_of(ToothNumbers numbers) {
+  return numbers == ToothNumbers::kFdi ? "fdi" : "universal";
+}
+
+}  // namespace
+
+ordered_json json_of(const Bite& bite) {
+  const Findings& found = bite.findings;
+  ordered_json out{{"schema", 1}, {"version", IST_VERSION}, {"unit", bite.unit}};
+  out["unit_assumed"] = bite.unit_assumed;
+  out["pose"] = ordered_json::array();
+  for (Eigen::Index i = 0; i < 16; ++i) out["pose"].push_back(bite.pose.matrix().data()[i]);
+  out["reach"] = bite.reach;
+  out["preset"] = {{"name", bite.preset->name},
+                   {"micrometres", bite.preset->micrometres},
+                   {"source", bite.preset->source}};
+  out["scanner_band_micrometres"] = bite.scanner_band;
+  out["contact"] = bite.contact;
+  out["foundation"] = {{"depth", bite.foundation}, {"change", bite.change}};
+  out["touch"] = found.touch == Answer::kYes ? "yes" : "no";
+  out["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
+  out["distance_lower"] = found.distance->lower;
+  out["distance_upper"] = found.distance->upper;
+  const auto& depth = found.depth.certain;
+  out["depth_lower"] = depth ? ordered_json(depth->lower) : ordered_json(nullptr);
+  out["depth_upper"] = depth ? ordered_json(depth->upper) : ordered_json(nullptr);
+  const auto& deepest = found.depth.at_vertices;
+  out["depth_at_vertices"] = deepest ? ordered_json(*deepest) : ordered_json(nullptr);
+  const auto& point = found.depth.point;
+  out["depth_point"] = point ? triple(*point) : ordered_json(nullptr);
+  out["sides"] = json_of(bite.sides);
+  out["fore_aft"] = json_of(bite.fore_aft);
+  out["numbering"] = bite.numbers ? ordered_json(name_of(*bite.numbers)) : ordered_json(nullptr);
+  out["fixed"] = json_of(bite.fixed, bite);
+  out["moving"] = json_of(bite.moving, bite);
+  out["checks"] = bite.checks;
+  out["caveat"] = kCaveat;
+  return out;
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,141 @@
+#include "cli/occlusion/bite_maker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/extents.h"
+#include "cli/progress_bar.h"
+#include "cli/refusals.h"
+#include "ist/base/pose.h"
+
+namespace ist::cli {
+namespace {
+
+// Deeper than this, millimetres, a bite's registration is looked at again (Zagreb 2026).
+constexpr double kMuchOverlap = 0.1;
+
+LengthUnit unit_of(const Bodies& bodies, const BiteQuestions& questions) {
+  const LengthUnit stored = bodies.unit();
+  refuse_if(stored != LengthUnit::kUnknown && questions.unit != LengthUnit::kUnknown &&
+                stored != questions.unit,
+            "--unit", fmt::format("the trees hold {}: leave it out", to_string(stored)));
+  return stored != LengthUnit::kUnknown ? stored : questions.unit;
+}
+
+OcclusionOptions options_of(const Bite& bite) {
+  OcclusionOptions options;
+  options.reach = bite.reach;
+  options.limits.clear();
+  for (const double limit : bite.preset->micrometres) {
+    if (limit > 0) options.limits.push_back(limit * bite.units_per_micrometre());
+  }
+  options.contact = bite.contact;
+  options.least_area = 0.01 * bite.units_per_mm * bite.units_per_mm;
+  options.longest_edge = 0.2 * bite.units_per_mm;
+  options.foundation = bite.foundation;
+  options.change = bite.change;
+  return options;
+}
+
+// Of each limit of the preset, in its order.
+std::vector<double> areas_of(const SurfaceOcclusion& surface, const Preset& preset) {
+  std::vector<double> areas;
+  auto next = surface.areas.begin();
+  for (const double limit : preset.micrometres) {
+    areas.push_back(limit > 0 ? *next++ : surface.penetrating_area);
+  }
+  return areas;
+}
+
+void fill(BiteBody& body, const SphereTree& tree, const Bite& bite,
+          const std::filesystem::path& labels) {
+  body.mesh = tree.triangles();
+  body.closed = tree.orientation() == Orientation::kOutward;
+  body.areas = areas_of(body.surface, *bite.preset);
+  body.sides = balance_of(body.surface, *body.mesh, body.to_fixed, bite.sides);
+  body.fore_aft = balance_of(body.surface, *body.mesh, body.to_fixed, bite.fore_aft);
+  if (labels.empty()) return;
+  body.teeth = teeth_of(body.surface, *body.mesh, read_labels(labels, *body.mesh, *bite.numbers));
+}
+
+void name(BiteBody& body, const MeshSource& source, const char* anonymous, bool no_names) {
+  body.name = no_names || source.name.empty() ? anonymous : source.name;
+  if (source.hash != 0) body.hash = fmt::format("{:016x}", source.hash);
+}
+
+std::vector<std::string> checks_of(const Bite& bite) {
+  std::vector<std::string> checks;
+  const Depth& depth = bite.findings.depth;
+  const double deepest = depth.certain ? depth.certain->lower : depth.at_vertices.value_or(0.0);
+  if (deepest > kMuchOverlap * bite.units_per_mm) {
+    checks.push_back("overlap above 0.1 mm: check the bite registration");
+  }
+  if (bite.unit_assumed) checks.push_back(fmt::format("unit: {} (assumed)", bite.unit));
+  checks.push_back(fmt::format(
+      "sides: {} and {}, divided {}", bite.sides.first, bite.sides.second,
+      bite.sides.assumed ? "in the middle of the fixed body's box (assumed)" : "as named"));
+  for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
+    if (body->closed) continue;
+    checks.push_back(fmt::format(
+        "the {} body is open: distances at its border have no sign, and depth is told by vertices",
+        role));
+  }
+  const auto is_empty = [](const BiteBody& body) {
+    return std::all_of(body.surface.vertices.begin(), body.surface.vertices.end(),
+                       [](const SurfaceDistance& one) { return std::isnan(one.distance); });
+  };
+  if (is_empty(bite.fixed) && is_empty(bite.moving)) {
+    checks.push_back(fmt::format("the map is empty: nothing lies within the reach of {:g} {}",
+                                 bite.reach, bite.unit));
+  }
+  return checks;
+}
+
+}  // namespace
+
+Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Isometry3d& pose,
+               const BiteQuestions& questions) {
+  require_triangles(bodies);
+  Bite bite;
+  const LengthUnit unit = unit_of(bodies, questions);
+  bite.unit_assumed = unit == LengthUnit::kUnknown;
+  const LengthUnit taken = bite.unit_assumed ? LengthUnit::kMillimetre : unit;
+  bite.unit = to_string(taken);
+  bite.units_per_mm = 1e-3 / metres_per_unit(taken);
+  bite.pose = *project_to_rigid(pose);
+  bite.preset = questions.preset;
+  bite.scanner_band = questions.scanner_band;
+  bite.numbers = questions.numbers;
+  bite.reach = questions.reach * bite.units_per_mm;
+  for (double* length : {&bite.contact, &bite.foundation, &bite.change}) {
+    *length *= bite.units_per_mm;
+  }
+  std::tie(bite.sides, bite.fore_aft) = divisions(questions.sides, box_of(bodies.fixed));
+  bite.moving.to_fixed = bite.pose;
+  name(bite.fixed, sources.fixed, "fixed", questions.no_names);
+  name(bite.moving, sources.moving, "moving", questions.no_names);
+
+  ProgressBar progress;
+  progress.begin_stage("measuring the occlusion", 1000);
+  std::uint64_t told = 0;
+  OcclusionOptions options = options_of(bite);
+  options.proceed = [&](double part) {
+    const auto done = static_cast<std::uint64_t>(1000 * part);
+    progress.add(done - std::min(told, done));
+    told = std::max(told, done);
+    return true;
+  };
+  const Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});
+  Occlusion measured = occlusion(query, pose, options);
+  bite.fixed.surface = std::move(measured.fixed);
+  bite.moving.surface = std::move(measured.moving);
+  fill(bite.fixed, bodies.fixed, bite, questions.labels_fixed);
+  fill(bite.moving, bodies.moving, bite, questions.labels_moving);
+  bite.findings = Examiner(bodies, {}, {}).at(pose);
+  bite.checks = checks_of(bite);
+  return bite;
+}
+
+}  // namespace ist::cli

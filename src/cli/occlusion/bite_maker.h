@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "cli/bodies.h"
+#include "cli/occlusion/bite.h"
+#include "cli/occlusion/sides.h"
+
+namespace ist::cli {
+
+/// The questions about an occlusion. Lengths are in millimetres, or in micrometres where it says
+/// so.
+struct BiteQuestions {
+  LengthUnit unit = LengthUnit::kUnknown;  ///< of the meshes; kUnknown: the trees', else mm assumed
+  const Preset* preset = nullptr;
+  double reach = 2;
+  double scanner_band = 50;  ///< micrometres
+  SideOptions sides;
+  std::filesystem::path labels_fixed, labels_moving;
+  std::optional<ToothNumbers> numbers;
+  bool no_names = false;
+};
+
+/// The names and hashes of the files that bodies were read from.
+struct BiteSources {
+  MeshSource fixed, moving;
+};
+
+/// Measures an occlusion under a progress bar. `bodies` must outlive the bite. Throws
+/// kTrianglesMissing, kInputInvalid for labels, and CLI::ValidationError for sides and for a unit
+/// that contradicts the trees'.
+[[nodiscard]] Bite make_bite(const Bodies& bodies, const BiteSources& sources,
+                             const Eigen::Isometry3d& pose, const BiteQuestions& questions);
+
+}  // namespace ist::cli

@@ -1,0 +1,215 @@
+#include <cmath>
+
+#include "cli/cli_case.h"
+#include "support/ply_file.h"
+#include "support/shapes.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+// ist occlusion. A ball of radius 2 over a plate: at z = 2 - t it is t deep in it.
+class OcclusionCommand : public CliTest {
+ protected:
+  [[nodiscard]] CommandResult ask(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"occlusion", plate_, ball_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ist(arguments);
+  }
+  [[nodiscard]] json asked(std::vector<std::string> more) const {
+    more.emplace_back("--json");
+    const CommandResult result = ask(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto lines = json_lines(result.out);
+    return lines.size() == 1 ? lines[0] : json();
+  }
+  void refuses(const std::vector<std::string>& more, int code, const std::string& part) const {
+    const std::size_t before = dir_.entries();
+    const CommandResult result = ask(more);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(says(result.err, part));
+    EXPECT_EQ(dir_.entries(), before);
+  }
+
+  const std::string ball_ = mesh("ball.stl", icosphere(4, 2));
+  const std::string plate_ = mesh("plate.stl", box({-5, -5, -3}, {5, 5, 0}));
+};
+
+TEST_F(OcclusionCommand, SaysThreeLines) {
+  const CommandResult result = ask({"--move", "0,0,1.8", "-o", path("bite.vtp")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 3);
+  for (const char* part :
+       {"touch yes, ", "(± 0.05 mm assumed for scanning)", "areas, scan: in each other ",
+        "within 100 µm ", "1 paired regions, 0 unpaired", "overlap above 0.1 mm: check the bite",
+        "unit: mm (assumed)", "sides: +x and -x, divided in the middle of the fixed body's box",
+        "wrote ", "bite.vtp"}) {
+    EXPECT_TRUE(says(result.out, part));
+  }
+  const CommandResult apart = ask({"--move", "0,0,2.5", "-o", path("bite.vtp")});
+  EXPECT_TRUE(says(apart.out, "touch no, 0.49"));
+  EXPECT_FALSE(says(apart.out, "overlap above"));
+}
+
+// A cap of height t of a sphere of radius r has the area 2 π r t; the plate's part in the ball is a
+// disc of π t (2 r - t).
+TEST_F(OcclusionCommand, MeasuresACap) {
+  const double t = 0.2, pi = 3.14159265358979;
+  const json bite = asked({"--move", "0,0,1.8"});
+  EXPECT_EQ(bite["schema"], 1);
+  EXPECT_EQ(bite["touch"], "yes");
+  EXPECT_LE(bite["depth_lower"], t);
+  EXPECT_NEAR(bite["depth_upper"].get<double>(), t, 0.002);
+  EXPECT_EQ(bite["fixed"]["areas"][0]["micrometres"], 0);
+  EXPECT_NEAR(bite["moving"]["areas"][0]["area"].get<double>(), 2 * pi * 2 * t, 0.03);
+  EXPECT_NEAR(bite["fixed"]["areas"][0]["area"].get<double>(), pi * t * (4 - t), 0.03);
+  EXPECT_NEAR(bite["moving"]["areas"][1]["area"].get<double>(), 2 * pi * 2 * (t + 0.1), 0.03);
+  // ∫ depth over the cap: 2 π r t² / 2.
+  EXPECT_NEAR(bite["moving"]["depth_integral"].get<double>(), 2 * pi * t * t, 0.01);
+  ASSERT_EQ(bite["moving"]["regions"].size(), 1u);
+  EXPECT_EQ(bite["moving"]["regions"][0]["partner"], 0);
+  EXPECT_EQ(bite["moving"]["regions"][0]["share"], 1);
+  EXPECT_NEAR(bite["moving"]["sides"]["per_cent"]["+x"].get<double>(), 50, 1);
+  EXPECT_TRUE(bite["caveat"].get<std::string>().starts_with("Research software, not a medical"));
+  EXPECT_EQ(bite["moving"]["file"], "ball.stl");
+  EXPECT_EQ(bite["unit_assumed"], true);
+}
+
+TEST_F(OcclusionCommand, WritesBothBodiesWhereTheyBite) {
+  ASSERT_EQ(ask({"--move", "0,0,2.05", "-o", path("b.ply")}).exit_code, 0);
+  const PlyFile ply = parse_ply(file_content(path("b.ply")));
+  std::string names;
+  for (const auto& [kind, name] : ply.properties) names += kind + " " + name + ", ";
+  EXPECT_EQ(names,
+            "float x, float y, float z, uchar red, uchar green, uchar blue, float signed, uchar "
+            "body, ");
+  std::size_t moving = 0, unknown = 0;
+  for (const auto& v : ply.vertices) {
+    const double signed_distance = v.at("signed");
+    if (v.at("body") == 1) {
+      ++moving;
+      // Of the ball, the distance from the plate is the height.
+      EXPECT_TRUE(std::isnan(signed_distance) || std::abs(signed_distance - v.at("z")) <= 1e-5);
+      EXPECT_EQ(std::isnan(signed_distance), v.at("z") > 2);
+    }
+    unknown += std::isnan(signed_distance) ? 1U : 0U;
+  }
+  EXPECT_EQ(moving, icosphere(4, 2).vertices.size());
+  EXPECT_GT(unknown, 0u);
+  ASSERT_EQ(ask({"--side", "fixed", "-o", path("f.ply")}).exit_code, 0);
+  EXPECT_EQ(parse_ply(file_content(path("f.ply"))).vertices.size(), 8u);
+}
+
+// Opened, no body reaches beyond its half, and what faced the other body faces one way.
+TEST_F(OcclusionCommand, OpensLikeABook) {
+  ASSERT_EQ(ask({"--move", "0,0,1.9", "--open", "3", "-o", path("b.ply")}).exit_code, 0);
+  double highest_fixed = -1e9, lowest_moving = 1e9;
+  Eigen::Vector3d nearest(0, 0, 0);  // of the ball, to the plate
+  double least = 1e9, facing_fixed = 0;
+  for (const auto& v : parse_ply(file_content(path("b.ply"))).vertices) {
+    const Eigen::Vector3d at(v.at("x"), v.at("y"), v.at("z"));
+    const bool moving = v.at("body") == 1;
+    if (!moving) highest_fixed = std::max(highest_fixed, at[2]);
+    if (!moving) facing_fixed = std::max(facing_fixed, std::abs(at[0]));
+    if (moving) lowest_moving = std::min(lowest_moving, at[2]);
+    if (!moving || !(v.at("signed") < least)) continue;
+    least = v.at("signed");
+    nearest = at;
+  }
+  EXPECT_NEAR(lowest_moving - highest_fixed, 3, 1e-5);
+  // The hinge is y, so they face +x or -x: the ball's lowest vertex is its farthest that way.
+  EXPECT_NEAR(std::abs(nearest[0]), 2, 1e-5);
+  EXPECT_NEAR(facing_fixed, 1.5, 1e-5);  // the plate stands on its edge
+  refuses({"--open", "3", "-o", path("b.vtp")}, 2, "goes with .ply and .glb");
+  refuses({"--open", "-1", "-o", path("b.ply")}, 2, "--open");
+}
+
+TEST_F(OcclusionCommand, NamesNothingThatItWasNotTold) {
+  const auto words = [&](std::vector<std::string> more) { return asked(std::move(more)).dump(); };
+  for (const char* word : {"left", "right", "anterior", "posterior"}) {
+    EXPECT_FALSE(says(words({"--move", "0,0,1.8"}), word)) << word;
+    EXPECT_TRUE(says(words({"--move", "0,0,1.8", "--frame", "lps"}), word)) << word;
+  }
+  const json lps = asked({"--move", "2,0,1.8", "--frame", "lps"}),
+             ras = asked({"--move", "2,0,1.8", "--frame", "ras"}),
+             left = asked({"--move", "2,0,1.8", "--left", "0,3,0", "--midline", "0,9,0"});
+  EXPECT_EQ(lps["moving"]["sides"]["per_cent"]["left"], 100);
+  EXPECT_EQ(ras["moving"]["sides"]["per_cent"]["right"], 100);
+  EXPECT_EQ(left["moving"]["sides"]["per_cent"]["right"], 100);
+  EXPECT_EQ(left["moving"]["sides"]["per_cent"]["asymmetry"], 100);
+  EXPECT_EQ(left["sides"]["assumed"], false);
+  EXPECT_EQ(lps["sides"]["assumed"], true);
+  const std::string anonymous = words({"--move", "0,0,1.8", "--no-names"});
+  EXPECT_FALSE(says(anonymous, "ball"));
+  EXPECT_FALSE(says(anonymous, "plate"));
+}
+
+TEST_F(OcclusionCommand, TeethAreToldByTheirNumbers) {
+  std::string labels;
+  for (std::size_t i = 0; i < icosphere(4, 2).triangles.size(); ++i) labels += "36\n";
+  const std::string file = write("labels.txt", labels);
+  const json bite = asked({"--move", "0,0,1.8", "--labels-moving", file, "--numbering", "fdi"});
+  EXPECT_EQ(bite["numbering"], "fdi");
+  ASSERT_EQ(bite["moving"]["teeth"].size(), 1u);
+  EXPECT_EQ(bite["moving"]["teeth"][0]["number"], 36);
+  EXPECT_NEAR(bite["moving"]["teeth"][0]["share"].get<double>(), 1, 1e-12);
+  EXPECT_TRUE(bite["fixed"]["teeth"].empty());
+  refuses({"--labels-moving", file, "--json"}, 2, "--numbering");
+  refuses({"--labels-moving", file, "--numbering", "universal", "--json"}, 3, "labels.txt");
+  refuses({"--labels-fixed", file, "--numbering", "fdi", "--json"}, 3, "labels.txt");
+  refuses({"--numbering", "fdi", "--json"}, 2, "--labels-fixed");
+}
+
+TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {
+  TriangleMesh open = box({-5, -5, -3}, {5, 5, 0});
+  open.triangles.resize(10);
+  const std::string shell = mesh("shell.stl", open);
+  const CommandResult result =
+      ist_well({"occlusion", shell, ball_, "--move", "0,0,1.8", "-o", path("b.csv")});
+  EXPECT_TRUE(says(result.out, "the fixed body is open"));
+  const CommandResult far = ask({"--move", "0,0,50", "-o", path("b.csv")});
+  EXPECT_EQ(far.exit_code, 0);
+  EXPECT_TRUE(says(far.out, "the map is empty: nothing lies within the reach of 2 mm"));
+  EXPECT_EQ(file_content(path("b.csv")).find('\n'), file_content(path("b.csv")).size() - 1);
+}
+
+// In inches, presets are still micrometres.
+TEST_F(OcclusionCommand, UnitsAreSaidAndPresetsKeepTheirs) {
+  const json mm = asked({"--move", "0,0,1.8", "--unit", "mm"}),
+             inch = asked({"--move", "0,0,1.8", "--unit", "inch"});
+  EXPECT_EQ(mm["unit_assumed"], false);
+  EXPECT_EQ(inch["unit"], "inch");
+  EXPECT_NEAR(inch["reach"].get<double>(), 2 / 25.4, 1e-12);
+  EXPECT_LT(inch["moving"]["areas"][1]["area"], mm["moving"]["areas"][1]["area"]);
+  const std::string tree = path("plate.ist");
+  ist_well({"build", plate_, "-o", tree, "--voxel-size", "0.2", "--unit", "inch"});
+  EXPECT_EQ(ist({"occlusion", tree, ball_, "--unit", "mm", "--json"}).exit_code, 2);
+}
+
+TEST_F(OcclusionCommand, BadWordsAreRefused) {
+  refuses({}, 2, "-o");
+  refuses({"-o", path("b.stl")}, 2, ".vtp");
+  refuses({"-o", ball_ + ".vtp", "--preset", "nonsense"}, 2, "--preset");
+  for (const char* reach : {"0", "-1", "nan", "inf"}) {
+    refuses({"--json", "--reach", reach}, 2, "--reach");
+  }
+  refuses({"--json", "--scanner-band", "-1"}, 2, "--scanner-band");
+  refuses({"--json", "--left", "0,0,0"}, 2, "no direction");
+  refuses({"--json", "--left", "1,0"}, 2, "give x,y,z");
+  refuses({"--json", "--left", "1,0,0", "--frame", "lps"}, 2, "contradicts");
+  refuses({"--side", "fixed", "-o", path("b.csv")}, 2, "--side");
+  const std::string input = write("plate.ply", file_content(plate_));
+  EXPECT_EQ(ist({"occlusion", input, ball_, "-o", input}).exit_code, 2);
+  EXPECT_EQ(file_content(input), file_content(plate_));
+  const std::string bare = path("bare.ist");
+  ist_well({"build", plate_, "-o", bare, "--voxel-size", "0.5", "--no-triangles"});
+  const CommandResult result = ist({"occlusion", bare, ball_, "--json"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(says(result.err, "--no-triangles"));
+}
+
+}  // namespace
+}  // namespace ist::test
