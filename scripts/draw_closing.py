@@ -36,7 +36,7 @@ def record(ist, scene, folder):
     """The ticks of an unpaced run, the seconds of a tick, and the scene's unit."""
     ticks = folder / "ticks.jsonl"
     run = subprocess.run([ist, "run", scene, "--unpaced", "--record", ticks, "--json"], check=True, stdout=subprocess.PIPE)
-    period = 1 / json.loads(run.stdout)["rate"]
+    period = 1 / json.loads(run.stdout.splitlines()[-1])["rate"]
     unit = re.search(r'^unit\s*=\s*"(\w+)"', scene.read_text(), re.MULTILINE)[1]
     return [json.loads(line) for line in ticks.open()], period, unit
 

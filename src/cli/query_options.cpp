@@ -80,9 +80,16 @@ void QueryOptions::check() const {
             "goes with --engine simd: the reference finds all leaf pairs");
 }
 
+bool QueryOptions::asks_voxels() const {
+  const bool engine = timing || repeat > 1 || verify || questions.max_tests || workers > 1 ||
+                      !spheres.empty() || !target.empty() || engines != QueryOptions().engines;
+  return json || engine || !contacts.empty() || files.voxel_size;
+}
+
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
+  if (!asks_voxels()) named.voxels = BodyFiles::Voxels::kNone;
   return named;
 }
 
@@ -93,8 +100,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
   command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
-                     "edge of a voxel, in mesh units; by default of meshes a 500th of the smaller "
-                     "body's largest extent");
+                     "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
+                     "largest extent, and none are made where nothing is told of them");
   command
       .add_option("--distance", options.questions.distance,
                   "how sharp the distance of the surfaces shall be; by default a 10,000th of that "

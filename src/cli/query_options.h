@@ -31,7 +31,10 @@ struct QueryOptions {
 
   /// Throws CLI::ValidationError if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns the files with the chosen policy.
+  /// Returns whether anything is asked of voxels: lines of JSON, contacts, times and engines are,
+  /// and people's questions are not.
+  [[nodiscard]] bool asks_voxels() const;
+  /// Returns the files with the chosen policy; without voxels where nobody asks for them.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

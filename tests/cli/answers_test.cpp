@@ -274,5 +274,37 @@ TEST_F(Answers, TheFirstLineSaysOfWhat) {
   EXPECT_EQ(header["voxel_size"], (json{0.25, 0.5}));
 }
 
+TEST_F(Answers, EverySubcommandBeginsSo) {
+  const std::string tree = ball_tree();
+  const std::vector<std::vector<std::string>> asked = {
+      {"demo", "--voxel-size", "8"},
+      {"build", ball_, "-o", path("b.ist"), "--voxel-size", "1"},
+      {"info", ball_},
+      {"info", tree},
+      {"export", tree, "--what", "voxels", "--level", "0", "-o", path("v.vtp")},
+      {"approach", tree, tree, "--axis", "x", "--from", "9", "--to", "8"},
+      {"occlusion", tree, tree, "--move", "3.9,0,0"},
+      {"table", "--format", "c", "-o", path("t.h")}};
+  for (std::vector<std::string> arguments : asked) {
+    arguments.emplace_back("--json");
+    const std::string out = ist_well(arguments).out;
+    const json header = json::parse(out.substr(0, out.find('\n')));
+    EXPECT_TRUE(header.contains("ist") && header.contains("commit")) << arguments[0];
+    EXPECT_EQ(header["subcommand"], arguments[0]);
+    EXPECT_FALSE(says(header.dump(), dir_.path().string())) << "no paths";
+    EXPECT_GE(json_lines(out).size(), 1u);
+  }
+}
+
+// People are told without voxels, where nothing of them is asked.
+TEST_F(Answers, VoxelsAreMadeWhereTheyAreAskedFor) {
+  const CommandResult people = ist_well({"collide", ball_, ball_, "--move", "3.9,0,0"});
+  EXPECT_EQ(people.err.find("voxel"), std::string::npos) << people.err;
+  EXPECT_TRUE(says(people.out, "touch      yes"));
+  for (const char* flag : {"--timing", "--json", "--verify"}) {
+    EXPECT_TRUE(says(ist_well({"collide", ball_, ball_, flag}).err, "voxel size 0.008"));
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -60,6 +60,7 @@ Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool intersect, const Budget
   if (why_none_.empty()) {
     const Penetration found = penetration(query_, pose, tolerance_, {.budget = budget});
     depth.certain = {found.lower, found.upper};
+    depth.complete = found.complete;
     if (found.upper == 0) {
       depth.at_vertices = depth.area = 0;
       return depth;

@@ -13,6 +13,7 @@ namespace ist::cli {
 struct Depth {
   /// The penetration depth; empty where a body is open, or holds no triangles.
   std::optional<DistanceInterval> certain{};
+  bool complete = true;  ///< that interval is as narrow as the tolerance, or as rounding allows
   /// The depth of the deepest vertex of either body; empty with open bodies that do not touch.
   std::optional<double> at_vertices{};
   /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty
@@ -28,7 +29,8 @@ class DepthMeter {
   /// `query` must outlive it; `extent` is the smaller body's largest, mesh units.
   DepthMeter(Query& query, double tolerance, double extent);
 
-  /// `intersect`: whether the surfaces do. A budget counts points; with one the interval may be wider.
+  /// `intersect`: whether the surfaces do. A budget counts points; with one the interval may be
+  /// wider.
   [[nodiscard]] Depth at(const Eigen::Isometry3d& pose, bool intersect, const Budget& budget) const;
 
   /// Why there is no certain depth; empty where there is one.

@@ -48,6 +48,11 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
   if (!found.depth.certain && found.touch != Answer::kNo) {
     found.notes.push_back("no certain depth: " + depth_->why_none());
   }
+  if (found.depth.certain && !found.depth.complete && questions_.depth) {
+    found.notes.push_back(fmt::format("depth: asked to {:g}, reached {:.3g}{}", depth_tolerance_,
+                                      found.depth.certain->upper - found.depth.certain->lower,
+                                      questions_.max_tests ? ": allow more --max-tests" : ""));
+  }
   find_contacts(pose, found);
   if (questions_.triangle_pairs) count_triangles(pose, found);
   return found;

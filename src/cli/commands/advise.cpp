@@ -14,6 +14,7 @@
 #include "cli/commands/advise_report.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
+#include "cli/header_line.h"
 #include "cli/poses/pose_file.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
@@ -167,7 +168,13 @@ void run(const AdviseArguments& options) {
                             "voxels do not: add poses shortly before the bodies touch",
                             options.poses.string()));
   }
-  options.json ? print_json(advice) : print_table(advice);
+  if (options.json) {
+    print_header("advise", {{"fixed", options.fixed}, {"moving", options.moving}});
+    print_json(advice);
+  } else {
+    print_table(advice);
+  }
+
   if (!advice.recommended) throw std::runtime_error(why_none(advice, goal));
   if (!options.json) {
     print_build_commands(advice.measured[*advice.recommended].voxel_size, options.fixed,

@@ -10,6 +10,7 @@
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/extents.h"
+#include "cli/header_line.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
 #include "ist/tree/sphere_tree.h"
@@ -55,6 +56,7 @@ void run(BuildArguments options) {
 
   const LinearOctree& octree = tree.parts().octree;
   if (options.json) {
+    print_header("build", {{"mesh", options.mesh}});
     nlohmann::ordered_json line{
         {"file", options.output.string()}, {"triangles", triangles},
         {"voxel_size", tree.voxel_size()}, {"spheres", options.spheres},

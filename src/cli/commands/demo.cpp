@@ -12,6 +12,7 @@
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/engine.h"
+#include "cli/header_line.h"
 #include "cli/refusals.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
@@ -124,7 +125,9 @@ void run(const DemoArguments& options) {
   }
   const TriangleMesh upper_mesh = make_jaw(Jaw::kUpper, options.seed);
   const TriangleMesh lower_mesh = make_jaw(Jaw::kLower, options.seed);
-  if (!options.json) {
+  if (options.json) {
+    print_header("demo", {});
+  } else {
     fmt::print("Two jaws made from seed {}, upper {} triangles, lower {} triangles.\n",
                options.seed, upper_mesh.triangles.size(), lower_mesh.triangles.size());
     fmt::print(

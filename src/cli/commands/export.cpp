@@ -13,6 +13,7 @@
 #include "cli/formats/glb_writer.h"
 #include "cli/formats/ply_writer.h"
 #include "cli/formats/vtp_writer.h"
+#include "cli/header_line.h"
 #include "cli/refusals.h"
 #include "ist/scene/ranges.h"
 #include "ist/tree/sphere_tree.h"
@@ -73,6 +74,7 @@ void run(const ExportArguments& options) {
   (options.what == "voxels" ? write_voxels : write_spheres)(tree, format, options);
   const std::uint32_t count = tree.parts().octree.node_count(options.level);
   if (options.json) {
+    print_header("export", {{"tree", options.tree}});
     const nlohmann::ordered_json line{{"file", options.output.string()},
                                       {"what", options.what},
                                       {"level", options.level},

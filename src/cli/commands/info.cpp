@@ -9,6 +9,7 @@
 #include "cli/commands/info_text.h"
 #include "cli/common_options.h"
 #include "cli/extents.h"
+#include "cli/header_line.h"
 #include "cli/source_file.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/saved_spheres.h"
@@ -44,6 +45,7 @@ void add_measures(ordered_json& line, const Eigen::Vector3d& extent,
 void show_mesh(const InfoArguments& options) {
   const MeshReport report = check_mesh(read_mesh(options.file));
   if (!options.json) return print_mesh(options.file, report);
+  print_header("info", {{"mesh", options.file}});
   ordered_json line{{"file", options.file.string()},
                     {"kind", "mesh"},
                     {"vertices", report.vertices},
@@ -67,6 +69,7 @@ void show_tree(const InfoArguments& options) {
   std::optional<MeshReport> triangles;
   if (tree.triangles() != nullptr) triangles = check_mesh(*tree.triangles());
   if (!options.json) return print_tree(options.file, tree, triangles, levels);
+  print_header("info", {{"tree", options.file}});
   ordered_json line{
       {"file", options.file.string()},
       {"kind", "tree"},

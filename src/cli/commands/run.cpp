@@ -14,6 +14,7 @@
 #include "cli/commands/tick_recorder.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
+#include "cli/header_line.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
@@ -107,7 +108,13 @@ void run(const RunArguments& options) {
     return build_scene(scene, {}, options.max_memory, &progress);
   }();
   print_warnings(built.warnings);
-  if (options.explain) return print_notes(built.notes, options.json);
+  const auto begin_json = [&] {
+    if (options.json) print_header("run", {{"scene", options.scene}});
+  };
+  if (options.explain) {
+    begin_json();
+    return print_notes(built.notes, options.json);
+  }
   if (options.check) return;
   if (!options.replay.empty()) return replay_ticks(built, options);
 
@@ -117,6 +124,7 @@ void run(const RunArguments& options) {
   servo.real_time.cpu = options.cpu;
   StoppableRun stoppable(options.record);
   const ServoReport report = run_loop(built, servo, stoppable);
+  begin_json();
   print_report(report, scene, *built.simulation, options.json);
   flush_report();
   if (report.lost_records > 0) {

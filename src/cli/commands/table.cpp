@@ -13,6 +13,7 @@
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
+#include "cli/header_line.h"
 #include "cli/refusals.h"
 #include "hardware/table_export.h"
 #include "hardware/vector_file.h"
@@ -59,6 +60,7 @@ void tell(const TableArguments& options, const nlohmann::ordered_json& line,
           const std::string& text) {
   if (options.output.empty()) return;
   if (options.json) {
+    print_header("table", {});
     fmt::print("{}\n", line.dump());
   } else {
     fmt::print("{}: {}\n", options.output.string(), text);
@@ -104,6 +106,7 @@ void check_file(const TableArguments& options) {
   const VectorCheck check = check_vectors(options.check, kMostDifferences);
   const std::string file = options.check.string();
   if (options.json) {
+    print_header("table", {{"vectors", options.check}});
     fmt::print("{}\n", json_of(options.check, check).dump());
   } else {
     for (const VectorDifference& at : check.differences) {

@@ -31,8 +31,8 @@ class ContactFile {
 
 /// Opens a file by its ending: .jsonl, an object a line; .csv, a row each; .vtp and .ply, points
 /// with the arrays "index", "kind" (0 a leaf pair, 1 a contact), "radius", "normal", "depth" and
-/// "weight" (NaN, and a normal of nothing, where a row has neither), in memory until commit(). Throws
-/// CLI::ValidationError for another ending, and kFileUnwritable.
+/// "weight" (NaN, and a normal of nothing, where a row has neither), in memory until commit().
+/// Throws CLI::ValidationError for another ending, and kFileUnwritable.
 [[nodiscard]] std::unique_ptr<ContactFile> open_contact_file(const std::filesystem::path& file);
 
 /// Throws CLI::ValidationError for a name with another ending, before anything is done.
