@@ -162,17 +162,28 @@ TEST(Occlusion, PairsRegionsThatFaceEachOther) {
   EXPECT_GT(found.moving.regions[0].share_thinner, found.moving.regions[0].share_thicker);
 }
 
+// Regions by their triangles, and the triangles that their closest vertices face.
+ContactRegions regions_of(const std::vector<std::vector<std::uint32_t>>& triangles,
+                          std::vector<std::uint32_t> nearest) {
+  ContactRegions out{{}, std::move(nearest)};
+  for (const std::vector<std::uint32_t>& indices : triangles) {
+    ContactRegion& region = out.regions.emplace_back();
+    for (const std::uint32_t k : indices) region.triangles.push_back({k});
+  }
+  return out;
+}
+
 // The closest vertex of each says which region it faces: the second moving one is faced by none.
 TEST(ContactRegions, ArePartnersWhereEachFacesTheOther) {
-  ContactRegions fixed{std::vector<ContactRegion>(2), {10, 99}, {{1, 2}, {3}}};
-  ContactRegions moving{std::vector<ContactRegion>(2), {2, 1}, {{10, 11}, {12}}};
+  ContactRegions fixed = regions_of({{1, 2}, {3}}, {10, 99});
+  ContactRegions moving = regions_of({{10, 11}, {12}}, {2, 1});
   pair_regions(fixed, moving);
   EXPECT_EQ(fixed.regions[0].partner, 0U);
   EXPECT_EQ(moving.regions[0].partner, 0U);
   EXPECT_FALSE(fixed.regions[1].partner.has_value()) << "nothing touches where it is nearest";
   EXPECT_FALSE(moving.regions[1].partner.has_value());
-  ContactRegions one_way{std::vector<ContactRegion>(1), {12}, {{1}}};
-  ContactRegions other{std::vector<ContactRegion>(2), {1, 77}, {{10}, {12}}};
+  ContactRegions one_way = regions_of({{1}}, {12});
+  ContactRegions other = regions_of({{10}, {12}}, {1, 77});
   pair_regions(one_way, other);
   EXPECT_FALSE(one_way.regions[0].partner.has_value());
   EXPECT_FALSE(other.regions[1].partner.has_value());
