@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "cli/occlusion/bite.h"
+
+namespace ist::cli {
+
+/// Writes all that is known of a bite as one page of HTML, for people: pictures of both distance
+/// maps, tables, and the limits of the method. The page holds no script and refers to nothing
+/// outside; it is well-formed XML too. Its words for sides are those of the bite's divisions alone.
+/// Throws kFileUnwritable. Cost: some 0.2 s for two bodies of 100,000 triangles; the file takes
+/// about 0.5 MB.
+void write_bite_html(const Bite& bite, const std::filesystem::path& file);
+
+}  // namespace ist::cli

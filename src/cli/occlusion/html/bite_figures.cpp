@@ -1,0 +1,138 @@
+#include "cli/occlusion/html/bite_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "cli/occlusion/bite_view.h"
+#include "cli/occlusion/html/html_text.h"
+#include "cli/occlusion/map_colours.h"
+#include "cli/occlusion/map_picture.h"
+#include "cli/occlusion/png_image.h"
+#include "ist/base/parallel.h"
+
+namespace ist::cli {
+namespace {
+
+constexpr int kWidth = 900, kHeight = 700;  // pixels
+// More numbers than this would hide the map; the first regions are the largest.
+constexpr std::size_t kNumbered = 40;
+
+std::string text_at(double x, double y, const char* anchor, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
+                     text);
+}
+
+// The name of the side that a direction points to; empty where it lies between.
+std::string side_at(const Bite& bite, const Eigen::Vector3d& direction) {
+  for (const Division* division : {&bite.sides, &bite.fore_aft}) {
+    const double along = division->direction.dot(direction);
+    if (along > 0.7) return escaped(division->first);
+    if (along < -0.7) return escaped(division->second);
+  }
+  return "";
+}
+
+std::string edge_names(const Bite& bite, const BiteView& view) {
+  return text_at(kWidth - 10, kHeight / 2, "end", side_at(bite, view.across)) +
+         text_at(10, kHeight / 2, "start", side_at(bite, -view.across)) +
+         text_at(kWidth / 2, 20, "middle", side_at(bite, view.up)) +
+         text_at(kWidth / 2, kHeight - 8, "middle", side_at(bite, -view.up));
+}
+
+// A bar of 1, 2 or 5 times a power of ten millimetres, about a sixth of the picture.
+std::string scale_bar(const Bite& bite, const BiteView& view) {
+  const double most = kWidth / 6.0 * view.pixel / bite.units_per_mm;
+  double length = std::pow(10, std::floor(std::log10(most)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * length <= most) {
+      length *= step;
+      break;
+    }
+  }
+  const double pixels = length * bite.units_per_mm / view.pixel;
+  const std::string bar = fmt::format("M12 {} v8 h{:.2f} v-8", kHeight - 22, pixels);
+  return fmt::format("<path class=\"halo\" d=\"{0}\" />\n<path d=\"{0}\" />\n", bar) +
+         text_at(12 + 0.5 * pixels, kHeight - 20, "middle", fmt::format("{:g} mm", length));
+}
+
+std::string region_numbers(const BiteBody& body, const BiteView& view) {
+  std::string html;
+  const auto& regions = body.surface.regions;
+  for (std::size_t i = 0; i < std::min(regions.size(), kNumbered); ++i) {
+    const Eigen::Vector2d place = place_in(view, kWidth, kHeight, regions[i].closest);
+    html += text_at(place.x() + 5, place.y() - 4, "start", fmt::format("{}", i));
+  }
+  return html;
+}
+
+std::string figure(const Bite& bite, const BiteBody& body, const BiteView& view,
+                   const std::string& role, const std::string& png) {
+  const std::string alt = fmt::format(
+      "Distance map of the {} body {}, seen from the side of the other body, with {} contact "
+      "regions; the tables below give their numbers.",
+      role, escaped(body.name), body.surface.regions.size());
+  return fmt::format(
+      "<figure id=\"map-{0}\">\n<div class=\"map\">\n"
+      "<img width=\"{1}\" height=\"{2}\" alt=\"{3}\" src=\"data:image/png;base64,{4}\" />\n"
+      "<svg viewBox=\"0 0 {1} {2}\" aria-hidden=\"true\">\n{5}{6}{7}</svg>\n</div>\n"
+      "<figcaption><strong>{8}</strong>, the {0} body, seen from the side of the other body. "
+      "{9}</figcaption>\n</figure>\n",
+      role, kWidth, kHeight, alt, base64_of(png), region_numbers(body, view),
+      edge_names(bite, view), scale_bar(bite, view), escaped(body.name),
+      body.surface.regions.size() > kNumbered
+          ? fmt::format("The {} largest contact regions are numbered.", kNumbered)
+          : "Contact regions are numbered as in the tables.");
+}
+
+std::string swatch(const Colour& colour, bool hatched) {
+  std::string lines;
+  if (hatched) lines = "<path d=\"M0 12 L12 0 M6 18 L24 0 M18 18 L36 0 M30 18 L40 8\" />";
+  return fmt::format(
+      "<svg class=\"swatch\" viewBox=\"0 0 40 18\" aria-hidden=\"true\"><rect width=\"40\" "
+      "height=\"18\" fill=\"rgb({},{},{})\" />{}</svg>",
+      colour[0], colour[1], colour[2], lines);
+}
+
+std::string dot(bool filled) {
+  return fmt::format(
+      "<svg class=\"swatch\" viewBox=\"0 0 40 18\" aria-hidden=\"true\"><circle cx=\"20\" cy=\"9\" "
+      "r=\"5\" fill=\"{}\" stroke=\"{}\" stroke-width=\"2\" /></svg>",
+      filled ? "black" : "white", filled ? "white" : "black");
+}
+
+std::string legend(const Bite& bite, const std::vector<MapBand>& bands) {
+  std::string html = fmt::format(
+      "<div id=\"legend\">\n<p>Distance to the other surface, preset <strong>{}</strong> ({}), "
+      "± {:g} µm assumed for scanning:</p>\n<ul>\n",
+      escaped(bite.preset->name), escaped(bite.preset->source), bite.scanner_band);
+  for (const MapBand& band : bands) {
+    html += fmt::format(
+        "<li>{}{}{}</li>\n", swatch(band.colour, band.below_scan_error), escaped(band.words),
+        band.below_scan_error ? ", hatched: below the error assumed for scanning" : "");
+  }
+  html += fmt::format("<li>{}farther, or not known</li>\n", swatch(kBareSurface, false));
+  html += fmt::format("<li>{}closest point of a contact region with a partner</li>\n", dot(true));
+  html += fmt::format("<li>{}closest point of an unpaired contact region</li>\n", dot(false));
+  return html + "</ul>\n</div>\n";
+}
+
+}  // namespace
+
+std::string bite_figures(const Bite& bite) {
+  const std::vector<MapBand> bands = map_bands(bite);
+  const auto [fixed, moving] = bite_views(bite, kWidth, kHeight);
+  const std::array<const BiteBody*, 2> bodies{&bite.fixed, &bite.moving};
+  const std::array<const BiteView*, 2> views{&fixed, &moving};
+  std::array<std::string, 2> pngs;
+  parallel_for(2, 1, [&](std::size_t i, std::size_t) {
+    pngs[i] = png_of(draw_map(*bodies[i], *views[i], bands, kWidth, kHeight));
+  });
+  return "<div class=\"maps\">\n" + figure(bite, bite.fixed, fixed, "fixed", pngs[0]) +
+         figure(bite, bite.moving, moving, "moving", pngs[1]) + "</div>\n" + legend(bite, bands);
+}
+
+}  // namespace ist::cli

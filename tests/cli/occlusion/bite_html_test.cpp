@@ -1,0 +1,385 @@
+#include "cli/occlusion/bite_html.h"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <stdexcept>
+
+#include "cli/occlusion/bite_view.h"
+#include "cli/occlusion/bites.h"
+#include "cli/occlusion/map_colours.h"
+#include "cli/occlusion/map_picture.h"
+#include "cli/occlusion/png_file.h"
+#include "support/errors.h"
+#include "support/run_command.h"
+#include "support/shapes.h"
+#include "support/temp_dir.h"
+
+namespace ist::test {
+namespace {
+
+using cli::Bite, cli::BiteBody, cli::Colour;
+using nlohmann::json;
+using Cells = std::vector<std::string>;
+using Rows = std::vector<Cells>;
+
+// A page, and what is in it.
+struct Page {
+  explicit Page(const Bite& bite) {
+    const auto file = dir.path() / "bite.html";
+    cli::write_bite_html(bite, file);
+    const CommandResult read = run_command("/usr/bin/python3", {IST_READ_HTML, file, dir.path()});
+    if (read.exit_code != 0) throw std::runtime_error(read.err);
+    content = json::parse(read.out);
+  }
+  [[nodiscard]] Rows table(const char* id) const { return content["tables"].value(id, Rows{}); }
+  [[nodiscard]] std::string text() const { return content["text"]; }
+  [[nodiscard]] bool says(const std::string& part) const { return text().find(part) != part.npos; }
+  [[nodiscard]] bool holds(const char* pattern) const {
+    return std::regex_search(content["all"].get<std::string>(),
+                             std::regex(pattern, std::regex::icase));
+  }
+  [[nodiscard]] cli::Picture picture(int i) const {
+    return decoded(file_content(dir.path() / (std::to_string(i) + ".png")));
+  }
+
+  const TempDir dir;
+  json content;
+};
+
+// The numbers of a cell, in order.
+std::vector<double> numbers_in(const std::string& cell) {
+  std::vector<double> numbers;
+  static const std::regex kNumber(R"([-+]?\d+(\.\d+)?(e[-+]?\d+)?)");
+  for (std::sregex_iterator at(cell.begin(), cell.end(), kNumber), end; at != end; ++at) {
+    numbers.push_back(std::stod(at->str()));
+  }
+  return numbers;
+}
+
+void expect_numbers(const std::string& cell, const std::vector<double>& expected, double error) {
+  const std::vector<double> found = numbers_in(cell);
+  ASSERT_EQ(found.size(), expected.size()) << cell;
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], error) << cell;
+}
+
+void expect_place(const std::string& cell, const Eigen::Vector3d& at) {
+  expect_numbers(cell, {at.x(), at.y(), at.z()}, 1e-5 * at.cwiseAbs().maxCoeff() + 1e-9);
+}
+
+// The row that begins so; empty where there is none.
+Cells row_of(const Rows& rows, const Cells& begin) {
+  for (const Cells& row : rows) {
+    if (row.size() >= begin.size() && std::equal(begin.begin(), begin.end(), row.begin())) {
+      return row;
+    }
+  }
+  return {};
+}
+
+// A plate under two spheres, turned a little, with all that a bite may have.
+std::unique_ptr<MadeBite> full_bite() {
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized()));
+  pose.translation() = Eigen::Vector3d(0.3, -0.7, 3.9);
+  auto made =
+      bite_of(plate(10, 0.25), joined(icosphere(4, 4), moved(icosphere(4, 2), {-6, 2.5, -2.33})),
+              pose, "biteeye");
+  Bite& bite = made->bite;
+  bite.checks = {"overlap above 0.1 mm: check the bite registration", "a < b & c"};
+  bite.unit_assumed = true;
+  bite.findings.triangle_pairs = 1234;
+  bite.findings.narrowest = 1e-4;
+  bite.findings.depth.certain = DistanceInterval{0.123, 0.124};
+  bite.findings.depth.area = 2.75;
+  bite.findings.depth.point = Eigen::Vector3d(1.5, -2.25, 3.125);
+  bite.findings.contacts = 17;
+  bite.findings.contact_depth = 0.0456;
+  bite.findings.notes = {"a note for people"};
+  bite.numbers = cli::ToothNumbers::kFdi;
+  cli::ToothLabels labels;
+  for (const Triangle& t : bite.fixed.mesh->triangles) {
+    const double x = bite.fixed.mesh->vertices[t[0]].x();
+    labels.push_back(x > 0 ? 36 : x > -3 ? 0 : 46);
+  }
+  bite.fixed.teeth = cli::teeth_of(bite.fixed.surface, *bite.fixed.mesh, labels);
+  return made;
+}
+
+TEST(BiteHtml, HasNoScriptAndRefersToNothingOutside) {
+  const Page page(full_bite()->bite);
+  EXPECT_EQ(page.content["outside"], json::array());
+  for (const char* element : {"script", "link", "iframe", "object", "a", "form"}) {
+    EXPECT_FALSE(page.content["elements"].contains(element)) << element;
+  }
+  EXPECT_FALSE(page.holds("https?:|javascript"));
+}
+
+TEST(BiteHtml, HoldsTheContactRegions) {
+  const auto made = full_bite();
+  made->bite.moving.surface.regions.at(0).partner.reset();
+  const Page page(made->bite);
+  std::size_t regions = 0;
+  for (const bool is_fixed : {true, false}) {
+    const BiteBody& body = is_fixed ? made->bite.fixed : made->bite.moving;
+    ASSERT_GE(body.surface.regions.size(), 2U);
+    for (std::size_t i = 0; i < body.surface.regions.size(); ++i, ++regions) {
+      const ContactRegion& region = body.surface.regions[i];
+      const Cells row = row_of(page.table(region.partner ? "regions" : "unpaired"),
+                               {std::to_string(i), is_fixed ? "fixed" : "moving"});
+      ASSERT_EQ(row.size(), 10U);
+      EXPECT_EQ(row[2], region.partner
+                            ? (is_fixed ? "moving " : "fixed ") + std::to_string(*region.partner)
+                            : "unpaired");
+      expect_numbers(row[3], {region.area}, 1e-4);
+      expect_numbers(row[4],
+                     {100 * region.share, 100 * region.share_thinner, 100 * region.share_thicker},
+                     0.01);
+      expect_numbers(row[5], {1000 * region.least_distance}, 0.1);
+      expect_numbers(row[6], {region.penetrating_area}, 1e-4);
+      expect_numbers(row[7], {region.depth_integral}, 1e-5);
+      expect_place(row[8], region.centre);
+      expect_place(row[9], region.closest);
+    }
+  }
+  EXPECT_EQ(page.table("regions").size() + page.table("unpaired").size(), regions + 2);
+  EXPECT_EQ(page.table("unpaired").size(), 2U);
+}
+
+TEST(BiteHtml, HoldsAreasAndDepths) {
+  const auto made = full_bite();
+  const BiteBody &fixed = made->bite.fixed, &moving = made->bite.moving;
+  const Rows areas = Page(made->bite).table("areas");
+  const auto expect = [&](const std::string& head, double a, double b, double error) {
+    const Cells row = row_of(areas, {head});
+    ASSERT_EQ(row.size(), 4U) << head;
+    expect_numbers(row[1], {a}, error);
+    expect_numbers(row[2], {b}, error);
+  };
+  const std::string below = ": below the error assumed for scanning";
+  expect("distance at most 9 µm" + below, fixed.areas[0], moving.areas[0], 1e-4);
+  expect("distance at most 29 µm" + below, fixed.areas[1], moving.areas[1], 1e-4);
+  expect("distance at most 59 µm", fixed.areas[2], moving.areas[2], 1e-4);
+  expect("distance at most 149 µm", fixed.areas[4], moving.areas[4], 1e-4);
+  EXPECT_LT(fixed.areas[0], fixed.areas[4]);
+  expect("overlap", fixed.surface.penetrating_area, moving.surface.penetrating_area, 1e-4);
+  expect("depth, integrated over the overlap (no volume)", fixed.surface.depth_integral,
+         moving.surface.depth_integral, 1e-5);
+  expect("depth of the deepest vertex", 1000 * fixed.surface.depth_at_vertices,
+         1000 * moving.surface.depth_at_vertices, 0.1);
+}
+
+TEST(BiteHtml, HoldsTheFindings) {
+  const auto made = full_bite();
+  const Rows rows = Page(made->bite).table("findings");
+  const auto answer = [&](const char* question) {
+    const Cells row = row_of(rows, {question});
+    return row.size() == 2 ? row[1] : "no row";
+  };
+  EXPECT_EQ(answer("do the surfaces touch"), "yes");
+  EXPECT_EQ(answer("pairs of triangles that intersect"), "1234");
+  EXPECT_EQ(answer("distance of the surfaces"), "0 µm");
+  EXPECT_EQ(answer("narrowest interval of the distance"), "0.1 µm");
+  EXPECT_EQ(answer("penetration depth"), "123 µm to 124 µm");
+  expect_numbers(answer("depth of the deepest vertex"),
+                 {1000 * *made->bite.findings.depth.at_vertices}, 0.1);
+  EXPECT_EQ(answer("area inside the other body, mean of both"), "2.7500 mm²");
+  EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.125)");
+  EXPECT_EQ(answer("contact points"), "17");
+  EXPECT_EQ(answer("depth of the deepest contact point"), "45.6 µm");
+  EXPECT_EQ(answer("note"), "a note for people");
+}
+
+TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
+  const auto made = full_bite();
+  const Page page(made->bite);
+  const auto expect = [&](const char* head, const cli::Balance& balance) {
+    const Cells row = row_of(page.table("shares"), {head});
+    ASSERT_EQ(row.size(), 5U) << head;
+    const auto of = [&](auto member) {
+      return std::vector<double>{balance.shares.*member, balance.thinner.*member,
+                                 balance.thicker.*member};
+    };
+    expect_numbers(row[1].substr(3), of(&cli::Balance::Shares::first), 0.01);
+    expect_numbers(row[2].substr(3), of(&cli::Balance::Shares::second), 0.01);
+    expect_numbers(row[3], of(&cli::Balance::Shares::asymmetry), 0.01);
+    expect_place(row[4], balance.centre);
+  };
+  expect("fixed: +x and -x", *made->bite.fixed.sides);
+  expect("fixed: +y and -y", *made->bite.fixed.fore_aft);
+  expect("moving: +x and -x", *made->bite.moving.sides);
+  expect("moving: +y and -y", *made->bite.moving.fore_aft);
+  EXPECT_TRUE(
+      page.says("+x and -x are parted by the plane 1 x + 0 y + 0 z = 0, the middle of the "
+                "box: assumed"));
+  ASSERT_EQ(page.table("teeth").size(), 3U);
+  for (const cli::Tooth& tooth : made->bite.fixed.teeth) {
+    const Cells row = row_of(page.table("teeth"), {std::to_string(tooth.number), "fixed"});
+    ASSERT_EQ(row.size(), 5U);
+    expect_numbers(row[2], {tooth.area}, 1e-4);
+    expect_numbers(row[3],
+                   {100 * tooth.share, 100 * tooth.share_thinner, 100 * tooth.share_thicker}, 0.01);
+    expect_numbers(row[4], {1000 * tooth.least_distance}, 0.1);
+  }
+  EXPECT_TRUE(page.says("FDI numbers"));
+}
+
+TEST(BiteHtml, HoldsInputAndSettings) {
+  const auto made = full_bite();
+  made->bite.moving.hash.reset();
+  made->bite.fixed.surface.vertices[7] = {0.5, Eigen::Vector3d::Zero(), 0, false};
+  const Page page(made->bite);
+  const Rows pose = page.table("pose");
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      double read = 0;
+      const std::string& cell =
+          pose.at(static_cast<std::size_t>(i) + 1).at(static_cast<std::size_t>(k) + 1);
+      std::from_chars(cell.data(), cell.data() + cell.size(), read);
+      EXPECT_EQ(read, made->bite.pose.matrix()(i, k)) << "to the last bit";
+    }
+  }
+  const Cells fixed = row_of(page.table("bodies"), {"fixed", "fixed.stl", "0123456789abcdef"});
+  const Cells moving = row_of(page.table("bodies"), {"moving", "moving.stl", "–"});
+  ASSERT_EQ(fixed.size(), 7U);
+  ASSERT_EQ(moving.size(), 7U);
+  EXPECT_EQ(fixed[3], std::to_string(made->bite.fixed.mesh->triangles.size()));
+  expect_numbers(fixed[4], {made->bite.fixed.surface.total_area}, 1e-4);
+  EXPECT_EQ(fixed[5], "no: depth is by vertices");
+  EXPECT_EQ(moving[5], "yes");
+  EXPECT_GE(std::stoi(fixed[6]), 1);
+  EXPECT_TRUE(page.says("Unit of the meshes: mm, assumed: the files do not say."));
+  EXPECT_TRUE(page.says("biteeye (bands of silicone bites: BiteEye, J Oral Rehabil 2022)"));
+  EXPECT_TRUE(page.says("± 50 µm assumed for scanning"));
+  EXPECT_TRUE(page.says("a foundation of 100 µm (in brackets: 50 µm and 150 µm)"));
+  EXPECT_EQ(page.content["lists"]["checks"],
+            (json{"overlap above 0.1 mm: check the bite registration", "a < b & c"}));
+  EXPECT_EQ(page.content["title"], "Occlusion of fixed.stl and moving.stl");
+}
+
+TEST(BiteHtml, TheLegendHoldsEveryBand) {
+  const auto made = full_bite();
+  const json items = Page(made->bite).content["lists"]["legend"];
+  const auto bands = cli::map_bands(made->bite);
+  ASSERT_EQ(items.size(), bands.size() + 3);
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const std::string end =
+        bands[i].below_scan_error ? ", hatched: below the error assumed for scanning" : "";
+    EXPECT_EQ(items[i], bands[i].words + end);
+  }
+}
+
+TEST(BiteHtml, SaysTheCaveatVerbatim) {
+  const auto made = sphere_over_plate({0, 0, 0.5});
+  EXPECT_NE(Page(made->bite).content["all"].get<std::string>().find(cli::kCaveat),
+            std::string::npos);
+  EXPECT_TRUE(Page(made->bite).says(cli::kCaveat));
+}
+
+TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
+  const auto made = full_bite();
+  constexpr const char* kSides = R"(\b(left|right|anterior|posterior|front|back|mesial|distal)\b)";
+  EXPECT_FALSE(Page(made->bite).holds(kSides));
+  made->bite.sides = {Eigen::Vector3d::UnitX(), 0.5, false, "left", "right"};
+  made->bite.fore_aft = {-Eigen::Vector3d::UnitY(), 0, true, "anterior", "posterior"};
+  const Page named(made->bite);
+  EXPECT_FALSE(row_of(named.table("shares"), {"fixed: left and right"}).empty());
+  EXPECT_TRUE(named.says("left and right are parted by the plane 1 x + 0 y + 0 z = 0.5; anterior"));
+  // And at the edges of both pictures, where they lie.
+  EXPECT_TRUE(named.holds(R"(x="890\.0" y="350\.0" text-anchor="end">left<)"));
+  EXPECT_TRUE(named.holds(R"(x="10\.0" y="350\.0" text-anchor="start">right<)"));
+  EXPECT_TRUE(named.holds(R"(y="20\.0" text-anchor="middle">posterior<)")) << "of the fixed body";
+  EXPECT_TRUE(named.holds(R"(y="20\.0" text-anchor="middle">anterior<)")) << "of the moving body";
+}
+
+TEST(BiteHtml, ClaimsNothingThatItCannotKnow) {
+  const Page page(full_bite()->bite);
+  for (const char* word : {R"(\bnewtons?\b)", R"(\d N\b)", R"(\bstable\b)", R"(\bbalanced\b)",
+                           R"(\bhigh\b)", R"(\bcorrect\b)", R"(\bload)", R"(\bpremature\b)"}) {
+    EXPECT_FALSE(std::regex_search(page.text(), std::regex(word))) << word;
+  }
+}
+
+TEST(BiteHtml, NamesAreEscaped) {
+  const auto made = sphere_over_plate({0, 0, -0.05});
+  Bite& bite = made->bite;
+  bite.fixed.name = "</title><script>alert(\"1\")</script> & 'x'.stl";
+  bite.moving.name = "\" onload=\"x\xFF\x01.stl";
+  bite.sides.first = "<i>";
+  bite.unit = "<b>mm";
+  bite.checks = {"<script>"};
+  bite.findings.notes = {"<img src=\"http://x\">"};
+  const Page page(bite);
+  EXPECT_EQ(page.content["title"],
+            "Occlusion of " + bite.fixed.name + " and \" onload=\"x\uFFFD\uFFFD.stl");
+  EXPECT_EQ(row_of(page.table("bodies"), {"fixed"}).at(1), bite.fixed.name);
+  EXPECT_FALSE(page.content["elements"].contains("script"));
+  EXPECT_EQ(page.content["elements"]["img"], 2);
+  EXPECT_EQ(page.content["outside"], json::array());
+  EXPECT_TRUE(page.says("<b>mm"));
+}
+
+TEST(BiteHtml, ShowsBothMapsAsPictures) {
+  const auto made = sphere_over_plate({0, 0, -0.2});
+  const Page page(made->bite);
+  ASSERT_EQ(page.content["images"].size(), 2U);
+  const auto bands = cli::map_bands(made->bite);
+  for (int i = 0; i < 2; ++i) {
+    const json& image = page.content["images"][static_cast<std::size_t>(i)];
+    EXPECT_EQ(image["width"], "900");
+    EXPECT_EQ(image["height"], "700");
+    EXPECT_NE(image["alt"].get<std::string>().find(i == 0 ? "fixed.stl" : "moving.stl"),
+              std::string::npos);
+    const cli::Picture picture = page.picture(i);
+    EXPECT_EQ(picture.width, 900);
+    EXPECT_EQ(picture.height, 700);
+    // Beside the dot in the middle the bodies overlap by 0.2 mm.
+    const Colour beside = pixel_at(picture, 450 + 8, 350 + 2);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(beside[c], bands[0].colour[c], 6);
+  }
+  // Where the sphere is 0.5 mm over the plate, and where it is farther than the reach.
+  const auto view = cli::bite_views(made->bite, 900, 700).fixed;
+  const auto at = [&](double x) {
+    const Eigen::Vector2d place = cli::place_in(view, 900, 700, {x, 0, 0});
+    return pixel_at(page.picture(0), static_cast<int>(place.x()), static_cast<int>(place.y()));
+  };
+  EXPECT_EQ(at(std::sqrt(4.5 * 4.5 - 3.8 * 3.8)), bands[3].colour);
+  EXPECT_EQ(at(-5.5), cli::kBareSurface);
+  EXPECT_EQ(page.content["elements"]["figure"], 2);
+}
+
+TEST(BiteHtml, SaysWhereNothingTouches) {
+  const auto made = sphere_over_plate({0, 0, 0.5});
+  const Page page(made->bite);
+  EXPECT_EQ(row_of(page.table("shares"), {"fixed: +x and -x"}),
+            (Cells{"fixed: +x and -x", "+x –", "-x –", "–", "–"}));
+  EXPECT_TRUE(page.says("No contact region has a partner."));
+  EXPECT_TRUE(page.says("No contact region is without a partner."));
+  EXPECT_TRUE(page.table("teeth").empty());
+  EXPECT_EQ(row_of(page.table("findings"), {"do the surfaces touch"}).at(1), "no");
+}
+
+TEST(BiteHtml, OtherUnitsComeToTheSameMicrometres) {
+  const auto made = sphere_over_plate({0, 0, -0.05});
+  const Cells in_mm = row_of(Page(made->bite).table("areas"), {"overlap"});
+  made->bite.unit = "µm";  // the same numbers, as if each were a micrometre
+  made->bite.units_per_mm = 1000;
+  const Cells in_micrometres = row_of(Page(made->bite).table("areas"), {"overlap"});
+  EXPECT_NEAR(numbers_in(in_micrometres.at(1)).at(0), 1e-6 * numbers_in(in_mm.at(1)).at(0), 1e-4);
+  const Rows depths = Page(made->bite).table("areas");
+  expect_numbers(row_of(depths, {"depth of the deepest vertex"}).at(1),
+                 {made->bite.fixed.surface.depth_at_vertices}, 0.1);
+}
+
+TEST(BiteHtml, IsWholeOrAbsent) {
+  const auto made = sphere_over_plate({0, 0, 0.5});
+  const TempDir dir;
+  EXPECT_EQ(error_name([&] { cli::write_bite_html(made->bite, dir.path() / "no" / "bite.html"); }),
+            "file-unwritable");
+  EXPECT_EQ(dir.entries(), 0U);
+}
+
+}  // namespace
+}  // namespace ist::test
