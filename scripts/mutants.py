@@ -33,6 +33,7 @@ ADVICE = "src/advise/"
 CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
 HARDWARE = "src/hardware/"
+OCCLUSION = "src/cli/occlusion/"
 CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
@@ -585,6 +586,25 @@ MUTANTS = [
     Mutant("message-for-all-threads", "threads share one last error",
            [(CAPI + "guard.cpp", "constinit thread_local char", "constinit char")],
            ["capi_test CThread*"]),
+
+    # An occlusion, as people are told of it.
+    Mutant("bite-sides-swapped", "shares are of the other side",
+           [(OCCLUSION + "balance.cpp", "const double part = beyond > 0 ? 1", "const double part = beyond < 0 ? 1"),
+            (OCCLUSION + "balance.cpp", ": beyond < 0 ? 0", ": beyond > 0 ? 0")], ["occlusion_report_test Balance*"]),
+    Mutant("bite-mirrored", "the moving body's picture is mirrored",
+           [(OCCLUSION + "bite_view.cpp", "  moving.up = -fixed.up;\n", "")], ["occlusion_report_test BiteView*"]),
+    Mutant("bite-wrong-sign-mapped", "a map is drawn over triangles of which one corner has a wrong sign",
+           [(OCCLUSION + "map_picture.cpp", "differ <= 1.001 * apart", "differ <= 1e9 * apart")], ["occlusion_report_test MapPicture*"]),
+    Mutant("bite-unhatched", "bands below the scanner band are drawn as certain",
+           [(OCCLUSION + "map_picture.cpp", "band->below_scan_error && (x", "!band->below_scan_error && (x")],
+           ["occlusion_report_test MapPicture*"]),
+    Mutant("bite-name-unescaped", "a file's name is markup in the report",
+           [(OCCLUSION + "html/html_text.cpp", "out += \"&lt;\";", "out += character;")], ["occlusion_report_test"]),
+    Mutant("bite-unpaired-among-paired", "regions without a partner stand among the others",
+           [(OCCLUSION + "html/html_tables.cpp", "(region.partner ? paired : unpaired)", "(i < regions.size() ? paired : unpaired)")],
+           ["occlusion_report_test BiteHtml*"]),
+    Mutant("tooth-numbers-unchecked", "numbers of another system pass as teeth",
+           [(OCCLUSION + "teeth.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["occlusion_report_test Teeth*"]),
 
     # What others get of it.
     Mutant("export-map-loosened", "whatever other libraries make visible is exported too",
