@@ -103,6 +103,22 @@ TEST_F(OcclusionCommand, WritesBothBodiesWhereTheyBite) {
   EXPECT_EQ(parse_ply(file_content(path("f.ply"))).vertices.size(), 8u);
 }
 
+TEST_F(OcclusionCommand, WritesEveryFormatAtOnce) {
+  std::vector<std::string> arguments{"--move", "0,0,1.8"};
+  for (const char* ending : {"vtp", "ply", "glb", "csv", "json", "html"}) {
+    arguments.insert(arguments.end(), {"-o", path(std::string("bite.") + ending)});
+  }
+  ASSERT_EQ(ask(arguments).exit_code, 0);
+  EXPECT_TRUE(says(file_content(path("bite.vtp")), "Name=\"SignKnown\""));
+  EXPECT_TRUE(says(file_content(path("bite.glb")), "\"name\":\"ball.stl\""));
+  const std::string html = file_content(path("bite.html"));
+  EXPECT_TRUE(says(html, "ball.stl"));
+  EXPECT_FALSE(says(html, "<script"));
+  EXPECT_FALSE(says(html, dir_.path().string()));
+  const json written = json::parse(file_content(path("bite.json")));
+  EXPECT_EQ(written, asked({"--move", "0,0,1.8"}));
+}
+
 // Opened, no body reaches beyond its half, and what faced the other body faces one way.
 TEST_F(OcclusionCommand, OpensLikeABook) {
   ASSERT_EQ(ask({"--move", "0,0,1.9", "--open", "3", "-o", path("b.ply")}).exit_code, 0);

@@ -17,6 +17,7 @@
 #include "cli/formats/ply_writer.h"
 #include "cli/formats/vtp_writer.h"
 #include "cli/header_line.h"
+#include "cli/occlusion/bite_html.h"
 #include "cli/occlusion/bite_json.h"
 #include "cli/occlusion/bite_maker.h"
 #include "cli/occlusion/bite_surfaces.h"
@@ -28,8 +29,8 @@
 namespace ist::cli {
 namespace {
 
-constexpr std::array kWritable = {FileFormat::kVtp, FileFormat::kPly, FileFormat::kGlb,
-                                  FileFormat::kCsv, FileFormat::kJson};
+constexpr std::array kWritable = {FileFormat::kVtp, FileFormat::kPly,  FileFormat::kGlb,
+                                  FileFormat::kCsv, FileFormat::kJson, FileFormat::kHtml};
 
 struct OcclusionArguments {
   BodyFiles files;
@@ -117,8 +118,10 @@ void write(const Bite& bite, const Output& output, BiteSelection selection) {
     }
     case FileFormat::kCsv:
       return write_bite_csv(bite, output.file);
-    default:
+    case FileFormat::kJson:
       return write_bite_json(bite, output.file);
+    default:
+      return write_bite_html(bite, output.file);
   }
 }
 
@@ -133,7 +136,7 @@ void run(const OcclusionArguments& options) {
   const BiteQuestions questions = questions_of(options);
   const std::vector<Output> outputs = outputs_of(options);
   refuse_if(outputs.empty() && !options.json, "-o",
-            "name a file that ends in .vtp, .ply, .glb, .csv or .json, or give --json");
+            "name a file that ends in .vtp, .ply, .glb, .csv, .json or .html, or give --json");
   const Eigen::Isometry3d pose = options.pose.poses_named().front();
   const Bodies bodies = load_bodies(options.files);
   const Bite bite = make_bite(bodies, sources_of(bodies, options.files), pose, questions);
@@ -223,7 +226,7 @@ void add_occlusion(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", options->outputs,
                       "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-                      "Blender), .glb (browsers), .csv (a row a region), .json; "
+                      "Blender), .glb (browsers), .csv (a row a region), .json, .html (a report); "
                       "may be given again");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
@@ -240,7 +243,7 @@ void add_occlusion(CLI::App& app) {
   add_pose_options(*command, options->pose, Poses::kOne);
   add_example(*command, std::string("Examples: ist occlusion upper.stl lower.stl -o bite.vtp\n"
                                     "          ist occlusion upper.stl lower.stl --frame lps -o "
-                                    "bite.ply -o bite.csv\n\n") +
+                                    "bite.html -o bite.csv\n\n") +
                             kCaveat);
   command->callback([options] { run(*options); });
 }
