@@ -7,7 +7,8 @@
 #   scripts/setup.sh --peers     also the libraries that bench/peers compares with
 #   scripts/setup.sh --fuzz      also what the fuzzers need
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
-#   scripts/setup.sh --oracles   also what reads the files that the command writes
+#   scripts/setup.sh --oracles   also what reads and measures again what the command writes
+#   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
@@ -25,7 +26,8 @@ for argument in "$@"; do
     --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
-    -h | --help) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --cloudcompare) packages+=(cloudcompare) ;;
+    -h | --help) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

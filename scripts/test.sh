@@ -5,8 +5,8 @@
 #
 #   scripts/test.sh          every test, some 20 minutes from nothing built on two cores
 #   scripts/test.sh --long   then hard cases with 20 times the samples, ten million queries of real
-#                            jaws, an hour of simulated pressing, threads for longer, and each fuzzer
-#                            for a minute; 45 minutes more
+#                            jaws, an hour of simulated pressing, threads for longer, CloudCompare's
+#                            distances, and each fuzzer for a minute; 45 minutes more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -22,6 +22,7 @@ case ${1:-} in
 esac
 setup=(--oracles)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware)
+! $long || setup+=(--cloudcompare)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
@@ -50,6 +51,11 @@ more() {  # preset, times the samples, program, filter
 }
 echo "== Package.Subdirectory, all compiled"
 IST_COMPILE_ALL=1 ctest --preset test -R '^Package\.Subdirectory$'
+for jaws in built-in human; do
+  echo "== distances of the $jaws jaws against CloudCompare's"
+  /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist \
+    "build/test/cloudcompare-$jaws" || [ $? -eq 77 ]
+done
 more thread 100 search_test 'SharedTreeThread.*'
 more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'  # a million ticks
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
