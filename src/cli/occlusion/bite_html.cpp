@@ -41,12 +41,13 @@ figcaption { font-size: 0.9rem; overflow-wrap: anywhere; }
 .wide { overflow-x: auto; margin-block: 0.8rem; }
 table { min-inline-size: min(100%, 30rem); border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
 caption { text-align: start; color: #4a525a; padding-block-end: 0.3rem; }
-th, td { text-align: start; padding: 0.2rem 0.8rem 0.2rem 0; vertical-align: top;
+th, td { text-align: start; padding: 0.2rem 0.7rem 0.2rem 0; vertical-align: top;
   border-block-end: 1px solid #e3e6ea; }
 #regions :is(th, td), #unpaired :is(th, td), #teeth :is(th, td) { white-space: nowrap; }
 thead th { border-block-end: 2px solid #868d95; }
 tr { break-inside: avoid; }
-@media print { body { padding: 0; font-size: 9pt; } .wide { overflow: visible; } }
+@media print { body { padding: 0; font-size: 9pt; } .wide { overflow: visible; }
+  #regions, #unpaired { font-size: 6.5pt; } }
 )";
 
 std::string limits_of_method(const Bite& bite) {

@@ -67,7 +67,7 @@ void expect_numbers(const std::string& cell, const std::vector<double>& expected
 }
 
 void expect_place(const std::string& cell, const Eigen::Vector3d& at) {
-  expect_numbers(cell, {at.x(), at.y(), at.z()}, 1e-5 * at.cwiseAbs().maxCoeff() + 1e-9);
+  expect_numbers(cell, {at.x(), at.y(), at.z()}, 1e-4 * at.cwiseAbs().maxCoeff());
 }
 
 // The row that begins so; empty where there is none.
@@ -91,7 +91,6 @@ std::unique_ptr<MadeBite> full_bite() {
   bite.checks = {"overlap above 0.1 mm: check the bite registration", "a < b & c"};
   bite.unit_assumed = true;
   bite.findings.triangle_pairs = 1234;
-  bite.findings.narrowest = 1e-4;
   bite.findings.depth.certain = DistanceInterval{0.123, 0.124};
   bite.findings.depth.area = 2.75;
   bite.findings.depth.point = Eigen::Vector3d(1.5, -2.25, 3.125);
@@ -127,21 +126,22 @@ TEST(BiteHtml, HoldsTheContactRegions) {
     ASSERT_GE(body.surface.regions.size(), 2U);
     for (std::size_t i = 0; i < body.surface.regions.size(); ++i, ++regions) {
       const ContactRegion& region = body.surface.regions[i];
+      const std::string index = std::to_string(i);
       const Cells row = row_of(page.table(region.partner ? "regions" : "unpaired"),
-                               {std::to_string(i), is_fixed ? "fixed" : "moving"});
-      ASSERT_EQ(row.size(), 10U);
-      EXPECT_EQ(row[2], region.partner
+                               {(is_fixed ? "fixed " : "moving ") + index});
+      ASSERT_EQ(row.size(), 9U);
+      EXPECT_EQ(row[1], region.partner
                             ? (is_fixed ? "moving " : "fixed ") + std::to_string(*region.partner)
                             : "unpaired");
-      expect_numbers(row[3], {region.area}, 1e-4);
-      expect_numbers(row[4],
+      expect_numbers(row[2], {region.area}, 1e-4);
+      expect_numbers(row[3],
                      {100 * region.share, 100 * region.share_thinner, 100 * region.share_thicker},
                      0.01);
-      expect_numbers(row[5], {1000 * region.least_distance}, 0.1);
-      expect_numbers(row[6], {region.penetrating_area}, 1e-4);
-      expect_numbers(row[7], {region.depth_integral}, 1e-5);
-      expect_place(row[8], region.centre);
-      expect_place(row[9], region.closest);
+      expect_numbers(row[4], {1000 * region.least_distance}, 0.1);
+      expect_numbers(row[5], {region.penetrating_area}, 1e-4);
+      expect_numbers(row[6], {region.depth_integral}, 1e-5);
+      expect_place(row[7], region.centre);
+      expect_place(row[8], region.closest);
     }
   }
   EXPECT_EQ(page.table("regions").size() + page.table("unpaired").size(), regions + 2);
@@ -181,15 +181,14 @@ TEST(BiteHtml, HoldsTheFindings) {
   EXPECT_EQ(answer("do the surfaces touch"), "yes");
   EXPECT_EQ(answer("pairs of triangles that intersect"), "1234");
   EXPECT_EQ(answer("distance of the surfaces"), "0 µm");
-  EXPECT_EQ(answer("narrowest interval of the distance"), "0.1 µm");
   EXPECT_EQ(answer("penetration depth"), "123 µm to 124 µm");
   expect_numbers(answer("depth of the deepest vertex"),
                  {1000 * *made->bite.findings.depth.at_vertices}, 0.1);
   EXPECT_EQ(answer("area inside the other body, mean of both"), "2.7500 mm²");
   EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.125)");
-  EXPECT_EQ(answer("contact points"), "17");
-  EXPECT_EQ(answer("depth of the deepest contact point"), "45.6 µm");
   EXPECT_EQ(answer("note"), "a note for people");
+  EXPECT_EQ(rows.size(), 9U)
+      << "of contact points, which are as coarse as voxels, it tells nothing";
 }
 
 TEST(BiteHtml, HoldsSharesBySideAndByTooth) {

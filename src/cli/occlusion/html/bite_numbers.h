@@ -39,7 +39,7 @@ class BiteNumbers {
   }
   /// In mesh units.
   [[nodiscard]] static std::string place(const Eigen::Vector3d& at) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z());
+    return fmt::format("({:.5g}, {:.5g}, {:.5g})", at.x(), at.y(), at.z());
   }
   /// A share in per cent without their sign, with those of a thinner and a thicker foundation.
   [[nodiscard]] static std::string share(double share, double thinner, double thicker) {

@@ -105,9 +105,6 @@ std::string findings_table(const Bite& bite) {
     table.add({"pairs of triangles that intersect", fmt::format("{}", *found.triangle_pairs)});
   }
   if (found.distance) table.add({"distance of the surfaces", numbers.interval(*found.distance)});
-  if (found.narrowest) {
-    table.add({"narrowest interval of the distance", numbers.length(*found.narrowest)});
-  }
   const Depth& depth = found.depth;
   if (depth.certain) table.add({"penetration depth", numbers.interval(*depth.certain)});
   if (depth.at_vertices) {
@@ -118,10 +115,6 @@ std::string findings_table(const Bite& bite) {
   if (depth.area)
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});
   if (depth.point) table.add({"deepest point", BiteNumbers::place(*depth.point)});
-  if (found.contacts) table.add({"contact points", fmt::format("{}", *found.contacts)});
-  if (found.contact_depth) {
-    table.add({"depth of the deepest contact point", numbers.length(*found.contact_depth)});
-  }
   for (const std::string& note : found.notes) table.add({"note", escaped(note)});
   return table.html();
 }
@@ -196,7 +189,7 @@ std::string region_tables(const Bite& bite) {
     for (std::size_t i = 0; i < regions.size(); ++i) {
       const ContactRegion& region = regions[i];
       (region.partner ? paired : unpaired)
-          .add({fmt::format("{}", i), role,
+          .add({fmt::format("{} {}", role, i),
                 region.partner ? fmt::format("{} {}", other, *region.partner) : "unpaired",
                 numbers.area(region.area),
                 BiteNumbers::share(100 * region.share, 100 * region.share_thinner,

@@ -13,7 +13,8 @@ namespace ist::cli {
 [[nodiscard]] std::string body_table(const Bite& bite);
 /// The pose, row by row, so that its numbers come back exactly.
 [[nodiscard]] std::string pose_table(const Bite& bite);
-/// Whether the bodies touch, how far they are apart and how deep in each other.
+/// Whether the bodies touch, how far they are apart and how deep in each other; by triangles alone,
+/// so without the contact points, which are as coarse as voxels.
 [[nodiscard]] std::string findings_table(const Bite& bite);
 /// The areas at the limits of the preset, and what overlaps.
 [[nodiscard]] std::string area_table(const Bite& bite);
