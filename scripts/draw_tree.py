@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Draws the README's picture: a jaw as mesh, as voxels of two sizes, and as the spheres of one level.
+"""Draws how a tree is made: a jaw as mesh, as voxels of two sizes, and as the spheres of one level.
 
-    scripts/draw_picture.py PATH/TO/ist OUTPUT.png
+    scripts/draw_tree.py PATH/TO/ist OUTPUT.png
 
 All that is drawn comes from the command: the built-in lower jaw, its trees, and their exports. Needs Debian's
 python3-matplotlib, so run it with the system's python3.
@@ -18,23 +18,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from pictures.ply import positions, read_ply
+from pictures.small_png import save_small_png
+
 PIXELS = 900
 VIEW_FROM = np.array([-0.62, -0.92, 0.62])
 LIGHT = np.array([-0.25, -0.55, 0.85])
 LEVEL = 2
-
-
-def read_ply(file):
-    data = file.read_bytes()
-    header, body = data.split(b"end_header\n", 1)
-    counts = {w[1]: int(w[2]) for w in (l.split() for l in header.decode().splitlines()) if w[0] == "element"}
-    columns = header.count(b"property float")
-    vertices = np.frombuffer(body, "<f4", counts["vertex"] * columns).reshape(-1, columns)
-    faces = None
-    if "face" in counts:
-        rows = np.frombuffer(body, np.dtype([("n", "u1"), ("i", "<i4", 4)]), counts["face"], counts["vertex"] * columns * 4)
-        faces = rows["i"]
-    return vertices.astype(float), faces
 
 
 def read_stl(file):
@@ -136,11 +126,12 @@ def main(ist, output):
         panels = [("mesh, {:,} triangles".format(len(triangles)), (0.93, 0.88, 0.78), lambda c: c.add_triangles(triangles))]
         for size in (4, 1):
             vertices, faces = read_ply(folder / f"{size}.ply")
-            quads = vertices[faces]
+            quads = positions(vertices)[faces]
             both = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
             panels.append((f"voxels of {size} mm, {voxels[size]:,}", (0.72, 0.82, 0.93), lambda c, b=both: c.add_triangles(b)))
         for policy in ("simple", "table", "tight"):
             spheres, _ = read_ply(folder / f"{policy}.ply")
+            spheres = np.column_stack([positions(spheres), spheres["radius"]]).astype(float)
             volume = 4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / 1000
             panels.append((f"{policy}: {len(spheres):,} spheres of level {LEVEL}, {volume:,.0f} cm³", (0.80, 0.90, 0.74), lambda c, s=spheres: c.add_spheres(s)))
 
@@ -152,8 +143,7 @@ def main(ist, output):
             place.set_title(title, fontsize=12)
             place.axis("off")
         figure.tight_layout()
-        pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(output, dpi=100)
+        save_small_png(figure, output)
 
 
 if __name__ == "__main__":
