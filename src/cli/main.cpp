@@ -62,12 +62,16 @@ int run(int argc, char** argv) {
   add_advise(app);
   add_table(app);
   std::vector<std::string> words = words_of(argc, argv);
-  refuse_unknown_words(app, words);
-  std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
+    refuse_unknown_words(app, words);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app.parse(words);
   } catch (const CLI::Success& help) {  // or the version, which its own command prints
     return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(),
+                 subcommand_among(app, argc, argv).c_str());
+    return kUsage;
   }
   // An earlier write that failed, as on a full disk, shows here at the latest.
   if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
@@ -84,10 +88,6 @@ bool is_lack_of_threads(const std::exception& error) {
 
 int main(int argc, char** argv) try {
   return ist::cli::run(argc, argv);
-} catch (const CLI::ParseError& error) {
-  const std::string command = ist::cli::subcommand_among(argc, argv);
-  std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(), command.c_str());
-  return ist::cli::kUsage;
 } catch (const ist::Error& error) {
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
   return ist::cli::exit_code(error.code());

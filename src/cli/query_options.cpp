@@ -119,8 +119,9 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       "write leaf pairs, and the contact points that they are reduced to, at most "
       "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
       "or .ply");
-  command.add_flag("--fail-if-touching", options.fail_if_touching,
-                   "exit code 6 where the bodies touch, or may, at any pose");
+  command.add_flag(
+      "--fail-if-touching", options.fail_if_touching,
+      "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
   add_engine_options(command, options);

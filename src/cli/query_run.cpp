@@ -105,7 +105,7 @@ bool run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
     print_answers(engines, bodies, answers, timing);
   }
   return std::any_of(answers.begin(), answers.end(),
-                     [](const PoseAnswer& answer) { return answer.findings.touch != Answer::kNo; });
+                     [](const PoseAnswer& answer) { return answer.findings.may_meet(); });
 }
 
 void fail_if_touching(bool touching, const QueryOptions& options) {

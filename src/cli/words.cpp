@@ -24,6 +24,13 @@ std::string with_nearest(const std::string& why, const std::string& word,
   return nearest == nullptr ? why : why + "; did you mean " + *nearest + "?";
 }
 
+// The words of the version before.
+std::string renamed(const std::string& word, const std::string& why) {
+  if (word == "close") return "no such subcommand; it is called approach";
+  if (word == "--gap") return "no such option; it is called --distance";
+  return why;
+}
+
 std::vector<std::string> subcommands_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* each : app.get_subcommands({})) names.push_back(each->get_name());
@@ -46,6 +53,7 @@ std::vector<std::string> words_of(int argc, char** argv) {
   if (words.front() == "version") words.front() = "--version";
   if (words.front() != "help") return words;
   words.erase(words.begin());
+  if (!words.empty() && (words.front() == "help" || words.front() == "version")) words.clear();
   words.resize(std::min<std::size_t>(words.size(), 1));
   words.emplace_back("--help");
   return words;
@@ -57,7 +65,8 @@ void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& w
   const std::string& first = words.front();
   const bool is_option = first.starts_with('-');
   if (!is_option && std::find(subcommands.begin(), subcommands.end(), first) == subcommands.end()) {
-    throw CLI::ValidationError(first, with_nearest("no such subcommand", first, subcommands));
+    throw CLI::ValidationError(
+        first, renamed(first, with_nearest("no such subcommand", first, subcommands)));
   }
   const CLI::App& command = is_option ? app : *app.get_subcommand(first);
   const std::vector<std::string> options = options_of(command);
@@ -66,12 +75,13 @@ void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& w
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
     if (std::find(options.begin(), options.end(), name) != options.end()) continue;
-    throw CLI::ValidationError(name, with_nearest("no such option", name, options));
+    throw CLI::ValidationError(name, renamed(name, with_nearest("no such option", name, options)));
   }
 }
 
-std::string subcommand_among(int argc, char** argv) {
-  if (argc < 2 || *argv[1] == '-' || *argv[1] == '\0') return {};
+std::string subcommand_among(const CLI::App& app, int argc, char** argv) {
+  const std::vector<std::string> known = subcommands_of(app);
+  if (argc < 2 || std::find(known.begin(), known.end(), argv[1]) == known.end()) return {};
   return std::string(argv[1]) + " ";
 }
 

@@ -14,7 +14,7 @@ namespace ist::cli {
 /// the one that is spelled most like it. Otherwise CLI11 would first ask for what is required.
 void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& words);
 
-/// Returns the first word and a space, where it is no option: the subcommand; else nothing.
-[[nodiscard]] std::string subcommand_among(int argc, char** argv);
+/// Returns the first word and a space, where it is a subcommand; else nothing.
+[[nodiscard]] std::string subcommand_among(const CLI::App& app, int argc, char** argv);
 
 }  // namespace ist::cli

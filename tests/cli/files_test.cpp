@@ -230,6 +230,24 @@ TEST_F(Files, ExportedVoxelsAreClosed) {
   }
 }
 
+// A tree that knows its unit needs none, and no other is believed.
+TEST_F(Files, AGlbIsInMetresByTheTreesUnit) {
+  const std::string tree = path("metres.ist"), glb = path("v.glb");
+  ist_well({"build", ball(), "-o", tree, "--voxel-size", "0.5", "--unit", "m"});
+  const std::vector<std::string> asked{"export",  tree, "--what", "voxels",
+                                       "--level", "0",  "-o",     glb};
+  EXPECT_EQ(ist_well(asked).err, "");
+  EXPECT_TRUE(says(file_content(glb), "\"matrix\":[1.0,"));
+  std::vector<std::string> otherwise = asked;
+  otherwise.insert(otherwise.end(), {"--unit", "inch"});
+  const CommandResult refused = ist(otherwise);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(says(refused.err, "--unit: the tree holds m"));
+  std::vector<std::string> unknown = asked;
+  unknown[1] = ball_tree();
+  EXPECT_TRUE(says(ist_well(unknown).err, "unit: mm (assumed)"));
+}
+
 TEST_F(Files, AnInputIsNeverOverwritten) {
   const std::string mesh = ball(), tree = path("kept.ply");
   ASSERT_EQ(ist({"build", mesh, "-o", tree, "--voxel-size", "0.5"}).exit_code, 0);

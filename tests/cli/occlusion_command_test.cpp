@@ -43,7 +43,8 @@ TEST_F(OcclusionCommand, SaysThreeLines) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 3);
   for (const char* part :
-       {"touch yes, ", "(± 0.05 mm assumed for scanning)", "areas, scan: in each other ",
+       {"touch yes, ", "(± 0.05 mm assumed for scanning)",
+        "areas, scan (intersection and contact of scans: Beck 2023): in each other ",
         "within 100 µm ", "1 paired regions, 0 unpaired", "overlap above 0.1 mm: check the bite",
         "unit: mm (assumed)", "sides: +x and -x, divided in the middle of the fixed body's box",
         "wrote ", "bite.vtp"}) {
@@ -192,6 +193,78 @@ TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {
   EXPECT_EQ(file_content(path("b.csv")).find('\n'), file_content(path("b.csv")).size() - 1);
 }
 
+// Two open sheets that lie in each other and cross nowhere: nobody can tell overlap from a gap.
+TEST_F(OcclusionCommand, OpenSheetsMayOverlapWithoutTouching) {
+  TriangleMesh sheet;
+  for (std::uint32_t i = 0; i < 121; ++i) {
+    sheet.vertices.emplace_back(i % 11 - 5.0, i / 11 - 5.0, 0);
+    if (i % 11 == 10 || i >= 110) continue;
+    sheet.triangles.push_back({i, i + 1, i + 12});
+    sheet.triangles.push_back({i, i + 12, i + 11});
+  }
+  TriangleMesh down = sheet;
+  for (Triangle& t : down.triangles) std::swap(t[1], t[2]);
+  const std::string lower = mesh("lower.stl", sheet), upper = mesh("upper.stl", down);
+  const auto lines =
+      json_lines(ist_well({"occlusion", lower, upper, "--move", "0,0,-0.1", "--json"}).out);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0]["touch"], "no");
+  EXPECT_TRUE(lines[0]["inside"].is_null() && lines[0]["depth_lower"].is_null());
+  EXPECT_NEAR(lines[0]["depth_at_vertices"].get<double>(), 0.1, 1e-6);
+  const std::string said =
+      ist_well({"occlusion", lower, upper, "--move", "0,0,-0.15", "-o", path("s.csv")}).out;
+  EXPECT_TRUE(says(said, "apart, or at least 0.15 mm deep (open surface, by vertices)"));
+  EXPECT_TRUE(says(said, "apart, or in each other: a part lies behind an open surface"));
+  EXPECT_TRUE(says(said, "overlap above 0.1 mm"));
+}
+
+TEST_F(OcclusionCommand, ABodyInTheOtherIsToldWithNumbers) {
+  const CommandResult inside = ask({"--move", "0,0,-1.5", "-o", path("b.csv")});
+  EXPECT_TRUE(says(inside.out, "touch yes"));
+  const std::string small = mesh("small.stl", icosphere(2, 1));
+  const CommandResult whole = ist({"occlusion", plate_, small, "--move", "0,0,-1.5", "-o",
+                                   path("b.csv"), "--fail-if-touching"});
+  EXPECT_EQ(whole.exit_code, 6);
+  EXPECT_TRUE(says(whole.out, "touch no, the moving body lies inside the other, 0.49"));
+  EXPECT_TRUE(says(whole.out, " mm apart, "));
+  EXPECT_TRUE(says(whole.out, " mm deep"));
+  EXPECT_FALSE(says(whole.out, "the map is empty"));
+}
+
+// In every file that has a place for it.
+TEST_F(OcclusionCommand, FilesTellTheirUnit) {
+  ASSERT_EQ(ask({"--move", "0,0,1.8", "-o", path("b.vtp"), "-o", path("b.ply"), "-o", path("b.glb"),
+                 "-o", path("b.csv"), "-o", path("b.html")})
+                .exit_code,
+            0);
+  EXPECT_TRUE(says(file_content(path("b.vtp")), "Name=\"Unit\""));
+  EXPECT_TRUE(says(file_content(path("b.ply")), "comment unit: mm (assumed)\n"));
+  EXPECT_TRUE(says(file_content(path("b.glb")), "\"Unit\":\"mm (assumed)\""));
+  EXPECT_TRUE(says(file_content(path("b.csv")), ",mm (assumed)\n"));
+  EXPECT_TRUE(says(file_content(path("b.html")), "assumed"));
+  // One tree's unit says nothing of the other body.
+  const std::string tree = path("plate.ist");
+  ist_well({"build", plate_, "-o", tree, "--voxel-size", "0.2", "--unit", "mm"});
+  const auto of = [&](const std::string& moving) {
+    return json_lines(ist_well({"occlusion", tree, moving, "--json"}).out).at(0)["unit_assumed"];
+  };
+  EXPECT_EQ(of(ball_), true);
+  EXPECT_EQ(of(tree), false);
+}
+
+TEST_F(OcclusionCommand, FlatMeshesAndStrangeSizesAreRefused) {
+  TriangleMesh flat;
+  flat.vertices = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  flat.triangles = {{0, 1, 2}};
+  const CommandResult result =
+      ist({"occlusion", mesh("flat.stl", flat), ball_, "-o", path("b.vtp")});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_TRUE(says(result.err, "FIXED: the mesh is flat"));
+  EXPECT_FALSE(exists("b.vtp"));
+  refuses({"--unit", "m", "--json"}, 2, "jaws are 1 to 1000");
+  refuses({"--unit", "um", "--json"}, 2, "--unit");
+}
+
 // In inches, presets are still micrometres.
 TEST_F(OcclusionCommand, UnitsAreSaidAndPresetsKeepTheirs) {
   const json mm = asked({"--move", "0,0,1.8", "--unit", "mm"}),
@@ -216,6 +289,10 @@ TEST_F(OcclusionCommand, BadWordsAreRefused) {
   refuses({"--json", "--left", "0,0,0"}, 2, "no direction");
   refuses({"--json", "--left", "1,0"}, 2, "give x,y,z");
   refuses({"--json", "--left", "1,0,0", "--frame", "lps"}, 2, "contradicts");
+  refuses({"--json", "--left", "1,0,0", "--front", "2,0,0"}, 2, "--front");
+  refuses({"--json", "--reach", "0.05"}, 2, "largest limit");
+  refuses({"-o", path("b.csv"), "-o", path("b.csv")}, 2, "named twice");
+  refuses({"-o", path("b.csv"), "-o", path("none/b.vtp")}, 1, "none/b.vtp");
   refuses({"--side", "fixed", "-o", path("b.csv")}, 2, "--side");
   const std::string input = write("plate.ply", file_content(plate_));
   EXPECT_EQ(ist({"occlusion", input, ball_, "-o", input}).exit_code, 2);

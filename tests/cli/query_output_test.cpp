@@ -149,6 +149,16 @@ TEST_F(QueryOutput, EveryPolicyAndATableForPeople) {
     EXPECT_TRUE(says(timed.out, "spheres " + spheres));
     EXPECT_TRUE(says(timed.out, "leaf pairs"));
     EXPECT_EQ(std::count(timed.out.begin(), timed.out.end(), '\n'), 3 + 5);
+    // A value under each heading.
+    const std::string table =
+        timed.out.substr(timed.out.find("\nindex", timed.out.find("spheres")));
+    std::istringstream rows(table);
+    std::string heading, row;
+    std::getline(rows, heading);
+    std::getline(rows, heading);
+    std::getline(rows, row);
+    EXPECT_EQ(row.size(), heading.size() - 2) << "µ takes two bytes, twice; Hz ends both\n"
+                                              << table;
   }
 }
 

@@ -117,6 +117,9 @@ TEST_F(Usage, AMisspelledWordIsNamedWithItsNearest) {
           "--voxelsize: no such option; did you mean --voxel-size?");
   refuses({"collide", "--pose=x"}, "--pose: no such option; did you mean --poses?");
   refuses({"build", "--ouput", "x"}, "did you mean --output?");
+  refuses({"colide"}, "Try 'ist --help'");
+  refuses({"close", "a", "b"}, "close: no such subcommand; it is called approach");
+  refuses({"collide", "a", "b", "--gap", "1"}, "--gap: no such option; it is called --distance");
 }
 
 TEST_F(Usage, VoxelSizes) {
@@ -214,7 +217,7 @@ TEST_F(Usage, OptionsOfExport) {
                ": .glb cannot be written here: name a file that ends in .vtp or .ply");
   refuses_name("spheres", path("v"),
                ": a name without an ending says no format: name a file that ends in .vtp or .ply");
-  refuses({"export", tree, "--what", "voxels", "--level", "0", "--unit", "cm", "-o", out},
+  refuses({"export", tree, "--what", "voxels", "--level", "0", "--unit", "mm", "-o", out},
           "--unit: goes with a .glb");
   refuses(
       {"export", tree, "--what", "voxels", "--level", "0", "--unit", "mile", "-o", path("v.glb")},

@@ -99,8 +99,8 @@ void print_times(const Engines& engines, const Bodies& bodies,
     fmt::print("; {}: {}, {} worker{}", engine.name(), engine.target(), engine.workers(),
                engine.workers() == 1 ? "" : "s");
   }
-  fmt::print("\n{:>5}  {:<10} {:>10} {:>8} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine",
-             "leaf pairs", "contacts", "tests", "median µs", "min µs", "rate Hz");
+  fmt::print("\n{:>5}  {:<10} {:>10} {:>12} {:>12} {:>10} {:>10}\n", "index", "engine",
+             "leaf pairs", "tests", "median µs", "min µs", "rate Hz");
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const EngineAnswer& timed = answers[i].engines[e];

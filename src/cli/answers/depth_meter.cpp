@@ -49,11 +49,13 @@ DepthMeter::DepthMeter(Query& query, double tolerance, double extent)
   }
 }
 
-Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool intersect, const Budget& budget) const {
+double DepthMeter::open_reach() const { return kOpenReach * extent_; }
+
+Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool near, const Budget& budget) const {
   Depth depth;
   if (!query_.has_triangles()) return depth;
   OcclusionOptions areas;
-  areas.reach = kOpenReach * extent_;
+  areas.reach = open_reach();
   areas.limits.clear();
   areas.contact = areas.foundation = areas.change = 0;
   areas.longest_edge = kLongestEdge * extent_;
@@ -67,7 +69,7 @@ Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool intersect, const Budget
     }
     if (found.lower > 0) depth.point = found.point;
     areas.reach = found.upper;
-  } else if (!intersect) {
+  } else if (!near) {
     return depth;
   }
   const Occlusion bite = occlusion(query_, pose, areas);

@@ -14,7 +14,7 @@ struct Depth {
   /// The penetration depth; empty where a body is open, or holds no triangles.
   std::optional<DistanceInterval> certain{};
   bool complete = true;  ///< that interval is as narrow as the tolerance, or as rounding allows
-  /// The depth of the deepest vertex of either body; empty with open bodies that do not touch.
+  /// The depth of the deepest vertex of either body; empty with open bodies that are not near.
   std::optional<double> at_vertices{};
   /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty
   /// likewise.
@@ -29,9 +29,12 @@ class DepthMeter {
   /// `query` must outlive it; `extent` is the smaller body's largest, mesh units.
   DepthMeter(Query& query, double tolerance, double extent);
 
-  /// `intersect`: whether the surfaces do. A budget counts points; with one the interval may be
-  /// wider.
-  [[nodiscard]] Depth at(const Eigen::Isometry3d& pose, bool intersect, const Budget& budget) const;
+  /// `near`: whether the surfaces intersect, or are no farther apart than open_reach(). A budget
+  /// counts points; with one the interval may be wider.
+  [[nodiscard]] Depth at(const Eigen::Isometry3d& pose, bool near, const Budget& budget) const;
+
+  /// How far behind an open surface a vertex counts as inside, mesh units.
+  [[nodiscard]] double open_reach() const;
 
   /// Why there is no certain depth; empty where there is one.
   [[nodiscard]] const std::string& why_none() const { return why_none_; }

@@ -44,7 +44,13 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
   find_distance(pose, found);
   find_touch(pose, found);
   find_inside(pose, found);
-  found.depth = depth_->at(pose, found.touch == Answer::kYes, budget_);
+  const bool near = found.touch == Answer::kYes || found.distance->lower <= depth_->open_reach();
+  found.depth = depth_->at(pose, near, budget_);
+  if (found.touch == Answer::kNo && !found.depth.certain && found.depth.area > 0.0) {
+    found.inside.reset();
+    found.notes.emplace_back(
+        "apart, or in each other: a part lies behind an open surface, which has no inside");
+  }
   if (!found.depth.certain && found.touch != Answer::kNo) {
     found.notes.push_back("no certain depth: " + depth_->why_none());
   }
@@ -81,7 +87,7 @@ void Examiner::find_touch(const Eigen::Isometry3d& pose, Findings& found) {
   found.notes.push_back(questions_.max_tests
                             ? fmt::format("stopped: {:.3g} to {:.3g} apart", found.distance->lower,
                                           found.distance->upper)
-                            : fmt::format("at most {:.3g} apart", result.resolution));
+                            : fmt::format("at most {:.3g} apart", found.distance->upper));
 }
 
 void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const {

@@ -33,6 +33,11 @@ struct Findings {
   std::optional<std::uint64_t> contacts{};  ///< contact points
   std::optional<double> contact_depth{};    ///< of the deepest of them
   std::vector<std::string> notes{};         ///< for people, a few words each
+
+  /// Returns whether the bodies touch, or may, or one is known to lie in the other.
+  [[nodiscard]] bool may_meet() const {
+    return touch != Answer::kNo || (inside && *inside != Inside::kNone);
+  }
 };
 
 /// Answers people: where, how deep, how far. Each answer stands for itself and depends on no pose

@@ -14,6 +14,7 @@
 #include "cli/commands/advise_report.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
+#include "cli/engine.h"
 #include "cli/header_line.h"
 #include "cli/poses/pose_file.h"
 #include "cli/progress_bar.h"

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -107,10 +108,12 @@ void print_first_contact(const FirstContact& found, const Path& path) {
       fmt::print("first contact: at the start, {:g}: one body is inside the other\n", path.from);
       return;
     default:
-      fmt::print("first contact: {}displacement {:.9g} to {:.9g}",
-                 found.status == FirstContact::Status::kGrazing ? "only grazing, " : "",
-                 displacement_at(path, found.lower), displacement_at(path, found.upper));
+      break;
   }
+  const double a = displacement_at(path, found.lower), b = displacement_at(path, found.upper);
+  fmt::print("first contact: {}displacement {:.9g} to {:.9g}",
+             found.status == FirstContact::Status::kGrazing ? "only grazing, " : "", std::min(a, b),
+             std::max(a, b));
   if (found.triangles) {
     fmt::print(", triangles {} and {}", found.triangles->fixed, found.triangles->moving);
   }
@@ -138,6 +141,7 @@ void run(const ApproachArguments& options) {
   const Path path = path_of(options);
   const std::vector<AskedPose> poses = poses_along(path, options.step);
   const Bodies bodies = load_bodies(query.body_files());
+  if (!query.json) echo_pose(options.pose, path.start);
   if (options.first_contact) require_triangles(bodies);
   const bool touching = run_queries(bodies, poses, query);
   tell_first_contact(bodies, path, options);

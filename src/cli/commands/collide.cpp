@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <memory>
 
 #include "cli/commands/commands.h"
@@ -26,9 +23,7 @@ void run(const CollideArguments& options) {
   std::vector<AskedPose> poses;
   for (const Eigen::Isometry3d& pose : options.pose.poses_named()) poses.push_back({pose});
   const Bodies bodies = load_bodies(query.body_files());
-  if (!query.json && poses.size() == 1 && options.pose.is_named()) {
-    fmt::print(stderr, "pose, moving to fixed coordinates:\n{}", matrix_lines(poses.front().pose));
-  }
+  if (!query.json && poses.size() == 1) echo_pose(options.pose, poses.front().pose);
   fail_if_touching(run_queries(bodies, poses, query), query);
 }
 

@@ -15,7 +15,6 @@
 #include "cli/formats/vtp_writer.h"
 #include "cli/header_line.h"
 #include "cli/refusals.h"
-#include "ist/scene/ranges.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -38,18 +37,31 @@ FileFormat format_of(const ExportArguments& options) {
   return format_by_ending("-o", options.output, kPointFormats);
 }
 
-void write(PolyData data, FileFormat format, const std::string& comment,
+void write(PolyData data, FileFormat format, const std::string& comment, double metres,
            const ExportArguments& options) {
   if (format == FileFormat::kVtp) return write_vtp(data, options.output);
   if (format == FileFormat::kPly) return write_ply(data, options.output, comment);
   const std::array body{
       NamedPolyData{fmt::format("{} of level {}", options.what, options.level), std::move(data)}};
-  write_glb(body, *metres_in(options.unit.value_or("mm")), options.output);
+  write_glb(body, metres, options.output);
+}
+
+// Of a unit of the tree; millimetres where nobody says, and then aloud.
+double metres_of(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
+  const LengthUnit stored = tree.source().unit;
+  const LengthUnit named = options.unit ? *length_unit(*options.unit) : LengthUnit::kUnknown;
+  refuse_if(stored != LengthUnit::kUnknown && named != LengthUnit::kUnknown && stored != named,
+            "--unit", fmt::format("the tree holds {}: leave it out", to_string(stored)));
+  const LengthUnit unit = stored != LengthUnit::kUnknown ? stored : named;
+  if (unit != LengthUnit::kUnknown) return metres_per_unit(unit);
+  if (format == FileFormat::kGlb) fmt::print(stderr, "unit: mm (assumed); --unit names another\n");
+  return metres_per_unit(LengthUnit::kMillimetre);
 }
 
 void write_voxels(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
   write(level_cubes(tree, options.level), format,
-        fmt::format("voxels of level {}: cubes, inner faces left out", options.level), options);
+        fmt::format("voxels of level {}: cubes, inner faces left out", options.level),
+        metres_of(tree, format, options), options);
 }
 
 void write_spheres(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
@@ -58,7 +70,8 @@ void write_spheres(const SphereTree& tree, FileFormat format, const ExportArgume
   tree.require(policy, options.tree.string());
   const std::string comment =
       fmt::format("{} spheres of level {}: points with a radius", to_string(policy), options.level);
-  write(level_centres(tree, policy, options.level), format, comment, options);
+  write(level_centres(tree, policy, options.level), format, comment,
+        metres_of(tree, format, options), options);
 }
 
 void run(const ExportArguments& options) {
@@ -111,8 +124,8 @@ void add_export(CLI::App& app) {
       ->required();
   command
       ->add_option("--unit", options->unit,
-                   "unit of the tree, which a .glb turns into metres; mm if not given")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+                   "unit of a tree that holds none, which a .glb turns into metres; else mm")
+      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(
       *command,

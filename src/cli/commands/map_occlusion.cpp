@@ -25,6 +25,7 @@
 #include "cli/poses/pose_options.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 namespace {
@@ -62,6 +63,9 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
   const auto preset = std::find_if(presets().begin(), presets().end(),
                                    [&](const Preset& each) { return each.name == options.preset; });
   questions.preset = &*preset;
+  refuse_if(questions.reach < 1e-3 * preset->micrometres.back(), "--reach",
+            fmt::format("{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
+                        preset->micrometres.back()));
   if (!options.unit.empty()) questions.unit = *length_unit(options.unit);
   const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
   refuse_if(labels && options.numbering.empty(), "--numbering",
@@ -86,6 +90,9 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
     refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
                                options.questions.labels_fixed, options.questions.labels_moving});
+    refuse_if(std::count(options.outputs.begin(), options.outputs.end(), file) > 1, "-o",
+              fmt::format("{} is named twice", file.string()));
+    static_cast<void>(OutputFile(file));  // fails now where nothing can be written, not at the end
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
     outputs.push_back({file, format});
@@ -101,7 +108,7 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
 
 void write(const Bite& bite, const Output& output, BiteSelection selection) {
   const std::string comment =
-      fmt::format("signed distances, {}, NaN beyond {:g}; {}", bite.unit, bite.reach, kCaveat);
+      fmt::format("signed distances, {}, NaN beyond {:g}", bite.unit_words(), bite.reach);
   switch (output.format) {
     case FileFormat::kVtp:
       selection.open.reset();
@@ -139,6 +146,7 @@ void run(const OcclusionArguments& options) {
             "name a file that ends in .vtp, .ply, .glb, .csv, .json or .html, or give --json");
   const Eigen::Isometry3d pose = options.pose.poses_named().front();
   const Bodies bodies = load_bodies(options.files);
+  if (!options.json) echo_pose(options.pose, pose);
   const Bite bite = make_bite(bodies, sources_of(bodies, options.files), pose, questions);
   BiteSelection selection;
   if (!options.side.empty()) {
@@ -152,13 +160,14 @@ void run(const OcclusionArguments& options) {
   }
   if (options.json) {
     if (!questions.no_names) {
-      print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}});
+      print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}},
+                   bodies);
     }
     fmt::print("{}\n", json_of(bite).dump());
   } else {
     print_bite(bite, written);
   }
-  if (options.fail_if_touching && bite.findings.touch != Answer::kNo) {
+  if (options.fail_if_touching && bite.findings.may_meet()) {
     throw Failure(kTouching, "the bodies touch");
   }
 }
@@ -236,7 +245,7 @@ void add_occlusion(CLI::App& app) {
   command->add_flag("--no-names", options->questions.no_names,
                     "write fixed and moving for the files' names");
   command->add_flag("--fail-if-touching", options->fail_if_touching,
-                    "exit code 6 where the bodies touch");
+                    "exit code 6 where the bodies touch, or one lies in the other");
   add_max_memory(*command, options->files.max_memory);
   command->add_flag("--json", options->json, "print the measures as JSON");
   add_patient_options(*command, *options);

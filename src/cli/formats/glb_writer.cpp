@@ -64,6 +64,7 @@ class Scene {
   }
 
   void add(const NamedPolyData& body) {
+    if (texts_.empty()) texts_ = body.data.texts;
     Json node{{"name", body.name}};
     if (!body.data.points.empty()) {
       node["mesh"] = meshes_.size();
@@ -146,6 +147,7 @@ class Scene {
               {"scene", 0},
               {"scenes", Json::array({{{"nodes", {0}}}})},
               {"nodes", nodes_}};
+    for (const auto& [name, text] : texts_) json["asset"]["extras"][name] = text;
     if (!meshes_.empty()) {
       json["meshes"] = meshes_;
       // Scans are open, and no metal.
@@ -163,6 +165,7 @@ class Scene {
   }
 
   std::filesystem::path file_;
+  std::vector<NamedText> texts_;
   Json nodes_ = Json::array(), meshes_ = Json::array();
   Json accessors_ = Json::array(), views_ = Json::array();
   std::string binary_;

@@ -34,6 +34,14 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::string comments_of(const std::vector<NamedText>& texts) {
+  std::string comments;
+  for (const auto& [name, text] : texts) {
+    comments += "comment " + lower(name) + ": " + one_line(text) + "\n";
+  }
+  return comments;
+}
+
 std::string component_name(const DataArray& array, std::size_t component) {
   if (array.components == 1) return lower(array.name);
   const std::string suffix =
@@ -114,7 +122,7 @@ void write_ply(const PolyData& data, const std::filesystem::path& file,
     vertices.add_bytes(bytes_of(array.numbers));
   }
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment " + one_line(comment) + "\n" +
-                       vertices.header();
+                       comments_of(data.texts) + vertices.header();
   if (!data.polygons.empty()) {
     header += fmt::format("element face {}\nproperty list uchar int vertex_indices\n",
                           data.polygon_count());

@@ -24,6 +24,13 @@ struct DataArray {
   std::size_t components = 1;  ///< at least 1
 };
 
+/// A named text about the whole, such as its unit: in VTP field data, in PLY a comment, in GLB an
+/// extra of the asset.
+struct NamedText {
+  std::string name;  ///< letters, digits and underscores
+  std::string text;
+};
+
 using Colour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
 /// A surface or a set of points, with numbers on it: the content of the files that viewers open.
@@ -35,6 +42,7 @@ struct PolyData {
   /// indices of points. Empty if each point is a cell.
   std::vector<std::uint32_t> polygons;
   std::vector<DataArray> point_arrays, cell_arrays;
+  std::vector<NamedText> texts;
   std::vector<Colour> colours;           ///< one a point, or empty
   std::vector<Eigen::Vector3f> normals;  ///< one a point, of length 1; or empty
 

@@ -59,6 +59,20 @@ class Document {
   std::size_t offset_ = 0;
 };
 
+// VTK's strings are the numbers of their bytes, and end in 0.
+std::string field_data(const std::vector<NamedText>& texts) {
+  if (texts.empty()) return {};
+  std::string xml = "    <FieldData>\n";
+  for (const auto& [name, text] : texts) {
+    xml += fmt::format(
+        "      <DataArray type=\"String\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">",
+        name);
+    for (const char byte : text) xml += fmt::format("{} ", static_cast<unsigned char>(byte));
+    xml += "0</DataArray>\n";
+  }
+  return xml + "    </FieldData>\n";
+}
+
 }  // namespace
 
 void write_vtp(const PolyData& data, const std::filesystem::path& file) {
@@ -75,14 +89,14 @@ void write_vtp(const PolyData& data, const std::filesystem::path& file) {
   for (std::size_t i = 1; i <= cells; ++i) ends.push_back(static_cast<std::int64_t>(i * corners));
 
   Document document;
-  document.add(
-      fmt::format("<?xml version=\"1.0\"?>\n"
-                  "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-                  "header_type=\"UInt64\">\n"
-                  "  <PolyData>\n"
-                  "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
-                  "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
-                  data.points.size(), vertices ? cells : 0, vertices ? 0 : cells));
+  document.add(fmt::format(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n"
+      "  <PolyData>\n{}"
+      "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
+      "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
+      field_data(data.texts), data.points.size(), vertices ? cells : 0, vertices ? 0 : cells));
   document.add(data.normals.empty() ? "      <PointData>\n"
                                     : "      <PointData Normals=\"Normals\">\n");
   document.add_arrays(data.point_arrays);

@@ -45,6 +45,8 @@ struct Bite {
   std::optional<ToothNumbers> numbers;
   std::vector<std::string> checks;  ///< sentences for people: overlap, unit, sides, open bodies
 
+  /// Returns the unit as outputs tell it: "mm", or "mm (assumed)".
+  [[nodiscard]] std::string unit_words() const { return unit_assumed ? unit + " (assumed)" : unit; }
   [[nodiscard]] double units_per_micrometre() const { return 1e-3 * units_per_mm; }
 };
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "cli/commit.h"
+
 namespace ist::cli {
 namespace {
 
@@ -87,7 +89,8 @@ const char* name_of(ToothNumbers numbers) {
 
 ordered_json json_of(const Bite& bite) {
   const Findings& found = bite.findings;
-  ordered_json out{{"schema", 1}, {"version", IST_VERSION}, {"unit", bite.unit}};
+  ordered_json out{
+      {"schema", 1}, {"version", IST_VERSION}, {"commit", IST_COMMIT}, {"unit", bite.unit}};
   out["unit_assumed"] = bite.unit_assumed;
   out["pose"] = ordered_json::array();
   for (Eigen::Index i = 0; i < 16; ++i) out["pose"].push_back(bite.pose.matrix().data()[i]);

@@ -8,6 +8,7 @@
 #include "cli/extents.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
+#include "ist/base/error.h"
 #include "ist/base/pose.h"
 
 namespace ist::cli {
@@ -16,12 +17,39 @@ namespace {
 // Deeper than this, millimetres, a bite's registration is looked at again (Zagreb 2026).
 constexpr double kMuchOverlap = 0.1;
 
-LengthUnit unit_of(const Bodies& bodies, const BiteQuestions& questions) {
+// The unit of both, and whether it is assumed of any of them.
+struct KnownUnit {
+  LengthUnit unit;
+  bool assumed;
+};
+KnownUnit unit_of(const Bodies& bodies, const BiteQuestions& questions) {
   const LengthUnit stored = bodies.unit();
   refuse_if(stored != LengthUnit::kUnknown && questions.unit != LengthUnit::kUnknown &&
                 stored != questions.unit,
             "--unit", fmt::format("the trees hold {}: leave it out", to_string(stored)));
-  return stored != LengthUnit::kUnknown ? stored : questions.unit;
+  if (questions.unit != LengthUnit::kUnknown) return {questions.unit, false};
+  if (stored == LengthUnit::kUnknown) return {LengthUnit::kMillimetre, true};
+  return {stored, bodies.fixed.source().unit != bodies.moving.source().unit};
+}
+
+// Two jaws in another unit than theirs are metres large, or less than a millimetre.
+void require_size(const Bodies& bodies, const Bite& bite) {
+  constexpr double kLeast = 1, kLargest = 1000;  // millimetres
+  for (const auto& [tree, role] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
+    const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
+    refuse_if(!(size >= kLeast && size <= kLargest), "--unit",
+              fmt::format("in {} {} is {:.4g} mm large, and jaws are 1 to 1000: name the unit of "
+                          "the meshes, or convert them",
+                          bite.unit, role, size));
+  }
+}
+
+void require_area(const BiteBody& body, const char* role) {
+  if (body.surface.total_area > 0) return;
+  throw Error(ErrorCode::kMeshExtent,
+              fmt::format("{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
+                          "write it again from its scan",
+                          role));
 }
 
 OcclusionOptions options_of(const Bite& bite) {
@@ -68,7 +96,9 @@ void name(BiteBody& body, const MeshSource& source, const char* anonymous, bool 
 std::vector<std::string> checks_of(const Bite& bite) {
   std::vector<std::string> checks;
   const Depth& depth = bite.findings.depth;
-  const double deepest = depth.certain ? depth.certain->lower : depth.at_vertices.value_or(0.0);
+  const double at_vertices =
+      std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices);
+  const double deepest = depth.certain ? depth.certain->lower : at_vertices;
   if (deepest > kMuchOverlap * bite.units_per_mm) {
     checks.push_back("overlap above 0.1 mm: check the bite registration");
   }
@@ -82,11 +112,12 @@ std::vector<std::string> checks_of(const Bite& bite) {
         "the {} body is open: distances at its border have no sign, and depth is told by vertices",
         role));
   }
+  for (const std::string& note : bite.findings.notes) checks.push_back(note);
   const auto is_empty = [](const BiteBody& body) {
     return std::all_of(body.surface.vertices.begin(), body.surface.vertices.end(),
                        [](const SurfaceDistance& one) { return std::isnan(one.distance); });
   };
-  if (is_empty(bite.fixed) && is_empty(bite.moving)) {
+  if (is_empty(bite.fixed) && is_empty(bite.moving) && !(deepest > 0)) {
     checks.push_back(fmt::format("the map is empty: nothing lies within the reach of {:g} {}",
                                  bite.reach, bite.unit));
   }
@@ -99,11 +130,11 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
                const BiteQuestions& questions) {
   require_triangles(bodies);
   Bite bite;
-  const LengthUnit unit = unit_of(bodies, questions);
-  bite.unit_assumed = unit == LengthUnit::kUnknown;
-  const LengthUnit taken = bite.unit_assumed ? LengthUnit::kMillimetre : unit;
-  bite.unit = to_string(taken);
-  bite.units_per_mm = 1e-3 / metres_per_unit(taken);
+  const KnownUnit unit = unit_of(bodies, questions);
+  bite.unit_assumed = unit.assumed;
+  bite.unit = to_string(unit.unit);
+  bite.units_per_mm = 1e-3 / metres_per_unit(unit.unit);
+  require_size(bodies, bite);
   bite.pose = *project_to_rigid(pose);
   bite.preset = questions.preset;
   bite.scanner_band = questions.scanner_band;
@@ -133,7 +164,12 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   bite.moving.surface = std::move(measured.moving);
   fill(bite.fixed, bodies.fixed, bite, questions.labels_fixed);
   fill(bite.moving, bodies.moving, bite, questions.labels_moving);
+  require_area(bite.fixed, "FIXED");
+  require_area(bite.moving, "MOVING");
   bite.findings = Examiner(bodies, {}, {}).at(pose);
+  // Of the same triangles as all areas here.
+  bite.findings.depth.area =
+      0.5 * (bite.fixed.surface.penetrating_area + bite.moving.surface.penetrating_area);
   bite.checks = checks_of(bite);
   return bite;
 }

@@ -33,7 +33,9 @@ std::vector<NamedPolyData> surfaces(const Bite& bite, const BiteSelection& selec
   const OpenedBook book = selection.open ? opened(bite, *selection.open) : OpenedBook{};
   std::vector<NamedPolyData> out;
   for (const BiteBody* body : bodies_of(bite, selection.side)) {
-    out.push_back({body->name, placed(*body, body == &bite.fixed ? book.fixed : book.moving)});
+    PolyData data = placed(*body, body == &bite.fixed ? book.fixed : book.moving);
+    data.texts = {{"Unit", bite.unit_words()}, {"Caveat", kCaveat}};
+    out.push_back({body->name, std::move(data)});
   }
   return out;
 }

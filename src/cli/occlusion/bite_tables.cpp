@@ -13,44 +13,49 @@
 namespace ist::cli {
 namespace {
 
-void add_rows(CsvWriter& table, const BiteBody& body, const char* role) {
+void add_rows(CsvWriter& table, const Bite& bite, const BiteBody& body, const char* role) {
   std::size_t index = 0;
   for (const ContactRegion& region : body.surface.regions) {
     table.row(role, index++, region.area, region.centre[0], region.centre[1], region.centre[2],
               region.least_distance, region.closest[0], region.closest[1], region.closest[2],
               region.penetrating_area, region.depth_integral, region.share, region.share_thinner,
-              region.share_thicker, region.partner);
+              region.share_thicker, region.partner, bite.unit_words());
   }
 }
 
+// How far apart, and how deep: of a body that lies inside the other both are known.
 std::string first_line(const Bite& bite) {
   const Findings& found = bite.findings;
-  const std::string band = fmt::format("± {:g} {} assumed for scanning",
-                                       bite.scanner_band * bite.units_per_micrometre(), bite.unit);
+  const bool yes = found.touch == Answer::kYes;
+  std::string line = "touch " + (yes ? painted("yes", TextColour::kRed) : "no");
   if (found.inside && *found.inside != Inside::kNone) {
-    return fmt::format("touch no: the {} body is inside the other ({})", to_string(*found.inside),
-                       band);
+    line += fmt::format(", the {} body lies inside the other", to_string(*found.inside));
   }
-  if (found.touch != Answer::kYes) {
-    return fmt::format("touch no, {:.4g} to {:.4g} {} apart ({})", found.distance->lower,
-                       found.distance->upper, bite.unit, band);
+  if (!yes) {
+    line += fmt::format(", {:.4g} to {:.4g} {} apart", found.distance->lower, found.distance->upper,
+                        bite.unit);
   }
   const Depth& depth = found.depth;
-  const std::string deep = depth.certain
-                               ? fmt::format("{:.4g} to {:.4g} {}", depth.certain->lower,
-                                             depth.certain->upper, bite.unit)
-                               : fmt::format("at least {:.3g} {} (open surface, by vertices)",
-                                             depth.at_vertices.value_or(0.0), bite.unit);
-  return fmt::format("touch {}, {} deep ({})", painted("yes", TextColour::kRed), deep, band);
+  if (depth.certain && depth.certain->upper > 0) {
+    line += fmt::format(", {:.4g} to {:.4g} {} deep", depth.certain->lower, depth.certain->upper,
+                        bite.unit);
+  } else if (!depth.certain && (yes || depth.at_vertices > 0.0)) {
+    line += fmt::format("{} at least {:.3g} {} deep (open surface, by vertices)",
+                        yes ? "," : ", or", depth.at_vertices.value_or(0.0), bite.unit);
+  }
+  return line + fmt::format(" (± {:g} {} assumed for scanning)",
+                            bite.scanner_band * bite.units_per_micrometre(), bite.unit);
 }
 
 std::string second_line(const Bite& bite) {
   std::string areas;
   for (std::size_t i = 0; i < bite.fixed.areas.size(); ++i) {
     const double limit = bite.preset->micrometres[i];
-    areas += fmt::format("{}{} {:.4g} and {:.4g} {}²", areas.empty() ? "" : ", ",
-                         limit > 0 ? fmt::format("within {:g} µm", limit) : "in each other",
-                         bite.fixed.areas[i], bite.moving.areas[i], bite.unit);
+    areas += fmt::format(
+        "{}{} {:.4g} and {:.4g} {}²{}", areas.empty() ? "" : ", ",
+        limit > 0 ? fmt::format("within {:g} µm", limit) : "in each other", bite.fixed.areas[i],
+        bite.moving.areas[i], bite.unit,
+        limit > 0 && limit < bite.scanner_band ? " (below the error assumed for scanning)" : "");
   }
   const auto unpaired = [](const BiteBody& body) {
     return std::count_if(body.surface.regions.begin(), body.surface.regions.end(),
@@ -58,8 +63,9 @@ std::string second_line(const Bite& bite) {
   };
   const auto pairs =
       static_cast<std::ptrdiff_t>(bite.fixed.surface.regions.size()) - unpaired(bite.fixed);
-  return fmt::format("areas, {}: {}; {} paired regions, {} unpaired", bite.preset->name, areas,
-                     pairs, unpaired(bite.fixed) + unpaired(bite.moving));
+  return fmt::format("areas, {} ({}): {}; {} paired regions, {} unpaired", bite.preset->name,
+                     bite.preset->source, areas, pairs,
+                     unpaired(bite.fixed) + unpaired(bite.moving));
 }
 
 }  // namespace
@@ -68,9 +74,9 @@ void write_bite_csv(const Bite& bite, const std::filesystem::path& file) {
   CsvWriter table(
       file, {"body", "index", "area", "centre_x", "centre_y", "centre_z", "least_distance",
              "closest_x", "closest_y", "closest_z", "penetrating_area", "depth_integral", "share",
-             "share_thinner", "share_thicker", "partner"});
-  add_rows(table, bite.fixed, "fixed");
-  add_rows(table, bite.moving, "moving");
+             "share_thinner", "share_thicker", "partner", "unit"});
+  add_rows(table, bite, bite.fixed, "fixed");
+  add_rows(table, bite, bite.moving, "moving");
   table.commit();
 }
 

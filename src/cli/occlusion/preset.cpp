@@ -18,7 +18,7 @@ constexpr std::array<Preset, 6> kPresets{{
     {"biteeye", kBiteEye, "bands of silicone bites: BiteEye, J Oral Rehabil 2022"},
     {"paper", kPaper, "articulating paper of 200 µm: Rovira-Lastra 2026"},
     {"stl", kStl, "steps of 100 µm, of scans: Rovira-Lastra 2026"},
-    {"shim", kShim, "shim stock holds"},
+    {"shim", kShim, "shim stock holds at 10 µm: DeLong 2007"},
 }};
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "cli/occlusion/sides.h"
 
+#include <cmath>
+
 #include "cli/poses/numbers.h"
 #include "cli/refusals.h"
 
@@ -39,6 +41,8 @@ std::pair<Division, Division> divisions(const SideOptions& options,
     left = Vector(-1, 0, 0);
     front = Vector(0, 1, 0);
   }
+  refuse_if(left && front && !(std::abs(left->dot(*front)) < 0.99), "--front",
+            "it is the direction of --left: give another");
   Division sides, fore_aft;
   sides.direction = left.value_or(Vector(1, 0, 0));
   sides.first = left ? "left" : "+x";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 
@@ -126,15 +127,16 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
       ->excludes(matrix);
 }
 
-std::string matrix_lines(const Eigen::Isometry3d& pose) {
-  std::string lines;
+void echo_pose(const PoseOptions& options, const Eigen::Isometry3d& pose) {
+  if (!options.is_named()) return;
+  std::string lines = "pose, moving to fixed coordinates:\n";
   for (Eigen::Index row = 0; row < 4; ++row) {
     for (Eigen::Index column = 0; column < 4; ++column) {
       lines += fmt::format("{:>14.9g}", pose.matrix()(row, column) + 0.0);
     }
     lines += '\n';
   }
-  return lines;
+  fmt::print(stderr, "{}", lines);
 }
 
 }  // namespace ist::cli

@@ -33,7 +33,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses);
 /// begins with `option`.
 [[nodiscard]] Eigen::Vector3d axis_named(const std::string& word, const std::string& option);
 
-/// Returns a pose as four lines of four numbers.
-[[nodiscard]] std::string matrix_lines(const Eigen::Isometry3d& pose);
+/// Prints a pose to stderr as four lines of four numbers, where a motion is named.
+void echo_pose(const PoseOptions& options, const Eigen::Isometry3d& pose);
 
 }  // namespace ist::cli
