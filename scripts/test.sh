@@ -39,6 +39,11 @@ run() {  # preset, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
+# What users build, file by file: builds of several files as one hide a missing include.
+echo "== preset release"
+cmake --preset release >/dev/null
+cmake --build --preset release -- -j"$jobs" >build/release.log || { cat build/release.log; exit 1; }
+
 run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
 run sanitize "capi_test ist_c11_test formats_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|/(avx2|ssse3)$|Saved$|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|House'
 run test all
