@@ -3,6 +3,7 @@
 #include "cli/cli_case.h"
 #include "support/ply_file.h"
 #include "support/shapes.h"
+#include "support/skip.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -229,6 +230,18 @@ TEST_F(OcclusionCommand, ABodyInTheOtherIsToldWithNumbers) {
   EXPECT_TRUE(says(whole.out, " mm apart, "));
   EXPECT_TRUE(says(whole.out, " mm deep"));
   EXPECT_FALSE(says(whole.out, "the map is empty"));
+}
+
+// All files or none: a disk that is full at the last leaves the older one of the first.
+TEST_F(OcclusionCommand, FilesAreCompletedTogether) {
+  if (!std::filesystem::exists("/dev/full")) IST_SKIP("/dev/full is not there");
+  const std::string older = write("b.csv", "older");
+  std::filesystem::create_symlink("/dev/full", path("full.vtp"));
+  const CommandResult result = ask({"-o", older, "-o", path("full.vtp")});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, "full.vtp: cannot write"));
+  EXPECT_EQ(file_content(older), "older");
+  EXPECT_EQ(dir_.entries(), 4u);
 }
 
 // In every file that has a place for it.

@@ -78,8 +78,9 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
   return questions;
 }
 
+// Opened before anything is measured, and completed when all of them are written.
 struct Output {
-  std::filesystem::path file;
+  std::unique_ptr<OutputFile> file;
   FileFormat format;
 };
 
@@ -92,10 +93,9 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
                                options.questions.labels_fixed, options.questions.labels_moving});
     refuse_if(std::count(options.outputs.begin(), options.outputs.end(), file) > 1, "-o",
               fmt::format("{} is named twice", file.string()));
-    static_cast<void>(OutputFile(file));  // fails now where nothing can be written, not at the end
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
-    outputs.push_back({file, format});
+    outputs.push_back({std::make_unique<OutputFile>(file), format});
   }
   refuse_if(options.open && !open, "--open", "goes with .ply and .glb");
   refuse_if(!options.side.empty() && !open && !surface, "--side", "goes with .vtp, .ply and .glb");
@@ -112,23 +112,23 @@ void write(const Bite& bite, const Output& output, BiteSelection selection) {
   switch (output.format) {
     case FileFormat::kVtp:
       selection.open.reset();
-      return write_vtp(joined(bite_arrays(bite, selection)), output.file);
+      return write_vtp(joined(bite_arrays(bite, selection)), *output.file);
     case FileFormat::kPly:
-      return write_ply(joined(bite_surfaces(bite, selection)), output.file, comment);
+      return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comment);
     case FileFormat::kGlb: {
       std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
       for (NamedPolyData& body : bodies) {
         body.data.normals = vertex_normals(body.data);
         body.data.point_arrays.clear();
       }
-      return write_glb(bodies, 1e-3 / bite.units_per_mm, output.file);
+      return write_glb(bodies, 1e-3 / bite.units_per_mm, *output.file);
     }
     case FileFormat::kCsv:
-      return write_bite_csv(bite, output.file);
+      return write_bite_csv(bite, *output.file);
     case FileFormat::kJson:
-      return write_bite_json(bite, output.file);
+      return write_bite_json(bite, *output.file);
     default:
-      return write_bite_html(bite, output.file);
+      return write_bite_html(bite, *output.file);
   }
 }
 
@@ -153,11 +153,8 @@ void run(const OcclusionArguments& options) {
     selection.side = options.side == "fixed" ? BiteSide::kFixed : BiteSide::kMoving;
   }
   if (options.open) selection.open = *options.open * bite.units_per_mm;
-  std::vector<std::filesystem::path> written;
-  for (const Output& output : outputs) {
-    write(bite, output, selection);
-    written.push_back(output.file);
-  }
+  for (const Output& output : outputs) write(bite, output, selection);
+  for (const Output& output : outputs) output.file->commit();
   if (options.json) {
     if (!questions.no_names) {
       print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}},
@@ -165,7 +162,7 @@ void run(const OcclusionArguments& options) {
     }
     fmt::print("{}\n", json_of(bite).dump());
   } else {
-    print_bite(bite, written);
+    print_bite(bite, options.outputs);
   }
   if (options.fail_if_touching && bite.findings.may_meet()) {
     throw Failure(kTouching, "the bodies touch");

@@ -5,6 +5,12 @@
 namespace ist::cli {
 
 CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns)
+    : own_(std::in_place, file), file_(*own_), columns_(columns.size()) {
+  for (const std::string& column : columns) add(column);
+  end_row();
+}
+
+CsvWriter::CsvWriter(OutputFile& file, const std::vector<std::string>& columns)
     : file_(file), columns_(columns.size()) {
   for (const std::string& column : columns) add(column);
   end_row();

@@ -24,6 +24,9 @@ class CsvWriter {
  public:
   /// Opens the file and writes the header row.
   CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns);
+  /// Writes the header row into a file that outlives the writer, and that the caller completes,
+  /// after flush().
+  CsvWriter(OutputFile& file, const std::vector<std::string>& columns);
 
   /// Writes a row: as many fields as columns, each a number, a text, or an optional one.
   template <typename... Fields>
@@ -44,13 +47,16 @@ class CsvWriter {
   /// Ends the row. Precondition: it has as many fields as there are columns.
   void end_row();
 
+  /// Hands all rows to the file.
+  void flush();
+  /// Completes the file that the writer opened.
   void commit();
 
  private:
   void add_raw(std::string_view text);
-  void flush();
 
-  OutputFile file_;
+  std::optional<OutputFile> own_;
+  OutputFile& file_;
   std::size_t columns_, fields_ = 0;  // fields_: of the row that is being written
   std::string rows_;                  // not yet written
 };

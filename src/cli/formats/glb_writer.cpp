@@ -74,7 +74,7 @@ class Scene {
     nodes_.push_back(std::move(node));
   }
 
-  void write() const {
+  void write(OutputFile& output) const {
     const std::string text = padded_json();
     const std::size_t binary_chunk = binary_.empty() ? 0 : kChunkHeaderBytes + binary_.size();
     const std::size_t bytes = kHeaderBytes + kChunkHeaderBytes + text.size() + binary_chunk;
@@ -82,7 +82,6 @@ class Scene {
       throw Error(ErrorCode::kFileUnwritable,
                   fmt::format("{}: a GLB holds at most 4 GiB; write a .vtp", file_.string()));
     }
-    OutputFile output(file_);
     const auto write_words = [&output](std::initializer_list<std::size_t> words) {
       for (const std::size_t word : words) {
         const auto narrowed = static_cast<std::uint32_t>(word);
@@ -95,7 +94,6 @@ class Scene {
       write_words({binary_.size(), kBinaryChunk});
       output.write(binary_.data(), binary_.size());
     }
-    output.commit();
   }
 
  private:
@@ -175,10 +173,16 @@ class Scene {
 
 void write_glb(std::span<const NamedPolyData> bodies, double metres_per_unit,
                const std::filesystem::path& file) {
+  OutputFile output(file);
+  write_glb(bodies, metres_per_unit, output);
+  output.commit();
+}
+
+void write_glb(std::span<const NamedPolyData> bodies, double metres_per_unit, OutputFile& file) {
   IST_ASSERT(metres_per_unit > 0);
-  Scene scene(metres_per_unit, file);
+  Scene scene(metres_per_unit, file.target());
   for (const NamedPolyData& body : bodies) scene.add(body);
-  scene.write();
+  scene.write(file);
 }
 
 }  // namespace ist::cli

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "cli/formats/poly_data.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 
@@ -19,6 +20,8 @@ namespace ist::cli {
 /// Cost: linear; memory, as much as the file. Precondition: is_consistent() of each body. Errors:
 /// kFileUnwritable, also for a file over 4 GiB, which the format cannot hold; kMeshNotFinite for a
 /// point beyond float.
+void write_glb(std::span<const NamedPolyData> bodies, double metres_per_unit, OutputFile& file);
+/// The same, and completes the file.
 void write_glb(std::span<const NamedPolyData> bodies, double metres_per_unit,
                const std::filesystem::path& file);
 

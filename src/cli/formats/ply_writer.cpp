@@ -97,13 +97,19 @@ std::string face_rows(const PolyData& data) {
 
 void write_ply(const PolyData& data, const std::filesystem::path& file,
                const std::string& comment) {
+  OutputFile output(file);
+  write_ply(data, output, comment);
+  output.commit();
+}
+
+void write_ply(const PolyData& data, OutputFile& file, const std::string& comment) {
   IST_ASSERT(is_consistent(data));
   if (data.points.size() > std::numeric_limits<std::int32_t>::max()) {
-    throw Error(
-        ErrorCode::kFileUnwritable,
-        fmt::format("{}: a PLY's faces know at most 2^31 - 1 points; write a .vtp", file.string()));
+    throw Error(ErrorCode::kFileUnwritable,
+                fmt::format("{}: a PLY's faces know at most 2^31 - 1 points; write a .vtp",
+                            file.target().string()));
   }
-  const std::vector<float> points = float_points(data, file);
+  const std::vector<float> points = float_points(data, file.target());
   VertexElement vertices(data.points.size());
   for (const char* name : {"x", "y", "z"}) vertices.add("float", name);
   vertices.add_bytes(std::as_bytes(std::span(points)));
@@ -129,11 +135,9 @@ void write_ply(const PolyData& data, const std::filesystem::path& file,
   }
   header += "end_header\n";
 
-  OutputFile output(file);
   for (const std::string& part : {header, vertices.rows(), face_rows(data)}) {
-    output.write(part.data(), part.size());
+    file.write(part.data(), part.size());
   }
-  output.commit();
 }
 
 }  // namespace ist::cli

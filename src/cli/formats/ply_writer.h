@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/formats/poly_data.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 
@@ -19,6 +20,8 @@ namespace ist::cli {
 /// Cost: linear; memory, as much as the file. Precondition: is_consistent(data). Errors:
 /// kFileUnwritable, also for over 2^31 - 1 points, which the indices cannot tell; kMeshNotFinite
 /// for a point beyond float.
+void write_ply(const PolyData& data, OutputFile& file, const std::string& comment);
+/// The same, and completes the file.
 void write_ply(const PolyData& data, const std::filesystem::path& file, const std::string& comment);
 
 }  // namespace ist::cli

@@ -37,8 +37,7 @@ class Document {
     }
   }
 
-  void write(const std::filesystem::path& file) const {
-    OutputFile output(file);
+  void write(OutputFile& output) const {
     const auto write_text = [&output](std::string_view text) {
       output.write(text.data(), text.size());
     };
@@ -50,7 +49,6 @@ class Document {
       output.write(bytes.data(), bytes.size());
     }
     write_text("\n  </AppendedData>\n</VTKFile>\n");
-    output.commit();
   }
 
  private:
@@ -76,8 +74,14 @@ std::string field_data(const std::vector<NamedText>& texts) {
 }  // namespace
 
 void write_vtp(const PolyData& data, const std::filesystem::path& file) {
+  OutputFile output(file);
+  write_vtp(data, output);
+  output.commit();
+}
+
+void write_vtp(const PolyData& data, OutputFile& file) {
   IST_ASSERT(is_consistent(data));
-  const std::vector<float> points = float_points(data, file);
+  const std::vector<float> points = float_points(data, file.target());
   const bool vertices = data.polygons.empty();
   const std::size_t cells = data.cell_count(), corners = vertices ? 1 : data.corners;
   std::vector<std::int64_t> connectivity(data.polygons.begin(), data.polygons.end());

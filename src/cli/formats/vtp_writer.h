@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli/formats/poly_data.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 
@@ -12,6 +13,8 @@ namespace ist::cli {
 ///
 /// Cost: linear; 8 bytes of memory a corner beside the data. Precondition: is_consistent(data).
 /// Errors: kFileUnwritable; kMeshNotFinite for a point beyond float.
+void write_vtp(const PolyData& data, OutputFile& file);
+/// The same, and completes the file.
 void write_vtp(const PolyData& data, const std::filesystem::path& file);
 
 }  // namespace ist::cli

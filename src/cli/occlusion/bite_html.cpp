@@ -119,10 +119,14 @@ std::string page(const Bite& bite) {
 }  // namespace
 
 void write_bite_html(const Bite& bite, const std::filesystem::path& file) {
-  const std::string html = page(bite);
   OutputFile output(file);
-  output.write(html.data(), html.size());
+  write_bite_html(bite, output);
   output.commit();
+}
+
+void write_bite_html(const Bite& bite, OutputFile& file) {
+  const std::string html = page(bite);
+  file.write(html.data(), html.size());
 }
 
 }  // namespace ist::cli

@@ -70,21 +70,19 @@ std::string second_line(const Bite& bite) {
 
 }  // namespace
 
-void write_bite_csv(const Bite& bite, const std::filesystem::path& file) {
+void write_bite_csv(const Bite& bite, OutputFile& file) {
   CsvWriter table(
       file, {"body", "index", "area", "centre_x", "centre_y", "centre_z", "least_distance",
              "closest_x", "closest_y", "closest_z", "penetrating_area", "depth_integral", "share",
              "share_thinner", "share_thicker", "partner", "unit"});
   add_rows(table, bite, bite.fixed, "fixed");
   add_rows(table, bite, bite.moving, "moving");
-  table.commit();
+  table.flush();
 }
 
-void write_bite_json(const Bite& bite, const std::filesystem::path& file) {
+void write_bite_json(const Bite& bite, OutputFile& file) {
   const std::string text = json_of(bite).dump(2) + "\n";
-  OutputFile output(file);
-  output.write(text.data(), text.size());
-  output.commit();
+  file.write(text.data(), text.size());
 }
 
 void print_bite(const Bite& bite, std::span<const std::filesystem::path> written) {

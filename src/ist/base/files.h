@@ -48,6 +48,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  /// Returns the name that the file gets.
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
   void write(const void* data, std::size_t bytes);
   /// Overwrites `bytes` bytes from `offset` on, for a header that is known last.
   void write_at(std::size_t offset, const void* data, std::size_t bytes);
