@@ -182,7 +182,7 @@ def vtk_exports(folder):
     feature.Update()
     assert feature.GetOutput().GetNumberOfCells() == 0, "the cubes' surface has a border"
     (glb,) = vtk_meshes(vtk_output(vtk.vtkGLTFReader(), folder / "voxels.glb"))
-    close("points", vtk_to_numpy(glb.GetPoints().GetData()), turned(points, 0.01))
+    close("points", vtk_to_numpy(glb.GetPoints().GetData()), turned(points, 0.0254))
     same("triangles", vtk_cells(glb.GetPolys()).reshape(-1, 6), quads[:, [0, 1, 2, 0, 2, 3]])
     spheres = vtk_output(vtk.vtkXMLPolyDataReader(), folder / "spheres.vtp")
     assert spheres.GetNumberOfVerts() == spheres.GetNumberOfPoints() > 0
@@ -258,7 +258,7 @@ def main(tool, write_samples, ist, folder):
 
     run("demo", "--keep", folder, "--voxel-size", 8)
     run("build", folder / "lower_jaw.stl", "-o", folder / "jaw.ist", "--voxel-size", 2)
-    for name, more in (("voxels.vtp", []), ("voxels.ply", []), ("voxels.glb", ["--unit", "cm"]), ("spheres.vtp", []), ("spheres.ply", [])):
+    for name, more in (("voxels.vtp", []), ("voxels.ply", []), ("voxels.glb", ["--unit", "inch"]), ("spheres.vtp", []), ("spheres.ply", [])):
         run("export", folder / "jaw.ist", "--what", name.split(".")[0], "--level", 1, "-o", folder / name, *more)
     globals()[f"{tool}_exports"](folder)
 
