@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Sets up, builds, and runs every test: optimised with assertions, then what has threads under
-# ThreadSanitizer, then what reads files and what runs in vectors under AddressSanitizer and
-# UndefinedBehaviorSanitizer.
+# Sets up, builds as users do, and runs every test: what has threads under ThreadSanitizer, what reads
+# files and what runs in vectors under AddressSanitizer and UndefinedBehaviorSanitizer, then all,
+# optimised with assertions.
 #
-#   scripts/test.sh          every test, some 20 minutes from nothing built on two cores
+#   scripts/test.sh          every test, some 25 minutes from nothing built on two cores
 #   scripts/test.sh --long   then hard cases with 20 times the samples, ten million queries of real
 #                            jaws, an hour of simulated pressing, threads for longer, CloudCompare's
 #                            distances, and each fuzzer for a minute; 45 minutes more

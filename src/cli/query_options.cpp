@@ -13,7 +13,7 @@ namespace ist::cli {
 namespace {
 
 void add_engine_options(CLI::App& command, QueryOptions& options) {
-  const std::string group = "Engine, for who counts microseconds";
+  const std::string group = "Engine, and its times";
   command
       .add_option("--spheres", options.spheres,
                   "bounds of the nodes; by default the tightest that both bodies have")

@@ -69,15 +69,8 @@ std::vector<AskedPose> poses_along(const Path& path, const std::optional<double>
 FirstContact find_first_contact(const Bodies& bodies, const Path& path, double tolerance) {
   Query query(bodies.fixed, bodies.moving);
   ProgressBar progress;
-  progress.begin_stage("looking for the first contact", 1000);
-  std::uint64_t told = 0;
   return first_contact(query, path.at(path.from), path.at(path.to), tolerance,
-                       {.proceed = [&](double part) {
-                         const auto done = static_cast<std::uint64_t>(1000 * part);
-                         progress.add(done - told);
-                         told = done;
-                         return true;
-                       }});
+                       {.proceed = shown_by(progress, "looking for the first contact")});
 }
 
 double displacement_at(const Path& path, double parameter) {

@@ -149,15 +149,8 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   name(bite.moving, sources.moving, "moving", questions.no_names);
 
   ProgressBar progress;
-  progress.begin_stage("measuring the occlusion", 1000);
-  std::uint64_t told = 0;
   OcclusionOptions options = options_of(bite);
-  options.proceed = [&](double part) {
-    const auto done = static_cast<std::uint64_t>(1000 * part);
-    progress.add(done - std::min(told, done));
-    told = std::max(told, done);
-    return true;
-  };
+  options.proceed = shown_by(progress, "measuring the occlusion");
   const Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});
   Occlusion measured = occlusion(query, pose, options);
   bite.fixed.surface = std::move(measured.fixed);

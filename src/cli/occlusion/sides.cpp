@@ -12,9 +12,9 @@ using Vector = Eigen::Vector3d;
 
 std::optional<Vector> triple(const std::string& text, const std::string& option) {
   if (text.empty()) return std::nullopt;
-  const auto numbers = numbers_of(text);
-  refuse_if(!numbers || numbers->size() != 3, option, text + ": give x,y,z, such as 1,0,0");
-  return Vector((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+  const std::optional<Vector> given = vector_of(text);
+  refuse_if(!given, option, text + ": give x,y,z, such as 1,0,0");
+  return given;
 }
 
 std::optional<Vector> direction(const std::string& text, const std::string& option) {

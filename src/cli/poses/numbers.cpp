@@ -1,5 +1,6 @@
 #include "cli/poses/numbers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -21,6 +22,12 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
     at = text.find_first_not_of(kBetween, end);
   }
   return numbers;
+}
+
+std::optional<Eigen::Vector3d> vector_of(std::string_view text) {
+  const auto numbers = numbers_of(text);
+  if (!numbers || numbers->size() != 3) return std::nullopt;
+  return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
 }  // namespace ist::cli

@@ -17,12 +17,6 @@
 namespace ist::cli {
 namespace {
 
-std::optional<Eigen::Vector3d> triple(const std::string& text) {
-  const auto numbers = numbers_of(text);
-  if (!numbers || numbers->size() != 3) return std::nullopt;
-  return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-}
-
 // Whole quarters of a turn have whole numbers.
 SineCosine of_degrees(double degrees) {
   const double turn = std::remainder(degrees, 360.0);
@@ -54,14 +48,14 @@ Eigen::Isometry3d turn_named(const std::string& text) {
       "-x, -y, -z, or three numbers";
   const std::size_t at = text.find('@');
   const auto point = at == std::string::npos ? std::optional(Eigen::Vector3d(0, 0, 0))
-                                             : triple(text.substr(at + 1));
+                                             : vector_of(text.substr(at + 1));
   const std::string turn = text.substr(0, at);
   const std::size_t comma = turn.rfind(',');
   refuse_if(!point || comma == std::string::npos, "--turn", text + ": " + how);
   const std::string word = turn.substr(0, comma);
   const auto degrees = numbers_of(turn.substr(comma + 1));
   refuse_if(!degrees || degrees->size() != 1, "--turn", text + ": " + how);
-  std::optional<Eigen::Vector3d> axis = triple(word);
+  std::optional<Eigen::Vector3d> axis = vector_of(word);
   if (!axis) axis = axis_named(word, "--turn");
   const double length = axis->norm();
   refuse_if(!(length > 0) || !std::isfinite(length), "--turn", text + ": the axis has no length");
@@ -93,7 +87,7 @@ std::vector<Eigen::Isometry3d> PoseOptions::poses_named() const {
   Eigen::Isometry3d pose =
       turn.empty() ? Eigen::Isometry3d(Eigen::Isometry3d::Identity()) : turn_named(turn);
   if (!move.empty()) {
-    const auto shift = triple(move);
+    const auto shift = vector_of(move);
     refuse_if(!shift, "--move", move + ": give x,y,z in mesh units, such as 0,0,-1.5");
     pose.translation() += *shift;
   }

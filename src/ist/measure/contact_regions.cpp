@@ -139,9 +139,10 @@ void pair_regions(ContactRegions& fixed, ContactRegions& moving) {
                         const ContactRegions& others) -> std::optional<std::uint32_t> {
     for (std::uint32_t other = 0; other < others.regions.size(); ++other) {
       const auto& triangles = others.regions[other].triangles;
-      const auto at = std::lower_bound(
-          triangles.begin(), triangles.end(), one.nearest[k],
-          [](const ContactTriangle& each, std::uint32_t triangle) { return each.triangle < triangle; });
+      const auto at = std::lower_bound(triangles.begin(), triangles.end(), one.nearest[k],
+                                       [](const ContactTriangle& each, std::uint32_t triangle) {
+                                         return each.triangle < triangle;
+                                       });
       if (at != triangles.end() && at->triangle == one.nearest[k]) return other;
     }
     return {};
