@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "cli/cli_case.h"
@@ -141,6 +142,17 @@ TEST_F(OcclusionCommand, OpensLikeABook) {
   // The hinge is y, so they face +x or -x: the ball's lowest vertex is its farthest that way.
   EXPECT_NEAR(std::abs(nearest[0]), 2, 1e-5);
   EXPECT_NEAR(facing_fixed, 1.5, 1e-5);  // the plate stands on its edge
+  // Both look the same way with what faced the other.
+  ist_well({"occlusion", ball_, ball_, "--move", "0,0,3.9", "--open", "3", "-o", path("b.ply")});
+  std::array<double, 2> least_of{1e9, 1e9}, facing{};
+  for (const auto& v : parse_ply(file_content(path("b.ply"))).vertices) {
+    const auto body = static_cast<std::size_t>(v.at("body"));
+    if (!(v.at("signed") < least_of[body])) continue;
+    least_of[body] = v.at("signed");
+    facing[body] = v.at("x");
+  }
+  EXPECT_GT(std::abs(facing[0]), 1.9);
+  EXPECT_NEAR(facing[0], facing[1], 0.05);
   refuses({"--open", "3", "-o", path("b.vtp")}, 2, "goes with .ply and .glb");
   refuses({"--open", "-1", "-o", path("b.ply")}, 2, "--open");
 }
