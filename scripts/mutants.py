@@ -604,7 +604,7 @@ MUTANTS = [
            [(OCCLUSION + "html/html_tables.cpp", "(region.partner ? paired : unpaired)", "(i < regions.size() ? paired : unpaired)")],
            ["occlusion_report_test BiteHtml*"]),
     Mutant("tooth-numbers-unchecked", "numbers of another system pass as teeth",
-           [(OCCLUSION + "teeth.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["occlusion_report_test Teeth*"]),
+           [(OCCLUSION + "labels/tooth_numbers.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["occlusion_report_test LabelLines*"]),
 
     # What others get of it.
     Mutant("export-map-loosened", "whatever other libraries make visible is exported too",

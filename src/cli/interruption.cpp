@@ -26,6 +26,7 @@ constexpr std::chrono::milliseconds kLastWait{800};
 struct Shared {
   std::atomic<bool> stops{false};  // a StopOnInterruption lives
   std::atomic<bool> asked{false}, hurried{false};
+  bool ends_by_pipe = false;
   std::mutex mutex;  // of `holds`
   std::condition_variable released;
   int holds = 0;
@@ -37,15 +38,19 @@ struct Shared {
   }
 };
 
+bool has_default(int signal) {
+  struct sigaction action {};
+  sigaction(signal, nullptr, &action);
+  return action.sa_handler == SIG_DFL;
+}
+
 // Returns the signals to handle. A signal that the caller chose to ignore stays ignored, as under
 // nohup.
 sigset_t ending_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-    struct sigaction action {};
-    sigaction(signal, nullptr, &action);
-    if (action.sa_handler == SIG_DFL) sigaddset(&signals, signal);
+    if (has_default(signal)) sigaddset(&signals, signal);
   }
   return signals;
 }
@@ -91,11 +96,19 @@ int await_end_by_signal(const sigset_t& signals) {
 
 void install_signal_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);
+  Shared::one().ends_by_pipe = has_default(SIGPIPE);
+  std::signal(SIGPIPE, SIG_IGN);
   const sigset_t signals = ending_signals();
   // Every thread inherits the mask, so signals wait for the thread in sigwait(), which, unlike a
   // handler, may lock and free.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread([signals] { end_by_signals(signals); }).detach();
+}
+
+void end_by_broken_pipe() noexcept {
+  if (!Shared::one().ends_by_pipe) return;
+  std::signal(SIGPIPE, SIG_DFL);
+  raise(SIGPIPE);
 }
 
 StopOnInterruption::StopOnInterruption() noexcept { Shared::one().stops = true; }

@@ -6,9 +6,13 @@ namespace ist::cli {
 
 /// Installs the handling of signals. SIGINT, SIGTERM, SIGHUP and SIGQUIT still end the process by
 /// the signal itself, but unfinished files and the progress bar are removed first; a file that
-/// grows beyond its limit (SIGXFSZ) is an error like a full disk. Must be called before there is
-/// any other thread.
+/// grows beyond its limit (SIGXFSZ) is an error like a full disk, and so is a pipe without a reader
+/// (SIGPIPE). Must be called before there is any other thread.
 void install_signal_handlers();
+
+/// Ends the process by SIGPIPE, as one that writes to `head` ends, unless the caller chose to
+/// ignore that signal: then returns. To be called when all that unwinds has been unwound.
+void end_by_broken_pipe() noexcept;
 
 /// Turns the first SIGINT, SIGTERM or SIGHUP during its lifetime into a request to stop: the
 /// command stops and keeps its results. Another one within 1 s of the first is the same one, even

@@ -5,13 +5,14 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands/commands.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
+#include "cli/terminal.h"
 #include "cli/version.h"
 #include "cli/words.h"
 #include "ist/base/error.h"
@@ -74,8 +75,13 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   // An earlier write that failed, as on a full disk, shows here at the latest.
-  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
+  flush_stdout();
   return 0;
+}
+
+bool is_broken_pipe(const std::exception& error) {
+  const auto* const system = dynamic_cast<const std::system_error*>(&error);
+  return system != nullptr && system->code() == std::errc::broken_pipe;
 }
 
 // The standard library and TBB report it by the text alone.
@@ -98,6 +104,7 @@ int main(int argc, char** argv) try {
   std::fprintf(stderr, "ist: out of memory: use a larger voxel size, or --max-memory\n");
   return ist::cli::kFailed;
 } catch (const std::exception& error) {
+  if (ist::cli::is_broken_pipe(error)) ist::cli::end_by_broken_pipe();
   std::fprintf(
       stderr, "ist: %s%s\n", error.what(),
       ist::cli::is_lack_of_threads(error)

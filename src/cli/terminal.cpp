@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <system_error>
 
 namespace ist::cli {
 namespace {
@@ -22,6 +25,14 @@ std::string painted(std::string_view text, TextColour colour) {
   if (!colours) return std::string(text);
   const char* code = colour == TextColour::kRed ? "31" : colour == TextColour::kYellow ? "33" : "1";
   return fmt::format("\033[{}m{}\033[0m", code, text);
+}
+
+void flush_stdout() {
+  if (std::fflush(stdout) != 0) fail_stdout();
+}
+
+void fail_stdout() {
+  throw std::system_error(errno, std::generic_category(), "cannot write to stdout");
 }
 
 }  // namespace ist::cli

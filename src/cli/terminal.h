@@ -11,4 +11,10 @@ enum class TextColour { kRed, kYellow, kBold };
 /// set (no-color.org); else the text.
 [[nodiscard]] std::string painted(std::string_view text, TextColour colour);
 
+/// Writes what is buffered for stdout. Throws std::system_error where that fails.
+void flush_stdout();
+
+/// Throws std::system_error of the write to stdout that just failed.
+[[noreturn]] void fail_stdout();
+
 }  // namespace ist::cli

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <csignal>
 #include <map>
 #include <sstream>
 
@@ -335,6 +336,29 @@ TEST_F(QueryOutput, AFullDiskIsAFailure) {
       run_command("/bin/sh", {"-c", "exec \"$0\" info \"$1\" > /dev/full", IST_COMMAND, tree});
   EXPECT_EQ(lost.exit_code, 1);
   EXPECT_TRUE(says(lost.err, "cannot write to stdout"));
+}
+
+// `head` has gone before the command says anything.
+TEST_F(QueryOutput, APipeWithoutAReaderEndsItInSilence) {
+  const std::string tree = ball_tree("ball.ist", "table", {"--voxel-size", "0.05"});
+  const std::string rows = path("rows.csv");
+  const std::size_t entries = dir_.entries();
+  const auto piped = [&](const char* before, const std::vector<std::string>& words) {
+    std::vector<std::string> arguments{
+        "-c", std::string("{ sleep 0.2; ") + before + " \"$0\" \"$@\"; echo $? >&3; } 3>&2 | true",
+        IST_COMMAND};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    return run_command("/bin/sh", arguments).err;
+  };
+  const std::string died = std::to_string(128 + SIGPIPE) + "\n";
+  EXPECT_EQ(piped("", {"collide", tree, tree, "--contacts", rows}), died);
+  EXPECT_EQ(piped("", {"collide", tree, tree, "--json"}), died);
+  EXPECT_EQ(piped("", {"table", "--format", "json"}), died);
+  EXPECT_EQ(dir_.entries(), entries + 1) << "the rows are whole, and nothing else is left";
+  const std::string ignored =
+      piped("trap '' PIPE;", {"collide", tree, tree, "--contacts", path("more.csv")});
+  EXPECT_TRUE(says(ignored, "cannot write")) << ignored;
+  EXPECT_TRUE(ignored.ends_with("1\n")) << ignored;
 }
 
 }  // namespace

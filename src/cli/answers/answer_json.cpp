@@ -24,10 +24,6 @@ ordered_json triple(const std::optional<Eigen::Vector3d>& point) {
   return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
 }
 
-const char* name_of(Answer touch) {
-  return touch == Answer::kYes ? "yes" : touch == Answer::kNo ? "no" : "near";
-}
-
 ordered_json line_of(std::size_t index, const PoseAnswer& answer, const Engine& engine,
                      const EngineAnswer& timed, const Bodies& bodies) {
   const Findings& found = answer.findings;
@@ -49,7 +45,7 @@ ordered_json line_of(std::size_t index, const PoseAnswer& answer, const Engine& 
   line["complete"] = result.complete;
   line["truncated"] = result.truncated;
   line["level"] = result.level;
-  line["touch"] = name_of(found.touch);
+  line["touch"] = to_string(found.touch);
   line["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
   line["leaf_pairs"] = result.leaf_pairs;
   line["triangle_pairs"] = or_null(found.triangle_pairs);

@@ -208,9 +208,11 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
                   "body's box, assumed")
       ->group(group);
   command
-      .add_option("--labels-fixed", questions.labels_fixed,
-                  "the fixed body's tooth numbers: a whole number a line, for each triangle or "
-                  "vertex; 0 for no tooth")
+      .add_option(
+          "--labels-fixed", questions.labels_fixed,
+          "the fixed body's tooth numbers, 0 for no tooth: a .ply with a property label, an "
+          ".obj with groups such as tooth_16, or a text of a number a line, for each "
+          "triangle or vertex")
       ->group(group);
   command.add_option("--labels-moving", questions.labels_moving, "the moving body's")->group(group);
   command.add_option("--numbering", options.numbering, "the system of the labels")

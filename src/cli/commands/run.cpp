@@ -18,6 +18,7 @@
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "ist/base/error.h"
 #include "ist/haptics/servo_loop.h"
 #include "ist/scene.h"
@@ -83,11 +84,6 @@ void replay_ticks(BuiltScene& built, const RunArguments& options) {
   fmt::print(stderr, "replayed {} ticks\n", ticks);
 }
 
-// Prints what is buffered while a signal still cannot end the process amid the report.
-void flush_report() {
-  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to stdout");
-}
-
 void run(const RunArguments& options) {
   // NaN passes every range check.
   refuse_if(options.rate && std::isnan(*options.rate), "--rate", "give a number");
@@ -126,7 +122,7 @@ void run(const RunArguments& options) {
   const ServoReport report = run_loop(built, servo, stoppable);
   begin_json();
   print_report(report, scene, *built.simulation, options.json);
-  flush_report();
+  flush_stdout();  // while a signal still cannot end the process amid the report
   if (report.lost_records > 0) {
     throw std::runtime_error(
         fmt::format("{} ticks were not recorded: the disk is slower than the loop: record to "

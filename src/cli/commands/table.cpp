@@ -15,6 +15,7 @@
 #include "cli/exit_code.h"
 #include "cli/header_line.h"
 #include "cli/refusals.h"
+#include "cli/terminal.h"
 #include "hardware/table_export.h"
 #include "hardware/vector_file.h"
 #include "ist/base/files.h"
@@ -52,7 +53,7 @@ void write_text(const std::filesystem::path& output, const Make& make) {
   }
   make([](std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return;
-    throw std::runtime_error("cannot write to stdout");
+    fail_stdout();
   });
 }
 

@@ -32,6 +32,7 @@ struct BiteBody {
 /// units, unless a name says micrometres.
 struct Bite {
   BiteBody fixed, moving;
+  std::string made_by;  ///< the program's name, version and commit
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   std::string unit;  ///< "mm", "m", "inch" or "µm"
   bool unit_assumed = false;

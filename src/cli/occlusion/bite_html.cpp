@@ -77,10 +77,10 @@ std::string settings_words(const Bite& bite) {
   return fmt::format(
       "<p id=\"settings\">Unit of the meshes: {}{}. Preset: <strong>{}</strong> ({}). "
       "± {:g} µm assumed for scanning. Distances as far as {}. Contact: at most {}. Places are in "
-      "the unit of the meshes and in coordinates of the fixed file.</p>\n",
+      "the unit of the meshes and in coordinates of the fixed file. Written by {}.</p>\n",
       escaped(bite.unit), bite.unit_assumed ? ", assumed: the files do not say" : "",
       escaped(bite.preset->name), escaped(bite.preset->source), bite.scanner_band,
-      numbers.length(bite.reach), numbers.length(bite.contact));
+      numbers.length(bite.reach), numbers.length(bite.contact), escaped(bite.made_by));
 }
 
 std::string checks_list(const Bite& bite) {

@@ -101,7 +101,7 @@ ordered_json json_of(const Bite& bite) {
   out["scanner_band_micrometres"] = bite.scanner_band;
   out["contact"] = bite.contact;
   out["foundation"] = {{"depth", bite.foundation}, {"change", bite.change}};
-  out["touch"] = found.touch == Answer::kYes ? "yes" : "no";
+  out["touch"] = to_string(found.touch);
   out["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
   out["distance_lower"] = found.distance->lower;
   out["distance_upper"] = found.distance->upper;

@@ -8,6 +8,7 @@
 #include "cli/extents.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
+#include "cli/version.h"
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
 
@@ -130,6 +131,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
                const BiteQuestions& questions) {
   require_triangles(bodies);
   Bite bite;
+  bite.made_by = version_words();
   const KnownUnit unit = unit_of(bodies, questions);
   bite.unit_assumed = unit.assumed;
   bite.unit = to_string(unit.unit);

@@ -1,32 +1,12 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
+#include "cli/occlusion/labels/tooth_labels.h"
 #include "ist/measure/occlusion.h"
 #include "ist/mesh/mesh.h"
 
 namespace ist::cli {
-
-/// A system of tooth numbers: the permanent and milk teeth of ISO 3950 (FDI), or the universal
-/// numbers 1 to 32. Of a file of labels 0 is what is no tooth.
-enum class ToothNumbers { kFdi, kUniversal };
-
-/// The tooth of each triangle of a mesh, by its number; 0: none.
-using ToothLabels = std::vector<int>;
-
-/// Reads labels: one whole number a line, for each triangle, or for each vertex, where a triangle
-/// is of the tooth that two of its corners name, else of none. Triangles are in the file's order;
-/// vertices are in the mesh's, which read_mesh() makes by their first use. Lines may be blank at
-/// the end.
-///
-/// Throws kFileUnreadable, and kInputInvalid, naming the line, for a number outside the system or
-/// no number; for another count; and for labels of vertices by which most triangles lie between
-/// teeth, since those are of another order.
-[[nodiscard]] ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
-                                      ToothNumbers numbers);
 
 /// The part of one tooth in an occlusion.
 struct Tooth {

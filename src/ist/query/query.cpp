@@ -38,6 +38,12 @@ class AnyLeafPair : public MeteredVisitor {
 
 }  // namespace
 
+const char* to_string(Answer answer) noexcept {
+  constexpr std::array kNames = {"no", "near", "yes"};
+  const auto at = static_cast<std::size_t>(answer);
+  return at < kNames.size() ? kNames[at] : "unknown";
+}
+
 const char* to_string(QueryStatus status) noexcept {
   constexpr std::array kNames = {"done", "invalid-pose", "no-triangles", "manifold-mismatch",
                                  "busy"};

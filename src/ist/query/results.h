@@ -121,6 +121,9 @@ enum class Answer : std::uint8_t {
   kYes,
 };
 
+/// Returns "no", "near" or "yes".
+[[nodiscard]] IST_API const char* to_string(Answer answer) noexcept;
+
 /// The answer of Query::intersects.
 struct IntersectionResult {
   QueryStatus status = QueryStatus::kDone;

@@ -88,6 +88,7 @@ std::unique_ptr<MadeBite> full_bite() {
       bite_of(plate(10, 0.25), joined(icosphere(4, 4), moved(icosphere(4, 2), {-6, 2.5, -2.33})),
               pose, "biteeye");
   Bite& bite = made->bite;
+  bite.made_by = "ist 1.2, commit 34";
   bite.checks = {"overlap above 0.1 mm: check the bite registration", "a < b & c"};
   bite.unit_assumed = true;
   bite.findings.triangle_pairs = 1234;
@@ -252,9 +253,10 @@ TEST(BiteHtml, HoldsInputAndSettings) {
   EXPECT_TRUE(page.says("Unit of the meshes: mm, assumed: the files do not say."));
   EXPECT_TRUE(page.says("biteeye (bands of silicone bites: BiteEye, J Oral Rehabil 2022)"));
   EXPECT_TRUE(page.says("± 50 µm assumed for scanning"));
-  EXPECT_TRUE(page.says("a foundation of 100 µm (in brackets: 50 µm and 150 µm)"));
+  EXPECT_TRUE(page.says("a foundation of 100 µm (in brackets: 50 µm; 150 µm)"));
   EXPECT_EQ(page.content["lists"]["checks"],
             (json{"overlap above 0.1 mm: check the bite registration", "a < b & c"}));
+  EXPECT_TRUE(page.says("Written by ist 1.2, commit 34."));
   EXPECT_EQ(page.content["title"], "Occlusion of fixed.stl and moving.stl");
 }
 
@@ -358,6 +360,16 @@ TEST(BiteHtml, SaysWhereNothingTouches) {
   EXPECT_TRUE(page.says("No contact region is without a partner."));
   EXPECT_TRUE(page.table("teeth").empty());
   EXPECT_EQ(row_of(page.table("findings"), {"do the surfaces touch"}).at(1), "no");
+}
+
+TEST(BiteHtml, TellsTheOverlapOnce) {
+  const auto made = sphere_over_plate({0, 0, -0.05});
+  made->bite.preset = &cli::presets().front();
+  ASSERT_EQ(made->bite.preset->micrometres.front(), 0);
+  const Rows rows = Page(made->bite).table("areas");
+  EXPECT_TRUE(
+      row_of(rows, {"distance at most 0 µm: below the error assumed for scanning"}).empty());
+  EXPECT_FALSE(row_of(rows, {"overlap"}).empty());
 }
 
 TEST(BiteHtml, OtherUnitsComeToTheSameMicrometres) {

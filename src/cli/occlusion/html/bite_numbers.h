@@ -43,7 +43,7 @@ class BiteNumbers {
   }
   /// A share in per cent without their sign, with those of a thinner and a thicker foundation.
   [[nodiscard]] static std::string share(double share, double thinner, double thicker) {
-    return fmt::format("{:.2f} ({:.2f} to {:.2f})", share, thinner, thicker);
+    return fmt::format("{:.2f} ({:.2f}; {:.2f})", share, thinner, thicker);
   }
 
  private:

@@ -29,13 +29,9 @@ std::size_t unsigned_vertices(const BiteBody& body) {
 
 std::string foundation_words(const Bite& bite) {
   const BiteNumbers numbers(bite);
-  return fmt::format("with a foundation of {} (in brackets: {} and {})",
+  return fmt::format("with a foundation of {} (in brackets: {}; {})",
                      numbers.length(bite.foundation), numbers.length(bite.foundation - bite.change),
                      numbers.length(bite.foundation + bite.change));
-}
-
-const char* word_of(Answer touch) {
-  return touch == Answer::kYes ? "yes" : touch == Answer::kNo ? "no" : "near: not decided";
 }
 
 // Rows of a balance; a dash in each cell where nothing is pressed.
@@ -46,7 +42,7 @@ void add_balance(HtmlTable& table, const char* role, const Division& division,
     const auto of = [&](const Balance::Shares& shares) {
       return shares.first + shares.second > 0 ? fmt::format("{:.2f}", shares.*member) : "–";
     };
-    return fmt::format("{} ({} to {})", of(balance->shares), of(balance->thinner),
+    return fmt::format("{} ({}; {})", of(balance->shares), of(balance->thinner),
                        of(balance->thicker));
   };
   const std::string first = escaped(division.first), second = escaped(division.second);
@@ -97,7 +93,7 @@ std::string findings_table(const Bite& bite) {
   const BiteNumbers numbers(bite);
   const Findings& found = bite.findings;
   HtmlTable table("findings", "", {"question", "answer"});
-  table.add({"do the surfaces touch", word_of(found.touch)});
+  table.add({"do the surfaces touch", to_string(found.touch)});
   if (found.inside && *found.inside != Inside::kNone) {
     table.add({"inside the other", fmt::format("the {} body", to_string(*found.inside))});
   }
@@ -126,6 +122,7 @@ std::string area_table(const Bite& bite) {
   const BiteBody &fixed = bite.fixed, &moving = bite.moving;
   for (std::size_t i = 0; i < bite.preset->micrometres.size(); ++i) {
     const double limit = bite.preset->micrometres[i];
+    if (limit == 0) continue;  // the overlap
     table.add(
         {fmt::format("distance at most {:g} µm{}", limit,
                      limit < bite.scanner_band ? ": below the error assumed for scanning" : ""),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/obj_word.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
@@ -21,7 +22,7 @@ class ObjReader {
     bool statement_seen = false;
     bool other_seen = false;
     while (reader_.next_line()) {
-      const std::string_view statement = word();
+      const std::string_view statement = obj_word(reader_);
       if (statement == "v") {
         read_vertex();
       } else if (statement == "f") {
@@ -37,26 +38,16 @@ class ObjReader {
   }
 
  private:
-  // Returns the next word of the line, up to a comment. The '#' of "1.#IND", a printed NaN, begins
-  // no comment.
-  std::string_view word() {
-    const std::string_view found = reader_.word();
-    const std::size_t comment = found.find('#');
-    if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
-    reader_.skip_line();
-    return found.substr(0, comment);
-  }
-
   // Ignores a weight or a colour after the three coordinates.
   void read_vertex() {
     std::array<float, 3> vertex{};
-    for (float& coordinate : vertex) coordinate = reader_.coordinate(word());
+    for (float& coordinate : vertex) coordinate = reader_.coordinate(obj_word(reader_));
     content_.add_vertex(vertex);
   }
 
   void read_face() {
     corners_.clear();
-    for (std::string_view corner = word(); !corner.empty(); corner = word())
+    for (std::string_view corner = obj_word(reader_); !corner.empty(); corner = obj_word(reader_))
       corners_.push_back(read_corner(corner.substr(0, corner.find('/'))));
     if (corners_.size() < 3)
       reader_.fail_malformed(fmt::format(
@@ -114,6 +105,14 @@ bool is_obj_statement(std::string_view word) {
   constexpr std::array<std::string_view, 12> kStatements = {
       "v", "vt", "vn", "vp", "f", "l", "p", "o", "g", "s", "usemtl", "mtllib"};
   return std::find(kStatements.begin(), kStatements.end(), word) != kStatements.end();
+}
+
+std::string_view obj_word(TextReader& reader) {
+  const std::string_view found = reader.word();
+  const std::size_t comment = found.find('#');
+  if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
+  reader.skip_line();
+  return found.substr(0, comment);
 }
 
 CheckedContent check_obj(std::string_view content, std::string_view file) {

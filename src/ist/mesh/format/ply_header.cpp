@@ -81,6 +81,7 @@ PlyProperty read_property(TextReader& reader, std::string_view element) {
         ErrorCode::kMeshPointsOnly,
         "the header declares corners of faces, but no element 'face'; export the surface as "
         "polygons");
+  property.name = name;
   property.role = role_of(element, name);
   const bool list_expected = property.role == PlyRole::kCorners;
   const bool right = (property.count_type != nullptr) == list_expected &&

@@ -23,6 +23,7 @@ struct PlyType {
 enum class PlyRole : std::uint8_t { kX, kY, kZ, kCorners, kOther };
 
 struct PlyProperty {
+  std::string_view name;  ///< a view of the content
   PlyRole role = PlyRole::kOther;
   const PlyType* count_type = nullptr;  ///< for a list only
   const PlyType* type = nullptr;
