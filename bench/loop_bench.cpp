@@ -53,7 +53,7 @@ std::string joined(const std::vector<std::string>& notes) {
   return fmt::format("{}{}", pair_name(), notes.empty() ? "" : "; " + notes.front());
 }
 
-// The jaws of the scene that the README shows; or, where their files are missing, those that need
+// The jaws of the scene of docs/haptics.md; or, where their files are missing, those that need
 // none.
 Scene scene_of_jaws() {
   const bool real = std::string(pair_name()) == "human";

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the README's table of build times and sizes from the raw results of build_bench, each time a median.
+"""Writes the table of build times and sizes in docs/performance.md from the raw results of build_bench, each time a median.
 
     scripts/bench.sh build_bench -- --benchmark_repetitions=5
-    scripts/build_table.py perf/results/MACHINE/build_bench.json README.md
+    scripts/build_table.py perf/results/MACHINE/build_bench.json docs/performance.md
 """
 import json
 import math
@@ -31,7 +31,7 @@ def read_rows(benchmarks):
     return rows
 
 
-def main(results, readme):
+def main(results, page):
     data = json.loads(pathlib.Path(results).read_text())
     rows = read_rows(data["benchmarks"])
     lines = [
@@ -50,8 +50,8 @@ def main(results, readme):
         f" ({pathlib.Path(results).resolve().parent.name}, {date}). From {max(rows):g} to {min(rows):g} the time grows as"
         f" voxels^{growth['table']:.2f}, with `tight` as voxels^{growth['tight']:.2f} and with `slab` as"
         f" voxels^{growth['slab']:.2f}; the peak is that of `slab`, the default.\n\n" + "\n".join(lines))
-    file = pathlib.Path(readme)
-    marked = re.compile(r"<!-- build table -->.*?(?=\n## )", re.S)
+    file = pathlib.Path(page)
+    marked = re.compile(r"<!-- build table -->.*?(?=\n## |\Z)", re.S)
     file.write_text(marked.sub(lambda _: f"<!-- build table -->\n{text}\n", file.read_text()))
 
 

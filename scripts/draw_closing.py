@@ -4,7 +4,7 @@
     scripts/draw_closing.py PATH/TO/ist OUTPUT.svg [SCENE.toml]
 
 All that is drawn comes from a recording by the command, run unpaced, so that it is the same on every machine. Without a
-scene it is the one that the README shows. Needs Debian's python3-matplotlib, so run it with the system's python3.
+scene it is the one of docs/haptics.md. Needs Debian's python3-matplotlib, so run it with the system's python3.
 """
 import json
 import math
@@ -19,16 +19,16 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-README = pathlib.Path(__file__).resolve().parent.parent / "README.md"
+PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs/haptics.md"
 METRES = {"m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "inch": 0.0254}  # as base/units has them
 EVERY = 5  # ticks a point of the picture
 FORCE, STRETCH = "#b03a2e", "#1f618d"
 
 
 def readme_scene():
-    found = re.search(r"^```toml\n(.*?)^```$", README.read_text(), re.DOTALL | re.MULTILINE)
+    found = re.search(r"^```toml\n(.*?)^```$", PAGE.read_text(), re.DOTALL | re.MULTILINE)
     if not found:
-        sys.exit(f"draw_closing: no ```toml block in {README}: name a scene")
+        sys.exit(f"draw_closing: no ```toml block in {PAGE}: name a scene")
     return found[1]
 
 

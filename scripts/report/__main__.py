@@ -3,7 +3,7 @@
 import pathlib
 import sys
 
-from report import ablation, accuracy, guard, loop, peers, readme, scaling, seed
+from report import ablation, accuracy, closing, guard, loop, peers, scaling, seed
 from report.draw import Pictures
 from report.results import Results
 from report.runner import Runner
@@ -76,7 +76,7 @@ def main():
     report = out / "REPORT.md"
     report.write_text("\n".join(lines) + "\n")
     if not quick:
-        readme.update(results, description(results, "ablation_bench"))
+        closing.update(results, description(results, "ablation_bench"))
     print(f"perf_report: {report}", file=sys.stderr)
 
 

@@ -98,7 +98,7 @@ struct Scene {
   std::optional<SnapSettings> snap = {};  ///< its pose is a motion
 };
 
-/// Reads a scene file (TOML; the README lists the keys). Relative paths start at the file's folder.
+/// Reads a scene file (TOML; docs/scene-reference.md lists the keys). Relative paths start at the file's folder.
 /// Throws kInputInvalid, naming file, line and remedy, for a file that is no TOML, an unknown or
 /// missing key, a value of the wrong kind or out of range, and a missing file.
 [[nodiscard]] IST_API Scene read_scene(const std::filesystem::path& file);

@@ -256,29 +256,6 @@ class Packages:
         require(count < 1500, f"ist/ist.h pulls in {count} lines")
         print(f"ist/ist.h pulls in {len(ours)} headers, {count} lines")
 
-    def Readme(self):
-        """The programs of README, as they stand there, under two compilers."""
-        folder = self.fresh("readme")
-        need(OTHER_COMPILER)
-        text = (SOURCE / "README.md").read_text().replace("{ … }", "{}")
-        blocks = re.findall(r"^```(cpp|c)\n(.*?)^```", text, re.M | re.S)
-        pieces = [block for kind, block in blocks if kind == "cpp" and "int main" not in block]
-        programs = [block for kind, block in blocks if kind == "cpp" and "int main" in block]
-        includes = "".join(line + "\n" for piece in pieces for line in piece.splitlines() if line.startswith("#include"))
-        body = "".join(line + "\n" for piece in pieces for line in piece.splitlines() if not line.startswith("#include"))
-        programs.append(f"#include <vector>\n{includes}int main() {{\n{body}}}\n")
-        flags = ["-DEIGEN_MAX_ALIGN_BYTES=16", f"-I{self.prefix}/include", "-isystem", "/usr/include/eigen3", "-fsyntax-only"]
-        for i, program in enumerate(programs):
-            source = folder / f"readme{i}.cpp"
-            source.write_text(program)
-            for compiler in (self.compiler, OTHER_COMPILER):
-                run(compiler, "-std=c++20", *[flag for flag in WARNINGS if flag != "-Werror"], *flags, source)
-        for i, program in enumerate(block for kind, block in blocks if kind == "c"):
-            source = folder / f"readme{i}.c"
-            source.write_text(program)
-            run("cc", "-std=c11", "-Wall", "-Wextra", "-Werror", *flags[1:2], "-fsyntax-only", source)
-        require(len(programs) >= 2 and any(kind == "c" for kind, _ in blocks), "README has no programs")
-
     def Example(self):
         """The servo loop of src/examples, as its CMakeLists.txt says to build it."""
         folder = self.fresh("examples")

@@ -1,0 +1,155 @@
+"""Runs the code of one page of README or docs, in a folder of its own, as a reader would: shell and C++ in their order, C++
+and C under two compilers, a scene by `ist run --check`. A block without a language that follows is what they print: it is
+compared, where its `…` stands for any text. The notes that change this are those of pages.py.
+
+Fragments of C++, blocks without `int main`, are one program together.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import pages
+
+SKIPPED = 77
+OTHER_COMPILER = "clang++-14"
+C_COMPILERS = ("gcc", "clang-14")
+WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
+
+
+class Failure(Exception):
+    pass
+
+
+def is_output(expected, printed):
+    """Whether they are equal, with `…` for any text, also of several lines."""
+    pattern = ".*".join(re.escape(part) for part in expected.rstrip("\n").split("…"))
+    return re.fullmatch(pattern, printed.rstrip("\n"), re.S) is not None
+
+
+class Reader:
+    """Does what a page says."""
+
+    def __init__(self, name, folder, prefix, compiler):
+        self.name, self.folder, self.prefix, self.compiler = name, folder, prefix, compiler
+        libraries = next(prefix.rglob("pkgconfig/ist.pc")).parent.parent
+        self.environment = dict(os.environ, PATH=f"{prefix}/bin:{os.environ['PATH']}", LD_LIBRARY_PATH=str(libraries),
+                                PKG_CONFIG_PATH=str(libraries / "pkgconfig"))
+        self.printed = None  # of the last block, until it is compared
+        self.fragments, self.outputs = [], []  # of the page's one program
+        self.counts = {"run": 0, "compared": 0, "left": 0}
+
+    def run(self, command, line):
+        ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, cwd=self.folder,
+                             env=self.environment, stdin=subprocess.DEVNULL)
+        if ran.returncode != 0:
+            raise Failure(f"{self.name}, line {line}: {' '.join(map(str, command))[:2000]}\n"
+                          f"failed with {ran.returncode}:\n{ran.stdout}{ran.stderr}")
+        return ran.stdout
+
+    def shell(self, text, line):
+        return self.run(["bash", "-euo", "pipefail", "-c", text], line)
+
+    def flags(self, what):
+        return self.run(["pkg-config", what, "ist"], 0).split()
+
+    def program(self, text, line, ending, compilers, standard):
+        """What a program prints, the same of each compiler."""
+        source = self.folder / f"line_{line}.{ending}"
+        source.write_text(text)
+        printed = set()
+        for compiler in compilers:
+            binary = source.with_suffix(f".{pathlib.Path(compiler).name}")
+            self.run([compiler, standard, *WARNINGS, *self.flags("--cflags"), source, "-o", binary, *self.flags("--libs")], line)
+            printed.add(self.run([binary], line))
+        if len(printed) != 1:
+            raise Failure(f"{self.name}, line {line}: it prints by compiler: {printed}")
+        return printed.pop()
+
+    def fragments_of(self, page):
+        """The program of all fragments: includes first, the rest in main()."""
+        lines = "".join(block.text for block in self.fragments).splitlines(keepends=True)
+        includes = "".join(line for line in lines if line.startswith("#include"))
+        rest = "".join(line for line in lines if not line.startswith("#include"))
+        return f"{includes}{page.before}int main() {{\n{rest}}}\n"
+
+    def compare(self, expected, printed, line):
+        if not is_output(expected, printed):
+            raise Failure(f"{self.name}, line {line}: the page shows\n{expected}\nand this is printed:\n{printed}")
+        self.counts["compared"] += 1
+
+    def block(self, block):
+        if block.says("not run") or block.language not in ("", "sh", "cpp", "c", "toml", "csv", "json"):
+            self.counts["left"] += 1
+            print(f"{self.name}, line {block.line}: {block.note or block.language}")
+            self.printed = None
+        elif block.language == "":
+            if self.printed is not None:
+                self.compare(block.text, self.printed, block.line)
+            elif self.fragments and not block.note:
+                self.outputs.append(block)
+            elif not block.says("output varies"):
+                raise Failure(f"{self.name}, line {block.line}: this output follows nothing that prints")
+            self.printed = None
+        elif block.says("file "):
+            file = self.folder / block.note.removeprefix("file ").strip()
+            file.write_text(block.text)
+            if block.language == "toml":
+                self.run(["ist", "run", file, "--check"], block.line)
+                self.counts["run"] += 1
+            if block.language == "c":
+                self.printed = self.program(block.text, block.line, "c", C_COMPILERS, "-std=c11")
+                self.counts["run"] += 1
+        elif block.language == "cpp" and "int main" not in block.text:
+            self.fragments.append(block)
+            self.counts["run"] += 1
+        elif block.language in ("sh", "cpp"):
+            printed = (self.shell(block.text, block.line) if block.language == "sh" else
+                       self.program(block.text, block.line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20"))
+            self.printed = None if block.says("output varies") else printed
+            self.counts["run"] += 1
+        else:
+            raise Failure(f"{self.name}, line {block.line}: a {block.language} needs the note 'file NAME'")
+
+    def read(self, page):
+        if page.setup:
+            self.shell(page.setup, 0)
+        for block in page.blocks:
+            self.block(block)
+        if self.fragments:
+            line = self.fragments[0].line
+            printed = self.program(self.fragments_of(page), line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20")
+            self.compare("".join(block.text for block in self.outputs), printed, line)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--prefix", type=pathlib.Path, required=True)
+    parser.add_argument("--compiler", required=True)
+    arguments = parser.parse_args()
+    for tool in (OTHER_COMPILER, *C_COMPILERS):
+        if shutil.which(tool) is None:
+            print(f"snippets: skipped: {tool} is not installed: scripts/setup.sh does that", file=sys.stderr)
+            return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
+    folder = arguments.work / arguments.page.stem
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    reader = Reader(arguments.page.name, folder, arguments.prefix, arguments.compiler)
+    try:
+        reader.read(pages.read(arguments.page.read_text()))
+    except Failure as failure:
+        print(failure, file=sys.stderr)
+        return 1
+    counts = reader.counts
+    print(f"{arguments.page.name}: {counts['run']} run, {counts['compared']} outputs compared, {counts['left']} not run")
+    return 0 if counts["run"] + counts["left"] > 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
