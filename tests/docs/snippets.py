@@ -41,7 +41,7 @@ class Reader:
                                 PKG_CONFIG_PATH=str(libraries / "pkgconfig"))
         self.printed = None  # of the last block, until it is compared
         self.fragments, self.outputs = [], []  # of the page's one program
-        self.counts = {"run": 0, "compared": 0, "left": 0}
+        self.counts = {"run": 0, "compared": 0, "written": 0, "left": 0}
 
     def run(self, command, line):
         ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, cwd=self.folder,
@@ -98,6 +98,7 @@ class Reader:
         elif block.says("file "):
             file = self.folder / block.note.removeprefix("file ").strip()
             file.write_text(block.text)
+            self.counts["written"] += 1
             if block.language == "toml":
                 self.run(["ist", "run", file, "--check"], block.line)
                 self.counts["run"] += 1
@@ -147,8 +148,9 @@ def main():
         print(failure, file=sys.stderr)
         return 1
     counts = reader.counts
-    print(f"{arguments.page.name}: {counts['run']} run, {counts['compared']} outputs compared, {counts['left']} not run")
-    return 0 if counts["run"] + counts["left"] > 0 else 1
+    print(f"{arguments.page.name}: {counts['run']} run, {counts['compared']} outputs compared, {counts['written']} files "
+          f"written, {counts['left']} not run")
+    return 0 if any(counts.values()) else 1
 
 
 if __name__ == "__main__":

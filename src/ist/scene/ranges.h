@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -33,6 +34,8 @@ inline constexpr NumberRange kTorque{1e-9, 1e3, "N m"};
 inline constexpr NumberRange kForceSlew{1e-3, 1e9, "N/s"};
 inline constexpr NumberRange kTorqueSlew{1e-6, 1e9, "N m/s"};
 inline constexpr NumberRange kSoftStart{0, 60, "s"};
+inline constexpr NumberRange kWorkers{1, 2, ""};
+inline constexpr NumberRange kSeed{0, std::numeric_limits<double>::infinity(), ""};
 
 /// Returns the metres in a unit of length, "m", "cm", "mm", "um" or "inch", or nullopt for another
 /// name.

@@ -38,7 +38,7 @@ BuiltInShape read_shape(TableReader& table, double unit) {
   switch (shape.kind) {
     case Kind::kUpperJaw:
     case Kind::kLowerJaw:
-      shape.seed = table.whole_number("seed", shape.seed);
+      shape.seed = table.whole_number("seed", kSeed, shape.seed);
       if (unit != metres_in("mm")) {
         table.fail("shape", "a built-in jaw is in millimetres, and the scene's unit is another",
                    R"(write unit = "mm")");

@@ -17,16 +17,6 @@ void open_if_missing(TomlTable& document, std::string_view key) {
   if (!is_there) document.entries.push_back({std::string(key), {document.line, TomlTable{}}});
 }
 
-int read_workers(TableReader& scene, int otherwise) {
-  const std::uint64_t workers =
-      scene.whole_number("workers", static_cast<std::uint64_t>(otherwise));
-  if (workers != 1 && workers != 2) {
-    scene.fail("workers", fmt::format("'workers' is {}", workers),
-               "give 1, or 2 for a second thread that searches for contacts");
-  }
-  return static_cast<int>(workers);
-}
-
 SafetySettings read_safety(TableReader& scene) {
   TableReader safety = scene.table("safety");
   const SafetySettings usual;
@@ -69,8 +59,12 @@ CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety)
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file) {
-  const ScopedFloatEnvironment environment;
   TomlTable document = read_toml(file);
+  return read_scene(file, document);
+}
+
+Scene read_scene(const std::filesystem::path& file, TomlTable& document) {
+  const ScopedFloatEnvironment environment;
   Scene scene{};
   scene.file = file;
   scene.lines = std::make_shared<const detail::SceneLines>(document);
@@ -80,7 +74,8 @@ Scene read_scene(const std::filesystem::path& file) {
   scene.unit = reader.choice("unit", metres_in, R"("m", "cm", "mm", "um" or "inch")");
   scene.rate = reader.number("rate", kRate, scene.rate);
   scene.seconds = reader.number("seconds", kDuration, scene.seconds);
-  scene.workers = read_workers(reader, scene.workers);
+  scene.workers = static_cast<int>(
+      reader.whole_number("workers", kWorkers, static_cast<std::uint64_t>(scene.workers)));
   read_bodies(reader, scene);
   read_device(reader, scene);
   scene.safety = read_safety(reader);

@@ -11,6 +11,10 @@ namespace ist {
 // Readers of a scene file's parts, from the outermost table `scene` into `result`, whose unit is
 // known. All throw kInputInvalid with file, line and remedy.
 
+/// Reads a scene from a document that was read from `file`, and leaves in the document's tables
+/// which keys are known there.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& file, TomlTable& document);
+
 /// Reads the tables `fixed` and `held`, including `held.open`.
 void read_bodies(TableReader& scene, Scene& result);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -39,10 +40,18 @@ std::optional<double> as_number(const TomlValue& value) {
   return std::nullopt;
 }
 
+std::string triple_in(const NumberRange& range) {
+  return fmt::format("[x, y, z], {} each", range.values());
+}
+
 }  // namespace
 
 std::string NumberRange::text() const {
   return fmt::format("from {} to {}{}{}", least, most, unit.empty() ? "" : " ", unit);
+}
+
+std::string NumberRange::values() const {
+  return std::isinf(most) ? fmt::format("from {} on", least) : fmt::format("{} to {}", least, most);
 }
 
 std::string TableReader::name() const {
@@ -59,12 +68,23 @@ TomlEntry* TableReader::entry(std::string_view key) const {
   return found == table_.entries.end() ? nullptr : &*found;
 }
 
-bool TableReader::is_asked(std::string_view key) const {
-  return std::find(table_.asked.begin(), table_.asked.end(), key) != table_.asked.end();
+KnownKey* TableReader::known(std::string_view key) const {
+  const auto found = std::find_if(table_.known.begin(), table_.known.end(),
+                                  [key](const KnownKey& each) { return each.name == key; });
+  return found == table_.known.end() ? nullptr : &*found;
+}
+
+void TableReader::note(std::string_view key, std::string values, std::string_view unit,
+                       std::string otherwise) {
+  if (known(key) == nullptr) table_.known.push_back({std::string(key)});
+  KnownKey& noted = *known(key);
+  noted.values = std::move(values);
+  noted.unit = unit;
+  if (!otherwise.empty()) noted.otherwise = std::move(otherwise);
 }
 
 TomlValue* TableReader::find(std::string_view key) {
-  if (!is_asked(key)) table_.asked.emplace_back(key);
+  if (known(key) == nullptr) table_.known.push_back({std::string(key)});
   TomlEntry* found = entry(key);
   return found == nullptr ? nullptr : &found->value;
 }
@@ -75,7 +95,11 @@ TomlValue& TableReader::required(std::string_view key, std::string_view what) {
   return *value;
 }
 
-bool TableReader::has(std::string_view key) { return find(key) != nullptr; }
+bool TableReader::has(std::string_view key) {
+  const bool is_there = find(key) != nullptr;
+  known(key)->optional = true;
+  return is_there;
+}
 
 double TableReader::number_of(const TomlValue& value, std::string_view key,
                               const NumberRange& range) const {
@@ -89,10 +113,12 @@ double TableReader::number_of(const TomlValue& value, std::string_view key,
 }
 
 double TableReader::number(std::string_view key, const NumberRange& range) {
+  note(key, range.values(), range.unit);
   return number_of(required(key, "a number " + range.text()), key, range);
 }
 
 double TableReader::number(std::string_view key, const NumberRange& range, double otherwise) {
+  note(key, range.values(), range.unit, fmt::format("{}", otherwise));
   return has(key) ? number(key, range) : otherwise;
 }
 
@@ -108,20 +134,25 @@ std::array<double, kCount> TableReader::numbers(std::string_view key, const Numb
 }
 
 Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& range) {
+  note(key, triple_in(range), range.unit);
   const auto [x, y, z] = numbers<3>(key, range, "[x, y, z], three numbers " + range.text());
   return {x, y, z};
 }
 
 Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& range,
                                     const Eigen::Vector3d& otherwise) {
+  note(key, triple_in(range), range.unit,
+       fmt::format("[{}, {}, {}]", otherwise.x(), otherwise.y(), otherwise.z()));
   return has(key) ? vector(key, range) : otherwise;
 }
 
 Eigen::Matrix3d TableReader::rotation(std::string_view key) {
   constexpr std::string_view kWhat = "[w, x, y, z], a quaternion: [1, 0, 0, 0] is no turn";
   constexpr double kLeastSquare = 1e-12;
+  constexpr NumberRange kRange{-1e3, 1e3, ""};
+  note(key, fmt::format("[w, x, y, z], {} each", kRange.values()), {}, "no turn");
   if (!has(key)) return Eigen::Matrix3d::Identity();
-  const auto [w, x, y, z] = numbers<4>(key, {-1e3, 1e3, ""}, kWhat);
+  const auto [w, x, y, z] = numbers<4>(key, kRange, kWhat);
   const double square = w * w + x * x + y * y + z * z;
   if (square < kLeastSquare) fail_value(key, kWhat);
   // Divided by the square instead of the length: the quaternion may have any length.
@@ -133,23 +164,27 @@ Eigen::Matrix3d TableReader::rotation(std::string_view key) {
   return turn;
 }
 
-std::uint64_t TableReader::whole_number(std::string_view key, std::uint64_t otherwise) {
-  const TomlValue* value = find(key);
-  if (value == nullptr) return otherwise;
-  const auto* integer = std::get_if<std::int64_t>(&value->content);
-  if (integer == nullptr || *integer < 0) fail_value(key, "a whole number of at least 0");
+std::uint64_t TableReader::whole_number(std::string_view key, const NumberRange& range,
+                                        std::uint64_t otherwise) {
+  note(key, "a whole number, " + range.values(), range.unit, fmt::format("{}", otherwise));
+  if (!has(key)) return otherwise;
+  const auto* integer = std::get_if<std::int64_t>(&find(key)->content);
+  if (integer == nullptr || !range.holds(static_cast<double>(*integer))) {
+    fail_value(key, "a whole number, " + range.values());
+  }
   return static_cast<std::uint64_t>(*integer);
 }
 
 bool TableReader::flag(std::string_view key, bool otherwise) {
-  const TomlValue* value = find(key);
-  if (value == nullptr) return otherwise;
-  const auto* truth = std::get_if<bool>(&value->content);
+  note(key, "true or false", {}, otherwise ? "true" : "false");
+  if (!has(key)) return otherwise;
+  const auto* truth = std::get_if<bool>(&find(key)->content);
   if (truth == nullptr) fail_value(key, "true or false");
   return *truth;
 }
 
 std::string TableReader::text(std::string_view key, std::string_view what) {
+  note(key, std::string(what));
   const auto* text = std::get_if<std::string>(&required(key, what).content);
   // The system would end a name at a byte of 0.
   if (text == nullptr || text->find('\0') != std::string::npos) fail_value(key, what);
@@ -158,6 +193,7 @@ std::string TableReader::text(std::string_view key, std::string_view what) {
 
 TableReader TableReader::table(std::string_view key) {
   const std::string what = fmt::format("a table, [{}]", path_of(key));
+  note(key, "a table");
   auto* table = std::get_if<TomlTable>(&required(key, what).content);
   if (table == nullptr) fail_value(key, what);
   return {file_, *table, path_of(key)};
@@ -165,6 +201,7 @@ TableReader TableReader::table(std::string_view key) {
 
 std::vector<TableReader> TableReader::tables(std::string_view key) {
   constexpr std::string_view kWhat = "an array of tables, such as [ { … }, { … } ]";
+  note(key, "an array of tables");
   auto* items = std::get_if<std::vector<TomlValue>>(&required(key, kWhat).content);
   if (items == nullptr || items->empty()) fail_value(key, kWhat);
   std::vector<TableReader> readers;
@@ -190,24 +227,28 @@ void TableReader::fail_value(std::string_view key, std::string_view what) const 
 
 void TableReader::fail_missing(std::string_view key, std::string_view what) const {
   for (const TomlEntry& each : table_.entries) {
-    if (is_asked(each.key)) continue;
-    for (const std::string& known : table_.asked) {
-      if (entry(known) == nullptr && looks_like(each.key, known)) fail_unknown(each);
+    if (known(each.key) != nullptr) continue;
+    for (const KnownKey& key_known : table_.known) {
+      if (entry(key_known.name) == nullptr && looks_like(each.key, key_known.name)) {
+        fail_unknown(each);
+      }
     }
   }
   fail(key, fmt::format("{} has no '{}'", name(), key), fmt::format("give {}", what));
 }
 
 void TableReader::fail_unknown(const TomlEntry& entry) const {
-  const auto nearest = std::min_element(table_.asked.begin(), table_.asked.end(),
-                                        [&](const std::string& a, const std::string& b) {
-                                          return edits(entry.key, a) < edits(entry.key, b);
-                                        });
+  std::vector<std::string> names;
+  for (const KnownKey& each : table_.known) names.push_back(each.name);
+  const auto nearest =
+      std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+        return edits(entry.key, a) < edits(entry.key, b);
+      });
   std::string remedy;
-  if (nearest != table_.asked.end() && looks_like(entry.key, *nearest)) {
+  if (nearest != names.end() && looks_like(entry.key, *nearest)) {
     remedy = fmt::format("did you mean '{}'?", *nearest);
   } else {
-    remedy = fmt::format("take it out; known here are {}", fmt::join(table_.asked, ", "));
+    remedy = fmt::format("take it out; known here are {}", fmt::join(names, ", "));
   }
   fail_line(file_, entry.value.line, fmt::format("'{}' in {} is unknown", entry.key, name()),
             remedy);
@@ -220,7 +261,7 @@ void TableReader::refuse_unknown() const {
     }
   };
   for (TomlEntry& each : table_.entries) {
-    if (!is_asked(each.key)) fail_unknown(each);
+    if (known(each.key) == nullptr) fail_unknown(each);
     descend(each.value, path_of(each.key));
     if (auto* items = std::get_if<std::vector<TomlValue>>(&each.value.content)) {
       for (std::size_t i = 0; i < items->size(); ++i) {

@@ -21,11 +21,13 @@ struct NumberRange {
   [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
   /// "from 1 to 2 mm"
   [[nodiscard]] std::string text() const;
+  /// "1 to 2", or "from 1 on" if the range has no end
+  [[nodiscard]] std::string values() const;
 };
 
 /// Reads the values of one table by key. A value of another type or out of range throws
-/// kInputInvalid with file, line and remedy. The reader notes each key that it is asked for, by
-/// which refuse_unknown() finds the unknown ones.
+/// kInputInvalid with file, line and remedy. The reader notes each key that it is asked for in
+/// TomlTable::known, by which refuse_unknown() finds the unknown ones.
 class TableReader {
  public:
   /// Both arguments must outlive the reader.
@@ -45,7 +47,8 @@ class TableReader {
   /// The rotation of a quaternion [w, x, y, z] of any length but 0; the identity if the key is
   /// missing.
   [[nodiscard]] Eigen::Matrix3d rotation(std::string_view key);
-  [[nodiscard]] std::uint64_t whole_number(std::string_view key, std::uint64_t otherwise);
+  [[nodiscard]] std::uint64_t whole_number(std::string_view key, const NumberRange& range,
+                                           std::uint64_t otherwise);
   [[nodiscard]] bool flag(std::string_view key, bool otherwise);
   /// A text. `what` describes it in messages.
   [[nodiscard]] std::string text(std::string_view key, std::string_view what);
@@ -74,8 +77,11 @@ class TableReader {
       : file_(file), table_(table), path_(std::move(path)) {}
 
   [[nodiscard]] TomlEntry* entry(std::string_view key) const;
-  [[nodiscard]] bool is_asked(std::string_view key) const;
+  [[nodiscard]] KnownKey* known(std::string_view key) const;
   [[nodiscard]] TomlValue* find(std::string_view key);
+  // Notes what may stand there.
+  void note(std::string_view key, std::string values, std::string_view unit = {},
+            std::string otherwise = {});
   [[nodiscard]] TomlValue& required(std::string_view key, std::string_view what);
   [[nodiscard]] double number_of(const TomlValue& value, std::string_view key,
                                  const NumberRange& range) const;

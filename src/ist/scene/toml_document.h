@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "ist/scene/known_key.h"
+
 namespace ist {
 
 /// Throws kInputInvalid with a file, a line (from 1), a cause and a remedy.
@@ -19,7 +21,7 @@ struct TomlValue;
 struct TomlTable {
   std::size_t line = 1;            ///< of its header; of an implied table, of its first key
   std::vector<TomlEntry> entries;  ///< by key
-  std::vector<std::string> asked;  ///< the keys that a reader knows
+  std::vector<KnownKey> known;     ///< the keys that a reader asked for
 };
 
 /// A date, a time or both; no key of a scene has one.
