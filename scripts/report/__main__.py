@@ -13,27 +13,27 @@ CHAPTERS = [accuracy, seed, ablation, peers, scaling, loop, guard]
 HEAD = """# What accuracy costs in time
 
 Made by `scripts/perf_report.sh` from the raw results in `{results}`; no number in it is typed by hand. Times are wall times
-of a query alone, trees loaded, unless said otherwise; a *median* is of so many queries as *n* says. Two jaws are a *{pair}*
-pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth stand in full
-occlusion, at dz = -1.5 they are just apart. In tables and plots, what is **bold** is best in its row or column, or a loss
-that is meant to be seen: the text says which.
+of a query alone, trees loaded, unless stated otherwise; a *median* is over *n* queries. Two jaws are a *{pair}*
+pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth are in full
+occlusion, at dz = -1.5 they are just apart. In tables and plots, **bold** marks the best of a row or column, or a loss;
+the text says which.
 
-A machine that is shared changes its speed within minutes, so the same query may take other times in other chapters: compare within one.
-What took turns, and so met the machine alike, are all bounds of one voxel size in the cost of accuracy, the article's rates, saved
-spheres, folding and levels, the parts of the query, and the peers. All else was measured one after the other: voxel sizes, gaps,
-advice, one worker and two, the loop. How busy the machine was stands at the end.
+A shared machine changes its speed within minutes, so the same query may take different times in different chapters: compare within one.
+These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, the article's rates, saved
+spheres, folding and levels, the parts of the query, and the peers. All others ran one after the other: voxel sizes, gaps,
+advice, one worker and two, the loop. The last chapter states the load of the machine.
 """
 
 
 def description(results, program):
-    """What a program ran on, in a line for under a plot."""
+    """Returns the machine, compiler, commit and date of a program's run, as the caption of a plot."""
     c = results.context(program)
     level = c["flags"].split()[:1]
     return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1], *level, f"commit {c['commit']}", c["date"][:10]])
 
 
 def made_with(results):
-    """Where every number comes from."""
+    """Returns the chapter on the machine and the programs."""
     rows = []
     for program in programs():
         c = results.context(program)
@@ -45,7 +45,7 @@ def made_with(results):
             f"{first['processor']}, {first['num_cpus']} cores at {first['mhz_per_cpu']} MHz; {caches}. "
             f"{first['compiler']}; `{first['flags']}`.", "",
             *table(["program", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)"], rows), "",
-            "A commit with a + had other code than it names."]
+            "A + after a commit says that the code had changes beside it."]
 
 
 def programs():

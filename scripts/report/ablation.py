@@ -122,7 +122,7 @@ def steps_by_factor(variants, dz):
 
 
 def verdict(variants, dz):
-    """What pays at a pose and what does not, in sentences."""
+    """Returns sentences on the steps that gain and lose most at a pose."""
     steps, line = steps_by_factor(variants, dz), main_line(variants)
     named = lambda chosen: listing(f"{added(name)[2:]} ({factor(value)})" for value, name in chosen)
     losses = [step for step in steps if is_loss(step[0])]
@@ -188,14 +188,14 @@ def without_plot(variants, pictures, size):
 
 
 def layout_text(variants):
-    """What the layout gives by itself, and what it takes in memory."""
+    """Returns sentences on the speed and the memory of the layout alone."""
     gain = lambda name, base: listing(f"{factor(variants.times(base, name, dz))} at dz = {dz}" for dz in POSES)
     ratio = variants.of("pointers_table", "bytes", "0.0") / variants.of("linear_table", "bytes", "0.0")
     return (
         f"The linear layout gives a factor of {gain('linear_table', 'pointers_table')} with the table, and of "
         f"{gain('linear_simple', 'pointers_simple')} with circumspheres. It takes {number(ratio)} times less memory. "
-        "The nodes with pointers lie on a fresh heap in the order of a depth-first search, so they are as near each "
-        "other as pointers can have them. The layout is also what batches and saved bounds are built on.")
+        "The nodes with pointers lie on a fresh heap in the order of a depth-first search, which is the best locality that "
+        "pointers allow. Batches and saved bounds also build on the layout.")
 
 
 def spheres_text(results):
@@ -205,8 +205,8 @@ def spheres_text(results):
     return (
         f"A sphere looked up by its mask takes {number(cost['lookup'], 2)} ns. Computed at run time, with the same "
         f"result, it takes {number(cost['enclosing_ball'], 2)} ns by the smallest enclosing ball of the children's "
-        f"corners, {number(ratio, 2)} times as long, and {number(cost['search'], 2)} ns by the search with which the "
-        "compiler makes the table.")
+        f"corners, {number(ratio, 2)} times as long, and {number(cost['search'], 2)} ns by the search that makes the table "
+        "at compile time.")
 
 
 def contacts_text(variants):
@@ -214,8 +214,8 @@ def contacts_text(variants):
         ("pointers_simple", "circumspheres"), ("pointers_table", "the table"), ("batches", "the table in batches"),
         ("tight", "tight balls"), ("slab", "slabs")))
     return (
-        "Steps that change the bounds change the answer too, within what is guaranteed: they drop pairs of leaves "
-        f"whose surfaces do not meet. Contacts at dz = 0: {found}. What comes after keeps each of them, and their "
+        "Steps that change the bounds change the answer too, within the guarantee: they drop pairs of leaves "
+        f"whose surfaces do not meet. Contacts at dz = 0: {found}. Later steps keep each of them, and their "
         "order.")
 
 
@@ -227,19 +227,18 @@ def chapter(results, pictures):
     finest = SIZES[0]
     lines = [
         "## What each part gives", "",
-        "Between the published query and the fast one lie some parts. The article does not say how its nodes are linked: pointers are assumed. Here they are added one by one, and then left "
-        f"out one by one. All variants ask the same trees of the {first['label']} jaws at the same poses in one "
-        "process, in turns, so that whatever else the machine does meets them all. Each answer is checked: variants "
-        "that search alike with the same bounds give the same contacts and make as many tests, and the two ways to "
-        "search differ only in pairs that the guarantee leaves open. Times are from pose in to sorted contacts out, "
-        f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, fewest of "
-        "those that take longest. A test is a test of two nodes' bounds. Losses, that is factors below "
-        f"{1 - NOISE:.2f}, for what is nearer to 1 is noise, are in "
-        "bold.", "",
+        "Several parts distinguish the fast query from the published one. The article does not say how its nodes are linked: pointers are assumed. Here the parts are added one by one, and then left "
+        f"out one by one. All variants query the same trees of the {first['label']} jaws at the same poses in one "
+        "process, in turns, so that other load on the machine affects all of them. Each answer is checked: variants "
+        "with the same search and the same bounds give the same contacts and make the same number of tests, and the two "
+        "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted contacts: "
+        f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, the fewest for "
+        "the slowest variants. A test compares the bounds of two nodes. Losses are bold: factors below "
+        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise.", "",
         "The search of the published query and of the linear layout is depth first, in double, with spheres made on "
-        "the fly; from the batches on it is breadth first, in float. Each SIMD step stands beside the narrower "
-        "instruction set before it. Queries follow back to back, which suits the second worker best. MB is what the "
-        "query reads of both trees, and its own memory.", "",
+        "the fly; from the batches on it is breadth first, in float. Each SIMD step is compared with the narrower "
+        "instruction set before it. Queries follow back to back, which suits the second worker best. MB counts the parts of both trees that the "
+        "query reads, and its own memory.", "",
     ]
     for size in SIZES:
         lines += [f"### Added one by one, at {size} mm", ""] + ladder_table(ladders[size]) + [""]
@@ -254,11 +253,11 @@ def chapter(results, pictures):
         if size == finest:
             lines += [without_plot(withouts[size], pictures, size), ""]
     lines += [
-        "A part that others build on takes them with it: slabs need the tight balls, and no vectors or second worker "
-        "are there without batches, nor batches without the linear layout. So the last two rows are depth-first "
-        "searches with slabs, by one worker, and the last is not comparable with the whole but with the row above it: "
+        "Leaving out a part leaves out all parts that build on it: slabs need the tight balls, vectors and the second worker "
+        "need batches, and batches need the linear layout. So the last two rows are depth-first "
+        "searches with slabs, by one worker, and the last row compares with the row above it, not with the whole: "
+        f"at {finest} mm the pointers alone take "
         + listing(f"{factor(withouts[finest].times('layout', 'batches', dz))} times as long at dz = {dz}"
-                  for dz in POSES)
-        + f" at {finest} mm is what the pointers alone cost.", "",
+                  for dz in POSES) + ".", "",
     ]
     return lines

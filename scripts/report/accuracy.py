@@ -38,12 +38,12 @@ def chapter(results, pictures):
 
 def _meaning(first):
     return [
-        f"Two jaws come up to each other on {first.n:.0f} straight ways, turned by up to 3 degrees about each axis and inclined by up to 20 to each side. The "
-        "**error** is how far the surfaces are still apart, by exact triangles, when voxels first say that they touch: "
-        "the largest of all ways. A contact is never said too late, and no error is larger than the certain bound: the program that measures "
-        f"fails where one is, and did not. The **time** is the median ({first.rounds:.0f} rounds, all bounds of a voxel size in turns) of the slowest "
-        "pose, of five of the closing and of those where the ways first touch: one worker, all pairs of voxels that touch, written. So much "
-        "of a tick is the search; contact points and effects come on top.", ""]
+        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to 3 degrees about each axis and inclined by up to 20 to each side. The "
+        "**error** is the distance of the surfaces, by exact triangles, when voxels first report a contact: "
+        "the largest of all paths. A contact is never reported too late, and no error exceeds the certain bound: otherwise the program that measures "
+        f"fails, and it did not. The **time** is the median ({first.rounds:.0f} rounds, all bounds of a voxel size in turns) of the slowest "
+        "pose, among five of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, written. This "
+        "is the search's part of a tick; contact points and effects add to it.", ""]
 
 
 def _budget(first, pictures):
@@ -79,8 +79,8 @@ def _budget(first, pictures):
     said.sort()
     return [f"### I have {BUDGET} µs: what accuracy can I have?", "", picture, "",
             "Read between the points: " + "; ".join(text for _, text in said) + ". All pairs of "
-            f"triangles that meet, without any error, take {number(exact['p50_us'])} µs, whatever the voxels are; whether any meet, "
-            f"which is a yes or a no and nothing that a force could be made of, {number(touches['p50_us'])} µs.", ""]
+            f"triangles that meet, without any error, take {number(exact['p50_us'])} µs at any voxel size; the yes or no whether any meet, "
+            f"from which no force can be computed, takes {number(touches['p50_us'])} µs.", ""]
 
 
 def _wanted(first, pictures):
@@ -122,9 +122,9 @@ def _table(first):
     return ["### Every accuracy", "",
             *table(["bounds", "voxel size, mm", "error, median, mm", "error, largest, mm", "certain bound, mm", "to build both, s",
                     "both trees, MB", "slowest pose, µs", "its 99 of 100, µs", "rate, Hz"], rows), "",
-            f"With `slab` the error grows as size^{growth:.2f}. The rate is that of the median; each pair was built once. The certain bound is `resolution`, which every answer states; what was "
-            f"measured comes to at most {100 * worst:.0f} % of it. Answers about triangles hang on no voxels; they were asked of trees with voxels of "
-            f"{first.by_policy['exact'][0].parts[1]} mm, whose memory and time to build are named.", ""]
+            f"With `slab` the error grows as size^{growth:.2f}. The rate is one over the median; each pair was built once. The certain bound is `resolution`, which every answer states; measured "
+            f"errors are at most {100 * worst:.0f} % of it. Answers about triangles do not depend on voxels; their trees have voxels of "
+            f"{first.by_policy['exact'][0].parts[1]} mm, and the table states the memory and build time of these.", ""]
 
 
 def _advice(results, first):
@@ -140,13 +140,13 @@ def _advice(results, first):
             cell[asked] = f"**{cell[asked]}**"
         rows.append([f"{limit:g} µs" if asked == "budget" else f"{limit:g} mm", f"{size:g}", run["error"], cell["error"],
                      run["slowest_us"], cell["budget"], f"{run['sizes']:.0f}", run["seconds"]])
-    verdict = f"Of {known} that are on that curve {known - len(beyond) if beyond else 'all'} keep what was asked for" + (
-        f"; the others are in bold, and beyond it by at most {100 * max(beyond):.0f} %." if beyond else ".")
+    verdict = f"Of {known} recommendations on that curve {known - len(beyond) if beyond else 'all'} keep the limit" + (
+        f"; the others are in bold, and exceed it by at most {100 * max(beyond):.0f} %." if beyond else ".")
     return ["### Advice, held against this curve", "",
-            "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that was measured to keep "
-            "80 % of what is asked for: its time at twelve poses of one straight closing, its error on that way and on six that are "
-            "inclined and turned a little. Beside what it measured stands the curve of `slab` above, read between its points, at other poses, on other ways and at another time. As only "
-            "80 % of a budget are used, its voxels are larger than the curve allows for all of it. " + verdict, "",
+            "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that keeps "
+            "80 % of the limit: its time at twelve poses of one straight closing, its error on that path and on six "
+            "slightly inclined and turned ones. The columns beside show the curve of `slab` above, interpolated, for other poses, other paths and another time. As only "
+            "80 % of a budget are used, the recommended voxels are larger than the curve allows for all of it. " + verdict, "",
             *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
                    rows), ""]
 
@@ -158,10 +158,10 @@ def _verdicts(results):
     some = runs[0]
     missed = sum(run["missed"] for run in runs)
     return ["### Missed and false contacts", "",
-            f"Asked at {some['n']:.0f} poses within 1.5 mm before first contact and 0.5 mm behind it, of which triangles meet at "
-            f"{some['touching']:.0f}: missed are poses at which triangles meet and no voxels do, false those at which voxels do and no triangles. "
-            "False leaf pairs are those of the closed pose whose own triangles, clipped to the voxels, do not cross. Missing "
-            f"leaf pairs would stop the program. **Missed in all: {missed:.0f}.**", "",
+            f"Measured at {some['n']:.0f} poses from 1.5 mm before first contact to 0.5 mm behind it; triangles meet at "
+            f"{some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no triangles do. "
+            "A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
+            f"leaf pair would stop the program. **Missed in all: {missed:.0f}.**", "",
             *table(["bounds", "voxel size, mm", "missed", "false", "leaf pairs, closed", "of which false, %"], rows), ""]
 
 
@@ -182,10 +182,10 @@ def _gaps(results, pictures):
                             f"n = {runs[0]['n']:.0f} queries a point")
     coarse = max(runs, key=lambda r: r["width_max"])
     return ["### The gap", "", picture, "",
-            "The distance between the surfaces as an interval that holds it, from voxels alone (a point for each voxel size, "
+            "The certified interval of the distance between the surfaces, from voxels alone (a point for each voxel size, "
             "coarse ones above) and with triangles, to tolerances of "
-            + ", ".join(dict.fromkeys(r.parts[2].split("-")[1] for r in runs if "-" in r.parts[2])) + " mm. Every interval was held against exact "
-            f"triangles, and held the distance. The widest of all is {number(coarse['width_max'])} mm (`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
+            + ", ".join(dict.fromkeys(r.parts[2].split("-")[1] for r in runs if "-" in r.parts[2])) + " mm. Every interval was compared with exact "
+            f"triangles and contains the distance. The widest of all is {number(coarse['width_max'])} mm (`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
 
 
 def _deadlines(results, pictures):
@@ -201,8 +201,8 @@ def _deadlines(results, pictures):
                             f"n = {runs[0]['n']:.0f} queries a point, slab, voxels of {runs[0]['voxel_size']:g} mm")
     late = max((run["p50_us"] - float(run.parts[1]) for run in runs if run["p50_us"] > float(run.parts[1])), default=0)
     return ["### Deadlines", "", picture, "",
-            "A contact query that is stopped says what it knows by then, and the interval always holds the distance. Where surfaces are far "
-            "apart it is done before its budget is, and the interval stays as wide as where it pruned: for a narrow one "
+            "A contact query that a budget stops returns the interval known by then, and the interval always contains the distance. Where surfaces are far "
+            "apart the query ends before its budget, and the interval stays as wide as the pruning left it: for a narrow one "
             f"ask for the gap itself. In the median no query ended more than {number(late, 2)} µs after its budget.", ""]
 
 
@@ -211,8 +211,8 @@ def _points(results):
     rows = [[f"`{run.parts[2]}`", run.parts[1], run["depth_mean"], run["depth_max"], run["depth_max"] / float(run.parts[1]),
              run["normal_mean"], run["normal_max"], run["n"]] for run in runs]
     return ["### Depths and normals", "",
-            f"On {runs[0]['forms']:.0f} pairs of bodies whose surfaces are known (spheres, planes, a bore, boxes, tori; a few mm large), where "
-            "radii of curvature are over ten voxels, from a voxel apart to a voxel deep. n is the number of contact points.", "",
+            f"Measured on {runs[0]['forms']:.0f} pairs of bodies with known surfaces (spheres, planes, a bore, boxes, tori; a few mm large), where "
+            "radii of curvature exceed ten voxels, from a voxel apart to a voxel deep. n is the number of contact points.", "",
             *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels", "normal error, mean, °", "largest, °", "n"],
                    rows), ""]
 
@@ -223,7 +223,7 @@ def _forces(results):
     rows = [[f"`{run.parts[2]}`", run.parts[1], run["angle_p50"], run["angle_max"], 100 * run["length_p50"], 100 * run["length_max"],
              f"{run['none']:.0f}"] for run in runs]
     return ["### Forces", "",
-            f"The contact force at {runs[0]['n']:.0f} poses, 0.02 to 0.08 mm behind first contact, against that of voxels of {finest} mm with "
-            "`slab`. Its direction is what a hand tells apart. Its length differs at one and the same pose, for a surface "
-            "begins to push a quarter of a voxel before contact: coarse voxels push earlier, and a hand comes to rest farther out.", "",
+            f"The contact force at {runs[0]['n']:.0f} poses, 0.02 to 0.08 mm behind first contact, compared with the force by voxels of {finest} mm with "
+            "`slab`. A hand distinguishes its direction. Its length differs at the same pose, because a surface "
+            "begins to push a quarter of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
             *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %", "no force"], rows)]

@@ -37,5 +37,5 @@ def update(results, machine):
         if pose in FEW:
             few.append([FEW[pose].format(pairs), times(published), times(one)])
     write(PAGE, "\n".join([f"Medians of one run ({machine}):", "",
-                           *table(["", "published", "one worker", "two workers", "leaf pairs"], rows), ""]))
-    write(README, "\n".join(table(["two human jaws, 0.2 mm voxels", "published query", "IST, one worker"], few)) + "\n")
+                           *table(["", "published", "one worker", "two workers", "leaf pairs"], rows)]))
+    write(README, "\n".join(table(["two human jaws, 0.2 mm voxels", "published query", "IST, one worker"], few)))

@@ -11,7 +11,7 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  after the backend is chosen
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
-# Told apart without colours too: each policy and engine has one colour and one mark in all plots.
+# Each policy and engine has one colour and one mark in all plots, so that they differ without colours too.
 STYLE = {
     "simple": ("#888888", "s"),
     "table": ("#d95f02", "o"),

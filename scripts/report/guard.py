@@ -1,4 +1,4 @@
-"""What queries cost in instructions, which no load changes: the counts that every run of the tests checks."""
+"""Chapter: instructions of fixed queries, which no load changes; every run of the tests checks the counts."""
 
 import json
 import pathlib
@@ -22,14 +22,14 @@ def chapter(_results, _pictures):
     return [
         "## Instructions",
         "",
-        f"{len(rows)} fixed queries of the built-in jaws, as callgrind counts them: what one query executes, one worker "
-        "on AVX2, all that is built before left out. Counts depend on neither load nor clock, so every run of the tests, "
-        "where the compiler is this one, repeats them, and fails where one is over 1 % more or less than here. They are no times: a vector "
+        f"Instructions of {len(rows)} fixed queries of the built-in jaws, as callgrind counts them: one query, one worker "
+        "on AVX2, without building. Counts depend on neither load nor clock, so every run of the tests "
+        "with this compiler repeats them, and fails if one differs by over 1 %. They are no times: a vector "
         "instruction counts as one, and so does one that waits for memory.",
         "",
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows),
         "",
-        f"Of {context['compiler']}, `{context['flags']}`: the build that the tests run on, with its assertions. "
+        f"Compiled by {context['compiler']}, `{context['flags']}`: the build of the tests, with its assertions. "
         "`within_20000_tests` ends by its budget. "
-        "`gap`, `touches` and `collide_exact` are about triangles: their tests are of clusters of these, and cost more.",
+        "`gap`, `touches` and `collide_exact` ask about triangles: their tests compare clusters of triangles, and cost more.",
     ]

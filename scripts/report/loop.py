@@ -24,12 +24,12 @@ def chapter(results, pictures):
     period = 1000
     lines = ["## The loop's latency", "",
              "The servo loop turns the simulation of two jaws once a millisecond: a simulated hand closes them and "
-             f"holds them closed, with contact, friction and damping, in voxels of {number(loop['voxel_size'])} mm. A "
-             "tick is late by the time from when it should have begun to when it did. Its execution is from then until "
-             "the device was told. The neighbour is one thread for each core, of ordinary priority, that streams "
-             "through 64 MB of memory and computes. Beside the loop stand loops that do nothing: one by the loop's own "
-             "clock, which rises 100 µs before a tick and waits awake; one that sleeps to the tick, by a timer at the "
-             "loop's priority; and one that sleeps in an ordinary thread. The last two are the machine's own wake-up "
+             f"holds them closed, with contact, friction and damping, in voxels of {number(loop['voxel_size'])} mm. The lateness of a "
+             "tick is the time from its scheduled to its actual begin. Its execution lasts until the wrench is written to "
+             "the device. The neighbour is one thread for each core, of ordinary priority, that streams "
+             "through 64 MB of memory and computes. Three empty loops stand beside the loop: the first uses the loop's own "
+             "clock, which wakes 100 µs before a tick and waits awake; the second sleeps until the tick, by a timer at the "
+             "loop's priority; the third sleeps in an ordinary thread. The last two show the machine's own wake-up "
              "latency.", "", _permitted(loop), ""]
     late = _picture(pictures, runs, "late", KINDS, "loop_late", "began late by more than, µs")
     loops = {kind: KINDS[kind] for kind in KINDS if kind[0] == "loop"}
@@ -87,12 +87,12 @@ def _table(runs, what, kinds):
 
 
 def _late_in_words(runs):
-    """What the distribution comes to, at 99 and at 99.9 of 100."""
+    """Yields sentences with the distribution's values at 99 and at 99.9 of 100 ticks."""
     at = lambda kind, name, condition, quantile: number(runs[kind, name, condition][f"late_{quantile}_us"])
     for condition, title in CONDITIONS.items():
         place = title.capitalize()
         yield (f"{place}, 99 of 100 ticks of the loop with one worker begin within {at('loop', '1', condition, 'p99')} "
-               f"µs and 99.9 within {at('loop', '1', condition, 'p99.9')} µs; where nothing is done, by the same clock "
+               f"µs and 99.9 within {at('loop', '1', condition, 'p99.9')} µs; ticks of the empty loop with the same clock begin "
                f"within {at('bare', 'clock', condition, 'p99')} and {at('bare', 'clock', condition, 'p99.9')} µs. The "
                f"machine itself wakes a thread {at('bare', 'timer', condition, 'p50')} µs late in the median, and "
                f"within {at('bare', 'timer', condition, 'p99')} and {at('bare', 'timer', condition, 'p99.9')} µs; an "
@@ -100,8 +100,8 @@ def _late_in_words(runs):
                f"{at('bare', 'plain', condition, 'p99.9')} µs.")
     idle, noisy = (runs["bare", "timer", condition]["late_p99_us"] for condition in CONDITIONS)
     if idle > noisy:
-        yield ("**Idle is the later of the two**, also where nothing is done: so it is the machine's doing. Cores that rest "
-               "take time to wake, and those of a virtual machine may be lent to others meanwhile; a busy neighbour of lower "
+        yield ("**The idle machine is the later of the two**, also in the empty loops, so the machine is the cause. Resting cores "
+               "take time to wake, and a virtual machine's cores may be lent to others meanwhile; a busy neighbour of lower "
                "priority keeps them awake.")
 
 
@@ -110,8 +110,8 @@ def _taken_in_words(runs):
         idle, noisy = (runs["loop", workers, condition] for condition in CONDITIONS)
         yield (f"With {workers} worker{'s' * (workers == '2')} a tick takes {number(idle['execution_p50_us'])} µs in "
                f"the median and {number(idle['execution_p99.9_us'])} µs at 99.9 of 100; beside the neighbour "
-               f"{number(noisy['execution_p50_us'])} and {number(noisy['execution_p99.9_us'])} µs. Of the processor it "
-               f"uses {number(idle['cpu_p50_us'])} and {number(noisy['cpu_p50_us'])} µs in the median. Deadlines "
+               f"{number(noisy['execution_p50_us'])} and {number(noisy['execution_p99.9_us'])} µs. Its processor time "
+               f"is {number(idle['cpu_p50_us'])} and {number(noisy['cpu_p50_us'])} µs in the median. Deadlines "
                f"missed: {number(idle['missed'])} of {number(idle['ticks'])}, and {number(noisy['missed'])} of "
                f"{number(noisy['ticks'])}; answers that were not complete in time: {number(idle['held'])} and "
                f"{number(noisy['held'])}.")

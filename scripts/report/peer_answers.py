@@ -1,4 +1,4 @@
-"""What each contestant of peers_bench answered to a question, and how it stands beside the others."""
+"""The answers of each contestant of peers_bench to a question, and their comparison."""
 
 from report.text import number, table
 
@@ -11,34 +11,34 @@ QUESTIONS = {
     "distance": "How far apart are the surfaces? (to within 0.05 mm)",
 }
 
-# How each is used; what it does not do is read from what it did not answer.
+# The use of each contestant; the questions that it cannot answer follow from the missing answers.
 USES = {
-    "ist": "This library: slabs, with triangles; one worker. Candidates are its exact pairs, which is more than asked.",
-    "fcl": "OBBRSS hierarchies in double. Its distance is to rounding, more than is asked. Debian builds it for any x86-64, "
-           "without its own SSE code, and with assertions: below each table stands what that costs it. Has no answer of candidates.",
-    "fcl_within": "The same, its distance only as far as asked: its traversal passes over what is at most 0.05 mm nearer than "
+    "ist": "This library: slabs, with triangles; one worker. Its candidates are its exact pairs, a stricter answer.",
+    "fcl": "OBBRSS hierarchies in double. Its distance is exact to rounding, sharper than the tolerance. Debian builds it for any x86-64, "
+           "without its own SSE code, and with assertions: a line below each table states their cost. It lists no candidates.",
+    "fcl_within": "The same, with a distance to the tolerance: its traversal skips pairs that are at most 0.05 mm nearer than "
                   "the nearest pair so far. FCL's own request has an absolute error, which does nothing in this version.",
-    "embree": "rtcCollide over boxes in float; triangles told apart by IST's exact test. It takes no pose: the moving "
-              "mesh is moved, in vectors, and its hierarchy refitted, which counts. Cannot stop at the first pair, so whether any meet "
-              "takes as long as all pairs; knows no distance between meshes.",
+    "embree": "rtcCollide over boxes in float; IST's exact test decides on the triangles. It takes no pose: the moving "
+              "mesh is moved, in vectors, and its hierarchy refitted, and both count. It cannot stop at the first pair, so whether any meet "
+              "takes as long as all pairs; it has no distance between meshes.",
     "embree_no_refit": "The same, but moved and refitted before the time begins.",
     "embree_boxes": "rtcCollide alone, refitted before the time begins.",
-    "bullet": "GImpact in float, margin 0. Lists all pairs of boxes before it looks at a triangle, so does not stop "
+    "bullet": "GImpact in float, margin 0. It lists all pairs of boxes before it tests a triangle, so it does not stop "
               "early. Its test of triangles clips one at the edges of the other, and may name more pairs than meet. GImpact "
-              "knows no distance.",
-    "bullet_boxes": "GImpact's box search, its candidates told apart by IST's exact test. Boxes are rounded to 16 bits "
+              "has no distance.",
+    "bullet_boxes": "GImpact's box search; IST's exact test decides on its candidates. Boxes are rounded to 16 bits "
                     "an axis, so a pair may be missed.",
-    "cgal": "AABB trees with EPICK, one gone through by the other's boxes; CGAL's parts, put together for this. It has no "
+    "cgal": "AABB trees with EPICK, one traversed with the boxes of the other; CGAL's parts, combined for this. It has no "
             "public least distance between two meshes, only from a point to one.",
-    "cgal_rigid": "Rigid_triangle_mesh_collision_detection, which CGAL has for this question.",
+    "cgal_rigid": "Rigid_triangle_mesh_collision_detection, CGAL's own function for this question.",
     "openvdb": "A narrow-band level set of the fixed jaw (3 voxels to either side), read at one point for each voxel "
-               "of the moving jaw's surface. Touches from inside, and misses what is between points.",
+               "of the moving jaw's surface. It counts a contact from inside, and misses contacts between points.",
     "openvdb_vertices": "The same, read at the moving jaw's vertices alone.",
 }
 
 
 class Answers:
-    """The runs of one question by contestant and pose, both in the order they were asked in; as given, or `turned`, …"""
+    """The runs of one question by contestant and pose, both in the order of the run; as given, or `turned`, …"""
 
     def __init__(self, results, question, series="peers"):
         self.runs = {}
@@ -56,7 +56,7 @@ class Answers:
         return int(self.row(player)[0]["n"])
 
     def name(self, player):
-        """With a mark where it does not do all that the others do."""
+        """The contestant's name with its marks: ~ sampled, + prepared."""
         run = self.row(player)[0]
         return player + (" ~" if GUARANTEES[int(run["promise"])] == "sampled" else "") + (" +" if run["prepared"] else "")
 
@@ -64,7 +64,7 @@ class Answers:
         return self.name(player) == player and self.runs[player, pose]["agree"]
 
     def best(self, pose, players):
-        """Who of these is the fastest there, and how fast; nobody where there are none."""
+        """The least time at a pose and its contestant; two None without contestants."""
         return min(((self.runs[player, pose]["p50_us"], player) for player in players), default=(None, None))
 
     def winners(self, pose):
@@ -93,24 +93,24 @@ def medians(question, asked):
 
 
 def other_pairs(asked):
-    told = []
+    differences = []
     for player in asked.players:
         ratios = [run["pairs"] / asked.runs["ist", pose]["pairs"] for pose, run in zip(asked.poses, asked.row(player))
                   if not run["agree"] and asked.runs["ist", pose]["pairs"]]
         none = [run for pose, run in zip(asked.poses, asked.row(player))
                 if not run["agree"] and not asked.runs["ist", pose]["pairs"]]
         if ratios:
-            told.append(f"{player} names {number(min(ratios))} to {number(max(ratios))} times as many pairs at "
-                        f"{len(ratios)} poses")
+            differences.append(f"{player} names {number(min(ratios))} to {number(max(ratios))} times as many pairs at "
+                               f"{len(ratios)} poses")
         if none:
-            told.append(f"{player} names pairs at {len(none)} poses where none meet")
-    return "; ".join(told)
+            differences.append(f"{player} names pairs at {len(none)} poses where none meet")
+    return "; ".join(differences)
 
 
 def verdict(asked):
     """Where IST wins and where not: among all, then among those without a mark."""
     if asked.players == ["ist"]:
-        return ["Nobody else was asked."]
+        return ["No other library answers."]
     text = standing(asked, lambda player, pose: True)
     if any(not asked.unmarked(player, pose) for player, pose in asked.runs):
         text += " Among those without a mark, " + standing(asked, asked.unmarked)

@@ -14,16 +14,16 @@ def chapter(results, pictures):
     context = results.context("peers_bench")
     answers = {question: Answers(results, question) for question in QUESTIONS}
     poses = answers["meets"].poses
-    known = " and poses whose truth was computed in other ways" if any(
+    known = " and poses whose true distance was computed by other means" if any(
         "true_distance" in run for run in answers["meets"].row("ist")) else ""
     lines = [
         "## Peers", "",
-        f"Other libraries, asked in one process and one thread, of the same two meshes (the {context['pair']} jaws) at "
-        f"the same poses: the closing (named by dz in mm){known}. Where there are voxels, they are of "
-        f"{number(float(context['voxel_size']))} mm. Who has used the least time is asked all poses next, so that all "
-        "get as much of it, and who is slow has fewer rounds (n). Before each round one query "
-        "that does not count brings the asked one's data back. In each column, which is a pose, the fastest is in "
-        "**bold**; where that one is marked, the fastest without a mark is as well. Marks: ~ samples points, so may be "
+        f"Other libraries answer in one process and one thread, about the same two meshes (the {context['pair']} jaws) at "
+        f"the same poses: the closing (named by dz in mm){known}. Voxels, where used, have "
+        f"{number(float(context['voxel_size']))} mm. The contestant with the least time so far answers at all poses next, so that all "
+        "get the same time, and a slow one has fewer rounds (n). Before each round one uncounted query "
+        "brings the contestant's data back into the caches. In each column, which is a pose, the fastest is in "
+        "**bold**; if it has a mark, the fastest without a mark is bold too. Marks: ~ samples points, so may be "
         "wrong; + has its moving mesh moved before the time begins; ≠ another answer than IST's.", ""]
     lines += missing(context) + compiled(context) + peers_elsewhere.absent(answers)
     lines += versions(results) + pose_table(answers, poses)
@@ -39,21 +39,21 @@ def chapter(results, pictures):
 def missing(context):
     if not context["missing_peers"]:
         return []
-    return [f"Not asked, since they were not installed when this was built: {context['missing_peers']}.", ""]
+    return [f"Missing, since they were not installed when this was built: {context['missing_peers']}.", ""]
 
 
 def compiled(context):
-    """Results of before this was said have no flags."""
+    """Returns a sentence on the peers' flags; older results have none."""
     if "peer_flags" not in context:
         return []
     flags = f"for the processor they run on (`{context['peer_flags']}`), as" if context["peer_flags"] else "for any processor, though"
-    return [f"Libraries that are headers, and what is written here to ask the others, are compiled {flags} IST chooses its "
-            "vectors by the processor; the others' own code is as Debian builds it.", ""]
+    return [f"Header-only libraries, and the code here that calls the others, are compiled {flags} IST chooses its "
+            "vectors by the processor; the others' own code is Debian's build.", ""]
 
 
 def versions(results):
     built = results.runs("peers_bench", "peers", "build")
-    return ["In these versions: " + ", ".join(f"{run.parts[2]} {run['label']}" for run in built) + ".", ""]
+    return ["Versions: " + ", ".join(f"{run.parts[2]} {run['label']}" for run in built) + ".", ""]
 
 
 def pose_table(answers, poses):
@@ -62,7 +62,7 @@ def pose_table(answers, poses):
         pairs, gap = answers["pairs"].runs["ist", pose], answers["distance"].runs["ist", pose]
         distance = gap.get("true_distance")
         rows.append([pose, label, pairs["pairs"], interval(gap), "" if distance is None else number(distance)])
-    return table(["pose", "what it is", "pairs that meet", "gap by ist (mm)", "true gap (mm)"], rows) + [""]
+    return table(["pose", "description", "pairs that meet", "gap by ist (mm)", "true gap (mm)"], rows) + [""]
 
 
 def interval(run):
@@ -80,8 +80,8 @@ def tails(answers):
             rows.append([question, asked.name(player), runs[slowest]["p50_us"], runs[slowest]["p99.9_us"], slowest,
                          runs[worst]["max_us"], worst, str(asked.rounds(player))])
     return ["### The slowest answers", "",
-            "The p99.9 of the pose where that is largest, and the worst answer at any pose; where n is below 1,000, "
-            "the p99.9 is the worst of that pose.", "",
+            "The p99.9 of the pose with the largest p99.9, and the worst answer at any pose; where n is below 1,000, "
+            "the p99.9 is the worst answer at that pose.", "",
             *table(["question", "", "median there (µs)", "p99.9 (µs)", "pose", "worst (µs)", "pose", "n"], rows), ""]
 
 
@@ -112,7 +112,7 @@ def plot(answers, poses, pictures):
 
 
 def sampled(answers):
-    """How far those who sample points are from the truth."""
+    """Returns the errors of the contestants that sample points."""
     meets, distance = answers["meets"], answers["distance"]
     rows = []
     for player in meets.players:
@@ -129,8 +129,8 @@ def sampled(answers):
     if not rows:
         return []
     return ["### What sampling costs", "",
-            "Contestants marked ~ look at points of the moving surface and values of voxels, so they are compared with "
-            "the tolerance of a voxel, and what they miss is counted here.", "",
+            "Contestants marked ~ read values of voxels at points of the moving surface, so they are compared with "
+            "the tolerance of a voxel, and this table counts their errors.", "",
             *table(["", "contacts missed", "false contacts", "error of distance (mm)",
                     "poses beyond the band, distance unknown"], rows), ""]
 
@@ -146,9 +146,9 @@ def builds(results):
     rows = [[run.parts[2], cell(run, "p50_us", 1e-3), number(run["max_us"] / 1000), number(run["n"]),
              cell(run, "held_mb"), number(run["grown_mb"]), cell(run, "peak_mb")] for run in runs]
     return ["### Build and memory", "",
-            "From both meshes in memory to structures that can be asked, in one thread. Held: what malloc has in use "
-            "after it and had not before (mallinfo2); grown: by how much more of the process is in memory, free pages "
-            "given back; peak: by how much at most while building.", "",
+            "Time from both meshes in memory to structures that answer queries, in one thread. Held: the increase of malloc's memory in use "
+            "(mallinfo2); grown: the increase of the process's resident memory, free pages "
+            "given back; peak: the largest such increase while building.", "",
             *table(["", "median (ms)", "worst (ms)", "n", "held (MB)", "grown (MB)", "peak (MB)"], rows), ""]
 
 
@@ -160,7 +160,7 @@ def cannot(answers):
         one = next(asked.row(player)[0] for asked in answers.values() if player in asked.players)
         rows.append([player, GUARANTEES[int(one["promise"])], ", ".join(not_answered) or "–", USES[player]])
     return ["### What each cannot do", "",
-            "Exact: decided without rounding, and checked: the run fails where two such differ. Rounded: decided in "
-            "float or double. Sampled: of points only. Answers are compared by how many pairs they "
-            "name. Where several contestants are of one library, each is asked what it is best at.", "",
-            *table(["", "answers are", "not asked for", "how it is used, and what differs"], rows), ""]
+            "Exact: decided without rounding, and checked: the run fails if two exact answers differ. Rounded: decided in "
+            "float or double. Sampled: at points only. Answers are compared by their number of pairs. "
+            "Where a library has several contestants, each answers the questions that it is best at.", "",
+            *table(["", "answers are", "not asked for", "use and differences"], rows), ""]

@@ -1,4 +1,4 @@
-"""What is known of peers from other runs than this one. It stands beside what is measured, never in it."""
+"""Times of peers from other runs than this one. They stand beside this run's measurements, never among them."""
 
 from report.text import number
 
@@ -12,16 +12,16 @@ PQP_DAY = {"pose": "truth7", "pqp": 4609, "embree": 4564, "fcl": 12610}
 
 
 def native_fcl(question, asked):
-    """A sentence for under the table of a question, and where FCL would win by the greater factor."""
+    """Returns a sentence for below the table of a question, with the poses where FCL would win by the greater factor."""
     if question not in NATIVE_FCL or "fcl" not in asked.players:
         return []
     least, most = (number(factor) for factor in NATIVE_FCL[question])
     factor = least if least == most else f"{least} to {most}"
     won = [pose for pose in asked.poses if would_win(asked, pose, NATIVE_FCL[question][1])]
     ahead = (f"By the greater factor it would be the fastest of those without a mark at {len(won)} of {len(asked.poses)} poses "
-             f"({', '.join(won)})." if won else "It would win at no pose by that.")
+             f"({', '.join(won)})." if won else "By this factor it would win at no pose.")
     return [f"FCL compiled for its processor, with its own SSE code and without assertions, is some {factor} times faster than "
-            f"Debian's, which was asked here (measured once, elsewhere: in no number above). {ahead}", ""]
+            f"Debian's, which this run measures (one measurement on another machine, in no number above). {ahead}", ""]
 
 
 def would_win(asked, pose, factor):
@@ -32,14 +32,14 @@ def would_win(asked, pose, factor):
 
 
 def absent(answers):
-    """Who is not there to be asked, and what they once took."""
+    """Returns sentences on PQP and Coal, which Debian lacks, with PQP's times of one day."""
     day = PQP_DAY
-    text = ("PQP and Coal are not asked, for Debian 12 has no package of them: who is the fastest below is so of those that are. "
-            f"PQP was asked once, on an older machine: for all pairs at {day['pose']} it took {day['pqp']:,} µs, where Embree took "
+    text = ("PQP and Coal are missing, since Debian 12 has no package of them: the fastest below is the fastest among the libraries measured. "
+            f"PQP was measured once, on an older machine: for all pairs at {day['pose']} it took {day['pqp']:,} µs, Embree "
             f"{day['embree']:,} and FCL {day['fcl']:,}.")
     runs = answers["pairs"].runs
     if ("fcl", day["pose"]) in runs:
         here = runs["fcl", day["pose"]]["p50_us"] * day["pqp"] / day["fcl"]
-        text += (f" If it stands to FCL as it did, it would take some {number(here)} µs here, for "
-                 f"{number(runs['ist', day['pose']]['p50_us'])} by IST.")
-    return [text + " Of Coal, which comes of FCL, no time is known here.", ""]
+        text += (f" At the same ratio to FCL it would take some {number(here)} µs here; IST takes "
+                 f"{number(runs['ist', day['pose']]['p50_us'])}.")
+    return [text + " No time of Coal, a fork of FCL, is known here.", ""]

@@ -1,4 +1,4 @@
-"""The same peers where something is otherwise: bodies in turned frames, cold caches, IST without AVX-512."""
+"""The same peers under other conditions: bodies in turned frames, cold caches, IST without AVX-512."""
 
 from report.peer_answers import QUESTIONS, Answers, medians, verdict
 from report.text import number, table
@@ -28,7 +28,7 @@ def turned(results, answers):
     lines = ["### In turned frames", "",
              "The same poses, the same bodies given in other frames: the fixed mesh turned by 46 degrees and the moving one by 52, "
              "each about an oblique axis of its own, vertices rounded to double, poses composed to match. A scan lies along its scanner's "
-             "axes, which helps boxes and voxels along the same axes; here it does not. Exact contestants agree here too, or the run "
+             "axes, which favours boxes and voxels along the same axes; turned bodies do not. Exact contestants agree here too, or the run "
              "fails.", ""]
     for question, title in QUESTIONS.items():
         first, *rest = medians(question, asked[question])
@@ -37,7 +37,7 @@ def turned(results, answers):
     for player in dict.fromkeys(player for one in asked.values() for player in one.players):
         rows.append([player] + [span(ratios(asked[question], answers[question], player)) if player in asked[question].players else ""
                                 for question in QUESTIONS])
-    return lines + ["How many times as long as with meshes as they are given, over these poses:", "",
+    return lines + ["Time as a multiple of the time with the meshes as given, over these poses:", "",
                     *table(["", *QUESTIONS], rows), ""]
 
 
@@ -58,8 +58,8 @@ def cold(results, answers):
             rows.append([question, one.name(player), *cells, str(one.rounds(player))])
     poses = next(iter(asked.values())).poses
     return ["### With cold caches", "",
-            f"The quickest again at the same poses, but before each question {number(float(swept))} MB are gone through, twice what the last "
-            "cache holds: so does a program find them that asks seldom. Median, µs, and in brackets how many times as long as in the tables above, "
+            f"The quickest again at the same poses, but before each question {number(float(swept))} MB are read, twice the size of the last "
+            "cache: a program that asks seldom finds its caches so. Median, µs, and in brackets the multiple of the time in the tables above, "
             "where one question follows the other; the fastest is in bold, as there.", "",
             *table(["question", "", *poses, "n"], rows), ""]
 
@@ -77,21 +77,21 @@ def points(results):
                  for pose in poses]
         rows.append([player, *cells, str(int(by[player, poses[0]]["n"]))])
     return ["### How far is each vertex?", "",
-            "The vertices of both jaws that are within 2 mm of the other one, at the closing. IST says the sign, the triangle and its point too; "
-            "CGAL's `AABB_tree`, with its tree of points, how far alone. Both are right to within rounding, or the run fails. Median, ms, and in brackets how many times as "
-            "long as IST:", "", *table(["", *poses, "n"], rows), ""]
+            "The vertices of both jaws within 2 mm of the other one, at the closing. IST also gives the sign, the triangle and its point; "
+            "CGAL's `AABB_tree`, with its tree of points, gives the distance alone. Both are right to within rounding, or the run fails. Median, ms, and in brackets the "
+            "multiple of IST's time:", "", *table(["", *poses, "n"], rows), ""]
 
 
 def avx2(results):
     title = ["### IST without AVX-512", ""]
     asked = asked_in(results, "avx2")
     if not asked:
-        return title + ["Not asked: IST did not run on AVX-512 here, or AVX2 is not there.", ""]
+        return title + ["Not measured: IST did not run on AVX-512 here, or AVX2 is missing.", ""]
     rows = []
     for question, one in asked.items():
         times = ratios(one, one, "ist_avx2", "ist")
         rows.append([question, *(f"{number(run['p50_us'])} ({number(ratio, 3)})" for run, ratio in zip(one.row("ist_avx2"), times)),
                      str(one.rounds("ist_avx2"))])
     poses = next(iter(asked.values())).poses
-    return title + ["IST by its kernels for AVX2, beside those it takes by itself, in turn. Median, µs, and in brackets how many times as "
-                    "long:", "", *table(["question", *poses, "n"], rows), ""]
+    return title + ["IST with its kernels for AVX2, in turn with the kernels that it chooses. Median, µs, and in brackets the multiple of "
+                    "their time:", "", *table(["question", *poses, "n"], rows), ""]

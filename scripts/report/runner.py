@@ -16,12 +16,12 @@ PROGRAMS = pathlib.Path("build/bench/bench")
 class Runner:
     def __init__(self, results, context, quick):
         self.results, self.context = results, context
-        # Nothing that is set for something else is to change what is measured.
+        # No variable that is set for another purpose changes the measurements.
         self.environment = {name: value for name, value in os.environ.items()
                             if not name.startswith("IST_") or name == "IST_DATA_DIR"}
         if quick:
             self.environment["IST_QUICK"] = "1"
-        # Those that Google Benchmark repeats by itself are repeated for so long.
+        # The least time of benchmarks that Google Benchmark repeats by itself.
         self.least = ["--benchmark_min_time=0.02"] if quick else []
         results.mkdir(parents=True, exist_ok=True)
 
@@ -35,7 +35,7 @@ class Runner:
             self._run(program, f"[{place}/{len(missing)}] {program}")
 
     def _is_whole(self, program):
-        """Whether there are results of all of it, and not of some that bench.sh was told to run."""
+        """Whether the results cover the whole program, not a part that the arguments of bench.sh chose."""
         file = self.results / f"{program}.json"
         return file.exists() and not json.loads(file.read_text())["context"].get("arguments")
 

@@ -1,4 +1,4 @@
-"""What a query's time and memory grow with."""
+"""Chapter: how the time and the memory of a query grow."""
 
 import numpy
 
@@ -16,9 +16,9 @@ COLOURS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a")
 def chapter(results, pictures):
     """The markdown of the chapter."""
     lines = ["## Scaling", "",
-             "Unless another is named, the bodies are the two jaws, in voxels of 0.2 mm with slabs, and one worker "
-             "asks on the best instruction set. Each time is a median, and each answer was compared with that of the "
-             "scalar query."]
+             "Unless stated otherwise, the bodies are the two jaws, in voxels of 0.2 mm with slabs, and one worker "
+             "uses the best instruction set. Each time is a median, and each answer was compared with the "
+             "scalar query's."]
     for section in (_leaves, _overlap, _conformal, _workers, _memory):
         lines += [""] + section(results, pictures)
     return lines
@@ -33,7 +33,7 @@ def _queries(runs):
 def _leaves(results, pictures):
     runs = results.runs(PROGRAM, "leaves")
     figure, axes = pictures.figure()
-    told = []
+    fits = []
     for dz, colour, mark in (("0", COLOURS[0], "D"), ("-1.5", COLOURS[1], "o")):
         own = [run for run in runs if run.parts[2] == dz]
         leaves, times = [run["leaves"] for run in own], [run["p50_us"] for run in own]
@@ -45,7 +45,7 @@ def _leaves(results, pictures):
         ends = numpy.array([leaves[fine[0]], leaves[fine[-1]]])
         axes.loglog(ends, factor * ends**exponent, "-", color=colour, label=f"fit: leaves^{exponent:.2f}")
         last = own[-1]
-        told.append((dz, exponent, power([leaves[i] for i in fine], [own[i]["tests"] for i in fine])[0], last))
+        fits.append((dz, exponent, power([leaves[i] for i in fine], [own[i]["tests"] for i in fine])[0], last))
     axes.set(xlabel="leaves of both trees", ylabel="time of a query, µs", title="Time against leaves")
     axes.legend(fontsize=7)
     picture = pictures.save(figure, "scaling_leaves", "Time of a query against the leaves of both trees, log-log",
@@ -57,7 +57,7 @@ def _leaves(results, pictures):
              "leaves themselves. Fitted from 0.8 mm on, by least squares of the logarithms:", ""]
     lines += table(["dz, mm", "time grows as", "tests grow as", "finest, mm", "leaves there", "contacts", "median, µs"],
                    [[dz, f"leaves^{exponent:.2f}", f"leaves^{of_tests:.2f}", last.parts[1], last["leaves"],
-                     last["contacts"], last["p50_us"]] for dz, exponent, of_tests, last in told])
+                     last["contacts"], last["p50_us"]] for dz, exponent, of_tests, last in fits])
     return lines + ["", picture]
 
 
@@ -85,8 +85,8 @@ def _overlap(results, pictures):
              f"The lower jaw closes in steps of 0.25 mm. From a gap of {number(apart['gap_mm'])} mm to full occlusion "
              f"the time grows from {number(apart['p50_us'])} to {number(closed['p50_us'])} µs, "
              f"{number(closed['p50_us'] / apart['p50_us'])} times. Where the jaws touch, it is {number(start, 2)} µs "
-             f"and {number(1e3 * slope, 2)} ns a contact, by least squares. How far they overlap is told by the pairs "
-             "of triangles that meet, found exactly. The gap is that of the triangles.", ""]
+             f"and {number(1e3 * slope, 2)} ns a contact, by least squares. The number of pairs of triangles that meet, "
+             "found exactly, shows how far they overlap. The gap is the distance of the triangles.", ""]
     lines += table(["dz, mm", "gap, mm", "triangle pairs", "contacts", "tests", "median, µs", "99 of 100, µs",
                     "ns a test"],
                    [[run.parts[1], run["gap_mm"], run["triangle_pairs"], run["contacts"], run["tests"], run["p50_us"],
@@ -121,11 +121,11 @@ def _conformal(results, pictures):
                             _queries(runs))
     worst = max(runs, key=lambda run: run["p50_us"])
     lines = ["### Against conformal area", "",
-             "Surfaces that lie along each other are the most there can be to find: two square plates, and a sphere in "
+             "Surfaces that lie along each other have the most contacts: two square plates, and a sphere in "
              "a shell. Leaves within reach of each other are contacts, so the nearer surface has many times more. The "
              f"worst here, {worst.parts[1]} {worst.parts[2]} mm apart on {number(worst['area_mm2'])} mm², takes "
-             f"**{number(1e-3 * worst['p50_us'])} ms**: such a query needs a budget. The last column is where the "
-             "fitted power of the area comes to 1 ms.", ""]
+             f"**{number(1e-3 * worst['p50_us'])} ms**: such a query needs a budget. The last column gives the area at which the "
+             "fitted power reaches 1 ms.", ""]
     lines += table(["bodies", "time grows as", "largest area, mm²", "leaves", "contacts", "tests", "median, ms",
                     "ns a test", "1 ms by the fit, mm²"], rows)
     return lines + ["", picture]
@@ -156,15 +156,15 @@ def _workers(results, pictures):
     picture = pictures.save(figure, "scaling_workers", "Time of a query by workers, along the closing",
                             _queries(runs.values()))
     lines = ["### One worker and two", "",
-             "The second worker polls when a query is expected and is never waited for. Queries with less work than "
-             "pays are not offered to it. Where one worker is the faster, its time is bold.", ""]
+             "The second worker polls when a query is expected, and no query waits for it. Queries with too little work "
+             "are not offered to it. Where one worker is the faster, its time is bold.", ""]
     lines += table(["queries", "dz, mm", "one, µs", "two, µs", "times faster", "one, 99 of 100", "two, 99 of 100",
                     "worth sharing", "shared"], rows)
     return lines + ["", picture]
 
 
 class _Line:
-    """Megabytes over 1/size², through the two finest pairs of jaws: a surface has so many leaves."""
+    """Megabytes over 1/size², through the two finest pairs of jaws: a surface's leaves grow as 1/size²."""
 
     def __init__(self, runs, megabytes):
         (coarse, fine) = sorted(runs, key=lambda run: -float(run.parts[2]))[-2:]
@@ -209,18 +209,17 @@ def _memory(results, pictures):
     picture = pictures.save(figure, "scaling_memory", "Memory to build and to hold both jaws by voxel size, log-log",
                             "n = 1 building a point; dotted: a line over 1/size² through the two finest, extrapolated")
     lines = ["### The largest pair in 16 GiB", "",
-             "Building is the most that was in use while one jaw was built after the other; holding is both trees and "
-             "one query. A surface has leaves as 1/size², so both are extrapolated by a line over 1/size² through the "
-             "two finest voxel sizes of each policy. The last two columns are what that line gives, not what was "
-             "measured.", ""]
+             "\"To build\" is the peak memory while one jaw was built after the other; \"to hold\" is both trees and "
+             "one query. The leaves of a surface grow as 1/size², so both are extrapolated by a line over 1/size² through the "
+             "two finest voxel sizes of each policy. The last two columns are values of that line, not measurements.", ""]
     lines += table(["spheres", "finest, mm", "leaves", "trees, MB", "query, MB", "peak, MB", "built in, s",
                     "16 GiB to build at, mm", "16 GiB to hold at, mm"], rows)
     return lines + ["", _largest(largest, lines_of["table"]), "", picture]
 
 
 def _largest(run, line):
-    limit = "`max_memory` is a limit for each tree, by what its building is counted to need beforehand, so a pair " \
-        "may be refused before it reaches that much."
+    limit = "`max_memory` limits each tree by an estimate made before it is built, so a pair " \
+        "may be refused before it needs that much."
     if not run["built"]:
         return f"{limit} No pair near the limit was built ({run['label']}), so the extrapolation is not tested here."
     peak, held = (one.at(run["voxel_size"]) for one in line)
@@ -229,8 +228,8 @@ def _largest(run, line):
     verdict = "it was right to within" if worst <= 10 else "**it was wrong by up to**"
     return (f"{limit} So the extrapolation was tested at three quarters of it: both jaws with `table`, voxels of "
             f"{run['voxel_size']:.4f} mm and a `max_memory` of 16 GiB, built in {number(run['build_s'])} s, have "
-            f"{number(run['leaves'] / 1e6)} million leaves. Building took {number(run['peak_MB'])} MB where the line "
-            f"says {number(peak)} ({off[0]:+.1f} %), holding {number(_held(run))} MB where it says {number(held)} "
+            f"{number(run['leaves'] / 1e6)} million leaves. Building took {number(run['peak_MB'])} MB; the line "
+            f"predicts {number(peak)} ({off[0]:+.1f} %). Holding took {number(_held(run))} MB; it predicts {number(held)} "
             f"({off[1]:+.1f} %): {verdict} {worst:.0f} %. A query in full occlusion takes "
             f"{number(1e-3 * run['p50_us'])} ms there, with {number(run['contacts'])} contacts and "
             f"{number(run['tests'])} tests (median of {int(run['rounds'])}).")

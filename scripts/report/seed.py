@@ -20,7 +20,7 @@ def chapter(results, pictures):
 def _meaning(results):
     run = results.runs("seed_bench", "voxels")[0]
     extent = PUBLISHED["lower_jaw"]["size"][0]
-    return ["Beside each number stands what was published, where the article's text states one; its plots give none. Its lower jaw of "
+    return ["Beside each number stands the published one, if the article's text states it; its plots give no numbers. The article's lower jaw of "
             f"{PUBLISHED['lower_jaw']['triangles']:,} triangles is {extent:g} units long, this one of {run['triangles']:,.0f} triangles "
             f"{number(run['extent'])} mm: so sizes are compared as they are, and again by l/s, the jaw's length in voxels.", ""]
 
@@ -55,14 +55,14 @@ def _voxels(results, pictures):
     one = scaled_runs["1"]
     return ["### Voxels (figures 4 and 5)", "", picture, "",
             *table(["voxel size", "l/s", "voxels", "published", "voxels, ms", "octree, ms", "nodes", "published", "MB"], rows), "",
-            "As many voxels along the jaw as the article's has:", "",
+            "With the same number of voxels along the jaw as the article's:", "",
             *table(["published size", "l/s", "published voxels", "voxels here", "ratio", "published nodes", "nodes here"], scaled), "",
-            f"*Differs:* neither voxels nor time are cubic in l/s. From 1 mm down voxels grow as (l/s)^{grows['leaves']:.2f}, for a surface has two "
-            f"dimensions and nothing is stored or visited for the space beside it, and the time to find them as (l/s)^{grows['voxels_ms']:.2f}: a part of it "
-            f"goes with the triangles, {number(min(r['voxels_ms'] for r in runs))} ms however large the voxels. The article's own three counts grow as "
-            f"(l/s)^{-power([float(size) for size in published], list(published.values()))[0]:.2f}; what is cubic there is the array that it fills and visits. "
-            f"*Agrees:* at equal l/s there are {min(row[4] for row in scaled):.2f} to {max(row[4] for row in scaled):.2f} times as many voxels, of another jaw, and at size 1 "
-            f"{one['nodes'] / nodes['all']:.2f} times as many nodes: {one['nodes'] / one['leaves']:.2f} a voxel for {nodes['all'] / published['1']:.2f}, where the article "
+            f"*Differs:* neither voxels nor time are cubic in l/s. From 1 mm down voxels grow as (l/s)^{grows['leaves']:.2f}, because a surface has two "
+            f"dimensions and the space beside it is neither stored nor visited. The time to find them grows as (l/s)^{grows['voxels_ms']:.2f}: a part of it "
+            f"depends on the triangles, {number(min(r['voxels_ms'] for r in runs))} ms at any voxel size. The article's own three counts grow as "
+            f"(l/s)^{-power([float(size) for size in published], list(published.values()))[0]:.2f}; only the array that it fills and visits is cubic. "
+            f"*Agrees:* at equal l/s this other jaw has {min(row[4] for row in scaled):.2f} to {max(row[4] for row in scaled):.2f} times as many voxels, and at size 1 "
+            f"{one['nodes'] / nodes['all']:.2f} times as many nodes: {one['nodes'] / one['leaves']:.2f} a voxel instead of {nodes['all'] / published['1']:.2f}; the article "
             f"estimates {nodes['least'] / published['1']:.2f} at least.", ""]
 
 
@@ -108,16 +108,16 @@ def _volumes(results, pictures):
     made = {policy: sum(r["make_us"] for r in of if r.parts[2] != "0") for policy, of in by_policy.items()}
     dearer = made["table"] / made["simple"]
     return ["### Spheres by level (figure 9)", "", picture, "",
-            "At the article's l/s of size 1. The unit is the ball round a leaf, (√3/2) π s³; at level L the article's is 8^L times as large, "
-            "counted from the leaf as level 0 (its formula's L-1 counts it as 1). Of `table`, `tight` and `slab` the volume by that of `simple`; "
+            "Measured at the article's l/s of size 1. The unit is the ball round a leaf, (√3/2) π s³; at level L the article's ball is 8^L times as large, "
+            "with the leaf as level 0 (its formula's L-1 counts it as 1). The columns of `table`, `tight` and `slab` are their volumes divided by the volume of `simple`; "
             "`slab` has the balls of `tight`, and its slabs cut them further.", "",
             *table(["level", "nodes", "`simple`, unit balls", "`table`", "`tight`", "`slab`"], rows), "",
             f"All spheres above the leaves, {number(sum(r['nodes'] for r in by_policy['simple'] if r.parts[2] != '0'))} of them, take "
-            + ", ".join(f"`{p}` {number(t)} µs" for p, t in made.items()) + ", from centres that are known, as in a query. "
-            + (f"*Agrees:* spheres by the table are dearer to make than simple ones, {dearer:.2f} times. " if dearer > 1.1 else
-               f"*Differs:* spheres by the table are no dearer to make than simple ones, {dearer:.2f} times. ")
+            + ", ".join(f"`{p}` {number(t)} µs" for p, t in made.items()) + ", from known centres, as in a query. "
+            + (f"*Agrees:* spheres by the table take {dearer:.2f} times as long to make as simple ones. " if dearer > 1.1 else
+               f"*Differs:* spheres by the table take no longer to make than simple ones, {dearer:.2f} times as long. ")
             + "`tight` and `slab` are read and unpacked, not made. The children's offset, s·2^(L-1) on each axis with L the child's level, is the one "
-            "that the article corrects; the earlier s·2^(L-2) says the same with L counted at the parent.", ""]
+            "that the article corrects; the earlier s·2^(L-2) is the same with L counted at the parent.", ""]
 
 
 def _saved(results):
@@ -130,12 +130,12 @@ def _saved(results):
                              saved["octree_MB"], saved["saved_MB"]])
                 said.append(fly["p50_us"] / saved["p50_us"])
     return ["### Spheres on the fly, or saved", "",
-            "The article's first proposal, for its own depth-first query in double: a ball of 32 bytes a node, read instead of made. Distance is how "
-            "far the lower jaw is opened, in mm.", "",
+            "The article's first proposal, for its own depth-first query in double: a ball of 32 bytes a node, read instead of made. The distance is the "
+            "opening of the lower jaw, in mm.", "",
             *table(["voxel size", "spheres", "distance", "sphere tests", "on the fly, µs", "saved, µs", "times as fast", "octree, MB", "saved spheres, MB"], rows), "",
-            f"{'*Agrees:* saving pays' if min(said) > 1.03 else 'Saving makes it'} {min(said):.2f} to {max(said):.2f} times as fast, and takes "
-            f"{rows[-1][-1] / rows[-1][-2]:.1f} times the octree's bytes on top. Bounds that are better than any that follow from the octree (`tight`, `slab`) "
-            "can only be saved: what they give is in the chapter on the query's parts.", ""]
+            f"{'*Agrees:* saving pays. It' if min(said) > 1.03 else 'Saving'} makes the query {min(said):.2f} to {max(said):.2f} times as fast, and takes "
+            f"{rows[-1][-1] / rows[-1][-2]:.1f} times the octree's bytes on top. Bounds that are better than any derived from the octree (`tight`, `slab`) "
+            "can only be saved: the chapter on the query's parts has their gain.", ""]
 
 
 class Rates:
@@ -212,13 +212,13 @@ def _rates(results, pictures):
     contact = all(place <= 1 for place in places)
     return ["### Haptic rates by distance (figure 10)", "", picture, "",
             f"Published are {PUBLISHED['worst_hz']['table']} Hz with `table` and {PUBLISHED['worst_hz']['simple']} Hz with `simple` in the worst case, which "
-            "is *right before collision*: of which of its two voxel sizes the text does not say. The pose before contact is here at distance 1.5. "
-            "Where it says l/s, voxels are as many along the jaw as the article has at that size, and distances are in its units.", "",
+            "is *right before collision*; the text does not name which of its two voxel sizes this is. Here the pose before contact is at distance 1.5. "
+            "Rows with l/s have the same number of voxels along the jaw as the article at that size, and distances in its units.", "",
             *table(["voxel size", "engine", "spheres", "worst rate, Hz", "at distance", "sphere tests", "rate before contact, Hz", "sphere tests"], rows), "",
-            ("*Differs:* the worst case is where surfaces are in each other, not right before. " if contact else
-             "*Agrees:* the worst case is not where surfaces are deepest in each other. ")
-            + f"{'*Agrees:*' if slow < 1000 else '*Differs:*'} the depth-first query does {number(slow)} Hz there at best with `table`.",
-            "", f"Policies: published is that below a distance of {low} to {high} `simple` is faster than `table`, since spheres by the table cost more to make "
-            "than they save. Here, where less than 5 % is no lead:", "", *text, "",
-            ("*Differs:* the table is a constant array of 256 entries that is made at compile time, so what a look-up costs (see the levels above) is less than "
-             "the tests that it saves." if min(ahead) > 0.5 else "*Agrees:* what the table's spheres cost is not always less than the tests that they save.")]
+            ("*Differs:* the worst case is where surfaces overlap, not right before. " if contact else
+             "*Agrees:* the worst case is not where surfaces overlap most. ")
+            + f"{'*Agrees:*' if slow < 1000 else '*Differs:*'} the depth-first query reaches {number(slow)} Hz there at best with `table`.",
+            "", f"Policies: the article says that below a distance of {low} to {high} `simple` is faster than `table`, since spheres by the table cost more to make "
+            "than they save. Here, where a lead is 5 % or more:", "", *text, "",
+            ("*Differs:* the table is a constant array of 256 entries made at compile time, so a look-up (see the levels above) costs less than "
+             "the tests that it saves." if min(ahead) > 0.5 else "*Agrees:* making the table's spheres does not always cost less than the tests that they save.")]
