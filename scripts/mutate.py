@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
 RESULTS = ROOT / "perf/results/mutants.json"
-PACKAGED = {"ist_shared", "ist_cli", "package_layout"}  # what a test needs that is no program
+PACKAGED = {"ist_shared", "ist_cli", "package_layout"}  # targets of ctest tests
 SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 
@@ -32,7 +32,7 @@ def sources():
 
 
 def copy_sources():
-    """What is built, as it is now; files that are the same keep their time."""
+    """Copies the sources as they are now; unchanged files keep their time."""
     for source in sources():
         copy = COPY / source.relative_to(ROOT)
         if copy.is_file() and copy.read_bytes() == source.read_bytes():
@@ -61,7 +61,7 @@ def configure():
 
 
 def build(programs):
-    """None, or what the compiler says."""
+    """Builds the programs. Returns None, or the compiler's output if it fails."""
     done = subprocess.run(["cmake", "--build", BUILD, "--target", *programs, "--", f"-j{os.cpu_count()}"],
                           capture_output=True, text=True)
     return None if done.returncode == 0 else done.stdout + done.stderr
@@ -91,7 +91,7 @@ def first_failure(tests):
 
 
 def killer_of(mutant):
-    """Who kills a mutant: a test, a proof at compile time, or None."""
+    """Returns the name of the test that kills a mutant, "a proof at compile time", or None."""
     texts = edited(mutant.edits)
     before = {path: path.read_text() for path in texts}
     try:
@@ -114,13 +114,13 @@ def programs_of(mutants):
 
 
 def write_table(found):
-    """Renews the rows of those that ran; a mutant that never ran stands there as such."""
+    """Writes the results and perf/MUTANTS.md; mutants that never ran are marked "not run"."""
     known = {**(json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}), **found}
     RESULTS.write_text(json.dumps(known, indent=1) + "\n")
     lines = ["# Mutants", "",
-             "Ways in which the code was broken on purpose, one at a time, and the first test that noticed. Made by",
-             "`scripts/mutate.sh`; the mutants are in `scripts/mutants.py`.", "",
-             "| mutant | what it breaks | in | killed by |", "|---|---|---|---|"]
+             "Each mutant is one deliberate fault in the code. The last column names the first test that fails with it. Made by",
+             "`scripts/mutate.sh` from `scripts/mutants.py`.", "",
+             "| mutant | fault | in | killed by |", "|---|---|---|---|"]
     killed = 0
     for mutant in MUTANTS:
         killer = known.get(mutant.name, "not run")
