@@ -60,7 +60,7 @@ def plot(groups, file):
 
 
 def table(groups):
-    """A line a group, and how many presses within the part used broke their allowance."""
+    """Returns a line per group, and the number of presses within the part used that exceed their allowance."""
     lines = ["| wall | rate, Hz | delay, ms | presses | within 80 %: worst returned / allowance, µJ | "
              "grows from | measured / computed |", "|---|--:|--:|--:|--:|--:|--:|"]
     broken = 0
@@ -86,24 +86,24 @@ def main():
     lines = [
         "# Stability of the haptic loop", "",
         "A hand presses a wall and lets go, with couplings within and beyond the border that the loop computes,",
-        "b > K (T/2 + t_d) + |B|, with B = 0 and nothing clamped. Made by `scripts/stability_border.sh`; no clock is",
-        "involved, so it is the same on every machine. The tests `Passivity.*` hold parts of it.", "",
+        "b > K (T/2 + t_d) + |B|, with B = 0 and no clamping. Made by `scripts/stability_border.sh`; it uses no clock,",
+        "so the results are the same on every machine. The tests `Passivity.*` repeat parts of it.", "",
         f"{machine}. {sum(len(p) for p, _ in groups.values())} presses, {broken} broken.", "",
         "- *push*: a block on a slab, along the normal. *turn*: two balls on two slabs that stop a turn.",
-        "- *returned*: what the wrench gave the hand while bodies touched, less what the device's own damping took.",
-        "  The hand's arm is a spring without damping, so nothing else pays for it.",
-        "- *allowance*: what encoders of 2 µm and 20 µrad, and the tick in which bodies meet, may give at most:",
-        "  (K/2 + |B|/T) q times the way gone in contact, and (K T + |B|) T v² for the tick. The hand itself is",
+        "- *returned*: the energy that the wrench gave the hand while bodies touched, less the energy that the device's own",
+        "  damping took. The hand's arm is a spring without damping, so it takes none.",
+        "- *allowance*: the most energy from encoders of 2 µm and 20 µrad, and from the tick in which bodies meet:",
+        "  (K/2 + |B|/T) q times the distance moved in contact, and (K T + |B|) T v² for the tick. The hand itself is",
         "  integrated without error.",
         "- *grows from*: the least part of the computed border at which motion in the hold grows.",
-        "- *measured*: the least stiffness at which more is returned than is allowed, by bisection between a half and",
-        f"  {HIGHEST} times the computed border. Above 1 where the contact yields beside the coupling: a wall is no",
-        "  stiffer than both in a row, and a contact is foreseen steeper than it is, which damps.", "",
+        "- *measured*: the least stiffness at which the energy returned exceeds the allowance, by bisection between a half and",
+        f"  {HIGHEST} times the computed border. It is above 1 where the contact yields beside the coupling: a wall is no",
+        "  stiffer than both in series, and the loop assumes a contact steeper than it is, which damps.", "",
         "![Energy returned by a press over device damping and stiffness](pictures/stability_border.svg)", "",
         *rows, ""]
     (folder / "HAPTIC_STABILITY.md").write_text("\n".join(lines))
     if broken:
-        sys.exit(f"stability_border: {broken} presses within the part used returned more than is allowed")
+        sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")
 
 
 main()

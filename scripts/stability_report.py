@@ -12,22 +12,22 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-FLOOR, CEILING = 1e-6, 10  # of the plot: what is less or more is drawn there, as a triangle
+FLOOR, CEILING = 1e-6, 10  # ends of the plot: values beyond them are drawn there, as triangles
 GROUPS = {
-    "tangency": "Where bodies only just touch",
-    "scale": "Of any size",
-    "place": "At any place",
-    "arithmetic": "Whatever the caller's arithmetic",
-    "long runs": "After millions of motions",
+    "tangency": "Bodies that only just touch",
+    "scale": "Any size",
+    "place": "Any place",
+    "arithmetic": "Any arithmetic of the caller",
+    "long runs": "Millions of motions",
     "shapes": "Shapes that meshes should not have",
-    "motion": "In small steps",
-    "faults": "When something fails",
-    "load": "Under load",
+    "motion": "Small steps",
+    "faults": "Failures",
+    "load": "Load",
 }
 
 
 def ratio(case):
-    """Of the worst error and its bound; nothing where the case is right or wrong."""
+    """Returns the worst error over its bound; None where the case is right or wrong."""
     if not case["bound"]:
         return None
     return math.inf if case["worst"] is None else case["worst"] / case["bound"]
@@ -38,7 +38,7 @@ def number(value):
 
 
 def table(cases):
-    lines = ["| case | samples | error | worst | guaranteed | part of it |", "|---|--:|---|--:|--:|--:|"]
+    lines = ["| case | samples | error | worst | bound | worst / bound |", "|---|--:|---|--:|--:|--:|"]
     for case in cases:
         part = ratio(case)
         lines.append(
@@ -80,9 +80,9 @@ def main():
     broken = [case for case in cases if case["broken"]]
     lines = [
         "# Stability", "",
-        "Each hard case: how often it was tried, the worst error seen, and what is guaranteed. Made by",
+        "Each hard case with its number of samples, its worst error and the guaranteed bound. Made by",
         "`scripts/stability_report.sh`; every row is a test, and a run of all tests tries it too, with fewer samples.",
-        "A case that is right or wrong counts what was wrong, and guarantees 0.", "",
+        "A case that is right or wrong counts wrong samples, and its bound is 0.", "",
         f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, "
         f"{len(broken)} broken.", "",
         "![The worst error of each case over its bound](pictures/stability.svg)", ""]
