@@ -14,8 +14,8 @@ from report.text import number, table
 
 CIRCUIT = pathlib.Path("src/hardware/rtl/ist_pair_test.v")
 
-# What is assumed, not measured. A part's size is its maker's; of a memory's highest rate a share is
-# taken, for nodes lie apart and only children lie together.
+# Assumptions, not measurements. The makers state the sizes of the parts; a share of a memory's highest rate
+# is assumed, because nodes lie apart and only children lie together.
 ICE40 = {"name": "iCE40 UP5K", "lut": 5280, "multiplier": 8, "memory": 30}
 ECP5 = {"name": "ECP5 LFE5U-25F", "lut": 24288, "multiplier": 28, "memory": 56}
 CLOCKS = [12e6, 48e6, 100e6]
@@ -28,15 +28,15 @@ SERVO = 1000  # Hz
 
 HEAD = """# The pair test in hardware
 
-Made by `scripts/hardware_report.sh`; nothing in it that was measured is typed by hand. The circuit is
+Made by `scripts/hardware_report.sh`; no measured number in it is typed by hand. The circuit is
 [`ist_pair_test.v`](../src/hardware/rtl/ist_pair_test.v), specified in [`src/hardware`](../src/hardware/README.md):
-one pair of nodes a clock, its answer {latency} clocks later. The balls are the published ones, from the table as it is; the
-constants by which `ist::Query` enlarges them, so that they are nested, are no part of the circuit.
+it takes one pair of nodes a clock and answers {latency} clocks later. The balls are the published ones, from the table as it is;
+`ist::Query` enlarges them by constants, so that they are nested, and the circuit does not.
 """
 
 
 def cells(file):
-    """The cells of a netlist by type. What yosys 0.23 writes round them is no whole JSON."""
+    """Returns the cells of a netlist by type. The text that yosys 0.23 writes round them is no valid JSON."""
     text = file.read_text()
     return json.JSONDecoder().raw_decode(text, text.index("{", text.index('"num_cells_by_type"')))[0]
 
@@ -58,24 +58,24 @@ def synthesis(made):
         rows.append([part["name"], used(lut, part["lut"]), f"{total(counts, flip_flop):,}",
                      used(total(counts, multiplier), part["multiplier"]), used(total(counts, memory), part["memory"])])
     version = subprocess.run(["yosys", "-V"], capture_output=True, text=True, check=True).stdout.split(" (")[0]
-    return ["## What it takes", "", f"By {version}; not counted are the registers of a query, and what feeds the circuit.", "",
+    return ["## Size", "", f"Synthesised by {version}, without the registers of a query and the logic that feeds the circuit.", "",
             *table(["part", "4-input LUTs", "flip-flops", "multipliers", "memory blocks"], rows), "",
             "The four multipliers square n_x, n_y, n_z and m; the memory blocks hold the table twice, once for each node of a",
-            "pair. On the iCE40 a carry sits beside its LUT; on the ECP5 one takes a LUT, and is counted."]
+            "pair. On the iCE40 a carry sits beside its LUT; on the ECP5 a carry takes a LUT, and is counted."]
 
 
 def placed(made):
-    """The clock on the iCE40 in Hz, or None where nothing was placed; and what is to be said of it."""
+    """Returns the clock on the iCE40 in Hz, or None where nothing was placed, and the sentences on it."""
     file = made / "placed.json"
     if not file.is_file():
-        return None, ["The clock is not measured: that takes nextpnr, and `nextpnr-ice40` is not installed."]
+        return None, ["The clock is not measured: nextpnr measures it, and `nextpnr-ice40` is not installed."]
     said = json.loads(file.read_text())
     clock = 1e6 * min(entry["achieved"] for entry in said["fmax"].values())
     logic = said["utilization"]["ICESTORM_LC"]
     return clock, [
         f"Placed and routed on the UP5K by nextpnr-ice40 with one seed, it runs at **{clock / 1e6:.1f} MHz**, and takes",
-        f"{used(logic['used'], logic['available'])} logic cells, a shift register of 458 bits with them that replaces its pins."
-        " For the ECP5", "Debian has no such tool: its clock is not measured."]
+        f"{used(logic['used'], logic['available'])} logic cells, including a shift register of 458 bits that replaces its pins."
+        " Debian has", "no such tool for the ECP5: its clock is not measured."]
 
 
 def near_misses(runs):
@@ -87,16 +87,16 @@ def near_misses(runs):
     extra = int(found["contacts"] - found["contacts_exact"])
     lost = sum(int(run["false_misses"]) for run in runs)
     lines = ["## How often a near miss is a hit", "",
-             "Along a closing, by `table` spheres, of all pairs that a query meets: how many have no common point, and how many of these the",
-             f"circuit calls a hit. The other way it errs in {lost:,} of {sum(int(run['pairs']) for run in runs):,} pairs"
-             + (".", ": **a hit is missed, which must not be.**")[lost > 0], "",
+             "The table counts the pairs that a query tests along a closing by `table` spheres, the misses among them (pairs without a common",
+             f"point), and the misses that the circuit calls hits. The circuit misses a hit in {lost:,} of {sum(int(run['pairs']) for run in runs):,} pairs"
+             + (".", ": **this must not be.**")[lost > 0], "",
              *table(["voxel", "dz", "pairs tested", "misses", "of them called a hit", "part"], rows), ""]
     if worst["false_hits"] == 0:
-        return [*lines, "It called none a hit."]
-    lines += [f"At most {100 * worst['false_hit_rate']:.3f} %. That costs"
-              f" {100 * (more['pairs'] / more['pairs_exact'] - 1):.2f} % more pairs at most, and"]
-    lines.append(f"{extra:,} contacts more at most, of {int(found['contacts_exact']):,}." if extra > 0
-                 else "no contact more anywhere.")
+        return [*lines, "It calls no miss a hit."]
+    lines += [f"At most {100 * worst['false_hit_rate']:.3f} % of the misses become hits. They cost at most"
+              f" {100 * (more['pairs'] / more['pairs_exact'] - 1):.2f} % more pairs, and"]
+    lines.append(f"at most {extra:,} more contacts, of {int(found['contacts_exact']):,}." if extra > 0
+                 else "no more contacts.")
     return lines
 
 
@@ -114,20 +114,20 @@ def worst_tick(runs, latency, clock):
     of = lambda run: f"{run['voxel_size']:g}"
 
     lines = ["## The worst tick, on paper", "",
-             "Nobody has built this. Counted is what a query does down two trees, at the pose of the closing where it tests",
-             f"most; assumed are the clocks, and the memories at a share of their highest rate. **Bold** is {SERVO:,} Hz or more.", "",
+             "This is an estimate; no such circuit was built. The counts are a query's, down two trees, at the pose of the closing with most",
+             f"tests; the clocks, and the memories' share of their highest rate, are assumed. **Bold** is {SERVO:,} Hz or more.", "",
              *table(["voxel", "worst at dz", "pairs P", "pairs opened O", "words read W", "contacts C", "centres moved"],
                     [[of(run), run.parts[2], *(f"{int(run[key]):,}" for key in ("pairs", "opened", "words", "contacts", "moved"))]
                      for run in worst]), "",
-             "**By the circuit**: one unit, a pair a clock, gives clock / P ticks a second where it never waits: other pairs are",
-             f"under way while one is opened. Where each opened pair waits for its answer, clock / (P + {latency} O).", "",
+             "**By the circuit**: one unit, at one pair a clock, gives clock / P ticks a second if it never waits, because other pairs are",
+             f"under way while one is opened. If each opened pair waits for its answer, it gives clock / (P + {latency} O).", "",
              *table(["clock", *(f"voxel {of(run)}" for run in worst)],
                     [[name(hertz), *(f"{rate(hertz / run['pairs'])} … {rate(hertz / waiting(run))} Hz" for run in worst)]
                      for hertz in sorted(clocks)]), "",
              f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a contact is written in "
              f"{CONTACT_BYTES}.", "So a tick moves "
-             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, where no word is kept from one pair to the next, and centres are",
-             "moved when their node is met: kept, each would be 12 bytes to write, and to read at each pair opened.", "",
+             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, if no word is kept from one pair to the next, and each centre is",
+             "moved when its node is met. A kept centre would cost 12 bytes to write, and to read at each opened pair.", "",
              *table(["memory", "highest rate", "share assumed", *(f"voxel {of(run)}" for run in worst)],
                     [["bytes a tick", "", "", *(f"{int(traffic(run)):,}" for run in worst)]]
                     + [[memory, f"{number(width * per_second / 1e6)} MB/s", f"{100 * share:g} %",
@@ -141,7 +141,7 @@ def worst_tick(runs, latency, clock):
         need = run["pairs"] * SERVO / CLOCKS[-1]
         lines.append(
             f"- Voxel {of(run)}, {CLOCKS[-1] / 1e6:g} MHz, {MEMORIES[0][0]}: {limit} is the limit, and {SERVO:,} Hz are "
-            f"{'reached' if holds else 'not reached'}; by pairs alone that takes {number(need, 2)} units. The trees take at most "
+            f"{'reached' if holds else 'not reached'}; by pairs alone they take {number(need, 2)} units. The trees take at most "
             f"{number(run['nodes'] * run['word_bytes'] / 2**20, 2)} MiB.")
     return lines
 
@@ -154,7 +154,7 @@ def main():
     clock, said = placed(made)
     lines = [HEAD.format(latency=latency), *synthesis(made), "", *said, "", *near_misses(runs), "",
              *worst_tick(runs, latency, clock), "",
-             f"Counted on a {runs[0]['label']} pair of jaws, lengths in millimetres; commit {context['commit']},"
+             f"Counts on a {runs[0]['label']} pair of jaws, lengths in millimetres; commit {context['commit']},"
              f" {context['date'][:10]}. The counts do not depend", "on the machine."]
     file.write_text("\n".join(lines) + "\n")
 

@@ -59,16 +59,16 @@ class HardwareReport(unittest.TestCase):
         self.assertIn("| 40.0 MHz, as placed | 400 … 200 Hz |", said)
 
     def test_a_hit_that_is_missed_is_not_passed_over(self):
-        self.assertIn("errs in 0 of 200,000 pairs.", self.report(run(0.4, 0.0), run(0.4, -1.0)))
-        self.assertIn("errs in 3 of 200,000 pairs: **a hit is missed",
+        self.assertIn("misses a hit in 0 of 200,000 pairs.", self.report(run(0.4, 0.0), run(0.4, -1.0)))
+        self.assertIn("misses a hit in 3 of 200,000 pairs: **this must not be",
                       self.report(run(0.4, 0.0), run(0.4, -1.0, false_misses=3)))
 
     def test_near_misses_are_told_at_their_worst(self):
-        self.assertIn("It called none a hit.", self.report(run(0.4, 0.0)))
+        self.assertIn("It calls no miss a hit.", self.report(run(0.4, 0.0)))
         said = self.report(run(0.4, 0.0), run(0.4, -1.0, false_hits=100, false_hit_rate=0.002, pairs_exact=80000))
-        self.assertIn("At most 0.200 %. That costs 25.00 % more pairs at most", said)
-        self.assertIn("no contact more anywhere", said)
-        self.assertIn("3 contacts more at most, of 10", self.report(
+        self.assertIn("At most 0.200 % of the misses become hits. They cost at most 25.00 % more pairs", said)
+        self.assertIn("no more contacts.", said)
+        self.assertIn("at most 3 more contacts, of 10", self.report(
             run(0.4, 0.0, false_hits=1, false_hit_rate=0.001, contacts=13)))
 
     def test_the_worst_tick_is_the_one_with_most_pairs(self):
