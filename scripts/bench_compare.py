@@ -34,7 +34,7 @@ def read(folder, side):
 
 
 def verdict(base, head):
-    """Slower where the best new time is worse than the worst old one; faster likewise; else neither."""
+    """Slower if all new times exceed all old ones, faster if all are less, otherwise neither."""
     if min(head) > max(base):
         return "SLOWER"
     return "faster" if max(head) < min(base) else "-"

@@ -59,6 +59,9 @@ wide=$(find src simd -name '*.h' -o -name '*.cpp' | sed 's/\.[a-z]*$//' | sort -
 # Sentences: subject, verb, object; the field's nouns (docs/glossary.md).
 found=$(grep -rnE '\bLikewise\b|\bis none\b|/// What\b' src simd --include='*.h' --include='*.cpp' --include='*.md' || true)
 [ -z "$found" ] || breach "a sentence that leans on another one, or on a bare word: $found"
+found=$(grep -rnE '\b[Ll]ikewise\b|\b(is|are|was|were) none\b|\bso many\b|\b[Tt]old\b|\bcom(es|ing) to\b|\bfor who\b' \
+  README.md HACKING.md CHANGELOG.md docs perf scripts --include='*.md' --include='*.py' || true)
+[ -z "$found" ] || breach "a sentence in a foreign syntax (say who does what, with the field's noun): $found"
 found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth|[dD]ive|run_hurried|run_until|run_within|widen|StepParts' src simd --include='*.h' --include='*.cpp' || true)
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
 headers=$(grep -c '^ist/' src/package/public_headers.txt)

@@ -29,7 +29,7 @@ FINE = 3  # samples along the edge of a pixel
 PIXELS_PER_MM = 11.6
 HIGHEST = 0.965  # where the foremost point of a jaw is, of the height
 FADE = 0.16  # of the height, in which jaws that go on below end
-SIDE_FADE = 0.05  # of the width, likewise
+SIDE_FADE = 0.05  # of the width, in which jaws that go on at the sides end
 LIGHT = np.array([-0.40, 0.50, 1.0])  # right, up, towards the eye
 BARE = np.array([226, 221, 211])
 HATCH = 10  # pixels from line to line
@@ -155,10 +155,10 @@ def axes_of(book):
 
 def closest_points(jaw, bitten, regions):
     """Returns where the closest points of contact regions are on the opened jaw, which is moved as a whole."""
-    told = np.array([[float(region[f"closest_{axis}"]) for axis in "xyz"] for region in regions]).reshape(-1, 3)
+    points = np.array([[float(region[f"closest_{axis}"]) for axis in "xyz"] for region in regions]).reshape(-1, 3)
     closed = positions(bitten)
     opening = np.linalg.lstsq(np.column_stack([closed, np.ones(len(closed))]), jaw.points, rcond=None)[0]
-    return np.column_stack([told, np.ones(len(told))]) @ opening
+    return np.column_stack([points, np.ones(len(points))]) @ opening
 
 
 def draw_half(place, jaw, bands, bitten, regions, title, facts):

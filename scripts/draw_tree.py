@@ -117,8 +117,8 @@ def main(ist, output):
         voxels = {}
         for size in (4, 1):
             run("build", mesh, "-o", folder / f"{size}.ist", "--voxel-size", size)
-            told = run("export", folder / f"{size}.ist", "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply", "--json")
-            voxels[size] = json.loads(told.splitlines()[-1])["count"]
+            lines = run("export", folder / f"{size}.ist", "--what", "voxels", "--level", 0, "-o", folder / f"{size}.ply", "--json")
+            voxels[size] = json.loads(lines.splitlines()[-1])["count"]
         for policy in ("simple", "table", "tight"):
             run("export", folder / "1.ist", "--what", "spheres", "--spheres", policy, "--level", LEVEL, "-o", folder / f"{policy}.ply")
 

@@ -1,5 +1,5 @@
 # Sourced from the project's root: which machine this is, and what results on it are made with.
-#   $model     the processor, $machine likewise as the name of a folder, with its cores
+#   $model     the processor, $machine the processor and its cores as the name of a folder
 #   $compiler  and $commit, which ends in + where files that are compiled are changed
 #   $results   where raw results go
 #   $context   of the benchmarks: each as name=value

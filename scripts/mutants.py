@@ -447,7 +447,7 @@ MUTANTS = [
            [(SIMULATION, "    state.tool_pose = state.last_complete.tool;\n    state.motion.reset();",
              "    state.motion.reset();")],
            ["haptics_test Pressing*:HeldTicks*"]),
-    Mutant("told-of-no-motion", "effects advance by a motion that was taken back",
+    Mutant("taken-back-motion-counts", "effects advance by a motion that was taken back",
            [(SIMULATION, "    state.tool_pose = state.last_complete.tool;\n    state.motion.reset();",
              "    state.tool_pose = state.last_complete.tool;")],
            ["haptics_test Pressing*:HeldTicks*"]),

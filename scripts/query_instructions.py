@@ -14,11 +14,11 @@ SKIPPED = 77
 
 
 class NotComparable(Exception):
-    """Nothing is wrong, but there is nothing to compare."""
+    """Raised where there is nothing to compare, which is no failure."""
 
 
 def run(program, folder):
-    """What the program prints under callgrind, which leaves a file a query in the folder."""
+    """Returns the program's output under callgrind, which leaves a file per query in the folder."""
     if shutil.which("valgrind") is None:
         raise NotComparable("valgrind is not installed: scripts/setup.sh does that")
     if not pathlib.Path(program).exists():
@@ -47,7 +47,7 @@ def counts_in(folder):
 
 
 def join(printed, counts):
-    """What is kept of one run: compiler and flags, and for each query what it did and what it took."""
+    """Returns the record of one run: compiler and flags, and the counts of each query."""
     context, queries = {}, []
     for line in printed.splitlines():
         if re.match(r"(compiler|flags): ", line):
@@ -75,7 +75,7 @@ def require_comparable(kept, new):
 
 
 def compare(kept, new):
-    """A line a query, and how many of them are beyond the limit, answer something else, or are on one side only."""
+    """Returns a line per query, and the number of queries beyond the limit, with another answer, or on one side only."""
     before = {query["name"]: query for query in kept["queries"]}
     after = {query["name"]: query for query in new["queries"]}
     lines, beyond = [], 0

@@ -51,7 +51,7 @@ def read_keys(program):
 
 
 def written(page, keys):
-    """The page with what the reader knows, and what is wrong with its rows."""
+    """Returns the page with the reader's values, and the errors in its rows."""
     table, rows, wrong = None, [], []
     lines = page.splitlines()
     for at, line in enumerate(lines):

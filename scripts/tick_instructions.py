@@ -37,7 +37,7 @@ ALL = BODIES + "".join(EFFECTS.values())
 
 
 def taken_out(text, effect):
-    """The scene without the table, as who edits the file makes it."""
+    """Returns the scene without a table, as one gets it by editing the file."""
     return re.sub(rf"\[effects\.{effect}\]\n(?:[^\[\n].*\n)*", "", text)
 
 
@@ -46,7 +46,7 @@ class Counter:
         self.program, self.ticks, self.folder = program, ticks, folder
 
     def count(self, *what):
-        """Instructions of the ticks alone, what they came to, and how many effects there were."""
+        """Returns the instructions of the ticks alone, their result, and the number of effects."""
         out = self.folder / "callgrind.out"
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", "--collect-atstart=no",

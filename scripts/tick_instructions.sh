@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Counts the instructions of ticks with callgrind: of a scene that names all six effects, from which
-# one after the other is taken out, beside a program without a scene that makes by hand what the rest
-# needs. What is not named costs nothing, so both must come to the same count and to the same bits,
-# and each effect that goes must take instructions away; else this fails.
+# Counts the instructions of ticks with callgrind: a scene with all six effects loses one after the
+# other, beside a program without a scene that builds the remaining ones by hand. An unnamed effect
+# costs nothing, so both must give the same count and the same bits, and each removed effect must
+# save instructions; otherwise this fails.
 #
 #   scripts/tick_instructions.sh [TICKS]    by default 300
 set -euo pipefail

@@ -9,7 +9,7 @@ def cross(a, b):
 
 
 class DepthBuffer:
-    """The triangle nearest to the eye at each sample, -1 where there is none, and the weights of its corners there.
+    """The triangle nearest to the eye at each sample, or -1, and the weights of its corners there.
 
     Points are in samples: to the right, up, and towards the eye. Triangles that look away are not drawn, so bodies
     must be closed and wound outwards.
