@@ -1,6 +1,7 @@
 #pragma once
 
-// The haptic layer: devices, effects, the simulation, the servo loop and its records.
+/// @file
+/// The haptic layer: devices, effects, the simulation, the servo loop and its records.
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed

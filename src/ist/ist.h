@@ -1,5 +1,6 @@
 #pragma once
 
+/// @file
 /// All of IST that answers questions about two bodies: meshes, built-in models, trees, queries.
 /// ist/haptics.h and ist/scene.h stand apart.
 #include "ist/base/api.h"

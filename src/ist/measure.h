@@ -1,9 +1,9 @@
 #pragma once
 
-/// Measures of two bodies that take milliseconds and allocate: signed distances of points, how
-/// deep they are in each other, when they first meet,
-/// where and on what area they touch.
-/// ist/ist.h has what a loop asks.
+/// @file
+/// Measures of two bodies that take milliseconds and allocate: signed distances of points, how deep
+/// the bodies are in each other, when they first meet, where and on what area they touch. ist/ist.h
+/// has the questions of a loop.
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed

@@ -1,5 +1,7 @@
 #pragma once
 
+/// @file
+/// Scenes: two bodies, a device and the effects between them, read from TOML or made by a program.
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed
@@ -29,11 +31,19 @@ class SceneLines;
 /// A shape that needs no file. Boxes, spheres and cylinders have their centre at 0, cylinders their
 /// axis along z; jaws are placed as by make_jaw().
 struct BuiltInShape {
-  enum class Kind { kUpperJaw, kLowerJaw, kBox, kSphere, kCylinder };
-  Kind kind = Kind::kBox;
+  /// The kind of a shape.
+  enum class Kind {
+    kUpperJaw,  ///< make_jaw(Jaw::kUpper, seed)
+    kLowerJaw,  ///< make_jaw(Jaw::kLower, seed)
+    kBox,       ///< as wide along x, y and z as `size`
+    kSphere,    ///< of `radius`
+    kCylinder,  ///< of `radius` and `height`
+  };
+  Kind kind = Kind::kBox;                          ///< decides which members count
   std::uint64_t seed = 1;                          ///< of a jaw
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< of a box, mesh units
-  double radius = 1, height = 1;                   ///< of a sphere or a cylinder, mesh units
+  double radius = 1,                               ///< of a sphere or a cylinder, mesh units
+      height = 1;                                  ///< of a cylinder, mesh units
 };
 
 /// Makes the mesh of a shape: closed, facing outward, in the scene's unit, with the same bits on
@@ -50,7 +60,7 @@ struct SceneBody {
   std::optional<SpherePolicy> spheres = {};  ///< by default the tightest that both bodies have
   bool trust_normals = false;  ///< contact forces even if the mesh is not closed and consistent
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from mesh to scene
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< of the mesh's origin, scene axes
 };
 
 /// GravitySettings, with the centre of mass in mesh coordinates: the tool's frame is known only
@@ -64,13 +74,13 @@ struct SceneGravity {
 
 /// A device that rests at the start.
 struct NullSettings {
-  DeviceMechanics mechanics = {};
+  DeviceMechanics mechanics = {};  ///< by which the coupling is kept stable
 };
 /// A device that follows a plan whatever the wrench.
 struct ScriptSettings {
-  DeviceMechanics mechanics = {};
-  std::filesystem::path file = {};
-  std::vector<Waypoint> plan = {};
+  DeviceMechanics mechanics = {};   ///< by which the coupling is kept stable
+  std::filesystem::path file = {};  ///< from which `plan` was read; empty otherwise
+  std::vector<Waypoint> plan = {};  ///< at least one waypoint
 };
 
 /// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
@@ -79,52 +89,54 @@ struct ScriptSettings {
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::shared_ptr<const detail::SceneLines> lines = {};  ///< of keys in `file`; null without a file
-  double unit = 0;      ///< metres in the unit of lengths; required
-  double rate = 1000;   ///< ticks a second, 1 to 10,000
-  double seconds = 10;  ///< length of a run
-  int workers = 1;      ///< threads that search for contacts, 1 or 2
-  SceneBody fixed = {}, held = {};
+  double unit = 0;       ///< metres in the unit of lengths; required
+  double rate = 1000;    ///< ticks a second, 1 to 10,000
+  double seconds = 10;   ///< length of a run
+  int workers = 1;       ///< threads that search for contacts, 1 or 2
+  SceneBody fixed = {},  ///< the body that rests
+      held = {};         ///< the body in the hand: the tool
   /// The axis, of unit length, along which the held body is moved until it is free.
   std::optional<Eigen::Vector3d> open = {};
-  std::variant<NullSettings, ScriptSettings, HandSettings> device = {};
-  CouplingSettings coupling = {};
-  SafetySettings safety = {};
+  std::variant<NullSettings, ScriptSettings, HandSettings> device = {};  ///< by default it rests
+  CouplingSettings coupling = {};  ///< between device and tool
+  SafetySettings safety = {};      ///< limits of the wrench on the hand
 
-  std::optional<ContactSettings> contact = {};
-  std::optional<FrictionSettings> friction = {};  ///< acts at contacts, as damping does
-  std::optional<DampingSettings> damping = {};
-  std::optional<ProximitySettings> proximity = {};
-  std::optional<SceneGravity> gravity = {};
-  std::optional<SnapSettings> snap = {};  ///< its pose is a motion
+  std::optional<ContactSettings> contact = {};      ///< absent: no contact forces
+  std::optional<FrictionSettings> friction = {};    ///< acts at contacts, as damping does
+  std::optional<DampingSettings> damping = {};      ///< absent: no damping
+  std::optional<ProximitySettings> proximity = {};  ///< absent: the tool is not slowed
+  std::optional<SceneGravity> gravity = {};         ///< absent: the held body weighs nothing
+  std::optional<SnapSettings> snap = {};            ///< its pose is a motion
 };
 
-/// Reads a scene file (TOML; docs/scene-reference.md lists the keys). Relative paths start at the file's folder.
-/// Throws kInputInvalid, naming file, line and remedy, for a file that is no TOML, an unknown or
-/// missing key, a value of the wrong kind or out of range, and a missing file.
+/// Reads a scene file (TOML; docs/scene-reference.md lists the keys). Relative paths start at the
+/// file's folder. Throws kInputInvalid, naming file, line and remedy, for a file that is no TOML,
+/// an unknown or missing key, a value of the wrong kind or out of range, and a missing file.
 [[nodiscard]] IST_API Scene read_scene(const std::filesystem::path& file);
 
 /// The trees of a scene.
 struct SceneTrees {
-  std::unique_ptr<const SphereTree> fixed = {}, held = {};  ///< null if no effect needs contacts
-  /// The proximity voxels of the fixed body, and the held body in voxels of that size; null if no
-  /// effect needs proximity.
-  std::unique_ptr<const SphereTree> near_fixed = {}, near_held = {};
+  std::unique_ptr<const SphereTree> fixed = {},  ///< null if no effect needs contacts
+      held = {};                                 ///< null if no effect needs contacts
+  std::unique_ptr<const SphereTree>
+      near_fixed = {},  ///< with proximity voxels; null if no effect needs proximity
+      near_held = {};   ///< in voxels of that size; null if no effect needs proximity
 };
 
 /// A stage of build_scene(), built or skipped.
 struct BuildNote {
-  std::string what;
-  bool built = false;
-  std::string why;
-  double milliseconds = 0;
-  std::uint64_t bytes = 0;
+  std::string what;         ///< the stage, for people
+  bool built = false;       ///< false: skipped
+  std::string why;          ///< the effects that need it, or the reason to skip it
+  double milliseconds = 0;  ///< wall time; 0 if skipped
+  std::uint64_t bytes = 0;  ///< memory of the result; 0 if skipped
 };
 
 /// A scene ready to run, with the trees and queries that its effects need.
 struct BuiltScene {
-  SceneTrees trees = {};
+  SceneTrees trees = {};                        ///< all that the effects need
   std::unique_ptr<Simulation> simulation = {};  ///< refers to the trees
-  std::unique_ptr<Device> device = {};
+  std::unique_ptr<Device> device = {};          ///< as Scene::device says
   double step_limit = 0;  ///< bound on the displacement of the tool's surface in a tick, m
   std::vector<BuildNote> notes = {};       ///< in the order of building
   std::vector<std::string> warnings = {};  ///< sentences for people

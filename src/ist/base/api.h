@@ -1,5 +1,7 @@
 #pragma once
 
+/// @file
+/// The requirements of the C++ headers on their compiler.
 #if __cplusplus < 202002L
 #error "IST needs C++20: compile with -std=c++20, or ask CMake for cxx_std_20"
 #elif !defined(EIGEN_MAX_ALIGN_BYTES) || EIGEN_MAX_ALIGN_BYTES != 16

@@ -39,7 +39,9 @@ enum class ErrorCode {
 /// remedy. Building and loading throw it; queries never do.
 class IST_API Error : public std::runtime_error {
  public:
+  /// Makes an error whose what() is `detail`.
   Error(ErrorCode code, const std::string& detail) : std::runtime_error(detail), code_(code) {}
+  /// Returns the kind of the error.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
 
  private:

@@ -20,11 +20,14 @@ class Progress {
     total_.store(total, std::memory_order_relaxed);
     stage_.store(name, std::memory_order_relaxed);
   }
+  /// Counts `done` more items of the stage. Any building thread may call it.
   void add(std::uint64_t done) noexcept { done_.fetch_add(done, std::memory_order_relaxed); }
 
+  /// Returns the name of the stage; "" before the first.
   [[nodiscard]] const char* stage() const noexcept {
     return stage_.load(std::memory_order_relaxed);
   }
+  /// Returns the part of the stage that is done, 0 to 1; 0 for a stage without items.
   [[nodiscard]] double fraction() const noexcept {
     const auto total = static_cast<double>(total_.load(std::memory_order_relaxed));
     const auto done = static_cast<double>(done_.load(std::memory_order_relaxed));

@@ -1,7 +1,8 @@
 #ifndef IST_CAPI_IST_C_H
 #define IST_CAPI_IST_C_H
 
-/*
+/**
+ * @file
  * IST for C, and for any language that calls C: collision queries between two rigid meshes, on a
  * 64-bit processor.
  *
@@ -36,85 +37,45 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "ist/capi/ist_status.h"
+
 #if defined(__GNUC__)
-#define IST_C_API __attribute__((visibility("default")))
-#define IST_MAY_ALIAS __attribute__((may_alias))
+#define IST_C_API __attribute__((visibility("default"))) /**< a function of the library */
+#define IST_MAY_ALIAS __attribute__((may_alias)) /**< it may share memory with another struct */
 #else
 #define IST_C_API
 #define IST_MAY_ALIAS
 #endif
 #ifdef __cplusplus
-#define IST_NOEXCEPT noexcept
+#define IST_NOEXCEPT noexcept /**< no exception leaves a function */
 extern "C" {
 #else
 #define IST_NOEXCEPT
 #endif
 
-/* The version of this interface. It increases with each added function or member; an incompatible
+/** The version of this interface. It increases with each added function or member; an incompatible
  * change also changes the library's SONAME. */
 #define IST_ABI_VERSION 1
 
-/* The result of a call. The numbers never change. */
-typedef int32_t ist_status;
-enum {
-  IST_OK = 0,
-  IST_NULL_ARGUMENT = 1,    /* a required pointer is NULL */
-  IST_STRUCT_SIZE = 2,      /* struct_size is invalid, or an unknown member is not zero */
-  IST_ARGUMENT_INVALID = 3, /* a number is out of range */
-  IST_NOT_A_HANDLE = 4,     /* the library never created this handle */
-  IST_HANDLE_KIND = 5,      /* a handle of another kind */
-  IST_HANDLE_FREED = 6,     /* the handle was freed before */
-  IST_HANDLE_BUSY = 7,      /* another thread is using the query or servo */
-  IST_TOO_MANY_HANDLES = 8,
-  IST_OUT_OF_MEMORY = 9,
-  IST_SYSTEM_ERROR = 10,   /* the operating system refused a request */
-  IST_INTERNAL_ERROR = 11, /* a bug in this library */
-  IST_NOT_PREPARED = 12,   /* the query was created without contacts */
-  IST_SERVO_FAULT = 13,    /* a force was not a number: the output is zero */
-  IST_CANCELLED = 14,      /* the caller ended the call */
-  IST_FILE_UNREADABLE = 101,
-  IST_FILE_UNWRITABLE = 102,
-  IST_NOT_A_MESH = 103,           /* the content is not STL, PLY or OBJ */
-  IST_MESH_EMPTY = 104,           /* no vertex and no triangle */
-  IST_MESH_POINTS_ONLY = 105,     /* vertices, but no triangle */
-  IST_MESH_TRUNCATED = 106,       /* the file ends before its content */
-  IST_MESH_BAD_INDEX = 107,       /* a triangle has an index beyond the last vertex */
-  IST_MESH_NOT_FINITE = 108,      /* a vertex is NaN or infinite */
-  IST_MESH_EXTENT = 109,          /* the largest extent is zero or outside [1e-12, 1e15] */
-  IST_VOXEL_SIZE_INVALID = 110,   /* not positive and finite, or too large for the mesh */
-  IST_VOXEL_SIZE_TOO_SMALL = 111, /* needs more than 2^16 voxels per axis */
-  IST_MEMORY_LIMIT = 112,         /* needs more memory than the limit allows */
-  IST_NOT_A_TREE = 113,           /* not a tree file */
-  IST_TREE_VERSION = 114,         /* a tree file of another version */
-  IST_TREE_TRUNCATED = 115,
-  IST_TREE_CORRUPT = 116,      /* wrong checksum or content */
-  IST_POLICY_MISSING = 117,    /* a tree lacks the requested spheres */
-  IST_TRIANGLES_MISSING = 118, /* a tree was built without triangles */
-  IST_TARGET_MISSING = 119,    /* the processor lacks the requested instruction set */
-  IST_POSE_INVALID = 120,      /* the pose is not a rigid motion */
-  IST_INPUT_INVALID = 121,     /* the content of a scene or another file is invalid */
-  IST_FIXED_POINT_RANGE = 122  /* a number exceeds the hardware's fixed-point format */
-};
-
-/* Returns the IST_ABI_VERSION of the library. [real time] */
+/** Returns the IST_ABI_VERSION of the library. [real time] */
 IST_C_API uint32_t ist_abi_version(void) IST_NOEXCEPT;
 
-/* Returns the version of the library, such as "0.1.0". [real time] */
+/** Returns the version of the library, such as "0.1.0". [real time] */
 IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
 
-/* Returns the name of a code for logs, such as "mesh-truncated"; "unknown" for any other number.
+/** Returns the name of a code for logs, such as "mesh-truncated"; "unknown" for any other number.
  * [real time] */
 IST_C_API const char* ist_status_name(ist_status status) IST_NOEXCEPT;
 
-/* Returns the message of the calling thread's last error: function, cause, remedy. It is empty
+/** Returns the message of the calling thread's last error: function, cause, remedy. It is empty
  * before the first error and cut after 511 bytes. Calls that succeed do not change it. The thread
  * owns the text, which stays valid until its next error. [real time] */
 IST_C_API const char* ist_last_error_message(void) IST_NOEXCEPT;
 
-/* An immutable surface of triangles. */
+/** An immutable surface of triangles. */
 typedef struct ist_mesh ist_mesh;
 
-/* Creates a mesh from copies of 3 * vertex_count coordinates and 3 * triangle_count indices. The
+/** Creates a mesh from copies of 3 * vertex_count coordinates and 3 * triangle_count indices. The
  * vertices of a triangle run counter-clockwise, seen from outside. An array may be NULL where its
  * count is 0, but a mesh without triangles is an error.
  *
@@ -124,207 +85,222 @@ typedef struct ist_mesh ist_mesh;
 IST_C_API ist_status ist_mesh_create(const double* vertices, size_t vertex_count,
                                      const uint32_t* triangles, size_t triangle_count,
                                      ist_mesh** mesh) IST_NOEXCEPT;
-/* Creates a mesh from single-precision coordinates, by the rules of ist_mesh_create. */
+/** Creates a mesh from single-precision coordinates, by the rules of ist_mesh_create. */
 IST_C_API ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
                                            const uint32_t* triangles, size_t triangle_count,
                                            ist_mesh** mesh) IST_NOEXCEPT;
 
-/* Reads an STL (binary or text), PLY or OBJ file and merges vertices with equal coordinates.
+/** Reads an STL (binary or text), PLY or OBJ file and merges vertices with equal coordinates.
  * Errors: IST_FILE_UNREADABLE, IST_NOT_A_MESH and all IST_MESH_... codes; the message names the
  * file and the position in it. Cost: about 50 ms for 100,000 triangles. */
 IST_C_API ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT;
 
+/** The counts of a mesh's elements and defects. */
 typedef struct ist_mesh_info {
-  size_t struct_size;
-  uint64_t vertices, triangles;
-  uint64_t boundary_edges;       /* edges of one triangle only */
-  uint64_t non_manifold_edges;   /* edges of more than two triangles */
-  uint64_t degenerate_triangles; /* triangles with two equal indices or zero area */
-  uint64_t components;           /* parts connected by vertices */
-  int32_t closed;                /* 1: every edge belongs to exactly two triangles */
-  int32_t consistent;            /* 1: neighbours traverse each edge in opposite directions */
-  double box_min[3], box_max[3]; /* bounding box of all vertices */
-  double signed_volume;          /* positive outward; unreliable where open or above 1e100 */
+  size_t struct_size;            /**< the size of this struct, bytes */
+  uint64_t vertices,             /**< vertices that the mesh holds, used or not */
+      triangles;                 /**< triangles, degenerate ones included */
+  uint64_t boundary_edges;       /**< edges of one triangle only */
+  uint64_t non_manifold_edges;   /**< edges of more than two triangles */
+  uint64_t degenerate_triangles; /**< triangles with two equal indices or zero area */
+  uint64_t components;           /**< parts connected by vertices */
+  int32_t closed;                /**< 1: every edge belongs to exactly two triangles */
+  int32_t consistent;            /**< 1: neighbours traverse each edge in opposite directions */
+  double box_min[3],             /**< least coordinates of all vertices, mesh units */
+      box_max[3];                /**< greatest coordinates */
+  double signed_volume; /**< mesh units^3, positive outward; unreliable where open or above 1e100 */
 } ist_mesh_info;
 
-/* Gives the size and the defects of a mesh. Cost: about 40 ms for 100,000 triangles. */
+/** Gives the size and the defects of a mesh. Cost: about 40 ms for 100,000 triangles. */
 IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT;
 
-/* Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
+/** Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
  * `triangle_capacity` triangles, 3 indices each, in the order of the indices in answers. An array
  * may be NULL where its capacity is 0. Cost: 1 ns per number. */
 IST_C_API ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
                                    uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT;
 
-/* Frees a mesh. Every ..._free accepts NULL; a second call returns IST_HANDLE_FREED. */
+/** Frees a mesh. Every ..._free accepts NULL; a second call returns IST_HANDLE_FREED. */
 IST_C_API ist_status ist_mesh_free(ist_mesh* mesh) IST_NOEXCEPT;
 
-/* An immutable sphere tree: a body prepared for queries. */
+/** An immutable sphere tree: a body prepared for queries. */
 typedef struct ist_tree ist_tree;
 
-/* The bounds of tree nodes, from loose to tight. A tree with one kind has all looser kinds too. */
+/** The bounds of tree nodes, from loose to tight. A tree with one kind has all looser kinds too. */
 enum {
-  IST_SPHERES_DEFAULT = 0, /* for a tree: slabs; for a query: the tightest in both trees */
-  IST_SPHERES_SIMPLE = 1,  /* spheres around the nodes' cubes */
-  IST_SPHERES_TABLE = 2,   /* spheres around the children's cubes, by lookup table */
-  IST_SPHERES_TIGHT = 3,   /* spheres around the triangles in the cubes */
-  IST_SPHERES_SLAB = 4     /* tight spheres, cut by thin slabs */
+  IST_SPHERES_DEFAULT = 0, /**< for a tree: slabs; for a query: the tightest in both trees */
+  IST_SPHERES_SIMPLE = 1,  /**< spheres around the nodes' cubes */
+  IST_SPHERES_TABLE = 2,   /**< spheres around the children's cubes, by lookup table */
+  IST_SPHERES_TIGHT = 3,   /**< spheres around the triangles in the cubes */
+  IST_SPHERES_SLAB = 4     /**< tight spheres, cut by thin slabs */
 };
 
+/** How a tree is built. */
 typedef struct ist_build_options {
-  size_t struct_size;
-  double voxel_size;      /* edge of a voxel, mesh units; required */
-  int32_t spheres;        /* IST_SPHERES_...: the bounds to save */
-  int32_t drop_triangles; /* 1: keep no triangles: no exact answers */
-  int32_t proximity;      /* 1: add the voxels near the outside, for a scene's proximity effect */
-  int32_t reserved;       /* zero */
-  uint64_t max_memory;    /* memory limit, bytes; default 4 GiB */
+  size_t struct_size;     /**< the size of this struct, bytes */
+  double voxel_size;      /**< edge of a voxel, mesh units; required */
+  int32_t spheres;        /**< IST_SPHERES_...: the bounds to save */
+  int32_t drop_triangles; /**< 1: keep no triangles: no exact answers */
+  int32_t proximity;      /**< 1: add the voxels near the outside, for a scene's proximity effect */
+  int32_t reserved;       /**< zero */
+  uint64_t max_memory;    /**< memory limit, bytes; default 4 GiB */
 } ist_build_options;
 
-/* Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
+/** Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
  * afterwards. The call uses all cores. Errors: IST_VOXEL_SIZE_INVALID, IST_VOXEL_SIZE_TOO_SMALL,
  * IST_MESH_EXTENT, IST_MEMORY_LIMIT. Cost: 2.5 s for 1.7 million voxels on two cores. */
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
-/* Reads a tree file and checks every number in it. Cost: 1 ns per byte. Errors:
+/** Reads a tree file and checks every number in it. Cost: 1 ns per byte. Errors:
  * IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED, IST_TREE_CORRUPT. */
 IST_C_API ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT;
 
-/* Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
+/** Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
 IST_C_API ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT;
 
+/** The properties of a tree; lengths in mesh units. */
 typedef struct ist_tree_info {
-  size_t struct_size;
-  double voxel_size;
-  uint64_t leaves;            /* voxels on the surface */
-  uint64_t triangles;         /* triangles kept */
-  uint64_t bytes;             /* memory in use */
-  int32_t depth;              /* levels above the leaves */
-  int32_t spheres;            /* IST_SPHERES_...: the tightest bounds in the tree */
-  int32_t has_triangles;      /* 1: the tree keeps its triangles */
-  int32_t has_proximity;      /* 1: the tree has the voxels near the outside */
-  int32_t outward;            /* 1: the mesh is closed and consistent, outside is known */
-  int32_t unit;               /* of lengths: 0 unknown, 1 mm, 2 m, 3 inch, 4 micrometre */
-  double origin[3];           /* of the tree's frame: the root cube's centre, mesh coordinates */
-  double bounding_radius;     /* around the origin; contains every sphere */
-  double largest_leaf_radius; /* of the tightest spheres */
+  size_t struct_size;         /**< the size of this struct, bytes */
+  double voxel_size;          /**< edge of a voxel */
+  uint64_t leaves;            /**< voxels on the surface */
+  uint64_t triangles;         /**< triangles kept */
+  uint64_t bytes;             /**< memory in use */
+  int32_t depth;              /**< levels above the leaves */
+  int32_t spheres;            /**< IST_SPHERES_...: the tightest bounds in the tree */
+  int32_t has_triangles;      /**< 1: the tree keeps its triangles */
+  int32_t has_proximity;      /**< 1: the tree has the voxels near the outside */
+  int32_t outward;            /**< 1: the mesh is closed and consistent, outside is known */
+  int32_t unit;               /**< of lengths: 0 unknown, 1 mm, 2 m, 3 inch, 4 micrometre */
+  double origin[3];           /**< of the tree's frame: the root cube's centre, mesh coordinates */
+  double bounding_radius;     /**< around the origin; contains every sphere */
+  double largest_leaf_radius; /**< of the tightest spheres */
 } ist_tree_info;
 
-/* Gives the properties of a tree. Cost: 1 us. */
+/** Gives the properties of a tree. Cost: 1 us. */
 IST_C_API ist_status ist_tree_get_info(const ist_tree* tree, ist_tree_info* info) IST_NOEXCEPT;
 
-/* Copies the centres of the first `capacity` leaves, 3 mesh coordinates each, in the order of the
+/** Copies the centres of the first `capacity` leaves, 3 mesh coordinates each, in the order of the
  * indices in leaf pairs. A leaf is a cube of edge voxel_size. `centres` may be NULL where
  * `capacity` is 0. Cost: 20 ns per leaf. */
 IST_C_API ist_status ist_tree_copy_leaf_centres(const ist_tree* tree, double* centres,
                                                 size_t capacity) IST_NOEXCEPT;
 
-/* Frees a tree. Queries of the tree keep it alive. */
+/** Frees a tree. Queries of the tree keep it alive. */
 IST_C_API ist_status ist_tree_free(ist_tree* tree) IST_NOEXCEPT;
 
-/* Two trees and the working memory of their queries. Each thread needs a query of its own. */
+/** Two trees and the working memory of their queries. Each thread needs a query of its own. */
 typedef struct ist_query ist_query;
 
+/** How a query searches, and the memory that it reserves. */
 typedef struct ist_query_options {
-  size_t struct_size;
-  int32_t spheres;         /* IST_SPHERES_... */
-  int32_t workers;         /* 1 (default) or 2: a resident thread helps */
-  int64_t period_ns;       /* with two workers: interval of queries; default 1 ms, -1: no pause */
-  uint64_t frontier_pairs; /* most node pairs of a level, 12 bytes each; default 2^16, to 2^26 */
-  uint64_t reserved;       /* passed over; was a capacity that exact questions do without */
-  int64_t contacts;        /* most contacts, up to 4096; default 32; -1: none, 3 MB less memory */
-  const char* target;      /* instruction set, such as "avx2"; default: the best. Same answers */
-  double push_distance;    /* distance at which springs begin, in mean voxel sizes, up to 2;
+  size_t struct_size;      /**< the size of this struct, bytes */
+  int32_t spheres;         /**< IST_SPHERES_... */
+  int32_t workers;         /**< 1 (default) or 2: a resident thread helps */
+  int64_t period_ns;       /**< with two workers: interval of queries; default 1 ms, -1: no pause */
+  uint64_t frontier_pairs; /**< most node pairs of a level, 12 bytes each; default 2^16, to 2^26 */
+  uint64_t reserved;       /**< passed over; was a capacity that exact questions do without */
+  int64_t contacts;        /**< most contacts, up to 4096; default 32; -1: none, 3 MB less memory */
+  const char* target;      /**< instruction set, such as "avx2"; default: the best. Same answers */
+  double push_distance;    /**< distance at which springs begin, in mean voxel sizes, up to 2;
                               default 2; -1: springs begin where surfaces meet */
-  uint64_t front_pairs; /* most leaf pairs kept in slow motion, 224 bytes each, to 2^26; 0: none */
+  uint64_t front_pairs;    /**< most leaf pairs kept in slow motion, 224 bytes each, to 2^26;
+                              0: none */
 } ist_query_options;
 
-/* Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
+/** Creates a query and reserves all its memory. `options` may be NULL. Both trees may be the same,
  * and may be freed afterwards. Errors: IST_POLICY_MISSING, IST_TARGET_MISSING, IST_MEMORY_LIMIT,
  * IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID. Cost: a few ms. */
 IST_C_API ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
                                       const ist_query_options* options,
                                       ist_query** query) IST_NOEXCEPT;
 
+/** The properties of a query. */
 typedef struct ist_query_info {
-  size_t struct_size;
-  uint64_t bytes;    /* memory reserved */
-  uint64_t contacts; /* most contacts; 0: no contacts */
-  int32_t spheres;   /* IST_SPHERES_...: the bounds in use */
-  int32_t workers;
-  int32_t has_triangles; /* 1: both trees have triangles */
-  int32_t reserved;      /* zero */
-  char target[16];       /* instruction set in use */
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t bytes;        /**< memory reserved */
+  uint64_t contacts;     /**< most contacts; 0: no contacts */
+  int32_t spheres;       /**< IST_SPHERES_...: the bounds in use */
+  int32_t workers;       /**< threads that search, 1 or 2 */
+  int32_t has_triangles; /**< 1: both trees have triangles */
+  int32_t reserved;      /**< zero */
+  char target[16];       /**< instruction set in use */
 } ist_query_info;
 
-/* Gives the properties of a query. [real time] */
+/** Gives the properties of a query. [real time] */
 IST_C_API ist_status ist_query_get_info(ist_query* query, ist_query_info* info) IST_NOEXCEPT;
 
-/* Two leaves with overlapping bounds, by their indices in the two trees. */
+/** Two leaves with overlapping bounds, by their indices in the two trees. */
 typedef struct IST_MAY_ALIAS ist_leaf_pair {
-  uint32_t fixed, moving;
+  uint32_t fixed, /**< leaf of the fixed tree */
+      moving;     /**< leaf of the moving tree */
 } ist_leaf_pair;
 
-/* How an answer was found: by a search, among kept leaf pairs, or by a clearance known before. */
-enum { IST_FOUND_FRESH = 0, IST_FOUND_KEPT = 1, IST_FOUND_CLEAR = 2 };
+/** How an answer was found. */
+enum {
+  IST_FOUND_FRESH = 0, /**< by a search */
+  IST_FOUND_KEPT = 1,  /**< among the leaf pairs kept from earlier poses */
+  IST_FOUND_CLEAR = 2  /**< by the roots, or a clearance found at an earlier pose */
+};
 
+/** The answer of ist_query_leaf_pairs and ist_query_contacts; lengths in mesh units. */
 typedef struct ist_query_result {
-  size_t struct_size;
-  uint64_t leaf_pairs;   /* all leaf pairs found, in the array or not */
-  uint64_t contacts;     /* all contacts, in the array or not; of ist_query_contacts alone */
-  uint64_t written;      /* valid elements of the array; later elements may be overwritten */
-  uint64_t sphere_tests; /* pairs of bounds tested */
-  int32_t complete;  /* 1: the search reached the end. 0: the budget ended it; then bodies without
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t leaf_pairs;   /**< all leaf pairs found, in the array or not */
+  uint64_t contacts;     /**< all contacts, in the array or not; of ist_query_contacts alone */
+  uint64_t written;      /**< valid elements of the array; later elements may be overwritten */
+  uint64_t sphere_tests; /**< pairs of bounds tested */
+  int32_t complete;  /**< 1: the search reached the end. 0: the budget ended it; then bodies without
                         leaf pairs may still overlap, and contacts give no valid force */
-  int32_t truncated; /* 1: the array was too short and holds the first elements */
-  int32_t level;     /* levels above the leaves at which the search ended */
-  int32_t distance_known; /* 1: the distance between the surfaces is in [lower, upper] */
-  double distance_lower, distance_upper;
-  double resolution; /* greatest distance between the surfaces in a leaf pair */
-  int32_t found;     /* IST_FOUND_...; only sphere_tests and the distance depend on it */
-  int32_t reserved;  /* zero */
+  int32_t truncated; /**< 1: the array was too short and holds the first elements */
+  int32_t level;     /**< levels above the leaves at which the search ended */
+  int32_t distance_known; /**< 1: the distance between the surfaces is in [lower, upper] */
+  double distance_lower,  /**< no pair of surface points is nearer; 0 where unknown */
+      distance_upper;     /**< some pair is no farther apart; 0 where unknown */
+  double resolution;      /**< greatest distance between the surfaces in a leaf pair */
+  int32_t found;          /**< IST_FOUND_...; only sphere_tests and the distance depend on it */
+  int32_t reserved;       /**< zero */
 } ist_query_result;
 
-/* The limits of one query, with one contract for every function that takes them. A search never
+/** The limits of one query, with one contract for every function that takes them. A search never
  * makes more tests than allowed, but for the test of the roots. With a limit of time it reads the
  * clock every 500 tests, 512 leaf pairs or 2,048 kept ones. A limit of tests alone gives the same
  * answer in every run, and keeps nothing from pose to pose. */
 typedef struct ist_budget {
-  size_t struct_size;
-  uint64_t tests;       /* most pairs of bounds to test; 0: no limit */
-  uint64_t nanoseconds; /* most time from the start of the call; 0: no limit */
+  size_t struct_size;   /**< the size of this struct, bytes */
+  uint64_t tests;       /**< most pairs of bounds to test; 0: no limit */
+  uint64_t nanoseconds; /**< most time from the start of the call; 0: no limit */
 } ist_budget;
 
-/* Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
+/** Finds all pairs of leaves with overlapping bounds, sorted by fixed and then by moving leaf.
  * `pairs` may be NULL where `capacity` is 0, to count; `budget` may be NULL: no limit. With a
  * budget the distance is known. Errors: IST_POSE_INVALID. Cost: 1 to 3 ns per test. [real time] */
 IST_C_API ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16],
                                           const ist_budget* budget, ist_leaf_pair* pairs,
                                           size_t capacity, ist_query_result* result) IST_NOEXCEPT;
 
-/* A contact point of the two surfaces, fixed mesh coordinates. */
+/** A contact point of the two surfaces, fixed mesh coordinates. */
 typedef struct ist_contact {
-  double position[3]; /* half way between the surfaces */
-  double normal[3];   /* of unit length, from the fixed body to the moving body */
-  double depth;       /* overlap along the normal, negative where apart; at most one voxel */
-  double weight;      /* an area, mesh units^2; falls to 0 where a contact ends */
+  double position[3]; /**< half way between the surfaces */
+  double normal[3];   /**< of unit length, from the fixed body to the moving body */
+  double depth;       /**< overlap along the normal, negative where apart; at most one voxel */
+  double weight;      /**< an area, mesh units^2; falls to 0 where a contact ends */
 } ist_contact;
 
-/* Sums over all leaf pairs, for forces on the moving body, of meshes in mm. A pair has weight w,
+/** Sums over all leaf pairs, for forces on the moving body, of meshes in mm. A pair has weight w,
  * normal n, depth d and position p; springs begin at depth d0, the negative push distance. */
 typedef struct ist_contact_sums {
-  size_t struct_size;
-  uint64_t pairs;            /* leaf pairs with a weight above 0 */
-  double weight;             /* sum of w, mm^2 */
-  double pressure_force[3];  /* sum of w n, mm^2 */
-  double pressure_torque[3]; /* sum of p x w n, mm^3 */
-  double spring_force[3];    /* sum of w (d - d0) n, mm^3 */
-  double spring_torque[3];   /* sum of p x w (d - d0) n, mm^4 */
-  double about[3];           /* reference point of the torques, fixed mesh coordinates */
+  size_t struct_size;        /**< the size of this struct, bytes */
+  uint64_t pairs;            /**< leaf pairs with a weight above 0 */
+  double weight;             /**< sum of w, mm^2 */
+  double pressure_force[3];  /**< sum of w n, mm^2 */
+  double pressure_torque[3]; /**< sum of p x w n, mm^3 */
+  double spring_force[3];    /**< sum of w (d - d0) n, mm^3 */
+  double spring_torque[3];   /**< sum of p x w (d - d0) n, mm^4 */
+  double about[3];           /**< reference point of the torques, fixed mesh coordinates */
 } ist_contact_sums;
 
-/* Reduces all leaf pairs to a few contacts and to sums. `contacts` may be NULL where `capacity` is
+/** Reduces all leaf pairs to a few contacts and to sums. `contacts` may be NULL where `capacity` is
  * 0; `sums` may be NULL; `budget` may be NULL: no limit. If the budget ends it, there are no
  * contacts and the sums make no force. Errors: IST_POSE_INVALID; IST_NOT_PREPARED where
  * options->contacts was -1. Cost: ist_query_leaf_pairs plus 10 to 15 ns per pair. [real time] */
@@ -333,64 +309,69 @@ IST_C_API ist_status ist_query_contacts(ist_query* query, const double pose[16],
                                         size_t capacity, ist_contact_sums* sums,
                                         ist_query_result* result) IST_NOEXCEPT;
 
-/* Gives the wrench of springs on the moving body, about sums->about. A stiffness in N/mm^3 and
+/** Gives the wrench of springs on the moving body, about sums->about. A stiffness in N/mm^3 and
  * meshes in mm give N and N mm. IST_ARGUMENT_INVALID for one that is not finite. [real time] */
 IST_C_API ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffness,
                                              double force[3], double torque[3]) IST_NOEXCEPT;
 
+/** The answer of ist_query_distance; lengths in mesh units. */
 typedef struct ist_distance_result {
-  size_t struct_size;
-  double lower, upper; /* the distance between the surfaces is in [lower, upper] */
-  uint64_t sphere_tests;
-  int32_t complete; /* 1: the interval is no wider than the tolerance */
-  int32_t reserved; /* zero */
-  double narrowest; /* no tolerance below this width can be reached at this pose */
+  size_t struct_size;    /**< the size of this struct, bytes */
+  double lower,          /**< the distance between the surfaces is no less */
+      upper;             /**< and no more */
+  uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
+  int32_t complete;      /**< 1: the interval is no wider than the tolerance */
+  int32_t reserved;      /**< zero */
+  double narrowest;      /**< no tolerance below this width can be reached at this pose */
 } ist_distance_result;
 
-/* Bounds the distance between the surfaces by an interval no wider than `tolerance`, or `narrowest`
- * where that is more; `budget` as for leaf pairs. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID.
- * Cost: 0.02 to 0.7 ms for jaws. [real time] */
+/** Bounds the distance between the surfaces by an interval no wider than `tolerance`, or
+ * `narrowest` where that is more; `budget` as for leaf pairs. Errors: IST_POSE_INVALID,
+ * IST_ARGUMENT_INVALID. Cost: 0.02 to 0.7 ms for jaws. [real time] */
 IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16], double tolerance,
                                         const ist_budget* budget,
                                         ist_distance_result* result) IST_NOEXCEPT;
 
-/* The answer of ist_query_intersects. */
+/** The answer of ist_query_intersects. */
 enum {
-  IST_ANSWER_UNKNOWN = 0, /* after an error */
-  IST_ANSWER_NO = 1,
-  IST_ANSWER_NEAR = 2, /* open: without triangles bounds of leaves overlap, or the budget ended */
-  IST_ANSWER_YES = 3
+  IST_ANSWER_UNKNOWN = 0, /**< after an error */
+  IST_ANSWER_NO = 1,      /**< the surfaces are apart; one body may lie inside the other */
+  IST_ANSWER_NEAR = 2, /**< open: without triangles bounds of leaves overlap, or the budget ended */
+  IST_ANSWER_YES = 3   /**< triangles have a point in common, exactly */
 };
 
-/* Decides whether the bodies intersect: an IST_ANSWER_... Errors: IST_POSE_INVALID. [real time] */
+/** Decides whether the bodies intersect: an IST_ANSWER_... Errors: IST_POSE_INVALID. [real time] */
 IST_C_API ist_status ist_query_intersects(ist_query* query, const double pose[16],
                                           const ist_budget* budget, int32_t* answer) IST_NOEXCEPT;
 
-/* Two triangles with a common point, by index. */
+/** Two triangles with a common point, by index. */
 typedef struct IST_MAY_ALIAS ist_triangle_pair {
-  uint32_t fixed, moving;
+  uint32_t fixed, /**< triangle of the fixed mesh */
+      moving;     /**< triangle of the moving mesh */
 } ist_triangle_pair;
 
+/** The answer of ist_query_triangle_pairs. */
 typedef struct ist_triangle_pairs_result {
-  size_t struct_size;
-  uint64_t pairs;   /* all pairs found, in the array or not */
-  uint64_t written; /* valid elements of the array */
-  uint64_t sphere_tests;
-  int32_t truncated; /* 1: the array was too short and holds the first pairs */
-  int32_t complete;  /* 0: the budget ended the search; there may be more pairs */
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t pairs;        /**< all pairs found, in the array or not */
+  uint64_t written;      /**< valid elements of the array */
+  uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
+  int32_t truncated;     /**< 1: the array was too short and holds the first pairs */
+  int32_t complete;      /**< 0: the budget ended the search; there may be more pairs */
 } ist_triangle_pairs_result;
 
-/* Finds all pairs of triangles with a common point, exactly, sorted as leaf pairs are. Errors:
+/** Finds all pairs of triangles with a common point, exactly, sorted as leaf pairs are. Errors:
  * IST_POSE_INVALID; IST_TRIANGLES_MISSING. Cost: 0.1 to 0.2 us per pair. [real time] */
 IST_C_API ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
                                               const ist_budget* budget, ist_triangle_pair* pairs,
                                               size_t capacity,
                                               ist_triangle_pairs_result* result) IST_NOEXCEPT;
 
-/* Forgets what earlier poses left behind: the next answers are those of a new query. [real time] */
+/** Forgets what earlier poses left behind: the next answers are those of a new query. [real time]
+ */
 IST_C_API ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT;
 
-/* Frees a query. */
+/** Frees a query. */
 IST_C_API ist_status ist_query_free(ist_query* query) IST_NOEXCEPT;
 
 #ifdef __cplusplus

@@ -1,7 +1,8 @@
 #ifndef IST_CAPI_IST_MEASURE_H
 #define IST_CAPI_IST_MEASURE_H
 
-/*
+/**
+ * @file
  * Measures of two bodies that take milliseconds: signed distances of points, penetration depth,
  * first contact along a motion, occlusion. The conventions of ist_c.h apply. All need trees with
  * triangles (IST_TRIANGLES_MISSING), allocate memory, and use all cores for many points. The first
@@ -14,27 +15,28 @@
 extern "C" {
 #endif
 
-/* Is told now and then which part is done, 0 to 1 as far as that is known, on the caller's thread.
- * Returns 0 to end the call. It must return: no longjmp, no exception. May be NULL in every call.
- */
+/** The caller's function that follows a call, on the caller's thread. NULL in place of the struct:
+ * nobody follows. */
 typedef struct ist_progress {
-  size_t struct_size;
+  size_t struct_size; /**< the size of this struct, bytes */
+  /** Is told now and then which part is done, 0 to 1 as far as that is known. Returns 0 to end the
+   * call. It must return: no longjmp, no exception. */
   int32_t (*proceed)(void* user, double part);
-  void* user;
+  void* user; /**< handed to `proceed`; never read */
 } ist_progress;
 
-/* The triangle of a point beyond the reach. */
+/** The triangle of a point beyond the reach. */
 #define IST_NO_TRIANGLE 0xFFFFFFFFu
 
-/* A point and the surface of a body. */
+/** A point and the surface of a body. */
 typedef struct ist_surface_distance {
-  double distance;   /* negative inside; NaN beyond the reach */
-  double closest[3]; /* the surface's nearest point; NaN beyond the reach */
-  uint32_t triangle; /* the triangle that holds it, or IST_NO_TRIANGLE */
-  int32_t is_signed; /* 0: the nearest point is at an open border; the distance is positive */
+  double distance;   /**< negative inside; NaN beyond the reach */
+  double closest[3]; /**< the surface's nearest point; NaN beyond the reach */
+  uint32_t triangle; /**< the triangle that holds it, or IST_NO_TRIANGLE */
+  int32_t is_signed; /**< 0: the nearest point is at an open border; the distance is positive */
 } ist_surface_distance;
 
-/* Measures the distances of `count` points, 3 mesh coordinates each, from the surface of a tree.
+/** Measures the distances of `count` points, 3 mesh coordinates each, from the surface of a tree.
  * Farther ones than `reach`, which may be INFINITY, are not looked for. Errors:
  * IST_ARGUMENT_INVALID for a point that is not finite or a reach that is not positive;
  * IST_CANCELLED. Cost: 0.9 us per point within reach and core. */
@@ -43,7 +45,7 @@ IST_C_API ist_status ist_tree_signed_distance(const ist_tree* tree, const double
                                               const ist_progress* progress,
                                               ist_surface_distance* distances) IST_NOEXCEPT;
 
-/* Measures the distances of the vertices of `body` from the surface of `other`. `pose` maps
+/** Measures the distances of the vertices of `body` from the surface of `other`. `pose` maps
  * coordinates of `body` to those of `other`. Writes the first `capacity`; `vertices` takes the
  * number of all. Errors: IST_POSE_INVALID too. */
 IST_C_API ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other,
@@ -52,23 +54,29 @@ IST_C_API ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree*
                                            ist_surface_distance* distances, size_t capacity,
                                            uint64_t* vertices) IST_NOEXCEPT;
 
-/* Which body has no certain inside, being open or inconsistent. */
-enum { IST_CLOSED = 0, IST_FIXED_NOT_CLOSED = 1, IST_MOVING_NOT_CLOSED = 2 };
+/** Which body has no certain inside, being open or inconsistent. */
+enum {
+  IST_CLOSED = 0,           /**< both have one */
+  IST_FIXED_NOT_CLOSED = 1, /**< the fixed body */
+  IST_MOVING_NOT_CLOSED = 2 /**< the moving body */
+};
 
+/** How deep two bodies are in each other; lengths in mesh units. */
 typedef struct ist_penetration {
-  size_t struct_size;
-  double lower, upper; /* the depth is in [lower, upper]; [0, 0]: the bodies do not intersect */
-  double point[3];     /* of a surface, `lower` deep; fixed mesh coordinates */
-  double direction[3]; /* from there to the other surface's nearest point, of unit length */
-  int32_t of_moving;   /* 1: the point lies on the moving surface */
-  uint32_t triangle;   /* of that surface, the one that holds the point */
-  int32_t complete;    /* 1: the interval is no wider than the tolerance, or `narrowest` */
-  int32_t not_closed;  /* IST_CLOSED, or why there is no answer */
-  double narrowest;    /* no tolerance below this width can be reached at this pose */
-  uint64_t points;     /* points of which the distance was measured */
+  size_t struct_size;  /**< the size of this struct, bytes */
+  double lower,        /**< the depth is no less; 0: the bodies may be apart */
+      upper;           /**< and no more; 0: the bodies do not intersect */
+  double point[3];     /**< of a surface, `lower` deep; fixed mesh coordinates */
+  double direction[3]; /**< from there to the other surface's nearest point, of unit length */
+  int32_t of_moving;   /**< 1: the point lies on the moving surface */
+  uint32_t triangle;   /**< of that surface, the one that holds the point */
+  int32_t complete;    /**< 1: the interval is no wider than the tolerance, or `narrowest` */
+  int32_t not_closed;  /**< IST_CLOSED, or why there is no answer */
+  double narrowest;    /**< no tolerance below this width can be reached at this pose */
+  uint64_t points;     /**< points of which the distance was measured */
 } ist_penetration;
 
-/* Bounds the depth of the deepest point of either surface inside the other body by an interval no
+/** Bounds the depth of the deepest point of either surface inside the other body by an interval no
  * wider than `tolerance`. `last` may be an earlier answer, from which the search goes on in less
  * time, or NULL. Of `budget` the tests are points; it and `progress` may end the search: then
  * `complete` is 0 and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: 5
@@ -78,41 +86,48 @@ IST_C_API ist_status ist_query_penetration(ist_query* query, const double pose[1
                                            const ist_budget* budget, const ist_progress* progress,
                                            ist_penetration* result) IST_NOEXCEPT;
 
-/* A motion from the pose `from`: to the pose `to` by the screw that turns least; or, where `to` is
+/** A motion from the pose `from`: to the pose `to` by the screw that turns least; or, where `to` is
  * NULL, about the axis through `point` along `direction`, fixed mesh coordinates, by `angle`
  * radians and `along` mesh units. */
 typedef struct ist_motion {
-  size_t struct_size;
-  const double* from; /* 16 numbers */
-  const double* to;   /* 16 numbers, or NULL */
-  double point[3], direction[3], angle, along;
+  size_t struct_size; /**< the size of this struct, bytes */
+  const double* from; /**< 16 numbers */
+  const double* to;   /**< 16 numbers, or NULL */
+  double point[3],    /**< of the axis, fixed mesh coordinates */
+      direction[3],   /**< of the axis, of any length but 0 */
+      angle,          /**< of the turn, radians, counterclockwise seen against the direction */
+      along;          /**< the way along the axis, mesh units */
 } ist_motion;
 
-/* How a motion goes. */
+/** How a motion goes. */
 enum {
-  IST_FIRST_UNKNOWN = 0, /* after an error */
-  IST_FIRST_CONTACT = 1, /* at `upper` triangles intersect, before `lower` none do */
-  IST_FIRST_NONE = 2,    /* none intersect on the whole motion */
-  IST_FIRST_GRAZING = 3, /* surfaces come within the tolerance, and were not found to meet */
-  IST_FIRST_TOUCHES_AT_START = 4,
-  IST_FIRST_INSIDE_AT_START = 5, /* a body, or a part of it, lies inside the other */
-  IST_FIRST_STOPPED = 6          /* ended early: before `lower` none intersect */
+  IST_FIRST_UNKNOWN = 0, /**< after an error */
+  IST_FIRST_CONTACT = 1, /**< at `upper` triangles intersect, before `lower` none do */
+  IST_FIRST_NONE = 2,    /**< none intersect on the whole motion */
+  IST_FIRST_GRAZING = 3, /**< surfaces come within the tolerance, and were not found to meet */
+  IST_FIRST_TOUCHES_AT_START = 4, /**< triangles intersect at the first pose */
+  IST_FIRST_INSIDE_AT_START = 5,  /**< a body, or a part of it, lies inside the other */
+  IST_FIRST_STOPPED = 6           /**< ended early: before `lower` none intersect */
 };
 
+/** The first contact along a motion; lengths in mesh units. */
 typedef struct ist_first_contact {
-  size_t struct_size;
-  double lower, upper;                   /* of the motion's parameter, 0 to 1 */
-  double distance_lower, distance_upper; /* of the surfaces at `lower` */
-  int32_t outcome;                       /* IST_FIRST_... */
-  int32_t grazed;                        /* 1: surfaces grazed before: the interval may be wider */
-  int32_t triangles_known;               /* 1: the triangles intersect at `upper` */
-  uint32_t fixed, moving;                /* their indices */
-  int32_t reserved;                      /* zero */
-  double narrowest;                      /* the least tolerance that is reached here */
-  uint64_t distances;                    /* asked for */
+  size_t struct_size;      /**< the size of this struct, bytes */
+  double lower,            /**< the motion's parameter, 0 to 1, before which none intersect */
+      upper;               /**< where the contact is at the latest; 1: none is known */
+  double distance_lower,   /**< the surfaces at `lower` are no nearer */
+      distance_upper;      /**< and no farther apart */
+  int32_t outcome;         /**< IST_FIRST_... */
+  int32_t grazed;          /**< 1: surfaces grazed before: the interval may be wider */
+  int32_t triangles_known; /**< 1: the triangles intersect at `upper` */
+  uint32_t fixed,          /**< the fixed mesh's triangle, where known */
+      moving;              /**< the moving mesh's */
+  int32_t reserved;        /**< zero */
+  double narrowest;        /**< the least tolerance that is reached here */
+  uint64_t distances;      /**< asked for */
 } ist_first_contact;
 
-/* Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes
+/** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes
  * farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
  * query forgets what earlier poses left. Errors:
  * IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: some 10 to 40 distances for jaws that close. */
@@ -121,46 +136,57 @@ IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion*
                                              const ist_progress* progress,
                                              ist_first_contact* result) IST_NOEXCEPT;
 
+/** The questions about two jaws in a bite, mesh units; the defaults are made for millimetres. */
 typedef struct ist_occlusion_options {
-  size_t struct_size;
-  double reach;         /* of the distance maps; default 2 */
-  double contact;       /* surfaces no farther apart touch; default 0.1; -1: 0 */
-  double least_area;    /* of a region; default 0.01; -1: 0, all regions */
-  double longest_edge;  /* longer ones are split; default 0.2 */
-  double foundation;    /* of the shares; default 0.1; -1: 0 */
-  double change;        /* of the foundation; default 0.05; -1: 0 */
-  const double* limits; /* distances whose areas are measured; may be NULL */
-  size_t limit_count;
+  size_t struct_size;   /**< the size of this struct, bytes */
+  double reach;         /**< of the distance maps, NaN beyond; default 2 */
+  double contact;       /**< surfaces no farther apart touch; default 0.1; -1: 0 */
+  double least_area;    /**< of a region; default 0.01; -1: 0, all regions */
+  double longest_edge;  /**< longer ones are split; default 0.2 */
+  double foundation;    /**< of the shares; default 0.1; -1: 0 */
+  double change;        /**< of the foundation; default 0.05; -1: 0 */
+  const double* limits; /**< distances whose areas are measured; may be NULL */
+  size_t limit_count;   /**< of `limits` */
 } ist_occlusion_options;
 
-/* A part of a surface that touches the other body; fixed mesh coordinates. */
+/** A part of a surface that touches the other body; fixed mesh coordinates. */
 typedef struct ist_contact_region {
-  double area, centre[3];
-  double least_distance, closest[3]; /* signed; the vertex that has it */
-  double penetrating_area, depth_integral;
-  double share, share_thinner, share_thicker; /* of all regions, 0 to 1: geometric, no force */
-  uint32_t triangle;                          /* of the surface, one that holds that vertex */
-  int32_t partner; /* the region of the other surface that it faces, or -1 */
+  double area,             /**< mesh units^2 */
+      centre[3];           /**< of the area */
+  double least_distance,   /**< of its vertices, mesh units, negative inside */
+      closest[3];          /**< the vertex that has it */
+  double penetrating_area, /**< where the distance is at most 0, mesh units^2 */
+      depth_integral;      /**< of the depth over that area, mesh units^3: no volume */
+  double share,            /**< of all regions, 0 to 1: geometric, no force */
+      share_thinner,       /**< with a foundation thinner by the change */
+      share_thicker;       /**< and thicker */
+  uint32_t triangle;       /**< of the surface, one that holds that vertex */
+  int32_t partner;         /**< the region of the other surface that it faces, or -1 */
 } ist_contact_region;
 
-/* The arrays of one surface, which the caller owns, with room for so many; each may be NULL where
+/** The arrays of one surface, which the caller owns, with room for so many; each may be NULL where
  * its room is 0. `areas` has room for `limit_count`, or is NULL. */
 typedef struct ist_occlusion_arrays {
-  size_t struct_size;
-  ist_surface_distance* distances; /* of the vertices; `closest` in fixed mesh coordinates */
-  size_t distance_capacity;
-  ist_contact_region* regions; /* the largest first */
-  size_t region_capacity;
-  double* areas;
+  size_t struct_size;              /**< the size of this struct, bytes */
+  ist_surface_distance* distances; /**< of the vertices; `closest` in fixed mesh coordinates */
+  size_t distance_capacity;        /**< room for so many distances */
+  ist_contact_region* regions;     /**< the largest first */
+  size_t region_capacity;          /**< room for so many regions */
+  double* areas;                   /**< within each limit, mesh units^2 */
 } ist_occlusion_arrays;
 
+/** The sums of one surface against the other body. */
 typedef struct ist_occlusion {
-  size_t struct_size;
-  uint64_t vertices, regions; /* all, in the arrays or not */
-  double total_area, penetrating_area, depth_integral, depth_at_vertices;
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t vertices,     /**< all of the mesh, in the arrays or not */
+      regions;           /**< all, in the arrays or not */
+  double total_area,     /**< of the mesh, mesh units^2 */
+      penetrating_area,  /**< where the distance is at most 0, mesh units^2 */
+      depth_integral,    /**< of the depth over that area, mesh units^3 */
+      depth_at_vertices; /**< the largest of a vertex, mesh units; 0 where all lie outside */
 } ist_occlusion;
 
-/* Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for
+/** Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for
  * each surface. `options`, and the arrays of a surface, may be NULL. Errors: IST_POSE_INVALID,
  * IST_ARGUMENT_INVALID, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 0.1 s for jaws. */
 IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16],

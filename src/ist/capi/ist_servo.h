@@ -1,7 +1,8 @@
 #ifndef IST_CAPI_IST_SERVO_H
 #define IST_CAPI_IST_SERVO_H
 
-/*
+/**
+ * @file
  * Force feedback in a device's own loop: each tick passes the handle's pose and receives the force
  * and torque for the hand. The conventions of ist_c.h apply.
  *
@@ -16,23 +17,27 @@
 extern "C" {
 #endif
 
-/* The unit of the poses' translations. */
-enum { IST_UNIT_M = 1, IST_UNIT_MM = 2 };
+/** The unit of the poses' translations. */
+enum {
+  IST_UNIT_M = 1, /**< metres */
+  IST_UNIT_MM = 2 /**< millimetres */
+};
 
-/* A simulated scene. It belongs to one thread at a time. */
+/** A simulated scene. It belongs to one thread at a time. */
 typedef struct ist_servo ist_servo;
 
+/** How a scene is built and its ticks are limited. */
 typedef struct ist_servo_options {
-  size_t struct_size;
-  int32_t unit;               /* IST_UNIT_M or IST_UNIT_MM; required */
-  int32_t reserved;           /* zero */
-  double query_time_fraction; /* fraction of a tick for queries, from 0 to 1; default 0.7 */
-  uint64_t sphere_tests; /* tests per query of a tick, instead of a time limit: the same forces in
+  size_t struct_size;         /**< the size of this struct, bytes */
+  int32_t unit;               /**< IST_UNIT_M or IST_UNIT_MM; required */
+  int32_t reserved;           /**< zero */
+  double query_time_fraction; /**< fraction of a tick for queries, from 0 to 1; default 0.7 */
+  uint64_t sphere_tests; /**< tests per query of a tick, instead of a time limit: the same forces in
                             every run; 0: the time limit applies */
-  uint64_t max_memory;   /* memory limit of each tree, bytes; default 4 GiB */
+  uint64_t max_memory;   /**< memory limit of each tree, bytes; default 4 GiB */
 } ist_servo_options;
 
-/* Reads a scene (TOML), reads or creates its bodies, builds the trees of its effects and moves the
+/** Reads a scene (TOML), reads or creates its bodies, builds the trees of its effects and moves the
  * tool to a free place. The caller is the scene's device: the damping and the delay in the scene's
  * table `device` limit the stable coupling; the caller's poses replace its motion.
  * Errors: IST_INPUT_INVALID, with the scene's file and line in the message; the errors of
@@ -40,26 +45,27 @@ typedef struct ist_servo_options {
 IST_C_API ist_status ist_servo_open_scene(const char* path, const ist_servo_options* options,
                                           ist_servo** servo) IST_NOEXCEPT;
 
-/* Returns the warning number `index`, from 0, of the scene's construction; NULL after the last
+/** Returns the warning number `index`, from 0, of the scene's construction; NULL after the last
  * warning, for an invalid handle, and while another thread uses the servo. The text lives as long
  * as the servo. */
 IST_C_API const char* ist_servo_warning(ist_servo* servo, size_t index) IST_NOEXCEPT;
 
+/** The state of a servo, with counts since it was opened. */
 typedef struct ist_servo_info {
-  size_t struct_size;
-  double tick_seconds; /* nominal duration of a tick, s */
-  double tool[16]; /* pose of the tool. Before the first tick it is the start pose for the device;
+  size_t struct_size;  /**< the size of this struct, bytes */
+  double tick_seconds; /**< nominal duration of a tick, s */
+  double tool[16]; /**< pose of the tool. Before the first tick it is the start pose for the device;
                       afterwards it is the pose to draw, which stays outside the fixed body */
-  uint64_t ticks;
-  uint64_t held;   /* ticks with too little time for all contacts: the tool did not move */
-  uint64_t faults; /* ticks with an error: the force was zero */
-  uint64_t late;   /* ticks that took longer than tick_seconds */
+  uint64_t ticks;  /**< ticks, those with an error included */
+  uint64_t held;   /**< ticks with too little time for all contacts: the tool did not move */
+  uint64_t faults; /**< ticks with an error: the force was zero */
+  uint64_t late;   /**< ticks that took longer than tick_seconds */
 } ist_servo_info;
 
-/* Gives the state of a servo. [real time] */
+/** Gives the state of a servo. [real time] */
 IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) IST_NOEXCEPT;
 
-/* Computes one tick: `pose` is the pose of the device; `force` and `torque` receive the output for
+/** Computes one tick: `pose` is the pose of the device; `force` and `torque` receive the output for
  * the hand.
  *
  * Both outputs are zero after any error; the caller must command them to the device in every tick.
@@ -71,7 +77,7 @@ IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) 
 IST_C_API ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                                        double torque[3]) IST_NOEXCEPT;
 
-/* Frees a servo. The caller must then command zero force to the device. */
+/** Frees a servo. The caller must then command zero force to the device. */
 IST_C_API ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT;
 
 #ifdef __cplusplus

@@ -17,14 +17,17 @@ namespace ist {
 /// HdrHistogram: a high dynamic range histogram, hdrhistogram.org.
 class IST_API LatencyHistogram {
  public:
+  /// The unit of durations.
   using Nanoseconds = std::chrono::nanoseconds;
 
   /// Records a duration; a negative one counts as 0. Cost: a few nanoseconds.
   void record(Nanoseconds time) noexcept;
   /// Adds all durations that `other` recorded. Cost: one read of each bucket.
   void merge(const LatencyHistogram& other) noexcept;
+  /// Forgets all durations.
   void clear() noexcept { *this = LatencyHistogram(); }
 
+  /// The number of durations.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   /// The longest duration, exact; 0 if the histogram is empty.
   [[nodiscard]] Nanoseconds max() const noexcept {

@@ -18,9 +18,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 /// The pose of the tool: a map from the tool's frame to the scene's, both in metres. The tool's
 /// origin is the root cube's centre of the held body.
 struct IST_API Placement {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< tool axes to scene axes
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< of the tool's origin, m
 
+  /// Converts to a pose, in metres.
   [[nodiscard]] Eigen::Isometry3d isometry() const noexcept;
   /// Converts a pose. Empty if the pose is no rigid motion (project_to_rigid).
   [[nodiscard]] static std::optional<Placement> from(const Eigen::Isometry3d& pose) noexcept;

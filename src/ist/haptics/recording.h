@@ -24,22 +24,27 @@ struct TickRecord {
   /// The translation, then the rotation column by column.
   using Pose = std::array<double, 12>;
 
-  std::uint64_t tick;  ///< from 0; missing numbers are missed ticks
-  double dt;           ///< nominal length of the tick, s
-  Pose device, tool;
-  std::array<double, 6> wrench;
-  bool device_known, fault, held;
-  std::optional<QueryResult> contacts, proximity;  ///< mesh units
-  double leaf_pairs;
-  std::int64_t late_ns;       ///< from the tick's release to its start
-  std::int64_t execution_ns;  ///< from its start to the end of Device::write
-  std::int64_t cpu_ns;        ///< processor time of the loop's thread meanwhile
+  std::uint64_t tick;                   ///< from 0; missing numbers are missed ticks
+  double dt;                            ///< nominal length of the tick, s
+  Pose device,                          ///< to which the coupling drew the tool
+      tool;                             ///< after the tick
+  std::array<double, 6> wrench;         ///< on the hand, N and N m about the tool's origin
+  bool device_known,                    ///< false: `device` is the last pose that was known
+      fault,                            ///< Tick::fault
+      held;                             ///< Tick::held
+  std::optional<QueryResult> contacts,  ///< Tick::contacts, mesh units
+      proximity;                        ///< Tick::proximity, mesh units
+  double leaf_pairs;                    ///< load-bearing leaf pairs, by weight
+  std::int64_t late_ns;                 ///< from the tick's release to its start
+  std::int64_t execution_ns;            ///< from its start to the end of Device::write
+  std::int64_t cpu_ns;                  ///< processor time of the loop's thread meanwhile
 };
 
 /// Makes the record of a tick, with times of 0.
 [[nodiscard]] IST_API TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
                                            bool device_known) noexcept;
 
+/// Converts to plain numbers.
 [[nodiscard]] IST_API TickRecord::Pose to_numbers(const Placement& placement) noexcept;
 /// Converts back. Empty if the numbers are no rigid motion. A rotation that is orthonormal to a few
 /// 1e-16 keeps its bits.
@@ -48,8 +53,8 @@ struct TickRecord {
 
 /// The input of a recorded tick.
 struct RecordedTick {
-  std::uint64_t tick = 0;
-  std::optional<Placement> device = {};
+  std::uint64_t tick = 0;                ///< its number, from 0
+  std::optional<Placement> device = {};  ///< empty: the device gave no pose
   TickBudget budget = {};  ///< no tests for a query that a deadline ended, else no limit
 };
 
@@ -80,6 +85,7 @@ class TickRing {
   explicit TickRing(std::size_t capacity)
       : capacity_(detail::ring_capacity(capacity)), records_(std::make_unique<T[]>(capacity_)) {}
 
+  /// The most records at a time.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
   /// Pushes a record, in one thread. Returns false if the ring is full. No lock, no system call.
@@ -109,6 +115,7 @@ class TickRing {
 
   /// Tells the pushing thread that the popping thread will pop no more.
   void close() noexcept { closed_.store(true, std::memory_order_relaxed); }
+  /// Whether close() was called, in any thread.
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_relaxed); }
 
  private:
@@ -137,6 +144,7 @@ class Snapshot {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
+  /// Publishes `first`.
   explicit Snapshot(const T& first = T()) noexcept { publish(first); }
   Snapshot(const Snapshot&) = delete;
   Snapshot& operator=(const Snapshot&) = delete;

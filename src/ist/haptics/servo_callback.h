@@ -11,6 +11,7 @@
 
 namespace ist {
 
+/// The options of a ServoCallback.
 struct ServoCallbackOptions {
   /// Metres in the unit of the poses' translations: 1, or 0.001 for millimetres. Forces are in N
   /// and torques in N m in any case.
@@ -39,16 +40,21 @@ enum class ServoTick {
 /// thread calls at a time. Scheduling that thread for real time is up to the caller.
 class IST_API ServoCallback {
  public:
+  /// A pose, in column-major order.
   using Pose = std::array<double, 16>;
 
+  /// Counts of ticks since the object was made.
   struct Counts {
-    std::uint64_t ticks = 0, held = 0, faults = 0;
-    std::uint64_t late = 0;  ///< ticks that took longer than Simulation::dt()
+    std::uint64_t ticks = 0,  ///< all ticks, calls of fault() included
+        held = 0,             ///< ticks with incomplete contacts
+        faults = 0;           ///< ticks without a force
+    std::uint64_t late = 0;   ///< ticks that took longer than Simulation::dt()
   };
 
   /// Throws kArgumentInvalid for a unit that is not positive and finite, or a query_time_fraction
   /// outside (0, 1].
   /// @param simulation must outlive the object; no one else may make its ticks
+  /// @param options    unit and limits of the queries
   explicit ServoCallback(Simulation& simulation, const ServoCallbackOptions& options = {});
 
   /// Makes one tick.
@@ -69,6 +75,7 @@ class IST_API ServoCallback {
   /// The tool's pose in the poses' unit: before the first tick the start pose for the device, later
   /// the pose to draw, which stays outside the fixed body.
   [[nodiscard]] Pose tool() const noexcept;
+  /// The counts so far.
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
 
  private:

@@ -24,6 +24,7 @@ struct RealTimeOptions {
   bool lock_memory = true;                ///< locks all memory of the process (mlockall)
 };
 
+/// The options of run_servo_loop().
 struct ServoOptions {
   std::uint64_t ticks = 0;  ///< the number of ticks, missed ones included
   /// Makes one tick each period. If false, ticks follow each other without a clock, and queries
@@ -32,7 +33,7 @@ struct ServoOptions {
   /// The fraction of a period, from the tick's release on, in which queries may search: above 0, at
   /// most 1.
   double query_time_fraction = 0.7;
-  RealTimeOptions real_time = {};
+  RealTimeOptions real_time = {};  ///< of a paced loop
 };
 
 /// The receivers of ticks; each may be null.
@@ -45,20 +46,20 @@ struct ServoOutputs {
 
 /// The statistics of a run.
 struct ServoReport {
-  LatencyHistogram late;       ///< release jitter: from a tick's release to its start
-  LatencyHistogram execution;  ///< from its start to the end of Device::write
-  LatencyHistogram cpu;        ///< processor time of the loop's thread
-  /// The largest processor time of a tick, and the time of the effects in that tick.
-  std::chrono::nanoseconds worst_cpu{}, worst_effects{};
-  std::uint64_t ticks = 0;   ///< ticks made
-  std::uint64_t missed = 0;  ///< ticks that ended after their period, or were skipped
-  std::uint64_t held = 0;    ///< ticks with incomplete contacts
-  std::uint64_t faults = 0;
-  /// Ticks by the way their contacts were found (Found): by a search, among the leaf pairs kept
-  /// from earlier ticks, inside a clearance.
-  std::uint64_t fresh = 0, kept = 0, clear = 0;
-  std::uint64_t lost_records = 0;
-  std::vector<std::string> notes;  ///< denied requests to the system, with cause and remedy
+  LatencyHistogram late;                 ///< release jitter: from a tick's release to its start
+  LatencyHistogram execution;            ///< from its start to the end of Device::write
+  LatencyHistogram cpu;                  ///< processor time of the loop's thread
+  std::chrono::nanoseconds worst_cpu{},  ///< the largest processor time of a tick
+      worst_effects{};                   ///< the time of the effects in that tick
+  std::uint64_t ticks = 0;               ///< ticks made
+  std::uint64_t missed = 0;              ///< ticks that ended after their period, or were skipped
+  std::uint64_t held = 0;                ///< ticks with incomplete contacts
+  std::uint64_t faults = 0;              ///< ticks without a force: Tick::fault
+  std::uint64_t fresh = 0,               ///< ticks whose contacts were found by a search
+      kept = 0,                          ///< among the leaf pairs kept from earlier ticks
+      clear = 0;                         ///< inside a clearance
+  std::uint64_t lost_records = 0;        ///< records for which the ring had no room
+  std::vector<std::string> notes;        ///< denied requests to the system, with cause and remedy
 };
 
 /// Runs the servo loop in the calling thread: once a period it reads the device, makes a tick and

@@ -39,7 +39,8 @@ struct SafetySettings {
 
 /// The budgets of a tick's queries, which run one after the other.
 struct TickBudget {
-  Budget contacts = {}, proximity = {};
+  Budget contacts = {},  ///< of the contacts
+      proximity = {};    ///< of the proximity points
 };
 
 /// The result of a tick.
@@ -51,13 +52,14 @@ struct Tick {
   bool held = false;   ///< the contacts were incomplete: the tool is at its last complete pose
   /// The results of the queries at the tool's pose before the tick, mesh units. Empty if no effect
   /// needs the query.
-  std::optional<QueryResult> contacts = {}, proximity = {};
-  double leaf_pairs = 0;  ///< load-bearing leaf pairs, by weight
+  std::optional<QueryResult> contacts = {},  ///< of the contacts
+      proximity = {};                        ///< of the proximity points
+  double leaf_pairs = 0;                     ///< load-bearing leaf pairs, by weight
 };
 
 /// An effect of a simulation and the time spent in it.
 struct EffectTime {
-  std::string_view name;
+  std::string_view name;          ///< as Effect::name() says
   std::chrono::nanoseconds time;  ///< in all ticks so far
 };
 
@@ -73,13 +75,16 @@ struct EffectTime {
 /// µs. A simulation is used by one thread at a time.
 class IST_API Simulation {
  public:
+  /// Makes a simulation of its parts, for the library's own code: build_scene() is the way of
+  /// users.
   explicit Simulation(detail::SimulationParts parts);
   ~Simulation();
-  Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&&) noexcept;
+  Simulation(Simulation&&) noexcept;  ///< the other may then only be assigned or destroyed
+  Simulation& operator=(Simulation&&) noexcept;  ///< as the constructor
 
   /// Makes one tick.
   /// @param device the pose of the hand; empty if it is not known, which is a fault
+  /// @param budget limits of the tick's queries
   [[nodiscard]] Tick tick(const std::optional<Placement>& device,
                           const TickBudget& budget = {}) noexcept;
   /// Sets the wrench to zero; it returns through the soft start. Effects forget earlier ticks.
@@ -87,6 +92,7 @@ class IST_API Simulation {
 
   /// The length of a tick, s.
   [[nodiscard]] double dt() const noexcept;
+  /// The pose of the tool after the last tick.
   [[nodiscard]] const Placement& tool_pose() const noexcept;
   /// The effects in the order of their calls.
   [[nodiscard]] std::span<const EffectTime> effects() const noexcept;

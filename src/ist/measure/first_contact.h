@@ -46,6 +46,7 @@ class IST_API Motion {
 
 /// When a moving body first meets the fixed one.
 struct FirstContact {
+  /// How the motion goes.
   enum class Status : std::uint8_t {
     kContact,  ///< at `upper` triangles intersect, before `lower` none do
     kNone,     ///< none intersect on the whole motion
@@ -58,22 +59,25 @@ struct FirstContact {
     kBusy,            ///< another thread is using the query
   };
 
-  Status status = Status::kNone;
+  Status status = Status::kNone;  ///< says which members count
   /// The parameter of the first contact lies in [lower, upper], which with kContact are no farther
   /// apart than any point of the moving body takes to go the tolerance; farther where the surfaces
   /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone.
-  double lower = 0, upper = 0;
-  bool grazed = false;
-  /// Triangles that intersect at `upper`, and the distance of the surfaces at `lower`, mesh units.
+  double lower = 0,     ///< the parameter before which no triangles intersect
+      upper = 0;        ///< where the contact is at the latest
+  bool grazed = false;  ///< the surfaces grazed before, and may have met unseen
+  /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
-  DistanceInterval distance{0, 0};
+  DistanceInterval distance{0, 0};  ///< of the surfaces at `lower`, mesh units
   /// The least tolerance that is reached here, mesh units: rounding.
   double narrowest = 0;
   std::uint64_t distances = 0;  ///< distances that were asked for
   std::uint64_t verdicts = 0;   ///< exact questions whether triangles intersect
 };
+/// Returns the status' name, such as "touches-at-start", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(FirstContact::Status status) noexcept;
 
+/// The options of first_contact().
 struct FirstContactOptions {
   Budget budget = {};    ///< `tests` counts distances
   Proceed proceed = {};  ///< asked before each distance
@@ -85,7 +89,10 @@ struct FirstContactOptions {
 /// surfaces stay within a 64th of the tolerance of each other, or as near as rounding, does it go
 /// on by the tolerance at once, and says so: `grazed`.
 ///
+/// @param query     of two trees with triangles
+/// @param motion    of the moving body, fixed coordinates
 /// @param tolerance mesh units: how far a point of the moving body may go from `lower` to `upper`
+/// @param options   limits of the search
 ///
 /// `query` forgets what it kept. An answer has the same bits on every instruction set. Cost: that
 /// of some 10 to 40 distances for jaws that close; along surfaces within the tolerance, of 65

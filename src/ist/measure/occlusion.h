@@ -25,19 +25,20 @@ struct OcclusionOptions {
   double least_area = 0.01;
   /// Longer edges of a triangle are split first, since a distance is not linear along them.
   double longest_edge = 0.2;
-  /// The depth of the elastic foundation of which shares are made, and by how much it is changed
-  /// to show what they hang on.
-  double foundation = 0.1, change = 0.05;
-  Proceed proceed = {};  ///< asked every 16,384 points, and before each round of splitting
+  double foundation = 0.1,  ///< depth of the elastic foundation of which shares are made
+      change = 0.05;        ///< added to it and taken off, to show what shares hang on
+  Proceed proceed = {};     ///< asked every 16,384 points, and before each round of splitting
 };
 
 /// The part of a contact region in one triangle of the mesh.
 struct ContactTriangle {
-  std::uint32_t triangle = 0;
-  double area = 0;  ///< of the part, units squared
-  /// ∫ max(foundation - d, 0) dA over the part, units cubed; and with a foundation that is thinner
-  /// and thicker by the change. Shares by side or by tooth are sums of these.
-  double pressed = 0, pressed_thinner = 0, pressed_thicker = 0;
+  std::uint32_t triangle = 0;  ///< of the mesh
+  double area = 0;             ///< of the part, units squared
+  /// ∫ max(foundation - d, 0) dA over the part, units cubed. Shares by side or by tooth are sums of
+  /// these.
+  double pressed = 0,       ///< with OcclusionOptions::foundation
+      pressed_thinner = 0,  ///< with a foundation thinner by the change
+      pressed_thicker = 0;  ///< and thicker
 };
 
 /// A part of a surface that touches the other body, connected by edges: where the signed distance
@@ -51,9 +52,10 @@ struct ContactRegion {
   double penetrating_area = 0;  ///< where the distance is at most 0
   double depth_integral = 0;    ///< of the depth over that area, units cubed: no volume
   /// The part of the sum of all regions' ∫ max(foundation - d, 0) dA over their areas, 0 to 1. A
-  /// geometric share, no force; and the same with a foundation that is thinner and thicker by the
-  /// change.
-  double share = 0, share_thinner = 0, share_thicker = 0;
+  /// geometric share, no force.
+  double share = 0,       ///< with OcclusionOptions::foundation
+      share_thinner = 0,  ///< with a foundation thinner by the change
+      share_thicker = 0;  ///< and thicker
   /// The region of the other surface, by its index there, in which the nearest triangle of this
   /// one's closest vertex lies, where the same holds the other way round.
   std::optional<std::uint32_t> partner = std::nullopt;
@@ -76,8 +78,9 @@ struct SurfaceOcclusion {
 /// The occlusion of two bodies. `complete` is false where the caller ended it: then nothing else is
 /// there.
 struct Occlusion {
-  bool complete = false;
-  SurfaceOcclusion fixed, moving;
+  bool complete = false;   ///< both surfaces are measured
+  SurfaceOcclusion fixed,  ///< the fixed surface against the moving body
+      moving;              ///< the moving surface against the fixed body, fixed coordinates
 };
 
 /// Measures the occlusion of two bodies at a pose: signed distances of both surfaces, areas cut at

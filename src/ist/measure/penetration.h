@@ -12,30 +12,35 @@ namespace ist {
 /// How deep two bodies are in each other: the largest distance of a point of either surface, where
 /// it lies inside the other body, from the other surface. A body wholly inside another counts.
 struct Penetration {
+  /// Whether there is an answer, or why not.
   enum class Status : std::uint8_t {
-    kDone,
+    kDone,             ///< the interval holds the depth
     kInvalidPose,      ///< the pose is no rigid motion
     kFixedNotClosed,   ///< the fixed body has no certain inside: SphereTree::orientation()
     kMovingNotClosed,  ///< the moving body likewise
     kBusy,             ///< another thread is using the query
   };
 
-  Status status = Status::kDone;
-  bool complete = false;  ///< the interval is no wider than the tolerance, or `narrowest`
-  /// The depth lies in [lower, upper], mesh units; [0, 0] where the bodies do not intersect.
-  double lower = 0, upper = 0;
-  /// A point of a surface that is `lower` deep, to within rounding, and the direction to the other
-  /// surface's nearest point, of unit length: the shortest way out. Fixed coordinates. Both zero
-  /// where no point was found inside.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
+  Status status = Status::kDone;  ///< other than kDone: all numbers are 0
+  bool complete = false;          ///< the interval is no wider than the tolerance, or `narrowest`
+  double lower = 0,               ///< the depth is no less, mesh units; 0: the bodies may be apart
+      upper = 0;                  ///< and no more; 0: the bodies do not intersect
+  /// A point of a surface that is `lower` deep, to within rounding; fixed coordinates. Zero where
+  /// no point was found inside.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  /// The direction from there to the other surface's nearest point, of unit length, fixed axes: the
+  /// shortest way out. Zero where no point was found inside.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   bool of_moving = false;      ///< whose surface the point lies on
   std::uint32_t triangle = 0;  ///< the one of that surface that holds the point
   /// The width below which no tolerance can be reached here: rounding.
   double narrowest = 0;
   std::uint64_t points = 0;  ///< points of which the distance was measured
 };
+/// Returns the status' name, such as "fixed-not-closed", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(Penetration::Status status) noexcept;
 
+/// The options of penetration().
 struct PenetrationOptions {
   /// An earlier answer of the same bodies, for a search that begins where its point is now. The
   /// interval is true whatever this says.

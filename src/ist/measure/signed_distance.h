@@ -13,6 +13,7 @@ namespace ist {
 
 /// A point's place on the surface of a body.
 struct SurfaceDistance {
+  /// The triangle of a point beyond the reach.
   static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 
   /// To the surface, mesh units: negative inside the body, NaN beyond the reach.
@@ -30,6 +31,7 @@ struct SurfaceDistance {
 /// whether a point lies inside where the surface is closed, and neither touches nor crosses itself;
 /// `orientation` of the tree says whether its outer side is known.
 ///
+/// @param tree    the body, with triangles
 /// @param points  mesh coordinates of the body, finite
 /// @param reach   farther points are not measured; infinity measures all
 /// @param proceed asked every 16,384 points; where it ends the call, the first points are returned

@@ -12,6 +12,7 @@
 
 namespace ist {
 
+/// The indices of a triangle's three vertices.
 using Triangle = std::array<std::uint32_t, 3>;
 
 // Vector3d must be three plain doubles for every instruction set of the including code.
@@ -27,8 +28,8 @@ enum class Orientation : std::uint8_t {
 /// A surface of indexed triangles. Coordinates are in mesh units (millimetres by habit), in the
 /// body's own frame. A triangle's vertices run counterclockwise as seen from its outer side.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<Triangle> triangles;  ///< each index is below vertices.size()
+  std::vector<Eigen::Vector3d> vertices;  ///< positions, used or not
+  std::vector<Triangle> triangles;        ///< each index is below vertices.size()
 };
 
 /// Reads a mesh from STL (binary or text), PLY (binary or text) or OBJ. The content decides the
@@ -54,9 +55,9 @@ IST_API void write_stl(const TriangleMesh& mesh, const std::filesystem::path& fi
 ///
 /// A triangle with two equal indices has no sides: it is degenerate, and no other defect counts it.
 struct MeshReport {
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
-  std::size_t edges = 0;
+  std::size_t vertices = 0;             ///< all vertices, used or not
+  std::size_t triangles = 0;            ///< all triangles, degenerate ones included
+  std::size_t edges = 0;                ///< pairs of vertices that sides of triangles join
   std::size_t boundary_edges = 0;       ///< edges of only one triangle
   std::size_t non_manifold_edges = 0;   ///< edges of more than two triangles
   std::size_t inconsistent_edges = 0;   ///< edges that two triangles traverse in the same direction
@@ -68,8 +69,8 @@ struct MeshReport {
   std::size_t open_components = 0;  ///< components with a boundary edge
   bool closed = false;              ///< every edge belongs to exactly two triangles
   bool consistent = false;          ///< no edge is inconsistent; says nothing about `closed`
-  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< bounding box of all vertices, mesh units
-  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
+  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< least x, y, z of all vertices, mesh units
+  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();  ///< greatest x, y, z
   double signed_volume = 0;  ///< mesh units cubed; positive if outward; means little if not closed
 };
 
@@ -84,9 +85,10 @@ IST_API void require_valid(const TriangleMesh& mesh);
 /// Returns a sentence for people for each kind of defect; empty for a mesh without defects.
 [[nodiscard]] IST_API std::vector<std::string> warnings(const MeshReport& report);
 
+/// The result of orient_outward().
 struct OrientationResult {
-  Orientation orientation = Orientation::kAssumed;
-  std::size_t turned_components = 0;  ///< components turned outward; worth a warning
+  Orientation orientation = Orientation::kAssumed;  ///< of the mesh after the turns
+  std::size_t turned_components = 0;                ///< components turned outward; worth a warning
 };
 
 /// Turns inside-out components outward, so that their normals can be trusted.

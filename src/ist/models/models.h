@@ -8,7 +8,11 @@
 
 namespace ist {
 
-enum class Jaw { kLower, kUpper };
+/// The jaws of make_jaw().
+enum class Jaw {
+  kLower,  ///< the mandible, with its condyles
+  kUpper,  ///< the maxilla
+};
 
 /// Makes a human jaw with its teeth, the stand-in for a scan in the demo and the tests.
 ///
@@ -17,6 +21,7 @@ enum class Jaw { kLower, kUpper };
 /// molars and canines about 1 mm too close, for any two seeds; moving the lower jaw by dz = -2
 /// separates them, and with most seeds dz = -1.5 does.
 ///
+/// @param jaw  the jaw to make
 /// @param seed varies size, position, rotation and wear of the teeth, and the bone's surface
 ///
 /// The surface is closed, of genus 0, and faces outward. The lower jaw has 119,096 triangles, the

@@ -30,8 +30,8 @@ struct Contact {
 
 /// A force and its torque about a named point.
 struct Wrench {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< unit and axes as its maker says
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< that unit times a length
 
   /// Returns the wrench about another point, `by` away from the one before.
   [[nodiscard]] Wrench about(const Eigen::Vector3d& by) const noexcept {
@@ -61,8 +61,12 @@ struct ContactSums {
 /// tree's frame moves + lever · |angle in radians| + 2⁻¹⁶ (bounding radius of the fixed tree +
 /// lever), for rounding. The rates are derived in docs/guarantees.md, Rates of the contact sums.
 struct ContactRates {
-  double lever;  ///< radius round the moving frame's origin of every point that counts, mesh units
-  double weight, pressure_force, pressure_torque, spring_force, spring_torque;
+  double lever;   ///< radius round the moving frame's origin of every point that counts, mesh units
+  double weight,  ///< of w, mesh units
+      pressure_force,   ///< of w n, mesh units
+      pressure_torque,  ///< of p × w n, mesh units²
+      spring_force,     ///< of w (d - d0) n, mesh units²
+      spring_torque;    ///< of p × w (d - d0) n, mesh units³
 };
 
 /// The most that an option of memory takes: kArgumentInvalid beyond it.
@@ -101,8 +105,9 @@ class IST_API ContactManifold {
   ContactManifold(const SphereTree&&, const SphereTree&&, SpherePolicy,
                   const ManifoldOptions& = {}) = delete;
   ~ContactManifold();
+  /// The other may then only be assigned or destroyed.
   ContactManifold(ContactManifold&&) noexcept;
-  ContactManifold& operator=(ContactManifold&&) noexcept;
+  ContactManifold& operator=(ContactManifold&&) noexcept;  ///< as the constructor
 
   /// The contacts of the last query: the deepest first, then the extreme ones along x, y and z,
   /// then the others. Empty where that query had a status other than kDone or was not complete.
@@ -116,6 +121,7 @@ class IST_API ContactManifold {
 
   /// The rates at which the sums can change with the pose.
   [[nodiscard]] const ContactRates& rates() const noexcept;
+  /// The bounds of the leaf pairs that it is made for.
   [[nodiscard]] SpherePolicy policy() const noexcept;
   /// Bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;

@@ -23,6 +23,7 @@ struct QueryState;
 struct InsideState;
 }  // namespace detail
 
+/// The options of a Query: its bounds, its speed and its memory.
 struct QueryOptions {
   /// How bounds are read; by default the tightest policy that both trees have.
   std::optional<SpherePolicy> policy = std::nullopt;
@@ -73,12 +74,13 @@ class IST_API Query {
   Query(const SphereTree&, const SphereTree&&, const QueryOptions& = {}) = delete;
   Query(const SphereTree&&, const SphereTree&&, const QueryOptions& = {}) = delete;
   ~Query();
-  Query(Query&&) noexcept;
-  Query& operator=(Query&&) noexcept;
+  Query(Query&&) noexcept;             ///< the other may then only be assigned or destroyed
+  Query& operator=(Query&&) noexcept;  ///< as the constructor
 
   /// Tests whether the bodies intersect. Ends at the first certain answer: exact where both trees
   /// have triangles, else kNo or kNear.
   ///
+  /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param budget ends the search early: the answer is then kNear
   ///
   /// Cost: 2 to 70 µs for jaws, 0.3 µs where the triangles that met last still meet.
@@ -87,6 +89,7 @@ class IST_API Query {
 
   /// Finds all pairs of leaves whose bounds overlap.
   ///
+  /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param out    takes the pairs, sorted by fixed and then by moving leaf; where it is too short,
   ///               the first of them. Elements behind the last pair may be overwritten
   /// @param budget ends the search early: the result then holds the first pairs, of pairs that were
@@ -108,6 +111,7 @@ class IST_API Query {
   /// that a budget ended, no more than that of its pairs; inside a clearance that was kept, what is
   /// left of it.
   ///
+  /// @param pose     maps moving mesh coordinates to fixed mesh coordinates
   /// @param manifold made for the same trees and policy, else kManifoldMismatch; emptied where the
   ///                 status is another than kDone
   /// @param budget   ends the search early: then neither result nor manifold is complete, there are
@@ -122,7 +126,9 @@ class IST_API Query {
   /// Bounds the distance between the surfaces by an interval no wider than `tolerance`, or
   /// `narrowest` where that is more. A tolerance that is NaN or negative counts as 0.
   ///
-  /// @param budget ends the search early: the interval is then wider
+  /// @param pose      maps moving mesh coordinates to fixed mesh coordinates
+  /// @param tolerance mesh units
+  /// @param budget    ends the search early: the interval is then wider
   ///
   /// The interval holds the true distance in any case; `complete` says whether the tolerance was
   /// reached. It is 0 where triangle_pairs() finds any. Bodies so far apart that float cannot tell
@@ -140,6 +146,7 @@ class IST_API Query {
   /// Finds all pairs of triangles that have a point in common, exactly. A moved vertex is rounded
   /// to double first. kNoTriangles where has_triangles() is false.
   ///
+  /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param out    takes the pairs, sorted by fixed and then by moving triangle; where it is too
   ///               short, the first of them
   /// @param budget ends the search early: the result then holds the pairs found so far
@@ -155,11 +162,15 @@ class IST_API Query {
   /// thread is using the query.
   void forget() noexcept;
 
+  /// The fixed tree, which shares its content with the caller's.
   [[nodiscard]] const SphereTree& fixed() const noexcept;
+  /// The moving tree, which shares its content with the caller's.
   [[nodiscard]] const SphereTree& moving() const noexcept;
+  /// The bounds in use.
   [[nodiscard]] SpherePolicy policy() const noexcept;
   /// The instruction set in use.
   [[nodiscard]] const char* target() const noexcept;
+  /// The threads that search, 1 or 2.
   [[nodiscard]] int workers() const noexcept;
   /// Bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -172,20 +183,26 @@ class IST_API Query {
 };
 
 /// The one of two bodies that lies inside the other; their surfaces do not intersect.
-enum class Inside : std::uint8_t { kNone, kFixed, kMoving };
+enum class Inside : std::uint8_t {
+  kNone,    ///< neither, or only some components
+  kFixed,   ///< the fixed body
+  kMoving,  ///< the moving body
+};
+/// Returns "none", "fixed" or "moving".
 [[nodiscard]] IST_API const char* to_string(Inside inside) noexcept;
 
 /// Finds which body lies inside the other: by a point of each component of one body, and the
 /// winding number of the other body round that point. Both meshes must outlive the test.
 class IST_API InsideTest {
  public:
+  /// Finds the components of both meshes. Cost: linear in their triangles.
   InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
   InsideTest(const TriangleMesh&&, const TriangleMesh&) = delete;
   InsideTest(const TriangleMesh&, const TriangleMesh&&) = delete;
   InsideTest(const TriangleMesh&&, const TriangleMesh&&) = delete;
   ~InsideTest();
-  InsideTest(InsideTest&&) noexcept;
-  InsideTest& operator=(InsideTest&&) noexcept;
+  InsideTest(InsideTest&&) noexcept;  ///< the other may then only be assigned or destroyed
+  InsideTest& operator=(InsideTest&&) noexcept;  ///< as the constructor
 
   /// Returns the body of which all components lie inside the other. Precondition: `pose` is rigid,
   /// and the surfaces do not intersect. Cost: 5 ns a triangle of one body for each component of the

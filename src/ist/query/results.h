@@ -24,19 +24,24 @@ namespace ist {
 /// search at the same place, but for an answer from kept pairs: where a deadline ended it, it holds
 /// none.
 struct Budget {
+  /// The clock that deadlines are times of.
   using Clock = std::chrono::steady_clock;
 
   /// The most pairs of bounds to test. Of clusters of triangles, a pair whose triangles are
   /// compared counts as 16 more.
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
+  /// The time at which the search ends; time_point::max(): never.
   Clock::time_point deadline = Clock::time_point::max();
   /// The clock of the deadline.
   Clock::time_point (*now)() noexcept = &Clock::now;
 
+  /// Whether tests are limited.
   [[nodiscard]] bool has_tests() const noexcept {
     return tests != std::numeric_limits<std::uint64_t>::max();
   }
+  /// Whether time is limited.
   [[nodiscard]] bool has_deadline() const noexcept { return deadline != Clock::time_point::max(); }
+  /// Whether anything is limited.
   [[nodiscard]] bool is_limited() const noexcept { return has_tests() || has_deadline(); }
   /// Returns whether the deadline has passed. Reads the clock only where there is a deadline.
   [[nodiscard]] bool is_past() const noexcept { return has_deadline() && now() >= deadline; }
@@ -45,16 +50,19 @@ struct Budget {
 /// The distance between two surfaces lies in [lower, upper], mesh units. Both ends are finite: a
 /// distance that no double holds counts as the largest double.
 struct DistanceInterval {
-  double lower, upper;
+  double lower,  ///< the distance is no less
+      upper;     ///< and no more
 };
 
+/// Whether a verb answered, or why not.
 enum class QueryStatus : std::uint8_t {
-  kDone,
+  kDone,              ///< the result holds an answer
   kInvalidPose,       ///< the pose is no rigid motion; nothing was searched
   kNoTriangles,       ///< the question needs triangles, and a tree was built without them
   kManifoldMismatch,  ///< the manifold was made for other trees or another policy
   kBusy,              ///< another thread is using the query; nothing was searched or changed
 };
+/// Returns the status' name, such as "invalid-pose", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;
 
 /// How a query found its answer. The answer does not depend on it.
@@ -66,12 +74,12 @@ enum class Found : std::uint8_t {
 
 /// The answer of Query::leaf_pairs and Query::contacts.
 struct QueryResult {
-  QueryStatus status = QueryStatus::kDone;
-  bool complete = true;            ///< the search went down to the leaves, to the end
-  bool truncated = false;          ///< the span was too short and holds the first pairs
-  int level = 0;                   ///< steps above the leaves at which the search ended
-  std::uint64_t leaf_pairs = 0;    ///< all pairs that were found, in the span or not
-  std::uint64_t sphere_tests = 0;  ///< pairs of bounds that were tested
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: nothing was found
+  bool complete = true;                     ///< the search went down to the leaves, to the end
+  bool truncated = false;                   ///< the span was too short and holds the first pairs
+  int level = 0;                            ///< steps above the leaves at which the search ended
+  std::uint64_t leaf_pairs = 0;             ///< all pairs that were found, in the span or not
+  std::uint64_t sphere_tests = 0;           ///< pairs of bounds that were tested
   /// The distance between the surfaces, as far as the tests tell it. Absent after an error, and
   /// where leaf_pairs() without a budget found the bounds of the roots to overlap, and no
   /// clearance.
@@ -82,30 +90,32 @@ struct QueryResult {
   /// The bounds of a leaf pair are no farther apart than this, mesh units: the margin asked for,
   /// and the rounding error that the tests allow for.
   double pad = 0;
-  Found found = Found::kFresh;
+  Found found = Found::kFresh;  ///< the way to the answer, which does not change it
 };
 
 /// A pair of triangles that have a point in common, by their indices in the two meshes.
 struct TrianglePair {
-  std::uint32_t fixed, moving;
+  std::uint32_t fixed,  ///< triangle of the fixed mesh
+      moving;           ///< triangle of the moving mesh
 
+  /// Orders pairs by fixed and then by moving triangle.
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
 /// The answer of Query::triangle_pairs.
 struct TrianglePairsResult {
-  QueryStatus status = QueryStatus::kDone;
-  bool complete = true;              ///< the search came to its end: these are all pairs
-  bool truncated = false;            ///< the span was too short and holds the first pairs
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: nothing was searched
+  bool complete = true;                     ///< the search came to its end: these are all pairs
+  bool truncated = false;                   ///< the span was too short and holds the first pairs
   std::uint64_t triangle_pairs = 0;  ///< pairs that intersect and were found, in the span or not
   std::uint64_t sphere_tests = 0;    ///< as Budget::tests counts them
 };
 
 /// The answer of Query::distance.
 struct DistanceResult {
-  QueryStatus status = QueryStatus::kDone;
-  bool complete = false;  ///< the interval is no wider than the tolerance
-  DistanceInterval distance{};
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: `distance` is [0, 0]
+  bool complete = false;                    ///< the interval is no wider than the tolerance
+  DistanceInterval distance{};              ///< of the surfaces
   /// The width below which no tolerance can be reached here: the rounding of a distance of
   /// triangles, of those found so far where a budget ended the search; without triangles, twice the
   /// resolution.
@@ -115,10 +125,10 @@ struct DistanceResult {
 
 /// Whether two bodies intersect.
 enum class Answer : std::uint8_t {
-  kNo,
+  kNo,    ///< the surfaces are apart; one body may lie inside the other (InsideTest)
   kNear,  ///< bounds of leaves overlap, and there are no triangles to decide by; or a budget ended
           ///< the search before the bodies were known to intersect or to be apart
-  kYes,
+  kYes,   ///< triangles have a point in common, exactly
 };
 
 /// Returns "no", "near" or "yes".
@@ -126,7 +136,7 @@ enum class Answer : std::uint8_t {
 
 /// The answer of Query::intersects.
 struct IntersectionResult {
-  QueryStatus status = QueryStatus::kDone;
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: no answer
   Answer answer = Answer::kNo;     ///< exact where both trees have triangles; kNo after an error
   bool complete = true;            ///< no budget ended the search
   double resolution = 0;           ///< with kNear, complete: the surfaces are no farther apart
@@ -141,6 +151,7 @@ struct Sharing {
   std::uint64_t chunks = 0;   ///< chunks of work that it did in them
   std::uint64_t dropped = 0;  ///< chunks that it did too late, or had no room for
 
+  /// Adds the counts of another query.
   Sharing& operator+=(const Sharing& other) noexcept {
     queries += other.queries;
     worth += other.worth;

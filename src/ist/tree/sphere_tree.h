@@ -35,6 +35,7 @@ enum class SpherePolicy : std::uint8_t {
 inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePolicy::kTable,
                                                SpherePolicy::kTight, SpherePolicy::kSlab};
 
+/// Returns "simple", "table", "tight" or "slab".
 [[nodiscard]] constexpr std::string_view to_string(SpherePolicy policy) noexcept {
   constexpr std::array<std::string_view, kSpherePolicies.size()> kNames = {"simple", "table",
                                                                            "tight", "slab"};
@@ -42,6 +43,7 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
   return at < kNames.size() ? kNames[at] : "";
 }
 
+/// Returns the policy of that name, or nullopt for another text.
 [[nodiscard]] constexpr std::optional<SpherePolicy> sphere_policy(std::string_view name) noexcept {
   for (const SpherePolicy policy : kSpherePolicies) {
     if (name == to_string(policy)) return policy;
@@ -51,7 +53,13 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
 
 /// The unit of a mesh's lengths, which most mesh files do not tell. No length is ever converted.
 /// Tree files and the C interface hold the numbers.
-enum class LengthUnit : std::uint8_t { kUnknown, kMillimetre, kMetre, kInch, kMicrometre };
+enum class LengthUnit : std::uint8_t {
+  kUnknown,     ///< 0: nobody told
+  kMillimetre,  ///< 1
+  kMetre,       ///< 2
+  kInch,        ///< 3
+  kMicrometre,  ///< 4
+};
 
 /// All units but kUnknown.
 inline constexpr std::array kLengthUnits = {LengthUnit::kMillimetre, LengthUnit::kMetre,
@@ -85,17 +93,20 @@ struct MeshSource {
   /// The file's name without its folder, empty where unknown: UTF-8, at most 255 bytes, none of
   /// them a control character, a slash or a backslash.
   std::string name = {};
-  std::uint64_t hash = 0;  ///< XXH3-64 of the file's bytes; 0 where unknown
-  LengthUnit unit = LengthUnit::kUnknown;
+  std::uint64_t hash = 0;                  ///< XXH3-64 of the file's bytes; 0 where unknown
+  LengthUnit unit = LengthUnit::kUnknown;  ///< of the mesh's lengths
 
+  /// Compares all members.
   friend bool operator==(const MeshSource&, const MeshSource&) = default;
 };
 
 /// A leaf of the fixed tree and a leaf of the moving tree whose bounds overlap, by their indices.
 /// The surfaces in the two leaves are no farther apart than the answer's `resolution`.
 struct LeafPair {
-  std::uint32_t fixed, moving;
+  std::uint32_t fixed,  ///< leaf of the fixed tree
+      moving;           ///< leaf of the moving tree
 
+  /// Orders pairs by fixed and then by moving leaf.
   friend auto operator<=>(const LeafPair&, const LeafPair&) = default;
 };
 static_assert(sizeof(LeafPair) == 8);
@@ -106,6 +117,8 @@ static_assert(sizeof(LeafPair) == 8);
 /// moved from may only be assigned to or destroyed. Lengths are in mesh units.
 class IST_API SphereTree {
  public:
+  /// Makes a tree of its content, for the library's own code: build_tree() and read_tree() are the
+  /// ways of users.
   explicit SphereTree(detail::TreeParts parts);
 
   /// The edge of a voxel.
@@ -122,6 +135,7 @@ class IST_API SphereTree {
 
   /// The last of kSpherePolicies that the tree has. It has those before it too.
   [[nodiscard]] SpherePolicy tightest() const noexcept;
+  /// Whether the tree has those spheres.
   [[nodiscard]] bool has(SpherePolicy policy) const noexcept { return policy <= tightest(); }
   /// Throws kPolicyMissing, naming `body` and the remedy, where the tree has no such spheres.
   void require(SpherePolicy policy, std::string_view body) const;
@@ -150,8 +164,9 @@ class IST_API SphereTree {
   std::shared_ptr<const detail::TreeParts> parts_;
 };
 
+/// The options of build_tree().
 struct BuildOptions {
-  double voxel_size = 0;                       ///< mesh units
+  double voxel_size = 0;                       ///< edge of a voxel, mesh units; required
   SpherePolicy spheres = SpherePolicy::kSlab;  ///< the tightest to save; implicit ones cost nothing
   /// For exact answers: 48 bytes a triangle for its clusters, 25 for the mesh, and 4 for each leaf
   /// that it meets: 80 with large voxels, 150 with 0.2 mm on a jaw of 107,000 triangles.
@@ -161,19 +176,24 @@ struct BuildOptions {
   MeshSource source = {};                             ///< kept by the tree; nothing is converted
 };
 
+/// The stages of a build, and the repairs of its mesh.
 struct BuildReport {
+  /// A stage of a build.
   struct Stage {
-    const char* name;
-    double milliseconds;
+    const char* name;     ///< a literal, such as Progress::stage() returns
+    double milliseconds;  ///< wall time
   };
-  std::vector<Stage> stages;
+  std::vector<Stage> stages;          ///< in the order of building
   std::size_t turned_components = 0;  ///< closed components that were inside out
 };
 
-/// From a mesh to a tree: turns it outward, finds its voxels, folds them into an octree and makes
-/// the bounds that are saved.
+/// Builds a tree from a mesh: turns it outward, finds its voxels, folds them into an octree and
+/// makes the bounds that are saved.
 ///
-/// @param report, progress filled in, if not null
+/// @param mesh     the surface, mesh units
+/// @param options  voxel size, bounds, memory
+/// @param report   filled in, if not null
+/// @param progress written during the build, if not null
 ///
 /// Cost: on two cores, for a jaw of 107,000 triangles and 1.76 million voxels, 0.5 s; with kTight
 /// 1.3 s more, with kSlab 2 s more. Throws kMeshEmpty, kMeshPointsOnly, kMeshNotFinite,

@@ -22,6 +22,7 @@ struct DeviceMechanics {
 class IST_API Device {
  public:
   virtual ~Device() = default;
+  /// Damping and delay, the same in every call.
   [[nodiscard]] virtual DeviceMechanics mechanics() const noexcept = 0;
 
   /// Reads the pose of the device at the beginning of a tick; the coupling draws the tool there.
@@ -37,14 +38,15 @@ class IST_API Device {
 /// A pose of a plan. Times ascend from 0; from one waypoint to the next the turn is a third of a
 /// circle at most.
 struct Waypoint {
-  double time = 0;  ///< s
-  Placement pose = {};
+  double time = 0;      ///< s
+  Placement pose = {};  ///< of the device at that time
 };
 
 /// A simulated operator who moves a device along a plan. By default an arm that holds a stylus
 /// lightly: with the device's damping it swings at 8 Hz, damped to 0.6 of critical; its turn at
 /// 11 Hz, to 0.8.
 struct HandSettings {
+  /// By which the coupling is kept stable.
   DeviceMechanics mechanics = {.damping = 2, .angular_damping = 2e-3};
   double mass = 0.2;                  ///< of device and arm, kg
   double inertia = 2e-4;              ///< about every axis, kg m²

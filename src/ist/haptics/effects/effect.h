@@ -30,6 +30,7 @@ struct ToolContact {
 /// All contacts of the tool at one pose.
 class ToolContacts {
  public:
+  /// The most points.
   static constexpr std::size_t kMost = 32;
 
   /// The sum over all leaf pairs, none merged, of stiffness_fraction · depth · normal, and its
@@ -38,9 +39,11 @@ class ToolContacts {
   /// The number of leaf pairs, by weight.
   double count = 0;
 
+  /// The points, in the order of add().
   [[nodiscard]] std::span<const ToolContact> points() const noexcept {
     return {points_.data(), size_};
   }
+  /// Leaves no contact.
   void clear() noexcept {
     spring.setZero();
     count = 0;
@@ -69,6 +72,7 @@ struct EffectNeeds {
 
   /// Whether the bodies must be voxelised and searched.
   [[nodiscard]] bool contacts() const noexcept { return normals || depth || triangles; }
+  /// Joins the needs of another effect.
   EffectNeeds& operator|=(const EffectNeeds& other) noexcept {
     normals |= other.normals;
     depth |= other.depth;
@@ -108,6 +112,7 @@ class IST_API Effect {
   virtual ~Effect() = default;
   /// The effect's table in a scene. The text must live as long as the effect.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// The inputs that respond() reads, the same in every call.
   [[nodiscard]] virtual EffectNeeds needs() const noexcept = 0;
 
   /// Adds the effect's wrench and stiffness after `motion`.
@@ -152,7 +157,7 @@ struct GravitySettings {
 
 /// `snap`: the tool is drawn to a stored pose.
 struct SnapSettings {
-  Placement pose = {};
+  Placement pose = {};             ///< of the tool
   double stiffness = 200;          ///< N/m
   double angular_stiffness = 0.2;  ///< N m/rad
   double radius = 0;               ///< of attraction, m

@@ -49,8 +49,8 @@ class IST_API ReferenceQuery {
   ReferenceQuery(const SphereTree&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
   ReferenceQuery(const SphereTree&&, const SphereTree&&, SpherePolicy, SphereSource = {}) = delete;
   ~ReferenceQuery();
-  ReferenceQuery(ReferenceQuery&&) noexcept;
-  ReferenceQuery& operator=(ReferenceQuery&&) noexcept;
+  ReferenceQuery(ReferenceQuery&&) noexcept;  ///< the other may then only be assigned or destroyed
+  ReferenceQuery& operator=(ReferenceQuery&&) noexcept;  ///< as the constructor
 
   /// Finds all pairs of leaves whose bounds overlap.
   ///

@@ -5,6 +5,7 @@
 
 #include "ist/base/api.h"
 
+/// @file
 /// The pair test of the circuit, bit for bit, in integers alone. A unit is a sixth of half a fixed
 /// leaf's edge; src/hardware/README.md gives the formats and derives the error bounds.
 namespace ist {
@@ -21,25 +22,30 @@ struct PairRegisters {
   std::array<std::uint16_t, 5> radius{};   ///< of moving nodes at level 0, by radius code; Q8.8
   std::uint16_t pad = 0;                   ///< error bound of the centres; Q8.8 units
 
+  /// Compares all registers.
   friend bool operator==(const PairRegisters&, const PairRegisters&) = default;
 };
 
 /// A fixed and a moving node. A leaf is full: level 0 with mask 255.
 struct NodePair {
-  std::array<std::int32_t, 3> fixed_centre{};  ///< of its cube, units, at most ±kMaxCentre
-  std::uint8_t fixed_level = 0, fixed_mask = 0;
+  std::array<std::int32_t, 3> fixed_centre{};   ///< of its cube, units, at most ±kMaxCentre
+  std::uint8_t fixed_level = 0,                 ///< 0 for a leaf, up to kMaxNodeLevel
+      fixed_mask = 0;                           ///< bit k: octant k is not empty; 0: no node
   std::array<std::int32_t, 3> moving_centre{};  ///< of its cube, in the fixed frame (move_centre);
                                                 ///< Q23.8 units
-  std::uint8_t moving_level = 0, moving_mask = 0;
+  std::uint8_t moving_level = 0,                ///< 0 for a leaf, up to kMaxNodeLevel
+      moving_mask = 0;                          ///< bit k: octant k is not empty; 0: no node
 
+  /// Compares both nodes.
   friend bool operator==(const NodePair&, const NodePair&) = default;
 };
 
 /// The answer of the pair test.
 struct PairAnswer {
   std::uint64_t reach = 0;  ///< sum of both radii and the pad; Q25.8 units
-  bool hit = false;
+  bool hit = false;         ///< the balls overlap, or nearly
 
+  /// Compares both members.
   friend bool operator==(const PairAnswer&, const PairAnswer&) = default;
 };
 

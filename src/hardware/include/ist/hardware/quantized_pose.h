@@ -16,7 +16,7 @@ struct Lattice;
 /// moving centres. Units are defined in pair_test.h; a moving unit is a sixth of half a moving
 /// leaf's edge.
 struct QuantizedPose {
-  PairRegisters registers;
+  PairRegisters registers;                    ///< for the pair test
   std::array<std::int32_t, 9> rotation{};     ///< moving to fixed units, columns first; Q3.28
   std::array<std::int64_t, 3> translation{};  ///< between the frames, units; Q23.28
 };
@@ -38,6 +38,7 @@ struct QuantizedPose {
 /// Returns the centre of a moving node's cube in the fixed tree's frame, units, Q23.8, rounded
 /// down.
 ///
+/// @param pose   made by quantize_pose()
 /// @param centre moving units; within the root cube of the pose's moving lattice
 [[nodiscard]] IST_API std::array<std::int32_t, 3> move_centre(
     const QuantizedPose& pose, const std::array<std::int32_t, 3>& centre) noexcept;

@@ -6,6 +6,7 @@
 
 #include "ist/base/api.h"
 
+/// @file
 /// The lookup table in the format of the circuit. src/hardware/README.md describes words and units.
 namespace ist {
 

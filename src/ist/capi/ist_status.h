@@ -1,0 +1,55 @@
+#ifndef IST_CAPI_IST_STATUS_H
+#define IST_CAPI_IST_STATUS_H
+
+/**
+ * @file
+ * The results of the calls of ist_c.h.
+ */
+
+#include <stdint.h>
+
+/** The result of a call. The numbers never change. */
+typedef int32_t ist_status;
+
+/** The codes of an ist_status: 1 to 14 of the C interface, from 101 those of the library. */
+enum {
+  IST_OK = 0,                     /**< the call did what it was asked */
+  IST_NULL_ARGUMENT = 1,          /**< a required pointer is NULL */
+  IST_STRUCT_SIZE = 2,            /**< struct_size is invalid, or an unknown member is not zero */
+  IST_ARGUMENT_INVALID = 3,       /**< a number is out of range */
+  IST_NOT_A_HANDLE = 4,           /**< the library never created this handle */
+  IST_HANDLE_KIND = 5,            /**< a handle of another kind */
+  IST_HANDLE_FREED = 6,           /**< the handle was freed before */
+  IST_HANDLE_BUSY = 7,            /**< another thread is using the query or servo */
+  IST_TOO_MANY_HANDLES = 8,       /**< 65,536 handles live */
+  IST_OUT_OF_MEMORY = 9,          /**< the system has no memory left */
+  IST_SYSTEM_ERROR = 10,          /**< the operating system refused a request */
+  IST_INTERNAL_ERROR = 11,        /**< a bug in this library */
+  IST_NOT_PREPARED = 12,          /**< the query was created without contacts */
+  IST_SERVO_FAULT = 13,           /**< a force was not a number: the output is zero */
+  IST_CANCELLED = 14,             /**< the caller ended the call */
+  IST_FILE_UNREADABLE = 101,      /**< the file cannot be opened or read */
+  IST_FILE_UNWRITABLE = 102,      /**< the file cannot be created, written or renamed */
+  IST_NOT_A_MESH = 103,           /**< the content is not STL, PLY or OBJ */
+  IST_MESH_EMPTY = 104,           /**< no vertex and no triangle */
+  IST_MESH_POINTS_ONLY = 105,     /**< vertices, but no triangle */
+  IST_MESH_TRUNCATED = 106,       /**< the file ends before its content */
+  IST_MESH_BAD_INDEX = 107,       /**< a triangle has an index beyond the last vertex */
+  IST_MESH_NOT_FINITE = 108,      /**< a vertex is NaN or infinite */
+  IST_MESH_EXTENT = 109,          /**< the largest extent is zero or outside [1e-12, 1e15] */
+  IST_VOXEL_SIZE_INVALID = 110,   /**< not positive and finite, or too large for the mesh */
+  IST_VOXEL_SIZE_TOO_SMALL = 111, /**< needs more than 2^16 voxels per axis */
+  IST_MEMORY_LIMIT = 112,         /**< needs more memory than the limit allows */
+  IST_NOT_A_TREE = 113,           /**< not a tree file */
+  IST_TREE_VERSION = 114,         /**< a tree file of another version */
+  IST_TREE_TRUNCATED = 115,       /**< the file is shorter or longer than its header says */
+  IST_TREE_CORRUPT = 116,         /**< wrong checksum or content */
+  IST_POLICY_MISSING = 117,       /**< a tree lacks the requested spheres */
+  IST_TRIANGLES_MISSING = 118,    /**< a tree was built without triangles */
+  IST_TARGET_MISSING = 119,       /**< the processor lacks the requested instruction set */
+  IST_POSE_INVALID = 120,         /**< the pose is not a rigid motion */
+  IST_INPUT_INVALID = 121,        /**< the content of a scene or another file is invalid */
+  IST_FIXED_POINT_RANGE = 122     /**< a number exceeds the hardware's fixed-point format */
+};
+
+#endif /* IST_CAPI_IST_STATUS_H */
