@@ -8,6 +8,7 @@
 #   scripts/setup.sh --fuzz      also what the fuzzers need
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
 #   scripts/setup.sh --oracles   also what reads and measures again what the command writes
+#   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
 set -euo pipefail
 
@@ -26,8 +27,9 @@ for argument in "$@"; do
     --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
+    --docs) packages+=(doxygen mkdocs) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
-    -h | --help) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

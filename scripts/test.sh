@@ -20,7 +20,7 @@ case ${1:-} in
   -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=(--oracles)
+setup=(--oracles --docs)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware)
 ! $long || setup+=(--cloudcompare)
 scripts/setup.sh "${setup[@]}"

@@ -1,0 +1,57 @@
+"""Makes the site of the pages by mkdocs, and fails at its warnings: FOLDER/site, of what README links to and what those pages
+link to, and so on. The reference that reference.sh made is copied to site/reference.
+
+    pages.py FOLDER
+
+Where mkdocs is missing, that is said, and the exit code is 77; with IST_REQUIRE_ALL=1 it is 1. Runs by Debian's python."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+LINK = re.compile(r"\]\(([^)#\s]+)[^)\s]*\)")
+
+
+def linked_files(first):
+    """The files of the project that can be reached from a page."""
+    found, ahead = set(), [ROOT / first]
+    while ahead:
+        file = ahead.pop()
+        if file in found or not file.is_file():  # mkdocs names a link to nothing
+            continue
+        found.add(file)
+        if file.suffix == ".md":
+            text = re.sub(r"(?ms:^ *```.*?^ *```$)|`[^`\n]*`", "", file.read_text())
+            ahead += [(file.parent / target).resolve() for target in LINK.findall(text) if ":" not in target]
+    return found
+
+
+def main(folder):
+    if shutil.which("mkdocs") is None:
+        print("pages: skipped: mkdocs is not installed: scripts/setup.sh --docs does that", file=sys.stderr)
+        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else 77
+    pages = folder / "pages"
+    shutil.rmtree(pages, ignore_errors=True)
+    for file in linked_files("README.md"):
+        copy = pages / file.relative_to(ROOT)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(file, copy)
+    ran = subprocess.run(["mkdocs", "build", "--strict", "--config-file", ROOT / "scripts/site/mkdocs.yml", "--site-dir",
+                          folder / "site"], env=dict(os.environ, IST_PAGES=str(pages)), check=False, capture_output=True, text=True)
+    if ran.returncode != 0:
+        print(ran.stdout + ran.stderr, file=sys.stderr)
+        return ran.returncode
+    for sitemap in (folder / "site").glob("sitemap.xml*"):  # of addresses, which nobody knows
+        sitemap.unlink()
+    if (folder / "reference/html").exists():
+        shutil.copytree(folder / "reference/html", folder / "site/reference")
+    print(f"pages: {len(list(pages.rglob('*.md')))} pages, without a warning")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1]).resolve()))
