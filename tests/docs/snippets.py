@@ -1,4 +1,4 @@
-"""Runs the code of one page of README or docs, in a folder of its own, as a reader would: shell and C++ in their order, C++
+"""Runs the code of one page of README or docs, in a folder of its own, as a reader would: shell, Python and C++ in their order, C++
 and C under two compilers, a scene by `ist run --check`. A block without a language that follows is what they print: it is
 compared, where its `…` stands for any text. The notes that change this are those of pages.py.
 
@@ -17,8 +17,17 @@ import pages
 
 SKIPPED = 77
 OTHER_COMPILER = "clang++-14"
+PYTHON = "/usr/bin/python3"
 C_COMPILERS = ("gcc", "clang-14")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
+
+
+def missing_modules(page):
+    """The modules that the page's Python imports, and PYTHON does not have."""
+    named = {name for block in page.blocks if block.language == "python"
+             for name in re.findall(r"(?m)^(?:import|from) (\w+)", block.text)}
+    return [name for name in sorted(named)
+            if subprocess.run([PYTHON, "-c", f"import {name}"], stderr=subprocess.DEVNULL, check=False).returncode != 0]
 
 
 class Failure(Exception):
@@ -83,7 +92,7 @@ class Reader:
         self.counts["compared"] += 1
 
     def block(self, block):
-        if block.says("not run") or block.language not in ("", "sh", "cpp", "c", "toml", "csv", "json"):
+        if block.says("not run") or block.language not in ("", "sh", "python", "cpp", "c", "toml", "csv", "json"):
             self.counts["left"] += 1
             print(f"{self.name}, line {block.line}: {block.note or block.language}")
             self.printed = None
@@ -108,9 +117,12 @@ class Reader:
         elif block.language == "cpp" and "int main" not in block.text:
             self.fragments.append(block)
             self.counts["run"] += 1
-        elif block.language in ("sh", "cpp"):
-            printed = (self.shell(block.text, block.line) if block.language == "sh" else
-                       self.program(block.text, block.line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20"))
+        elif block.language in ("sh", "python", "cpp"):
+            if block.language == "cpp":
+                printed = self.program(block.text, block.line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20")
+            else:
+                printed = (self.shell(block.text, block.line) if block.language == "sh" else
+                           self.run([PYTHON, "-Bc", block.text], block.line))
             self.printed = None if block.says("output varies") else printed
             self.counts["run"] += 1
         else:
@@ -134,16 +146,19 @@ def main():
     parser.add_argument("--prefix", type=pathlib.Path, required=True)
     parser.add_argument("--compiler", required=True)
     arguments = parser.parse_args()
-    for tool in (OTHER_COMPILER, *C_COMPILERS):
-        if shutil.which(tool) is None:
-            print(f"snippets: skipped: {tool} is not installed: scripts/setup.sh does that", file=sys.stderr)
-            return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
+    page = pages.read(arguments.page.read_text())
+    missing = [f"{tool} is not installed: scripts/setup.sh does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
+               if shutil.which(tool) is None]
+    missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles installs it" for name in missing_modules(page)]
+    if missing:
+        print(f"snippets: skipped: {'; '.join(missing)}", file=sys.stderr)
+        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
     folder = arguments.work / arguments.page.stem
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     reader = Reader(arguments.page.name, folder, arguments.prefix, arguments.compiler)
     try:
-        reader.read(pages.read(arguments.page.read_text()))
+        reader.read(page)
     except Failure as failure:
         print(failure, file=sys.stderr)
         return 1
