@@ -604,7 +604,7 @@ MUTANTS = [
            [(OCCLUSION + "html/html_tables.cpp", "(region.partner ? paired : unpaired)", "(i < regions.size() ? paired : unpaired)")],
            ["occlusion_report_test BiteHtml*"]),
     Mutant("tooth-numbers-unchecked", "numbers of another system pass as teeth",
-           [(OCCLUSION + "labels/tooth_numbers.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["occlusion_report_test LabelLines*"]),
+           [(OCCLUSION + "labels/tooth_numbers.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["labels_test LabelLines*"]),
 
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",

@@ -210,8 +210,9 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
   command
       .add_option(
           "--labels-fixed", questions.labels_fixed,
-          "the fixed body's tooth numbers, 0 for no tooth: a .ply with a property label, an "
-          ".obj with groups such as tooth_16, or a text of a number a line, for each "
+          "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .ply with a property "
+          "label, "
+          "or as an .obj with groups such as tooth_16; or a text of a number a line, for each "
           "triangle or vertex")
       ->group(group);
   command.add_option("--labels-moving", questions.labels_moving, "the moving body's")->group(group);

@@ -90,6 +90,30 @@ TEST(LabelLines, OfVerticesAreOfTrianglesByTwoCorners) {
 TEST(LabelLines, OfVerticesInAnotherOrderAreRefused) {
   const std::string said = refusal("11\n12\n13\n14\n15\n16\n");
   EXPECT_NE(said.find("give a label for each triangle"), said.npos) << said;
+  // Few are labelled, and most of the triangles there are noise.
+  const TriangleMesh strip = open_strip(100);
+  std::string scattered;
+  for (std::size_t v = 0; v < strip.vertices.size(); ++v)
+    scattered += v % 50 == 20 ? "11\n" : "0\n";
+  const TempDir dir;
+  const auto error = error_of(
+      [&] { (void)read_labels(dir.write("teeth.txt", scattered), strip, ToothNumbers::kFdi); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("give a label for each triangle"), said.npos);
+}
+
+TEST(LabelLines, OfAFileThatIsNoTextAreRefused) {
+  for (const std::string& content :
+       {std::string(84, '\0'), std::string("11\n12\n13\n14\n\0", 13),
+        std::string("1\x001\0\n\0", 6), std::string("ply\nformat binary\x1B[31m"),
+        std::string("\x7F")}) {
+    const std::string said = refusal(content);
+    EXPECT_NE(said.find("it is no text: write one whole number a line"), said.npos) << said;
+  }
+  EXPECT_EQ(read("\xEF\xBB\xBF"
+                 "11\r\n0\r\n85\r\n48\r\n"),
+            (ToothLabels{11, 0, 85, 48}))
+      << "after a byte order mark";
 }
 
 }  // namespace

@@ -8,15 +8,23 @@
 
 namespace ist::cli {
 
+/// Returns the content of a file, without a byte order mark. Throws kFileUnreadable.
+[[nodiscard]] std::string text_of(const std::filesystem::path& file);
+
 /// Returns the numbers of a text, one a line.
 [[nodiscard]] std::vector<int> labels_of_lines(const std::filesystem::path& file,
                                                ToothNumbers numbers);
 
-/// Returns the labels of the triangles of a PLY, by a property.
+/// Returns the labels of the triangles of a PLY, by a property, in the file's order.
 [[nodiscard]] ToothLabels labels_of_ply(const std::filesystem::path& file, ToothNumbers numbers);
 
-/// Returns the labels of the triangles of an OBJ, by its groups.
+/// Returns the labels of the triangles of an OBJ, by its names, in the file's order.
 [[nodiscard]] ToothLabels labels_of_obj(const std::filesystem::path& file, ToothNumbers numbers);
+
+/// Returns the labels of a mesh's triangles, by the places of those that a PLY or OBJ holds, of
+/// which `labels` are. Refuses triangles that are not in it, and places with two labels.
+[[nodiscard]] ToothLabels labels_in_place(const std::filesystem::path& file,
+                                          const ToothLabels& labels, const TriangleMesh& mesh);
 
 /// Returns the tooth that two of three corners name, else 0.
 [[nodiscard]] inline int tooth_of_corners(int a, int b, int c) {

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "cli/occlusion/labels/label_files.h"
-#include "ist/base/files.h"
 
 namespace ist::cli {
 namespace {
@@ -17,11 +16,19 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
+// Whether no text holds it.
+bool is_control(char c) {
+  return (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F;
+}
+
 }  // namespace
 
 // Blank lines are well at the end alone.
 std::vector<int> labels_of_lines(const std::filesystem::path& file, ToothNumbers system) {
-  const std::string content = InputFile(file).read_rest();
+  const std::string content = text_of(file);
+  if (std::ranges::any_of(content, is_control)) {
+    refuse_labels(file, "it is no text: write one whole number a line");
+  }
   std::vector<int> numbers;
   std::size_t line = 0, blank = 0;  // counted from 1; the first blank one
   for (std::size_t at = 0; at < content.size();) {

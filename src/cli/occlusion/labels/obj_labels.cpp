@@ -1,71 +1,117 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <array>
+#include <charconv>
+#include <optional>
 #include <string_view>
 
 #include "cli/occlusion/labels/label_files.h"
 #include "ist/base/error.h"
-#include "ist/base/files.h"
 #include "ist/mesh/format/mesh_format.h"
 #include "ist/mesh/format/obj_word.h"
 
 namespace ist::cli {
 namespace {
 
-constexpr std::string_view kDigits = "0123456789";
+struct Prefix {
+  std::string_view word;
+  std::optional<ToothNumbers> system;  // that it names
+};
+constexpr std::array<Prefix, 4> kPrefixes = {{{"tooth", {}},
+                                              {"universal", ToothNumbers::kUniversal},
+                                              {"fdi", ToothNumbers::kFdi},
+                                              {"t", {}}}};
 
-// The number that a group's name ends in; 0 for a name without digits.
-int tooth_of_name(std::string_view name, TextReader& reader, const std::string& place,
-                  ToothNumbers numbers) {
-  if (name.find_first_of(kDigits) == name.npos) return 0;
-  const std::size_t begin = name.find_last_not_of(kDigits) + 1;  // 0 where all are digits
-  const std::string_view before = name.substr(0, begin);
-  const bool tells = before.empty() || before.ends_with('_');
-  if (begin == name.size() || !tells || before.find_first_of(kDigits) != before.npos) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{} names the group \"{}\", which does not tell its tooth: name it by "
-                            "its number alone, such as 16 or tooth_16, and what is no tooth "
-                            "without digits",
-                            place, name.substr(0, 40)));
+// What names the labels of faces: groups or objects.
+struct Naming {
+  std::string_view statement, noun;
+};
+
+// Reads the names of an OBJ that has been checked.
+class NameReader {
+ public:
+  NameReader(std::string_view content, const std::string& file, ToothNumbers numbers)
+      : content_(content), file_(file), numbers_(numbers) {}
+
+  // The labels of the triangles; 0 for all that nothing names by a tooth's number.
+  [[nodiscard]] ToothLabels labels_by(const Naming& naming) const {
+    TextReader reader(content_, file_, TextReader::LineEnd::kContinuedByBackslash);
+    ToothLabels labels;
+    int tooth = 0;
+    while (reader.next_line()) {
+      const std::string_view statement = obj_word(reader);
+      if (statement == naming.statement) {
+        tooth = tooth_of_line(reader, naming);
+      } else if (statement == "f") {
+        std::size_t corners = 0;
+        while (!obj_word(reader).empty()) ++corners;
+        labels.insert(labels.end(), corners - 2, tooth);
+      }
+    }
+    return labels;
   }
-  const std::int64_t number = reader.integer(name.substr(begin));
-  if (!is_tooth_number(number, numbers)) refuse_tooth_number(number, numbers, place);
-  return static_cast<int>(number);
-}
+
+ private:
+  // The tooth that the rest of a line names, else 0.
+  [[nodiscard]] int tooth_of_line(TextReader& reader, const Naming& naming) const {
+    const std::string place = fmt::format("{}: line {}", file_, reader.line_number());
+    int tooth = 0;
+    for (std::string_view name = obj_word(reader); !name.empty(); name = obj_word(reader)) {
+      const int named = tooth_of_name(name, place, naming.noun);
+      if (named != 0 && tooth != 0 && named != tooth) {
+        throw Error(ErrorCode::kInputInvalid,
+                    fmt::format("{} names tooth {} and tooth {}", place, tooth, named));
+      }
+      if (named != 0) tooth = named;
+    }
+    return tooth;
+  }
+
+  // Programs number what they make (Mesh_16), so that a number alone or after a prefix tells.
+  [[nodiscard]] int tooth_of_name(std::string_view name, const std::string& place,
+                                  std::string_view noun) const {
+    std::string_view digits = name;
+    std::optional<ToothNumbers> system;
+    for (const Prefix& prefix : kPrefixes) {
+      if (!same_word(name.substr(0, prefix.word.size()), prefix.word)) continue;
+      digits.remove_prefix(prefix.word.size());
+      if (digits.starts_with('_') || digits.starts_with('-')) digits.remove_prefix(1);
+      system = prefix.system;
+      break;
+    }
+    if (digits.empty() || digits[0] < '0' || digits[0] > '9') return 0;
+    int number = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [rest, error] = std::from_chars(digits.data(), end, number);
+    const bool other_system = system && system != numbers_;
+    if (error != std::errc() || rest != end || other_system) {
+      throw Error(ErrorCode::kInputInvalid,
+                  fmt::format("{} names the {} \"{}\", which is {}: name a tooth by its number "
+                              "alone, such as 16 or tooth_16, and what is no tooth by a word",
+                              place, noun, name.substr(0, 40),
+                              other_system ? "a number of another system than --numbering"
+                                           : "no tooth's number"));
+    }
+    if (!is_tooth_number(number, numbers_)) refuse_tooth_number(number, numbers_, place);
+    return number;
+  }
+
+  std::string_view content_;
+  const std::string& file_;
+  ToothNumbers numbers_;
+};
 
 }  // namespace
 
 ToothLabels labels_of_obj(const std::filesystem::path& file, ToothNumbers numbers) {
-  const std::string content = InputFile(file).read_rest();
-  const std::string name = file.string();
+  const std::string content = text_of(file), name = file.string();
   (void)check_obj(content, name);
-  TextReader reader(content, name, TextReader::LineEnd::kContinuedByBackslash);
-  ToothLabels labels;
-  int tooth = 0;
-  while (reader.next_line()) {
-    const std::string_view statement = obj_word(reader);
-    if (statement == "g" || statement == "o") {
-      const std::string place = fmt::format("{}: line {}", name, reader.line_number());
-      tooth = 0;
-      for (std::string_view word = obj_word(reader); !word.empty(); word = obj_word(reader)) {
-        const int named = tooth_of_name(word, reader, place, numbers);
-        if (named != 0 && tooth != 0 && named != tooth) {
-          throw Error(ErrorCode::kInputInvalid,
-                      fmt::format("{} names tooth {} and tooth {}", place, tooth, named));
-        }
-        if (named != 0) tooth = named;
-      }
-    } else if (statement == "f") {
-      std::size_t corners = 0;
-      while (!obj_word(reader).empty()) ++corners;
-      labels.insert(labels.end(), corners - 2, tooth);
-    }
+  for (const Naming& naming : {Naming{"g", "group"}, {"o", "object"}}) {
+    ToothLabels labels = NameReader(content, name, numbers).labels_by(naming);
+    if (std::ranges::any_of(labels, [](int label) { return label != 0; })) return labels;
   }
-  if (std::ranges::all_of(labels, [](int label) { return label == 0; })) {
-    refuse_labels(file, "no group is named by a tooth's number, such as 16 or tooth_16");
-  }
-  return labels;
+  refuse_labels(file, "no group or object is named by a tooth's number, such as 16 or tooth_16");
 }
 
 }  // namespace ist::cli

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "cli/occlusion/labels/label_files.h"
-#include "ist/base/files.h"
 #include "ist/mesh/format/mesh_format.h"
 #include "ist/mesh/format/ply_body.h"
 
@@ -113,8 +112,7 @@ class LabelReader {
 }  // namespace
 
 ToothLabels labels_of_ply(const std::filesystem::path& file, ToothNumbers numbers) {
-  const std::string content = InputFile(file).read_rest();
-  const std::string name = file.string();
+  const std::string content = text_of(file), name = file.string();
   (void)check_ply(content, name);
   TextReader reader(content, name);
   const PlyHeader header = read_ply_header(reader);

@@ -11,21 +11,25 @@ namespace ist::cli {
 /// The tooth of each triangle of a mesh, by its number; 0: none.
 using ToothLabels = std::vector<int>;
 
-/// Reads labels by the file's ending. Triangles are in the mesh file's order. Where labels are of
-/// vertices, a triangle is of the tooth that two of its corners name, else of none.
+/// Reads labels by the file's ending. Where labels are of vertices, a triangle is of the tooth that
+/// two of its corners name, else of none.
 ///
-/// - `.ply`: the property of faces, else of vertices, whose name holds `label` or `tooth`. It may
-///   be the mesh's own file.
-/// - `.obj`: groups, or objects, whose names are the number, or end in it after a `_`: `g
-/// tooth_16`. Names without digits,
-///   such as `gum`, are of no tooth.
-/// - else: a whole number a line, for each triangle or vertex. Vertices are in the mesh's order,
-///   which read_mesh() makes by their first use. Lines may be blank at the end.
+/// - `.ply`: the property of faces, else of vertices, whose name holds `label` or `tooth`.
+/// - `.obj`: groups whose names are the number alone, or after `tooth`, `t`, `fdi` or `universal`
+///   in any case, with `_`, `-` or nothing between. A number that goes on, such as `16.001`, is
+///   refused; other names are of no tooth. Objects count
+///   where no group is a tooth.
+/// - else: a whole number a line, for each triangle or vertex in the mesh's order, which of
+///   vertices is their first use by triangles. Lines may be blank at the end.
+///
+/// A PLY or OBJ holds the mesh too, or more: its triangles are found by their corners' positions as
+/// floats, in any order. Cost: as of read_mesh(), and O(n log n).
 ///
 /// Throws kFileUnreadable; the errors of read_mesh() for a PLY or OBJ that is no mesh; and
-/// kInputInvalid, naming the place, for a number outside the system or no number, for labels of
-/// another count, for a PLY or OBJ without labels, and for a text's labels of vertices by which
-/// most triangles lie between teeth, since those are of another order.
+/// kInputInvalid, naming the place, for a number outside the system or no number, for a PLY or OBJ
+/// without labels or without some triangle of the mesh or with two labels for one place, for a text
+/// of another count, and for one of vertices by which most of the labelled triangles lie between
+/// teeth, since those are of another order.
 [[nodiscard]] ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
                                       ToothNumbers numbers);
 

@@ -3,18 +3,14 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/occlusion/labels/tooth_labels.h"
-#include "support/errors.h"
-#include "support/shapes.h"
-#include "support/temp_dir.h"
+#include "cli/occlusion/label_cases.h"
 
 namespace ist::test {
 namespace {
 
-using cli::read_labels, cli::ToothLabels, cli::ToothNumbers;
+using cli::ToothLabels, cli::ToothNumbers;
 
-// Two triangles 0 1 2 and 2 1 3, by a file of four vertices whose third is first used last.
-const TriangleMesh kPair = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {2, 1, 3}}};
+// The square's corners in their order round it.
 constexpr const char* kVertices[] = {"0 0 0", "1 0 0", "1 1 0", "0 1 0"};
 
 std::string ply(const std::string& of_vertex, const std::string& of_face,
@@ -33,41 +29,30 @@ std::string ply(const std::string& of_vertex, const std::string& of_face,
   return text;
 }
 
-ToothLabels read(const char* name, const std::string& content,
-                 ToothNumbers numbers = ToothNumbers::kFdi) {
-  const TempDir dir;
-  return read_labels(dir.write(name, content), kPair, numbers);
-}
-
-std::string refusal(const char* name, const std::string& content,
-                    ToothNumbers numbers = ToothNumbers::kFdi) {
-  const auto error = error_of([&] { (void)read(name, content, numbers); });
-  if (!error) return "not refused";
-  const std::string text = error->what();
-  return text.find(name) == text.npos ? "names no file" : text;
-}
-
 TEST(LabelsOfPly, AreAPropertyOfFaces) {
   const std::string file = ply("", "property uchar label\n", "", {"3 0 1 3 16", "3 3 1 2 0"});
-  EXPECT_EQ(read("jaw.ply", file), (ToothLabels{16, 0}));
-  EXPECT_EQ(read("JAW.PLY", file), (ToothLabels{16, 0}));
-  EXPECT_EQ(read("jaw.ply", ply("property int label\n", "property int ToothNumber\n", "21 21 21 21",
-                                {"3 0 1 3 16", "3 3 1 2 15"})),
+  EXPECT_EQ(labels_by("jaw.ply", file), (ToothLabels{16, 0}));
+  EXPECT_EQ(labels_by("JAW.PLY", file), (ToothLabels{16, 0}));
+  EXPECT_EQ(labels_by("jaw.ply", ply("property int label\n", "property int ToothNumber\n",
+                                     "21 21 21 21", {"3 0 1 3 16", "3 3 1 2 15"})),
             (ToothLabels{16, 15}))
       << "faces before vertices";
 }
 
 TEST(LabelsOfPly, OfAPolygonAreOfAllItsTriangles) {
-  EXPECT_EQ(read("jaw.ply", ply("", "property int tooth\n", "", {"4 0 1 2 3 32"}),
-                 ToothNumbers::kUniversal),
+  const TriangleMesh fan = {kPair.vertices, {{0, 1, 3}, {0, 3, 2}}};
+  EXPECT_EQ(labels_by("jaw.ply", ply("", "property int tooth\n", "", {"4 0 1 2 3 32"}),
+                      ToothNumbers::kUniversal, fan),
             (ToothLabels{32, 32}));
 }
 
 TEST(LabelsOfPly, OfVerticesAreInTheFilesOrder) {
-  EXPECT_EQ(read("jaw.ply", ply("property int LABEL\n", "", "11 11 12 12", {"3 0 1 3", "3 3 1 2"})),
-            (ToothLabels{11, 12}));
-  EXPECT_EQ(read("jaw.ply", ply("property int label\n", "", "11 12 13 13", {"3 0 1 3", "3 3 1 2"})),
-            (ToothLabels{0, 13}))
+  EXPECT_EQ(
+      labels_by("jaw.ply", ply("property int LABEL\n", "", "11 11 12 12", {"3 0 1 3", "3 3 1 2"})),
+      (ToothLabels{11, 12}));
+  EXPECT_EQ(
+      labels_by("jaw.ply", ply("property int label\n", "", "11 12 13 13", {"3 0 1 3", "3 3 1 2"})),
+      (ToothLabels{0, 13}))
       << "three teeth are none";
 }
 
@@ -89,13 +74,13 @@ TEST(LabelsOfPly, OfBinaryFilesAreReadInEitherByteOrder) {
     };
     face(47, "\0\1\3");
     face(48, "\3\1\2");
-    EXPECT_EQ(read("jaw.ply", file), (ToothLabels{47, 48})) << big;
+    EXPECT_EQ(labels_by("jaw.ply", file), (ToothLabels{47, 48})) << big;
   }
 }
 
 TEST(LabelsOfPly, ThatTellNothingAreRefused) {
   const auto said = [](const std::string& file, const char* expected) {
-    const std::string text = refusal("jaw.ply", file);
+    const std::string text = refusal_of("jaw.ply", file);
     EXPECT_NE(text.find(expected), text.npos) << text;
   };
   const std::vector<std::string> faces = {"3 0 1 3", "3 3 1 2"};
@@ -109,40 +94,11 @@ TEST(LabelsOfPly, ThatTellNothingAreRefused) {
   said(ply("", "property int label\n", "", {"3 0 1 3 11", "3 3 1 2 19"}), "face 1 is 19: FDI");
   said(ply("property int label\n", "", "11 11 11 19", faces), "vertex 3 is 19: FDI");
   said(ply("property int label\n", "", "11 11 11 11", {"4 0 1 2 3"}), "triangulate the mesh");
-  said(ply("", "property int label\n", "", {"3 0 1 3 11"}), "1 labels for a mesh of 2 triangles");
+  said(ply("", "property int label\n", "", {"3 0 1 3 11"}),
+       "1 of the 2 triangles measured are not in it");
   said(ply("", "property int label\n", "", {"3 0 1 3 11", "3 3 1 9 11"}), "names vertex 9");
   said("ply\nformat", "jaw.ply");
   said("", "jaw.ply");
-}
-
-std::string obj(const std::string& groups) {
-  return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + groups;
-}
-
-TEST(LabelsOfObj, AreGroupsOrObjectsByTheirNumber) {
-  EXPECT_EQ(read("jaw.obj", obj("g 16\nf 1 2 4\ng gum\nf 4 2 3\n")), (ToothLabels{16, 0}));
-  EXPECT_EQ(read("jaw.obj", obj("f 1 2 4\ng upper tooth_16 smooth # 11\nf 4 2 \\\n 3\n")),
-            (ToothLabels{0, 16}));
-  EXPECT_EQ(read("jaw.obj", obj("o T_5\nf 1/1/1 2/2/2 3//3 4\n"), ToothNumbers::kUniversal),
-            (ToothLabels{5, 5}));
-  EXPECT_EQ(read("jaw.obj", obj("g 16\ng\nf 1 2 4\ng 0\ng FDI_15 15\nf 4 2 3\n")),
-            (ToothLabels{0, 15}));
-}
-
-TEST(LabelsOfObj, ThatTellNothingAreRefused) {
-  const auto said = [](const std::string& groups, const char* expected) {
-    const std::string text = refusal("jaw.obj", obj(groups));
-    EXPECT_NE(text.find(expected), text.npos) << text;
-  };
-  said("f 1 2 4\ng gum\nf 4 2 3\n", "no group is named by a tooth's number");
-  for (const char* name : {"UR6", "16.001", "tooth16", "16b", "1_6", "-16", "a.16", "6_"}) {
-    said(std::string("g ") + name + "\nf 1 2 4\nf 4 2 3\n", "line 5 names the group");
-  }
-  said("f 1 2 4\ng 19\nf 4 2 3\n", "line 6 is 19: FDI");
-  said("g 11 12\nf 1 2 4\nf 4 2 3\n", "line 5 names tooth 11 and tooth 12");
-  said("g 11\nf 1 2 4\n", "1 labels for a mesh of 2 triangles");
-  said("g 11\nf 1 2 4\nf 4 2 9\n", "names vertex 9");
-  said("g 99999999999999999999\nf 1 2 4\n", "jaw.obj");
 }
 
 }  // namespace
