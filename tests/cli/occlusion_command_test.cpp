@@ -193,6 +193,16 @@ TEST_F(OcclusionCommand, TeethAreToldByTheirNumbers) {
   refuses({"--numbering", "fdi", "--json"}, 2, "--labels-fixed");
 }
 
+// Which would end after seconds, with another error.
+TEST_F(OcclusionCommand, LabelsAreReadBeforeAnythingIsMeasured) {
+  const std::string lower = mesh("lower.stl", box({0, 0, 0}, {999, 999, 10}));
+  const std::string upper = mesh("upper.stl", box({0, 0, 10}, {999, 999, 20}));
+  const CommandResult result = ist({"occlusion", lower, upper, "--labels-moving",
+                                    write("labels.txt", "36\n"), "--numbering", "fdi", "--json"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(says(result.err, "labels.txt: 1 labels for a mesh of 12 triangles"));
+}
+
 TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {
   TriangleMesh open = box({-5, -5, -3}, {5, 5, 0});
   open.triangles.resize(10);

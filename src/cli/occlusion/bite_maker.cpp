@@ -78,15 +78,13 @@ std::vector<double> areas_of(const SurfaceOcclusion& surface, const Preset& pres
   return areas;
 }
 
-void fill(BiteBody& body, const SphereTree& tree, const Bite& bite,
-          const std::filesystem::path& labels) {
+void fill(BiteBody& body, const SphereTree& tree, const Bite& bite, const ToothLabels& labels) {
   body.mesh = tree.triangles();
   body.closed = tree.orientation() == Orientation::kOutward;
   body.areas = areas_of(body.surface, *bite.preset);
   body.sides = balance_of(body.surface, *body.mesh, body.to_fixed, bite.sides);
   body.fore_aft = balance_of(body.surface, *body.mesh, body.to_fixed, bite.fore_aft);
-  if (labels.empty()) return;
-  body.teeth = teeth_of(body.surface, *body.mesh, read_labels(labels, *body.mesh, *bite.numbers));
+  if (!labels.empty()) body.teeth = teeth_of(body.surface, *body.mesh, labels);
 }
 
 void name(BiteBody& body, const MeshSource& source, const char* anonymous, bool no_names) {
@@ -150,6 +148,12 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   name(bite.fixed, sources.fixed, "fixed", questions.no_names);
   name(bite.moving, sources.moving, "moving", questions.no_names);
 
+  const auto labels_of = [&](const SphereTree& tree, const std::filesystem::path& file) {
+    return file.empty() ? ToothLabels() : read_labels(file, *tree.triangles(), *bite.numbers);
+  };
+  const ToothLabels labels_fixed = labels_of(bodies.fixed, questions.labels_fixed);
+  const ToothLabels labels_moving = labels_of(bodies.moving, questions.labels_moving);
+
   ProgressBar progress;
   OcclusionOptions options = options_of(bite);
   options.proceed = shown_by(progress, "measuring the occlusion");
@@ -157,8 +161,8 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   Occlusion measured = occlusion(query, pose, options);
   bite.fixed.surface = std::move(measured.fixed);
   bite.moving.surface = std::move(measured.moving);
-  fill(bite.fixed, bodies.fixed, bite, questions.labels_fixed);
-  fill(bite.moving, bodies.moving, bite, questions.labels_moving);
+  fill(bite.fixed, bodies.fixed, bite, labels_fixed);
+  fill(bite.moving, bodies.moving, bite, labels_moving);
   require_area(bite.fixed, "FIXED");
   require_area(bite.moving, "MOVING");
   bite.findings = Examiner(bodies, {}, {}).at(pose);
