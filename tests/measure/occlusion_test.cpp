@@ -68,6 +68,13 @@ TEST(Occlusion, OfSpheresComesToItsClosedFormsAsMeshesGetFiner) {
       EXPECT_EQ(one.regions[0].partner, 0U);
       EXPECT_EQ(one.regions[0].share, 1);
       EXPECT_NEAR(-one.regions[0].least_distance, 6 - apart, 0.3 / (1 << level));
+      double least = HUGE_VAL;
+      for (const ContactTriangle& part : one.regions[0].triangles) {
+        least = std::min(least, part.least_distance);
+        if (part.triangle != one.regions[0].triangle) continue;
+        EXPECT_EQ(part.least_distance, one.regions[0].least_distance);
+      }
+      EXPECT_EQ(least, one.regions[0].least_distance);
       EXPECT_NEAR(one.total_area, 4 * std::numbers::pi * r * r, 4 * r * r / (1 << level));
     };
     of_sphere(found.fixed, 4, 2);

@@ -35,6 +35,7 @@ std::vector<Tooth> teeth_of(const SurfaceOcclusion& surface, const TriangleMesh&
       tooth.share += contact.pressed;
       tooth.share_thinner += contact.pressed_thinner;
       tooth.share_thicker += contact.pressed_thicker;
+      tooth.least_distance = std::fmin(tooth.least_distance, contact.least_distance);
     }
   }
   const auto part = [](double& sum, double of) { sum = of > 0 ? sum / of : 0; };

@@ -55,11 +55,13 @@ void add(const RefinedSurface& surface, const RefinedTriangle& triangle,
     if (depth <= options.contact) return cut_at(corners, depth).below;
     return touching.below + (depth - options.contact) * touching.area;
   };
-  region.triangles.push_back({triangle.of, touching.area, pressed(options.foundation),
-                              pressed(options.foundation - options.change),
-                              pressed(options.foundation + options.change)});
+  ContactTriangle& piece = region.triangles.emplace_back(
+      ContactTriangle{triangle.of, touching.area, pressed(options.foundation),
+                      pressed(options.foundation - options.change),
+                      pressed(options.foundation + options.change), HUGE_VAL});
   for (const std::uint32_t v : triangle.vertex) {
     const RefinedSurface::Vertex& vertex = surface.vertices()[v];
+    piece.least_distance = std::min(piece.least_distance, vertex.distance);
     if (vertex.distance >= region.least_distance) continue;
     region.least_distance = vertex.distance;
     region.closest = vertex.at;
@@ -88,6 +90,7 @@ void join_pieces(ContactRegion& region) {
     whole.pressed += piece.pressed;
     whole.pressed_thinner += piece.pressed_thinner;
     whole.pressed_thicker += piece.pressed_thicker;
+    whole.least_distance = std::min(whole.least_distance, piece.least_distance);
   }
   pieces.resize(count);
 }

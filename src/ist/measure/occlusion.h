@@ -39,6 +39,8 @@ struct ContactTriangle {
   double pressed = 0,       ///< with OcclusionOptions::foundation
       pressed_thinner = 0,  ///< with a foundation thinner by the change
       pressed_thicker = 0;  ///< and thicker
+  /// Signed, of the vertices of the pieces that the triangle is split into and that touch, units.
+  double least_distance = 0;
 };
 
 /// A part of a surface that touches the other body, connected by edges: where the signed distance
@@ -46,7 +48,7 @@ struct ContactTriangle {
 struct ContactRegion {
   double area = 0;              ///< units squared
   Eigen::Vector3d centre;       ///< of the area
-  double least_distance = 0;    ///< signed, of its vertices
+  double least_distance = 0;    ///< signed, of its vertices: the least of its triangles'
   Eigen::Vector3d closest;      ///< the vertex that has it
   std::uint32_t triangle = 0;   ///< of the surface, one that holds that vertex
   double penetrating_area = 0;  ///< where the distance is at most 0

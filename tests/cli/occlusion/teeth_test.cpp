@@ -20,11 +20,12 @@ TEST(Teeth, SumTheContactsOfTheirTriangles) {
   surface.vertices.resize(6);
   for (std::size_t v = 0; v < 6; ++v) surface.vertices[v].distance = 0.1 * static_cast<double>(v);
   surface.regions.resize(2);
-  surface.regions[0].triangles = {{0, 0.5, 3, 0, 8}, {1, 0.25, 1, 0, 4}};
-  surface.regions[1].triangles = {{0, 0.125, 2, 0, 4}, {3, 1, 2, 0, 4}};
+  surface.regions[0].triangles = {{0, 0.5, 3, 0, 8, 0.05}, {1, 0.25, 1, 0, 4, -0.5}};
+  surface.regions[1].triangles = {{0, 0.125, 2, 0, 4, 0.1}, {3, 1, 2, 0, 4, 0.05}};
   const auto teeth = teeth_of(surface, kStrip, {12, 11, 13, 0});
   ASSERT_EQ(teeth.size(), 3U);
   EXPECT_EQ(teeth[0].number, 11);
+  EXPECT_EQ(teeth[0].least_distance, -0.5) << "between its vertices";
   EXPECT_EQ(teeth[0].area, 0.25);
   EXPECT_EQ(teeth[0].share, 1 / 8.0);
   EXPECT_EQ(teeth[0].share_thicker, 4 / 20.0);
@@ -67,6 +68,8 @@ TEST(Teeth, OfABiteShareAllThatIsLabelled) {
   double area = 0;
   for (const ContactRegion& region : body.surface.regions) area += region.area;
   EXPECT_NEAR(teeth[0].area + teeth[1].area, area, 1e-9);
+  EXPECT_EQ(std::min(teeth[0].least_distance, teeth[1].least_distance),
+            body.surface.regions[0].least_distance);
 }
 
 }  // namespace
