@@ -7,34 +7,15 @@
 #include <set>
 
 #include "fuzz/fuzz_target.h"
+#include "fuzz/named_file.h"
 #include "fuzz/query_checks.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
-#include "support/memory_file.h"
 #include "support/mesh_files.h"
-#include "support/temp_dir.h"
 
 namespace ist::test {
 namespace {
-
-// One file, by each of its names.
-class NamedFile {
- public:
-  NamedFile() {
-    for (const char* name : {"mesh", "mesh.stl", "mesh.obj"}) {
-      std::filesystem::create_symlink(file_.path(), folder_.path() / name);
-    }
-  }
-  [[nodiscard]] std::filesystem::path write(const char* name, std::string_view bytes) const {
-    file_.write(bytes);
-    return folder_.path() / name;
-  }
-
- private:
-  MemoryFile file_;
-  TempDir folder_;
-};
 
 double extent_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -75,7 +56,7 @@ void check_tree(const TriangleMesh& mesh) {
 
 std::string fuzz_mesh(std::string_view bytes) {
   if (bytes.empty()) return "nothing";
-  static const NamedFile file;
+  static const NamedFile file({"mesh", "mesh.stl", "mesh.obj"});
   const char* name = bytes[0] == 's' ? "mesh.stl" : bytes[0] == 'o' ? "mesh.obj" : "mesh";
   TriangleMesh mesh;
   try {

@@ -26,6 +26,7 @@ void PrintTo(const Target& target, std::ostream* out) { *out << target.name; }
 
 const std::vector<Target>& targets() {
   static const std::vector<Target> all{
+      {"labels", fuzz_labels, {"fine", "input-invalid", "not-a-mesh", "mesh-bad-index"}},
       {"mesh",
        fuzz_mesh,
        {"fine", "not-a-mesh", "mesh-empty", "mesh-points-only", "mesh-truncated", "mesh-bad-index",

@@ -17,8 +17,7 @@ using ToothLabels = std::vector<int>;
 /// - `.ply`: the property of faces, else of vertices, whose name holds `label` or `tooth`.
 /// - `.obj`: groups whose names are the number alone, or after `tooth`, `t`, `fdi` or `universal`
 ///   in any case, with `_`, `-` or nothing between. A number that goes on, such as `16.001`, is
-///   refused; other names are of no tooth. Objects count
-///   where no group is a tooth.
+///   refused; other names are of no tooth. Objects count where no group is a tooth.
 /// - else: a whole number a line, for each triangle or vertex in the mesh's order, which of
 ///   vertices is their first use by triangles. Lines may be blank at the end.
 ///
