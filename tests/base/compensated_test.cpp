@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
 
 constexpr double kUnit = 0x1p-53;
 
-double at_scale(test::Seeded& seeded, int largest_exponent) {
-  return std::ldexp(seeded.between(-1, 1),
-                    static_cast<int>(seeded.below(static_cast<std::uint32_t>(largest_exponent))));
+double at_scale(test::Random& random, int largest_exponent) {
+  return std::ldexp(random.uniform(-1, 1),
+                    static_cast<int>(random.below(static_cast<std::uint32_t>(largest_exponent))));
 }
 
 TEST(CompensatedSum, FindsWhatAPlainSumLoses) {
@@ -29,9 +29,9 @@ TEST(CompensatedSum, FindsWhatAPlainSumLoses) {
 }
 
 TEST(CompensatedSum, StaysWithinItsBoundOnSumsThatNearlyCancel) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int round = 0; round < 200; ++round) {
-    const std::size_t half = 2 + seeded.below(50);
+    const std::size_t half = 2 + random.below(50);
     CompensatedSum sum;
     mpq_class exact = 0, magnitude = 0;
     const auto add = [&](double term) {
@@ -40,9 +40,9 @@ TEST(CompensatedSum, StaysWithinItsBoundOnSumsThatNearlyCancel) {
       magnitude += abs(mpq_class(term));
     };
     for (std::size_t i = 0; i < half; ++i) {
-      const double term = at_scale(seeded, 60);
+      const double term = at_scale(random, 60);
       add(term);
-      add(-term + seeded.between(-1, 1) * 1e-3);  // condition numbers up to 1e20
+      add(-term + random.uniform(-1, 1) * 1e-3);  // condition numbers up to 1e20
     }
     const double n = 2.0 * static_cast<double>(half);
     const mpq_class bound =
@@ -52,9 +52,9 @@ TEST(CompensatedSum, StaysWithinItsBoundOnSumsThatNearlyCancel) {
 }
 
 TEST(CompensatedSum, StaysWithinItsBoundOnDotProductsThatNearlyCancel) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int round = 0; round < 200; ++round) {
-    const std::size_t half = 1 + seeded.below(50);
+    const std::size_t half = 1 + random.below(50);
     CompensatedSum sum;
     mpq_class exact = 0, magnitude = 0;
     const auto add = [&](double a, double b) {
@@ -64,7 +64,7 @@ TEST(CompensatedSum, StaysWithinItsBoundOnDotProductsThatNearlyCancel) {
       magnitude += abs(product);
     };
     for (std::size_t i = 0; i < half; ++i) {
-      const double a = at_scale(seeded, 40), b = at_scale(seeded, 40);
+      const double a = at_scale(random, 40), b = at_scale(random, 40);
       add(a, b);
       add(-a * (1 + 0x1p-50), b * (1 - 0x1p-50));
     }
@@ -76,9 +76,9 @@ TEST(CompensatedSum, StaysWithinItsBoundOnDotProductsThatNearlyCancel) {
 }
 
 TEST(CompensatedSum, ADeterminantOfTwoProductsIsRightToTheLastBitButOne) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int round = 0; round < 10'000; ++round) {
-    const double a = seeded.between(0.5, 2), b = seeded.between(0.5, 2), c = seeded.between(0.5, 2);
+    const double a = random.uniform(0.5, 2), b = random.uniform(0.5, 2), c = random.uniform(0.5, 2);
     const double d = b * c / a;  // a·d - b·c is all rounding
     CompensatedSum sum;
     sum.add_product(a, d);

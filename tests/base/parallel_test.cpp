@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/random.h"
+
 namespace ist {
 namespace {
 
@@ -32,9 +34,8 @@ TEST(ParallelFor, CoversEachItemOnceInRangesThatDoNotDependOnTheThreads) {
 TEST(ParallelSort, SortsAnyLength) {
   for (const std::size_t count : {0u, 1u, 2u, 16383u, 16384u, 16385u, 100000u, 1000003u}) {
     std::vector<std::uint64_t> keys(count);
-    std::uint64_t state = count;
-    for (std::uint64_t& key : keys)
-      key = state = state * 6364136223846793005u + 1442695040888963407u;
+    test::Random random(count);
+    for (std::uint64_t& key : keys) key = random.bits();
     std::vector<std::uint64_t> expected = keys;
     std::sort(expected.begin(), expected.end());
     parallel_sort(keys);

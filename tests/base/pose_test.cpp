@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -18,8 +18,8 @@ Eigen::Isometry3d pose_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d
   return pose;
 }
 
-Eigen::Matrix3d random_rotation(test::Seeded& seeded) {
-  return Eigen::AngleAxisd(seeded.between(-3, 3), seeded.direction()).toRotationMatrix();
+Eigen::Matrix3d random_rotation(test::Random& random) {
+  return Eigen::AngleAxisd(random.uniform(-3, 3), random.direction()).toRotationMatrix();
 }
 
 // The largest entry of |RᵀR - I|, its sums exact.
@@ -53,12 +53,12 @@ TEST(ProjectToRigid, IdentityAndQuarterTurnsComeBackBitForBit) {
 }
 
 TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 300; ++i) {
     const double error = i % 3 == 0 ? 0 : (i % 3 == 1 ? 1e-9 : 1e-6);
-    Eigen::Matrix3d rotation = random_rotation(seeded);
-    for (int k = 0; k < 9; ++k) rotation(k) += seeded.between(-error, error);
-    const Eigen::Vector3d translation = seeded.point(-100, 100);
+    Eigen::Matrix3d rotation = random_rotation(random);
+    for (int k = 0; k < 9; ++k) rotation(k) += random.uniform(-error, error);
+    const Eigen::Vector3d translation = random.point(-100, 100);
     const auto rigid = project_to_rigid(pose_of(rotation, translation));
     ASSERT_TRUE(rigid);
     EXPECT_LE(distance_from_orthonormal(rigid->linear()), 1e-15);
@@ -69,14 +69,14 @@ TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
 }
 
 TEST(ProjectToRigid, TheNearestRotationIsThePolarFactor) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 100; ++i) {
     // R·S with S symmetric and near the identity has the polar factor R.
-    const Eigen::Matrix3d rotation = random_rotation(seeded);
+    const Eigen::Matrix3d rotation = random_rotation(random);
     Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
     for (int row = 0; row < 3; ++row) {
       for (int column = row; column < 3; ++column) {
-        const double entry = seeded.between(-3e-6, 3e-6);
+        const double entry = random.uniform(-3e-6, 3e-6);
         stretch(row, column) += entry;
         if (row != column) stretch(column, row) += entry;
       }
@@ -100,9 +100,9 @@ TEST(ProjectToRigid, RefusesWhatIsFartherThanTheToleranceFromOrthonormal) {
 }
 
 TEST(ProjectToRigid, RefusesMirrorings) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int i = 0; i < 20; ++i) {
-    const Eigen::Matrix3d mirrored = -random_rotation(seeded);
+    const Eigen::Matrix3d mirrored = -random_rotation(random);
     EXPECT_FALSE(project_to_rigid(pose_of(mirrored, Eigen::Vector3d::Zero())));
   }
 }
@@ -129,11 +129,11 @@ TEST(ProjectToRigid, RefusesALastRowThatIsNot0001) {
 // The product in rational numbers, and how far the composed pose is from it.
 TEST(ComposeRigid, IsRightToTheDriftThatIsStated) {
   constexpr double kUnit = 0x1p-53;
-  test::Seeded seeded(4);
+  test::Random random(4);
   for (int i = 0; i < 300; ++i) {
-    const auto motion = [&seeded] {
-      const Eigen::Matrix3d rotation = random_rotation(seeded);
-      return project_to_rigid(pose_of(rotation, seeded.point(-100, 100))).value();
+    const auto motion = [&random] {
+      const Eigen::Matrix3d rotation = random_rotation(random);
+      return project_to_rigid(pose_of(rotation, random.point(-100, 100))).value();
     };
     const Eigen::Isometry3d first = motion(), second = motion();
     const auto composed = compose_rigid(second, first);

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "fuzz/fuzz_target.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/stability.h"
 #include "support/temp_dir.h"
 
@@ -79,7 +79,7 @@ TEST_P(Corpus, ComesToWhatItsNamesSay) {
 }
 
 // One to four bytes are changed, taken out, put in, or doubled as a block.
-std::string changed(std::string bytes, Seeded& random) {
+std::string changed(std::string bytes, Random& random) {
   for (std::size_t left = 1 + random.below(4); left > 0 && !bytes.empty(); --left) {
     const std::size_t at = random.below(static_cast<std::uint32_t>(bytes.size()));
     switch (random.below(4)) {
@@ -101,7 +101,7 @@ std::string changed(std::string bytes, Seeded& random) {
 
 TEST_P(Corpus, IsNoFindingWithBytesChanged) {
   StabilityCase files("faults", std::string("changed corpus of ") + GetParam().name, "findings");
-  Seeded random(5);
+  Random random(5);
   for (const std::filesystem::path& file : corpus(GetParam())) {
     const std::string bytes = file_content(file);
     for (int i = samples(8); i > 0; --i) {

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -48,18 +48,18 @@ void expect_all_quantiles(std::vector<std::int64_t> times) {
 }
 
 TEST(LatencyHistogram, QuantilesAreNeverTooSmallAndTooLargeByAThirtySecondAtMost) {
-  Seeded seeded(1);
+  Random random(1);
   const std::vector<std::function<double()>> distributions = {
-      [&] { return seeded.between(0, 1000); },
-      [&] { return seeded.between(0, 1e9); },
-      [&] { return std::exp2(seeded.between(0, 36)) - 0.5; },
-      [&] { return -1e5 * std::log(1 - seeded.between(0, 1)); },
-      [&] { return std::min(6.8e10, 1e3 / std::pow(1 - seeded.between(0, 1), 2)); },
-      [&] { return seeded.below(1000) == 0 ? 5e6 : seeded.between(50e3, 60e3); },
-      [&] { return std::exp2(std::floor(seeded.between(0, 36))); },
-      [&] { return std::exp2(std::ceil(seeded.between(0, 36))) - 1; },
+      [&] { return random.uniform(0, 1000); },
+      [&] { return random.uniform(0, 1e9); },
+      [&] { return std::exp2(random.uniform(0, 36)) - 0.5; },
+      [&] { return -1e5 * std::log(1 - random.uniform(0, 1)); },
+      [&] { return std::min(6.8e10, 1e3 / std::pow(1 - random.uniform(0, 1), 2)); },
+      [&] { return random.below(1000) == 0 ? 5e6 : random.uniform(50e3, 60e3); },
+      [&] { return std::exp2(std::floor(random.uniform(0, 36))); },
+      [&] { return std::exp2(std::ceil(random.uniform(0, 36))) - 1; },
       [&] { return 123456789.0; },
-      [&] { return seeded.between(0, 8); },
+      [&] { return random.uniform(0, 8); },
   };
   for (std::size_t i = 0; i < distributions.size(); ++i) {
     for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{20000}}) {
@@ -149,12 +149,12 @@ TEST(LatencyHistogram, HoldsNothingAtFirstAndWhenCleared) {
 }
 
 TEST(LatencyHistogram, MergingEqualsRecordingAll) {
-  Seeded seeded(2);
+  Random random(2);
   std::vector<std::int64_t> all, parts[2];
   for (int i = 0; i < 5000; ++i) {
-    const auto time = static_cast<std::int64_t>(std::exp2(seeded.between(0, 38)));
+    const auto time = static_cast<std::int64_t>(std::exp2(random.uniform(0, 38)));
     all.push_back(time);
-    parts[seeded.below(3) == 0 ? 0 : 1].push_back(time);
+    parts[random.below(3) == 0 ? 0 : 1].push_back(time);
   }
   LatencyHistogram merged = recorded(parts[0]);
   merged.merge(recorded(parts[1]));

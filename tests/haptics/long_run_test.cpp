@@ -16,7 +16,7 @@
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 #include "support/data_dir.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/skip.h"
 #include "support/stability.h"
 
@@ -93,15 +93,15 @@ class HumanPair {
 
 // Presses one after the other, each to another place and with another turn.
 std::vector<Waypoint> presses(const HumanPair& pair, int count) {
-  Seeded seeded(61);
+  Random random(61);
   std::vector<Waypoint> plan{{0, pair.moved(at({0, 0, -4}))}};
   for (int i = 0; i < count; ++i) {
     const double begin = kPress * i;
-    const double depth = seeded.between(3.5, 5.5);
+    const double depth = random.uniform(3.5, 5.5);
     const auto place = [&] {
-      Eigen::Vector3d way = seeded.point(-0.5, 0.5);
+      Eigen::Vector3d way = random.point(-0.5, 0.5);
       way.z() = depth;
-      return at(way, seeded.point(-0.02, 0.02));
+      return at(way, random.point(-0.02, 0.02));
     };
     const Placement first = pair.moved(place()), second = pair.moved(place());
     plan.push_back({begin + 0.7, first});

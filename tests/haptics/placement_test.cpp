@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -24,8 +24,8 @@ Vector6 motion_of(const Vector3d& translation, const Vector3d& rotation) {
   return motion;
 }
 
-Placement some_placement(Seeded& seeded) {
-  return {turn(seeded.between(-3, 3), seeded.direction()), seeded.point(-1, 1)};
+Placement some_placement(Random& random) {
+  return {turn(random.uniform(-3, 3), random.direction()), random.point(-1, 1)};
 }
 
 double farthest_from_rigid(const Matrix3d& r) {
@@ -33,10 +33,10 @@ double farthest_from_rigid(const Matrix3d& r) {
 }
 
 TEST(Placement, ComesBackFromItsMotionAndGoesWhereTheMotionSays) {
-  Seeded seeded(11);
+  Random random(11);
   for (int i = 0; i < 20000; ++i) {
-    const Placement from = some_placement(seeded), to = some_placement(seeded);
-    const Vector6 motion = motion_of(seeded.point(-1, 1), seeded.point(-2, 2));
+    const Placement from = some_placement(random), to = some_placement(random);
+    const Vector6 motion = motion_of(random.point(-1, 1), random.point(-2, 2));
     ASSERT_LE((motion_between(from, from.moved(motion)) - motion).cwiseAbs().maxCoeff(), 1e-13);
     const Vector6 way = motion_between(from, to);
     if (way.tail<3>().norm() > 100) continue;  // rounding grows with the square of a tangent
@@ -47,10 +47,10 @@ TEST(Placement, ComesBackFromItsMotionAndGoesWhereTheMotionSays) {
 }
 
 TEST(Placement, TurnsByTheMotionsAngleToWithinATwelfthOfItsCube) {
-  Seeded seeded(12);
+  Random random(12);
   for (const double angle : {1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0}) {
-    const Vector3d axis = seeded.direction();
-    const Placement from = some_placement(seeded);
+    const Vector3d axis = random.direction();
+    const Placement from = some_placement(random);
     const Placement to = from.moved(motion_of(Vector3d::Zero(), angle * axis));
     const Matrix3d turned = to.rotation * from.rotation.transpose();
     // What is missing: the turn that would complete it, about the same axis.
@@ -79,8 +79,8 @@ TEST(Placement, IsExactWhereNumbersAre) {
 }
 
 TEST(Placement, StaysRigidThroughAMillionMoves) {
-  Seeded seeded(13);
-  Placement placement = some_placement(seeded);
+  Random random(13);
+  Placement placement = some_placement(random);
   double worst = 0;
   for (int i = 0; i < 1'000'000; ++i) {
     placement = placement.moved(motion_of({1e-6, 0, 0}, {1e-3, -2e-3, 7e-4}));
@@ -91,10 +91,10 @@ TEST(Placement, StaysRigidThroughAMillionMoves) {
 }
 
 TEST(Placement, CutsTheMotionOfHalfATurnAndKeepsItsAxis) {
-  Seeded seeded(14);
-  const Placement from = some_placement(seeded);
+  Random random(14);
+  const Placement from = some_placement(random);
   for (int i = 0; i < 1000; ++i) {
-    const Vector3d axis = seeded.direction();
+    const Vector3d axis = random.direction();
     for (const double beyond : {-1e-3, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-3}) {
       const Placement to{turn(std::numbers::pi + beyond, axis) * from.rotation, from.translation};
       const Vector3d rotation = motion_between(from, to).tail<3>();
@@ -127,8 +127,8 @@ TEST(Placement, HasTheCutWhereLongMotionsEnd) {
 }
 
 TEST(Placement, IsMadeFromRigidPosesOnly) {
-  Seeded seeded(15);
-  const Placement placement = some_placement(seeded);
+  Random random(15);
+  const Placement placement = some_placement(random);
   const auto same = Placement::from(placement.isometry());
   ASSERT_TRUE(same);
   EXPECT_LE((same->rotation - placement.rotation).cwiseAbs().maxCoeff(), 1e-15);

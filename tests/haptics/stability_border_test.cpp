@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -47,10 +47,10 @@ TEST(StabilityBorder, IsTheFormula) {
 }
 
 TEST(StabilityBorder, FallsWithDelayPeriodAndCouplingDampingAndGrowsWithTheDevices) {
-  Seeded seeded(3);
+  Random random(3);
   for (int i = 0; i < 1000; ++i) {
-    const double b = seeded.between(1, 20), own = seeded.between(0, 0.9);
-    const double period = seeded.between(1e-4, 2e-3), delay = seeded.between(0, 5e-3);
+    const double b = random.uniform(1, 20), own = random.uniform(0, 0.9);
+    const double period = random.uniform(1e-4, 2e-3), delay = random.uniform(0, 5e-3);
     const double largest = largest_stiffness(b, own, period, delay);
     EXPECT_GT(largest, 0);
     EXPECT_LT(largest, largest_stiffness(1.01 * b, own, period, delay));
@@ -61,15 +61,15 @@ TEST(StabilityBorder, FallsWithDelayPeriodAndCouplingDampingAndGrowsWithTheDevic
 }
 
 TEST(StabilityBorder, OfASpringIsThatOfThePassivityConditionAndWithADamperWithinIt) {
-  Seeded seeded(4);
+  Random random(4);
   for (int i = 0; i < 100; ++i) {
-    const double b = seeded.between(0.5, 20), period = seeded.between(1e-4, 2e-3);
-    const int delay = static_cast<int>(seeded.below(11));
+    const double b = random.uniform(0.5, 20), period = random.uniform(1e-4, 2e-3);
+    const int delay = static_cast<int>(random.below(11));
     const double spring = largest_stiffness(b, 0, period, delay * period);
     // The lowest frequency looked at is 1/4000 of the way; the largest value is at 0.
     EXPECT_NEAR(damping_needed(spring, 0, period, delay) / b, 1, 1e-4);
 
-    const double own = seeded.between(-0.95, 0.95) * b;
+    const double own = random.uniform(-0.95, 0.95) * b;
     const double damped = largest_stiffness(b, own, period, delay * period);
     EXPECT_LE(damping_needed(damped, own, period, delay), b * (1 + 1e-9));
   }
@@ -151,18 +151,18 @@ TEST(ClampCoupling, LeavesNothingToADeviceWithoutDamping) {
 }
 
 TEST(ClampCoupling, WhatItGivesIsPassiveForAnythingAsked) {
-  Seeded seeded(5);
+  Random random(5);
   for (int i = 0; i < 100; ++i) {
-    const int periods = static_cast<int>(seeded.below(6));
-    const double period = seeded.between(1e-4, 2e-3);
-    const DeviceMechanics device{.damping = seeded.between(0.1, 20),
-                                 .angular_damping = seeded.between(1e-3, 0.1),
+    const int periods = static_cast<int>(random.below(6));
+    const double period = random.uniform(1e-4, 2e-3);
+    const DeviceMechanics device{.damping = random.uniform(0.1, 20),
+                                 .angular_damping = random.uniform(1e-3, 0.1),
                                  .delay = periods * period};
     CouplingSettings asked = kCoupling;
-    asked.stiffness = seeded.between(0, 1e5);
-    asked.damping = seeded.between(0, 40);
-    asked.angular_stiffness = seeded.between(0, 200);
-    asked.angular_damping = seeded.between(0, 0.2);
+    asked.stiffness = random.uniform(0, 1e5);
+    asked.damping = random.uniform(0, 40);
+    asked.angular_stiffness = random.uniform(0, 200);
+    asked.angular_damping = random.uniform(0, 0.2);
     const CouplingSettings given = clamp_coupling(asked, device, period).settings;
     EXPECT_LE(damping_needed(given.stiffness, given.damping, period, periods), device.damping);
     EXPECT_LE(damping_needed(given.angular_stiffness, given.angular_damping, period, periods),

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <thread>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -67,12 +67,12 @@ TEST(TickSchedule, LeavesOutTheTicksThatWereSleptThrough) {
 }
 
 TEST(TickSchedule, CountsEachTickOnceAsBegunOrMissed) {
-  Seeded seeded(4);
+  Random random(4);
   for (const Nanoseconds period : {1ns, 100000ns, 333333ns, 1000000ns}) {
     TickSchedule schedule(kStart, period);
     TickSchedule::Time now = kStart;
     const auto some = [&](double most) {
-      const double periods = most * seeded.between(0, 1) * seeded.between(0, 1);
+      const double periods = most * random.uniform(0, 1) * random.uniform(0, 1);
       return Nanoseconds(static_cast<std::int64_t>(periods * static_cast<double>(period.count())));
     };
     std::uint64_t begun = 0, missed = 0;

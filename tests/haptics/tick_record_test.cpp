@@ -29,10 +29,10 @@ TEST(TickRecord, HoldsATickInPlainNumbers) {
 }
 
 TEST(TickRecord, PosesComeBackBitForBit) {
-  Seeded seeded(21);
+  Random random(21);
   Placement placement;
   for (int i = 0; i < 500; ++i) {
-    placement = placement.moved(six(seeded.point(-0.01, 0.01), seeded.point(-1, 1)));
+    placement = placement.moved(six(random.point(-0.01, 0.01), random.point(-1, 1)));
     const TickRecord::Pose numbers = to_numbers(placement);
     EXPECT_EQ(numbers[1], placement.translation.y());
     EXPECT_EQ(numbers[3 + 1], placement.rotation(1, 0));  // column by column

@@ -9,7 +9,7 @@
 
 #include "ist/haptics/recording.h"
 #include "support/errors.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -43,15 +43,15 @@ TEST(TickRing, GivesNothingWhenEmptyAndTakesNothingWhenFull) {
 TEST(TickRing, KeepsTheOrderRoundAndRound) {
   TickRing<std::uint64_t> ring(8);
   std::deque<std::uint64_t> model;
-  Seeded seeded(3);
+  Random random(3);
   std::uint64_t next = 0;
   for (int turn = 0; turn < 5000; ++turn) {
-    for (std::uint32_t n = seeded.below(12); n > 0; --n) {
+    for (std::uint32_t n = random.below(12); n > 0; --n) {
       ASSERT_EQ(ring.push(next), model.size() < 8);
       if (model.size() < 8) model.push_back(next);
       ++next;
     }
-    std::vector<std::uint64_t> out(seeded.below(12));
+    std::vector<std::uint64_t> out(random.below(12));
     const std::size_t count = ring.pop(out);
     ASSERT_EQ(count, std::min(out.size(), model.size()));
     for (std::size_t i = 0; i < count; ++i) {

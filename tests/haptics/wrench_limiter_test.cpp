@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -30,19 +30,19 @@ WrenchLimiter started(const SafetySettings& settings = kSettings) {
 }
 
 // Small, large and huge numbers, now and then what is none.
-Vector6 any_wrench(Seeded& seeded) {
+Vector6 any_wrench(Random& random) {
   Vector6 w;
-  const double scale = std::pow(10.0, seeded.between(-3, 3));
-  for (int i = 0; i < 6; ++i) w[i] = seeded.between(-scale, scale);
-  switch (seeded.below(60)) {
+  const double scale = std::pow(10.0, random.uniform(-3, 3));
+  for (int i = 0; i < 6; ++i) w[i] = random.uniform(-scale, scale);
+  switch (random.below(60)) {
     case 0:
-      w[seeded.below(6)] = kNan;
+      w[random.below(6)] = kNan;
       break;
     case 1:
-      w[seeded.below(6)] = seeded.below(2) == 0 ? kInfinity : -kInfinity;
+      w[random.below(6)] = random.below(2) == 0 ? kInfinity : -kInfinity;
       break;
     case 2:
-      w[seeded.below(6)] = std::numeric_limits<double>::max();
+      w[random.below(6)] = std::numeric_limits<double>::max();
       break;
     case 3:
       w.setConstant(-std::numeric_limits<double>::max());
@@ -57,7 +57,7 @@ Vector6 any_wrench(Seeded& seeded) {
 }
 
 TEST(WrenchLimiter, KeepsItsBoundsForAnyInput) {
-  Seeded seeded(1);
+  Random random(1);
   const auto& s = kSettings;
   std::uint64_t faults = 0;
   int at_the_limit = 0, at_the_slew = 0;
@@ -65,8 +65,8 @@ TEST(WrenchLimiter, KeepsItsBoundsForAnyInput) {
   Vector6 last = Vector6::Zero(), wanted = last;
   for (int i = 0; i < 200000; ++i) {
     // Most stay for a while, so that the output arrives.
-    if (seeded.below(10) == 0 || !wanted.allFinite()) wanted = any_wrench(seeded);
-    const double dt = seeded.between(1e-4, 1e-2);
+    if (random.below(10) == 0 || !wanted.allFinite()) wanted = any_wrench(random);
+    const double dt = random.uniform(1e-4, 1e-2);
     const Vector6 output = guard.limit(wanted, dt);
     ASSERT_TRUE(output.allFinite()) << wanted;
     const double force = output.head<3>().norm(), torque = output.tail<3>().norm();
@@ -92,15 +92,15 @@ TEST(WrenchLimiter, KeepsItsBoundsForAnyInput) {
 }
 
 TEST(WrenchLimiter, PassesBitForBitWhatBreaksNoLimit) {
-  Seeded seeded(2);
+  Random random(2);
   SafetySettings settings = kSettings;
   settings.force_slew = 2 * settings.max_force / kDt;
   settings.torque_slew = 2 * settings.max_torque / kDt;
   WrenchLimiter guard = started(settings);
   for (int i = 0; i < 10000; ++i) {
     Vector6 wanted;
-    wanted << seeded.between(0, settings.max_force) * seeded.direction(),
-        seeded.between(0, settings.max_torque) * seeded.direction();
+    wanted << random.uniform(0, settings.max_force) * random.direction(),
+        random.uniform(0, settings.max_torque) * random.direction();
     ASSERT_EQ(guard.limit(wanted, kDt), wanted);
   }
   const Vector6 at_the_limit = wrench(3, 0, -4, 0, 0.25, 0);

@@ -4,7 +4,7 @@
 
 #include "ist/mesh/nearest_point.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -36,19 +36,19 @@ void expect_nearest(const Corners& triangle, const Eigen::Vector3d& from, double
 }
 
 TEST(NearestOnTriangle, IsAsNearAsTheExactNearestPoint) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 5000; ++i) {
-    const Corners triangle{seeded.point(-1, 1), seeded.point(-1, 1), seeded.point(-1, 1)};
-    expect_nearest(triangle, seeded.point(-2, 2), 1e-12);
+    const Corners triangle{random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
+    expect_nearest(triangle, random.point(-2, 2), 1e-12);
   }
 }
 
 TEST(NearestOnTriangle, IsRightWherePointsLieOnCornersEdgesAndAboveThem) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 5000; ++i) {
-    const Corners triangle{seeded.point_on_grid(-2, 2, 1), seeded.point_on_grid(-2, 2, 1),
-                           seeded.point_on_grid(-2, 2, 1)};  // many of them degenerate
-    expect_nearest(triangle, seeded.point_on_grid(-3, 3, 0.5), 1e-13);
+    const Corners triangle{random.point_on_grid(-2, 2, 1), random.point_on_grid(-2, 2, 1),
+                           random.point_on_grid(-2, 2, 1)};  // many of them degenerate
+    expect_nearest(triangle, random.point_on_grid(-3, 3, 0.5), 1e-13);
   }
 }
 
@@ -67,10 +67,10 @@ TEST(NearestOnTriangle, NamesTheFeature) {
 }
 
 TEST(NearestOnTriangle, OfASegmentOrAPointIsThatOfTheSegmentOrThePoint) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
-    const Eigen::Vector3d from = seeded.point(-2, 2);
+    const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
+    const Eigen::Vector3d from = random.point(-2, 2);
     expect_nearest({a, a, a}, from, 1e-15);
     expect_nearest({a, a, b}, from, 1e-13);
     expect_nearest({a, b, a}, from, 1e-13);
@@ -80,11 +80,11 @@ TEST(NearestOnTriangle, OfASegmentOrAPointIsThatOfTheSegmentOrThePoint) {
 
 // The three corners on a line but for rounding, in any order.
 TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
-  test::Seeded seeded(4);
+  test::Random random(4);
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
-    const Eigen::Vector3d between = a + seeded.between(0, 1) * (b - a);
-    const Eigen::Vector3d from = seeded.point(-2, 2);
+    const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
+    const Eigen::Vector3d between = a + random.uniform(0, 1) * (b - a);
+    const Eigen::Vector3d from = random.point(-2, 2);
     expect_nearest({a, b, between}, from, 1e-7);
     expect_nearest({between, a, b}, from, 1e-7);
     expect_nearest({b, between, a}, from, 1e-7);
@@ -92,11 +92,11 @@ TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
 }
 
 TEST(NearestOnTriangle, OfASliverOfAspectAMillionIsRightToAThousandthOfItsWidth) {
-  test::Seeded seeded(5);
+  test::Random random(5);
   for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
-    const Eigen::Vector3d c = a + seeded.between(0, 1) * (b - a) + 1e-6 * seeded.direction();
-    expect_nearest({a, b, c}, seeded.point(-2, 2), 1e-9);
+    const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
+    const Eigen::Vector3d c = a + random.uniform(0, 1) * (b - a) + 1e-6 * random.direction();
+    expect_nearest({a, b, c}, random.point(-2, 2), 1e-9);
   }
 }
 

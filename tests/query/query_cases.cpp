@@ -7,24 +7,6 @@
 
 namespace ist::test {
 
-Eigen::Vector3d Random::direction() {
-  while (true) {
-    const Eigen::Vector3d p = point(-1, 1);
-    const double length2 = p.squaredNorm();
-    if (length2 > 0.01 && length2 <= 1) return p / std::sqrt(length2);
-  }
-}
-
-Eigen::Matrix3d Random::rotation() {
-  const Eigen::Vector3d x = direction();
-  Eigen::Vector3d y = x.cross(direction());
-  while (y.squaredNorm() < 0.01) y = x.cross(direction());
-  y /= std::sqrt(y.squaredNorm());
-  Eigen::Matrix3d rotation;
-  rotation << x, y, x.cross(y);
-  return rotation;
-}
-
 TriangleMesh random_mesh(Random& random) {
   switch (random.below(5)) {
     case 0:

@@ -1,36 +1,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
-#include <random>
 #include <vector>
 
 #include "ist/mesh/mesh.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
+#include "support/random.h"
 
 namespace ist::test {
-
-/// Numbers from a seed, the same with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  /// In [low, high), a multiple of (high - low) / 2^32.
-  double uniform(double low, double high) {
-    return low + (high - low) * 0x1p-32 * static_cast<double>(engine_() >> 32);
-  }
-  /// Below `count`.
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
-  Eigen::Vector3d point(double low, double high) {
-    const double x = uniform(low, high), y = uniform(low, high), z = uniform(low, high);
-    return {x, y, z};
-  }
-  Eigen::Vector3d direction();
-  Eigen::Matrix3d rotation();
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// Small meshes of all kinds: spheres, boxes, soups, single triangles, slivers.
 [[nodiscard]] TriangleMesh random_mesh(Random& random);

@@ -80,7 +80,7 @@ TEST_P(Load, GivesTheSameAnswersAsLastTime) {
   ContactManifold points(fixed, moving, query.policy());
   std::vector<LeafPair> leaf_pairs(1 << 17);
   std::vector<TrianglePair> triangles(1 << 14);
-  Random random(7);
+  Random random(7, 32);  // as the golden numbers were made
   std::uint64_t hash = 0, wrong = 0;
   const auto take = [&hash](const void* data, std::size_t bytes) {
     hash = XXH3_64bits_withSeed(data, bytes, hash);

@@ -11,7 +11,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "stability/hard_pair.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -29,11 +29,11 @@ struct Shape {
 
 // A millionth as wide as they are long.
 TriangleMesh slivers() {
-  Seeded seeded(1);
+  Random random(1);
   TriangleMesh mesh;
   for (int i = 0; i < 12; ++i) {
-    const Vector3d a = seeded.point(-0.7, 0.7), along = seeded.direction();
-    const Vector3d third = a + seeded.between(0, 1) * along + 1e-6 * seeded.direction();
+    const Vector3d a = random.point(-0.7, 0.7), along = random.direction();
+    const Vector3d third = a + random.uniform(0, 1) * along + 1e-6 * random.direction();
     mesh = joined(mesh, triangle(a, a + along, third));
   }
   return mesh;
@@ -50,10 +50,10 @@ TriangleMesh spanning() {
 
 // Points, segments, three corners on a line, and two equal indices.
 TriangleMesh without_area() {
-  Seeded seeded(2);
+  Random random(2);
   TriangleMesh mesh;
   for (int i = 0; i < 5; ++i) {
-    const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
+    const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     mesh = joined(mesh, triangle(a, a, a));
     mesh = joined(mesh, triangle(a, b, b));
     mesh = joined(mesh, triangle(a, b, 0.5 * (a + b)));
@@ -72,11 +72,11 @@ TriangleMesh duplicated() {
 }
 
 TriangleMesh self_intersecting() {
-  Seeded seeded(3);
+  Random random(3);
   TriangleMesh mesh = joined(box({-1, -0.3, -0.3}, {1, 0.4, 0.4}), icosphere(1, 0.8));
   for (int i = 0; i < 6; ++i) {
-    const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
-    mesh = joined(mesh, triangle(a, b, seeded.point(-1, 1)));
+    const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
+    mesh = joined(mesh, triangle(a, b, random.point(-1, 1)));
   }
   return mesh;
 }

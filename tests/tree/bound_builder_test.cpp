@@ -14,7 +14,7 @@
 #include "ist/models/models.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
@@ -125,11 +125,11 @@ TEST(Bounds, OfABoxOnThePlanesOfTheGrid) {
 }
 
 TEST(Bounds, OfRandomTrianglesSliversSegmentsAndPoints) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   TriangleMesh mesh;
   for (int i = 0; i < 12; ++i) {
-    const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1), c = seeded.point(-1, 1);
-    const Vector3d between = a + seeded.between(0, 1) * (b - a);
+    const Vector3d a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);
+    const Vector3d between = a + random.uniform(0, 1) * (b - a);
     const Vector3d third[] = {c, between, between + 1e-6 * c, a};
     mesh = test::joined(mesh, test::triangle(a, i % 6 == 5 ? a : b, third[i % 4]));
   }
@@ -153,9 +153,9 @@ TEST(Bounds, OfTrianglesMuchSmallerAndMuchLargerThanVoxels) {
 
 // Segments whose radius is a whole number of units, but for what their lattice coordinates round.
 TEST(Bounds, HoldWhatRoundingHides) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 20; ++i) {
-    const double from = seeded.between(1e-3, 1e-2), to = from + seeded.between(0.1, 1);
+    const double from = random.uniform(1e-3, 1e-2), to = from + random.uniform(0.1, 1);
     expect_bounds(test::triangle({from, 0, 0}, {to, 0, 0}, {from, 0, 0}), to - from);
   }
 }

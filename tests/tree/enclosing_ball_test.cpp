@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -39,41 +39,41 @@ void expect_small_balls(const Points& points) {
 }
 
 TEST(EnclosingBall, OfRandomPoints) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int round = 0; round < 200; ++round) {
-    Points points(1 + seeded.below(40));
-    for (Vector3d& p : points) p = seeded.point(-1, 1);
+    Points points(1 + random.below(40));
+    for (Vector3d& p : points) p = random.point(-1, 1);
     expect_small_balls(points);
   }
 }
 
 TEST(EnclosingBall, OfPointsInAPlane) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int round = 0; round < 60; ++round) {
-    const Vector3d u = seeded.direction(), v = seeded.direction(), at = seeded.point(-1, 1);
-    Points points(1 + seeded.below(40));
-    for (Vector3d& p : points) p = at + seeded.between(-1, 1) * u + seeded.between(-1, 1) * v;
+    const Vector3d u = random.direction(), v = random.direction(), at = random.point(-1, 1);
+    Points points(1 + random.below(40));
+    for (Vector3d& p : points) p = at + random.uniform(-1, 1) * u + random.uniform(-1, 1) * v;
     expect_small_balls(points);
   }
 }
 
 TEST(EnclosingBall, OfPointsOnALine) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int round = 0; round < 60; ++round) {
-    const Vector3d u = seeded.direction(), at = seeded.point(-1, 1);
-    Points points(1 + seeded.below(40));
-    for (Vector3d& p : points) p = at + seeded.between(-1, 1) * u;
+    const Vector3d u = random.direction(), at = random.point(-1, 1);
+    Points points(1 + random.below(40));
+    for (Vector3d& p : points) p = at + random.uniform(-1, 1) * u;
     expect_small_balls(points);
   }
 }
 
 TEST(EnclosingBall, OfPointsOnACircleOrASphere) {
-  test::Seeded seeded(4);
+  test::Random random(4);
   for (int round = 0; round < 60; ++round) {
-    Points circle(2 + seeded.below(39)), sphere(circle.size());
-    const Vector3d at = seeded.point(-1, 1);
+    Points circle(2 + random.below(39)), sphere(circle.size());
+    const Vector3d at = random.point(-1, 1);
     for (std::size_t i = 0; i < circle.size(); ++i) {
-      Vector3d direction = seeded.direction();
+      Vector3d direction = random.direction();
       sphere[i] = at + direction;
       direction[2] = 0;
       circle[i] = at + direction.normalized();
@@ -84,10 +84,10 @@ TEST(EnclosingBall, OfPointsOnACircleOrASphere) {
 }
 
 TEST(EnclosingBall, OfPointsOnAGridAndDuplicates) {
-  test::Seeded seeded(5);
+  test::Random random(5);
   for (int round = 0; round < 200; ++round) {  // many lie on one sphere exactly
-    Points points(1 + seeded.below(40));
-    for (Vector3d& p : points) p = seeded.point_on_grid(-1, 2, 1);
+    Points points(1 + random.below(40));
+    for (Vector3d& p : points) p = random.point_on_grid(-1, 2, 1);
     expect_small_balls(points);
   }
   const Vector3d p(1, 2, 3);
@@ -99,13 +99,13 @@ TEST(EnclosingBall, OfPointsOnAGridAndDuplicates) {
 }
 
 TEST(EnclosingBall, OfNearlyEqualPointsAndNeedles) {
-  test::Seeded seeded(6);
+  test::Random random(6);
   for (int round = 0; round < 100; ++round) {
-    const Vector3d at = seeded.point(-1, 1), u = seeded.direction();
-    Points cluster(2 + seeded.below(20)), needle(cluster.size());
+    const Vector3d at = random.point(-1, 1), u = random.direction();
+    Points cluster(2 + random.below(20)), needle(cluster.size());
     for (std::size_t i = 0; i < cluster.size(); ++i) {
-      cluster[i] = at + 1e-9 * seeded.point(-1, 1);
-      needle[i] = at + seeded.between(-1, 1) * u + 1e-12 * seeded.point(-1, 1);
+      cluster[i] = at + 1e-9 * random.point(-1, 1);
+      needle[i] = at + random.uniform(-1, 1) * u + 1e-12 * random.point(-1, 1);
     }
     expect_small_balls(cluster);
     expect_small_balls(needle);
@@ -113,12 +113,12 @@ TEST(EnclosingBall, OfNearlyEqualPointsAndNeedles) {
 }
 
 TEST(EnclosingBall, FarFromTheOriginAndAtAnyScale) {
-  test::Seeded seeded(7);
+  test::Random random(7);
   for (int round = 0; round < 60; ++round) {
-    const double scale = std::ldexp(1.0, static_cast<int>(seeded.below(80)) - 40);
-    Points points(1 + seeded.below(30)), far(points.size());
+    const double scale = std::ldexp(1.0, static_cast<int>(random.below(80)) - 40);
+    Points points(1 + random.below(30)), far(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vector3d p = seeded.point(-1, 1);
+      const Vector3d p = random.point(-1, 1);
       points[i] = scale * p;
       far[i] = Vector3d(1e6, -1e6, 1e6) + p;
     }
@@ -160,11 +160,11 @@ void expect_a_small_ball_round(const std::vector<Ball>& balls) {
 }
 
 TEST(SupportOfBalls, IsThatOfTheSmallestBallRoundThem) {
-  test::Seeded seeded(8);
+  test::Random random(8);
   for (int round = 0; round < 300; ++round) {
-    std::vector<Ball> balls(1 + seeded.below(30));
-    const double largest = seeded.between(0, 2);
-    for (Ball& ball : balls) ball = {seeded.point(-1, 1), seeded.between(0, largest)};
+    std::vector<Ball> balls(1 + random.below(30));
+    const double largest = random.uniform(0, 2);
+    for (Ball& ball : balls) ball = {random.point(-1, 1), random.uniform(0, largest)};
     ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(balls));
   }
 }
@@ -180,13 +180,13 @@ TEST(SupportOfBalls, OfOneThatHoldsTheOthersIsThatOne) {
 
 // In a row and in a plane, with equal radii: the balls are those of their centres, and larger.
 TEST(SupportOfBalls, OfEqualBallsInARowOrInAPlane) {
-  test::Seeded seeded(9);
+  test::Random random(9);
   for (int round = 0; round < 100; ++round) {
-    const Vector3d u = seeded.direction(), v = seeded.direction();
-    std::vector<Ball> row(2 + seeded.below(8)), plane(row.size());
+    const Vector3d u = random.direction(), v = random.direction();
+    std::vector<Ball> row(2 + random.below(8)), plane(row.size());
     for (std::size_t i = 0; i < row.size(); ++i) {
-      row[i] = {seeded.between(-1, 1) * u, 0.5};
-      plane[i] = {seeded.between(-1, 1) * u + seeded.between(-1, 1) * v, 0.5};
+      row[i] = {random.uniform(-1, 1) * u, 0.5};
+      plane[i] = {random.uniform(-1, 1) * u + random.uniform(-1, 1) * v, 0.5};
     }
     ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(row));
     ASSERT_NO_FATAL_FAILURE(expect_a_small_ball_round(plane));

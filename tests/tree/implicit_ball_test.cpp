@@ -6,7 +6,7 @@
 
 #include "ist/tree/saved_spheres.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -66,12 +66,12 @@ void expect_the_smallest_ball(const Lattice& lattice, SpherePolicy policy, int l
 // A power of two rounds nothing; thirds of a half edge do, where the table's centres have them.
 TEST(ImplicitBall, HoldsTheCubesExactlyWhereTheVoxelSizeIsAPowerOfTwo) {
   const Lattice lattice = lattice_of(10, 0.25);
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 200; ++i) {
-    const int level = static_cast<int>(seeded.below(11));
-    const std::uint64_t code = seeded.bits() % (std::uint64_t{1} << 3 * (10 - level));
+    const int level = static_cast<int>(random.below(11));
+    const std::uint64_t code = random.bits() % (std::uint64_t{1} << 3 * (10 - level));
     expect_the_smallest_ball(lattice, SpherePolicy::kSimple, level, code, 255, 0);
-    const unsigned octant = seeded.below(8);
+    const unsigned octant = random.below(8);
     const auto one = static_cast<std::uint8_t>(1u << octant);
     expect_the_smallest_ball(lattice, SpherePolicy::kTable, level, code, one, 1e-15 * 512);
   }
@@ -90,14 +90,14 @@ TEST(ImplicitBall, OfEveryMaskIsTheSmallestRoundTheChildrensCubes) {
 }
 
 TEST(ImplicitBall, HoldsTheCubesToARoundingOfTheGridsExtentAtAnySize) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 300; ++i) {
-    const int depth = static_cast<int>(seeded.below(17));
+    const int depth = static_cast<int>(random.below(17));
     const Lattice lattice = lattice_of(
-        depth, std::ldexp(seeded.between(0.5, 1), static_cast<int>(seeded.below(40)) - 20));
-    const int level = static_cast<int>(seeded.below(static_cast<std::uint32_t>(depth) + 1));
-    const std::uint64_t code = seeded.bits() % (std::uint64_t{1} << 3 * (depth - level));
-    const auto mask = static_cast<std::uint8_t>(1 + seeded.below(255));
+        depth, std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.below(40)) - 20));
+    const int level = static_cast<int>(random.below(static_cast<std::uint32_t>(depth) + 1));
+    const std::uint64_t code = random.bits() % (std::uint64_t{1} << 3 * (depth - level));
+    const auto mask = static_cast<std::uint8_t>(1 + random.below(255));
     const double slack = 0x1p-51 * lattice.edge(depth);
     for (const auto policy : {SpherePolicy::kSimple, SpherePolicy::kTable}) {
       expect_the_smallest_ball(lattice, policy, level, code, mask, slack);

@@ -10,7 +10,7 @@
 #include "ist/tree/nested_bounds.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/exact_nesting.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
@@ -19,8 +19,8 @@ namespace {
 using Eigen::Vector3d;
 
 // A normal as blocks hold it, of length 0.98 to 1.
-Vector3d packed_normal(test::Seeded& seeded) {
-  Vector3d normal = seeded.between(126.5, 127) * seeded.direction();
+Vector3d packed_normal(test::Random& random) {
+  Vector3d normal = random.uniform(126.5, 127) * random.direction();
   for (double& x : normal) x = std::floor(x + 0.5) / 128;
   return normal;
 }
@@ -45,12 +45,12 @@ void expect_support(const Ball& ball, const Slab& slab, double partner_radius,
 }
 
 TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 20'000; ++i) {
-    const Ball ball{seeded.point(-5, 5), seeded.between(0.01, 0.87)};
-    Slab slab{packed_normal(seeded), ball.radius * seeded.between(-0.6, 0.6),
-              seeded.between(0, 0.4)};
-    Vector3d normal = packed_normal(seeded);
+    const Ball ball{random.point(-5, 5), random.uniform(0.01, 0.87)};
+    Slab slab{packed_normal(random), ball.radius * random.uniform(-0.6, 0.6),
+              random.uniform(0, 0.4)};
+    Vector3d normal = packed_normal(random);
     // Every other normal is close to the slab's, to its opposite, or the same.
     if (i % 2 == 0) {
       normal = (i % 4 == 0 ? 1 : -1) * slab.normal;
@@ -59,7 +59,7 @@ TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
     }
     if (i % 100 == 99) slab = {Vector3d::Zero(), 0, 1};  // holds everything
     ASSERT_NO_FATAL_FAILURE(
-        expect_support(ball, slab, i % 3 == 0 ? 0 : kPartnerRadius, normal, seeded.point(-5, 5)));
+        expect_support(ball, slab, i % 3 == 0 ? 0 : kPartnerRadius, normal, random.point(-5, 5)));
   }
 }
 
@@ -95,7 +95,7 @@ void append_leaves(const BuiltTree& tree, int level, std::uint32_t node, std::ve
 // The greatest of all leaves, to the last bit: nothing that counts is passed over.
 TEST(LeafSearch, FindsTheGreatestOfAllLeaves) {
   const BuiltTree tree(test::icosphere(3, 1), 0.08);
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int level = 1; level <= tree.octree.depth(); ++level) {
     LeafSearch search(tree.octree, tree.bounds, level);
     for (std::uint32_t node = 0; node < tree.octree.node_count(level); node += 5) {
@@ -103,9 +103,9 @@ TEST(LeafSearch, FindsTheGreatestOfAllLeaves) {
       std::vector<Slab> slabs;
       append_leaves(tree, level, node, balls, slabs);
       search.set_node(node);
-      const Vector3d from = balls[seeded.below(static_cast<std::uint32_t>(balls.size()))].centre +
-                            seeded.between(0, 3) * seeded.direction();
-      const Vector3d normal = packed_normal(seeded);
+      const Vector3d from = balls[random.below(static_cast<std::uint32_t>(balls.size()))].centre +
+                            random.uniform(0, 3) * random.direction();
+      const Vector3d normal = packed_normal(random);
       const double length =
           std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
       double farthest = 0, highest = -HUGE_VAL;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "ist/voxel/morton.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -14,12 +14,12 @@ namespace {
 using Codes = std::vector<std::uint64_t>;
 using Masks = std::vector<std::vector<std::uint8_t>>;
 
-Codes random_codes(test::Seeded& seeded, int depth, std::size_t count) {
+Codes random_codes(test::Random& random, int depth, std::size_t count) {
   std::set<std::uint64_t> codes;
   const std::uint64_t end = std::uint64_t{1} << 3 * depth;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t code = seeded.bits() % end;
-    codes.insert({code, code ^ seeded.below(64) % end});  // siblings and cousins too
+    const std::uint64_t code = random.bits() % end;
+    codes.insert({code, code ^ random.below(64) % end});  // siblings and cousins too
   }
   return {codes.begin(), codes.end()};
 }
@@ -80,10 +80,10 @@ void expect_the_tree_of(const LinearOctree& octree, const Codes& leaves, int dep
 }
 
 TEST(LinearOctree, HasTheParentsOfItsLeavesAndNoOthers) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int depth = 1; depth <= 17; ++depth) {
     for (const std::size_t count : {1u, 10u, 300u}) {
-      const Codes leaves = random_codes(seeded, depth, count);
+      const Codes leaves = random_codes(random, depth, count);
       expect_the_tree_of(LinearOctree(leaves, depth), leaves, depth);
     }
   }
@@ -103,9 +103,9 @@ TEST(LinearOctree, FullLevelsHaveAllCodes) {
 }
 
 TEST(LinearOctree, FollowsFromItsMasks) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int depth = 0; depth <= 16; ++depth) {
-    const Codes leaves = depth == 0 ? Codes{0} : random_codes(seeded, depth, 200);
+    const Codes leaves = depth == 0 ? Codes{0} : random_codes(random, depth, 200);
     const LinearOctree octree(leaves, depth);
     const Masks masks = masks_of(octree);
     ASSERT_TRUE(LinearOctree::is_tree(masks));

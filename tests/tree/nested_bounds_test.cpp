@@ -13,7 +13,7 @@
 #include "ist/tree/bound_builder.h"
 #include "ist/voxel/voxelizer.h"
 #include "support/exact_nesting.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
@@ -105,12 +105,12 @@ TEST(NestedBounds, HoldTheirLeavesOfAFlatPatch) {
 }
 
 TEST(NestedBounds, HoldTheirLeavesOfRandomTrianglesSliversSegmentsAndPoints) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int round = 0; round < 6; ++round) {
     TriangleMesh mesh;
     for (int i = 0; i < 12; ++i) {
-      const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1), c = seeded.point(-1, 1);
-      const Vector3d between = a + seeded.between(0, 1) * (b - a);
+      const Vector3d a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);
+      const Vector3d between = a + random.uniform(0, 1) * (b - a);
       const Vector3d third[] = {c, between, between + 1e-6 * c, a};
       mesh = test::joined(mesh, test::triangle(a, i % 6 == 5 ? a : b, third[i % 4]));
     }

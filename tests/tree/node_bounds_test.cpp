@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -52,9 +52,9 @@ TEST(PackSlab, OfAPlaneIsOneUnit) {
 
 // A normal is rounded by up to half a degree: the slab of a large plane across is a little thicker.
 TEST(PackSlab, OfAPlaneAcrossIsTwoUnitsOrThree) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 100; ++i) {
-    const Vector3d u = 0.3 * seeded.direction(), v = 0.3 * seeded.direction();
+    const Vector3d u = 0.3 * random.direction(), v = 0.3 * random.direction();
     const PackedSlab slab = pack_slab(payload({-u, u, -v, v}), {0, 0, 0}, 1);
     EXPECT_LE(slab.half, 3);
   }

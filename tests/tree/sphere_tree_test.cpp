@@ -9,18 +9,18 @@
 #include "ist/tree/tree_parts.h"
 #include "support/errors.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
 namespace {
 
 TriangleMesh random_mesh(std::uint64_t seed, int triangles) {
-  test::Seeded seeded(seed);
+  test::Random random(seed);
   TriangleMesh mesh;
   for (int i = 0; i < triangles; ++i) {
     mesh = test::joined(
-        mesh, test::triangle(seeded.point(-1, 1), seeded.point(-1, 1), seeded.point(-1, 1)));
+        mesh, test::triangle(random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)));
   }
   return mesh;
 }

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -26,9 +26,9 @@ Matrix3d turned(const Vector3d& values, const Matrix3d& axes) {
                    matrix(2, 2));
 }
 
-Matrix3d random_axes(test::Seeded& seeded) {
-  const Vector3d x = seeded.direction();
-  const Vector3d y = x.cross(seeded.direction()).normalized();
+Matrix3d random_axes(test::Random& random) {
+  const Vector3d x = random.direction();
+  const Vector3d y = x.cross(random.direction()).normalized();
   Matrix3d axes;
   axes << x, y, x.cross(y);
   return axes;
@@ -68,18 +68,18 @@ TEST(SymmetricEigen, FindsTheNormalOfAPlane) {
 }
 
 TEST(SymmetricEigen, OfRandomMatricesOfAllSizesAndShapes) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 2000; ++i) {
-    const double size = std::ldexp(1.0, static_cast<int>(seeded.below(200)) - 100);
+    const double size = std::ldexp(1.0, static_cast<int>(random.below(200)) - 100);
     Vector3d values;
     for (double& value : values) {
       // Some equal, some far smaller than others, some of them 0.
-      value = size * std::ldexp(seeded.between(-1, 1), -static_cast<int>(seeded.below(3) * 20));
-      if (seeded.below(5) == 0) value = size;
-      if (seeded.below(7) == 0) value = 0;
+      value = size * std::ldexp(random.uniform(-1, 1), -static_cast<int>(random.below(3) * 20));
+      if (random.below(5) == 0) value = size;
+      if (random.below(7) == 0) value = 0;
     }
     std::sort(values.begin(), values.end());
-    expect_eigen(turned(values, random_axes(seeded)), values);
+    expect_eigen(turned(values, random_axes(random)), values);
   }
 }
 

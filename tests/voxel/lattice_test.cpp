@@ -7,7 +7,7 @@
 #include <string>
 
 #include "support/errors.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -67,12 +67,12 @@ TEST(Lattice, RefusesExtentsOfNothingAndBeyondAllMeasure) {
 }
 
 TEST(Lattice, TheSmallestSizeThatItsRefusalNamesFits) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   EXPECT_EQ(error_name([] { (void)over(65536.5, 1, 1, 1); }), "voxel-size-too-small");
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d extents =
-        std::ldexp(1.0, static_cast<int>(seeded.below(60)) - 20) * seeded.point(0.5, 1);
-    const double size = extents.maxCoeff() / 65537 / (1 + seeded.below(1000));
+        std::ldexp(1.0, static_cast<int>(random.below(60)) - 20) * random.point(0.5, 1);
+    const double size = extents.maxCoeff() / 65537 / (1 + random.below(1000));
     const auto error = error_of([&] { (void)make_lattice({0, 0, 0}, extents, size); });
     ASSERT_TRUE(error);
     ASSERT_EQ(error->code(), ErrorCode::kVoxelSizeTooSmall);
@@ -85,9 +85,9 @@ TEST(Lattice, TheSmallestSizeThatItsRefusalNamesFits) {
 }
 
 TEST(RoundUpForPeople, GivesThreeDigitsNeverLessAndHardlyMore) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 10'000; ++i) {
-    const double size = std::ldexp(seeded.between(0.5, 1), static_cast<int>(seeded.below(80)) - 40);
+    const double size = std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.below(80)) - 40);
     const double rounded = round_up_for_people(size);
     EXPECT_GE(rounded, size);
     EXPECT_LE(rounded, 1.0101 * size);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -31,9 +31,9 @@ TEST(Morton, EveryIndexOfEachAxisGoesThereAndBack) {
 }
 
 TEST(Morton, RandomCellsGoThereAndBack) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 100'000; ++i) {
-    const Cell cell{seeded.below(1u << 16), seeded.below(1u << 16), seeded.below(1u << 16)};
+    const Cell cell{random.below(1u << 16), random.below(1u << 16), random.below(1u << 16)};
     ASSERT_EQ(morton_encode(cell), interleaved(cell));
     ASSERT_EQ(morton_decode(morton_encode(cell)), cell);
   }
@@ -47,9 +47,9 @@ TEST(Morton, OctantsCountXFirstThenYThenZ) {
 }
 
 TEST(Morton, TheParentsCodeIsTheCodeWithoutTheOctant) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 1000; ++i) {
-    const Cell cell{seeded.below(1u << 16), seeded.below(1u << 16), seeded.below(1u << 16)};
+    const Cell cell{random.below(1u << 16), random.below(1u << 16), random.below(1u << 16)};
     EXPECT_EQ(morton_encode(cell) >> 3, morton_encode({cell[0] / 2, cell[1] / 2, cell[2] / 2}));
     EXPECT_EQ(morton_encode(cell) & 7, cell[0] % 2 + 2 * (cell[1] % 2) + 4 * (cell[2] % 2));
   }

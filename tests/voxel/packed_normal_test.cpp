@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -18,10 +18,10 @@ double angle_in_degrees(const Vector3d& a, const Vector3d& b) {
 Vector3d stored(const Vector3d& normal) { return PackedNormal(normal, 1).direction(); }
 
 TEST(PackedNormal, ADirectionComesBackWithinSixHundredthsOfADegree) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   double worst = 0;
   for (int i = 0; i < 300'000; ++i) {
-    const Vector3d normal = seeded.direction();
+    const Vector3d normal = random.direction();
     const Vector3d back = stored(normal);
     worst = std::max(worst, angle_in_degrees(normal, back));
     ASSERT_NEAR(back.norm(), 1, 1e-15);
@@ -30,10 +30,10 @@ TEST(PackedNormal, ADirectionComesBackWithinSixHundredthsOfADegree) {
 }
 
 TEST(PackedNormal, DirectionsNearTheFoldsComeBackToo) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 30'000; ++i) {
-    Vector3d normal = seeded.direction();
-    normal[static_cast<Eigen::Index>(seeded.below(3))] *= i % 4 == 0 ? 0 : 1e-4;
+    Vector3d normal = random.direction();
+    normal[static_cast<Eigen::Index>(random.below(3))] *= i % 4 == 0 ? 0 : 1e-4;
     normal.normalize();
     ASSERT_LE(angle_in_degrees(normal, stored(normal)), 0.06) << normal.transpose();
   }
@@ -49,9 +49,9 @@ TEST(PackedNormal, AxesComeBackExactly) {
 }
 
 TEST(PackedNormal, MirroringANormalMirrorsWhatIsStored) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int i = 0; i < 100'000; ++i) {
-    const Vector3d normal = seeded.direction();
+    const Vector3d normal = random.direction();
     for (int axis = 0; axis < 3; ++axis) {
       const auto mirrored = [axis](Vector3d v) {
         v[axis] = -v[axis];
@@ -65,10 +65,10 @@ TEST(PackedNormal, MirroringANormalMirrorsWhatIsStored) {
 }
 
 TEST(PackedNormal, CoherenceIsTheLengthOfTheSumByTheWeight) {
-  test::Seeded seeded(4);
+  test::Random random(4);
   for (int i = 0; i < 10'000; ++i) {
-    const double weight = seeded.between(0.1, 100), coherence = seeded.between(0, 1);
-    const Vector3d sum = coherence * weight * seeded.direction();
+    const double weight = random.uniform(0.1, 100), coherence = random.uniform(0, 1);
+    const Vector3d sum = coherence * weight * random.direction();
     const PackedNormal packed(sum, weight);
     EXPECT_NEAR(packed.coherence(), coherence, 0.5 / 255 + 1e-12);
     EXPECT_TRUE(packed.coherence() == 0 || angle_in_degrees(sum, packed.direction()) <= 0.06);
@@ -91,9 +91,9 @@ TEST(PackedNormal, WhatHasNoDirectionIsZeroAndNeverNaN) {
 }
 
 TEST(PackedNormal, AnyWordIsANormal) {
-  test::Seeded seeded(5);
+  test::Random random(5);
   for (int i = 0; i < 200'000; ++i) {
-    const auto word = static_cast<std::uint32_t>(seeded.bits());
+    const auto word = static_cast<std::uint32_t>(random.bits());
     const PackedNormal normal = PackedNormal::from_word(word);
     ASSERT_EQ(normal.word(), word);
     ASSERT_NEAR(normal.direction().norm(), (word & 255) == 0 ? 0 : 1, 1e-15);

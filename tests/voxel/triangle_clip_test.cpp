@@ -7,7 +7,7 @@
 
 #include "ist/voxel/morton.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist {
 namespace {
@@ -50,28 +50,28 @@ void expect_the_exact_clip(const Corners& triangle, const Eigen::Vector3d& low,
 }
 
 TEST(ClipTriangle, LeavesTheCornersOfTheExactClip) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   for (int i = 0; i < 3000; ++i) {
     const double size = i % 2 == 0 ? 1 : 4;
-    const Corners triangle{seeded.point(-size, size), seeded.point(-size, size),
-                           seeded.point(-size, size)};
+    const Corners triangle{random.point(-size, size), random.point(-size, size),
+                           random.point(-size, size)};
     expect_the_exact_clip(triangle, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 1e-11);
   }
 }
 
 TEST(ClipTriangle, CutsCornersAndEdgesThatLieOnThePlanesOfTheBox) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   for (int i = 0; i < 3000; ++i) {
-    const Corners triangle{seeded.point_on_grid(-2, 3, 0.5), seeded.point_on_grid(-2, 3, 0.5),
-                           seeded.point_on_grid(-2, 3, 0.5)};
+    const Corners triangle{random.point_on_grid(-2, 3, 0.5), random.point_on_grid(-2, 3, 0.5),
+                           random.point_on_grid(-2, 3, 0.5)};
     expect_the_exact_clip(triangle, {0, 0, 0}, {1, 1, 1}, 1e-14);
   }
 }
 
 TEST(ClipTriangle, KeepsTheTurnAndTheAreas) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Corners triangle{seeded.point(-2, 2), seeded.point(-2, 2), seeded.point(-2, 2)};
+    const Corners triangle{random.point(-2, 2), random.point(-2, 2), random.point(-2, 2)};
     ClippedTriangle clipped;
     clip_triangle(triangle, {-1, -1, -1}, {1, 1, 1}, clipped);
     if (clipped.count == 0) continue;
@@ -106,14 +106,14 @@ TEST(ClipTriangle, TakesPointsAndSegments) {
 }
 
 TEST(ClipTriangle, NeverLeavesMoreCornersThanThereIsRoomFor) {
-  test::Seeded seeded(4);
+  test::Random random(4);
   int most = 0;
   for (int i = 0; i < 200'000; ++i) {
     // Slivers along the planes of the box are where rounding adds corners.
-    Corners triangle{seeded.point(-2, 2), seeded.point(-2, 2), seeded.point(-2, 2)};
-    if (i % 2 == 0) triangle[2] = triangle[0] + seeded.between(0, 1) * (triangle[1] - triangle[0]);
+    Corners triangle{random.point(-2, 2), random.point(-2, 2), random.point(-2, 2)};
+    if (i % 2 == 0) triangle[2] = triangle[0] + random.uniform(0, 1) * (triangle[1] - triangle[0]);
     if (i % 3 == 0) {
-      for (Eigen::Vector3d& p : triangle) p[0] = 1 + seeded.between(-4e-16, 4e-16);
+      for (Eigen::Vector3d& p : triangle) p[0] = 1 + random.uniform(-4e-16, 4e-16);
     }
     ClippedTriangle clipped;
     clip_triangle(triangle, {-1, -1, -1}, {1, 1, 1}, clipped);
@@ -126,16 +126,16 @@ TEST(ClipTriangle, NeverLeavesMoreCornersThanThereIsRoomFor) {
 }
 
 TEST(TriangleSlicer, GivesWhatClippingTheWholeTriangleGives) {
-  test::Seeded seeded(5);
+  test::Random random(5);
   for (int i = 0; i < 300; ++i) {
-    const Corners triangle{seeded.point(0, 6), seeded.point(0, 6), seeded.point(0, 6)};
+    const Corners triangle{random.point(0, 6), random.point(0, 6), random.point(0, 6)};
     const double pad = i % 2 == 0 ? 0 : 1e-3;
     TriangleSlicer slicer(triangle, pad);
     for (int call = 0; call < 100; ++call) {
       // In order of z, y, x at first, then anyhow: the answer must not depend on it.
       const auto n = static_cast<std::uint32_t>(call);
       const Cell cell = call < 50 ? Cell{n % 4, n / 4 % 4, n / 16}
-                                  : Cell{seeded.below(6), seeded.below(6), seeded.below(6)};
+                                  : Cell{random.below(6), random.below(6), random.below(6)};
       const Eigen::Vector3d low(cell[0], cell[1], cell[2]);
       const std::vector<Eigen::Vector3d> sliced =
           corners_of(slicer.cube(cell[0], cell[1], cell[2]));

@@ -8,7 +8,7 @@
 
 #include "ist/voxel/voxelizer.h"
 #include "support/exact.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
@@ -57,12 +57,12 @@ void add(TriangleMesh& mesh, const Vector3d& a, const Vector3d& b, const Vector3
 }
 
 TriangleMesh random_triangles(std::uint64_t seed, int count) {
-  test::Seeded seeded(seed);
+  test::Random random(seed);
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
-    const Vector3d at = seeded.point(-1, 1);
+    const Vector3d at = random.point(-1, 1);
     const double size = i % 5 == 0 ? 2 : 0.4;
-    add(mesh, at, at + size * seeded.point(-1, 1), at + size * seeded.point(-1, 1));
+    add(mesh, at, at + size * random.point(-1, 1), at + size * random.point(-1, 1));
   }
   return mesh;
 }
@@ -75,36 +75,36 @@ TEST(VoxelizerExact, RandomTriangles) {
 }
 
 TEST(VoxelizerExact, SliversOfAspectAMillion) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   TriangleMesh mesh;
   for (int i = 0; i < 60; ++i) {
-    const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
-    add(mesh, a, b, a + seeded.between(0, 1) * (b - a) + 1e-6 * seeded.direction());
-    add(mesh, a, b, a + 1e-6 * seeded.direction());
+    const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
+    add(mesh, a, b, a + random.uniform(0, 1) * (b - a) + 1e-6 * random.direction());
+    add(mesh, a, b, a + 1e-6 * random.direction());
   }
   expect_exactly_the_voxels(mesh, 0.07);
 }
 
 TEST(VoxelizerExact, PointsSegmentsAndNeedles) {
-  test::Seeded seeded(2);
+  test::Random random(2);
   TriangleMesh mesh;
   for (int i = 0; i < 60; ++i) {
-    const Vector3d a = seeded.point(-1, 1), b = seeded.point(-1, 1);
+    const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     add(mesh, a, a, a);
     add(mesh, a, b, b);
     add(mesh, a, b, a);
-    add(mesh, a, b, a + seeded.between(0, 1) * (b - a));
+    add(mesh, a, b, a + random.uniform(0, 1) * (b - a));
   }
   expect_exactly_the_voxels(mesh, 0.09);
 }
 
 // Corners and faces on the planes of the grid, where closed cubes on both sides count.
 TEST(VoxelizerExact, CornersOnThePlanesOfTheGrid) {
-  test::Seeded seeded(3);
+  test::Random random(3);
   for (const double size : {1.0, 0.1, 0.7}) {
     TriangleMesh mesh = test::triangle({0, 0, 0}, {8 * size, 0, 0}, {0, 8 * size, 8 * size});
     for (int i = 0; i < 60; ++i) {
-      const auto corner = [&] { return Vector3d(size * seeded.point_on_grid(0, 9, 1)); };
+      const auto corner = [&] { return Vector3d(size * random.point_on_grid(0, 9, 1)); };
       const Vector3d a = corner(), b = corner(), c = corner();
       add(mesh, a, b, c);
     }

@@ -8,7 +8,7 @@
 
 #include "ist/base/parallel.h"
 #include "support/errors.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist {
@@ -125,12 +125,12 @@ TEST(VoxelNormals, AreWeightedByTheAreaInsideTheVoxel) {
 
 // Coordinates are multiples of powers of two, so that mirroring them loses nothing.
 TEST(VoxelNormals, OfAMirroredMeshAreMirrored) {
-  test::Seeded seeded(1);
+  test::Random random(1);
   TriangleMesh mesh = test::box({0, 0, 0}, {8, 8, 8});
   for (int i = 0; i < 200; ++i) {
-    const Vector3d a = seeded.point_on_grid(1, 6, 0.125);
-    mesh = test::joined(mesh, test::triangle(a, a + seeded.point_on_grid(0, 2, 0.125),
-                                             a + seeded.point_on_grid(0, 2, 0.125)));
+    const Vector3d a = random.point_on_grid(1, 6, 0.125);
+    mesh = test::joined(mesh, test::triangle(a, a + random.point_on_grid(0, 2, 0.125),
+                                             a + random.point_on_grid(0, 2, 0.125)));
   }
   TriangleMesh mirrored = test::inside_out(mesh);
   for (Vector3d& vertex : mirrored.vertices) vertex[0] = -vertex[0];

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -13,14 +13,14 @@ namespace {
 using cli::PolyData;
 
 PolyData sample_body(const TriangleMesh& mesh, std::uint64_t seed) {
-  Seeded random(seed);
+  Random random(seed);
   PolyData data = cli::poly_data(mesh);
   data.normals = cli::vertex_normals(data);
   std::vector<float> distances;
   std::vector<std::int32_t> triangles;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const bool known = random.below(4) != 0;
-    distances.push_back(known ? static_cast<float>(random.between(-2, 2)) : std::nanf(""));
+    distances.push_back(known ? static_cast<float>(random.uniform(-2, 2)) : std::nanf(""));
     triangles.push_back(static_cast<std::int32_t>(random.below(1u << 31)));
     data.colours.push_back({static_cast<std::uint8_t>(random.below(256)),
                             static_cast<std::uint8_t>(random.below(256)),
@@ -34,7 +34,7 @@ PolyData sample_body(const TriangleMesh& mesh, std::uint64_t seed) {
   data.point_arrays = {{"Signed", std::move(distances)}, {"Triangle", std::move(triangles)}};
   std::vector<float> areas;
   for (std::size_t i = 0; i < data.cell_count(); ++i) {
-    areas.push_back(static_cast<float>(random.between(0, 1)));
+    areas.push_back(static_cast<float>(random.uniform(0, 1)));
   }
   data.cell_arrays = {{"Area", std::move(areas)}};
   return data;

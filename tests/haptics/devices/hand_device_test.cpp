@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "support/errors.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -158,12 +158,12 @@ TEST(HandDevice, TellsWholeStepsOfItsEncodersRoundedDown) {
   s.plan[0].pose.translation = {0.1, 0.2, -0.3};
   s.plan[0].pose.rotation = Eigen::AngleAxisd(2, kAxis).toRotationMatrix();
   HandDevice hand(s);
-  Seeded seeded(9);
+  Random random(9);
   const Placement start = *hand.read();
   EXPECT_EQ(start.translation, s.plan[0].pose.translation);
   int moved = 0, turned = 0;
   for (int tick = 0; tick < 400; ++tick) {
-    hand.write(both(seeded.point(-4, 4), seeded.point(-0.02, 0.02)), kDt);
+    hand.write(both(random.point(-4, 4), random.point(-0.02, 0.02)), kDt);
     const Placement seen = *hand.read();
     const Vector6 exact = motion_between(s.plan[0].pose, hand.pose());
     const Vector6 told = motion_between(s.plan[0].pose, seen);
@@ -223,11 +223,11 @@ TEST(HandDevice, HoldsEachWrenchUntilTheNextIsFelt) {
   s.arm_stiffness = s.arm_angular_stiffness = 0;
   s.mechanics.delay = 2.5 * kDt;
   HandDevice hand(s);
-  Seeded seeded(10);
+  Random random(10);
   std::vector<double> forces;
   double impulse = 0;
   for (int tick = 0; tick < 300; ++tick) {
-    forces.push_back(seeded.between(-1, 1));
+    forces.push_back(random.uniform(-1, 1));
     hand.write(both({0, forces.back(), 0}, {0, 0, 0}), kDt);
     if (tick >= 3) impulse += 0.5 * kDt * forces[static_cast<std::size_t>(tick) - 3];
     if (tick >= 2) impulse += 0.5 * kDt * forces[static_cast<std::size_t>(tick) - 2];
@@ -266,14 +266,14 @@ TEST(HandDevice, GainsNoEnergyWhenNothingDrivesIt) {
 }
 
 TEST(HandDevice, GainsWhatTheWrenchGivesAndLosesWhatIsDamped) {
-  Seeded seeded(11);
+  Random random(11);
   HandDevice hand(undamped()), damped(settings());
   HandSettings own = settings();
   own.arm_damping = own.arm_angular_damping = 0;
   HandDevice loose(own);
   double scale = 0;
   for (int tick = 0; tick < 1000; ++tick) {
-    const Vector6 wrench = both(seeded.point(-5, 5), seeded.point(-0.05, 0.05));
+    const Vector6 wrench = both(random.point(-5, 5), random.point(-0.05, 0.05));
     hand.write(wrench, kDt);
     damped.write(wrench, kDt);
     scale = std::max(scale, hand.energy());
@@ -293,9 +293,9 @@ TEST(HandDevice, IsTheSameEveryTime) {
     HandSettings s = settings();
     s.mechanics.delay = 0.8e-3;
     HandDevice hand = released(s, 0.01, 0.5);
-    Seeded seeded(12);
+    Random random(12);
     for (int tick = 0; tick < 200; ++tick) {
-      hand.write(both(seeded.point(-5, 5), seeded.point(-0.05, 0.05)), kDt);
+      hand.write(both(random.point(-5, 5), random.point(-0.05, 0.05)), kDt);
     }
     return hand;
   };

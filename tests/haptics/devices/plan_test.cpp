@@ -8,7 +8,7 @@
 
 #include "ist/haptics/devices/device.h"
 #include "support/errors.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -18,15 +18,15 @@ Placement placement(double angle, const Eigen::Vector3d& axis, const Eigen::Vect
 }
 
 // Waypoints at uneven times, with turns of up to 115 degrees between them.
-std::vector<Waypoint> any_waypoints(Seeded& seeded, int count) {
+std::vector<Waypoint> any_waypoints(Random& random, int count) {
   std::vector<Waypoint> waypoints{
-      {0, placement(seeded.between(-3, 3), seeded.direction(), {0, 0, 0})}};
-  waypoints[0].pose.translation = seeded.point(-0.1, 0.1);
+      {0, placement(random.uniform(-3, 3), random.direction(), {0, 0, 0})}};
+  waypoints[0].pose.translation = random.point(-0.1, 0.1);
   while (static_cast<int>(waypoints.size()) < count) {
     const Waypoint& before = waypoints.back();
-    const Placement turn = placement(seeded.between(-2, 2), seeded.direction(), {0, 0, 0});
-    waypoints.push_back({before.time + seeded.between(0.01, 1),
-                         {turn.rotation * before.pose.rotation, seeded.point(-0.1, 0.1)}});
+    const Placement turn = placement(random.uniform(-2, 2), random.direction(), {0, 0, 0});
+    waypoints.push_back({before.time + random.uniform(0.01, 1),
+                         {turn.rotation * before.pose.rotation, random.point(-0.1, 0.1)}});
   }
   return waypoints;
 }
@@ -36,8 +36,8 @@ double distance(const Placement& a, const Placement& b) {
 }
 
 TEST(Plan, PassesThroughItsWaypointsAndStaysAtTheLast) {
-  Seeded seeded(6);
-  const std::vector<Waypoint> waypoints = any_waypoints(seeded, 20);
+  Random random(6);
+  const std::vector<Waypoint> waypoints = any_waypoints(random, 20);
   Plan plan(waypoints);
   EXPECT_EQ(plan.end(), waypoints.back().time);
   EXPECT_LE(distance(plan.start(), waypoints[0].pose), 1e-15);
@@ -77,8 +77,8 @@ TEST(Plan, GoesStraightAtOneSpeedAndTurnsAboutOneAxis) {
 }
 
 TEST(Plan, TellsTheVelocityAtWhichItsPoseMoves) {
-  Seeded seeded(7);
-  Plan plan(any_waypoints(seeded, 10));
+  Random random(7);
+  Plan plan(any_waypoints(random, 10));
   constexpr double kStep = 1e-6;
   for (double time = 0.003; time < plan.end(); time += 0.007) {
     const Vector6 moved = motion_between(plan.at(time - kStep).pose, plan.at(time + kStep).pose);
@@ -90,15 +90,15 @@ TEST(Plan, TellsTheVelocityAtWhichItsPoseMoves) {
 }
 
 TEST(Plan, IsTheSameInWhateverOrderItIsAsked) {
-  Seeded seeded(8);
-  const std::vector<Waypoint> waypoints = any_waypoints(seeded, 50);
+  Random random(8);
+  const std::vector<Waypoint> waypoints = any_waypoints(random, 50);
   Plan ascending(waypoints), jumping(waypoints);
   std::vector<double> times;
   for (double time = 0; time < ascending.end() + 1; time += 0.013) times.push_back(time);
   std::vector<PlanPoint> points;
   for (const double time : times) points.push_back(ascending.at(time));
   for (int i = 0; i < 2000; ++i) {
-    const std::size_t k = seeded.below(static_cast<std::uint32_t>(times.size()));
+    const std::size_t k = random.below(static_cast<std::uint32_t>(times.size()));
     const PlanPoint point = jumping.at(times[k]);
     ASSERT_EQ(distance(point.pose, points[k].pose), 0);
     ASSERT_EQ(point.velocity, points[k].velocity);

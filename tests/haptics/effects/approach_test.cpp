@@ -57,15 +57,15 @@ TEST(DampingEffect, IsTheSameAtAnyOverlapAndFadesWithTheShare) {
 }
 
 TEST(ProximityEffect, IsTheLawOfDampingAtThePlacesNearBy) {
-  Seeded seeded(31);
+  Random random(31);
   int braking = 0;
   for (int i = 0; i < 100; ++i) {
-    EffectCase near = random_case(seeded, 4), touching = near;
+    EffectCase near = random_case(random, 4), touching = near;
     touching.contacts.clear();
     for (const ToolContact& point : near.proximity.points()) touching.contacts.add(point);
     near.contacts.clear();
     touching.proximity.clear();
-    const Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
+    const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     const Response braked = respond(kBrake, near, motion);
     braking += braked.wrench.norm() > 0;
     ASSERT_EQ(braked.wrench, respond(kDamper, touching, motion).wrench);
@@ -77,10 +77,10 @@ TEST(ProximityEffect, IsTheLawOfDampingAtThePlacesNearBy) {
 }
 
 TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
-  Seeded seeded(32);
+  Random random(32);
   for (int i = 0; i < 300; ++i) {
-    const EffectCase c = random_case(seeded, 1 + i % 6);
-    const Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
+    const EffectCase c = random_case(random, 1 + i % 6);
+    const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     // Where no place is about to turn from coming to going.
     bool smooth = true, approaches = false;
     for (const ToolContact& point : c.contacts.points()) {
@@ -96,20 +96,20 @@ TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
 }
 
 TEST(DampingEffect, OnlyTakesEnergy) {
-  Seeded seeded(33);
+  Random random(33);
   for (int i = 0; i < 1000; ++i) {
-    const EffectCase c = random_case(seeded, 6);
-    const Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
+    const EffectCase c = random_case(random, 6);
+    const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     ASSERT_LE(respond(kDamper, c, motion).wrench.dot(motion), 0);
     ASSERT_LE(respond(kBrake, c, motion).wrench.dot(motion), 0);
   }
 }
 
 TEST(DampingEffect, IsContinuousWhereApproachTurnsToDeparture) {
-  Seeded seeded(34);
+  Random random(34);
   for (int i = 0; i < 200; ++i) {
-    const EffectCase c = random_case(seeded, 6);
-    Vector6 motion = six(seeded.point(-1e-5, 1e-5), seeded.point(-1e-3, 1e-3));
+    const EffectCase c = random_case(random, 6);
+    Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     const ToolContact& point = c.contacts.points()[0];
     motion.head<3>() -= point.normal.dot(point.moved(motion)) * point.normal;  // only along
     const Vector6 small = six(1e-13 * point.normal, Vector3d::Zero());

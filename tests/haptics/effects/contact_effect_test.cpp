@@ -48,15 +48,15 @@ TEST(ContactEffect, NeverPulls) {
 }
 
 TEST(ContactEffect, IsTheWholeSpringAtThePoseWhateverThePointsSay) {
-  Seeded seeded(21);
-  EffectCase c = random_case(seeded, 5);
+  Random random(21);
+  EffectCase c = random_case(random, 5);
   c.contacts.spring += six({0.1, 0.2, 0.3}, {0.001, 0.002, 0.003});
   EXPECT_LE((respond(kContact, c).wrench - kStiffness * c.contacts.spring).norm(), 1e-13);
 }
 
 TEST(ContactEffect, AddsToWhatIsThere) {
-  Seeded seeded(22);
-  const EffectCase c = random_case(seeded, 3);
+  Random random(22);
+  const EffectCase c = random_case(random, 3);
   Response twice;
   kContact.respond(c.input(), Vector6::Zero(), twice);
   kContact.respond(c.input(), Vector6::Zero(), twice);
@@ -66,10 +66,10 @@ TEST(ContactEffect, AddsToWhatIsThere) {
 }
 
 TEST(ContactEffect, HasTheStiffnessThatDifferencesShow) {
-  Seeded seeded(23);
+  Random random(23);
   for (int i = 0; i < 300; ++i) {
-    const EffectCase c = random_case(seeded, 1 + i % 6);
-    const Vector6 motion = six(seeded.point(-1e-6, 1e-6), seeded.point(-3e-5, 3e-5));
+    const EffectCase c = random_case(random, 1 + i % 6);
+    const Vector6 motion = six(random.point(-1e-6, 1e-6), random.point(-3e-5, 3e-5));
     const Response response = respond(kContact, c, motion);
     // The law is linear between its kinks: only rounding is left, over a step of 1e-7.
     ASSERT_LE(difference(response.stiffness, measured_stiffness(kContact, c, motion, 1e-7)), 1e-6);
@@ -78,11 +78,11 @@ TEST(ContactEffect, HasTheStiffnessThatDifferencesShow) {
 }
 
 TEST(Response, TurnsAForceAndItsChangeIntoThoseOfTheTool) {
-  Seeded seeded(24);
+  Random random(24);
   for (int i = 0; i < 300; ++i) {
-    const Vector3d arm = seeded.point(-1, 1), force = seeded.point(-1, 1);
+    const Vector3d arm = random.point(-1, 1), force = random.point(-1, 1);
     const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr(
-        [&](Eigen::Index, Eigen::Index) { return seeded.between(-1, 1); });
+        [&](Eigen::Index, Eigen::Index) { return random.uniform(-1, 1); });
     const Eigen::Matrix3d change = root * root.transpose();
     Response response;
     response.add(arm, force, change);

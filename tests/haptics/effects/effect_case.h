@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "ist/haptics/effects/effect.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 
@@ -30,13 +30,13 @@ struct EffectCase {
 };
 
 /// A few points about the tool, pressed by up to 0.1 mm.
-inline EffectCase random_case(Seeded& seeded, int points) {
+inline EffectCase random_case(Random& random, int points) {
   EffectCase c;
-  c.tool = Placement{}.moved(six(seeded.point(-1, 1), seeded.point(-1, 1)));
+  c.tool = Placement{}.moved(six(random.point(-1, 1), random.point(-1, 1)));
   for (int i = 0; i < points; ++i) {
-    const double depth = seeded.between(2e-5, 1e-4), fraction = seeded.between(0.1, 1);
-    c.add_contact({seeded.point(-0.02, 0.02), seeded.direction(), depth, fraction});
-    c.proximity.add({seeded.point(-0.02, 0.02), seeded.direction(), 0, fraction});
+    const double depth = random.uniform(2e-5, 1e-4), fraction = random.uniform(0.1, 1);
+    c.add_contact({random.point(-0.02, 0.02), random.direction(), depth, fraction});
+    c.proximity.add({random.point(-0.02, 0.02), random.direction(), 0, fraction});
   }
   return c;
 }

@@ -43,10 +43,10 @@ TEST(FrictionEffect, SticksBelowItsLimitAndDoesNotDriftAtRest) {
     ASSERT_LE((tool.wrench() - six(force, Vector3d::Zero())).norm(), 1e-12) << i;
   }
   // A hand that trembles below the limit changes nothing either.
-  Seeded seeded(61);
+  Random random(61);
   for (int i = 0; i < 10'000; ++i) {
     const Vector3d here = tool.at().tool.translation;
-    tool.move(six(0.5 * kStatic * Vector3d(seeded.between(-1, 1), seeded.between(-1, 1), 0) - here,
+    tool.move(six(0.5 * kStatic * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0) - here,
                   Vector3d::Zero()));
     ASSERT_TRUE(same_numbers(*tool.friction().anchor(), anchor)) << i;
     ASSERT_FALSE(tool.friction().slides());
@@ -198,7 +198,7 @@ TEST(FrictionEffect, ForgetsItsAnchorWhenLiftedOff) {
 }
 
 TEST(FrictionEffect, HasNoStepFromSlidingToStickingNorWhereBothLimitsAreOne) {
-  Seeded seeded(62);
+  Random random(62);
   FrictionSettings even = kGrip;
   even.static_coefficient = even.dynamic_coefficient;
   int switches = 0;
@@ -207,8 +207,8 @@ TEST(FrictionEffect, HasNoStepFromSlidingToStickingNorWhereBothLimitsAreOne) {
     for (int i = 0; i < 5000; ++i) {
       const bool slid = tool.friction().slides();
       const Vector6 within =
-          tool.move(six({seeded.between(-1, 1) * 3e-4, seeded.between(-1, 1) * 3e-4, 0},
-                        {0, 0, seeded.between(-1, 1) * 1e-2}));
+          tool.move(six({random.uniform(-1, 1) * 3e-4, random.uniform(-1, 1) * 3e-4, 0},
+                        {0, 0, random.uniform(-1, 1) * 1e-2}));
       const bool slides = tool.friction().slides();
       if (slid == slides) continue;
       ++switches;
@@ -224,17 +224,17 @@ TEST(FrictionEffect, HasNoStepFromSlidingToStickingNorWhereBothLimitsAreOne) {
 }
 
 TEST(FrictionEffect, HasTheStiffnessThatDifferencesShowWhileItSticks) {
-  Seeded seeded(63);
+  Random random(63);
   const ContactEffect contact({kPressStiffness, 0.5});
   FrictionSettings strong = kGrip;
   strong.static_coefficient = 1e6;
   for (int i = 0; i < 200; ++i) {
     FrictionEffect friction(strong, contact);
-    EffectCase c = random_case(seeded, 1 + i % 6);
-    const Vector6 before = six(seeded.point(-5e-6, 5e-6), seeded.point(-2e-4, 2e-4));
+    EffectCase c = random_case(random, 1 + i % 6);
+    const Vector6 before = six(random.point(-5e-6, 5e-6), random.point(-2e-4, 2e-4));
     friction.advance(c.input(), before);
     ASSERT_TRUE(friction.anchor() && !friction.slides());
-    const Vector6 motion = six(seeded.point(-5e-6, 5e-6), seeded.point(-2e-4, 2e-4));
+    const Vector6 motion = six(random.point(-5e-6, 5e-6), random.point(-2e-4, 2e-4));
     const Response response = respond(friction, c, motion);
     // Linear between its kinks: only rounding is left, over a step of 1e-6.
     ASSERT_LE(difference(response.stiffness, measured_stiffness(friction, c, motion, 1e-6)), 1e-7);
@@ -243,12 +243,12 @@ TEST(FrictionEffect, HasTheStiffnessThatDifferencesShowWhileItSticks) {
 }
 
 TEST(FrictionEffect, HasTheStiffnessOfItsSecantWhileItSlides) {
-  Seeded seeded(64);
+  Random random(64);
   const ContactEffect contact({kPressStiffness, 0.5});
   for (int i = 0; i < 200; ++i) {
     const FrictionEffect friction(kGrip, contact);
-    const EffectCase c = random_case(seeded, 1 + i % 6);
-    const Vector6 motion = six(seeded.point(-1e-2, 1e-2), seeded.point(-1e-2, 1e-2));
+    const EffectCase c = random_case(random, 1 + i % 6);
+    const Vector6 motion = six(random.point(-1e-2, 1e-2), random.point(-1e-2, 1e-2));
     const Response response = respond(friction, c, motion);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));
     // From no stretch, the secant ends where the law is.

@@ -13,15 +13,15 @@ constexpr FrictionSettings kHold{
     .static_coefficient = 0.5, .dynamic_coefficient = 0.3, .stiffness = 500};
 
 TEST(FrictionEffect, TakesWorkOnEveryPathFromItsFirstTickOn) {
-  Seeded seeded(71);
+  Random random(71);
   for (int path = 0; path < 20; ++path) {
     PressedTool tool(kHold, {Vector3d::Zero()}, 1);
     double work = 0;
     int slid = 0;
     for (int i = 0; i < 2000; ++i) {
-      tool.press(seeded.between(0.1, 2));
+      tool.press(random.uniform(0.1, 2));
       const Vector6 motion =
-          six({seeded.between(-1, 1) * 4e-4, seeded.between(-1, 1) * 4e-4, 0}, {0, 0, 0});
+          six({random.uniform(-1, 1) * 4e-4, random.uniform(-1, 1) * 4e-4, 0}, {0, 0, 0});
       work -= tool.move(motion).dot(motion);
       slid += tool.friction().slides();
       ASSERT_GE(work, -1e-15) << i;
@@ -52,14 +52,14 @@ TEST(FrictionEffect, LosesWhatItSaysOnAClosedPath) {
 }
 
 TEST(FrictionEffect, TakesWorkThoughTheToolTurns) {
-  Seeded seeded(72);
+  Random random(72);
   for (int path = 0; path < 10; ++path) {
     PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
     double work = 0, least = 0;
     Vector3d heading = Vector3d::Zero();
     for (int i = 0; i < 2000; ++i) {
       // Wandering, slowly enough that it sticks and slides by turns.
-      heading = 0.95 * heading + 0.3 * seeded.point(-1, 1);
+      heading = 0.95 * heading + 0.3 * random.point(-1, 1);
       const Vector6 motion =
           six({4e-5 * heading[0], 4e-5 * heading[1], 0}, {0, 0, 3e-3 * heading[2]});
       work -= tool.move(motion).dot(motion);
@@ -71,11 +71,11 @@ TEST(FrictionEffect, TakesWorkThoughTheToolTurns) {
 }
 
 TEST(FrictionEffect, ComesToRestAfterEverySlide) {
-  Seeded seeded(73);
+  Random random(73);
   for (int path = 0; path < 20; ++path) {
     PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
-    const Vector6 motion = six({seeded.between(-1, 1) * 1e-3, seeded.between(-1, 1) * 1e-3, 0},
-                               {0, 0, seeded.between(-1, 1) * 0.05});
+    const Vector6 motion = six({random.uniform(-1, 1) * 1e-3, random.uniform(-1, 1) * 1e-3, 0},
+                               {0, 0, random.uniform(-1, 1) * 0.05});
     for (int i = 0; i < 20; ++i) tool.move(motion);
     ASSERT_TRUE(tool.friction().slides());
     for (int i = 0; i < 5; ++i) tool.slide(0);

@@ -33,9 +33,9 @@ TEST(GravityEffect, GivesBackWhatLiftingTook) {
   // The torque is what the height of the centre of mass loses in a turn: m a · dc/dω.
   const Vector3d acceleration(1, -2, -9), centre(0.02, -0.01, 0.03);
   const GravityEffect gravity({.mass = 0.5, .centre = centre, .acceleration = acceleration});
-  Seeded seeded(41);
+  Random random(41);
   for (int i = 0; i < 100; ++i) {
-    EffectCase c = random_case(seeded, 0);
+    EffectCase c = random_case(random, 0);
     const Vector6 wrench = respond(gravity, c).wrench;
     for (int k = 0; k < 6; ++k) {
       const auto work = [&](double step) {

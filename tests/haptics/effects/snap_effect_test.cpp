@@ -70,10 +70,10 @@ TEST(SnapEffect, DrawsToThePoseByTheFormula) {
 
 TEST(SnapEffect, IsSilentBeyondTheRadiusOrTheAngleAndSmoothThere) {
   const SnapEffect snap(settings());
-  Seeded seeded(51);
+  Random random(51);
   for (int i = 0; i < 200; ++i) {
-    const Vector3d way = seeded.direction(), axis = seeded.direction();
-    const double some = seeded.between(0, 0.9);
+    const Vector3d way = random.direction(), axis = random.direction();
+    const double some = random.uniform(0, 0.9);
     for (const bool by_turn : {false, true}) {
       const auto reach = [&](double part) {
         return by_turn ? six(some * kRadius * way, part * kAngle * axis)
@@ -92,9 +92,9 @@ TEST(SnapEffect, IsSilentBeyondTheRadiusOrTheAngleAndSmoothThere) {
 
 TEST(SnapEffect, IsWhatItsEnergyLosesOnTheWay) {
   const SnapEffect snap(settings());
-  Seeded seeded(52);
+  Random random(52);
   for (int i = 0; i < 500; ++i) {
-    const EffectCase c = at(six(seeded.point(-1, 1) * kRadius, seeded.point(-1, 1) * kAngle));
+    const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
     const Vector6 wrench = respond(snap, c).wrench;
     for (int k = 0; k < 6; ++k) {
       const double step = k < 3 ? 1e-4 * kRadius : 1e-4 * kAngle;
@@ -140,9 +140,9 @@ TEST(SnapEffect, HasTheStiffnessThatDifferencesShowAtThePoseAndIsPositiveEverywh
             1e-5);
   EXPECT_NEAR(here.stiffness(0, 0), kStiffness, 1e-9);
   EXPECT_NEAR(here.stiffness(5, 5), kAngular, 1e-12);
-  Seeded seeded(53);
+  Random random(53);
   for (int i = 0; i < 500; ++i) {
-    const EffectCase c = at(six(seeded.point(-1, 1) * kRadius, seeded.point(-1, 1) * kAngle));
+    const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
     const Response response = respond(snap, c);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));
     // The secant's: it would bring the tool to the pose in one step.

@@ -8,7 +8,7 @@
 #include "simd/dispatch.h"
 #include "simd/exact/triangle_lanes.h"
 #include "simd/targets.h"
-#include "support/seeded.h"
+#include "support/random.h"
 
 namespace ist::test {
 namespace {
@@ -17,35 +17,35 @@ struct PairOfTriangles {
   TriangleCorners a, b;
 };
 
-TriangleCorners random_triangle(Seeded& seeded, double size) {
+TriangleCorners random_triangle(Random& random, double size) {
   TriangleCorners t;
-  for (Eigen::Vector3d& p : t) p = seeded.point(-size, size);
+  for (Eigen::Vector3d& p : t) p = random.point(-size, size);
   return t;
 }
 
 // Triangles that meet, miss, touch with corners, edges and planes, and slivers of all sorts.
-PairOfTriangles random_pair(Seeded& seeded, double size) {
-  PairOfTriangles pair{random_triangle(seeded, size), random_triangle(seeded, size)};
+PairOfTriangles random_pair(Random& random, double size) {
+  PairOfTriangles pair{random_triangle(random, size), random_triangle(random, size)};
   const auto nudge = [&] {
-    return std::ldexp(size * seeded.between(-1, 1), -static_cast<int>(seeded.below(40)));
+    return std::ldexp(size * random.uniform(-1, 1), -static_cast<int>(random.below(40)));
   };
-  switch (seeded.below(6)) {
+  switch (random.below(6)) {
     case 0:  // a corner near the other's plane, in it or beside it
-      pair.b[0] = pair.a[0] + seeded.between(-0.2, 1) * (pair.a[1] - pair.a[0]) +
-                  seeded.between(-0.2, 1) * (pair.a[2] - pair.a[0]) + nudge() * seeded.direction();
+      pair.b[0] = pair.a[0] + random.uniform(-0.2, 1) * (pair.a[1] - pair.a[0]) +
+                  random.uniform(-0.2, 1) * (pair.a[2] - pair.a[0]) + nudge() * random.direction();
       break;
     case 1:  // edges that nearly cross
-      pair.b[1] = 2 * (pair.a[0] + seeded.between(0, 1) * (pair.a[1] - pair.a[0])) - pair.b[0] +
-                  nudge() * seeded.direction();
+      pair.b[1] = 2 * (pair.a[0] + random.uniform(0, 1) * (pair.a[1] - pair.a[0])) - pair.b[0] +
+                  nudge() * random.direction();
       break;
     case 2:  // slivers
       pair.a[2] =
-          pair.a[0] + seeded.between(0, 1) * (pair.a[1] - pair.a[0]) + nudge() * seeded.direction();
+          pair.a[0] + random.uniform(0, 1) * (pair.a[1] - pair.a[0]) + nudge() * random.direction();
       break;
     case 3:  // nearly in one plane
       for (Eigen::Vector3d& p : pair.b) {
-        p = pair.a[0] + seeded.between(-1, 1) * (pair.a[1] - pair.a[0]) +
-            seeded.between(-1, 1) * (pair.a[2] - pair.a[0]) + nudge() * seeded.direction();
+        p = pair.a[0] + random.uniform(-1, 1) * (pair.a[1] - pair.a[0]) +
+            random.uniform(-1, 1) * (pair.a[2] - pair.a[0]) + nudge() * random.direction();
       }
       break;
     default:
@@ -106,19 +106,19 @@ INSTANTIATE_TEST_SUITE_P(Targets, TriangleDecision, ::testing::ValuesIn(all_targ
 TEST_P(TriangleDecision, IsRightWhateverTheCoordinatesErr) {
   for (const double size : {1.0, 1e-6, 1e6, 1e-10, 1e-12, 1e-13, 1e-14, 1e12, 1e13}) {
     for (const double relative : {0x1p-23, 0x1p-20, 0x1p-12, 0x1p-6}) {
-      Seeded seeded(17);
+      Random random(17);
       Decider decider(GetParam());
       std::vector<bool> truth;
       const double error = relative * size;
       for (int i = 0; i < 3000; ++i) {
-        const PairOfTriangles pair = random_pair(seeded, size);
+        const PairOfTriangles pair = random_pair(random, size);
         truth.push_back(triangles_meet(pair.a, pair.b));
         // A difference of two coordinates, each off by half the error.
         const auto disturbed = [&](const TriangleCorners& t) {
           LaneTriangle lane;
           for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t j = 0; j < 3; ++j) {
-              const double by = seeded.below(2) == 0 ? 0.5 * error : -0.5 * error;
+              const double by = random.below(2) == 0 ? 0.5 * error : -0.5 * error;
               lane[k][j] = static_cast<float>(t[k][static_cast<Eigen::Index>(j)] + by);
             }
           }
@@ -146,7 +146,7 @@ TEST_P(TriangleDecision, IsRightWhateverTheCoordinatesErr) {
 // Coordinates that floats hold err by nothing: there is only the rounding of determinants, most of
 // which are nearly or exactly 0 here.
 TEST_P(TriangleDecision, IsRightWhereRoundingAloneErrs) {
-  Seeded seeded(19);
+  Random random(19);
   Decider decider(GetParam());
   std::vector<bool> truth;
   const auto narrowed = [](TriangleCorners& t) {
@@ -161,7 +161,7 @@ TEST_P(TriangleDecision, IsRightWhereRoundingAloneErrs) {
     return lane;
   };
   for (int i = 0; i < 20000; ++i) {
-    PairOfTriangles pair = random_pair(seeded, 1);
+    PairOfTriangles pair = random_pair(random, 1);
     const LaneTriangle a = narrowed(pair.a), b = narrowed(pair.b);
     truth.push_back(triangles_meet(pair.a, pair.b));
     decider.add(a, b, 0);
@@ -211,11 +211,11 @@ TEST_P(TriangleDecision, LeavesAllOpenWhereFloatKnowsNothing) {
 
 // The vector forms decide no less than the scalar one, but for a few whose rounding differs.
 TEST_P(TriangleDecision, IsOpenAsSeldomAsTheScalarForm) {
-  Seeded seeded(5);
+  Random random(5);
   Decider decider(GetParam());
   std::size_t open = 0;
   for (int i = 0; i < 4000; ++i) {
-    const PairOfTriangles pair = random_pair(seeded, 1);
+    const PairOfTriangles pair = random_pair(random, 1);
     LaneTriangle a, b;
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t j = 0; j < 3; ++j) {

@@ -8,7 +8,7 @@
 #include "ist/base/parallel.h"
 #include "ist/tree/clusters/triangle_order.h"
 #include "query/query_cases.h"
-#include "support/seeded.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -191,9 +191,9 @@ TEST(TriangleClusters, AreAsSmallInTurnedFrames) {
 }
 
 TEST(TriangleOrder, KeepsNeighboursTogether) {
-  Seeded seeded(7);
+  Random random(7);
   std::vector<Vector> corners;
-  for (int i = 0; i < 3 * 5000; ++i) corners.push_back(seeded.point(0, 1));
+  for (int i = 0; i < 3 * 5000; ++i) corners.push_back(random.point(0, 1));
   const std::vector<std::uint32_t> order = triangle_order(corners);
   std::vector<std::uint32_t> sorted = order;
   std::sort(sorted.begin(), sorted.end());
