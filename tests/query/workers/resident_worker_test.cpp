@@ -7,41 +7,11 @@
 #include <thread>
 #include <vector>
 
+#include "query/workers/stall.h"
 #include "query/workers/worker_cases.h"
 
 namespace ist::test {
 namespace {
-
-// Stalls the worker wherever it comes to `point`, until it is destroyed.
-class Stall {
- public:
-  explicit Stall(HandOver point) {
-    point_ = point;
-    reached_ = released_ = false;
-    hand_over_hook = [](HandOver at) noexcept {
-      ++inside_;
-      if (at == point_ && !released_) {
-        reached_ = true;
-        while (!released_) std::this_thread::sleep_for(100us);
-      }
-      --inside_;
-    };
-  }
-  ~Stall() {
-    hand_over_hook = nullptr;
-    released_ = true;
-    while (inside_ > 0) std::this_thread::sleep_for(100us);
-  }
-  Stall(const Stall&) = delete;
-  Stall& operator=(const Stall&) = delete;
-
-  [[nodiscard]] static bool reached() { return reached_; }
-
- private:
-  static inline std::atomic<HandOver> point_;
-  static inline std::atomic<bool> reached_, released_;
-  static inline std::atomic<int> inside_{0};
-};
 
 TEST(ResidentWorkerThread, RunsWhatItIsOfferedAndWhatItWroteIsSeen) {
   ResidentWorker worker;

@@ -1,31 +1,21 @@
 // Contacts that two workers find are those of one, whatever becomes of the second.
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <functional>
 #include <thread>
 
 #include "ist/query/workers/shared_search.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
-#include "query/workers/stall.h"
+#include "query/workers/shared_query_case.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-class SharedContactsThread : public ::testing::Test {
+class SharedContactsThread : public SharedQueryTest {
  protected:
-  // Until `done`, or for five minutes: a machine that is busy is no failure.
-  bool ask_until(Query& query, const std::function<bool()>& done) {
-    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
-      if (!same(find_contacts(query, points_, scene_.pose), expected_)) return false;
-      if (done()) return true;
-    }
-    return false;
+  bool is_right(Query& query) override {
+    return same(find_contacts(query, points_, scene_.pose), expected_);
   }
 
   const Scene& scene_ = shells();
@@ -39,17 +29,15 @@ class SharedContactsThread : public ::testing::Test {
 
 TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherStalls) {
   Query query(scene_.fixed, scene_.moving, shared_);
-  for (const HandOver point :
-       {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed, HandOver::kWorked}) {
+  for (const HandOver point : kHandOvers) {
     {
       const Stall stall(point);
       ASSERT_TRUE(ask_until(query, Stall::reached));
       for (int later = 0; later < 10; ++later) {
-        ASSERT_TRUE(same(find_contacts(query, points_, scene_.pose), expected_));
+        ASSERT_TRUE(is_right(query));
       }
     }
-    const std::uint64_t before = query.sharing().chunks;
-    ASSERT_TRUE(ask_until(query, [&] { return query.sharing().chunks > before; }));
+    ASSERT_TRUE(ask_until_helped(query));
   }
 }
 
@@ -64,7 +52,7 @@ TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherIsLate) {
       Stall::release();
     });
     for (int later = 0; later < 6; ++later) {
-      ASSERT_TRUE(same(find_contacts(query, points_, scene_.pose), expected_));
+      ASSERT_TRUE(is_right(query));
     }
   }
 }

@@ -1,25 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
-#include <functional>
 #include <iostream>
 #include <thread>
 #include <vector>
 
 #include "ist/query/query.h"
 #include "query/query_cases.h"
-#include "query/workers/stall.h"
+#include "query/workers/shared_query_case.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
-                                   HandOver::kWorked};
 
 SphereTree shell(double radius) { return build_tree(icosphere(5, radius), {.voxel_size = 0.2}); }
 
@@ -32,7 +24,7 @@ struct Pairs {
 };
 
 // A query with two workers, of two shells that cross in many places, and the answer of one.
-class SharedPairsThread : public ::testing::Test {
+class SharedPairsThread : public SharedQueryTest {
  protected:
   Pairs ask_for(Query& query, const Budget& budget = {}) const {
     Pairs found{std::vector<TrianglePair>(1 << 18)};
@@ -42,18 +34,7 @@ class SharedPairsThread : public ::testing::Test {
     found.complete = result.complete;
     return found;
   }
-  // Until `done`, or for five minutes: a machine that is busy is no failure.
-  bool ask_until(Query& query, const std::function<bool()>& done) const {
-    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
-      if (ask_for(query) != expected_) return false;
-      if (done()) return true;
-    }
-    return false;
-  }
-  bool ask_until_helped(Query& query) const {
-    const std::uint64_t before = query.sharing().chunks;
-    return ask_until(query, [&] { return query.sharing().chunks > before; });
-  }
+  bool is_right(Query& query) override { return ask_for(query) == expected_; }
 
   const SphereTree fixed_ = shell(1), moving_ = shell(1.0005);
   const Eigen::Isometry3d pose_ = pose_of(Random(2).rotation(), {0.002, 0.001, 0});

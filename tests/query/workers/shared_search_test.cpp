@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
-#include <functional>
 #include <iostream>
 #include <optional>
 #include <thread>
@@ -12,33 +10,16 @@
 
 #include "ist/tree/sphere_tree.h"
 #include "query/scenes.h"
-#include "query/workers/stall.h"
+#include "query/workers/shared_query_case.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
-                                   HandOver::kWorked};
-
 // A query with two workers, and the answer of one.
-class SharedSearchThread : public ::testing::Test {
+class SharedSearchThread : public SharedQueryTest {
  protected:
-  // Until `done`, or for five minutes: a machine that is busy is no failure.
-  bool ask_until(Query& query, const std::function<bool()>& done) const {
-    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
-      if (!same(ask(query, scene_.pose), expected_)) return false;
-      if (done()) return true;
-    }
-    return false;
-  }
-  bool ask_until_helped(Query& query) const {
-    const std::uint64_t before = query.sharing().chunks;
-    return ask_until(query, [&] { return query.sharing().chunks > before; });
-  }
+  bool is_right(Query& query) override { return same(ask(query, scene_.pose), expected_); }
 
   const Scene& scene_ = shells();
   const QueryOptions alone_ = options_of(SpherePolicy::kSlab);
