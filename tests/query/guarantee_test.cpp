@@ -1,97 +1,89 @@
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "ist/query/reference/reference_query.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search.h"
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
-#include "query/scenes.h"
-#include "simd/targets.h"
+#include "query/engines.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
 
-// Two bodies, what is true of them, and every engine with one policy.
+// Two bodies, what is true of them, and an engine: the fast one on every target.
 class Judged {
  public:
   Judged(const TriangleMesh& a, double cells_a, const TriangleMesh& b, double cells_b,
-         SpherePolicy policy)
-      : policy_(policy),
-        bodies_(a, tree_of(a, cells_a), b, tree_of(b, cells_b)),
-        reference_(fixed(), moving(), policy) {
-    for (const std::string& target : all_targets()) {
-      engines_.push_back(std::make_unique<Query>(fixed(), moving(), options_of(policy, target)));
+         const Engine& engine)
+      : engine_(engine), bodies_(a, tree_of(a, cells_a), b, tree_of(b, cells_b)) {
+    Engine on = engine;
+    for (const std::string& target :
+         engine.published ? std::vector{engine.target} : all_targets()) {
+      on.target = target;
+      queries_.emplace_back(fixed(), moving(), on);
     }
   }
 
-  // How many contacts there are. All targets give one answer, and it and the reference's keep the
-  // guarantee.
+  // How many leaf pairs there are. All targets give one answer, and it keeps the guarantee.
   std::size_t check(const Eigen::Isometry3d& pose) {
-    const FoundPairs answer = ask(*engines_.front(), pose);
+    const FoundPairs answer = ask(query(), pose);
     EXPECT_EQ(answer.result.status, QueryStatus::kDone);
     EXPECT_TRUE(answer.result.complete);
     EXPECT_EQ(answer.result.level, 0);
-    for (const auto& engine : engines_) {
-      EXPECT_TRUE(same(ask(*engine, pose), answer)) << engine->target();
+    for (std::size_t i = 1; i < queries_.size(); ++i) {
+      EXPECT_TRUE(same(ask(queries_[i], pose), answer)) << all_targets()[i];
     }
     const ExactPair exact = this->exact(pose);
-    EXPECT_TRUE(keeps_guarantee(exact, policy_, answer.leaf_pairs, answer.result.pad))
+    EXPECT_TRUE(keeps_guarantee(exact, engine_.policy, answer.leaf_pairs, answer.result.pad,
+                                engine_.nested()))
         << "pose\n"
         << pose.matrix();
-    const FoundPairs reference = ask(reference_, pose);
-    EXPECT_TRUE(keeps_guarantee(exact, policy_, reference.leaf_pairs, reference.result.pad,
-                                published_are_nested(policy_)))
-        << "the reference at pose\n"
-        << pose.matrix();
     for (const double margin : {0.375 * fixed().voxel_size(), 2 * moving().voxel_size()}) {
-      check_within(exact, pose, margin);
+      if (!engine_.published) check_within(exact, pose, margin);
     }
     return answer.leaf_pairs.size();
   }
 
   [[nodiscard]] const SphereTree& fixed() const { return bodies_.fixed; }
   [[nodiscard]] const SphereTree& moving() const { return bodies_.moving; }
-  [[nodiscard]] Query& query() { return *engines_.front(); }
-  [[nodiscard]] ReferenceQuery& reference() { return reference_; }
+  [[nodiscard]] EngineQuery& query() { return queries_.front(); }
   [[nodiscard]] ExactPair exact(const Eigen::Isometry3d& pose) const { return bodies_.at(pose); }
 
  private:
   // A search with a margin, as contacts make it.
   void check_within(const ExactPair& exact, const Eigen::Isometry3d& pose, double margin) const {
-    const SearchPlan plan(fixed(), moving(), policy_);
+    const SpherePolicy policy = engine_.policy;
+    const SearchPlan plan(fixed(), moving(), policy);
     Search search(plan, select_kernels(""), 1 << 12);
     const SearchPose from =
         to_float(*relative_pose(pose, fixed().parts().lattice, moving().parts().lattice),
-                 lengths_of(fixed(), policy_), lengths_of(moving(), policy_), margin);
+                 lengths_of(fixed(), policy), lengths_of(moving(), policy), margin);
     std::vector<LeafPair> found(std::size_t{fixed().leaf_count()} * moving().leaf_count() +
                                 kLeafPairSpare);
     LeafPairSink sink(plan, select_kernels(""), found);
     PairLister lister(from, sink);
     search.run(lister);
     found.resize(sink.count());
-    const double pad = policy_ == SpherePolicy::kSlab ? from.leaf.slab_fixed : from.leaf.ball;
-    EXPECT_TRUE(keeps_guarantee(exact, policy_, found, 2 * pad - margin, true, margin))
+    const double pad = policy == SpherePolicy::kSlab ? from.leaf.slab_fixed : from.leaf.ball;
+    EXPECT_TRUE(keeps_guarantee(exact, policy, found, 2 * pad - margin, true, margin))
         << "margin " << margin << " at pose\n"
         << pose.matrix();
   }
 
-  SpherePolicy policy_;
+  Engine engine_;
   RationalBodies bodies_;
-  ReferenceQuery reference_;
-  std::vector<std::unique_ptr<Query>> engines_;
+  std::vector<EngineQuery> queries_;
 };
 
-class Guarantee : public ::testing::TestWithParam<SpherePolicy> {};
+class Guarantee : public ::testing::TestWithParam<Engine> {};
 
-INSTANTIATE_TEST_SUITE_P(Policies, Guarantee, ::testing::ValuesIn(kSpherePolicies),
-                         [](const auto& policy) { return std::string(to_string(policy.param)); });
+INSTANTIATE_TEST_SUITE_P(Engines, Guarantee, ::testing::ValuesIn(engines_of({""})), engine_name);
 
 // In any rotation, up to `gap` apart or in each other.
 Eigen::Isometry3d near_touch_within(const TriangleMesh& a, const TriangleMesh& b, double gap,
@@ -136,26 +128,85 @@ TEST_P(Guarantee, IsKeptForVoxelSizesThatDiffer) {
   }
 }
 
-// Cubes that touch by faces, edges and corners, exactly.
+// Bodies of one size, and up to seven of the one's voxels along a voxel of the other.
+TEST_P(Guarantee, IsKeptForCoarseVoxelsBesideFineOnes) {
+  const TriangleMesh ball = icosphere(1, 1), block = box({-1, -0.7, -0.5}, {1, 0.7, 0.5});
+  for (const double ratio : {1.0, 1.3, 2.0, 7.0}) {
+    for (const auto& [cells_a, cells_b] : {std::pair{10.0, 10 / ratio}, {10 / ratio, 10.0}}) {
+      SCOPED_TRACE("ratio " + std::to_string(ratio));
+      Judged bodies(ball, cells_a, block, cells_b, GetParam());
+      Random random(static_cast<std::uint64_t>(10 * ratio));
+      std::size_t leaf_pairs = 0;
+      for (int i = 0; i < 4; ++i) {
+        const Eigen::Matrix3d rotation = random.rotation();
+        leaf_pairs += bodies.check(pose_of(rotation, random.uniform(1, 2) * random.direction()));
+      }
+      EXPECT_GT(leaf_pairs, 0u);
+    }
+  }
+}
+
+// Cubes that touch by faces, edges and corners, exactly: spheres overlap, cubes only touch, and
+// two cubes by a corner have tangent spheres.
 TEST_P(Guarantee, IsKeptOnTheLattice) {
   Judged bodies(box({0, 0, 0}, {4, 3, 2}), 4, box({0, 0, 0}, {3, 2, 3}), 3, GetParam());
-  Judged coarse(box({0, 0, 0}, {4, 4, 4}), 4, box({0, 0, 0}, {4, 2, 4}), 2, GetParam());
+  ASSERT_EQ(bodies.fixed().voxel_size(), 1);
+  ASSERT_EQ(bodies.moving().voxel_size(), 1);
   std::size_t leaf_pairs = 0;
   for (const Eigen::Matrix3d& turn : quarter_turns()) {
     for (const double x : {-3.0, 0.0, 4.0}) {
       for (const double y : {-2.0, 3.0, 5.0}) {
-        for (const double z : {-3.0, 2.0}) {
-          leaf_pairs +=
-              bodies.check(pose_of(turn, {x, y, z})) + coarse.check(pose_of(turn, {x, z, y}));
-        }
+        for (const double z : {-3.0, 2.0}) leaf_pairs += bodies.check(pose_of(turn, {x, y, z}));
       }
     }
   }
   EXPECT_GT(leaf_pairs, 1000u);
 }
 
-// A corner of one leaf's cube on a corner of another's, to the last bit of a double: what a test
-// without a pad would lose in every second case.
+TEST_P(Guarantee, IsKeptOnALatticeAndOneTwiceAsCoarse) {
+  Judged bodies(box({0, 0, 0}, {4, 4, 4}), 4, box({0, 0, 0}, {4, 2, 4}), 2, GetParam());
+  ASSERT_EQ(2 * bodies.fixed().voxel_size(), bodies.moving().voxel_size());
+  std::vector<Eigen::Vector3d> places{{4, 0, 0}, {4, 4, 1}, {-4, 4, 4}, {1, 2, -4}};
+  for (const double x : {-3.0, 0.0, 4.0}) {
+    for (const double y : {-3.0, 2.0}) {
+      for (const double z : {-2.0, 3.0, 5.0}) places.emplace_back(x, y, z);
+    }
+  }
+  std::size_t leaf_pairs = 0;
+  for (const Eigen::Matrix3d& turn : quarter_turns()) {
+    for (const Eigen::Vector3d& at : places) leaf_pairs += bodies.check(pose_of(turn, at));
+  }
+  EXPECT_GT(leaf_pairs, 1000u);
+}
+
+// The faces of a lattice across an axis, exactly.
+std::array<mpq_class, 2> faces(const Lattice& lattice, Eigen::Index axis) {
+  const mpq_class low(lattice.corner[static_cast<std::size_t>(axis)]);
+  return {low, mpq_class(low + mpq_class(lattice.voxel_size) * lattice.cells)};
+}
+
+// Where a corner of the turned moving lattice is on corner k of the fixed one, rounded so that it
+// is in it.
+Eigen::Vector3d corner_in_corner(const Lattice& fixed, const Lattice& moving,
+                                 const Eigen::Matrix3d& turn, int k) {
+  Eigen::Vector3d at;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    Eigen::Index j = 0;
+    turn.row(i).cwiseAbs().maxCoeff(&j);
+    const bool above = (k >> i & 1) != 0, flipped = turn(i, j) < 0;
+    const mpq_class& face = faces(moving, j)[above == flipped ? 1 : 0];
+    const mpq_class exact = faces(fixed, i)[above ? 1 : 0] - (flipped ? mpq_class(-face) : face);
+    at[i] = exact.get_d();
+    if (above ? mpq_class(at[i]) > exact : mpq_class(at[i]) < exact) {
+      at[i] = std::nextafter(at[i], above ? -HUGE_VAL : HUGE_VAL);
+    }
+  }
+  return at;
+}
+
+// Two lattices of any size, anywhere, a corner of one in a corner of the other by less than the
+// last bit of the translation, and then out of it by as little: a test without a pad loses some of
+// the first.
 TEST_P(Guarantee, IsKeptWhereCornersMeet) {
   const std::vector<Eigen::Matrix3d> turns = quarter_turns();
   std::size_t leaf_pairs = 0;
@@ -166,53 +217,48 @@ TEST_P(Guarantee, IsKeptWhereCornersMeet) {
       const Eigen::Vector3d corner = random.point(-9, 9);
       return box(corner, corner + Eigen::Vector3d::Constant(random.uniform(0.5, 3)));
     };
-    Judged bodies(cube(), 1 + static_cast<double>(random.below(6)), cube(),
-                  1 + static_cast<double>(random.below(6)), GetParam());
-    const auto corner = [&random](const Lattice& lattice, int k) {
-      Eigen::Vector3d at;
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        at[i] = lattice.corner[static_cast<std::size_t>(i)] +
-                ((k >> i & 1) != 0 ? lattice.voxel_size * lattice.cells : 0);
-      }
-      return at;
-    };
+    const TriangleMesh a = cube(), b = cube();
+    const double cells_a = 1 + static_cast<double>(random.below(6)),
+                 cells_b = 1 + static_cast<double>(random.below(6));
+    Judged bodies(a, cells_a, b, cells_b, GetParam());
+    const Lattice &fixed = bodies.fixed().parts().lattice,
+                  &moving = bodies.moving().parts().lattice;
     for (int k = 0; k < 8; ++k) {
       const Eigen::Matrix3d& turn = turns[random.below(turns.size())];
-      // The opposite corner of the moving cube, as it is turned.
-      const Eigen::Vector3d outward((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1,
-                                    (k & 4) != 0 ? 1 : -1);
-      const Eigen::Vector3d inward = -(turn.transpose() * outward);
-      int opposite = 0;
-      for (int i = 0; i < 3; ++i) opposite |= inward[i] > 0 ? 1 << i : 0;
-      leaf_pairs +=
-          bodies.check(pose_of(turn, corner(bodies.fixed().parts().lattice, k) -
-                                         turn * corner(bodies.moving().parts().lattice, opposite)));
+      Eigen::Vector3d at = corner_in_corner(fixed, moving, turn, k);
+      leaf_pairs += bodies.check(pose_of(turn, at));
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        at[i] = std::nextafter(at[i], (k >> i & 1) != 0 ? HUGE_VAL : -HUGE_VAL);
+      }
+      bodies.check(pose_of(turn, at));
     }
   }
-  EXPECT_GT(leaf_pairs, is_implicit(GetParam()) ? 300u : 0u);
+  EXPECT_GT(leaf_pairs, is_implicit(GetParam().policy) ? 300u : 0u);
 }
 
-// Moved apart until the answer is empty, and some last bits of a float to either side of that.
+// Moved apart until the answer is empty, and some last bits to either side of that.
 TEST_P(Guarantee, IsKeptWhereTheLastContactEnds) {
-  for (const double cells : {1.0, 4.0}) {
-    const TriangleMesh a = moved(icosphere(1, 1), {3, -5, 1});
-    const TriangleMesh b = triangle({0, 0, 0}, {1, 0.25, 0}, {0.5, 1, 0.5});
-    Judged bodies(a, cells, b, 2 * cells, GetParam());
+  const double last_bit = GetParam().last_bit();
+  const TriangleMesh a = moved(icosphere(1, 1), {3, -5, 1});
+  const TriangleMesh b = triangle({0, 0, 0}, {1, 0.25, 0}, {0.5, 1, 0.5});
+  for (const auto& [cells_a, cells_b] : {std::pair{1.0, 1.0}, {1.0, 2.0}, {4.0, 4.0}, {4.0, 8.0}}) {
+    Judged bodies(a, cells_a, b, cells_b, GetParam());
     Random random(3);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Matrix3d rotation = random.rotation();
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Matrix3d rotation =
+          k < 3 ? random.rotation() : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
       const auto pose = [&](double t) {
         Eigen::Vector3d at(2.3, -5.4, 0.8);
-        at[axis] += t;
+        at[k % 3] += t;
         return pose_of(rotation, at);
       };
       const double last = last_touching(
           0, 16, [&](double t) { return ask(bodies.query(), pose(t)).result.leaf_pairs > 0; });
-      EXPECT_GT(bodies.check(pose(last)), 0u);
-      for (int ulp = 1; ulp <= 8; ++ulp) {
-        bodies.check(pose(last * (1 - ulp * 0x1p-24)));
-        bodies.check(pose(last * (1 + ulp * 0x1p-24)));
+      for (int bits = 0; bits <= 8; ++bits) {
+        EXPECT_GT(bodies.check(pose(last * (1 - bits * last_bit))), 0u);
+        bodies.check(pose(last * (1 + bits * last_bit)));
       }
+      EXPECT_EQ(bodies.check(pose(std::nextafter(last, 16.0))), 0u);
     }
   }
 }
@@ -229,14 +275,19 @@ TriangleMesh plate(Random& random) {
   return mesh;
 }
 
+class GuaranteeOfOneVoxel : public ::testing::TestWithParam<Engine> {};
+
+INSTANTIATE_TEST_SUITE_P(Engines, GuaranteeOfOneVoxel,
+                         ::testing::ValuesIn(engines_of(SpherePolicy::kSlab, {""})), engine_name);
+
 // Two leaves that are roots, whose balls go on overlapping where a ball leaves the other's slab.
-TEST(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
+TEST_P(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
   constexpr SpherePolicy kSlab = SpherePolicy::kSlab;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(4000 + seed);
     const TriangleMesh a = plate(random), b = plate(random);
-    Judged bodies(a, 0.9, b, 0.9, kSlab);
+    Judged bodies(a, 0.9, b, 0.9, GetParam());
     const SphereTree &fixed = bodies.fixed(), &moving = bodies.moving();
     ASSERT_EQ(fixed.parts().octree.node_count() + moving.parts().octree.node_count(), 2u);
     Query balls(fixed, moving, options_of(SpherePolicy::kTight));
@@ -254,23 +305,19 @@ TEST(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
     };
     const double last = last_touching(
         0, 4, [&](double gap) { return bodies.exact(pose(gap)).bounds_meet(kSlab, 0, 0, 0); });
-    const auto last_of = [&](auto& query) {
-      return last_touching(0, 4,
-                           [&](double gap) { return ask(query, pose(gap)).result.leaf_pairs > 0; });
-    };
-    const double last_answered = last_of(bodies.query());
+    const double last_answered = last_touching(
+        0, 4, [&](double gap) { return ask(bodies.query(), pose(gap)).result.leaf_pairs > 0; });
     EXPECT_GE(last_answered, last);
-    EXPECT_GE(last_of(bodies.reference()), last);
     EXPECT_EQ(bodies.check(pose(last)), 1u);
     EXPECT_EQ(bodies.check(pose(last_answered)), 1u);
     const double first_apart = std::nextafter(last_answered, 4);
     EXPECT_EQ(bodies.check(pose(first_apart)), 0u);
     EXPECT_EQ(ask(balls, pose(first_apart)).result.leaf_pairs, 1u) << "the balls part too";
-    for (int ulp = 1; ulp <= 8; ++ulp) {
-      EXPECT_EQ(bodies.check(pose(last * (1 - ulp * 0x1p-24))), 1u);
-      bodies.check(pose(last * (1 + ulp * 0x1p-24)));
-      bodies.check(pose(last_answered * (1 - ulp * 0x1p-24)));
-      EXPECT_EQ(bodies.check(pose(last_answered * (1 + ulp * 0x1p-24))), 0u);
+    for (int bits = 1; bits <= 8; ++bits) {
+      EXPECT_EQ(bodies.check(pose(last * (1 - bits * 0x1p-24))), 1u);
+      bodies.check(pose(last * (1 + bits * 0x1p-24)));
+      bodies.check(pose(last_answered * (1 - bits * 0x1p-24)));
+      EXPECT_EQ(bodies.check(pose(last_answered * (1 + bits * 0x1p-24))), 0u);
     }
   }
 }
@@ -278,7 +325,9 @@ TEST(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
 TEST_P(Guarantee, IsKeptWhereOneIsInsideTheOther) {
   Judged bodies(icosphere(2, 4), 15, icosphere(1, 1), 8, GetParam());
   EXPECT_EQ(bodies.check(Eigen::Isometry3d::Identity()), 0u);
+  EXPECT_EQ(bodies.check(shift({0.5, -0.5, 0.25})), 0u);
   EXPECT_GT(bodies.check(shift({3, 0, 0})), 0u);
+  EXPECT_GT(bodies.check(shift({3.1, 0, 0})), 0u);
 }
 
 }  // namespace

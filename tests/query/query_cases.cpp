@@ -1,6 +1,7 @@
 #include "query/query_cases.h"
 
 #include <cmath>
+#include <tuple>
 
 #include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
@@ -73,6 +74,14 @@ Eigen::Isometry3d pose_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d
 
 Eigen::Isometry3d shift(const Eigen::Vector3d& translation) {
   return pose_of(Eigen::Matrix3d::Identity(), translation);
+}
+
+bool same(const FoundPairs& a, const FoundPairs& b) {
+  const auto numbers = [](const QueryResult& r) {
+    return std::tuple(r.status, r.complete, r.truncated, r.level, r.leaf_pairs, r.sphere_tests,
+                      r.pad);
+  };
+  return numbers(a.result) == numbers(b.result) && a.leaf_pairs == b.leaf_pairs;
 }
 
 }  // namespace ist::test

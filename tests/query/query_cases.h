@@ -29,6 +29,9 @@ struct FoundPairs {
   std::vector<LeafPair> leaf_pairs;
 };
 
+/// Whether two answers are the same bits.
+[[nodiscard]] bool same(const FoundPairs& a, const FoundPairs& b);
+
 /// Asks any engine for all contacts of a pose.
 template <class Query>
 [[nodiscard]] FoundPairs ask(Query& query, const Eigen::Isometry3d& pose) {

@@ -59,12 +59,4 @@ Eigen::Isometry3d near_touch(const TriangleMesh& a, const TriangleMesh& b,
   return pose_of(rotation, on_a - rotation * on_b + gap * random.direction());
 }
 
-bool same(const FoundPairs& a, const FoundPairs& b) {
-  const auto numbers = [](const QueryResult& r) {
-    return std::tuple(r.status, r.complete, r.truncated, r.level, r.leaf_pairs, r.sphere_tests,
-                      r.pad);
-  };
-  return numbers(a.result) == numbers(b.result) && a.leaf_pairs == b.leaf_pairs;
-}
-
 }  // namespace ist::test

@@ -42,7 +42,4 @@ using Scenes = std::initializer_list<std::reference_wrapper<const Scene>>;
                                            const Eigen::Matrix3d& rotation, double gap,
                                            Random& random);
 
-/// Whether two answers are the same bits.
-[[nodiscard]] bool same(const FoundPairs& a, const FoundPairs& b);
-
 }  // namespace ist::test

@@ -29,11 +29,14 @@ class Guarded {
 
   [[nodiscard]] T* data() { return data_; }
   [[nodiscard]] std::span<T> span() { return {data_, size_}; }
-  [[nodiscard]] bool intact() const {
+  /// Whether nothing was written but the values.
+  [[nodiscard]] bool intact() const { return untouched_from(size_); }
+  /// Whether nothing was written but the first `count` values.
+  [[nodiscard]] bool untouched_from(std::size_t count) const {
     const auto* begin = reinterpret_cast<const std::uint8_t*>(data_);
     const auto untouched = [](std::uint8_t byte) { return byte == kGuard; };
     return std::all_of(bytes_.data(), begin, untouched) &&
-           std::all_of(begin + size_ * sizeof(T), bytes_.data() + bytes_.size(), untouched);
+           std::all_of(begin + count * sizeof(T), bytes_.data() + bytes_.size(), untouched);
   }
 
  private:
