@@ -46,9 +46,11 @@ const char* to_string(Inside inside) noexcept {
   return at < kNames.size() ? kNames[at] : "unknown";
 }
 
-InsideTest::InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving)
-    : state_(new detail::InsideState{detail::InsideState::Body(fixed),
-                                     detail::InsideState::Body(moving)}) {}
+InsideTest::InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving) {
+  const ScopedFloatEnvironment environment;
+  state_.reset(
+      new detail::InsideState{detail::InsideState::Body(fixed), detail::InsideState::Body(moving)});
+}
 InsideTest::~InsideTest() = default;
 InsideTest::InsideTest(InsideTest&&) noexcept = default;
 InsideTest& InsideTest::operator=(InsideTest&&) noexcept = default;
