@@ -2,19 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "ist/query/contacts/contact_rates.h"
-#include "ist/query/contacts/contact_reducer.h"
-#include "query/contacts/contact_cases.h"
-#include "query/contacts/pair_sums.h"
-#include "support/shapes.h"
+#include "query/contacts/travels.h"
 
 namespace ist::test {
 namespace {
-
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
 
 // The largest of |change| / (rate · motion · pairs) for each of the five sums.
 struct Steepness {
@@ -48,191 +40,103 @@ struct Steepness {
   }
 };
 
-// A way of the moving body: steps of 1e-4 mm, or turns about the origin of its tree's frame by as
-// much at the lever.
-struct AxisDirection {
-  const char* name;
-  Isometry3d from;
-  Vector3d along = Vector3d::Zero();  // of unit length, or nothing
-  Vector3d axis = Vector3d::Zero();   // likewise
-  int steps;
-
-  [[nodiscard]] Isometry3d at(int step, double lever, const Vector3d& centre) const {
-    constexpr double kStep = 1e-4;
-    Isometry3d pose = from;
-    pose.translation() += kStep * step * along;
-    if (axis.norm() > 0) {
-      pose = pose * Eigen::Translation3d(centre) * Eigen::AngleAxisd(kStep * step / lever, axis) *
-             Eigen::Translation3d(-centre);
-    }
-    return pose;
-  }
-  [[nodiscard]] double motion() const { return 1e-4 * ((along.norm() + axis.norm()) * 1.000001); }
+// Rates are bounds; what happens must come so near to them, or they say nothing.
+struct Nearness {
+  double weight;  // of the weight
+  double all;     // of each of the five sums
 };
+// A rate has the steepest share, the greatest depth and the farthest position at once, which no
+// pair has: a weight comes to a fifth of its rate, a torque to a thirtieth.
+constexpr Nearness kOfAPair{0.2, 0.03};
+// And the bound of a sum has all its pairs change by as much the same way, before and after.
+constexpr Nearness kOfASum{0.05, 0.004};
+// Where springs begin at a least depth, a rate has the steepest fade by depth besides.
+constexpr double kOfLoads = 0.3;
 
-struct Bodies {
-  const char* name;
-  SphereTree fixed, moving;
-  std::vector<AxisDirection> ways;
-};
-
-// Millimetres; voxels of 0.5 mm and coarser, so that 1e-4 mm is little.
-std::vector<Bodies> all_bodies() {
-  const TriangleMesh ball = icosphere(3, 2), block = box({-2, -2, -1}, {2, 2, 1}),
-                     cube = box({-1, -1, -1}, {1, 1, 1});
-  const Vector3d x = Vector3d::UnitX(), z = Vector3d::UnitZ(),
-                 slope = Vector3d(3, -1, 2) / std::sqrt(14.0);
-  const Vector3d none = Vector3d::Zero();
-  Random random(11);
-  const Eigen::Matrix3d turn = random.rotation();
-  std::vector<Bodies> bodies;
-  // A ball of voxels of 0.5 mm; from apart through the first contact, on, along a face and turning.
-  bodies.push_back({"balls", tree_of(ball, 8), tree_of(ball, 8), {}});
-  bodies.back().ways = {{"first contact", pose_of(turn, {0.3, 0.2, 4.6}), -z, none, 9000},
-                        {"sliding", pose_of(turn, {0.3, 0.2, 3.7}), x, none, 6000},
-                        {"turning", pose_of(turn, {0.3, 0.2, 3.7}), none, slope, 3000}};
-  bodies.push_back({"boxes", tree_of(block, 8), tree_of(cube, 4), {}});
-  bodies.back().ways = {// Faces in the grid's planes, and across them.
-                        {"first contact", shift({0.3, 0.2, 2.9}), -z, none, 12000},
-                        {"along a face", shift({0.3, 0.2, 2.0}), x, none, 8000},
-                        {"tilting", shift({0.3, 0.2, 1.9}), none, x, 3000},
-                        {"sloping", shift({1.3, 1.2, 2.4}), -slope, slope, 6000}};
-  bodies.push_back({"coarse in fine", tree_of(ball, 10), tree_of(cube, 2), {}});
-  bodies.back().ways = {{"first contact", pose_of(turn, {0.3, 0.2, 3.9}), -z, none, 8000},
-                        {"turning", pose_of(turn, {0.3, 0.2, 3.0}), none, slope, 3000}};
-  bodies.push_back({"fine in coarse", tree_of(cube, 2), tree_of(ball, 10), {}});
-  bodies.back().ways = {{"first contact", pose_of(turn, {0.3, 0.2, 3.9}), -z, none, 8000}};
-  return bodies;
+// The bounds are not far from what happens.
+void expect_near(const Steepness& steepest, const Nearness& near, double part) {
+  EXPECT_GE(steepest.weight, part * near.weight);
+  EXPECT_GE(steepest.least(), part * near.all);
 }
 
-class Lipschitz : public ::testing::TestWithParam<SpherePolicy> {
- protected:
-  Lipschitz() { options_.policy = GetParam(); }
-  // Rates are bounds; what happens comes as near to them as `near` times what it does for all
-  // pairs.
-  void check_sums(double least_depth, double near);
-  void check_pairs(double least_depth, double near);
-  QueryOptions options_;
-};
+// The sums of all pairs, through first contacts, along and across voxels' faces and while turning.
+void check_sums(SpherePolicy policy, double least_depth, double part) {
+  Steepness steepest;
+  for_each_travel(policy, least_depth, [&](Travel& travel) {
+    Steepness found;
+    ContactSums before = travel.sums(0);
+    std::uint64_t most = before.pairs;
+    for (int step = 1; step <= travel.steps(); ++step) {
+      const ContactSums sums = travel.sums(step);
+      most = std::max(most, sums.pairs);
+      if (const std::uint64_t pairs = sums.pairs + before.pairs; pairs > 0) {
+        found.compare(before, sums, travel.rates(), travel.motion(), static_cast<double>(pairs));
+      }
+      before = sums;
+    }
+    EXPECT_GT(most, 5u);
+    EXPECT_LE(found.most(), 1);
+    steepest.join(found);
+  });
+  expect_near(steepest, kOfASum, part);
+}
+
+// Each pair for itself, where a jump cannot hide among many: what is not in the answer counts as 0.
+void check_pairs(SpherePolicy policy, double least_depth, double part) {
+  constexpr int kStride = 29;  // two steps in a row here and there
+  Steepness steepest;
+  std::size_t faded = 0;
+  for_each_travel(policy, least_depth, [&](Travel& travel) {
+    Steepness found;
+    for (int step = 0; step < travel.steps(); step += kStride) {
+      auto before = travel.sums_of_pairs(step), after = travel.sums_of_pairs(step + 1);
+      for (const auto& [pair, sums] : before) faded += after.try_emplace(pair).second ? 1U : 0U;
+      for (const auto& [pair, sums] : after) {
+        faded += before.try_emplace(pair).second ? 1U : 0U;
+        found.compare(before[pair], sums, travel.rates(), travel.motion(), 1);
+      }
+    }
+    EXPECT_LE(found.most(), 1);
+    steepest.join(found);
+  });
+  expect_near(steepest, kOfAPair, part);
+  EXPECT_GT(faded, 10u);
+}
+
+class Lipschitz : public ::testing::TestWithParam<SpherePolicy> {};
 
 INSTANTIATE_TEST_SUITE_P(Policies, Lipschitz, ::testing::ValuesIn(kSpherePolicies),
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
 
-// The sums of all pairs, through first contacts, along and across voxels' faces and while turning.
-void Lipschitz::check_sums(double least_depth, double near) {
-  Steepness steepest;
-  for (const Bodies& b : all_bodies()) {
-    Query query(b.fixed, b.moving, options_);
-    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
-    for (const AxisDirection& way : b.ways) {
-      SCOPED_TRACE(std::string(b.name) + ", " + way.name);
-      const double lever = points.rates().lever;
-      const double motion = way.motion() + 2 * rounding_of(b.fixed, points);
-      const Vector3d centre = b.moving.origin();
-      Steepness found;
-      ContactSums before;
-      std::uint64_t most = 0;
-      for (int step = 0; step <= way.steps; ++step) {
-        static_cast<void>(query.contacts(way.at(step, lever, centre), points));
-        const ContactSums& sums = points.sums();
-        most = std::max(most, sums.pairs);
-        if (step > 0 && sums.pairs + before.pairs > 0) {
-          found.compare(before, sums, points.rates(), motion,
-                        static_cast<double>(sums.pairs + before.pairs));
-        }
-        before = sums;
-      }
-      EXPECT_GT(most, 5u);
-      EXPECT_LE(found.most(), 1);
-      steepest.join(found);
-    }
-  }
-  EXPECT_GE(steepest.weight, 0.05 * near);  // the rates are not far from what happens
-  EXPECT_GE(steepest.least(), 0.004 * near);
-}
-
-// Each pair for itself, where a jump cannot hide among many: what is not in the answer counts as 0.
-void Lipschitz::check_pairs(double least_depth, double near) {
-  Steepness steepest;
-  std::size_t faded = 0;
-  for (const Bodies& b : all_bodies()) {
-    Query query(b.fixed, b.moving, options_);
-    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0, least_depth});
-    const auto pairs_at = [&](const Isometry3d& pose) {
-      std::map<LeafPair, ContactSums> sums;
-      for (const PairSums& pair : sums_by_pair(query, points, b.fixed, b.moving, pose)) {
-        sums[pair.leaves] = pair.sums;
-      }
-      return sums;
-    };
-    for (const AxisDirection& way : b.ways) {
-      SCOPED_TRACE(std::string(b.name) + ", " + way.name);
-      const double lever = points.rates().lever;
-      const double motion = way.motion() + 2 * rounding_of(b.fixed, points);
-      const Vector3d centre = b.moving.origin();
-      Steepness found;
-      for (int start = 0; start < way.steps; start += 29) {  // two steps in a row here and there
-        const auto before = pairs_at(way.at(start, lever, centre)),
-                   after = pairs_at(way.at(start + 1, lever, centre));
-        for (const auto& [pair, sums] : before) {
-          const auto same = after.find(pair);
-          const bool gone = same == after.end();
-          found.compare(sums, gone ? ContactSums{} : same->second, points.rates(), motion, 1);
-          faded += gone ? 1U : 0U;
-        }
-        for (const auto& [pair, sums] : after) {
-          if (before.count(pair) != 0) continue;
-          found.compare({}, sums, points.rates(), motion, 1);
-          ++faded;
-        }
-      }
-      EXPECT_LE(found.most(), 1);
-      steepest.join(found);
-    }
-  }
-  EXPECT_GE(steepest.weight, 0.2 * near);
-  EXPECT_GE(steepest.least(), 0.03 * near);
-  EXPECT_GT(faded, 10u);
-}
-
-TEST_P(Lipschitz, SumsChangeNoFasterThanTheirRates) { check_sums(-2, 1); }
-TEST_P(Lipschitz, EveryPairFadesInAndOut) { check_pairs(-2, 1); }
+TEST_P(Lipschitz, SumsChangeNoFasterThanTheirRates) { check_sums(GetParam(), -2, 1); }
+TEST_P(Lipschitz, EveryPairFadesInAndOut) { check_pairs(GetParam(), -2, 1); }
 
 // What bears a load, alone: from a voxel before surfaces meet.
-TEST_P(Lipschitz, LoadsChangeNoFasterThanTheirRates) {
-  check_sums(-1, 0.3);
-  check_pairs(-1, 0.3);
-}
+TEST_P(Lipschitz, LoadsChangeNoFasterThanTheirRates) { check_sums(GetParam(), -1, kOfLoads); }
+TEST_P(Lipschitz, EveryLoadFadesInAndOut) { check_pairs(GetParam(), -1, kOfLoads); }
 
 // At every step: what has come into the answer or left it is as good as nothing on the other side.
 TEST_P(Lipschitz, NothingIsLeftOfAPairThatLeaves) {
+  constexpr int kStride = 7;
   std::size_t leaving = 0;
-  for (const Bodies& b : all_bodies()) {
-    Query query(b.fixed, b.moving, options_);
-    ContactManifold points(b.fixed, b.moving, GetParam(), {0, 0});
-    const double lever = points.rates().lever;
-    const Vector3d centre = b.moving.origin();
-    for (const AxisDirection& way : b.ways) {
-      SCOPED_TRACE(std::string(b.name) + ", " + way.name);
-      double most = 0;
-      for (int start = 0; start < way.steps; start += 7) {
-        const auto at = [&](int step) { return way.at(step, lever, centre); };
-        const std::vector<LeafPair> first = ask(query, at(start)).leaf_pairs,
-                                    second = ask(query, at(start + 1)).leaf_pairs;
-        if (first == second) continue;
-        for (const int side : {0, 1}) {  // what left, and what came
-          const auto &in = side == 0 ? first : second, &out = side == 0 ? second : first;
-          for (const PairSums& pair :
-               sums_by_pair(query, points, b.fixed, b.moving, at(start + side))) {
-            if (std::binary_search(out.begin(), out.end(), pair.leaves)) continue;
-            most = std::max(most, pair.sums.weight / points.rates().weight);
-          }
-          leaving += in.size() > out.size() ? in.size() - out.size() : 0;
-        }
+  for_each_travel(GetParam(), -2, [&](Travel& travel) {
+    double most = 0;  // of a pair in one answer that is not in the other
+    const auto compare = [&](int step, const std::vector<LeafPair>& in,
+                             const std::vector<LeafPair>& out) {
+      for (const auto& [pair, sums] : travel.sums_of_pairs(step)) {
+        if (std::binary_search(out.begin(), out.end(), pair)) continue;
+        most = std::max(most, sums.weight / travel.rates().weight);
       }
-      EXPECT_LE(most, way.motion() + 2 * rounding_of(b.fixed, points));
+      leaving += in.size() > out.size() ? in.size() - out.size() : 0;
+    };
+    for (int step = 0; step < travel.steps(); step += kStride) {
+      const auto first = travel.leaf_pairs(step), second = travel.leaf_pairs(step + 1);
+      if (first == second) continue;
+      compare(step, first, second);
+      compare(step + 1, second, first);
     }
-  }
+    EXPECT_LE(most, travel.motion());
+  });
   EXPECT_GT(leaving, 50u);
 }
 
