@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -44,6 +46,10 @@ struct FoundContacts {
                   p.depth >= -2 * size * kRounded && p.depth <= size * kRounded && p.weight > 0 &&
                   std::isfinite(p.weight);
          });
+}
+
+inline void expect_close(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance) {
+  EXPECT_LE((a - b).norm(), tolerance) << a.transpose() << " and " << b.transpose();
 }
 
 /// Whether they are the same, bit by bit.

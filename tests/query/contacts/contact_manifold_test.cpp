@@ -3,15 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <tuple>
 
 #include "ist/base/error.h"
-#include "ist/query/contacts/contact_reducer.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/contacts/contact_cases.h"
-#include "query/contacts/pair_sums.h"
-#include "query/contacts/plain_contacts.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
 #include "support/errors.h"
@@ -21,114 +16,6 @@ namespace ist::test {
 namespace {
 
 using Eigen::Vector3d;
-
-// Few enough leaves for all pairs of them: like voxels, and coarse against fine both ways round.
-std::vector<Scene> small_scenes() {
-  Random random(7);
-  const TriangleMesh ball = icosphere(2, 1), block = box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8});
-  std::vector<Scene> scenes;
-  const auto add = [&](const char* name, const TriangleMesh& a, double cells_a,
-                       const TriangleMesh& b, double cells_b, const Vector3d& by) {
-    scenes.push_back(
-        {name, tree_of(a, cells_a), tree_of(b, cells_b), pose_of(random.rotation(), by)});
-  };
-  add("equal", ball, 12, block, 11, {1.2, 0.5, 0.3});
-  add("coarse in fine", ball, 14, block, 3, {0.5, 0.5, 1.3});
-  add("fine in coarse", ball, 3, block, 13, {-0.9, -1.2, 0.2});
-  add("one leaf", ball, 14, box({0, 0, 0}, {0.3, 0.3, 0.3}), 1, {0.6, 0.5, 0.3});
-  for (int i = 0; i < 12; ++i) {
-    add("random", random_mesh(random), random.uniform(1, 12), random_mesh(random),
-        random.uniform(1, 12), random.point(-1, 1));
-  }
-  return scenes;
-}
-
-void expect_near(const Vector3d& a, const Vector3d& b, double tolerance) {
-  EXPECT_LE((a - b).norm(), tolerance) << a.transpose() << " and " << b.transpose();
-}
-
-// Within what rounding may do to every pair; returns the largest part of it that it does.
-double compare(const ContactSums& a, const ContactSums& b, const ContactRates& rates,
-               double rounding) {
-  const double all = rounding * static_cast<double>(std::max<std::uint64_t>(b.pairs, 1));
-  EXPECT_EQ(a.about, b.about);
-  const double most =
-      std::max({std::abs(a.weight - b.weight) / rates.weight,
-                (a.pressure.force - b.pressure.force).norm() / rates.pressure_force,
-                (a.pressure.torque - b.pressure.torque).norm() / rates.pressure_torque,
-                (a.spring.force - b.spring.force).norm() / rates.spring_force,
-                (a.spring.torque - b.spring.torque).norm() / rates.spring_torque}) /
-      all;
-  EXPECT_LE(most, 1);
-  return most;
-}
-
-// The query gives what its leaf pairs give in double, and one contact a fixed leaf.
-TEST(ContactManifold, AreThoseOfEachLeafPairInDouble) {
-  std::size_t pairs = 0;
-  double most = 0;
-  for (const Scene& scene : small_scenes()) {
-    for (const SpherePolicy policy : kSpherePolicies) {
-      for (const double least : {-2.0, -0.5}) {
-        SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
-        const ManifoldOptions options{
-            .points = 1 << 14, .max_leaves = 1 << 20, .least_depth = least};
-        Query query(scene.fixed, scene.moving, options_of(policy));
-        ContactManifold points(scene.fixed, scene.moving, policy, options);
-        const PlainContacts plain(scene.fixed, scene.moving, policy, options);
-        const auto wanted = plain.of(ask(query, scene.pose).leaf_pairs, scene.pose);
-        const FoundContacts found = find_contacts(query, points, scene.pose);
-        const double rounding = rounding_of(scene.fixed, points);
-        most = std::max(most, compare(found.sums, plain.sums(wanted), points.rates(), rounding));
-        EXPECT_GE(found.sums.pairs, wanted.size());  // by pads
-        EXPECT_LE(found.sums.pairs, wanted.size() + wanted.size() / 50 + 1);
-        EXPECT_LE(found.sums.pairs, found.result.leaf_pairs);
-        pairs += wanted.size();
-        double weight = 0;
-        for (const Contact& p : found.points) weight += p.weight;
-        EXPECT_NEAR(weight, found.sums.weight,
-                    rounding * points.rates().weight * static_cast<double>(found.sums.pairs));
-      }
-    }
-  }
-  EXPECT_GT(pairs, 5'000u);
-  EXPECT_GT(most, 0.01);  // the bound of rounding is not idle
-}
-
-// By leaf: the sums of one fixed leaf are its contact.
-TEST(ContactManifold, OfOneFixedLeafAreItsMeans) {
-  const std::vector<Scene> scenes = small_scenes();
-  for (const Scene* scene : {&scenes[0], &scenes[1], &scenes[2]}) {
-    for (const SpherePolicy policy : kSpherePolicies) {
-      SCOPED_TRACE(scene->name + ", " + std::string(to_string(policy)));
-      Query query(scene->fixed, scene->moving, options_of(policy));
-      ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0});
-      const LinearOctree& octree = scene->fixed.parts().octree;
-      LeafSums leaves(octree, octree.leaf_count());
-      points.reducer().adder().stream = &leaves;
-      static_cast<void>(query.contacts(scene->pose, points));
-      leaves.close();
-      const PlainContacts plain(scene->fixed, scene->moving, policy);
-      const auto wanted = plain_points(plain.of(ask(query, scene->pose).leaf_pairs, scene->pose));
-      const double whole = points.reducer().scale().area,
-                   rounding = rounding_of(scene->fixed, points);
-      std::size_t checked = 0;
-      for (const LeafSum& leaf : leaves.nodes()) {
-        const auto point = wanted.find(octree.first_child(1, leaf.node / 8) + leaf.node % 8);
-        const double weight = whole / kContactUnit * leaf.weight;
-        const double of_pairs = 64 * points.rates().weight * rounding;
-        ASSERT_TRUE(point != wanted.end() || weight <= of_pairs);
-        if (weight < 0.01 * whole) continue;
-        const Contact& p = point->second;
-        EXPECT_NEAR(weight, p.weight, of_pairs);
-        EXPECT_NEAR(leaf.depth / leaf.weight - 2 * points.reducer().scale().size, p.depth,
-                    1e3 * rounding);
-        ++checked;
-      }
-      EXPECT_GT(checked, 5u);
-    }
-  }
-}
 
 struct Moments {
   double weight = 0, depth = 0;
@@ -148,7 +35,7 @@ Moments moments_of(std::span<const Contact> points) {
 void expect_near(const Moments& a, const Moments& b) {
   EXPECT_NEAR(a.weight, b.weight, 1e-12 * b.weight);
   EXPECT_NEAR(a.depth, b.depth, 1e-7 * b.weight);
-  expect_near(a.position, b.position, 1e-11 * b.weight);
+  expect_close(a.position, b.position, 1e-11 * b.weight);
 }
 
 bool holds(std::span<const Contact> points, const Contact& wanted) {
@@ -171,7 +58,7 @@ std::vector<Contact> marked_of(const std::vector<Contact>& all) {
   return marked;
 }
 
-TEST(ContactManifold, AreJoinedToAsManyAsAreWanted) {
+TEST(ContactManifold, JoinsContactsToAsManyAsAreWanted) {
   for (const Scene& scene : Scenes{solids()[0], solids()[1], jaws()}) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
       SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
@@ -207,7 +94,7 @@ TEST(ContactManifold, AreJoinedToAsManyAsAreWanted) {
   }
 }
 
-TEST(ContactManifold, LoseNothingWhereThereIsNoRoom) {
+TEST(ContactManifold, LosesNothingWhereThereIsNoRoom) {
   for (const Scene& scene : Scenes{solids()[0], solids()[2], shells()}) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
       SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
@@ -238,7 +125,7 @@ TEST(ContactManifold, LoseNothingWhereThereIsNoRoom) {
   }
 }
 
-TEST(ContactManifold, AreTheSameBitsHoweverTheyAreFound) {
+TEST(ContactManifold, IsTheSameBitsHoweverItIsFound) {
   for (const Scene& scene : Scenes{solids()[0], shells()}) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
       ContactManifold points(scene.fixed, scene.moving, policy);
@@ -262,7 +149,7 @@ TEST(ContactManifold, AreTheSameBitsHoweverTheyAreFound) {
   }
 }
 
-TEST(ContactManifold, OfNoRigidMotionAreNone) {
+TEST(ContactManifold, IsEmptyAtNoRigidMotionAndWhereBodiesAreApart) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving);
   ContactManifold points(scene.fixed, scene.moving, query.policy());
@@ -284,7 +171,7 @@ TEST(ContactManifold, OfNoRigidMotionAreNone) {
   EXPECT_EQ(apart.sums.weight, 0);
 }
 
-TEST(ContactManifold, NeedTheQuerysSpheres) {
+TEST(ContactManifold, NeedsTheQuerysSpheres) {
   BuildOptions options;
   options.voxel_size = 0.5;
   options.spheres = SpherePolicy::kTable;
@@ -294,7 +181,7 @@ TEST(ContactManifold, NeedTheQuerysSpheres) {
 }
 
 // The same numbers wherever the scene lies, and in whatever unit, with the unit's power.
-TEST(ContactManifold, KnowNeitherPlaceNorUnit) {
+TEST(ContactManifold, KnowsNeitherPlaceNorUnit) {
   const auto at = [](double unit, const Vector3d& place, SpherePolicy policy) {
     TriangleMesh ball = icosphere(2, 1), block = box({-1, -0.75, -0.75}, {1, 0.75, 0.75});
     for (Vector3d& v : ball.vertices) v = unit * v + place;
@@ -320,14 +207,14 @@ TEST(ContactManifold, KnowNeitherPlaceNorUnit) {
     const Vector3d place(0x1p20, -0x1p20, 0x1p19);  // vertices are rounded there
     const FoundContacts there = at(1, place, policy);
     EXPECT_NEAR(there.sums.weight, here.sums.weight, 1e-6 * here.sums.weight);
-    expect_near(there.sums.spring.torque, here.sums.spring.torque, 1e-6);
+    expect_close(there.sums.spring.torque, here.sums.spring.torque, 1e-6);
     ASSERT_FALSE(there.points.empty());
-    expect_near(there.points[0].position - place, here.points[0].position, 1e-6);
+    expect_close(there.points[0].position - place, here.points[0].position, 1e-6);
   }
 }
 
 // Both sides of a plate thinner than a voxel cancel: nothing presses, and nothing is NaN.
-TEST(ContactManifold, OfNormalsThatCancelHaveNoWeight) {
+TEST(ContactManifold, GivesNoWeightToNormalsThatCancel) {
   const SphereTree plate = tree_of(box({-1, -1, -0.01}, {1, 1, 0.01}), 8);
   for (const SpherePolicy policy : kSpherePolicies) {
     const FoundContacts found = find_contacts(plate, plate, policy, shift({0.05, 0.03, 0.1}));
@@ -347,7 +234,7 @@ TEST(ContactManifold, OfNormalsThatCancelHaveNoWeight) {
 }
 
 // A leaf that is pressed from both sides has a sum of nothing, and one of both directions.
-TEST(ContactManifold, HaveADirectionWhereNormalsBalance) {
+TEST(ContactManifold, HasADirectionWhereNormalsBalance) {
   const TriangleMesh clamp = joined(box({-4, -4, -4}, {4, 4, -0.5}), box({-4, -4, 0.5}, {4, 4, 4}));
   const TriangleMesh pin = box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   const FoundContacts found = find_contacts(tree_of(pin, 1), tree_of(clamp, 8),
@@ -356,11 +243,11 @@ TEST(ContactManifold, HaveADirectionWhereNormalsBalance) {
   EXPECT_LT(found.sums.pressure.force.norm(), 1e-6 * found.sums.weight);
   ASSERT_EQ(found.points.size(), 1u);
   EXPECT_NEAR(found.points[0].normal.norm(), 1, 1e-12);
-  expect_near(found.points[0].position, {0, 0, 0}, 1e-12);
+  expect_close(found.points[0].position, {0, 0, 0}, 1e-12);
 }
 
 // A host may have set anything.
-TEST(ContactManifold, KeepTheFloatEnvironment) {
+TEST(ContactManifold, KeepsTheFloatEnvironment) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving);
   ContactManifold points(scene.fixed, scene.moving, query.policy());
