@@ -1,7 +1,11 @@
 #include "cli/cli_case.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "ist/mesh/mesh.h"
 #include "support/shapes.h"
@@ -44,6 +48,17 @@ std::string CliTest::poses(const std::vector<double>& shifts) const {
                     {"distance", nullptr}});
   }
   return write("poses.json", list.dump());
+}
+
+void CliTest::leave_no_core() {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+}
+
+void CliTest::await_entries(std::size_t entries, Process& process) const {
+  while (dir_.entries() < entries && process.is_running()) {
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
 }
 
 std::vector<nlohmann::json> CliTest::json_lines(const std::string& text) {

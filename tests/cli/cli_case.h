@@ -43,6 +43,11 @@ class CliTest : public ::testing::Test {
   /// Shifts along x as a file of poses.
   [[nodiscard]] std::string poses(const std::vector<double>& shifts) const;
 
+  /// Processes that a signal ends leave no core from now on.
+  static void leave_no_core();
+  /// Waits until the folder has so many entries, or the process has ended.
+  void await_entries(std::size_t entries, Process& process) const;
+
   /// The lines of a text, each an object of JSON, without the header.
   static std::vector<nlohmann::json> json_lines(const std::string& text);
 

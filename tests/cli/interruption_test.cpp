@@ -1,7 +1,6 @@
 // Signals that end the command: it dies by them, and leaves nothing half-written.
 
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -22,19 +21,12 @@ using namespace std::chrono_literals;
 
 class Interruption : public CliTest {
  protected:
-  Interruption() {
-    const rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-  }
+  Interruption() { leave_no_core(); }
   // A query that goes on for minutes, and writes its contacts into the folder all the while.
   [[nodiscard]] std::vector<std::string> long_query(const std::string& tree) const {
     return {"approach", tree,       tree,      "--axis",     "z",
             "--from",   "0",        "--to",    "1",          "--step",
             "0.01",     "--repeat", "1000000", "--contacts", path("c.jsonl")};
-  }
-  // Waits until it holds so many entries, or the process has ended.
-  void await_entries(std::size_t entries, Process& process) const {
-    while (dir_.entries() < entries && process.is_running()) std::this_thread::sleep_for(100us);
   }
 };
 

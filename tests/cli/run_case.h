@@ -1,9 +1,7 @@
 #pragma once
 
-#include <chrono>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/cli_case.h"
@@ -60,11 +58,6 @@ class RunCase : public CliTest {
                                  "\n[effects.friction]\n[effects.damping]\n[effects.proximity]\n"
                                  "distance = 2\n[effects.gravity]\nmass = 0.05\n[effects.snap]\n"
                                  "move = [0, 0, -1]\nradius = 3\n");
-  }
-  /// Waits until the loop begins, which makes the recording's file, or the process has ended.
-  void await_entries(std::size_t entries, Process& process) const {
-    while (dir_.entries() < entries && process.is_running())
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   /// The command's arguments.
   static std::vector<std::string> run(const std::string& scene,

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,10 +18,7 @@ namespace ist::test {
 /// A test that sends signals to a run which records.
 class RunSignals : public RunCase {
  protected:
-  RunSignals() {
-    const rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-  }
+  RunSignals() { leave_no_core(); }
 
   /// A run that does not end by itself.
   [[nodiscard]] std::vector<std::string> endless(const std::string& record,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "haptics/effects/effect_case.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -16,12 +17,6 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 
 Matrix3d turn(double angle, const Vector3d& axis) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
-
-Vector6 motion_of(const Vector3d& translation, const Vector3d& rotation) {
-  Vector6 motion;
-  motion << translation, rotation;
-  return motion;
 }
 
 Placement some_placement(Random& random) {
@@ -36,7 +31,7 @@ TEST(Placement, ComesBackFromItsMotionAndGoesWhereTheMotionSays) {
   Random random(11);
   for (int i = 0; i < 20000; ++i) {
     const Placement from = some_placement(random), to = some_placement(random);
-    const Vector6 motion = motion_of(random.point(-1, 1), random.point(-2, 2));
+    const Vector6 motion = six(random.point(-1, 1), random.point(-2, 2));
     ASSERT_LE((motion_between(from, from.moved(motion)) - motion).cwiseAbs().maxCoeff(), 1e-13);
     const Vector6 way = motion_between(from, to);
     if (way.tail<3>().norm() > 100) continue;  // rounding grows with the square of a tangent
@@ -51,7 +46,7 @@ TEST(Placement, TurnsByTheMotionsAngleToWithinATwelfthOfItsCube) {
   for (const double angle : {1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0}) {
     const Vector3d axis = random.direction();
     const Placement from = some_placement(random);
-    const Placement to = from.moved(motion_of(Vector3d::Zero(), angle * axis));
+    const Placement to = from.moved(six(Vector3d::Zero(), angle * axis));
     const Matrix3d turned = to.rotation * from.rotation.transpose();
     // What is missing: the turn that would complete it, about the same axis.
     const Eigen::AngleAxisd missing(turn(angle, axis) * turned.transpose());
@@ -64,26 +59,26 @@ TEST(Placement, TurnsByTheMotionsAngleToWithinATwelfthOfItsCube) {
 
 TEST(Placement, IsExactWhereNumbersAre) {
   const Placement origin;
-  const Placement shifted = origin.moved(motion_of({0.25, -3, 1e-9}, Vector3d::Zero()));
+  const Placement shifted = origin.moved(six({0.25, -3, 1e-9}, Vector3d::Zero()));
   EXPECT_EQ(shifted.rotation, Matrix3d::Identity());
   EXPECT_EQ(shifted.translation, Vector3d(0.25, -3, 1e-9));
   // Twice the tangent of an eighth of a circle is a quarter turn.
-  const Placement quarter = origin.moved(motion_of(Vector3d::Zero(), {0, 0, 2}));
+  const Placement quarter = origin.moved(six(Vector3d::Zero(), {0, 0, 2}));
   Matrix3d expected;
   expected << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   EXPECT_EQ(quarter.rotation, expected);
-  EXPECT_EQ(motion_between(origin, quarter), motion_of(Vector3d::Zero(), {0, 0, 2}));
+  EXPECT_EQ(motion_between(origin, quarter), six(Vector3d::Zero(), {0, 0, 2}));
   EXPECT_EQ(motion_between(quarter, quarter), Vector6::Zero());
   EXPECT_EQ(quarter.moved(Vector6::Zero()).rotation, expected);
   EXPECT_EQ(quarter.isometry().matrix().topLeftCorner(3, 3), expected);
 }
 
-TEST(Placement, StaysRigidThroughAMillionMoves) {
+TEST(Placement, StaysRigidThroughManyMoves) {
   Random random(13);
   Placement placement = some_placement(random);
   double worst = 0;
   for (int i = 0; i < 1'000'000; ++i) {
-    placement = placement.moved(motion_of({1e-6, 0, 0}, {1e-3, -2e-3, 7e-4}));
+    placement = placement.moved(six({1e-6, 0, 0}, {1e-3, -2e-3, 7e-4}));
     if (i % 1000 == 0) worst = std::max(worst, farthest_from_rigid(placement.rotation));
   }
   EXPECT_LE(std::max(worst, farthest_from_rigid(placement.rotation)), 1e-15);

@@ -6,17 +6,13 @@
 #include "hardware/golden_vectors.h"
 #include "ist/hardware/table_rom.h"
 #include "ist/tree/lookup_table.h"
+#include "support/exact.h"
 
 namespace ist::test {
 namespace {
 
 mpz_class power(unsigned exponent) { return mpz_class(1) << exponent; }
 
-mpz_class floor_of(const mpq_class& x) {
-  mpz_class result;
-  mpz_fdiv_q(result.get_mpz_t(), x.get_num_mpz_t(), x.get_den_mpz_t());
-  return result;
-}
 mpz_class ceil_of(const mpq_class& x) { return -floor_of(-x); }
 
 // The smallest whole number whose square is no less.

@@ -19,13 +19,6 @@ double distance_of(const Pose& a, const Pose& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
 }
 
-Pose pose_at(const Eigen::Matrix3d& rotation, const Vector& to) {
-  Pose pose = Pose::Identity();
-  pose.linear() = rotation;
-  pose.translation() = to;
-  return pose;
-}
-
 TEST(Angles, AreThoseOfLibm) {
   Random random(71);
   for (int i = 0; i < 2000; ++i) {
@@ -47,9 +40,9 @@ TEST(Angles, AreThoseOfLibm) {
 TEST(Motion, GoesFromOnePoseToTheOther) {
   Random random(73);
   for (int i = 0; i < 300; ++i) {
-    const Pose from = pose_at(random.rotation(), random.point(-9, 9));
+    const Pose from = pose_of(random.rotation(), random.point(-9, 9));
     const double angle = i % 3 == 0 ? kPi : std::ldexp(random.uniform(0, 3), -(i % 50));
-    const Pose by = pose_at(Eigen::AngleAxisd(angle, random.direction()).toRotationMatrix(),
+    const Pose by = pose_of(Eigen::AngleAxisd(angle, random.direction()).toRotationMatrix(),
                             random.point(-9, 9));
     const Pose to = by * from;
     const Motion motion = Motion::between(from, to);
@@ -62,8 +55,8 @@ TEST(Motion, GoesFromOnePoseToTheOther) {
 }
 
 TEST(Motion, OfATranslationIsStraight) {
-  const Pose from = pose_at(Eigen::Matrix3d::Identity(), {1, 2, 3});
-  const Motion motion = Motion::between(from, pose_at(Eigen::Matrix3d::Identity(), {1, 2, -5}));
+  const Pose from = pose_of(Eigen::Matrix3d::Identity(), {1, 2, 3});
+  const Motion motion = Motion::between(from, pose_of(Eigen::Matrix3d::Identity(), {1, 2, -5}));
   EXPECT_LT((motion.at(0.25).translation() - Vector(1, 2, 1)).norm(), 1e-15);
   EXPECT_EQ(motion.at(0.25).linear(), Eigen::Matrix3d::Identity());
   EXPECT_NEAR(motion.longest_way(std::vector<Vector>{{0, 0, 0}, {100, 0, 0}}), 8, 1e-14);
@@ -85,8 +78,8 @@ TEST(Motion, OfAScrewTurnsAsOftenAsItIsTold) {
 TEST(Motion, SaysHowFarItsPointsGo) {
   Random random(79);
   for (int i = 0; i < 100; ++i) {
-    const Motion motion = Motion::between(pose_at(random.rotation(), random.point(-3, 3)),
-                                          pose_at(random.rotation(), random.point(-3, 3)));
+    const Motion motion = Motion::between(pose_of(random.rotation(), random.point(-3, 3)),
+                                          pose_of(random.rotation(), random.point(-3, 3)));
     const Vector point = random.point(-2, 2);
     double way = 0;
     constexpr int kSteps = 2000;

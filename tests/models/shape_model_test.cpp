@@ -4,6 +4,7 @@
 
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
+#include "query/exact/mesh_distance.h"
 
 namespace ist::test {
 namespace {
@@ -16,16 +17,6 @@ void expect_sound(const TriangleMesh& mesh, std::size_t triangles) {
   EXPECT_EQ(report.components, 1u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
   EXPECT_GT(report.signed_volume, 0);
-}
-
-double longest_edge(const TriangleMesh& mesh) {
-  double longest = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-      longest = std::max(longest, (mesh.vertices[to] - mesh.vertices[from]).norm());
-    }
-  }
-  return longest;
 }
 
 TEST(ShapeModel, MakesABoxBetweenItsCorners) {

@@ -53,12 +53,6 @@ std::optional<ExactBall> ball_through(const std::vector<ExactPoint>& points) {
   return ExactBall{centre, square(centre - points[0])};
 }
 
-mpz_class floor_of(const mpq_class& x) {
-  mpz_class result;
-  mpz_fdiv_q(result.get_mpz_t(), x.get_num_mpz_t(), x.get_den_mpz_t());
-  return result;
-}
-
 struct CellRange {
   std::uint32_t begin, end;
 };
@@ -82,6 +76,18 @@ CellRange cell_range(const ExactPolygon& polygon, std::size_t axis, const Lattic
 }
 
 }  // namespace
+
+ExactPoint unit(std::size_t axis) {
+  ExactPoint direction;
+  direction[axis] = 1;
+  return direction;
+}
+
+mpz_class floor_of(const mpq_class& x) {
+  mpz_class result;
+  mpz_fdiv_q(result.get_mpz_t(), x.get_num_mpz_t(), x.get_den_mpz_t());
+  return result;
+}
 
 ExactPoint operator+(const ExactPoint& a, const ExactPoint& b) {
   return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}};

@@ -28,6 +28,11 @@ struct ExactPoint {
 [[nodiscard]] ExactPoint cross(const ExactPoint& a, const ExactPoint& b);
 [[nodiscard]] mpq_class square(const ExactPoint& a);
 
+/// The axis, of length 1.
+[[nodiscard]] ExactPoint unit(std::size_t axis);
+/// The largest whole number that is at most `x`.
+[[nodiscard]] mpz_class floor_of(const mpq_class& x);
+
 /// The same number: every finite double is a rational.
 [[nodiscard]] ExactPoint exact(const Eigen::Vector3d& point);
 

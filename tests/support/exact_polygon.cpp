@@ -13,12 +13,6 @@ struct HalfSpace {
 
 bool is_zero(const ExactPoint& a) { return a == ExactPoint(); }
 
-ExactPoint unit(std::size_t axis) {
-  ExactPoint direction;
-  direction[axis] = 1;
-  return direction;
-}
-
 // Sutherland and Hodgman's clipping. In rational numbers it is exact, and holds for segments and
 // points as well.
 ExactPolygon cut(const ExactPolygon& polygon, const HalfSpace& half) {

@@ -13,12 +13,6 @@ namespace {
 
 Eigen::Vector3d rounded(const ExactPoint& a) { return {a[0].get_d(), a[1].get_d(), a[2].get_d()}; }
 
-ExactPoint unit(std::size_t axis) {
-  ExactPoint direction;
-  direction[axis] = 1;
-  return direction;
-}
-
 }  // namespace
 
 ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)

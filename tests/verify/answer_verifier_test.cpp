@@ -8,22 +8,12 @@
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
 #include "ist/tree/sphere_tree.h"
-#include "query/query_cases.h"
+#include "query/exact/exact_tree.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
 
 namespace ist::test {
 namespace {
-
-SphereTree tree_with_triangles(const TriangleMesh& mesh, double cells) {
-  Eigen::AlignedBox3d bounds;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) bounds.extend(vertex);
-  BuildOptions options;
-  options.voxel_size = bounds.sizes().maxCoeff() / cells;
-  options.spheres = SpherePolicy::kSlab;
-  options.keep_triangles = true;
-  return build_tree(mesh, options);
-}
 
 // Two balls that cross in a ring, one turned.
 class Guarantee : public ::testing::TestWithParam<SpherePolicy> {
@@ -46,8 +36,7 @@ class Guarantee : public ::testing::TestWithParam<SpherePolicy> {
 
   Random random_{7};
   const TriangleMesh fixed_mesh_ = icosphere(1, 1), moving_mesh_ = icosphere(2, 0.9);
-  const SphereTree fixed_ = tree_with_triangles(fixed_mesh_, 9),
-                   moving_ = tree_with_triangles(moving_mesh_, 7);
+  const SphereTree fixed_ = exact_tree(fixed_mesh_, 9), moving_ = exact_tree(moving_mesh_, 7);
   const Eigen::Isometry3d pose_ = pose_of(random_.rotation(), {1.1, 0.4, 0.3});
   const AnswerVerifier check_{fixed_, moving_, GetParam()};
 };
@@ -156,8 +145,8 @@ TEST_P(Guarantee, NoFalseAlarm) {
   std::size_t leaf_pairs = 0;
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
-    const SphereTree a = tree_with_triangles(random_mesh(random_), random_.uniform(1, 12));
-    const SphereTree b = tree_with_triangles(random_mesh(random_), random_.uniform(1, 12));
+    const SphereTree a = exact_tree(random_mesh(random_), random_.uniform(1, 12));
+    const SphereTree b = exact_tree(random_mesh(random_), random_.uniform(1, 12));
     const AnswerVerifier check(a, b, GetParam());
     ReferenceQuery reference(a, b, GetParam());
     QueryOptions options;
