@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cstdlib>
 #include <string>
 
@@ -13,6 +15,31 @@ namespace ist::test {
 namespace {
 
 using Vector = Eigen::Vector3d;
+
+// The numbers of settings that hold nothing else, in their order.
+template <class Settings>
+auto numbers_of(const Settings& settings) {
+  return std::bit_cast<std::array<double, sizeof(Settings) / sizeof(double)>>(settings);
+}
+// Of a hand, without its plan.
+std::array<double, 11> numbers_of(const HandSettings& hand) {
+  const DeviceMechanics& mechanics = hand.mechanics;
+  return {mechanics.damping,
+          mechanics.angular_damping,
+          mechanics.delay,
+          hand.mass,
+          hand.inertia,
+          hand.arm_stiffness,
+          hand.arm_damping,
+          hand.arm_angular_stiffness,
+          hand.arm_angular_damping,
+          hand.resolution,
+          hand.angular_resolution};
+}
+template <class... Number>
+std::array<double, sizeof...(Number)> numbers(Number... each) {
+  return {static_cast<double>(each)...};
+}
 
 class SceneFile : public ::testing::Test {
  protected:
@@ -67,29 +94,10 @@ TEST_F(SceneFile, HasDefaults) {
     EXPECT_EQ(body->rotation, Eigen::Matrix3d::Identity());
     EXPECT_EQ(body->translation, Vector::Zero());
   }
-  EXPECT_EQ(scene.coupling.stiffness, 1000);
-  EXPECT_EQ(scene.coupling.damping, 0.5);
-  EXPECT_EQ(scene.coupling.angular_stiffness, 1);
-  EXPECT_EQ(scene.coupling.angular_damping, 5e-4);
-  EXPECT_EQ(scene.coupling.max_force, 5);
-  EXPECT_EQ(scene.coupling.max_torque, 0.2);
-  EXPECT_EQ(scene.safety.max_force, 8);
-  EXPECT_EQ(scene.safety.max_torque, 0.3);
-  EXPECT_EQ(scene.safety.force_slew, 500);
-  EXPECT_EQ(scene.safety.torque_slew, 20);
-  EXPECT_EQ(scene.safety.soft_start, 0.5);
-  const auto& hand = std::get<HandSettings>(scene.device);
-  EXPECT_EQ(hand.mechanics.damping, 2);
-  EXPECT_EQ(hand.mechanics.angular_damping, 2e-3);
-  EXPECT_EQ(hand.mechanics.delay, 0);
-  EXPECT_EQ(hand.mass, 0.2);
-  EXPECT_EQ(hand.inertia, 2e-4);
-  EXPECT_EQ(hand.arm_stiffness, 500);
-  EXPECT_EQ(hand.arm_damping, 10);
-  EXPECT_EQ(hand.arm_angular_stiffness, 1);
-  EXPECT_EQ(hand.arm_angular_damping, 0.02);
-  EXPECT_EQ(hand.resolution, 0);
-  EXPECT_EQ(hand.angular_resolution, 0);
+  EXPECT_EQ(numbers_of(scene.coupling), numbers(1000, 0.5, 1, 5e-4, 5, 0.2));
+  EXPECT_EQ(numbers_of(scene.safety), numbers(8, 0.3, 500, 20, 0.5));
+  EXPECT_EQ(numbers_of(std::get<HandSettings>(scene.device)),
+            numbers(2, 2e-3, 0, 0.2, 2e-4, 500, 10, 1, 0.02, 0, 0));
 }
 
 TEST_F(SceneFile, HasDefaultsOfEachEffect) {
@@ -98,13 +106,10 @@ TEST_F(SceneFile, HasDefaultsOfEachEffect) {
                                     "[effects.proximity]\ndistance = 2\n"
                                     "[effects.gravity]\nmass = 0.1\n"
                                     "[effects.snap]\nradius = 3\n"));
-  EXPECT_EQ(scene.contact.value().stiffness, 2000);
-  EXPECT_EQ(scene.friction.value().static_coefficient, 0.3);
-  EXPECT_EQ(scene.friction->dynamic_coefficient, 0.2);
-  EXPECT_EQ(scene.friction->stiffness, 1000);
-  EXPECT_EQ(scene.damping.value().damping, 1);
-  EXPECT_EQ(scene.proximity.value().distance, 1e-3 * 2);
-  EXPECT_EQ(scene.proximity->damping, 2);
+  EXPECT_EQ(numbers_of(scene.contact.value()), numbers(2000, 0.25));
+  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.3, 0.2, 1000));
+  EXPECT_EQ(numbers_of(scene.damping.value()), numbers(1));
+  EXPECT_EQ(numbers_of(scene.proximity.value()), numbers(1e-3 * 2, 2));
   EXPECT_EQ(scene.gravity.value().mass, 0.1);
   EXPECT_FALSE(scene.gravity->centre);
   EXPECT_EQ(scene.gravity->acceleration, Vector(0, 0, -9.81));
@@ -147,12 +152,9 @@ angular_stiffness = 0.3
 radius = 4
 angle = 0.5
 )"));
-  EXPECT_EQ(scene.friction.value().static_coefficient, 0.5);
-  EXPECT_EQ(scene.friction->dynamic_coefficient, 0.25);
-  EXPECT_EQ(scene.friction->stiffness, 700);
-  EXPECT_EQ(scene.damping.value().damping, 3);
-  EXPECT_EQ(scene.proximity.value().distance, 1e-3 * 1.5);
-  EXPECT_EQ(scene.proximity->damping, 4);
+  EXPECT_EQ(numbers_of(scene.friction.value()), numbers(0.5, 0.25, 700));
+  EXPECT_EQ(numbers_of(scene.damping.value()), numbers(3));
+  EXPECT_EQ(numbers_of(scene.proximity.value()), numbers(1e-3 * 1.5, 4));
   EXPECT_EQ(scene.gravity.value().mass, 0.2);
   EXPECT_EQ(scene.gravity->centre.value(), Vector(1, 2, 3)) << "not in mesh units";
   EXPECT_EQ(scene.gravity->acceleration, Vector(0, -9.8, 0));
@@ -182,17 +184,8 @@ force_slew = 300
 torque_slew = 15
 soft_start = 0
 )"));
-  EXPECT_EQ(scene.coupling.stiffness, 1500);
-  EXPECT_EQ(scene.coupling.damping, 0.25);
-  EXPECT_EQ(scene.coupling.angular_stiffness, 2);
-  EXPECT_EQ(scene.coupling.angular_damping, 0.001);
-  EXPECT_EQ(scene.coupling.max_force, 9);
-  EXPECT_EQ(scene.coupling.max_torque, 0.4);
-  EXPECT_EQ(scene.safety.max_force, 10);
-  EXPECT_EQ(scene.safety.max_torque, 0.5);
-  EXPECT_EQ(scene.safety.force_slew, 300);
-  EXPECT_EQ(scene.safety.torque_slew, 15);
-  EXPECT_EQ(scene.safety.soft_start, 0);
+  EXPECT_EQ(numbers_of(scene.coupling), numbers(1500, 0.25, 2, 0.001, 9, 0.4));
+  EXPECT_EQ(numbers_of(scene.safety), numbers(10, 0.5, 300, 15, 0));
 }
 
 TEST_F(SceneFile, TakesEveryKeyOfAHand) {
@@ -211,17 +204,8 @@ angular_resolution = 0.0001
 plan = [ { time = 0.0, move = [1, 2, 3], turn = [2, 0, 0, 0] } ]
 )");
   const auto& hand = std::get<HandSettings>(scene.device);
-  EXPECT_EQ(hand.mechanics.damping, 3);
-  EXPECT_EQ(hand.mechanics.angular_damping, 0.004);
-  EXPECT_EQ(hand.mechanics.delay, 0.001);
-  EXPECT_EQ(hand.mass, 0.3);
-  EXPECT_EQ(hand.inertia, 0.0005);
-  EXPECT_EQ(hand.arm_stiffness, 400);
-  EXPECT_EQ(hand.arm_damping, 8);
-  EXPECT_EQ(hand.arm_angular_stiffness, 1.5);
-  EXPECT_EQ(hand.arm_angular_damping, 0.03);
-  EXPECT_EQ(hand.resolution, 1e-3 * 0.02);
-  EXPECT_EQ(hand.angular_resolution, 0.0001);
+  EXPECT_EQ(numbers_of(hand),
+            numbers(3, 0.004, 0.001, 0.3, 0.0005, 400, 8, 1.5, 0.03, 1e-3 * 0.02, 0.0001));
   ASSERT_EQ(hand.plan.size(), 1u);
   EXPECT_EQ(hand.plan[0].pose.translation, 1e-3 * Vector(1, 2, 3));
   EXPECT_EQ(hand.plan[0].pose.rotation, Eigen::Matrix3d::Identity());
