@@ -165,4 +165,5 @@ def main():
     print(f"all {len(found)} mutants are killed")
 
 
-main()
+if __name__ == "__main__":
+    main()

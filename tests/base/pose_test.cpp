@@ -118,7 +118,7 @@ TEST(ProjectToRigid, RefusesNumbersThatAreNotFiniteWhereverTheyAre) {
   }
 }
 
-TEST(ProjectToRigid, RefusesALastRowThatIsNot0001) {
+TEST(ProjectToRigid, RefusesALastRowThatIsNoRigidMotions) {
   for (int column = 0; column < 4; ++column) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.matrix()(3, column) += 1e-12;

@@ -47,7 +47,7 @@ void expect_all_quantiles(std::vector<std::int64_t> times) {
   EXPECT_EQ(histogram.quantile(1), histogram.max());
 }
 
-TEST(LatencyHistogram, QuantilesAreNeverTooSmallAndTooLargeByAThirtySecondAtMost) {
+TEST(LatencyHistogram, QuantilesAreNeverTooSmallAndHardlyTooLarge) {
   Random random(1);
   const std::vector<std::function<double()>> distributions = {
       [&] { return random.uniform(0, 1000); },
@@ -71,7 +71,7 @@ TEST(LatencyHistogram, QuantilesAreNeverTooSmallAndTooLargeByAThirtySecondAtMost
   }
 }
 
-TEST(LatencyHistogram, IsExactBelow64Nanoseconds) {
+TEST(LatencyHistogram, IsExactForShortTimes) {
   LatencyHistogram histogram;
   for (std::int64_t time = 0; time < 64; ++time) histogram.record(Nanoseconds(time));
   for (int time = 0; time < 64; ++time) {

@@ -95,7 +95,7 @@ TEST(ClampCoupling, LeavesWhatIsWithinTheBorderBitForBit) {
   EXPECT_DOUBLE_EQ(result.angular_stiffness.largest, 4);
 }
 
-TEST(ClampCoupling, ClampsStiffnessTo80PercentOfTheLargestAndSaysSo) {
+TEST(ClampCoupling, ClampsStiffnessBelowTheLargestAndSaysSo) {
   const DeviceMechanics device{.damping = 2, .angular_damping = 0.0015, .delay = 0.5e-3};
   CouplingSettings asked = kCoupling;
   asked.angular_damping = 0.0005;

@@ -91,7 +91,7 @@ TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
   }
 }
 
-TEST(NearestOnTriangle, OfASliverOfAspectAMillionIsRightToAThousandthOfItsWidth) {
+TEST(NearestOnTriangle, OfASliverIsRightToAPartOfItsWidth) {
   test::Random random(5);
   for (int i = 0; i < 3000; ++i) {
     const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);

@@ -118,7 +118,7 @@ class AllPairsOf : public ::testing::TestWithParam<SpherePolicy> {};
 INSTANTIATE_TEST_SUITE_P(Policies, AllPairsOf, ::testing::ValuesIn(kSpherePolicies),
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
 
-TEST_P(AllPairsOf, VoxelSizesFromOneToEight) {
+TEST_P(AllPairsOf, VoxelSizesThatDiffer) {
   const TriangleMesh ball = icosphere(3, 1), block = box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8});
   Random random(1);
   std::size_t found = 0;

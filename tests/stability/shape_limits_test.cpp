@@ -69,7 +69,7 @@ TEST(ShapeLimits, TheSmallestBodiesKeepEveryGuarantee) {
 
 // A million at a higher effort. The other body is one triangle: of two such there are more pairs
 // than can be counted.
-TEST(ShapeLimits, AMillionTrianglesInOnePlace) {
+TEST(ShapeLimits, HoldWithManyTrianglesInOnePlace) {
   const auto count = static_cast<std::size_t>(std::min(samples(50'000), 1'000'000));
   StabilityCase memory("shapes", "coincident triangles: tree", "bytes"),
       answers("shapes", "coincident triangles by the million", "wrong answers");

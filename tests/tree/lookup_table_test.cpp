@@ -43,7 +43,7 @@ TEST(LookupTable, HoldsTheSmallestBallOfEachMask) {
   }
 }
 
-TEST(LookupTable, HasThirtyFiveBallsFiveRadiiAndSeventyEightSmallerThanTheCircumsphere) {
+TEST(LookupTable, HasFewDistinctBallsAndRadii) {
   std::set<std::tuple<int, int, int, int>> balls;
   std::set<int> radii;
   int smaller = 0;

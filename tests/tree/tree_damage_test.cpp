@@ -199,7 +199,7 @@ TEST(DamagedTree, EachFieldOfThePreambleHasAnErrorOfItsOwn) {
 }
 
 // Files of version 3 have no source.
-TEST(DamagedTree, OfVersion3IsRefusedWithTheRemedy) {
+TEST(DamagedTree, OfAnEarlierVersionIsRefusedWithTheRemedy) {
   TreeFile file = small_file();
   file.put(TreeFile::kVersion, 3u);
   const auto error = test::error_of([&] { (void)test::tree_of_bytes(file.bytes); });

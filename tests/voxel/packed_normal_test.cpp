@@ -17,7 +17,7 @@ double angle_in_degrees(const Vector3d& a, const Vector3d& b) {
 
 Vector3d stored(const Vector3d& normal) { return PackedNormal(normal, 1).direction(); }
 
-TEST(PackedNormal, ADirectionComesBackWithinSixHundredthsOfADegree) {
+TEST(PackedNormal, GivesADirectionBackWithinItsError) {
   test::Random random(1);
   double worst = 0;
   for (int i = 0; i < 300'000; ++i) {

@@ -74,7 +74,7 @@ TEST(VoxelizerExact, RandomTriangles) {
   }
 }
 
-TEST(VoxelizerExact, SliversOfAspectAMillion) {
+TEST(VoxelizerExact, LongSlivers) {
   test::Random random(1);
   TriangleMesh mesh;
   for (int i = 0; i < 60; ++i) {

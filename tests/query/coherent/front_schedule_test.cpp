@@ -12,7 +12,7 @@ namespace {
 constexpr double kVoxel = 0.2;
 constexpr double kFar = 1e3;
 
-TEST(FrontSchedule, ASlackLastsForTwentyTicksAndIsNeitherThinNorWide) {
+TEST(FrontSchedule, ASlackLastsForManyTicksAndIsNeitherThinNorWide) {
   const FrontSchedule schedule(kVoxel, false);
   EXPECT_DOUBLE_EQ(schedule.slack({0, 0, 0}), 0.05 * kVoxel);
   EXPECT_DOUBLE_EQ(schedule.slack({0.002, 0.002, 0}), 0.04);

@@ -18,7 +18,7 @@ INSTANTIATE_TEST_SUITE_P(All, ClosedForms, ::testing::Range<std::size_t>(0, clos
                          [](const auto& form) { return closed_forms()[form.param].name; });
 
 // For overlaps up to a voxel, and for gaps.
-TEST_P(ClosedForms, AreMetWithinAVoxelAndAHalfAndTenDegrees) {
+TEST_P(ClosedForms, AreMetWithinAFewVoxelsAndDegrees) {
   for (const double s : {kVoxel, kVoxel / 2}) {
     const SphereTree fixed = tree_of_solid(form_.fixed, s), moving = tree_of_solid(form_.moving, s);
     for (const SpherePolicy policy : kSpherePolicies) {

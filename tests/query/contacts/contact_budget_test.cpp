@@ -192,7 +192,7 @@ TEST(ContactsWithinABudget, TellATrueDistance) {
   }
 }
 
-TEST(ContactsWithinABudget, OfNoRigidMotionAreNone) {
+TEST(ContactsWithinABudget, AreNoneAtNoRigidMotion) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
   ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
