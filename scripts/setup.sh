@@ -9,6 +9,7 @@
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
 #   scripts/setup.sh --oracles   also what reads and measures again what the command writes
 #   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
+#   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
 set -euo pipefail
 
@@ -28,8 +29,9 @@ for argument in "$@"; do
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
     --docs) packages+=(doxygen mkdocs) ;;
+    --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
-    -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

@@ -10,7 +10,7 @@
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
-#                          the circuit are installed too
+#                          the circuit, and those that check packages, are installed too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 long=false
@@ -21,7 +21,7 @@ case ${1:-} in
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
 setup=(--oracles --docs)
-[ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware)
+[ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
 ! $long || setup+=(--cloudcompare)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)

@@ -15,6 +15,22 @@ enum ExitCode : int {
   kTouching,
 };
 
+struct ExitMeaning {
+  int code;
+  const char* meaning;
+};
+inline constexpr ExitMeaning kExitMeanings[] = {
+    {0, "fine"},
+    {kFailed, "failed"},
+    {kUsage, "usage"},
+    {kBadInput, "bad input file"},
+    {kDeadlinesMissed, "deadlines missed (run)"},
+    {kGuaranteeBroken,
+     "a result breaks a guarantee (--verify), or differs from the model (table --check)"},
+    {kTouching, "touching (--fail-if-touching)"},
+    {130, "interrupted"},  // as a shell tells the end by a signal
+};
+
 /// A failure with an exit code of its own: a result that breaks the guarantee, more missed
 /// deadlines than --allow-missed, or bodies that touch where they must not.
 struct Failure : std::runtime_error {

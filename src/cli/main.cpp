@@ -4,16 +4,16 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <system_error>
 #include <vector>
 
-#include "cli/commands/commands.h"
+#include "cli/app.h"
 #include "cli/exit_code.h"
 #include "cli/interruption.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "cli/words.h"
 #include "ist/base/error.h"
 
@@ -39,39 +39,17 @@ ExitCode exit_code(ErrorCode code) {
 
 int run(int argc, char** argv) {
   install_signal_handlers();
-  CLI::App app(
-      "Finds where two rigid triangle meshes touch, how deep and how far apart they are.\n"
-      "Try 'ist demo' first: it needs no files.\n"
-      "Lengths are in the unit of the mesh files, millimetres by habit.",
-      "ist");
-  app.require_subcommand(1);
-  app.set_version_flag("-V,--version", version_lines());
-  app.failure_message(CLI::FailureMessage::simple);
-  app.footer(
-      "Exit codes: 0 fine, 1 failed, 2 usage, 3 bad input file, 4 deadlines missed (run),\n"
-      "5 a result breaks a guarantee (--verify), or differs from the model (table --check),\n"
-      "6 touching (--fail-if-touching), 130 interrupted.\n"
-      "Research software, not a medical device.");
-  add_demo(app);
-  add_build(app);
-  add_info(app);
-  add_export(app);
-  add_collide(app);
-  add_approach(app);
-  add_occlusion(app);
-  add_run(app);
-  add_advise(app);
-  add_table(app);
+  const std::unique_ptr<CLI::App> app = make_app();
   std::vector<std::string> words = words_of(argc, argv);
   try {
-    refuse_unknown_words(app, words);
+    refuse_unknown_words(*app, words);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    app.parse(words);
+    app->parse(words);
   } catch (const CLI::Success& help) {  // or the version, which its own command prints
-    return app.exit(help);
+    return app->exit(help);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(),
-                 subcommand_among(app, argc, argv).c_str());
+                 subcommand_among(*app, argc, argv).c_str());
     return kUsage;
   }
   // An earlier write that failed, as on a full disk, shows here at the latest.

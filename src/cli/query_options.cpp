@@ -37,9 +37,9 @@ void add_engine_options(CLI::App& command, QueryOptions& options) {
       ->group(group);
   command
       .add_option("--target", options.target,
-                  fmt::format("instruction set of simd: {} on this processor; by default "
-                              "IST_TARGET of the environment, or the first. All answer alike",
-                              target_names()))
+                  "instruction set of simd, one that ist --version lists; by default IST_TARGET "
+                  "of the environment, or the first. All answer alike")
+      ->type_name("NAME")
       ->group(group);
   command.add_option("--repeat", options.repeat, "times that each pose is timed; prints --timing")
       ->check(CLI::Range(1, 1000000))
@@ -96,8 +96,10 @@ BodyFiles QueryOptions::body_files() const {
 void add_query_options(CLI::App& command, QueryOptions& options) {
   options.subcommand = command.get_name();
   command.add_option("FIXED", options.files.fixed, "mesh or tree of the body that stays")
+      ->type_name("FILE")
       ->required();
   command.add_option("MOVING", options.files.moving, "mesh or tree of the body that is moved")
+      ->type_name("FILE")
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
                      "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
@@ -114,11 +116,13 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");
-  command.add_option(
-      "--contacts", options.contacts,
-      "write leaf pairs, and the contact points that they are reduced to, at most "
-      "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
-      "or .ply");
+  command
+      .add_option(
+          "--contacts", options.contacts,
+          "write leaf pairs, and the contact points that they are reduced to, at most "
+          "32 a pose, in fixed coordinates, to this file, by its ending: .jsonl, .csv, .vtp "
+          "or .ply")
+      ->type_name("FILE");
   command.add_flag(
       "--fail-if-touching", options.fail_if_touching,
       "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose");

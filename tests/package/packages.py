@@ -9,7 +9,9 @@ import shutil
 import subprocess
 import sys
 
+from checks import Missing, need, require, run
 from clean_root import CleanRoot
+from pages import Pages
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
@@ -30,29 +32,6 @@ REFUSED = {
 }
 
 
-class Missing(Exception):
-    """A tool is not installed, so there is nothing to test with."""
-
-
-def run(*command, **options):
-    """What a command prints. Where it fails, the test does, and shows all of it."""
-    ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
-    if ran.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}\nfailed with {ran.returncode}:\n{ran.stdout}{ran.stderr}")
-    return ran.stdout
-
-
-def require(holds, text):
-    if not holds:
-        sys.exit(f"packages: {text}")
-
-
-def need(*tools):
-    for tool in tools:
-        if shutil.which(tool) is None:
-            raise Missing(f"{tool} is not installed: scripts/setup.sh does that")
-
-
 def installed_headers():
     """Below include/: those of the library, and those of the circuit's model."""
     listed = (SOURCE / "src/package/public_headers.txt").read_text().splitlines()
@@ -70,7 +49,7 @@ def layout(binary):
     return numbers
 
 
-class Packages:
+class Packages(Pages):
     def __init__(self, arguments):
         self.build, self.work = arguments.build, arguments.work
         self.compiler, self.library = arguments.compiler, arguments.library
@@ -118,8 +97,10 @@ class Packages:
         expected = ["bin/ist", *(f"lib/cmake/ist/{name}" for name in config), "lib/libist.so", "lib/libist.so.0",
                     "lib/libist.so.V", "lib/libist_hardware.so", "lib/libist_hardware.so.0",
                     "lib/libist_hardware.so.V", "lib/pkgconfig/ist.pc",
+                    "share/bash-completion/completions/ist",
                     *(f"share/doc/{name}/copyright" for name in ("ist", "libist-dev", "libist0"))]
-        rest = [file for file in rest if not re.search(r"ist_targets(-\w+)?\.cmake$", file)]
+        apart = r"ist_targets(-\w+)?\.cmake$|^share/man/man1/"  # the build type names the first, ManPages has the others
+        rest = [file for file in rest if not re.search(apart, file)]
         require(rest == expected, f"installed are {rest}")
         dynamic = run("readelf", "-dW", self.prefix / "lib/libist.so")
         require("[libist.so.0]" in dynamic and "BIND_NOW" in dynamic, f"no SONAME, or bound late:\n{dynamic}")

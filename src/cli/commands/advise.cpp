@@ -196,18 +196,24 @@ void add_advise(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "advise", "Recommend a voxel size for a time or an error, measured on your own meshes");
   const auto options = std::make_shared<AdviseArguments>();
-  command->add_option("FIXED", options->fixed, "mesh of the body that stays")->required();
-  command->add_option("MOVING", options->moving, "mesh of the body that is moved")->required();
+  command->add_option("FIXED", options->fixed, "mesh of the body that stays")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("MOVING", options->moving, "mesh of the body that is moved")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--budget-us", options->budget,
                       "microseconds for a query of all leaf pairs: recommends the smallest voxels "
                       "whose slowest pose takes at most 80 % of them");
   command->add_option("--error", options->error,
                       "largest distance between surfaces whose voxels touch, in mesh units: "
                       "recommends the largest voxels with which at most 80 % of it was measured");
-  command->add_option(
-      "--poses", options->poses,
-      "JSON: an array of objects with \"pose\", 16 numbers, column-major; by default a straight "
-      "closing path to the stored pose, or from there to first contact");
+  command
+      ->add_option("--poses", options->poses,
+                   "JSON: an array of objects with \"pose\", 16 numbers, column-major; by default "
+                   "a straight "
+                   "closing path to the stored pose, or from there to first contact")
+      ->type_name("FILE");
   command
       ->add_option("--axis", options->axis,
                    "direction in which the moving body leaves the fixed one; by default the "
@@ -216,10 +222,11 @@ void add_advise(CLI::App& app) {
   command->add_option("--workers", options->calibration.workers, "threads of a query")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
-  command->add_option("--target", options->calibration.target,
-                      fmt::format("instruction set: {} on this processor; by default IST_TARGET of "
-                                  "the environment, or the first",
-                                  target_names()));
+  command
+      ->add_option("--target", options->calibration.target,
+                   "instruction set, one that ist --version lists; by default IST_TARGET of "
+                   "the environment, or the first")
+      ->type_name("NAME");
   add_max_memory(*command, options->calibration.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(*command,

@@ -145,9 +145,11 @@ void run(const ApproachArguments& options) {
 
 void add_approach(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "approach", "The same along a straight path, and where on it the bodies first touch");
+      "approach",
+      "Find where two bodies touch along a straight path, and where on it they first do");
   const auto options = std::make_shared<ApproachArguments>();
   command->add_option("--axis", options->axis, "direction of the path: x, y, z, -x, -y or -z")
+      ->type_name("AXIS")
       ->required();
   command->add_option("--from", options->from, "first displacement along it, mesh units")
       ->required();

@@ -88,8 +88,11 @@ void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
   command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
+      ->type_name("FILE")
       ->required();
-  command->add_option("-o,--output", options->output, "the tree file to write, .ist")->required();
+  command->add_option("-o,--output", options->output, "the tree file to write, .ist")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--voxel-size", options->voxel_size,
                       "edge of a voxel, in mesh units; by default 1/500 of the largest extent");
   command

@@ -174,6 +174,7 @@ void add_demo(CLI::App& app) {
       ->check(whole_number("a seed"))
       ->capture_default_str();
   command->add_option("--keep", options->keep, "folder to write upper_jaw.stl and lower_jaw.stl to")
+      ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(*command, "Example: ist demo --voxel-size 0.4 --keep .");

@@ -106,7 +106,7 @@ void add_export(CLI::App& app) {
       "Write a level of a tree for viewers: .vtp for ParaView, .ply for MeshLab and CloudCompare, "
       ".glb for Blender and browsers");
   const auto options = std::make_shared<ExportArguments>();
-  command->add_option("TREE", options->tree, "tree file")->required();
+  command->add_option("TREE", options->tree, "tree file")->type_name("FILE")->required();
   command
       ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
@@ -121,6 +121,7 @@ void add_export(CLI::App& app) {
   command
       ->add_option("-o,--output", options->output,
                    "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
+      ->type_name("FILE")
       ->required();
   command
       ->add_option("--unit", options->unit,

@@ -198,14 +198,17 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
       ->check(CLI::IsMember({"lps", "ras"}))
       ->group(group);
   command.add_option("--left", questions.sides.left, "x,y,z: the direction of the patient's left")
+      ->type_name("X,Y,Z")
       ->group(group);
   command
       .add_option("--front", questions.sides.front, "x,y,z: the direction of the patient's front")
+      ->type_name("X,Y,Z")
       ->group(group);
   command
       .add_option("--midline", questions.sides.midline,
                   "x,y,z: a point between left and right; by default the middle of the fixed "
                   "body's box, assumed")
+      ->type_name("X,Y,Z")
       ->group(group);
   command
       .add_option(
@@ -214,8 +217,11 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
           "label, "
           "or as an .obj with groups such as tooth_16; or a text of a number a line, for each "
           "triangle or vertex")
+      ->type_name("FILE")
       ->group(group);
-  command.add_option("--labels-moving", questions.labels_moving, "the moving body's")->group(group);
+  command.add_option("--labels-moving", questions.labels_moving, "the moving body's")
+      ->type_name("FILE")
+      ->group(group);
   command.add_option("--numbering", options.numbering, "the system of the labels")
       ->check(CLI::IsMember({"fdi", "universal"}))
       ->group(group);
@@ -230,13 +236,17 @@ void add_occlusion(CLI::App& app) {
   const auto options = std::make_shared<OcclusionArguments>();
   options->files.voxels = BodyFiles::Voxels::kNone;
   command->add_option("FIXED", options->files.fixed, "mesh or tree of the body that stays")
+      ->type_name("FILE")
       ->required();
   command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
+      ->type_name("FILE")
       ->required();
-  command->add_option("-o,--output", options->outputs,
-                      "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-                      "Blender), .glb (browsers), .csv (a row a region), .json, .html (a report); "
-                      "may be given again");
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
+                   "Blender), .glb (browsers), .csv (a row a region), .json, .html (a report); "
+                   "may be given again")
+      ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
       ->check(CLI::IsMember({"fixed", "moving"}));

@@ -98,15 +98,21 @@ std::vector<Eigen::Isometry3d> PoseOptions::poses_named() const {
 void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
   const std::string group = "Pose of the moving body; as stored, where none is named";
   CLI::Option* move =
-      command.add_option("--move", options.move, "shift it by x,y,z mesh units, after the turn");
-  CLI::Option* turn = command.add_option(
-      "--turn", options.turn,
-      "turn it by axis,degrees[@x,y,z] about a point, by default the origin; an axis is x, y, z, "
-      "-x, -y, -z, or three numbers");
-  CLI::Option* matrix = command.add_option(
-      "--matrix", options.matrix,
-      "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid transform of ITK "
-      "(.tfm), which is inverted, since it maps fixed to moving points");
+      command.add_option("--move", options.move, "shift it by x,y,z mesh units, after the turn")
+          ->type_name("X,Y,Z");
+  CLI::Option* turn = command
+                          .add_option("--turn", options.turn,
+                                      "turn it by axis,degrees[@x,y,z] about a point, by default "
+                                      "the origin; an axis is x, y, z, "
+                                      "-x, -y, -z, or three numbers")
+                          ->type_name("AXIS,DEGREES");
+  CLI::Option* matrix =
+      command
+          .add_option("--matrix", options.matrix,
+                      "a file of 4 x 4 numbers, row by row: p_fixed = M p_moving; or a rigid "
+                      "transform of ITK "
+                      "(.tfm), which is inverted, since it maps fixed to moving points")
+          ->type_name("FILE");
   move->group(group);
   turn->group(group);
   matrix->group(group)->excludes(move)->excludes(turn);
@@ -115,6 +121,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
       .add_option("--poses", options.poses,
                   "many poses: JSON, an array of objects with \"pose\", 16 numbers, column by "
                   "column")
+      ->type_name("FILE")
       ->group(group)
       ->excludes(move)
       ->excludes(turn)
