@@ -23,6 +23,7 @@ class CleanRoot:
             name = output("dpkg-deb", "-f", package, "Package").strip()
             self.files[name] = package
             output("dpkg-deb", "-x", package, path)
+        self.libraries = next(path.glob("usr/lib/**/libist.so.0")).parent
         lines = output("dpkg-query", "-W", "-f", "${Package}\t${Pre-Depends}, ${Depends}\n").splitlines()
         self.installed = {line.split("\t")[0]: names_in(line.split("\t")[1]) for line in lines}
 
@@ -59,7 +60,7 @@ class CleanRoot:
                 (folder / file.name).unlink(missing_ok=True)
                 (folder / file.name).symlink_to(file)
         loader = next(folder.glob("ld-linux*.so.*"))
-        command = [loader, "--inhibit-cache", "--library-path", f"{self.path}/usr/lib:{folder}"]
+        command = [loader, "--inhibit-cache", "--library-path", f"{self.libraries}:{folder}"]
         loaded = output(*command[:-2], "--list", *command[-2:], program)
         strangers = [line for line in loaded.splitlines() if "=>" in line and str(self.path) not in line]
         if strangers or "=>" not in loaded:

@@ -11,6 +11,7 @@ import sys
 
 from checks import Missing, need, require, run
 from clean_root import CleanRoot
+from installed import Installed, files_below
 from pages import Pages
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -49,12 +50,14 @@ def layout(binary):
     return numbers
 
 
-class Packages(Pages):
+class Packages(Installed, Pages):
     def __init__(self, arguments):
         self.build, self.work = arguments.build, arguments.work
         self.compiler, self.library = arguments.compiler, arguments.library
         self.library_layout = arguments.layout
         self.prefix = self.work / "prefix"
+        cache = (self.build / "CMakeCache.txt").read_text()
+        self.libraries = re.search(r"^CMAKE_INSTALL_LIBDIR:PATH=(.*)$", cache, re.M)[1]  # relative to a prefix
 
     def fresh(self, name):
         folder = self.work / name
@@ -89,20 +92,21 @@ class Packages(Pages):
         """An install tree of what is built, whole and without more."""
         shutil.rmtree(self.prefix, ignore_errors=True)
         run("cmake", "--install", self.build, "--prefix", self.prefix)
-        files = {str(file.relative_to(self.prefix)) for file in self.prefix.rglob("*") if not file.is_dir()}
+        files = files_below(self.prefix)
         headers = {f"include/{header}" for part in installed_headers() for header in part}
         require({file for file in files if file.startswith("include/")} == headers, "other headers than are listed")
         rest = sorted(re.sub(r"0\.\d+\.\d+$", "V", file) for file in files - headers)
         config = ["ist-config-version.cmake", "ist-config.cmake"]
-        expected = ["bin/ist", *(f"lib/cmake/ist/{name}" for name in config), "lib/libist.so", "lib/libist.so.0",
-                    "lib/libist.so.V", "lib/libist_hardware.so", "lib/libist_hardware.so.0",
-                    "lib/libist_hardware.so.V", "lib/pkgconfig/ist.pc",
+        expected = ["bin/ist", *(f"{self.libraries}/{name}" for name in (
+                        *(f"cmake/ist/{name}" for name in config), "libist.so", "libist.so.0", "libist.so.V",
+                        "libist_hardware.so", "libist_hardware.so.0", "libist_hardware.so.V", "pkgconfig/ist.pc")),
                     "share/bash-completion/completions/ist",
                     *(f"share/doc/{name}/copyright" for name in ("ist", "libist-dev", "libist0"))]
-        apart = r"ist_targets(-\w+)?\.cmake$|^share/man/man1/"  # the build type names the first, ManPages has the others
+        # The build type names the targets' files; Documents and ManPages have the others.
+        apart = r"ist_targets(-\w+)?\.cmake$|^share/man/man1/|^share/doc/ist/(?!copyright)"
         rest = [file for file in rest if not re.search(apart, file)]
         require(rest == expected, f"installed are {rest}")
-        dynamic = run("readelf", "-dW", self.prefix / "lib/libist.so")
+        dynamic = run("readelf", "-dW", self.prefix / self.libraries / "libist.so")
         require("[libist.so.0]" in dynamic and "BIND_NOW" in dynamic, f"no SONAME, or bound late:\n{dynamic}")
         require("RUNPATH" not in dynamic, f"it looks for others where it was built:\n{dynamic}")
 
@@ -130,16 +134,16 @@ class Packages(Pages):
     def PkgConfig(self):
         need("pkg-config")
         folder = self.fresh("pkg_config")
-        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / self.libraries / "pkgconfig")}
         program = self.compile_consumer(folder, self.prefix, environment)
-        self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/lib"])
+        self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/{self.libraries}"])
         need(OTHER_COMPILER)
         program = self.compile_consumer(folder, self.prefix, environment, OTHER_COMPILER)
-        self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/lib"])
+        self.check_consumer(program, ["env", f"LD_LIBRARY_PATH={self.prefix}/{self.libraries}"])
         flags = run("pkg-config", "--cflags", "--libs", "ist", env=environment).split()
         run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", HERE / "consumer/consumer.c", *flags,
             "-o", folder / "consumer_c")
-        run("env", f"LD_LIBRARY_PATH={self.prefix}/lib", folder / "consumer_c")
+        run("env", f"LD_LIBRARY_PATH={self.prefix}/{self.libraries}", folder / "consumer_c")
 
     def Debian(self):
         """The three packages, in a root that holds what they depend on and nothing else."""
@@ -152,7 +156,7 @@ class Packages(Pages):
                 f"libist-dev depends on {root.field('libist-dev', 'Depends')}")
         require("libist0" not in root.field("ist", "Depends"), "the command holds the library, and depends on it")
         require(not root.shared_files(), f"in two packages: {root.shared_files()}")
-        environment = {**os.environ, "PKG_CONFIG_LIBDIR": f"{root.path}/usr/lib/pkgconfig:/usr/share/pkgconfig"}
+        environment = {**os.environ, "PKG_CONFIG_LIBDIR": f"{root.path}/usr/{self.libraries}/pkgconfig:/usr/share/pkgconfig"}
         program = self.compile_consumer(folder, root.path, environment)
         self.check_consumer(program, root.loader("libist0", program))
         command = root.path / "usr/bin/ist"
@@ -205,7 +209,7 @@ class Packages(Pages):
         require(len(roots) > 60, f"only {len(roots)} inline functions")
         (folder / "roots").write_text("".join(f"-Wl,-u,{name}\n" for name in roots))
         run(self.compiler, folder / "all.o", f"@{folder}/roots", "-Wl,--gc-sections", "-o", folder / "all",
-            f"-L{self.prefix}/lib", "-list_hardware", "-list")
+            f"-L{self.prefix}/{self.libraries}", "-list_hardware", "-list")
         print(f"{len(roots)} inline functions link")
 
     def Refused(self):
@@ -238,18 +242,19 @@ class Packages(Pages):
         print(f"ist/ist.h pulls in {len(ours)} headers, {count} lines")
 
     def Example(self):
-        """The servo loop of src/examples, as its CMakeLists.txt says to build it."""
+        """The installed servo loop, as its CMakeLists.txt says to build it."""
         folder = self.fresh("examples")
-        run("cmake", "-G", "Ninja", "-S", SOURCE / "src/examples", "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+        examples = self.prefix / "share/doc/ist/examples"
+        run("cmake", "-G", "Ninja", "-S", examples, "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
             f"-DCMAKE_CXX_COMPILER={self.compiler}")
         run("cmake", "--build", folder)
-        printed = run(folder / "servo_loop", SOURCE / "src/examples/probe.toml").splitlines()
+        printed = run(folder / "servo_loop", examples / "probe.toml").splitlines()
         forces = [float(line.split()[0]) for line in printed[:-1]]
         require(len(forces) == 10 and printed[-1] == "1000 ticks, 0 missed", f"it printed {printed}")
         # 2 mm above the block, at 4 mm/s: it touches in the middle, and then pushes more and more.
         require(max(map(abs, forces[:4])) < 0.01, f"a force where nothing touches: {forces}")
         require(all(a < b for a, b in zip(forces[5:], forces[6:])) and forces[5] > 0.1, f"no push: {forces}")
-        lines = len((SOURCE / "src/examples/servo_loop.cpp").read_text().splitlines())
+        lines = len((examples / "servo_loop.cpp").read_text().splitlines())
         require(lines < 60, f"an example of {lines} lines")
 
 

@@ -197,7 +197,8 @@ void add_run(CLI::App& app) {
       "the exit codes of a run that ends by itself. A second Ctrl-C more than 1 s later\n"
       "completes the recording alone and ends the process within 1 s (exit code 130).\n"
       "Lengths of a recording are metres. docs/scene-reference.md lists the keys of a scene,\n"
-      "docs/recording-format.md those of a recording; tests/data/scenes has scenes to try.\n"
+      "docs/recording-format.md those of a recording. Scenes to try are in tests/data/scenes,\n"
+      "installed in share/doc/ist/examples.\n"
       "Example: ist run scene.toml --seconds 5 --record ticks.jsonl");
   command->callback([options] { run(*options); });
 }
