@@ -1,12 +1,16 @@
 # `cpack` makes three packages, each of one component.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ist)
-set(CPACK_PACKAGE_CONTACT "The IST maintainers <maintainers@users.noreply.h-seed-0b4b52bc.example>")
+# Debian wants an address. The project has none, and nobody can have one in .example (RFC 2606).
+set(CPACK_PACKAGE_CONTACT "IST developers <noreply@ist.example>")
 set(CPACK_COMPONENTS_ALL runtime development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS  # whatever the umask
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 # Dependencies are derived from the libraries that the files need.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_CURRENT_BINARY_DIR})  # of libist, for libist_hardware
@@ -14,20 +18,42 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 # A program is bound to one minor version (ist.map.in).
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 
+# Compressed pages, changelogs and overrides for lintian.
+configure_file(debian_files.cmake.in debian_files.cmake @ONLY)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_BINARY_DIR}/debian_files.cmake)
+
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each description begins with its own
+function(ist_describe component kind text)
+  set(CPACK_COMPONENT_${component}_DESCRIPTION "contacts, depths and distances of triangle meshes - ${kind}
+The Implicit Sphere Tree answers where two rigid triangle meshes touch, how
+deep they are in each other and how far apart, thousands of times a second:
+as certified intervals, and with the same bits on every processor. It was
+made for haptic planning of jaw surgery. Research software, not a medical
+device.
+
+${text}" PARENT_SCOPE)
+endfunction()
+
 set(runtime libist${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME ${runtime})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "${PROJECT_DESCRIPTION}: the shared library")
+# CPack 3.25 would write scripts that call ldconfig, for which Debian has a trigger. It writes none that are
+# listed here, and passes over a listed file that is not there, with a warning.
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/triggers none-as-ldconfig-has-a-trigger/postinst
+    none-as-ldconfig-has-a-trigger/postrm)
+ist_describe(RUNTIME "library" "This package has the shared libraries.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libist-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${runtime} (= ${PROJECT_VERSION}), libeigen3-dev (>= 3.4)")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}: headers, for CMake and pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS ist)  # has the documents
+ist_describe(DEVELOPMENT "development files" "This package has the headers, for CMake and pkg-config.")
 
 if(TARGET ist_cli)
   list(APPEND CPACK_COMPONENTS_ALL command)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME ist)
-  set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION}: the command")
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS libist-dev)  # has the headers that the documents show
+  ist_describe(COMMAND "command" "This package has the command ist, documents, example programs and scenes.")
 endif()
 include(CPack)

@@ -5,10 +5,6 @@ file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/docs/*.md)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs)
 list(APPEND pages README.md CHANGELOG.md)
 file(RELATIVE_PATH to_headers /${CMAKE_INSTALL_DOCDIR} /${CMAKE_INSTALL_INCLUDEDIR})
-set(documents_component development)
-if(TARGET ist_cli)
-  set(documents_component command)
-endif()
 
 # Sets `result` to where a file of the sources is installed, relative to share/doc/ist; to nothing if it is not.
 function(ist_installed_place file result)

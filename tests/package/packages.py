@@ -2,6 +2,7 @@
 CMakeLists.txt, which makes a test of each function here whose name begins with a capital."""
 
 import argparse
+import gzip
 import os
 import pathlib
 import re
@@ -152,6 +153,9 @@ class Packages(Installed, Pages):
         run("cpack", "--config", self.build / "CPackConfig.cmake", "-B", folder / "packages")
         root = CleanRoot(folder / "root", (folder / "packages").glob("*.deb"))
         version = root.field("libist0", "Version")
+        architecture = run("dpkg-architecture", "-qDEB_HOST_MULTIARCH").strip()
+        require(self.libraries == f"lib/{architecture}" and root.libraries == root.path / "usr" / self.libraries,
+                f"libraries are in {root.libraries}: take CMAKE_INSTALL_LIBDIR out of CMakeCache.txt if it is of an older tree")
         require(root.field("libist-dev", "Depends") == f"libist0 (= {version}), libeigen3-dev (>= 3.4)",
                 f"libist-dev depends on {root.field('libist-dev', 'Depends')}")
         require("libist0" not in root.field("ist", "Depends"), "the command holds the library, and depends on it")
@@ -161,7 +165,21 @@ class Packages(Installed, Pages):
         self.check_consumer(program, root.loader("libist0", program))
         command = root.path / "usr/bin/ist"
         said = run(*root.loader("ist", command), command, "--version")
-        require(version in said, f"ist --version says {said}")
+        require(said == run(self.build / "ist", "--version"), f"ist --version says {said}")
+        require(re.match(rf"ist {re.escape(version)}\ncommit ([0-9a-f]{{8}}\+?|unknown)\n", said), f"ist --version says {said}")
+        page = gzip.decompress((root.path / "usr/share/man/man1/ist-collide.1.gz").read_bytes()).decode()
+        require(f'"ist {version}"' in page, f"the manual page begins with {page.splitlines()[0]}")
+
+    def Lintian(self):
+        """Debian's checker has nothing to say of the packages, but for what src/package/lintian argues."""
+        need("lintian", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "pkg-config")
+        packages = sorted((self.work / "debian/packages").glob("*.deb"))
+        require(len(packages) == 3, f"the packages are {packages}")
+        said = run("lintian", "--allow-root", "--tag-display-limit", "0", "--display-info", "--pedantic", "--fail-on",
+                   "none", *packages)
+        # A build with assertions calls libc where others do not.
+        tags = [line for line in said.splitlines() if not line.startswith("N:") and "unused-override" not in line]
+        require(not tags, "lintian says:\n" + "\n".join(tags))
 
     def Subdirectory(self):
         """FetchContent from the sources, in a project that has settings of its own. With IST_COMPILE_ALL=1 all is
