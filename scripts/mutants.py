@@ -306,16 +306,14 @@ MUTANTS = [
     Mutant("block-edge-lost", "a triangle that only touches a block from above is not sorted into it",
            [(BINS, "first[i] = block(triangle.min()[axis] - pad - 0.5);",
              "first[i] = block(triangle.min()[axis] + pad);")], ["voxel_test"]),
-    Mutant("file-normals-trusted", "triangles are oriented by the file's normals",
-           [("src/ist/mesh/mesh_io.cpp", "      triangulate(polygon, welded.vertices, welded.triangles);",
-             """      const auto& v = welded.vertices;
-      if (mesh->HasNormals()) {
-        const aiVector3D& n = mesh->mNormals[face.mIndices[0]];
-        const Eigen::Vector3d across =
-            (v[polygon[1]] - v[polygon[0]]).cross(v[polygon[2]] - v[polygon[0]]);
-        if (across.dot(Eigen::Vector3d(n.x, n.y, n.z)) < 0) std::swap(polygon[1], polygon[2]);
-      }
-      triangulate(polygon, welded.vertices, welded.triangles);""")],
+    Mutant("file-normals-trusted", "triangles are turned as the file's normals say",
+           [("src/ist/mesh/format/stl_reader.cpp", "  return corners;",
+             """  Eigen::Vector3f n, p[3];
+  std::memcpy(n.data(), content.data() + kStlCountEnd + facet * kStlFacetBytes, sizeof n);
+  for (int i = 0; i < 3; ++i) std::memcpy(p[i].data(), corners.data() + 3 * i, sizeof n);
+  if (n.dot((p[1] - p[0]).cross(p[2] - p[0])) < 0)
+    for (int i = 0; i < 3; ++i) std::swap(corners[3 + i], corners[6 + i]);
+  return corners;""")],
            ["mesh_test"]),
     Mutant("inside-out-left", "a closed body that is inside out stays so",
            [("src/ist/mesh/orient_outward.cpp", "if (sign >= 0 || !is_outermost(mesh, components, component)) continue;",

@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -77,13 +78,15 @@ TEST(ReadMesh, NumbersVerticesByFirstAppearance) {
 
 TEST(ReadMesh, TextMayHaveAnyLineEndsBlanksAndCase) {
   const auto expected = corners(narrowed(kBox));
-  for (const auto& text : {test::as_text_stl(kBox), test::as_text_ply(kBox), test::as_obj(kBox)}) {
+  for (const auto& text :
+       {test::as_text_stl(kBox), test::as_text_ply(kBox), test::as_obj(narrowed(kBox))}) {
     for (const char* line_end : {"\r\n", "\r", "\n\n", " \t\n \t", "\n\r\n"})
       EXPECT_EQ(corners(read_bytes(replaced(text, "\n", line_end))), expected);
     EXPECT_EQ(corners(read_bytes(text.substr(0, text.size() - 1))), expected);
     EXPECT_EQ(corners(read_bytes(text + std::string("\x1A\0\0", 3))), expected);
   }
-  EXPECT_EQ(corners(read_bytes(std::string("\xEF\xBB\xBF") + test::as_obj(kBox))), expected);
+  EXPECT_EQ(corners(read_bytes(std::string("\xEF\xBB\xBF") + test::as_obj(narrowed(kBox)))),
+            expected);
   EXPECT_EQ(corners(read_bytes(std::string("\xEF\xBB\xBF") + test::as_text_stl(kBox))), expected);
   std::string upper = test::as_text_stl(kBox);
   for (char& c : upper) c = static_cast<char>(std::toupper(c));
@@ -112,7 +115,7 @@ TEST(ReadMesh, JoinsTheSolidsOfAnStl) {
 
 TEST(ReadMesh, WeldsExactlyAndTakesMinusZeroForZero) {
   const std::string text =
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0.0 -0 -0e5\nv 1.0 0 -0\nv 0 -1 0\nv 1.0000001 0 0\n"
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0.0 -0 -0e5\nv 1.0 0 -0\nv 0 -1 0\nv 1.0000000000000002 0 0\n"
       "f 1 2 3\nf 6 5 4\nf 7 3 4\n";
   const TriangleMesh mesh = read_bytes(text);
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 1, 0}, {4, 2, 0}}));
@@ -125,9 +128,43 @@ TEST(ReadMesh, RoundsNumbersOnceHoweverTheyAreSpelled) {
       "v +.5 5. 0.1000000000000000055511151231257827\n"
       "v 0.00000000000000000000012345678e20 123456789012345678901234567890e-27 16777216.999\n"
       "v 1e-46 1e-400 1e-40\nf 1 2 3\n");
-  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(0.5, 5, 0.1f));
-  EXPECT_EQ(mesh.vertices[1], Eigen::Vector3d(0.012345678f, 123.456789012345f, 16777216.999f));
-  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(0, 0, 1e-40f));
+  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(0.5, 5, 0.1));
+  EXPECT_EQ(mesh.vertices[1], Eigen::Vector3d(0.012345678, 123.456789012345678, 16777216.999));
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(1e-46, 0, 1e-40));
+}
+
+// An STL's numbers are floats in text as well: both of its forms give the same mesh.
+TEST(ReadMesh, TakesTheNumbersOfAnStlForFloats) {
+  const TriangleMesh mesh = read_bytes(
+      "solid\nfacet normal 0 0 1 outer loop vertex 0.1 16777216.999 1e-46 vertex 1 0 0 "
+      "vertex 0 1e-400 1e-40 endloop endfacet\nendsolid\n");
+  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(0.1F, 16777216.999F, 0));
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(0, 0, 1e-40F));
+}
+
+TEST(ReadMesh, TakesTheNumbersOfAPlyForWhatItDeclares) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty float y\n"
+      "property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0.1 0.1 16777217\n1 0 0\n0 1 -2147483647\n3 0 1 2\n";
+  const TriangleMesh mesh = read_bytes(text);
+  EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(0.1, 0.1F, 16777217));
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(0, 1, -2147483647));
+  // The same vertices, as bytes.
+  std::string bytes = text.substr(0, text.find("0.1"));
+  bytes.replace(bytes.find("ascii"), 5, "binary_little_endian");
+  const auto append = [&bytes](auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const auto& [x, y, z] : {std::tuple{0.1, 0.1F, 16777217}, std::tuple{1.0, 0.0F, 0},
+                                std::tuple{0.0, 1.0F, -2147483647}}) {
+    append(x);
+    append(y);
+    append(z);
+  }
+  bytes += '\3';
+  for (const int corner : {0, 1, 2}) append(corner);
+  EXPECT_EQ(read_bytes(bytes).vertices, mesh.vertices);
 }
 
 TEST(ReadMesh, ReadsWhatObjWritersWrite) {

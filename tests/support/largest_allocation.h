@@ -9,4 +9,8 @@ namespace ist::test {
 /// calls this has its operator new replaced.
 [[nodiscard]] std::size_t largest_allocation(const std::function<void()>& action);
 
+/// The most bytes that `new` has given out at once while `action` runs, on any thread, beyond those
+/// given out before.
+[[nodiscard]] std::size_t peak_allocation(const std::function<void()>& action);
+
 }  // namespace ist::test

@@ -13,6 +13,16 @@ std::string spelled(double coordinate) {
   return {text, end};
 }
 
+std::string spelled_exactly(const Eigen::Vector3d& v) {
+  std::string text;
+  for (const double coordinate : v) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, coordinate).ptr) += ' ';
+  }
+  text.pop_back();
+  return text;
+}
+
 std::string spelled(const Eigen::Vector3d& v) {
   return spelled(v.x()) + ' ' + spelled(v.y()) + ' ' + spelled(v.z());
 }
@@ -87,7 +97,7 @@ std::string as_binary_ply(const TriangleMesh& mesh, bool big_endian) {
 
 std::string as_obj(const TriangleMesh& mesh) {
   std::string text = "# made by hand\nmtllib none.mtl\no thing\n";
-  for (const Eigen::Vector3d& vertex : mesh.vertices) text += "v " + spelled(vertex) + "\n";
+  for (const Eigen::Vector3d& vertex : mesh.vertices) text += "v " + spelled_exactly(vertex) + "\n";
   text += "usemtl none\ns off\n";
   for (const auto& [a, b, c] : mesh.triangles)
     text += "f " + std::to_string(a + 1) + " " + std::to_string(b + 1) + " " +
@@ -103,7 +113,7 @@ std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh&
           {"text PLY", as_text_ply(mesh)},
           {"binary PLY", as_binary_ply(mesh, false)},
           {"big-endian PLY", as_binary_ply(mesh, true)},
-          {"OBJ", as_obj(mesh)}};
+          {"OBJ", as_obj(narrowed(mesh))}};
 }
 
 std::vector<std::array<double, 9>> corners(const TriangleMesh& mesh) {

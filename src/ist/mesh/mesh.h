@@ -34,11 +34,15 @@ struct TriangleMesh {
 
 /// Reads a mesh from STL (binary or text), PLY (binary or text) or OBJ. The content decides the
 /// format; the file's name helps only for an OBJ. Several solids or groups become one mesh,
-/// polygons become triangles, and vertices at the same position become one. Vertices are floats, in
+/// polygons become triangles, and vertices at exactly the same position become one. Vertices are in
 /// the order in which the faces first use them. Unused vertices and the file's normals, colours and
 /// materials are dropped. The file is read once.
 ///
-/// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, some eight times the file.
+/// Coordinates are what the file holds: floats in an STL, in text as well; in a PLY the type that
+/// its header declares; in an OBJ doubles. None is beyond the range of a float.
+///
+/// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
+/// STL, and twice for a closed surface.
 /// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
 /// kMeshNotFinite, kMeshExtent; the text names the file and the place in it.
 [[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);

@@ -10,7 +10,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
-#include "ist/mesh/format/binary_content.h"
+#include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
 
@@ -59,7 +59,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
     }
     const std::array<float, 3> normal = unit_normal(corners[0], corners[1], corners[2]);
     std::memcpy(facet, normal.data(), sizeof normal);
-    std::memcpy(facet + sizeof normal, narrowed.data(), sizeof narrowed);
+    std::memcpy(facet + kStlNormalBytes, narrowed.data(), sizeof narrowed);
     facet += kStlFacetBytes;
   }
   OutputFile output(file);

@@ -8,8 +8,8 @@
 
 #include "cli/occlusion/labels/label_files.h"
 #include "ist/base/error.h"
-#include "ist/mesh/format/mesh_format.h"
-#include "ist/mesh/format/obj_word.h"
+#include "ist/mesh/format/mesh_readers.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist::cli {
 namespace {
@@ -40,12 +40,12 @@ class NameReader {
     ToothLabels labels;
     int tooth = 0;
     while (reader.next_line()) {
-      const std::string_view statement = obj_word(reader);
+      const std::string_view statement = reader.word_before_comment();
       if (statement == naming.statement) {
         tooth = tooth_of_line(reader, naming);
       } else if (statement == "f") {
         std::size_t corners = 0;
-        while (!obj_word(reader).empty()) ++corners;
+        while (!reader.word_before_comment().empty()) ++corners;
         labels.insert(labels.end(), corners - 2, tooth);
       }
     }
@@ -57,7 +57,7 @@ class NameReader {
   [[nodiscard]] int tooth_of_line(TextReader& reader, const Naming& naming) const {
     const std::string place = fmt::format("{}: line {}", file_, reader.line_number());
     int tooth = 0;
-    for (std::string_view name = obj_word(reader); !name.empty(); name = obj_word(reader)) {
+    for (std::string_view name = reader.word_before_comment(); !name.empty(); name = reader.word_before_comment()) {
       const int named = tooth_of_name(name, place, naming.noun);
       if (named != 0 && tooth != 0 && named != tooth) {
         throw Error(ErrorCode::kInputInvalid,
@@ -106,7 +106,7 @@ class NameReader {
 
 ToothLabels labels_of_obj(const std::filesystem::path& file, ToothNumbers numbers) {
   const std::string content = text_of(file), name = file.string();
-  (void)check_obj(content, name);
+  (void)read_obj(content, name);
   for (const Naming& naming : {Naming{"g", "group"}, {"o", "object"}}) {
     ToothLabels labels = NameReader(content, name, numbers).labels_by(naming);
     if (std::ranges::any_of(labels, [](int label) { return label != 0; })) return labels;

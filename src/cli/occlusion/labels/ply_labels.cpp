@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cli/occlusion/labels/label_files.h"
-#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/ply_body.h"
 
 namespace ist::cli {
@@ -113,7 +113,7 @@ class LabelReader {
 
 ToothLabels labels_of_ply(const std::filesystem::path& file, ToothNumbers numbers) {
   const std::string content = text_of(file), name = file.string();
-  (void)check_ply(content, name);
+  (void)read_ply(content, name);
   TextReader reader(content, name);
   const PlyHeader header = read_ply_header(reader);
   const PlyProperty& label = label_property(header, file);

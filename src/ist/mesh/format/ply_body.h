@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -36,7 +35,9 @@ class PlyText {
       reader_.fail(ErrorCode::kNotAMesh,
                    "the file has more elements than the header counts; export the mesh again");
   }
-  float coordinate(const PlyType*) { return reader_.coordinate(reader_.word()); }
+  double coordinate(const PlyType* type) {
+    return reader_.coordinate(reader_.word(), type->precision);
+  }
   std::int64_t integer(const PlyType*) { return reader_.integer(reader_.word()); }
   void skip(const PlyType*) {
     if (reader_.word().empty()) reader_.fail_malformed("a value is missing; export the mesh again");
@@ -66,11 +67,12 @@ class PlyBytes {
       fail_mesh(ErrorCode::kNotAMesh, file_, fmt::format("byte {}", offset_),
                 "bytes follow the elements that the header counts; export the mesh again");
   }
-  float coordinate(const PlyType* type) {
-    const auto value = static_cast<float>(number(type));
-    if (!std::isfinite(value))
+  double coordinate(const PlyType* type) {
+    const double value = number(type);
+    if (!is_coordinate(value))
       fail(ErrorCode::kMeshNotFinite,
-           "a coordinate is not finite as a float; repair the mesh where it was made");
+           "a coordinate is not finite, or beyond a float's range; repair the mesh where it was "
+           "made");
     return value;
   }
   std::int64_t integer(const PlyType* type) { return static_cast<std::int64_t>(number(type)); }

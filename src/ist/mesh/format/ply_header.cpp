@@ -11,7 +11,8 @@ namespace {
 
 template <class T>
 constexpr PlyType type_named(std::string_view name) {
-  return {name, sizeof(T), std::is_integral_v<T>, [](const char* raw) {
+  return {name, sizeof(T), std::is_integral_v<T>,
+          std::is_same_v<T, float> ? Precision::kFloat : Precision::kDouble, [](const char* raw) {
             T value;
             std::memcpy(&value, raw, sizeof(T));
             return static_cast<double>(value);

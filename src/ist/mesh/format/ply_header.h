@@ -16,6 +16,7 @@ struct PlyType {
   std::string_view name;
   std::size_t size;  ///< bytes in a binary file
   bool is_integer;
+  Precision precision;                ///< of a number written as text
   double (*number)(const char* raw);  ///< reads `size` bytes in the machine's byte order: exact
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 namespace ist {
@@ -20,6 +21,11 @@ std::string_view shown(std::string_view word) { return word.substr(0, 40); }
 void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
                std::string_view cause) {
   throw Error(code, fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", cause));
+}
+
+bool is_coordinate(double number) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return std::abs(number) <= kLargest;
 }
 
 bool same_word(std::string_view a, std::string_view b) {
@@ -58,26 +64,39 @@ std::string_view TextReader::word() {
   return text_.substr(open, cursor_ - open);
 }
 
+std::string_view TextReader::word_before_comment() {
+  const std::string_view found = word();
+  const std::size_t comment = found.find('#');
+  if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
+  skip_line();
+  return found.substr(0, comment);
+}
+
 std::string_view TextReader::word_of_any_line() {
   std::string_view found = word();
   while (found.empty() && next_line()) found = word();
   return found;
 }
 
-float TextReader::coordinate(std::string_view word) const {
+double TextReader::coordinate(std::string_view word, Precision precision) const {
   if (word.empty()) fail_malformed("a coordinate is missing; export the mesh again");
+  return precision == Precision::kFloat ? rounded<float>(word) : rounded<double>(word);
+}
+
+template <class Number>
+double TextReader::rounded(std::string_view word) const {
   const auto not_finite = [&] {
     fail(ErrorCode::kMeshNotFinite,
-         fmt::format(
-             "the coordinate '{}' is not finite as a float; repair the mesh where it was made",
-             shown(word)));
+         fmt::format("the coordinate '{}' is not finite, or beyond a float's range; repair the "
+                     "mesh where it was made",
+                     shown(word)));
   };
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
-  float value = 0;
+  Number value = 0;
   auto [stop, error] = std::from_chars(digits.data(), end, value);
   if (error == std::errc::result_out_of_range) {
-    // A number too small for a float becomes zero; only one too large is an error.
+    // A number that is too small becomes zero; only one too large is an error.
     double wide = 0;
     const std::errc wide_error = std::from_chars(digits.data(), end, wide).ec;
     const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
@@ -90,8 +109,8 @@ float TextReader::coordinate(std::string_view word) const {
     if (error == std::errc() && !std::isfinite(value)) not_finite();
     fail_malformed(fmt::format("'{}' is not a number; export the mesh again", shown(word)));
   }
-  if (!std::isfinite(value)) not_finite();
-  return value;
+  if (!is_coordinate(static_cast<double>(value))) not_finite();
+  return static_cast<double>(value);
 }
 
 std::int64_t TextReader::integer(std::string_view word) const {

@@ -14,6 +14,13 @@ namespace ist {
 [[noreturn]] void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
                             std::string_view cause);
 
+/// The type that a number written as text is rounded to.
+enum class Precision : std::uint8_t { kFloat, kDouble };
+
+/// Whether a number may be a coordinate: it is finite and within the range of a float, so that
+/// products of several coordinates are finite doubles.
+[[nodiscard]] bool is_coordinate(double number);
+
 /// Reads a text by lines and words; errors name the current line. Lines end with \n, \r or \r\n;
 /// every byte up to 0x20 is a blank. Allocates nothing; the text must outlive the reader.
 class TextReader {
@@ -29,10 +36,14 @@ class TextReader {
   [[nodiscard]] std::string_view word();
   /// Returns the next word of this line or of the lines after it; empty at the end of the text.
   [[nodiscard]] std::string_view word_of_any_line();
+  /// Returns the next word of this line, up to a comment, which # begins. The # of "1.#IND", a
+  /// printed NaN, begins none.
+  [[nodiscard]] std::string_view word_before_comment();
   void skip_line() { cursor_ = line_close_; }
 
-  /// Converts a word to float, rounded once. Errors: kMeshNotFinite, kNotAMesh, kMeshTruncated.
-  [[nodiscard]] float coordinate(std::string_view word) const;
+  /// Converts a word to a coordinate, rounded once. Errors: kMeshNotFinite, kNotAMesh,
+  /// kMeshTruncated.
+  [[nodiscard]] double coordinate(std::string_view word, Precision precision) const;
   /// Converts a word to an integer. Errors: kNotAMesh, kMeshTruncated.
   [[nodiscard]] std::int64_t integer(std::string_view word) const;
 
@@ -45,6 +56,8 @@ class TextReader {
 
  private:
   [[nodiscard]] bool is_blank(char c) const;
+  template <class Number>
+  [[nodiscard]] double rounded(std::string_view word) const;
 
   std::string_view text_;
   std::string_view file_;

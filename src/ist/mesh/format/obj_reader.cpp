@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "ist/mesh/format/mesh_format.h"
-#include "ist/mesh/format/obj_word.h"
+#include "ist/mesh/format/mesh_builder.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
@@ -18,11 +18,11 @@ class ObjReader {
   ObjReader(std::string_view content, std::string_view file)
       : reader_(content, file, TextReader::LineEnd::kContinuedByBackslash), file_(file) {}
 
-  CheckedContent check() {
+  TriangleMesh read() {
     bool statement_seen = false;
     bool other_seen = false;
     while (reader_.next_line()) {
-      const std::string_view statement = obj_word(reader_);
+      const std::string_view statement = reader_.word_before_comment();
       if (statement == "v") {
         read_vertex();
       } else if (statement == "f") {
@@ -31,39 +31,38 @@ class ObjReader {
         (is_obj_statement(statement) ? statement_seen : other_seen) = true;
       }
     }
-    if (highest_ > static_cast<std::int64_t>(content_.vertices()))
+    if (highest_ > static_cast<std::int64_t>(surface_.vertices()))
       bad_index(highest_, highest_line_);
-    if (content_.faces() == 0) fail_without_faces(statement_seen, other_seen);
-    return content_.finish();
+    if (surface_.faces() == 0) fail_without_faces(statement_seen, other_seen);
+    return surface_.weld();
   }
 
  private:
   // Ignores a weight or a colour after the three coordinates.
   void read_vertex() {
-    std::array<float, 3> vertex{};
-    for (float& coordinate : vertex) coordinate = reader_.coordinate(obj_word(reader_));
-    content_.add_vertex(vertex);
+    Eigen::Vector3d vertex;
+    for (double& coordinate : vertex)
+      coordinate = reader_.coordinate(reader_.word_before_comment(), Precision::kDouble);
+    surface_.add_vertex(vertex);
   }
 
   void read_face() {
     corners_.clear();
-    for (std::string_view corner = obj_word(reader_); !corner.empty(); corner = obj_word(reader_))
+    for (std::string_view corner = reader_.word_before_comment(); !corner.empty();
+         corner = reader_.word_before_comment())
       corners_.push_back(read_corner(corner.substr(0, corner.find('/'))));
     if (corners_.size() < 3)
       reader_.fail_malformed(fmt::format(
           "a face has {} corners, and needs three; export the mesh again", corners_.size()));
-    if (corners_.size() > kMaxCorners)
-      reader_.fail(ErrorCode::kNotAMesh,
-                   fmt::format("a face has {} corners, more than {}; triangulate the mesh first",
-                               corners_.size(), kMaxCorners));
-    content_.add_face(corners_);
+    require_face_size(static_cast<std::int64_t>(corners_.size()), reader_);
+    surface_.add_face(corners_);
   }
 
   // Indices count from 1, or backwards from the last vertex so far, which is -1. A vertex may
   // follow the face.
   std::uint32_t read_corner(std::string_view digits) {
     const std::int64_t named = reader_.integer(digits);
-    const auto so_far = static_cast<std::int64_t>(content_.vertices());
+    const auto so_far = static_cast<std::int64_t>(surface_.vertices());
     const std::int64_t index = named < 0 ? so_far + named : named - 1;
     if (named == 0 || index < 0 || index >= std::numeric_limits<std::int32_t>::max())
       bad_index(named, reader_.line_number());
@@ -81,10 +80,10 @@ class ObjReader {
   }
 
   [[noreturn]] void fail_without_faces(bool statement_seen, bool other_seen) const {
-    if (content_.vertices() > 0)
+    if (surface_.vertices() > 0)
       fail_mesh(ErrorCode::kMeshPointsOnly, file_, "",
                 fmt::format("the file has {} vertices, but no face; export the surface as polygons",
-                            content_.vertices()));
+                            surface_.vertices()));
     if (other_seen && !statement_seen)
       fail_mesh(ErrorCode::kNotAMesh, file_, "",
                 "the name ends in .obj, but no line is an OBJ statement; export the mesh again");
@@ -93,7 +92,7 @@ class ObjReader {
 
   TextReader reader_;
   std::string_view file_;
-  PlyContent content_;
+  IndexedFaces surface_;
   std::vector<std::uint32_t> corners_;
   std::int64_t highest_ = 0;      // the highest index in a face
   std::size_t highest_line_ = 0;  // the line of that face
@@ -107,16 +106,8 @@ bool is_obj_statement(std::string_view word) {
   return std::find(kStatements.begin(), kStatements.end(), word) != kStatements.end();
 }
 
-std::string_view obj_word(TextReader& reader) {
-  const std::string_view found = reader.word();
-  const std::size_t comment = found.find('#');
-  if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
-  reader.skip_line();
-  return found.substr(0, comment);
-}
-
-CheckedContent check_obj(std::string_view content, std::string_view file) {
-  return ObjReader(content, file).check();
+TriangleMesh read_obj(std::string_view content, std::string_view file) {
+  return ObjReader(content, file).read();
 }
 
 }  // namespace ist

@@ -4,15 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
-#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/mesh_builder.h"
+#include "ist/mesh/format/mesh_readers.h"
+#include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
 namespace {
-
-constexpr std::size_t kNormalBytes = 12;
 
 // Returns the header's facet count. Precondition: the content holds the header and the count.
 std::size_t facet_count(std::string_view content) {
@@ -25,23 +24,33 @@ std::size_t whole_facets(std::string_view content) {
   return (content.size() - kStlCountEnd) / kStlFacetBytes;
 }
 
-// Returns the first of n facets with a vertex that is not finite, or n.
-std::size_t first_not_finite(std::string_view content, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    std::array<float, 9> vertices;
-    std::memcpy(vertices.data(), content.data() + kStlCountEnd + i * kStlFacetBytes + kNormalBytes,
-                sizeof vertices);
-    if (!std::all_of(vertices.begin(), vertices.end(), [](float x) { return std::isfinite(x); }))
-      return i;
-  }
-  return n;
+// The nine coordinates of a facet's corners.
+using Corners = std::array<float, 9>;
+
+Corners corners_of(std::string_view content, std::size_t facet) {
+  Corners corners;
+  std::memcpy(corners.data(),
+              content.data() + kStlCountEnd + facet * kStlFacetBytes + kStlNormalBytes,
+              sizeof corners);
+  return corners;
+}
+
+bool is_finite(const Corners& corners) {
+  return std::all_of(corners.begin(), corners.end(), [](float x) { return std::isfinite(x); });
+}
+
+void add_facet(const Corners& corners, MeshBuilder& builder) {
+  Triangle triangle;
+  for (std::size_t i = 0; i < 3; ++i)
+    triangle[i] = builder.vertex_at({corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]});
+  builder.add_face(triangle);
 }
 
 class TextStl {
  public:
   TextStl(std::string_view content, std::string_view file) : reader_(content, file), file_(file) {}
 
-  CheckedContent check() {
+  TriangleMesh read() {
     std::size_t facets = 0;
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (!same_word(word, "solid")) unexpected(word, "solid");
@@ -54,9 +63,7 @@ class TextStl {
     }
     if (facets == 0)
       fail_mesh(ErrorCode::kMeshEmpty, file_, "", "the STL has no facet; export the mesh again");
-    const auto count = static_cast<std::uint32_t>(facets);
-    std::memcpy(bytes_.data() + kStlHeaderBytes, &count, sizeof count);
-    return {"stl", std::move(bytes_), facets};
+    return builder_.finish();
   }
 
  private:
@@ -78,21 +85,19 @@ class TextStl {
     while (!word.empty() && !same_word(word, "outer")) word = reader_.word();
     if (word.empty()) expect("outer");
     expect("loop");
-    std::array<float, 9> vertices{};
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
+    Corners corners{};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
       if (i % 3 == 0) expect("vertex");
-      vertices[i] = reader_.coordinate(next());
+      corners[i] = static_cast<float>(reader_.coordinate(next(), Precision::kFloat));
     }
     expect("endloop");
     expect("endfacet");
-    char facet[kStlFacetBytes] = {};  // normals are computed from the winding, never read
-    std::memcpy(facet + kNormalBytes, vertices.data(), sizeof vertices);
-    bytes_.append(facet, sizeof facet);
+    add_facet(corners, builder_);
   }
 
   TextReader reader_;
   std::string_view file_;
-  std::string bytes_ = std::string(kStlCountEnd, '\0');  // re-encoded
+  MeshBuilder builder_{0};
 };
 
 }  // namespace
@@ -105,10 +110,12 @@ bool has_size_of_binary_stl(std::string_view content) {
 bool begins_like_binary_stl(std::string_view content) {
   if (content.size() < kStlCountEnd + kStlFacetBytes || facet_count(content) == 0) return false;
   const std::size_t whole = std::min(facet_count(content), whole_facets(content));
-  return first_not_finite(content, whole) == whole;
+  for (std::size_t i = 0; i < whole; ++i)
+    if (!is_finite(corners_of(content, i))) return false;
+  return true;
 }
 
-CheckedContent check_binary_stl(std::string content, std::string_view file) {
+TriangleMesh read_binary_stl(std::string_view content, std::string_view file) {
   if (content.size() < kStlCountEnd)
     fail_mesh(ErrorCode::kMeshTruncated, file, fmt::format("byte {}", content.size()),
               "the file ends within its header; copy or export it again");
@@ -121,23 +128,25 @@ CheckedContent check_binary_stl(std::string content, std::string_view file) {
                           whole_facets(content), facets));
   // Padding is harmless. Other bytes after the last facet mean that the count may be wrong, and an
   // error is better than a jaw with a part missing.
-  if (content.find_first_not_of(std::string_view(" \t\r\n\0", 5), size) != std::string::npos)
+  if (content.find_first_not_of(std::string_view(" \t\r\n\0", 5), size) != content.npos)
     fail_mesh(ErrorCode::kNotAMesh, file, fmt::format("byte {}", size),
               fmt::format("{} bytes follow the {} facets that its header counts; export it again",
                           content.size() - size, facets));
   if (facets == 0)
     fail_mesh(ErrorCode::kMeshEmpty, file, "", "the STL has no facet; export the mesh again");
-  if (const std::size_t bad = first_not_finite(content, facets); bad < facets)
-    fail_mesh(ErrorCode::kMeshNotFinite, file, fmt::format("facet {}", bad),
-              "a vertex is not finite; repair the mesh where it was made");
-  // Clears the header, where assimp looks for byte order marks and colours.
-  std::fill_n(content.begin(), kStlHeaderBytes, '\0');
-  content.resize(size);
-  return {"stl", std::move(content), facets};
+  MeshBuilder builder(facets);
+  for (std::size_t i = 0; i < facets; ++i) {
+    const Corners corners = corners_of(content, i);
+    if (!is_finite(corners))
+      fail_mesh(ErrorCode::kMeshNotFinite, file, fmt::format("facet {}", i),
+                "a vertex is not finite; repair the mesh where it was made");
+    add_facet(corners, builder);
+  }
+  return builder.finish();
 }
 
-CheckedContent check_text_stl(std::string_view content, std::string_view file) {
-  return TextStl(content, file).check();
+TriangleMesh read_text_stl(std::string_view content, std::string_view file) {
+  return TextStl(content, file).read();
 }
 
 }  // namespace ist

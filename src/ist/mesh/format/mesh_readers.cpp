@@ -1,8 +1,8 @@
-#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/mesh_readers.h"
 
 #include <algorithm>
-#include <utility>
 
+#include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
@@ -33,22 +33,22 @@ bool begins_like_obj(std::string_view content, std::string_view file) {
 
 }  // namespace
 
-CheckedContent check_content(std::string content, const std::filesystem::path& file) {
+TriangleMesh read_content(std::string_view content, const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string extension = file.extension().string();
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-  if (has_size_of_binary_stl(content)) return check_binary_stl(std::move(content), name);
-  if (content.starts_with(kByteOrderMark)) content.erase(0, kByteOrderMark.size());
+  if (has_size_of_binary_stl(content)) return read_binary_stl(content, name);
+  if (content.starts_with(kByteOrderMark)) content.remove_prefix(kByteOrderMark.size());
   TextReader reader(content, name);
   const std::string_view first_word = reader.word_of_any_line();
-  if (content.find_first_not_of(" \t\r\n") == std::string::npos)
+  if (content.find_first_not_of(" \t\r\n") == content.npos)
     fail_mesh(ErrorCode::kMeshEmpty, name, "", "the file is empty; export the mesh again");
-  if (first_word == "ply" && content.starts_with("ply")) return check_ply(content, name);
+  if (first_word == "ply" && content.starts_with("ply")) return read_ply(content, name);
   if (is_text(content)) {
-    if (same_word(first_word, "solid")) return check_text_stl(content, name);
+    if (same_word(first_word, "solid")) return read_text_stl(content, name);
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
-      return check_obj(content, name);
+      return read_obj(content, name);
   }
   // The rest is no mesh, a mesh that was cut early, or a binary STL of the wrong size. A text of
   // several lines, or one longer than an STL header, is neither of the last two.
@@ -56,10 +56,10 @@ CheckedContent check_content(std::string content, const std::filesystem::path& f
                             std::string_view("ply").starts_with(content) ||
                             same_word(extension, ".stl");
   const bool could_be_header =
-      content.size() <= kStlCountEnd && content.find_first_of("\r\n") == std::string::npos;
+      content.size() <= kStlCountEnd && content.find_first_of("\r\n") == content.npos;
   if (is_text(content) ? could_be_cut && could_be_header
                        : could_be_cut || begins_like_binary_stl(content))
-    return check_binary_stl(std::move(content), name);
+    return read_binary_stl(content, name);
   fail_mesh(ErrorCode::kNotAMesh, name, "",
             "the content is in no supported format: STL (binary or text), PLY (binary or "
             "text) or OBJ; convert the mesh to one of them");

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "ist/mesh/format/mesh_format.h"
+#include "ist/mesh/format/mesh_builder.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/ply_body.h"
 #include "ist/mesh/format/ply_header.h"
 #include "ist/mesh/format/text_reader.h"
@@ -15,13 +15,7 @@ namespace {
 template <class Body>
 void read_corners(Body& body, std::int64_t count, const PlyProperty& property,
                   std::uint64_t vertices, std::vector<std::uint32_t>& corners) {
-  if (count < 3)
-    body.fail(ErrorCode::kNotAMesh,
-              fmt::format("a face has {} corners, and needs three; export the mesh again", count));
-  if (count > static_cast<std::int64_t>(kMaxCorners))
-    body.fail(ErrorCode::kNotAMesh,
-              fmt::format("a face has {} corners, more than {}; triangulate the mesh first", count,
-                          kMaxCorners));
+  require_face_size(count, body);
   corners.clear();
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t corner = body.integer(property.type);
@@ -37,8 +31,8 @@ void read_corners(Body& body, std::int64_t count, const PlyProperty& property,
 // Reads one vertex, face or other element; keeps coordinates and corners.
 template <class Body>
 void read_instance(Body& body, const PlyElement& element, std::uint64_t vertices,
-                   std::vector<std::uint32_t>& corners, PlyContent& content) {
-  std::array<float, 3> vertex{};
+                   std::vector<std::uint32_t>& corners, IndexedFaces& surface) {
+  Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
   for (const PlyProperty& property : element.properties) {
     if (property.role == PlyRole::kCorners) {
       read_corners(body, body.integer(property.count_type), property, vertices, corners);
@@ -46,41 +40,41 @@ void read_instance(Body& body, const PlyElement& element, std::uint64_t vertices
       const std::int64_t count = property.count_type ? body.integer(property.count_type) : 1;
       for (std::int64_t i = 0; i < count; ++i) body.skip(property.type);
     } else {
-      vertex[static_cast<std::size_t>(property.role)] = body.coordinate(property.type);
+      vertex[static_cast<Eigen::Index>(property.role)] = body.coordinate(property.type);
     }
   }
-  if (element.name == "vertex") content.add_vertex(vertex);
-  if (element.name == "face") content.add_face(corners);
+  if (element.name == "vertex") surface.add_vertex(vertex);
+  if (element.name == "face") surface.add_face(corners);
 }
 
 template <class Body>
-CheckedContent read_elements(Body body, const PlyHeader& header, std::string_view file) {
+TriangleMesh read_elements(Body body, const PlyHeader& header, std::string_view file) {
   std::uint64_t vertices = 0;
   for (const PlyElement& element : header.elements)
     if (element.name == "vertex") vertices = element.count;
-  PlyContent content;
+  IndexedFaces surface;
   std::vector<std::uint32_t> corners;
   for (const PlyElement& element : header.elements) {
     if (element.properties.empty()) continue;  // takes no bytes in the file, for any count
     for (std::uint64_t i = 0; i < element.count; ++i) {
       body.begin(element, i);
-      read_instance(body, element, vertices, corners, content);
+      read_instance(body, element, vertices, corners, surface);
       body.end();
     }
   }
   body.finish();
-  if (content.faces() == 0 && content.vertices() == 0)
+  if (surface.faces() == 0 && surface.vertices() == 0)
     fail_mesh(ErrorCode::kMeshEmpty, file, "", "the PLY has no vertex; export the mesh again");
-  if (content.faces() == 0)
+  if (surface.faces() == 0)
     fail_mesh(ErrorCode::kMeshPointsOnly, file, "",
               fmt::format("the file has {} vertices, but no face; export the surface as polygons",
-                          content.vertices()));
-  return content.finish();
+                          surface.vertices()));
+  return surface.weld();
 }
 
 }  // namespace
 
-CheckedContent check_ply(std::string_view content, std::string_view file) {
+TriangleMesh read_ply(std::string_view content, std::string_view file) {
   TextReader reader(content, file);
   const PlyHeader header = read_ply_header(reader);
   return with_ply_body(reader, header, content, file,

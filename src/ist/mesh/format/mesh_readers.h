@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+
+#include "ist/mesh/mesh.h"
+
+namespace ist {
+
+/// Reads the content of a mesh file, whose format the content tells (of an OBJ also the name). The
+/// file itself is not opened.
+///
+/// Cost: linear in the content, for any counts that the file claims. Errors: kNotAMesh, kMeshEmpty,
+/// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite.
+[[nodiscard]] TriangleMesh read_content(std::string_view content,
+                                        const std::filesystem::path& file);
+
+/// Reads the content of one format; `file` is named in errors only.
+[[nodiscard]] TriangleMesh read_binary_stl(std::string_view content, std::string_view file);
+[[nodiscard]] TriangleMesh read_text_stl(std::string_view content, std::string_view file);
+[[nodiscard]] TriangleMesh read_ply(std::string_view content, std::string_view file);
+[[nodiscard]] TriangleMesh read_obj(std::string_view content, std::string_view file);
+
+/// Whether the size matches the facet count of a binary STL.
+[[nodiscard]] bool has_size_of_binary_stl(std::string_view content);
+/// Whether the content could be a binary STL of the wrong size: it begins with whole, finite
+/// facets, as other data practically never does.
+[[nodiscard]] bool begins_like_binary_stl(std::string_view content);
+/// Whether a line of an OBJ may begin with `word`.
+[[nodiscard]] bool is_obj_statement(std::string_view word);
+
+}  // namespace ist
