@@ -1,5 +1,5 @@
-// STL, PLY and OBJ as assimp reads them, beside read_mesh(). Both give the same triangles for plain
-// files; where they do not, assimp 5.2 is wrong, and the tests say how.
+// STL, PLY, OBJ and OFF as assimp reads them, beside read_mesh(). Both give the same triangles for
+// plain files; where they do not, assimp 5.2 is wrong, and the tests say how.
 
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -71,6 +71,7 @@ void expect_alike(const TriangleMesh& mesh) {
   for (const auto& [name, bytes] : test::all_formats(mesh)) {
     const char* format = name.find("STL") != name.npos   ? "stl"
                          : name.find("PLY") != name.npos ? "ply"
+                         : name.find("OFF") != name.npos ? "off"
                                                          : "obj";
     const auto ours = we_read(bytes);
     EXPECT_TRUE(ours && ours == assimp_reads(bytes, format)) << name;
@@ -135,6 +136,7 @@ std::string ply(const std::string& points, const std::string& faces, int count =
 std::vector<Hard> misread_files() {
   const Facets plain = {{0, 0, 0, 1, 0, 0, 0, 1, 0}};
   const std::string two = "v 1 0 0\nv 0 1 0\n", three = "v 0 0 0\n" + two;
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   TriangleMesh line_end = test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const std::string stl = test::as_text_stl(line_end);
@@ -162,6 +164,9 @@ std::vector<Hard> misread_files() {
        ply(points, "3 0 1 2\n3 0 1 2\n"),
        {}},
       {"NaN is accepted", "ply", ply("nan 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n"), {}},
+      {"an index out of range is the last vertex", "off", off + "3 0 1 9\n", {}},
+      {"a file without its last vertex is accepted", "off", test::replaced(off, "3 1", "4 1"), {}},
+      {"NaN is accepted", "off", test::replaced(off, "1 0 0", "nan 0 0") + "3 0 1 2\n", {}},
       {"a cut file is accepted", "stl", stl.substr(0, stl.find("endloop")), {}},
       {"a comma is taken for a point",
        "stl",

@@ -130,7 +130,7 @@ struct RealFile {
 constexpr RealFile kRealFiles[] = {
     {"bad_input/3DSMaxExport.STL", "1042 vertices, 2000 triangles, 16 non-manifold, 24 parts"},
     {"bad_input/7_8ths_cube.stl", "14 vertices, 24 triangles, 1 parts, closed"},
-    {"bad_input/OutOfMemory.off", "not-a-mesh"},
+    {"bad_input/OutOfMemory.off", "mesh-truncated"},
     {"bad_input/Spider_ascii.stl",
      "722 vertices, 1368 triangles, 72 boundary, 10 inconsistent, 56 degenerate, 18 parts, 4 open"},
     {"bad_input/Spider_binary.stl",

@@ -55,6 +55,7 @@ std::string ply(const std::string& elements_and_body) {
 
 const std::string kFaces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
 const std::string kOpenFacet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex ";
 
 TEST(ReadMesh, RefusesWhatIsNoMesh) {
@@ -71,8 +72,23 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
       {"mesh-points-only", kThree},
       {"mesh-points-only", kThree + "l 1 2 3\np 1\n"},
       {"mesh-points-only", ply("end_header\n0 0 0\n1 0 0\n0 1 0\n")},
-      {"not-a-mesh", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
-      {"not-a-mesh", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.stl"},
+      {"mesh-empty", "OFF\n0 0 0\n"},
+      {"mesh-points-only", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"},
+      {"not-a-mesh", "4OFF\n3 1 0\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n"},
+      {"not-a-mesh", kOff + "3 0 1 2\n3 0 1 2\n"},
+      {"not-a-mesh", kOff + "2 0 1\n"},
+      {"not-a-mesh", kOff + "1025 0 1 2\n"},
+      {"not-a-mesh", "OFF\n-3 1 0\n"},
+      {"not-a-mesh", "OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"mesh-truncated", "OFF"},
+      {"mesh-truncated", "OFF\n3\n"},
+      {"mesh-truncated", kOff},
+      {"mesh-truncated", kOff + "3 0 1\n"},
+      {"mesh-truncated", "OFF\n353535235358 6 0\n0 0 0\n"},
+      {"mesh-truncated", "OFF\n3 353535235358 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"mesh-bad-index", kOff + "3 0 1 3\n"},
+      {"mesh-bad-index", kOff + "3 0 1 -1\n"},
+      {"mesh-not-finite", "OFF\n3 1 0\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
       {"not-a-mesh", "just a letter\n", "a.obj"},
       {"not-a-mesh", "just a letter\n"},
       {"not-a-mesh", std::string("\x89PNG\r\n\x1A\n", 8) + std::string(500, '\xFF')},
@@ -183,7 +199,7 @@ TEST(ReadMesh, RefusesEveryCutOfASmallFile) {
     // A text whose last line lost only its line end, or the name of its solid, is whole.
     std::size_t whole = bytes.size();
     if (name == "text STL") whole = bytes.find("endsolid") + 8;
-    if (name == "text PLY") whole = bytes.size() - 1;
+    if (name == "text PLY" || name == "OFF") whole = bytes.size() - 1;
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       const std::string code = code_of_bytes(bytes.substr(0, size), "a.stl");
       if (size >= whole) {

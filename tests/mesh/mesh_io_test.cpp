@@ -39,7 +39,7 @@ TriangleMesh read_bytes(std::string_view bytes, std::string_view name = "mesh") 
 
 TEST(ReadMesh, TellsTheFormatByTheContent) {
   for (const auto& [name, bytes] : all_formats(kBox)) {
-    for (const char* file : {"mesh", "mesh.stl", "mesh.obj", "mesh.ply", "mesh.off"}) {
+    for (const char* file : {"mesh", "mesh.stl", "mesh.obj", "mesh.ply", "mesh.off", "mesh.glb"}) {
       const TriangleMesh mesh = read_bytes(bytes, file);
       EXPECT_EQ(corners(mesh), corners(narrowed(kBox))) << name << " as " << file;
       EXPECT_EQ(mesh.vertices.size(), 8u) << name;
@@ -198,6 +198,20 @@ TEST(ReadMesh, ReadsPlyWithMoreThanASurface) {
       "property list uchar float texcoord\r\nend_header\r\n"
       "7\r\n255 3.5 2 0 1\r\n0 0 0 2 0.5 nan 0\r\n0 1 1 1 9 1\r\n5\r\n3 0 2 1 0\r\n");
   EXPECT_EQ(corners(mesh), (std::vector<std::array<double, 9>>{{1, 2, 3.5, 1, 1, 1, 0, 0, 0}}));
+}
+
+TEST(ReadMesh, ReadsWhatOffWritersWrite) {
+  const TriangleMesh expected =
+      read_bytes("v 0 0 0\nv 1 0 0.1\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 3 2");
+  for (const char* text :
+       {"OFF 4 2 0\n0 0 0\n1 0 .1\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 1\n",
+        "COFF\n# counts\n\n4 2 # no edges\n0 0 0 255 0 0 255\n1 0 .1 0 0 0 0 # "
+        "red\n"
+        "# here\n1 1 0 1 1 1 1\n\n0 1 0\n4 0 1 2 3 0.5 0.5 0.5\n3 0 2 1 9\n# end\n"}) {
+    const TriangleMesh mesh = read_bytes(text);
+    EXPECT_EQ(mesh.vertices, expected.vertices) << text;
+    EXPECT_EQ(mesh.triangles, expected.triangles) << text;
+  }
 }
 
 double doubled_area(const TriangleMesh& mesh) {

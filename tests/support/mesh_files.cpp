@@ -105,6 +105,15 @@ std::string as_obj(const TriangleMesh& mesh) {
   return text;
 }
 
+std::string as_off(const TriangleMesh& mesh) {
+  std::string text = "OFF\n# made by hand\n" + std::to_string(mesh.vertices.size()) + ' ' +
+                     std::to_string(mesh.triangles.size()) + " 0\n";
+  for (const Eigen::Vector3d& vertex : mesh.vertices) text += spelled_exactly(vertex) + "\n";
+  for (const auto& [a, b, c] : mesh.triangles)
+    text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+  return text;
+}
+
 std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh& mesh) {
   return {{"binary STL", as_binary_stl(mesh)},
           {"binary STL named solid", as_binary_stl(mesh, "solid facet normal")},
@@ -113,7 +122,8 @@ std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh&
           {"text PLY", as_text_ply(mesh)},
           {"binary PLY", as_binary_ply(mesh, false)},
           {"big-endian PLY", as_binary_ply(mesh, true)},
-          {"OBJ", as_obj(narrowed(mesh))}};
+          {"OBJ", as_obj(narrowed(mesh))},
+          {"OFF", as_off(narrowed(mesh))}};
 }
 
 std::vector<std::array<double, 9>> corners(const TriangleMesh& mesh) {

@@ -10,12 +10,14 @@
 namespace ist::test {
 
 /// A mesh as the bytes of a file, coordinates narrowed to float and spelled so that they come back
-/// the same. Plain: what most programs write. An OBJ holds doubles, which are not narrowed.
+/// the same. Plain: what most programs write. An OBJ
+/// and an OFF hold doubles, which are not narrowed.
 [[nodiscard]] std::string as_binary_stl(const TriangleMesh& mesh, std::string header = "");
 [[nodiscard]] std::string as_text_stl(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_text_ply(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_binary_ply(const TriangleMesh& mesh, bool big_endian);
 [[nodiscard]] std::string as_obj(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_off(const TriangleMesh& mesh);
 
 /// All of these forms, narrowed, by name, and those that mislead: a binary STL whose header begins
 /// like text.

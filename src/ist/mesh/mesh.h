@@ -32,14 +32,14 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;        ///< each index is below vertices.size()
 };
 
-/// Reads a mesh from STL (binary or text), PLY (binary or text) or OBJ. The content decides the
+/// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ or OFF (text). The content decides the
 /// format; the file's name helps only for an OBJ. Several solids or groups become one mesh,
 /// polygons become triangles, and vertices at exactly the same position become one. Vertices are in
 /// the order in which the faces first use them. Unused vertices and the file's normals, colours and
 /// materials are dropped. The file is read once.
 ///
 /// Coordinates are what the file holds: floats in an STL, in text as well; in a PLY the type that
-/// its header declares; in an OBJ doubles. None is beyond the range of a float.
+/// its header declares; in an OBJ or an OFF doubles. None is beyond the range of a float.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.

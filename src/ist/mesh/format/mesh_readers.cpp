@@ -47,6 +47,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   if (first_word == "ply" && content.starts_with("ply")) return read_ply(content, name);
   if (is_text(content)) {
     if (same_word(first_word, "solid")) return read_text_stl(content, name);
+    if (first_word.ends_with("OFF")) return read_off(content, name);
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
       return read_obj(content, name);
   }
@@ -62,7 +63,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
     return read_binary_stl(content, name);
   fail_mesh(ErrorCode::kNotAMesh, name, "",
             "the content is in no supported format: STL (binary or text), PLY (binary or "
-            "text) or OBJ; convert the mesh to one of them");
+            "text), OBJ or OFF; convert the mesh to one of them");
 }
 
 }  // namespace ist

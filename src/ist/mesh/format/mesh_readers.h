@@ -21,6 +21,7 @@ namespace ist {
 [[nodiscard]] TriangleMesh read_text_stl(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_ply(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_obj(std::string_view content, std::string_view file);
+[[nodiscard]] TriangleMesh read_off(std::string_view content, std::string_view file);
 
 /// Whether the size matches the facet count of a binary STL.
 [[nodiscard]] bool has_size_of_binary_stl(std::string_view content);
