@@ -44,7 +44,8 @@ only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd t
 only "GMP" '#include [<"]gmp' 'src/ist/query/exact/whole_number\.h' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/tree/tree_stream|hardware/xxh64)\.(h|cpp)' "src simd"
 only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/png_image\.cpp' "src simd"
-only "JSON or the command line" '#include [<"](nlohmann|CLI)/' 'src/cli/.*' src
+only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|ist/mesh/format/gltf_(file|reader)\.(h|cpp))' src
+only "the command line" '#include [<"]CLI/' 'src/cli/.*' src
 only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|examples/[a-z_]+\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp))' src
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 only "a root of several numbers at once, whose bits depend on the processor (Eigen's is an estimate)" '\.r?sqrt\(\)' 'none' "src simd"

@@ -1,5 +1,5 @@
-// STL, PLY, OBJ and OFF as assimp reads them, beside read_mesh(). Both give the same triangles for
-// plain files; where they do not, assimp 5.2 is wrong, and the tests say how.
+// STL, PLY, OBJ, OFF and glTF as assimp reads them, beside read_mesh(). Both give the same
+// triangles for plain files; where they do not, assimp 5.2 is wrong, and the tests say how.
 
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -69,10 +69,12 @@ bool is_known_assimp() { return aiGetVersionMajor() == 5 && aiGetVersionMinor() 
 
 void expect_alike(const TriangleMesh& mesh) {
   for (const auto& [name, bytes] : test::all_formats(mesh)) {
-    const char* format = name.find("STL") != name.npos   ? "stl"
-                         : name.find("PLY") != name.npos ? "ply"
-                         : name.find("OFF") != name.npos ? "off"
-                                                         : "obj";
+    const char* format = name.find("STL") != name.npos    ? "stl"
+                         : name.find("PLY") != name.npos  ? "ply"
+                         : name.find("OFF") != name.npos  ? "off"
+                         : name.find("glTF") != name.npos ? "gltf"
+                         : name.find("GLB") != name.npos  ? "glb"
+                                                          : "obj";
     const auto ours = we_read(bytes);
     EXPECT_TRUE(ours && ours == assimp_reads(bytes, format)) << name;
   }
@@ -141,6 +143,8 @@ std::vector<Hard> misread_files() {
   TriangleMesh line_end = test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const std::string stl = test::as_text_stl(line_end);
   line_end.vertices[0].x() = double{std::bit_cast<float>(0x3F80000Au)};
+  TriangleMesh cut = test::box({0, 0, 0}, {1, 1, 1});
+  cut.triangles[5][2] = 9;
   return {
       {"a number of 28 decimals is 0",
        "obj",
@@ -164,6 +168,11 @@ std::vector<Hard> misread_files() {
        ply(points, "3 0 1 2\n3 0 1 2\n"),
        {}},
       {"NaN is accepted", "ply", ply("nan 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n"), {}},
+      {"a face with an index out of range is left out", "gltf", test::as_gltf(cut), {}},
+      {"vertices of bytes are taken for floats",
+       "gltf",
+       test::replaced(test::as_gltf(line_end), "5126", "5120"),
+       {}},
       {"an index out of range is the last vertex", "off", off + "3 0 1 9\n", {}},
       {"a file without its last vertex is accepted", "off", test::replaced(off, "3 1", "4 1"), {}},
       {"NaN is accepted", "off", test::replaced(off, "1 0 0", "nan 0 0") + "3 0 1 2\n", {}},

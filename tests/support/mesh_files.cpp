@@ -114,6 +114,63 @@ std::string as_off(const TriangleMesh& mesh) {
   return text;
 }
 
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+std::string gltf_buffer(const TriangleMesh& mesh) {
+  std::string bytes;
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    for (const double x : vertex) append(bytes, static_cast<float>(x));
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) append(bytes, vertex);
+  return bytes;
+}
+
+std::string gltf_json(const TriangleMesh& mesh, const std::string& uri) {
+  const auto length = [](std::size_t bytes) { return "\"byteLength\":" + std::to_string(bytes); };
+  const std::size_t vertices = mesh.vertices.size(), corners = 3 * mesh.triangles.size();
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
+         std::to_string(vertices) +
+         R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)" +
+         std::to_string(corners) + R"(}],"bufferViews":[{"buffer":0,)" + length(12 * vertices) +
+         R"(},{"buffer":0,"byteOffset":)" + std::to_string(12 * vertices) + "," +
+         length(4 * corners) + R"(}],"buffers":[{)" + length(12 * vertices + 4 * corners) +
+         (uri.empty() ? "" : ",\"uri\":\"" + uri + "\"") + "}]}";
+}
+
+std::string as_gltf(const TriangleMesh& mesh) {
+  return gltf_json(mesh, "data:application/octet-stream;base64," + base64(gltf_buffer(mesh)));
+}
+
+std::string as_glb(std::string json, std::string chunk) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  chunk.resize((chunk.size() + 3) / 4 * 4, '\0');
+  std::string bytes = "glTF";
+  append(bytes, std::uint32_t{2});
+  append(bytes, static_cast<std::uint32_t>(28 + json.size() + chunk.size()));
+  append(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON" + json;
+  append(bytes, static_cast<std::uint32_t>(chunk.size()));
+  return bytes + std::string("BIN\0", 4) + chunk;
+}
+
+std::string as_glb(const TriangleMesh& mesh) {
+  return as_glb(gltf_json(mesh, ""), gltf_buffer(mesh));
+}
+
 std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh& mesh) {
   return {{"binary STL", as_binary_stl(mesh)},
           {"binary STL named solid", as_binary_stl(mesh, "solid facet normal")},
@@ -123,7 +180,9 @@ std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh&
           {"binary PLY", as_binary_ply(mesh, false)},
           {"big-endian PLY", as_binary_ply(mesh, true)},
           {"OBJ", as_obj(narrowed(mesh))},
-          {"OFF", as_off(narrowed(mesh))}};
+          {"OFF", as_off(narrowed(mesh))},
+          {"glTF", as_gltf(mesh)},
+          {"GLB", as_glb(mesh)}};
 }
 
 std::vector<std::array<double, 9>> corners(const TriangleMesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,15 @@ namespace ist::test {
 [[nodiscard]] std::string as_binary_ply(const TriangleMesh& mesh, bool big_endian);
 [[nodiscard]] std::string as_obj(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_off(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_gltf(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_glb(const TriangleMesh& mesh);
+/// A GLB of a JSON and its binary chunk.
+[[nodiscard]] std::string as_glb(std::string json, std::string chunk);
+/// The JSON of a glTF with one mesh in one buffer, whose `uri` is left out where it is empty.
+[[nodiscard]] std::string gltf_json(const TriangleMesh& mesh, const std::string& uri);
+/// That buffer: the vertices as floats, then the indices in 32 bits.
+[[nodiscard]] std::string gltf_buffer(const TriangleMesh& mesh);
+[[nodiscard]] std::string base64(std::string_view bytes);
 
 /// All of these forms, narrowed, by name, and those that mislead: a binary STL whose header begins
 /// like text.

@@ -32,19 +32,22 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;        ///< each index is below vertices.size()
 };
 
-/// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ or OFF (text). The content decides the
-/// format; the file's name helps only for an OBJ. Several solids or groups become one mesh,
-/// polygons become triangles, and vertices at exactly the same position become one. Vertices are in
-/// the order in which the faces first use them. Unused vertices and the file's normals, colours and
-/// materials are dropped. The file is read once.
+/// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text) or glTF 2.0 (GLB,
+/// or text that holds its buffers). The content decides the format; the file's name helps only for
+/// an OBJ. Several solids, groups or meshes of a scene become one mesh, polygons become triangles,
+/// and vertices at exactly the same position become one. Vertices are in the order in which the
+/// faces first use them. Unused vertices and the file's normals, colours and materials are dropped.
+/// The file is read once, and no other file.
 ///
-/// Coordinates are what the file holds: floats in an STL, in text as well; in a PLY the type that
-/// its header declares; in an OBJ or an OFF doubles. None is beyond the range of a float.
+/// Coordinates are what the file holds: in an STL floats, in text as well; in a PLY the type that
+/// its header declares; in an OBJ or an OFF doubles; in a glTF floats, which the scene's nodes
+/// place in double. Where a node mirrors a mesh its triangles are turned round. No coordinate is
+/// beyond the range of a float, and no unit is converted: a glTF's is the metre.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.
 /// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
-/// kMeshNotFinite, kMeshExtent; the text names the file and the place in it.
+/// kMeshNotFinite, kMeshExtent, kMemoryLimit; the text names the file and the place in it.
 [[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding. The

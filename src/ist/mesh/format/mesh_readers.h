@@ -12,7 +12,7 @@ namespace ist {
 /// file itself is not opened.
 ///
 /// Cost: linear in the content, for any counts that the file claims. Errors: kNotAMesh, kMeshEmpty,
-/// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite.
+/// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite, kMemoryLimit.
 [[nodiscard]] TriangleMesh read_content(std::string_view content,
                                         const std::filesystem::path& file);
 
@@ -22,6 +22,8 @@ namespace ist {
 [[nodiscard]] TriangleMesh read_ply(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_obj(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_off(std::string_view content, std::string_view file);
+/// Both forms of glTF 2.0: text with its buffers in base64, and GLB.
+[[nodiscard]] TriangleMesh read_gltf(std::string_view content, std::string_view file);
 
 /// Whether the size matches the facet count of a binary STL.
 [[nodiscard]] bool has_size_of_binary_stl(std::string_view content);
