@@ -43,6 +43,7 @@ only "Highway" '#include [<"]hwy/' 'simd/([a-z]+/)?[a-z_]+(\.cpp|-inl\.h)' "src 
 only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd tests bench"
 only "GMP" '#include [<"]gmp' 'src/ist/query/exact/whole_number\.h' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/tree/tree_stream|hardware/xxh64)\.(h|cpp)' "src simd"
+only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/zip_entry\.cpp' "src simd"
 only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/png_image\.cpp' "src simd"
 only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|ist/mesh/format/gltf_(file|reader)\.(h|cpp))' src
 only "the command line" '#include [<"]CLI/' 'src/cli/.*' src

@@ -15,7 +15,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
-  libtomlplusplus-dev
+  libtomlplusplus-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libpng-dev
   libgtest-dev libgmp-dev python3 valgrind clang-14
   binutils dpkg-dev file)

@@ -32,17 +32,18 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;        ///< each index is below vertices.size()
 };
 
-/// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text) or glTF 2.0 (GLB,
-/// or text that holds its buffers). The content decides the format; the file's name helps only for
-/// an OBJ. Several solids, groups or meshes of a scene become one mesh, polygons become triangles,
-/// and vertices at exactly the same position become one. Vertices are in the order in which the
-/// faces first use them. Unused vertices and the file's normals, colours and materials are dropped.
-/// The file is read once, and no other file.
+/// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text), glTF 2.0 (GLB,
+/// or text that holds its buffers) or 3MF (its core). The content decides the format; the file's
+/// name helps only for an OBJ. Several solids, groups or meshes of a scene become one mesh,
+/// polygons become triangles, and vertices at exactly the same position become one. Vertices are in
+/// the order in which the faces first use them. Unused vertices and the file's normals, colours and
+/// materials are dropped. The file is read once, and no other file.
 ///
 /// Coordinates are what the file holds: in an STL floats, in text as well; in a PLY the type that
-/// its header declares; in an OBJ or an OFF doubles; in a glTF floats, which the scene's nodes
-/// place in double. Where a node mirrors a mesh its triangles are turned round. No coordinate is
-/// beyond the range of a float, and no unit is converted: a glTF's is the metre.
+/// its header declares; in an OBJ, an OFF or a 3MF doubles; in a glTF floats. What a scene
+/// transforms is placed in double; where it mirrors a mesh its triangles are turned round. No
+/// coordinate is beyond the range of a float. No unit is converted: a glTF's is the metre, a 3MF
+/// names its own. At most 2^25 vertices and triangles are placed, and 2^29 bytes unpacked.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.

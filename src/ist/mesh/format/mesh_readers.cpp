@@ -46,6 +46,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
     fail_mesh(ErrorCode::kMeshEmpty, name, "", "the file is empty; export the mesh again");
   if (first_word == "ply" && content.starts_with("ply")) return read_ply(content, name);
   if (content.starts_with("glTF") || first_word.starts_with('{')) return read_gltf(content, name);
+  if (content.starts_with("PK\3\4")) return read_3mf(content, name);
   if (first_word.starts_with('<') && content.find("<COLLADA") != content.npos)
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               "COLLADA is not supported; export the mesh as glTF (.glb), PLY or STL");
@@ -67,7 +68,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
     return read_binary_stl(content, name);
   fail_mesh(ErrorCode::kNotAMesh, name, "",
             "the content is in no supported format: STL (binary or text), PLY (binary or "
-            "text), OBJ, OFF or glTF; convert the mesh to one of them");
+            "text), OBJ, OFF, glTF or 3MF; convert the mesh to one of them");
 }
 
 }  // namespace ist
