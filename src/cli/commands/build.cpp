@@ -87,7 +87,9 @@ void run(BuildArguments options) {
 void add_build(CLI::App& app) {
   CLI::App* command = app.add_subcommand("build", "Make a tree from a mesh, and save it");
   const auto options = std::make_shared<BuildArguments>();
-  command->add_option("MESH", options->mesh, "STL, OBJ or PLY file; STL carries no unit")
+  command
+      ->add_option("MESH", options->mesh,
+                   "STL, OBJ, PLY, OFF, glTF or 3MF file; no unit is converted")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")

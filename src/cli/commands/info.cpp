@@ -101,7 +101,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show the contents of a mesh or a tree, level by level");
   const auto options = std::make_shared<InfoArguments>();
-  command->add_option("FILE", options->file, "STL, OBJ or PLY mesh, or tree")
+  command->add_option("FILE", options->file, "STL, OBJ, PLY, OFF, glTF or 3MF mesh, or tree")
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "print one JSON object");

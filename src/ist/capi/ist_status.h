@@ -30,7 +30,7 @@ enum {
   IST_CANCELLED = 14,             /**< the caller ended the call */
   IST_FILE_UNREADABLE = 101,      /**< the file cannot be opened or read */
   IST_FILE_UNWRITABLE = 102,      /**< the file cannot be created, written or renamed */
-  IST_NOT_A_MESH = 103,           /**< the content is not STL, PLY or OBJ */
+  IST_NOT_A_MESH = 103,           /**< the content is no mesh format */
   IST_MESH_EMPTY = 104,           /**< no vertex and no triangle */
   IST_MESH_POINTS_ONLY = 105,     /**< vertices, but no triangle */
   IST_MESH_TRUNCATED = 106,       /**< the file ends before its content */

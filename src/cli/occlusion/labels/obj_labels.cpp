@@ -57,7 +57,8 @@ class NameReader {
   [[nodiscard]] int tooth_of_line(TextReader& reader, const Naming& naming) const {
     const std::string place = fmt::format("{}: line {}", file_, reader.line_number());
     int tooth = 0;
-    for (std::string_view name = reader.word_before_comment(); !name.empty(); name = reader.word_before_comment()) {
+    for (std::string_view name = reader.word_before_comment(); !name.empty();
+         name = reader.word_before_comment()) {
       const int named = tooth_of_name(name, place, naming.noun);
       if (named != 0 && tooth != 0 && named != tooth) {
         throw Error(ErrorCode::kInputInvalid,
