@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "cli/terminal.h"
 #include "cli/words.h"
 #include "ist/base/error.h"
+#include "ist/base/files.h"
 
 namespace ist::cli {
 namespace {
@@ -45,8 +47,12 @@ int run(int argc, char** argv) {
     refuse_unknown_words(*app, words);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app->parse(words);
-  } catch (const CLI::Success& help) {  // or the version, which its own command prints
-    return app->exit(help);
+  } catch (const CLI::Success& asked) {  // help, or the version
+    std::ostringstream text;
+    const int code = app->exit(asked, text, text);
+    if (std::fputs(text.str().c_str(), stdout) < 0) fail_stdout();
+    flush_stdout();
+    return code;
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(),
                  subcommand_among(*app, argc, argv).c_str());
@@ -59,7 +65,9 @@ int run(int argc, char** argv) {
 
 bool is_broken_pipe(const std::exception& error) {
   const auto* const system = dynamic_cast<const std::system_error*>(&error);
-  return system != nullptr && system->code() == std::errc::broken_pipe;
+  const auto* const file = dynamic_cast<const UnwritableFile*>(&error);
+  return (system != nullptr && system->code() == std::errc::broken_pipe) ||
+         (file != nullptr && file->cause() == EPIPE);
 }
 
 // The standard library and TBB report it by the text alone.
@@ -73,6 +81,7 @@ bool is_lack_of_threads(const std::exception& error) {
 int main(int argc, char** argv) try {
   return ist::cli::run(argc, argv);
 } catch (const ist::Error& error) {
+  if (ist::cli::is_broken_pipe(error)) ist::cli::end_by_broken_pipe();
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
   return ist::cli::exit_code(error.code());
 } catch (const ist::cli::Failure& failure) {

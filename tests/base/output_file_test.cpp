@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
 
@@ -114,6 +115,50 @@ TEST(OutputFile, AFullDiskIsReported) {
   EXPECT_EQ(error->code(), ErrorCode::kFileUnwritable);
   EXPECT_NE(std::string(error->what()).find("/dev/full"), std::string::npos);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+// A pipe without a reader is told from a disk that is full.
+TEST(OutputFile, TellsTheSystemsCause) {
+  if (!std::filesystem::exists("/dev/full")) IST_SKIP("there is no /dev/full");
+  OutputFile file("/dev/full");
+  try {
+    write(file, "text");
+    FAIL() << "it was written";
+  } catch (const UnwritableFile& error) {
+    EXPECT_EQ(error.cause(), ENOSPC);
+  }
+}
+
+TEST(OutputFile, SeveralAreCommittedTogether) {
+  const test::TempDir folder;
+  const auto target = folder.write("b", "old");
+  OutputFile a(folder.path() / "a"), b(target), direct("/dev/null");
+  for (OutputFile* file : {&a, &b, &direct}) write(*file, "new");
+  OutputFile* const files[] = {&a, &b, &direct};
+  OutputFile::commit_all(files);
+  EXPECT_EQ(file_content(folder.path() / "a"), "new");
+  EXPECT_EQ(file_content(target), "new");
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
+// A folder that was made meanwhile takes the second name.
+TEST(OutputFile, NoNewNameStaysWhereAnotherCannotBeGiven) {
+  const test::TempDir folder;
+  const auto older = folder.write("older", "old");
+  {
+    OutputFile first(folder.path() / "first"), replaced(older), second(folder.path() / "second");
+    for (OutputFile* file : {&first, &replaced, &second}) write(*file, "new");
+    std::filesystem::create_directory(folder.path() / "second");
+    const auto error = error_of([&] {
+      OutputFile* const files[] = {&first, &replaced, &second};
+      OutputFile::commit_all(files);
+    });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("second: cannot rename"), std::string::npos);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "first"));
+  EXPECT_EQ(file_content(older), "new");
+  EXPECT_EQ(folder.entries(), 2u) << "the older file and the folder";
 }
 
 // As a process does that ends by a signal.

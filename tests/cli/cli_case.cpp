@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <sstream>
 #include <thread>
 
@@ -59,6 +60,36 @@ void CliTest::await_entries(std::size_t entries, Process& process) const {
   while (dir_.entries() < entries && process.is_running()) {
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
+}
+
+Process CliTest::with_held_call(const std::string& call, int after,
+                                const std::vector<std::string>& arguments) const {
+  return with_call(call, after, "", arguments);
+}
+
+void CliTest::await_hold(Process& process) const {
+  while (!exists("held") && process.is_running()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  std::filesystem::remove(path("held"));
+}
+
+CommandResult CliTest::with_failing_call(const std::string& call, int after,
+                                         const std::vector<std::string>& arguments) const {
+  return with_call(call, after, "yes", arguments).wait();
+}
+
+Process CliTest::with_call(const std::string& call, int after, const std::string& fails,
+                           const std::vector<std::string>& arguments) const {
+  std::vector<std::string> all{"LD_PRELOAD=" IST_HELD_CALLS,
+                               "ASAN_OPTIONS=verify_asan_link_order=0",
+                               "IST_HOLD=" + call,
+                               "IST_HOLD_AFTER=" + std::to_string(after),
+                               "IST_HOLD_SIGN=" + path("held"),
+                               "IST_HOLD_FAILS=" + fails,
+                               IST_COMMAND};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return {"/usr/bin/env", all};
 }
 
 std::vector<nlohmann::json> CliTest::json_lines(const std::string& text) {

@@ -47,11 +47,23 @@ class CliTest : public ::testing::Test {
   static void leave_no_core();
   /// Waits until the folder has so many entries, or the process has ended.
   void await_entries(std::size_t entries, Process& process) const;
+  /// Runs it with a system call that does not return any more, once it has returned `after` times.
+  [[nodiscard]] Process with_held_call(const std::string& call, int after,
+                                       const std::vector<std::string>& arguments) const;
+  /// Waits until that system call does not return.
+  void await_hold(Process& process) const;
+  /// Runs it with a system call that fails by EIO, once it has succeeded `after` times.
+  [[nodiscard]] CommandResult with_failing_call(const std::string& call, int after,
+                                                const std::vector<std::string>& arguments) const;
 
   /// The lines of a text, each an object of JSON, without the header.
   static std::vector<nlohmann::json> json_lines(const std::string& text);
 
   const TempDir dir_;
+
+ private:
+  [[nodiscard]] Process with_call(const std::string& call, int after, const std::string& fails,
+                                  const std::vector<std::string>& arguments) const;
 };
 
 /// Whether the text is in it.

@@ -85,6 +85,21 @@ TEST_F(Interruption, OfABuildLeavesTheOlderTree) {
   }
 }
 
+// All files appear together, or none: one is stored on the disk, and the other waits for it.
+TEST_F(Interruption, OfAnOcclusionLeavesAllOlderFiles) {
+  const std::string body = ball(), table = write("b.csv", "older"), map = path("b.vtp");
+  const std::size_t entries = dir_.entries();
+  for (const int signal : {SIGINT, SIGQUIT}) {
+    Process process = with_held_call(
+        "fsync", 1, {"occlusion", body, body, "--move", "3.9,0,0", "-o", table, "-o", map});
+    await_hold(process);
+    process.signal(signal);
+    EXPECT_EQ(process.wait().exit_code, 128 + signal);
+    EXPECT_EQ(file_content(table), "older");
+    EXPECT_EQ(dir_.entries(), entries);
+  }
+}
+
 TEST_F(Interruption, LeavesIgnoredSignalsIgnored) {
   const std::string tree = ball_tree();
   const std::size_t entries = dir_.entries();

@@ -266,6 +266,19 @@ TEST_F(OcclusionCommand, FilesAreCompletedTogether) {
   EXPECT_EQ(dir_.entries(), 4u);
 }
 
+// The disk fails when the first file is stored already.
+TEST_F(OcclusionCommand, ADiskThatFailsAtTheSecondFileLeavesBothOlderOnes) {
+  const std::string table = write("b.csv", "older"), map = write("b.vtp", "older");
+  const std::size_t before = dir_.entries();
+  const CommandResult result =
+      with_failing_call("fsync", 1, {"occlusion", plate_, ball_, "-o", table, "-o", map});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, "b.vtp: cannot write the file: Input/output error"));
+  EXPECT_EQ(file_content(table), "older");
+  EXPECT_EQ(file_content(map), "older");
+  EXPECT_EQ(dir_.entries(), before);
+}
+
 // In every file that has a place for it.
 TEST_F(OcclusionCommand, FilesTellTheirUnit) {
   ASSERT_EQ(ask({"--move", "0,0,1.8", "-o", path("b.vtp"), "-o", path("b.ply"), "-o", path("b.glb"),
@@ -327,6 +340,10 @@ TEST_F(OcclusionCommand, BadWordsAreRefused) {
   refuses({"--json", "--left", "1,0,0", "--front", "2,0,0"}, 2, "--front");
   refuses({"--json", "--reach", "0.05"}, 2, "largest limit");
   refuses({"-o", path("b.csv"), "-o", path("b.csv")}, 2, "named twice");
+  refuses({"-o", path("b.csv"), "-o", path("./b.csv")}, 2, "named twice");
+  write("b.csv", "older");
+  std::filesystem::create_symlink("b.csv", path("link.csv"));
+  refuses({"-o", path("b.csv"), "-o", path("link.csv")}, 2, "named twice");
   refuses({"-o", path("b.csv"), "-o", path("none/b.vtp")}, 1, "none/b.vtp");
   refuses({"--side", "fixed", "-o", path("b.csv")}, 2, "--side");
   const std::string input = write("plate.ply", file_content(plate_));

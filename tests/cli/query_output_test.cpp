@@ -336,6 +336,12 @@ TEST_F(QueryOutput, AFullDiskIsAFailure) {
       run_command("/bin/sh", {"-c", "exec \"$0\" info \"$1\" > /dev/full", IST_COMMAND, tree});
   EXPECT_EQ(lost.exit_code, 1);
   EXPECT_TRUE(says(lost.err, "cannot write to stdout"));
+  for (const char* words : {"--help", "--version", "help collide"}) {
+    const CommandResult taught = run_command(
+        "/bin/sh", {"-c", std::string("exec \"$0\" ") + words + " > /dev/full", IST_COMMAND});
+    EXPECT_EQ(taught.exit_code, 1) << words;
+    EXPECT_TRUE(says(taught.err, "cannot write to stdout"));
+  }
 }
 
 // `head` has gone before the command says anything.
@@ -354,6 +360,9 @@ TEST_F(QueryOutput, APipeWithoutAReaderEndsItInSilence) {
   EXPECT_EQ(piped("", {"collide", tree, tree, "--contacts", rows}), died);
   EXPECT_EQ(piped("", {"collide", tree, tree, "--json"}), died);
   EXPECT_EQ(piped("", {"table", "--format", "json"}), died);
+  EXPECT_EQ(piped("", {"table", "--vectors", "100000", "-o", "/dev/stdout"}), died);
+  EXPECT_EQ(piped("", {"run", IST_SCENES "/press.toml", "--unpaced", "--record", "/dev/stdout"}),
+            died);
   EXPECT_EQ(dir_.entries(), entries + 1) << "the rows are whole, and nothing else is left";
   const std::string ignored =
       piped("trap '' PIPE;", {"collide", tree, tree, "--contacts", path("more.csv")});

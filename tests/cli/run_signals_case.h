@@ -34,19 +34,6 @@ class RunSignals : public RunCase {
   [[nodiscard]] std::vector<std::string> endless_paced(const std::string& record) const {
     return endless(record, {"--allow-missed", "100000000"});
   }
-  /// The same, with a system call that at some time does not return any more.
-  [[nodiscard]] Process with_held_call(const std::string& call, int after,
-                                       const std::vector<std::string>& arguments) const {
-    std::vector<std::string> all{"LD_PRELOAD=" IST_HELD_CALLS,
-                                 "ASAN_OPTIONS=verify_asan_link_order=0",
-                                 "IST_HOLD=" + call,
-                                 "IST_HOLD_AFTER=" + std::to_string(after),
-                                 "IST_HOLD_SIGN=" + path("held"),
-                                 IST_COMMAND};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    return Process("/usr/bin/env", all);
-  }
-
   /// How many bytes of recordings that are not whole yet lie in the folder.
   [[nodiscard]] std::uintmax_t unfinished_bytes() const {
     std::uintmax_t bytes = 0;
@@ -61,13 +48,6 @@ class RunSignals : public RunCase {
   void await_ticks(Process& process) const {
     while (unfinished_bytes() == 0 && process.is_running())
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  /// Waits until that system call does not return.
-  void await_hold(Process& process) const {
-    while (!exists("held") && process.is_running()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    std::filesystem::remove(path("held"));
   }
   [[nodiscard]] std::string pipe(const std::string& name) const {
     const std::string file = path(name);

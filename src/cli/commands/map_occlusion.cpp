@@ -5,7 +5,9 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/bodies.h"
@@ -78,6 +80,13 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
   return questions;
 }
 
+// One spelling of each file, whether it is there or not.
+std::filesystem::path plain(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const auto spelled = std::filesystem::weakly_canonical(std::filesystem::absolute(file), unknown);
+  return unknown ? file : spelled;
+}
+
 // Opened before anything is measured, and completed when all of them are written.
 struct Output {
   std::unique_ptr<OutputFile> file;
@@ -86,12 +95,13 @@ struct Output {
 
 std::vector<Output> outputs_of(const OcclusionArguments& options) {
   std::vector<Output> outputs;
+  std::set<std::filesystem::path> names;
   bool surface = false, open = false;
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
     refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
                                options.questions.labels_fixed, options.questions.labels_moving});
-    refuse_if(std::count(options.outputs.begin(), options.outputs.end(), file) > 1, "-o",
+    refuse_if(!names.insert(plain(file)).second, "-o",
               fmt::format("{} is named twice", file.string()));
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
@@ -154,7 +164,9 @@ void run(const OcclusionArguments& options) {
   }
   if (options.open) selection.open = *options.open * bite.units_per_mm;
   for (const Output& output : outputs) write(bite, output, selection);
-  for (const Output& output : outputs) output.file->commit();
+  std::vector<OutputFile*> files;
+  for (const Output& output : outputs) files.push_back(output.file.get());
+  OutputFile::commit_all(files);
   if (options.json) {
     if (!questions.no_names) {
       print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}},

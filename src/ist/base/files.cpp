@@ -11,6 +11,7 @@
 #include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "ist/base/error.h"
 
@@ -111,8 +112,9 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     }
   }
   if (descriptor_ < 0) {
+    const int cause = errno;
     temporary_.clear();
-    fail("create");
+    fail("create", cause);
   }
 }
 
@@ -130,7 +132,7 @@ void OutputFile::write(const void* data, std::size_t bytes) {
   while (bytes > 0) {
     const ssize_t written = ::write(descriptor_, next, bytes);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write");
+    if (written < 0) fail("write", errno);
     next += written;
     bytes -= static_cast<std::size_t>(written);
   }
@@ -142,7 +144,7 @@ void OutputFile::write_at(std::size_t offset, const void* data, std::size_t byte
   while (bytes > 0) {
     const ssize_t written = ::pwrite(descriptor_, next, bytes, at);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write");
+    if (written < 0) fail("write", errno);
     next += written;
     at += written;
     bytes -= static_cast<std::size_t>(written);
@@ -150,37 +152,63 @@ void OutputFile::write_at(std::size_t offset, const void* data, std::size_t byte
 }
 
 void OutputFile::commit() {
-  if (!temporary_.empty()) {
-    await_name(target_);
-    // fsync reports a full disk before an older file is replaced.
-    if (::fsync(descriptor_) != 0) {
-      const int cause = errno;
-      await_name({});
-      errno = cause;
-      fail("write");
-    }
+  OutputFile* const alone = this;
+  commit_all({&alone, 1});
+}
+
+void OutputFile::commit_all(std::span<OutputFile* const> files) {
+  await_names(files, true);
+  for (OutputFile* file : files) {
+    const char* const failed = file->store();
+    if (failed == nullptr) continue;
+    const int cause = errno;
+    await_names(files, false);
+    file->fail(failed, cause);
   }
-  const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0) fail("close");
-  if (temporary_.empty()) return;
   auto& [mutex, targets] = Temporaries::all();
   const std::lock_guard lock(mutex);
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename");
-  targets.erase(temporary_);
-  temporary_.clear();
+  std::vector<const OutputFile*> added;  // renamed where no older file was
+  added.reserve(files.size());
+  for (const OutputFile* file : files) {
+    if (file->temporary_.empty()) continue;
+    const bool replaces = ::access(file->target_.c_str(), F_OK) == 0;
+    if (::rename(file->temporary_.c_str(), file->target_.c_str()) != 0) {
+      const int cause = errno;
+      for (const OutputFile* other : added) ::unlink(other->target_.c_str());
+      for (const OutputFile* other : files) {
+        if (!other->temporary_.empty()) targets[other->temporary_].clear();
+      }
+      file->fail("rename", cause);
+    }
+    if (!replaces) added.push_back(file);
+  }
+  for (OutputFile* file : files) {
+    targets.erase(file->temporary_);
+    file->temporary_.clear();
+  }
 }
 
-void OutputFile::await_name(const std::filesystem::path& name) {
+void OutputFile::await_names(std::span<OutputFile* const> files, bool await) {
   auto& [mutex, targets] = Temporaries::all();
   const std::lock_guard lock(mutex);
-  targets[temporary_] = name;
+  for (const OutputFile* file : files) {
+    if (file->temporary_.empty()) continue;
+    targets[file->temporary_] = await ? file->target_ : std::filesystem::path();
+  }
 }
 
-void OutputFile::fail(const char* doing) const {
-  throw Error(ErrorCode::kFileUnwritable,
-              fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
-                          "space on the disk",
-                          target_.string(), doing, std::strerror(errno)));
+const char* OutputFile::store() {
+  // fsync reports a full disk before an older file is replaced.
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0) return "write";
+  return ::close(std::exchange(descriptor_, -1)) == 0 ? nullptr : "close";
+}
+
+void OutputFile::fail(const char* doing, int cause) const {
+  throw UnwritableFile(
+      fmt::format("{}: cannot {} the file: {}: check the folder, its permissions and the "
+                  "space on the disk",
+                  target_.string(), doing, std::strerror(cause)),
+      cause);
 }
 
 void abandon_output_files() noexcept {

@@ -3,7 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+
+#include "ist/base/error.h"
 
 namespace ist {
 
@@ -34,12 +37,24 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
+/// A kFileUnwritable, with the system's number of the cause (errno): EPIPE of a pipe that nobody
+/// reads any more is often no failure of the command that writes to it.
+class UnwritableFile : public Error {
+ public:
+  UnwritableFile(const std::string& detail, int cause)
+      : Error(ErrorCode::kFileUnwritable, detail), cause_(cause) {}
+  [[nodiscard]] int cause() const noexcept { return cause_; }
+
+ private:
+  int cause_;
+};
+
 /// Writes a file whole or not at all: under a temporary name in the same folder until commit()
 /// renames it. Without commit() the destructor removes the temporary file, and an older file of the
 /// same name stays unchanged. A target that is not a regular file, such as /dev/stdout, is written
 /// directly.
 ///
-/// Every function throws kFileUnwritable with the file and the cause. An OutputFile belongs to one
+/// Every function throws UnwritableFile with the file and the cause. An OutputFile belongs to one
 /// thread at a time.
 class OutputFile {
  public:
@@ -54,11 +69,19 @@ class OutputFile {
   /// Overwrites `bytes` bytes from `offset` on, for a header that is known last.
   void write_at(std::size_t offset, const void* data, std::size_t bytes);
   void commit();
+  /// Commits files together: all are stored on the disk before the first gets its name, and
+  /// neither of the functions below comes between the names. So a disk that is full or fails leaves
+  /// all older files. Only a name that cannot be given then, as that of a folder made meanwhile,
+  /// leaves a part: the new names before it are removed again, but an older file that was replaced
+  /// is lost.
+  static void commit_all(std::span<OutputFile* const> files);
 
  private:
-  // From now on complete_output_files() gives the file this name; none if it is empty.
-  void await_name(const std::filesystem::path& name);
-  [[noreturn]] void fail(const char* doing) const;
+  // Says whether complete_output_files() gives the files their names from now on.
+  static void await_names(std::span<OutputFile* const> files, bool await);
+  // Brings the content to the disk. Returns what failed, with errno, or nullptr.
+  const char* store();
+  [[noreturn]] void fail(const char* doing, int cause) const;
 
   std::filesystem::path target_, temporary_;  // temporary_ is empty when written directly
   int descriptor_ = -1;
@@ -69,9 +92,9 @@ class OutputFile {
 /// ever. Not for signal handlers, because it takes a lock.
 void abandon_output_files() noexcept;
 
-/// Removes the same files, except for each whose commit() waits for the disk: that file is whole
-/// and gets its name at once. A power cut or a full network disk may still damage it, and then the
-/// older file of that name is lost.
+/// Removes the same files, except for those whose commit waits for the disk: they are whole and get
+/// their names at once. A power cut or a full network disk may still damage them, and then the
+/// older files of those names are lost.
 void complete_output_files() noexcept;
 
 }  // namespace ist
