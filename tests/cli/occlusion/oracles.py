@@ -80,12 +80,16 @@ class Command:
         return [MappedBody(data, body) for body in (0, 1)], lines
 
 
-def human_jaws():
+def jaws(*names):
     folder = pathlib.Path(os.environ.get("IST_DATA_DIR") or SOURCE.parent / "shared/data")
-    files = folder / "human_maxilla.stl", folder / "human_mandible.stl"
+    files = [folder / f"{name}.stl" for name in names]
     if not all(file.is_file() for file in files):
-        skip(f"no human jaws in {folder}: IST_DATA_DIR names the folder that holds them")
+        skip(f"no {' and '.join(names)} in {folder}: IST_DATA_DIR names the folder that holds them")
     return files
+
+
+def human_jaws():
+    return jaws("human_maxilla", "human_mandible")
 
 
 class MappedBody:
