@@ -29,6 +29,7 @@ struct LoadedBody {
     extent = largest_extent(tree ? box_of(*tree) : box_of(checked.mesh));
   }
   [[nodiscard]] std::string name() const { return file.string(); }
+  [[nodiscard]] bool has_triangles() const { return !tree || tree->triangles() != nullptr; }
 
   std::filesystem::path file;
   std::optional<SphereTree> tree;  // empty of a mesh
@@ -37,11 +38,12 @@ struct LoadedBody {
   double extent = 0;
 };
 
-// Takes the tree out of `body`, or builds it of its mesh.
-SphereTree take_tree(LoadedBody& body, const BodyFiles& files, double voxel_size) {
+// Takes the tree out of `body`, or builds it of its mesh; without a voxel size, of one voxel.
+SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<double> voxel_size) {
   if (body.tree) return std::move(*body.tree);
   BuildOptions options;
-  options.voxel_size = voxel_size;
+  // A mesh without an extent is refused as such, not for its voxels.
+  options.voxel_size = voxel_size.value_or(body.extent > 0 ? body.extent : 1);
   options.spheres = files.policy.value_or(options.spheres);
   options.max_memory = files.max_memory;
   options.source = body.source;
@@ -59,15 +61,6 @@ void refuse_different_units(const LoadedBody& fixed, const LoadedBody& moving) {
             fmt::format("its unit is {}, and that of {} is {}: nothing is converted in silence: "
                         "convert one of the meshes, and build it again with the other's --unit",
                         to_string(other), fixed.name(), to_string(one)));
-}
-
-void warn_of_voxels(const LoadedBody& body, double voxel_size) {
-  constexpr double kVoxels = 50;
-  if (!(voxel_size > body.extent / kVoxels)) return;
-  print_warnings(
-      {fmt::format("{}: a voxel of {:.4g} is more than 1/{:.0f} of the largest extent, "
-                   "{:.4g}: take smaller voxels for sharper answers",
-                   body.name(), voxel_size, kVoxels, body.extent)});
 }
 
 void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
@@ -99,6 +92,16 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
+}
+
+std::optional<std::string> voxel_warning(const std::string& name, double voxel_size,
+                                         double extent) {
+  constexpr double kVoxels = 50;
+  if (!(voxel_size > extent / kVoxels)) return std::nullopt;
+  return fmt::format(
+      "{}: a voxel of {:.4g} is more than 1/{:.0f} of the largest extent, {:.4g}: take smaller "
+      "voxels for sharper answers",
+      name, voxel_size, kVoxels, extent);
 }
 
 SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
@@ -137,9 +140,13 @@ Bodies load_bodies(const BodyFiles& files) {
   refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
             "both bodies are trees, which have their own voxel sizes: leave it out");
   refuse_different_units(fixed, moving);
-  const bool voxels = files.voxels == BodyFiles::Voxels::kMade;
-  double voxel_size = files.voxel_size.value_or(std::max(fixed.extent, moving.extent));
-  if (!both_are_trees && !files.voxel_size && voxels) {
+  warn_of_units(fixed, moving);
+  using Voxels = BodyFiles::Voxels;
+  const bool triangles = fixed.has_triangles() && moving.has_triangles();
+  const bool voxels =
+      files.voxels == Voxels::kMade || (files.voxels == Voxels::kNeeded && !triangles);
+  std::optional<double> voxel_size = files.voxel_size;
+  if (!both_are_trees && !voxel_size && voxels) {
     voxel_size = default_voxel_size(std::min(fixed.extent, moving.extent),
                                     "the smaller body's largest extent");
   }
@@ -149,10 +156,12 @@ Bodies load_bodies(const BodyFiles& files) {
       files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
   bodies.fixed.require(bodies.policy, fixed.name());
   bodies.moving.require(bodies.policy, moving.name());
-  warn_of_units(fixed, moving);
-  if (voxels) {
-    warn_of_voxels(fixed, bodies.fixed.voxel_size());
-    warn_of_voxels(moving, bodies.moving.voxel_size());
+  if (fixed.tree || voxel_size) bodies.fixed_voxel_size = bodies.fixed.voxel_size();
+  if (moving.tree || voxel_size) bodies.moving_voxel_size = bodies.moving.voxel_size();
+  if (!voxels) return bodies;
+  for (const auto& [body, tree] : {std::pair(&fixed, &bodies.fixed), {&moving, &bodies.moving}}) {
+    const auto warning = voxel_warning(body->name(), tree->voxel_size(), body->extent);
+    if (warning) print_warnings({*warning});
   }
   return bodies;
 }

@@ -22,6 +22,10 @@ struct CheckedMesh {
 /// Prints "warning: …" lines to stderr.
 void print_warnings(const std::vector<std::string>& warnings);
 
+/// Returns a warning that begins with `name`, if a voxel is over 1/50 of the largest extent.
+[[nodiscard]] std::optional<std::string> voxel_warning(const std::string& name, double voxel_size,
+                                                       double extent);
+
 /// Builds a tree under a progress bar. Adds warnings that begin with `name` if components were
 /// turned outward or the outside is assumed.
 [[nodiscard]] SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
@@ -33,6 +37,8 @@ void print_warnings(const std::vector<std::string>& warnings);
 struct Bodies {
   SphereTree fixed, moving;
   SpherePolicy policy;
+  /// Mesh units; empty of a mesh that got no voxels, but one as large as itself.
+  std::optional<double> fixed_voxel_size{}, moving_voxel_size{};
 
   /// Returns the largest extent of the smaller body. Cost: as of box_of().
   [[nodiscard]] double extent() const;
@@ -43,8 +49,12 @@ struct Bodies {
 
 /// The files of two bodies: each a mesh to build, or a tree to read.
 struct BodyFiles {
-  /// Whether meshes get voxels: a question that needs none is answered of one voxel a body.
-  enum class Voxels : std::uint8_t { kMade, kNone };
+  /// Whether meshes get voxels, or only one as large as themselves.
+  enum class Voxels : std::uint8_t {
+    kMade,
+    kNeeded,  ///< made where a tree holds no triangles, so that voxels alone can answer
+    kNone,
+  };
 
   std::filesystem::path fixed, moving;
   Voxels voxels = Voxels::kMade;

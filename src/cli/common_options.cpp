@@ -16,14 +16,13 @@ void add_example(CLI::App& command, const std::string& example) {
   command.footer(example + "\n" + command.get_parent()->get_footer());
 }
 
-void add_max_memory(CLI::App& command, std::uint64_t& bytes) {
+void add_max_memory(CLI::App& command, std::uint64_t& bytes, const std::string& of) {
   // A minus sign would wrap round in an unsigned number.
   const auto refuse_minus = [](const std::string& text) {
     return std::string(text.find('-') == text.npos ? "" : "give a positive number of bytes");
   };
   command
-      .add_option("--max-memory", bytes,
-                  "most memory for voxels and tree, in bytes, or with K, M or G")
+      .add_option("--max-memory", bytes, "most memory for " + of + ", in bytes, or with K, M or G")
       ->transform(CLI::AsSizeValue(false))
       ->transform(CLI::Validator(refuse_minus, ""))  // applied before the transformation above
       ->default_str("4G");

@@ -13,7 +13,8 @@ namespace ist::cli {
 /// Adds an example to the end of a subcommand's help, before the common footer.
 void add_example(CLI::App& command, const std::string& example);
 
-/// Adds --max-memory, bytes.
-void add_max_memory(CLI::App& command, std::uint64_t& bytes);
+/// Adds --max-memory, bytes, of what it says.
+void add_max_memory(CLI::App& command, std::uint64_t& bytes,
+                    const std::string& of = "voxels and tree");
 
 }  // namespace ist::cli

@@ -28,10 +28,15 @@ void print_header(const std::string& subcommand, const NamedFiles& files) {
   fmt::print("{}\n", line_of(subcommand, files).dump());
 }
 
-void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies) {
+void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
+                  const std::optional<TakenUnit>& unit) {
+  const auto or_null = [](const std::optional<double>& size) {
+    return size ? ordered_json(*size) : ordered_json(nullptr);
+  };
   ordered_json line = line_of(subcommand, files);
-  line["unit"] = json_of(bodies.unit());
-  line["voxel_size"] = {bodies.fixed.voxel_size(), bodies.moving.voxel_size()};
+  line["unit"] = unit ? ordered_json(unit->name) : json_of(bodies.unit());
+  if (unit) line["unit_assumed"] = unit->assumed;
+  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
   fmt::print("{}\n", line.dump());
 }
 

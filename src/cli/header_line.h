@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,10 +13,17 @@ namespace ist::cli {
 /// A file that a command reads, by what it is to the command: `fixed`, `mesh`, `tree` and so on.
 using NamedFiles = std::vector<std::pair<std::string, std::filesystem::path>>;
 
+/// A unit that a command takes, and whether it is assumed.
+struct TakenUnit {
+  std::string name;
+  bool assumed;
+};
+
 /// Prints the first line of --json: version, commit, subcommand, and of each file its base name and
-/// its hash (XXH3 of 64 bits; null for what is no regular file); of bodies, their unit and voxel
-/// sizes.
+/// its hash (XXH3 of 64 bits; null for what is no regular file); of bodies, their unit, or the
+/// one taken, and their voxel sizes, null where they got none.
 void print_header(const std::string& subcommand, const NamedFiles& files);
-void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies);
+void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
+                  const std::optional<TakenUnit>& unit = {});
 
 }  // namespace ist::cli

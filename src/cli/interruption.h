@@ -11,7 +11,7 @@ namespace ist::cli {
 void install_signal_handlers();
 
 /// Ends the process by SIGPIPE, as one that writes to `head` ends, unless the caller chose to
-/// ignore that signal: then returns. To be called when all that unwinds has been unwound.
+/// ignore that signal: then returns. Call it after the stack is unwound.
 void end_by_broken_pipe() noexcept;
 
 /// Turns the first SIGINT, SIGTERM or SIGHUP during its lifetime into a request to stop: the

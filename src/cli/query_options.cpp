@@ -89,7 +89,7 @@ bool QueryOptions::asks_voxels() const {
 BodyFiles QueryOptions::body_files() const {
   BodyFiles named = files;
   if (!spheres.empty()) named.policy = sphere_policy(spheres);
-  if (!asks_voxels()) named.voxels = BodyFiles::Voxels::kNone;
+  if (!asks_voxels()) named.voxels = BodyFiles::Voxels::kNeeded;
   return named;
 }
 
@@ -103,7 +103,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
                      "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
-                     "largest extent, and none are made where nothing is told of them");
+                     "largest extent. A mesh gets voxels where --json, --contacts, an option of "
+                     "the engine or a tree without triangles needs them");
   command
       .add_option("--distance", options.questions.distance,
                   "how sharp the distance of the surfaces shall be; by default a 10,000th of that "

@@ -32,9 +32,9 @@ struct QueryOptions {
   /// Throws CLI::ValidationError if options contradict each other, and kTargetMissing.
   void check() const;
   /// Returns whether anything is asked of voxels: lines of JSON, contacts, times and engines are,
-  /// and people's questions are not.
+  /// and people's questions are not, unless a tree holds no triangles.
   [[nodiscard]] bool asks_voxels() const;
-  /// Returns the files with the chosen policy; without voxels where nobody asks for them.
+  /// Returns the files with the chosen policy; without voxels where none are needed.
   [[nodiscard]] BodyFiles body_files() const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -82,8 +83,8 @@ void verify(Engines& engines, const Bodies& bodies, const std::vector<AskedPose>
 
 }  // namespace
 
-bool run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
-                 const QueryOptions& options) {
+Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
+                    const QueryOptions& options) {
   Examiner examiner(bodies, options.questions, options.target);
   Engines engines;
   for (const std::string& name : options.engines) {
@@ -104,12 +105,13 @@ bool run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
   } else {
     print_answers(engines, bodies, answers, timing);
   }
-  return std::any_of(answers.begin(), answers.end(),
-                     [](const PoseAnswer& answer) { return answer.findings.may_meet(); });
+  Meeting most = Meeting::kNone;
+  for (const PoseAnswer& answer : answers) most = std::max(most, answer.findings.meeting());
+  return most;
 }
 
-void fail_if_touching(bool touching, const QueryOptions& options) {
-  if (touching && options.fail_if_touching) throw Failure(kTouching, "the bodies touch");
+void fail_where_they_meet(Meeting meeting) {
+  if (meeting != Meeting::kNone) throw Failure(kTouching, to_string(meeting));
 }
 
 }  // namespace ist::cli

@@ -19,11 +19,11 @@ struct AskedPose {
 /// Asks people's questions once at each pose, and runs every engine `repeat` times round the whole
 /// list with the engines in turn; prints the answers, and writes contacts if a file is named. With
 /// --verify, runs each engine at each pose once more and checks those answers before a line is
-/// printed or the file appears. Returns whether the bodies touch, or may, at any pose.
-[[nodiscard]] bool run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
-                               const QueryOptions& options);
+/// printed or the file appears. Returns how the bodies meet where they do so most certainly.
+[[nodiscard]] Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
+                                  const QueryOptions& options);
 
-/// Throws a Failure of kTouching if the option asks for it and the bodies touch.
-void fail_if_touching(bool touching, const QueryOptions& options);
+/// Throws a Failure of kTouching, which says how the bodies meet; nothing where they are apart.
+void fail_where_they_meet(Meeting meeting);
 
 }  // namespace ist::cli

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "cli/cli_case.h"
 #include "support/shapes.h"
 
@@ -74,6 +76,24 @@ TEST_F(Answers, NearIsSaidWithoutTriangles) {
   const CommandResult words = ist_well({"collide", plain, plain, "--move", "3.5,0,0"});
   EXPECT_TRUE(says(words.out, "near"));
   EXPECT_TRUE(says(words.out, " apart"));
+}
+
+// One question, one answer, whatever else is asked.
+TEST_F(Answers, WithoutTrianglesVoxelsAnswerWhateverIsAsked) {
+  const std::string plain = tree_without_triangles("plain.ist");
+  for (const auto& [shift, code, touch] :
+       {std::tuple("3.9,0,0", 6, "near"), std::tuple("5.5,0,0", 0, "no")}) {
+    std::vector<std::string> words{"collide", plain, ball_, "--move", shift, "--fail-if-touching"};
+    const CommandResult people = ist(words);
+    EXPECT_EQ(people.exit_code, code) << people.out;
+    EXPECT_TRUE(says(people.out, std::string("touch      ") + touch));
+    EXPECT_TRUE(says(people.err, "voxel size 0.008"));
+    EXPECT_EQ(code == 6, says(people.err, "ist: the bodies may touch\n"));
+    words.emplace_back("--json");
+    const CommandResult lines = ist(words);
+    EXPECT_EQ(lines.exit_code, code);
+    EXPECT_EQ(json_lines(lines.out).at(0)["touch"], touch);
+  }
 }
 
 TEST_F(Answers, ExactCountsTheTrianglesThatMeet) {
@@ -243,6 +263,12 @@ TEST_F(Answers, TouchingFailsWhereItIsAskedTo) {
   EXPECT_EQ(code("4.1", tree), 0);
   EXPECT_EQ(code("4.1", plain), 6);  // may touch
   EXPECT_EQ(code("9", plain), 0);
+  const auto why = [&](const std::string& moving, const std::string& shift) {
+    return ist({"collide", ball_, moving, "--move", shift, "--fail-if-touching"}).err;
+  };
+  EXPECT_TRUE(says(why(ball_, "3.9,0,0"), "ist: the bodies touch\n"));
+  EXPECT_TRUE(says(why(plain, "3.9,0,0"), "ist: the bodies may touch\n"));
+  EXPECT_TRUE(says(why(cube(0.5), "0,0,0"), "ist: one body lies in the other\n"));
   EXPECT_EQ(
       ist({"approach", tree, tree, "--axis", "x", "--from", "9", "--to", "3", "--fail-if-touching"})
           .exit_code,

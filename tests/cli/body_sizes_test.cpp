@@ -86,6 +86,28 @@ TEST_F(BodySizes, BodiesOfVeryDifferentSizesAreWarnedOf) {
   EXPECT_TRUE(says(warning(41), "is 41: are they in one unit?"));
 }
 
+// Metres against millimetres: the warning comes first, and no voxel size is blamed.
+TEST_F(BodySizes, AnotherUnitIsWarnedOfBeforeAnythingIsBuilt) {
+  const std::string jaw = needle("mm.stl", 110), other = needle("m.stl", 0.1);
+  const std::string part = "is 0.1: are they in one unit?\n";
+  const CommandResult people = ist({"collide", jaw, other});
+  EXPECT_EQ(people.exit_code, 0) << people.err;
+  EXPECT_TRUE(says(people.err, part));
+  const CommandResult bite = ist({"occlusion", jaw, other, "--json"});
+  EXPECT_EQ(bite.exit_code, 2);
+  EXPECT_TRUE(says(bite.err, part));
+  EXPECT_TRUE(says(bite.err, "in mm MOVING is 0.1 mm large, and jaws are 1 to 1000"));
+  EXPECT_TRUE(says(collide(jaw, other).err, part));
+}
+
+TEST_F(BodySizes, AMemoryLimitBlamesNoVoxelsWhereThereAreNone) {
+  const CommandResult result = ist({"occlusion", ball(), ball(), "--json", "--max-memory", "1K"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "ist: the mesh has 320 triangles, and needs more than the allowed 1024 bytes of memory "
+            "with voxels of any size: allow more memory, or simplify it [memory-limit]\n");
+}
+
 TEST_F(BodySizes, VoxelsThatAreLargeForTheirBodyAreWarnedOf) {
   const std::string of = needle("needle.stl", 4), built = tree("fine.ist", "");
   const auto warning = [&](const char* size) {
@@ -99,6 +121,13 @@ TEST_F(BodySizes, VoxelsThatAreLargeForTheirBodyAreWarnedOf) {
   const CommandResult coarse = collide(ball_tree(), ball_tree());
   EXPECT_EQ(coarse.exit_code, 0);
   EXPECT_TRUE(says(coarse.err, "ball.ist: a voxel of 0.5 is more than 1/50"));
+  const auto built_with = [&](const char* size) {
+    return ist_well({"build", of, "-o", path("b.ist"), "--voxel-size", size, "--json"});
+  };
+  const std::string why = of + ": a voxel of 0.081 is more than 1/50 of the largest extent, 4";
+  EXPECT_TRUE(says(built_with("0.081").err, "warning: " + why));
+  EXPECT_TRUE(says(json_lines(built_with("0.081").out).at(0)["warnings"].dump(), why));
+  EXPECT_EQ(built_with("0.08").err, "");
 }
 
 }  // namespace

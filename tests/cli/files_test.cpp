@@ -19,18 +19,18 @@ class Files : public CliTest {};
 
 TEST_F(Files, BuildSaysWhatItMade) {
   const CommandResult result = ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size",
-                                         "0.5", "--json", "--classes", "surface,proximity"});
+                                         "0.08", "--json", "--classes", "surface,proximity"});
   const auto lines = json_lines(result.out);
   ASSERT_EQ(lines.size(), 1u);
   const json& line = lines[0];
   const SphereTree tree = read_tree(path("out.ist"));
   EXPECT_EQ(line["file"], path("out.ist"));
   EXPECT_EQ(line["triangles"], 320);
-  EXPECT_EQ(line["voxel_size"], 0.5);
+  EXPECT_EQ(line["voxel_size"], 0.08);
   EXPECT_EQ(line["spheres"], "slab");
   EXPECT_EQ(line["voxels"], tree.leaf_count());
   EXPECT_EQ(line["nodes"], tree.parts().octree.node_count());
-  EXPECT_EQ(line["depth"], 3);
+  EXPECT_EQ(line["depth"], 6);
   EXPECT_EQ(line["bytes"], std::filesystem::file_size(path("out.ist")));
   EXPECT_TRUE(line["memory"].is_number_unsigned());
   EXPECT_EQ(line["proximity_voxels"], tree.parts().proximity->octree.leaf_count());
@@ -42,9 +42,9 @@ TEST_F(Files, BuildSaysWhatItMade) {
   EXPECT_EQ(line["source"]["name"], "ball.stl");
 
   const CommandResult plain =
-      ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.5"});
+      ist_well({"build", ball(), "-o", path("out.ist"), "--voxel-size", "0.08"});
   EXPECT_TRUE(says(plain.out, std::to_string(tree.leaf_count()) + " voxels"));
-  EXPECT_TRUE(says(plain.out, "depth 3"));
+  EXPECT_TRUE(says(plain.out, "depth 6"));
   EXPECT_TRUE(says(plain.out, "ms"));
 }
 
@@ -284,6 +284,8 @@ TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
   EXPECT_EQ(dir_.entries(), 2u);
   const CommandResult table = ist_well({"demo", "--voxel-size", "3"});
   EXPECT_TRUE(says(table.out, "published"));
+  EXPECT_TRUE(says(table.out, "Their bite at dz = -0.6 mm:\ntouch yes, 0.4076 to 0.4184 mm deep"));
+  EXPECT_TRUE(says(table.out, "Try next: ist demo --keep"));
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '|'), 8);  // a row each, and its legend
 
   // What it keeps are meshes for the other subcommands.

@@ -105,8 +105,11 @@ TEST_F(Input, WhatIsWrongWithAMeshIsAWarning) {
                                          "-o", path("turned.ist"), "--voxel-size", "0.5"});
   EXPECT_TRUE(says(turned.err, "inside out"));
   const CommandResult good =
-      ist_well({"build", ball(), "-o", path("good.ist"), "--voxel-size", "0.5"});
+      ist_well({"build", ball(), "-o", path("good.ist"), "--voxel-size", "0.08"});
   EXPECT_EQ(good.err, "");
+  const CommandResult coarse =
+      ist_well({"build", ball(), "-o", path("coarse.ist"), "--voxel-size", "0.5"});
+  EXPECT_TRUE(says(coarse.err, "a voxel of 0.5 is more than 1/50 of the largest extent"));
 }
 
 TEST_F(Input, BadAndDirtyFilesOfOthers) {

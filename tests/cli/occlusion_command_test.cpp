@@ -47,7 +47,7 @@ TEST_F(OcclusionCommand, SaysThreeLines) {
   for (const char* part :
        {"touch yes, ", "(± 0.05 mm assumed for scanning)",
         "areas, scan (intersection and contact of scans: Beck 2023): in each other ",
-        "within 100 µm ", "1 paired regions, 0 unpaired", "overlap above 0.1 mm: check the bite",
+        "within 100 µm ", "1 paired region, 0 unpaired", "overlap above 0.1 mm: check the bite",
         "unit: mm (assumed)", "sides: +x and -x, divided in the middle of the fixed body's box",
         "wrote ", "bite.vtp"}) {
     EXPECT_TRUE(says(result.out, part));
@@ -298,6 +298,29 @@ TEST_F(OcclusionCommand, FilesTellTheirUnit) {
   };
   EXPECT_EQ(of(ball_), true);
   EXPECT_EQ(of(tree), false);
+}
+
+// The header tells the unit that is taken, and no voxel size that nobody asked for.
+TEST_F(OcclusionCommand, TheFirstLineTellsTheUnit) {
+  const std::string tree = path("plate.ist");
+  ist_well({"build", plate_, "-o", tree, "--voxel-size", "0.2", "--unit", "mm"});
+  const auto header = [&](const std::string& fixed, std::vector<std::string> more) {
+    std::vector<std::string> words{"occlusion", fixed, fixed, "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const std::string out = ist_well(words).out;
+    return json::parse(out.substr(0, out.find('\n')));
+  };
+  const json assumed = header(plate_, {}),
+             named = header(plate_, {"--unit", "inch", "--move", "0,0,5"}),
+             stored = header(tree, {});
+  EXPECT_EQ(assumed["unit"], "mm");
+  EXPECT_EQ(assumed["unit_assumed"], true);
+  EXPECT_EQ(assumed["voxel_size"], (json{nullptr, nullptr}));
+  EXPECT_EQ(named["unit"], "inch");
+  EXPECT_EQ(named["unit_assumed"], false);
+  EXPECT_EQ(stored["unit"], "mm");
+  EXPECT_EQ(stored["unit_assumed"], false);
+  EXPECT_EQ(stored["voxel_size"], (json{0.2, 0.2}));
 }
 
 TEST_F(OcclusionCommand, FlatMeshesAndStrangeSizesAreRefused) {

@@ -22,6 +22,25 @@ Eigen::AlignedBox3d open_box(const SphereTree& body) {
 
 }  // namespace
 
+const char* to_string(Meeting meeting) {
+  switch (meeting) {
+    case Meeting::kTouch:
+      return "the bodies touch";
+    case Meeting::kInside:
+      return "one body lies in the other";
+    case Meeting::kMayTouch:
+      return "the bodies may touch";
+    default:
+      return "the bodies are apart";
+  }
+}
+
+Meeting Findings::meeting() const {
+  if (touch == Answer::kYes) return Meeting::kTouch;
+  if (inside && *inside != Inside::kNone) return Meeting::kInside;
+  return touch == Answer::kNear ? Meeting::kMayTouch : Meeting::kNone;
+}
+
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
     : questions_(questions),
       budget_{questions.max_tests.value_or(Budget().tests)},

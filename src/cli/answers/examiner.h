@@ -21,6 +21,11 @@ struct Questions {
   std::optional<std::uint64_t> max_tests;
 };
 
+/// How bodies meet, from not at all to certainly.
+enum class Meeting : std::uint8_t { kNone, kMayTouch, kInside, kTouch };
+/// Returns a clause: "the bodies touch".
+[[nodiscard]] const char* to_string(Meeting meeting);
+
 /// Everything known of two bodies at one pose, in mesh units. A member is empty where it cannot be
 /// known or was not asked for; `notes` say why.
 struct Findings {
@@ -34,10 +39,7 @@ struct Findings {
   std::optional<double> contact_depth{};    ///< of the deepest of them
   std::vector<std::string> notes{};         ///< for people, a few words each
 
-  /// Returns whether the bodies touch, or may, or one is known to lie in the other.
-  [[nodiscard]] bool may_meet() const {
-    return touch != Answer::kNo || (inside && *inside != Inside::kNone);
-  }
+  [[nodiscard]] Meeting meeting() const;
 };
 
 /// Answers people: where, how deep, how far. Each answer stands for itself and depends on no pose

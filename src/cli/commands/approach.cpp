@@ -136,9 +136,9 @@ void run(const ApproachArguments& options) {
   const Bodies bodies = load_bodies(query.body_files());
   if (!query.json) echo_pose(options.pose, path.start);
   if (options.first_contact) require_triangles(bodies);
-  const bool touching = run_queries(bodies, poses, query);
+  const Meeting meeting = run_queries(bodies, poses, query);
   tell_first_contact(bodies, path, options);
-  fail_if_touching(touching, query);
+  if (query.fail_if_touching) fail_where_they_meet(meeting);
 }
 
 }  // namespace

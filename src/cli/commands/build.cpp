@@ -43,14 +43,16 @@ void run(BuildArguments options) {
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;
   CheckedMesh checked = load_mesh(options.mesh);
+  const double extent = largest_extent(box_of(checked.mesh));
   options.build.voxel_size =
-      options.voxel_size
-          ? *options.voxel_size
-          : default_voxel_size(largest_extent(box_of(checked.mesh)), "the largest extent");
+      options.voxel_size ? *options.voxel_size : default_voxel_size(extent, "the largest extent");
   const std::size_t triangles = checked.mesh.triangles.size();
   BuildReport report;
   const SphereTree tree = build_with_progress(options.mesh.string(), std::move(checked.mesh),
                                               options.build, checked.warnings, &report);
+  if (const auto warning = voxel_warning(options.mesh.string(), tree.voxel_size(), extent)) {
+    checked.warnings.push_back(*warning);
+  }
   print_warnings(checked.warnings);
   const std::uint64_t bytes = write_tree(tree, options.output);
 

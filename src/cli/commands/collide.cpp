@@ -24,7 +24,8 @@ void run(const CollideArguments& options) {
   for (const Eigen::Isometry3d& pose : options.pose.poses_named()) poses.push_back({pose});
   const Bodies bodies = load_bodies(query.body_files());
   if (!query.json && poses.size() == 1) echo_pose(options.pose, poses.front().pose);
-  fail_if_touching(run_queries(bodies, poses, query), query);
+  const Meeting meeting = run_queries(bodies, poses, query);
+  if (query.fail_if_touching) fail_where_they_meet(meeting);
 }
 
 }  // namespace

@@ -12,7 +12,10 @@
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/engine.h"
+#include "cli/extents.h"
 #include "cli/header_line.h"
+#include "cli/occlusion/bite_maker.h"
+#include "cli/occlusion/bite_tables.h"
 #include "cli/refusals.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
@@ -20,6 +23,8 @@
 
 namespace ist::cli {
 namespace {
+
+constexpr const char *kUpper = "upper_jaw.stl", *kLower = "lower_jaw.stl";
 
 struct DemoArguments {
   std::vector<double> voxel_sizes{0.8, 0.4, 0.2};
@@ -118,6 +123,39 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, bool json) {
   }
 }
 
+// Prints where the jaws bite, as `ist occlusion` does, and commands to try.
+void print_bite_of(const TriangleMesh& upper, const TriangleMesh& lower,
+                   const std::filesystem::path& keep) {
+  constexpr double kDown = -0.6;  // mm
+  std::vector<std::string> warnings;
+  const auto whole = [&](const char* name, const TriangleMesh& mesh) {
+    BuildOptions options;  // triangles answer, so one voxel is enough
+    options.voxel_size = largest_extent(box_of(mesh));
+    return build_with_progress(name, mesh, options, warnings);
+  };
+  Bodies bodies{whole("upper jaw", upper), whole("lower jaw", lower), BuildOptions{}.spheres};
+  print_warnings(warnings);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation().z() = kDown;
+  BiteQuestions questions;
+  questions.unit = LengthUnit::kMillimetre;
+  questions.preset = &presets().front();
+  fmt::print("\nTheir bite at dz = {} mm:\n", kDown);
+  print_bite(make_bite(bodies, {}, pose, questions), {});
+  if (keep.empty()) {
+    fmt::print("\nTry next: ist demo --keep .    (writes the two jaws; then it names more)\n");
+    return;
+  }
+  const std::string files =
+      fmt::format("{} {}", (keep / kUpper).string(), (keep / kLower).string());
+  fmt::print(
+      "\nWrote {0}. Try next:\n"
+      "  ist occlusion {0} --move 0,0,{1} -o bite.html\n"
+      "  ist collide {0} --move 0,0,-1.5\n"
+      "  ist approach {0} --axis z --from -3 --to 0\n",
+      files, kDown);
+}
+
 void run(const DemoArguments& options) {
   for (const double size : options.voxel_sizes) {
     refuse_if(!(size > 0 && std::isfinite(size)), "--voxel-size",
@@ -139,8 +177,8 @@ void run(const DemoArguments& options) {
         to_string(BuildOptions{}.spheres), select_kernels({}).target);
   }
   if (!options.keep.empty()) {
-    write_stl(upper_mesh, options.keep / "upper_jaw.stl");
-    write_stl(lower_mesh, options.keep / "lower_jaw.stl");
+    write_stl(upper_mesh, options.keep / kUpper);
+    write_stl(lower_mesh, options.keep / kLower);
   }
   for (const double size : options.voxel_sizes) {
     BuildOptions build;
@@ -159,13 +197,14 @@ void run(const DemoArguments& options) {
     }
     close_jaws(upper, lower, options.json);
   }
+  if (!options.json) print_bite_of(upper_mesh, lower_mesh, options.keep);
 }
 
 }  // namespace
 
 void add_demo(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("demo", "Make two jaws, close them, and show the time of each query");
+  CLI::App* command = app.add_subcommand(
+      "demo", "Make two jaws, close them, and show the time of each query and their bite");
   const auto options = std::make_shared<DemoArguments>();
   command->add_option("--voxel-size", options->voxel_sizes, "edges of the voxels, mm")
       ->delimiter(',')

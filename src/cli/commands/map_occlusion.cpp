@@ -13,7 +13,6 @@
 #include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/exit_code.h"
 #include "cli/formats/format.h"
 #include "cli/formats/glb_writer.h"
 #include "cli/formats/ply_writer.h"
@@ -25,6 +24,7 @@
 #include "cli/occlusion/bite_surfaces.h"
 #include "cli/occlusion/bite_tables.h"
 #include "cli/poses/pose_options.h"
+#include "cli/query_run.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
 #include "ist/base/files.h"
@@ -56,7 +56,7 @@ void require_length(double length, const std::string& option) {
             fmt::format("{} is no length: give more than 0", length));
 }
 
-// What the words mean, or why they mean nothing; before any file is read.
+// Reads the options' values, or refuses them, before any file is read.
 BiteQuestions questions_of(const OcclusionArguments& options) {
   BiteQuestions questions = options.questions;
   require_length(questions.reach, "--reach");
@@ -170,15 +170,13 @@ void run(const OcclusionArguments& options) {
   if (options.json) {
     if (!questions.no_names) {
       print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}},
-                   bodies);
+                   bodies, TakenUnit{bite.unit, bite.unit_assumed});
     }
     fmt::print("{}\n", json_of(bite).dump());
   } else {
     print_bite(bite, options.outputs);
   }
-  if (options.fail_if_touching && bite.findings.may_meet()) {
-    throw Failure(kTouching, "the bodies touch");
-  }
+  if (options.fail_if_touching) fail_where_they_meet(bite.findings.meeting());
 }
 
 void add_measure_options(CLI::App& command, OcclusionArguments& options) {
@@ -268,7 +266,7 @@ void add_occlusion(CLI::App& app) {
                     "write fixed and moving for the files' names");
   command->add_flag("--fail-if-touching", options->fail_if_touching,
                     "exit code 6 where the bodies touch, or one lies in the other");
-  add_max_memory(*command, options->files.max_memory);
+  add_max_memory(*command, options->files.max_memory, "a body's tree of triangles");
   command->add_flag("--json", options->json, "print the measures as JSON");
   add_patient_options(*command, *options);
   add_pose_options(*command, options->pose, Poses::kOne);

@@ -55,7 +55,8 @@ std::string limits_of_method(const Bite& bite) {
   return fmt::format(
       "<ul>\n"
       "<li>Distances are from each vertex to the nearest point of the other surface, as far as {}. "
-      "A negative distance is inside the other body; the sign comes of the winding of the nearest "
+      "A negative distance is inside the other body; the sign comes from the winding of the "
+      "nearest "
       "triangle, and is not known where the nearest point lies at an open border.</li>\n"
       "<li>Areas are of triangles on which the distance is taken as linear; long ones are split "
       "first. The pictures interpolate between vertices, show one direction alone, and hide what "
@@ -66,7 +67,7 @@ std::string limits_of_method(const Bite& bite) {
       "(15 % against 2 %), so regions without a partner stand apart.</li>\n"
       "<li>A geometric share is the part of a region in the sum of the overlaps with an elastic "
       "layer of {} between the surfaces. It changes with that depth, as the brackets show.</li>\n"
-      "<li>The limits come of the preset; other publications take limits that differ by ten "
+      "<li>The limits come from the preset; other publications take limits that differ by ten "
       "times. The bodies are rigid: teeth yield in their sockets, and jaws bend.</li>\n"
       "</ul>\n",
       numbers.length(bite.reach), numbers.length(bite.contact), numbers.length(bite.foundation));

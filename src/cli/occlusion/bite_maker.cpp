@@ -105,6 +105,10 @@ std::vector<std::string> checks_of(const Bite& bite) {
   checks.push_back(fmt::format(
       "sides: {} and {}, divided {}", bite.sides.first, bite.sides.second,
       bite.sides.assumed ? "in the middle of the fixed body's box (assumed)" : "as named"));
+  if (bite.fore_aft.assumed != bite.sides.assumed) {
+    checks.push_back(fmt::format("{} and {} divided in the middle of that box (assumed)",
+                                 bite.fore_aft.first, bite.fore_aft.second));
+  }
   for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
     if (body->closed) continue;
     checks.push_back(fmt::format(
@@ -112,6 +116,13 @@ std::vector<std::string> checks_of(const Bite& bite) {
         role));
   }
   for (const std::string& note : bite.findings.notes) checks.push_back(note);
+  const bool overlaps =
+      bite.fixed.surface.penetrating_area > 0 || bite.moving.surface.penetrating_area > 0;
+  if (overlaps && bite.findings.meeting() == Meeting::kNone) {
+    checks.push_back(
+        "areas in each other lie behind an open surface, which has no inside: the surfaces are "
+        "apart");
+  }
   const auto is_empty = [](const BiteBody& body) {
     return std::all_of(body.surface.vertices.begin(), body.surface.vertices.end(),
                        [](const SurfaceDistance& one) { return std::isnan(one.distance); });

@@ -63,8 +63,8 @@ std::string second_line(const Bite& bite) {
   };
   const auto pairs =
       static_cast<std::ptrdiff_t>(bite.fixed.surface.regions.size()) - unpaired(bite.fixed);
-  return fmt::format("areas, {} ({}): {}; {} paired regions, {} unpaired", bite.preset->name,
-                     bite.preset->source, areas, pairs,
+  return fmt::format("areas, {} ({}): {}; {} paired region{}, {} unpaired", bite.preset->name,
+                     bite.preset->source, areas, pairs, pairs == 1 ? "" : "s",
                      unpaired(bite.fixed) + unpaired(bite.moving));
 }
 

@@ -133,7 +133,7 @@ void echo_pose(const PoseOptions& options, const Eigen::Isometry3d& pose) {
   std::string lines = "pose, moving to fixed coordinates:\n";
   for (Eigen::Index row = 0; row < 4; ++row) {
     for (Eigen::Index column = 0; column < 4; ++column) {
-      lines += fmt::format("{:>14.9g}", pose.matrix()(row, column) + 0.0);
+      lines += fmt::format(" {:>13.9g}", pose.matrix()(row, column) + 0.0);
     }
     lines += '\n';
   }

@@ -159,16 +159,15 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
     const Lattice lattice = make_lattice(box.min(), box.max(), size);
     return fitting_survey(mesh, lattice, options, progress).has_value();
   };
-  const std::string limit = fmt::format(
-      "voxel size {} needs more than the allowed {} bytes of memory, or more than 2^32 voxels or "
-      "pairs of voxel and triangle",
-      options.voxel_size, options.max_memory);
   const double one_voxel = box.sizes().maxCoeff();
   double too_small = options.voxel_size, enough = too_small;
   while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
   if (!fits(enough)) {
-    throw Error(ErrorCode::kMemoryLimit,
-                limit + ", and so does every other size: allow more memory, or simplify the mesh");
+    throw Error(
+        ErrorCode::kMemoryLimit,
+        fmt::format("the mesh has {} triangles, and needs more than the allowed {} bytes of "
+                    "memory with voxels of any size: allow more memory, or simplify it",
+                    mesh.triangles.size(), options.max_memory));
   }
   for (int step = 0; step < 6; ++step) {
     const double middle = std::sqrt(too_small * enough);
@@ -178,7 +177,11 @@ std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& la
   while (!fits(named)) named = round_up_for_people(1.01 * named);
   throw Error(
       ErrorCode::kMemoryLimit,
-      fmt::format("{}: allow more memory, or use a voxel size of {} or larger", limit, named));
+      fmt::format(
+          "voxel size {} needs more than the allowed {} bytes of memory, or more than 2^32 "
+          "voxels or pairs of voxel and triangle: allow more memory, or use a voxel size of "
+          "{} or larger",
+          options.voxel_size, options.max_memory, named));
 }
 
 // Sums the normals in the voxels of one block, and writes the voxels to their places.
