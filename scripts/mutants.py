@@ -310,9 +310,9 @@ MUTANTS = [
            [("src/ist/mesh/format/stl_reader.cpp", "  return corners;",
              """  Eigen::Vector3f n, p[3];
   std::memcpy(n.data(), content.data() + kStlCountEnd + facet * kStlFacetBytes, sizeof n);
-  for (int i = 0; i < 3; ++i) std::memcpy(p[i].data(), corners.data() + 3 * i, sizeof n);
+  for (std::size_t i = 0; i < 3; ++i) std::memcpy(p[i].data(), corners.data() + 3 * i, sizeof n);
   if (n.dot((p[1] - p[0]).cross(p[2] - p[0])) < 0)
-    for (int i = 0; i < 3; ++i) std::swap(corners[3 + i], corners[6 + i]);
+    for (std::size_t i = 0; i < 3; ++i) std::swap(corners[3 + i], corners[6 + i]);
   return corners;""")],
            ["mesh_test"]),
     Mutant("inside-out-left", "a closed body that is inside out stays so",
