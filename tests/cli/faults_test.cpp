@@ -52,7 +52,7 @@ std::string cannot(const std::string& doing, const std::string& file, const std:
 
 // Everything that writes a file, with its name last.
 std::vector<std::vector<std::string>> writers(const std::string& mesh, const std::string& tree) {
-  return {{"build", mesh, "--voxel-size", "0.1", "-o"},
+  return {{"build", mesh, "--voxel-size", "0.05", "-o"},
           {"export", tree, "--what", "voxels", "--level", "0", "-o"},
           {"approach", tree, tree, "--axis", "z", "--from", "0", "--to", "2", "--step", "0.5",
            "--contacts"}};
