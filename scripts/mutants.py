@@ -34,6 +34,7 @@ CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
 HARDWARE = "src/hardware/"
 OCCLUSION = "src/cli/occlusion/"
+PAGES = "src/cli/pages/"
 CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"
@@ -614,4 +615,15 @@ MUTANTS = [
            [("src/package/ist.map.in", "      vtable?for?ist::*;\n", "")], ["ctest Package.Headers"]),
     Mutant("header-left-at-home", "a header that another one includes is not installed",
            [("src/package/public_headers.txt", "ist/query/manifold.h\n", "")], ["ctest Package.Headers"]),
+    Mutant("page-without-groups", "manual pages leave out the options that stand in a group of their own",
+           [(PAGES + "man_page.cpp", "page.subsection(group.title);\n    add_entries", "continue;\n    add_entries")],
+           ["ctest Package.ManPages"]),
+    Mutant("choices-as-files", "bash completes the name of a file where a word of a fixed set belongs",
+           [(PAGES + "bash_completion.cpp", "if (option.value.empty()) continue;",
+             "if (option.value.empty() || !option.choices.empty()) continue;")], ["ctest Package.Completion"]),
+    Mutant("installed-links-astray", "links of the installed documents lead to where the sources have things",
+           [("src/package/documents.cmake", "set(place examples/${CMAKE_MATCH_1})", "set(place src/examples/${CMAKE_MATCH_1})")],
+           ["ctest Package.Documents"]),
+    Mutant("uninstall-takes-others", "uninstalling removes what others have put beside it",
+           [("src/package/uninstall.cmake.in", "if(others)", "if(FALSE)")], ["ctest Package.Uninstall"]),
 ]

@@ -15,7 +15,8 @@ ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
 BUILD = ROOT / "build/mutants/build"
 RESULTS = ROOT / "perf/results/mutants.json"
-PACKAGED = {"ist_shared", "ist_cli", "package_layout"}  # targets of ctest tests
+# Targets of ctest tests.
+PACKAGED = {"ist_shared", "ist_hardware_shared", "ist_cli", "ist_pages", "package_layout"}
 SECONDS = 600  # for one program: a mutant that hangs is found out too
 
 
@@ -25,10 +26,10 @@ def fail(text):
 
 
 def sources():
-    for folder in ["src", "simd", "tests", "bench", "scripts"]:
+    for folder in ["src", "simd", "tests", "bench", "scripts", "docs", "perf"]:
         yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
-    yield ROOT / "CMakeLists.txt"
-    yield ROOT / "LICENSE"
+    for name in ["CMakeLists.txt", "LICENSE", "README.md", "HACKING.md", "CHANGELOG.md"]:
+        yield ROOT / name
 
 
 def copy_sources():

@@ -11,6 +11,6 @@ cd "$(dirname "$0")/.."
 case ${1:-} in
   -h | --help) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
   --list) ;;
-  *) scripts/setup.sh --hardware ;;
+  *) scripts/setup.sh --hardware --package ;;
 esac
 exec python3 scripts/mutate.py "$@"
