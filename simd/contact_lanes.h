@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "ist/base/bit_cast.h"
 #include "simd/contact_step.h"
 #include "simd/lanes.h"
 
@@ -165,7 +165,7 @@ inline constexpr float kToWhole = 0x1.8p23F;
 
 /// Rounds a term to a whole number, ties to even.
 [[nodiscard]] inline std::int32_t to_fixed_point(float term) noexcept {
-  return std::bit_cast<std::int32_t>(term + kToWhole) - std::bit_cast<std::int32_t>(kToWhole);
+  return bit_cast<std::int32_t>(term + kToWhole) - bit_cast<std::int32_t>(kToWhole);
 }
 
 /// Writes the terms of a pair at place `at` of a batch.

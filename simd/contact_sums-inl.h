@@ -8,9 +8,9 @@
 
 #include <hwy/highway.h>
 
-#include <bit>
 #include <cstdint>
 
+#include "ist/base/bit_cast.h"
 #include "simd/bounds-inl.h"
 #include "simd/contact_lanes.h"
 
@@ -76,7 +76,7 @@ class FixedPointSums {
  public:
   // For the terms of so many vectors.
   HWY_INLINE explicit FixedPointSums(std::size_t vectors) {
-    const auto added = std::bit_cast<std::uint32_t>(kToWhole) * static_cast<std::uint32_t>(vectors);
+    const auto added = bit_cast<std::uint32_t>(kToWhole) * static_cast<std::uint32_t>(vectors);
     for (auto& sum : sums_) sum = hn::Set(hn::RebindToUnsigned<Full>(), 0U - added);
   }
   HWY_INLINE void Add(std::size_t place, hn::Vec<Full> term) {

@@ -142,7 +142,8 @@ struct Compiled {
   }
 
 constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2", AVX2),
-                                  IST_KERNELS("sse4", SSE4), IST_KERNELS("ssse3", SSSE3)};
+                                  IST_KERNELS("sse4", SSE4), IST_KERNELS("ssse3", SSSE3),
+                                  IST_KERNELS("neon", NEON), IST_KERNELS("simd128", WASM)};
 
 #undef IST_KERNELS
 
@@ -150,7 +151,7 @@ constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2",
 
 std::vector<Kernels> supported_kernels() {
   std::vector<Kernels> kernels;
-  const std::int64_t supported = hwy::SupportedTargets();
+  const std::int64_t supported = HWY_SUPPORTED_TARGETS;
   for (const Compiled& compiled : kCompiled) {
     if (compiled.kernels.advance != nullptr && (supported & compiled.bit) != 0) {
       kernels.push_back(compiled.kernels);

@@ -168,8 +168,12 @@ ClusterKernels cluster_kernels(std::int64_t target) {
       return IST_CLUSTER_KERNELS(AVX2);
     case HWY_SSE4:
       return IST_CLUSTER_KERNELS(SSE4);
-    default:
+    case HWY_SSSE3:
       return IST_CLUSTER_KERNELS(SSSE3);
+    case HWY_NEON:
+      return IST_CLUSTER_KERNELS(NEON);
+    default:
+      return IST_CLUSTER_KERNELS(WASM);
   }
 }
 

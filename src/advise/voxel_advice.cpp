@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/from_chars.h"
 #include "ist/voxel/lattice.h"
 
 namespace ist {
@@ -143,7 +143,7 @@ class SizeSearch {
 
 double number(const std::string& text) {  // unlike std::stod, independent of the locale
   double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
+  from_chars(text, value);
   return value;
 }
 

@@ -24,8 +24,13 @@ class CleanRoot:
             self.files[name] = package
             output("dpkg-deb", "-x", package, path)
         self.libraries = next(path.glob("usr/lib/**/libist.so.0")).parent
-        lines = output("dpkg-query", "-W", "-f", "${Package}\t${Pre-Depends}, ${Depends}\n").splitlines()
-        self.installed = {line.split("\t")[0]: names_in(line.split("\t")[1]) for line in lines}
+        # Of this architecture: a machine may have the libraries of another beside its own.
+        architecture = output("dpkg", "--print-architecture").strip()
+        form = "${Package}\t${Architecture}\t${binary:Package}\t${Pre-Depends}, ${Depends}\n"
+        lines = [line.split("\t") for line in output("dpkg-query", "-W", "-f", form).splitlines()]
+        native = [line for line in lines if line[1] in (architecture, "all")]
+        self.installed = {name: names_in(depends) for name, _, _, depends in native}
+        self.full_names = {name: full for name, _, full, _ in native}
 
     def field(self, package, name):
         return output("dpkg-deb", "-f", self.files[package], name).strip()
@@ -54,7 +59,7 @@ class CleanRoot:
         Ends the test where it would load any other."""
         folder = self.path / "libraries" / package
         folder.mkdir(parents=True)
-        for name in output("dpkg-query", "-L", *sorted(self.closure(package))).splitlines():
+        for name in output("dpkg-query", "-L", *sorted(self.full_names[name] for name in self.closure(package))).splitlines():
             file = pathlib.Path(name)
             if re.search(r"\.so(\.\d+)*$", name) and re.fullmatch(r"(/usr)?/lib(/[\w-]+-linux-gnu)?", str(file.parent)):
                 (folder / file.name).unlink(missing_ok=True)

@@ -42,7 +42,7 @@ void parallel_for(std::size_t count, std::size_t grain,
   IST_ASSERT(grain > 0);
   Loop loop{count, grain, body};
   loops_begun.fetch_add(1, std::memory_order_release);
-  tbb_ranges((count + grain - 1) / grain,
+  run_ranges((count + grain - 1) / grain,
              [](void* context, std::size_t range) {
                static_cast<void>(loops_begun.load(std::memory_order_acquire));
                static_cast<Loop*>(context)->run(range);

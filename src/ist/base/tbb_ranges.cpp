@@ -7,11 +7,11 @@
 
 namespace ist {
 
-void tbb_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* context) {
+void run_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* context) {
   tbb::parallel_for(std::size_t{0}, ranges, [=](std::size_t range) { run(context, range); });
 }
 
-void tbb_aside(void (*run)(void*), void* context) {
+void run_aside(void (*run)(void*), void* context) {
   // The arena's only slot is reserved for a caller that never joins. TBB lends such an arena a
   // worker for enqueued tasks even if TBB is limited to one thread. The arena lives until its task
   // has ended.
@@ -19,7 +19,7 @@ void tbb_aside(void (*run)(void*), void* context) {
   arena.enqueue([=] { run(context); });
 }
 
-std::size_t tbb_threads() { return static_cast<std::size_t>(tbb::info::default_concurrency()); }
+std::size_t thread_count() { return static_cast<std::size_t>(tbb::info::default_concurrency()); }
 
 struct ScopedThreadLimit::Control {
   tbb::global_control limit;

@@ -44,8 +44,8 @@ std::optional<Placement> to_placement(const TickRecord::Pose& numbers) noexcept 
 }
 
 std::size_t detail::ring_capacity(std::size_t asked) {
-  constexpr std::size_t kMost = std::size_t{1} << 32;
-  if (asked == 0 || asked > kMost) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
+  if (asked == 0 || std::uint64_t{asked} > kMost) {
     throw Error(ErrorCode::kArgumentInvalid,
                 fmt::format("a ring for {} records: give a capacity from 1 to {}", asked, kMost));
   }

@@ -169,7 +169,7 @@ class Snapshot {
     if (count_.load(std::memory_order_relaxed) != count) return std::nullopt;
     std::array<std::byte, sizeof(T)> bytes;
     std::memcpy(bytes.data(), words.data(), sizeof(T));
-    return std::bit_cast<T>(bytes);
+    return __builtin_bit_cast(T, bytes);  // std::bit_cast: not in libc++ 14
   }
 
   /// Reads the last value, and yields the core between attempts. Not for a tick, nor for a thread

@@ -1,7 +1,6 @@
 #include "ist/haptics/tick_clock.h"
 
 #include <time.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -9,6 +8,7 @@
 #include <type_traits>
 
 #include "ist/base/assert.h"
+#include "ist/base/pause.h"
 
 namespace ist {
 namespace {
@@ -20,7 +20,8 @@ static_assert(std::is_same_v<Clock::period, std::nano>);
 // Returns at once if the time has passed.
 void sleep_until(TickClock::Time time) noexcept {
   const auto ns = time.time_since_epoch().count();
-  const timespec end{.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
+  const timespec end{.tv_sec = static_cast<time_t>(ns / 1'000'000'000),
+                     .tv_nsec = static_cast<long>(ns % 1'000'000'000)};
   int error;
   do {
     error = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &end, nullptr);
@@ -57,7 +58,7 @@ TickStart TickClock::wait_for_next() noexcept {
   const Time next = schedule_.next(Clock::now());
   sleep_until(next - std::min(kLead, period_ / 2));
   Time now = Clock::now();
-  for (; now < next; now = Clock::now()) _mm_pause();
+  for (; now < next; now = Clock::now()) pause_briefly();
   return schedule_.begin(now);
 }
 

@@ -28,8 +28,6 @@ Vector middle(const std::array<Vector, 3>& t) {
   return scaled(1.0 / 3, sum(sum(t[0], t[1]), t[2]));
 }
 
-bool has_smaller_bound(double a, double b) { return a < b; }
-
 }  // namespace
 
 DepthSearch::DepthSearch(std::vector<SurfaceInBody> sides, double rounding, const Budget& budget,
@@ -48,13 +46,10 @@ bool DepthSearch::run(double tolerance) {
     const TriangleClusters& clusters = sides_[side].surface.parts().triangles->clusters;
     add_node(side, clusters.root_level(), 0, nullptr);
   }
-  const auto smaller = [](const Item& a, const Item& b) {
-    return has_smaller_bound(a.bound, b.bound);
-  };
   const double first_bound = bound();
   while (!heap_.empty() && heap_.front().bound > least() + tolerance_) {
     if (!goes_on(first_bound)) return false;
-    std::pop_heap(heap_.begin(), heap_.end(), smaller);
+    std::pop_heap(heap_.begin(), heap_.end());
     const Item item = heap_.back();
     heap_.pop_back();
     open(item);
@@ -145,8 +140,7 @@ double DepthSearch::distance_to(std::uint32_t side, std::uint32_t triangle, cons
 void DepthSearch::push(const Item& item) {
   if (drops(item.bound)) return;
   heap_.push_back(item);
-  std::push_heap(heap_.begin(), heap_.end(),
-                 [](const Item& a, const Item& b) { return has_smaller_bound(a.bound, b.bound); });
+  std::push_heap(heap_.begin(), heap_.end());
 }
 
 // Returns whether a ball need not be looked at, by what is known of the middle of what holds it: a

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "ist/base/progress.h"
@@ -56,6 +57,12 @@ class DepthSearch {
     Middle middle;
     std::uint32_t side, index;  // of a node, or of a piece
     int level;                  // kPiece
+
+    // Of two items one comes first in any library's heap.
+    friend bool operator<(const Item& a, const Item& b) {
+      return std::tie(a.bound, b.level, b.side, b.index) <
+             std::tie(b.bound, a.level, a.side, a.index);
+    }
   };
   struct Piece {
     Corners corner;  // in the body's coordinates

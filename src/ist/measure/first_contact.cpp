@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/rigid_move.h"
 #include "ist/measure/inside_parts.h"
 #include "ist/measure/require.h"
 
@@ -48,7 +49,7 @@ bool is_inside_other(const Query& query, const Eigen::Isometry3d& pose) {
     const PointSearch search(body, kernels);
     return is_any_inside({surface, body, search, RigidMove(to_body)});
   };
-  return holds(fixed, moving, pose) || holds(moving, fixed, pose.inverse());
+  return holds(fixed, moving, pose) || holds(moving, fixed, inverse_of(pose));
 }
 
 // A search along one motion.

@@ -123,7 +123,7 @@ Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
   require_triangles(fixed, "fixed");
   require_triangles(moving, "moving");
   require_options(options);
-  const Eigen::Isometry3d rigid = require_rigid(pose, "pose"), back = rigid.inverse();
+  const Eigen::Isometry3d rigid = require_rigid(pose, "pose"), back = inverse_of(rigid);
   const ClusterKernels& kernels = select_kernels(query.target()).clusters;
   const PointSearch in_fixed(fixed, kernels), in_moving(moving, kernels);
   const RigidMove to_fixed(rigid), to_moving(back), stay(Eigen::Isometry3d::Identity());

@@ -95,7 +95,7 @@ Penetration penetration(Query& query, const Eigen::Isometry3d& pose, double tole
     const double length = std::sqrt(dot_in_order(way, way));
     const Vector direction = length > 0 ? scaled(1 / length, way) : Vector(0, 0, 0);
     result.point = result.of_moving ? deepest->at : to_fixed(deepest->at);
-    result.direction = result.of_moving ? direction : rigid->linear() * direction;
+    result.direction = result.of_moving ? direction : to_fixed.turned(direction);
   }
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
 
@@ -24,8 +25,9 @@ bool is_degenerate(const TriangleMesh& mesh, const Triangle& triangle) {
   u /= extent;
   v /= extent;
   constexpr double kThinnest = 1e-12;
-  const double longest2 = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
-  return u.cross(v).squaredNorm() <= kThinnest * kThinnest * longest2 * longest2;
+  const double longest2 =
+      std::max({square_in_order(u), square_in_order(v), square_in_order(u - v)});
+  return square_in_order(u.cross(v)) <= kThinnest * kThinnest * longest2 * longest2;
 }
 
 std::size_t count_duplicates(const TriangleMesh& mesh) {
@@ -70,8 +72,8 @@ double signed_volume(const TriangleMesh& mesh) {
   const Eigen::Vector3d origin = mesh.vertices[mesh.triangles[0][0]];
   double sixfold = 0;
   for (const Triangle& t : mesh.triangles)
-    sixfold += (mesh.vertices[t[0]] - origin)
-                   .dot((mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));
+    sixfold += dot_in_order(mesh.vertices[t[0]] - origin,
+                            (mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));
   return sixfold / 6;
 }
 

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "ist/base/ordered_vector.h"
+
 namespace ist {
 namespace {
 
@@ -19,22 +21,22 @@ NearestPoint nearest_on_sliver(const std::array<Eigen::Vector3d, 3>& triangle,
     const Eigen::Vector3d& from = triangle[static_cast<std::size_t>(i)];
     const Eigen::Vector3d& to = triangle[static_cast<std::size_t>(next)];
     const Eigen::Vector3d side = to - from, offset = point - from;
-    const double along = side.dot(offset), length2 = side.squaredNorm();
+    const double along = dot_in_order(side, offset), length2 = square_in_order(side);
     NearestPoint on_side{from, i};
     if (along >= length2 && length2 > 0) {
       on_side = {to, next};
     } else if (along > 0) {
       on_side = {from + along / length2 * side, 3 + i};
     }
-    const double distance2 = (point - on_side.point).squaredNorm();
+    const double distance2 = square_in_order(point - on_side.point);
     if (distance2 < least) {
       least = distance2;
       nearest = on_side;
     }
-    inside = inside && side.cross(offset).dot(normal) > 0;
+    inside = inside && dot_in_order(side.cross(offset), normal) > 0;
   }
   if (!inside) return nearest;
-  const double height = (point - triangle[0]).dot(normal) / normal.squaredNorm();
+  const double height = dot_in_order(point - triangle[0], normal) / square_in_order(normal);
   return {point - height * normal, NearestPoint::kInside};
 }
 
@@ -47,19 +49,19 @@ NearestPoint nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& triangle,
   // area2 / sides2 is the squared sine of the angle at a. The weights below lose as many digits as
   // it has zeros, the plane's normal half as many.
   const Eigen::Vector3d normal = ab.cross(ac);
-  const double area2 = normal.squaredNorm(), sides2 = ab.squaredNorm() * ac.squaredNorm();
+  const double area2 = square_in_order(normal), sides2 = square_in_order(ab) * square_in_order(ac);
   if (!(area2 > 1e-6 * sides2)) {
     return nearest_on_sliver(triangle, normal, area2 > 1e-16 * sides2, point);
   }
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  const double d1 = dot_in_order(ab, ap), d2 = dot_in_order(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {a, 0};
   const Eigen::Vector3d bp = point - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  const double d3 = dot_in_order(ab, bp), d4 = dot_in_order(ac, bp);
   if (d3 >= 0 && d4 <= d3) return {b, 1};
   const double vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) return {a + d1 / (d1 - d3) * ab, 3};
   const Eigen::Vector3d cp = point - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  const double d5 = dot_in_order(ab, cp), d6 = dot_in_order(ac, cp);
   if (d6 >= 0 && d5 <= d6) return {c, 2};
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) return {a + d2 / (d2 - d6) * ac, 5};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/winding_number.h"
@@ -25,7 +26,7 @@ int volume_sign(const TriangleMesh& mesh, const Component& component) {
     const Eigen::Vector3d a = (mesh.vertices[triangle[0]] - origin) / extent;
     const Eigen::Vector3d b = (mesh.vertices[triangle[1]] - origin) / extent;
     const Eigen::Vector3d c = (mesh.vertices[triangle[2]] - origin) / extent;
-    const double sixfold = a.dot(b.cross(c));
+    const double sixfold = dot_in_order(a, b.cross(c));
     sum += sixfold;
     size += std::abs(sixfold);
   }

@@ -10,6 +10,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
@@ -27,7 +28,7 @@ std::array<float, 3> unit_normal(const Eigen::Vector3d& a, const Eigen::Vector3d
   u /= longest;
   v /= longest;
   const Eigen::Vector3d normal = u.cross(v);
-  const double length = std::sqrt(normal.squaredNorm());
+  const double length = length_in_order(normal);
   if (!(length > 0)) return {};
   return {static_cast<float>(normal.x() / length), static_cast<float>(normal.y() / length),
           static_cast<float>(normal.z() / length)};

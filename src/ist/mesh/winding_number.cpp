@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "ist/base/ordered_vector.h"
+
 namespace ist {
 namespace {
 
@@ -11,14 +13,14 @@ std::optional<int> crossing(const Eigen::Vector3d& direction, const Eigen::Vecto
                             const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   constexpr double kDoubt = 1e-12;
   const auto side = [&direction](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    const double volume = direction.dot(from.cross(to));
+    const double volume = dot_in_order(direction, from.cross(to));
     const double doubt = kDoubt * from.cwiseAbs().maxCoeff() * to.cwiseAbs().maxCoeff();
     return volume > doubt ? 1 : volume < -doubt ? -1 : 0;
   };
   const int ab = side(a, b), bc = side(b, c), ca = side(c, a);
   if (ab * bc < 0 || bc * ca < 0 || ca * ab < 0) return 0;
   if (ab == 0 || bc == 0 || ca == 0) return std::nullopt;
-  const double height = a.dot((b - a).cross(c - a));  // of the plane, along the normal
+  const double height = dot_in_order(a, (b - a).cross(c - a));  // of the plane, along the normal
   return (height > 0) == (ab > 0) ? ab : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/rigid_move.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
 #include "ist/query/query.h"
@@ -21,9 +22,9 @@ struct InsideState {
       }
     }
     // Whether all components of the other body lie inside this one.
-    [[nodiscard]] bool holds(const Body& inner, const Eigen::Isometry3d& to_this) const noexcept {
+    [[nodiscard]] bool holds(const Body& inner, const RigidMove& to_this) const noexcept {
       const auto inside = [&](const Eigen::Vector3d& point) {
-        const Eigen::Vector3d there = to_this * point;
+        const Eigen::Vector3d there = to_this(point);
         return box.contains(there) && winding_number(mesh, triangles, there).value_or(0) != 0;
       };
       return !inner.points.empty() && std::all_of(inner.points.begin(), inner.points.end(), inside);
@@ -57,8 +58,9 @@ InsideTest& InsideTest::operator=(InsideTest&&) noexcept = default;
 
 Inside InsideTest::at(const Eigen::Isometry3d& pose) const noexcept {
   const ScopedFloatEnvironment environment;
-  if (state_->fixed.holds(state_->moving, pose)) return Inside::kMoving;
-  return state_->moving.holds(state_->fixed, pose.inverse()) ? Inside::kFixed : Inside::kNone;
+  if (state_->fixed.holds(state_->moving, RigidMove(pose))) return Inside::kMoving;
+  return state_->moving.holds(state_->fixed, RigidMove(inverse_of(pose))) ? Inside::kFixed
+                                                                          : Inside::kNone;
 }
 
 }  // namespace ist

@@ -58,7 +58,7 @@ void read_effects(TableReader& scene, Scene& result) {
   if (effects.has("contact")) result.contact = read_contact(effects.table("contact"));
   if (effects.has("friction")) result.friction = read_friction(effects.table("friction"));
   if (effects.has("damping")) {
-    result.damping = {
+    result.damping = DampingSettings{
         .damping = effects.table("damping").number("damping", kDamping, DampingSettings().damping)};
   }
   if (effects.has("proximity")) {

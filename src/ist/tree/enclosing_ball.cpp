@@ -39,7 +39,7 @@ Vector3d of_products(const Vector3d d[3], const double r[3], int n) noexcept {
   if (n == 1) return d[0] * (r[0] / square(d[0]));
   const Vector3d ab = d[0].cross(d[1]);
   if (n == 2) return (r[1] * ab.cross(d[0]) + r[0] * d[1].cross(ab)) / square(ab);
-  return (r[0] * d[1].cross(d[2]) + r[1] * d[2].cross(d[0]) + r[2] * ab) / ab.dot(d[2]);
+  return (r[0] * d[1].cross(d[2]) + r[1] * d[2].cross(d[0]) + r[2] * ab) / dot_in_order(ab, d[2]);
 }
 
 // A ball by its centre and its size: the square of its radius round points, its radius round balls.

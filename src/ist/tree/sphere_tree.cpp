@@ -9,6 +9,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/mesh/components.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/saved_spheres.h"
@@ -55,7 +56,7 @@ TreeParts measured(TreeParts parts) {
       for (int slot = 0; slot < parts.octree.child_count(level + 1, parent); ++slot) {
         const Ball ball = parts.saved_ball(level, parent, slot);
         largest = std::max(largest, ball.radius);
-        farthest2 = std::max(farthest2, ball.centre.squaredNorm());
+        farthest2 = std::max(farthest2, square_in_order(ball.centre));
       }
     }
     if (level == 0) parts.largest_saved_leaf = largest;

@@ -13,8 +13,6 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 
-struct XXH3_state_s;
-
 namespace ist {
 
 /// The first bytes of a tree file.
@@ -25,14 +23,13 @@ inline constexpr std::array<unsigned char, 8> kTreeFileMagic = {0x89, 'I',  'S',
 class Checksum {
  public:
   Checksum();
+  ~Checksum();
   void add(const void* data, std::size_t bytes);
   [[nodiscard]] std::uint64_t value() const;
 
  private:
-  struct Free {
-    void operator()(XXH3_state_s* state) const;
-  };
-  std::unique_ptr<XXH3_state_s, Free> state_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// Writes a tree file: its preamble, then values and arrays in their memory layout. Throws

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "ist/base/error.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/nearest_point.h"
@@ -32,7 +33,7 @@ double arc_cosine(double cosine) {
 }
 
 Vector3d unit_or_zero(const Vector3d& v) {
-  const double length = v.norm();
+  const double length = length_in_order(v);
   return length > 0 ? Vector3d(v / length) : Vector3d(Vector3d::Zero());
 }
 
@@ -52,7 +53,7 @@ class PseudoNormals {
       for (std::uint32_t i = 0; i < 3; ++i) {
         const Vector3d to_next = unit_or_zero(vertex(i + 1) - vertex(i));
         const Vector3d to_last = unit_or_zero(vertex(i + 2) - vertex(i));
-        vertices_[corners[i]] += arc_cosine(to_next.dot(to_last)) * faces_[t];
+        vertices_[corners[i]] += arc_cosine(dot_in_order(to_next, to_last)) * faces_[t];
       }
     }
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
@@ -120,8 +121,8 @@ class BlockClassifier {
       const NearestPoint nearest = nearest_on_triangle(corners, centre);
       const Vector3d away = centre - nearest.point;
       Nearest& known = nearest_[morton_encode({x, y, z}) % TriangleBins::kBlockCells];
-      if (away.squaredNorm() >= known.distance2) return;
-      known = {away.squaredNorm(), away.dot(normals_.at(t, nearest.feature)) > 0};
+      if (square_in_order(away) >= known.distance2) return;
+      known = {square_in_order(away), dot_in_order(away, normals_.at(t, nearest.feature)) > 0};
     });
   }
 

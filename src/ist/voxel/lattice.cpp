@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "ist/base/error.h"
+#include "ist/base/from_chars.h"
 
 namespace ist {
 
@@ -18,7 +18,7 @@ namespace {
 // Parses a number in any locale of the host, unlike std::stod.
 double number(std::string_view text) {
   double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
+  from_chars(text, value);
   return value;
 }
 

@@ -8,6 +8,7 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
 
 namespace ist {
@@ -93,8 +94,8 @@ double expected_pairs(const TriangleMesh& mesh, double cube_edge) {
   for (const Triangle& t : mesh.triangles) {
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
                           &c = mesh.vertices[t[2]];
-    areas += 0.5 * (b - a).cross(c - a).cwiseAbs().sum();
-    extents += (a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c)).sum();
+    areas += 0.5 * sum_in_order((b - a).cross(c - a).cwiseAbs());
+    extents += sum_in_order(a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c));
   }
   return areas / (cube_edge * cube_edge) + extents / cube_edge +
          static_cast<double>(mesh.triangles.size());

@@ -12,6 +12,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
 #include "ist/mesh/bounding_box.h"
 #include "ist/voxel/triangle_bins.h"
@@ -271,9 +272,10 @@ class BlockWriter {
   static std::optional<Eigen::Vector3d> unit_normal(const std::array<Eigen::Vector3d, 3>& corners) {
     const Eigen::Vector3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
     const Eigen::Vector3d twice_area = ab.cross(ac);
-    const double square = twice_area.squaredNorm();
+    const double square = square_in_order(twice_area);
     // Scale-free: compares the area with the square of the longest edge, an upper bound.
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
+    const double longest =
+        std::max({square_in_order(ab), square_in_order(ac), square_in_order(ab - ac)});
     if (!(square > 1e-24 * longest * longest)) return std::nullopt;
     return twice_area / std::sqrt(square);
   }

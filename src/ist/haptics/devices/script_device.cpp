@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -14,6 +13,7 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/from_chars.h"
 
 namespace ist {
 namespace {
@@ -91,7 +91,7 @@ class ScriptReader {
 
   double number_of(std::string_view word) const {
     double number = 0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const auto [stop, error] = from_chars(word, number);
     if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(number)) {
       fail(fmt::format("'{}' is no finite number: write it as 12.5 or 1.25e1", shown(word)));
     }

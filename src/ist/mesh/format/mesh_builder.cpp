@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ist/base/assert.h"
+#include "ist/base/bit_cast.h"
 #include "ist/mesh/format/triangulate.h"
 
 namespace ist {
@@ -15,7 +16,7 @@ constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 std::size_t hash_of(const Eigen::Vector3d& point) {
   std::uint64_t hash = 0;
   for (const double coordinate : point) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(coordinate)) * 0x9E3779B97F4A7C15u;
+    hash = (hash ^ bit_cast<std::uint64_t>(coordinate)) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 32;
   }
   return hash;

@@ -98,7 +98,8 @@ PlyProperty read_property(TextReader& reader, std::string_view element) {
 }
 
 bool has_one(const PlyElement& element, PlyRole role) {
-  return std::ranges::count(element.properties, role, &PlyProperty::role) == 1;
+  return std::count_if(element.properties.begin(), element.properties.end(),
+                       [role](const PlyProperty& property) { return property.role == role; }) == 1;
 }
 
 void check_elements(const TextReader& reader, const PlyHeader& header) {
@@ -117,7 +118,8 @@ void check_elements(const TextReader& reader, const PlyHeader& header) {
       refuse("the surface is in triangle strips, which are not supported; export it as faces");
   }
   for (const std::string_view name : {"vertex", "face"})
-    if (std::ranges::count(header.elements, name, &PlyElement::name) > 1)
+    if (std::count_if(header.elements.begin(), header.elements.end(),
+                      [name](const PlyElement& element) { return element.name == name; }) > 1)
       refuse("an element is declared more than once; export the mesh again");
 }
 

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <system_error>
+
+#include "ist/base/from_chars.h"
 
 namespace ist {
 namespace {
@@ -94,11 +95,11 @@ double TextReader::rounded(std::string_view word) const {
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
   Number value = 0;
-  auto [stop, error] = std::from_chars(digits.data(), end, value);
+  auto [stop, error] = from_chars(digits, value);
   if (error == std::errc::result_out_of_range) {
     // A number that is too small becomes zero; only one too large is an error.
     double wide = 0;
-    const std::errc wide_error = std::from_chars(digits.data(), end, wide).ec;
+    const std::errc wide_error = from_chars(digits, wide).ec;
     const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
                                                 : digits.find_first_of("-", 1) != digits.npos;
     if (!tiny) not_finite();
@@ -117,7 +118,7 @@ std::int64_t TextReader::integer(std::string_view word) const {
   if (word.empty()) fail_malformed("an integer is missing; export the mesh again");
   std::int64_t value = 0;
   const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  const auto [stop, error] = from_chars(word, value);
   if (error != std::errc() || stop != end)
     fail_malformed(fmt::format("'{}' is not an integer; export the mesh again", shown(word)));
   return value;

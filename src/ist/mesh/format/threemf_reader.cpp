@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <string>
 #include <system_error>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/from_chars.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/placed_meshes.h"
 #include "ist/mesh/format/text_reader.h"
@@ -135,7 +135,7 @@ class ThreeMfReader {
   std::uint32_t whole(const char* name) const {
     const std::string_view text = needed(name);
     std::uint32_t value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [stop, error] = from_chars(text, value);
     if (error != std::errc() || stop != text.data() + text.size())
       xml_.fail(ErrorCode::kNotAMesh,
                 fmt::format("{}=\"{}\" is no whole number; export the mesh again", name,
@@ -157,7 +157,7 @@ class ThreeMfReader {
     const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
     double value = 0;
     const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, value);
+    const auto [stop, error] = from_chars(digits, value);
     if (error != std::errc() || stop != end)
       xml_.fail(ErrorCode::kNotAMesh, fmt::format("{}: '{}' is no number; export the mesh again",
                                                   name, text.substr(0, 40)));

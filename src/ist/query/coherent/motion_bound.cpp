@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ist/base/ordered_vector.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist {
@@ -83,8 +84,8 @@ double MotionBound::between(const RelativePose& from, const RelativePose& to,
       largest = std::max({largest, plus, minus});
     }
   }
-  const double rounding =
-      0x1p-46 * (lengths_ + (from.translation.cwiseAbs().sum() + to.translation.cwiseAbs().sum()));
+  const double rounding = 0x1p-46 * (lengths_ + (sum_in_order(from.translation.cwiseAbs()) +
+                                                 sum_in_order(to.translation.cwiseAbs())));
   return std::sqrt(largest) * (1 + 0x1p-40) + rounding;
 }
 

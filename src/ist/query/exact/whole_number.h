@@ -1,7 +1,5 @@
 #pragma once
 
-#include <gmp.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,8 +9,8 @@
 
 namespace ist {
 
-/// A whole number of at most N limbs, on the stack, over GMP's lowest layer, which allocates
-/// nothing: enough to find the sign of a small determinant.
+/// A whole number of at most N limbs of 64 bits, on the stack: enough to find the sign of a small
+/// determinant.
 template <std::size_t N>
 class WholeNumber {
  public:
@@ -30,7 +28,7 @@ class WholeNumber {
     }
     const auto whole = static_cast<std::size_t>(shift) / kBits;
     const unsigned rest = static_cast<unsigned>(shift) % kBits;
-    std::fill_n(limb_, whole, mp_limb_t{0});
+    std::fill_n(limb_, whole, Limb{0});
     limb_[whole] = digits << rest;
     size_ = whole + 1;
     if (rest > 0 && (digits >> (kBits - rest)) != 0) limb_[size_++] = digits >> (kBits - rest);
@@ -43,10 +41,18 @@ class WholeNumber {
   [[nodiscard]] auto operator*(const WholeNumber<M>& other) const noexcept {
     WholeNumber<N + M> product;
     if (size_ == 0 || other.size_ == 0) return product;
-    const auto a = static_cast<mp_size_t>(size_), b = static_cast<mp_size_t>(other.size_);
-    const mp_limb_t top = a >= b ? mpn_mul(product.limb_, limb_, a, other.limb_, b)
-                                 : mpn_mul(product.limb_, other.limb_, b, limb_, a);
-    product.size_ = size_ + other.size_ - (top == 0 ? 1 : 0);
+    std::fill_n(product.limb_, size_ + other.size_, Limb{0});
+    for (std::size_t i = 0; i < size_; ++i) {
+      Limb carry = 0;
+      for (std::size_t j = 0; j < other.size_; ++j) {
+        const Wide sum = Wide{limb_[i]} * other.limb_[j] + product.limb_[i + j] + carry;
+        product.limb_[i + j] = static_cast<Limb>(sum);
+        carry = static_cast<Limb>(sum >> kBits);
+      }
+      product.limb_[i + other.size_] = carry;
+    }
+    product.size_ = size_ + other.size_;
+    product.drop_zeros();
     product.negative_ = negative_ != other.negative_;
     return product;
   }
@@ -63,36 +69,49 @@ class WholeNumber {
  private:
   template <std::size_t>
   friend class WholeNumber;
+  using Limb = std::uint64_t;
+  __extension__ using Wide = unsigned __int128;
   static constexpr unsigned kBits = 64;
-  static_assert(GMP_NUMB_BITS == kBits);
 
   template <std::size_t M>
   [[nodiscard]] auto sum(const WholeNumber<M>& other, bool other_negative) const noexcept {
     WholeNumber<std::max(N, M) + 1> sum;
-    const mp_limb_t *a = limb_, *b = other.limb_;  // the larger and the smaller by absolute value
-    auto of_a = static_cast<mp_size_t>(size_), of_b = static_cast<mp_size_t>(other.size_);
+    const Limb *a = limb_, *b = other.limb_;  // the larger and the smaller by absolute value
+    std::size_t of_a = size_, of_b = other.size_;
     sum.negative_ = negative_;
-    if (of_a < of_b || (of_a == of_b && of_a > 0 && mpn_cmp(a, b, of_a) < 0)) {
+    if (is_less(a, of_a, b, of_b)) {
       std::swap(a, b);
       std::swap(of_a, of_b);
       sum.negative_ = other_negative;
     }
-    sum.size_ = static_cast<std::size_t>(of_a);
-    if (of_b == 0) {
-      std::copy_n(a, of_a, sum.limb_);
-    } else if (negative_ == other_negative) {
-      const mp_limb_t carry = mpn_add(sum.limb_, a, of_a, b, of_b);
-      if (carry != 0) sum.limb_[sum.size_++] = carry;
-    } else {
-      mpn_sub(sum.limb_, a, of_a, b, of_b);
-      while (sum.size_ > 0 && sum.limb_[sum.size_ - 1] == 0) --sum.size_;
+    const bool add = negative_ == other_negative;
+    Limb carry = 0;
+    for (std::size_t i = 0; i < of_a; ++i) {
+      const Wide low = i < of_b ? b[i] : 0;
+      const Wide digits = add ? a[i] + low + carry : a[i] - low - carry;
+      sum.limb_[i] = static_cast<Limb>(digits);
+      carry = static_cast<Limb>(digits >> kBits) & 1;
     }
+    sum.size_ = of_a;
+    if (carry != 0) sum.limb_[sum.size_++] = carry;
+    sum.drop_zeros();
     return sum;
+  }
+
+  [[nodiscard]] static bool is_less(const Limb* a, std::size_t of_a, const Limb* b,
+                                    std::size_t of_b) noexcept {
+    if (of_a != of_b) return of_a < of_b;
+    while (of_a > 0 && a[of_a - 1] == b[of_a - 1]) --of_a;
+    return of_a > 0 && a[of_a - 1] < b[of_a - 1];
+  }
+
+  void drop_zeros() noexcept {
+    while (size_ > 0 && limb_[size_ - 1] == 0) --size_;
   }
 
   std::size_t size_ = 0;  // without leading zeros
   bool negative_ = false;
-  mp_limb_t limb_[N];  // least first; undefined from size_ on
+  Limb limb_[N];  // least first; undefined from size_ on
 };
 
 /// Returns the exponent of a double's last nonzero digit: value · 2^-exponent is whole and odd. For

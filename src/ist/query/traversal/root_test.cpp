@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "ist/base/ordered_vector.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
@@ -34,7 +35,7 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   const Eigen::Vector3d apart = difference(b.centre, a.centre);
   const double radius_sum = (a.radius + b.radius) + test.pad;
   const double largest = apart.cwiseAbs().maxCoeff();
-  const double between = largest > 0 ? largest * (apart / largest).norm() : 0;
+  const double between = largest > 0 ? largest * length_in_order(apart / largest) : 0;
   constexpr double kLargest = std::numeric_limits<double>::max();
   test.distance = {std::clamp(between - radius_sum, 0.0, kLargest),
                    std::min(between + radius_sum, kLargest)};

@@ -2,12 +2,12 @@
 
 #include <time.h>
 #include <unistd.h>
-#include <xmmintrin.h>
 
 #include <thread>
 
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/base/pause.h"
 #include "ist/base/timer_slack.h"
 #include "ist/query/workers/worker_schedule.h"
 
@@ -103,7 +103,7 @@ class WorkerLoop {
     for (int i = 0; i < 16; ++i) {
       const Mail mail = mailbox.load(std::memory_order_relaxed);
       if (mail != kPolling) return serve(mail);
-      _mm_pause();
+      pause_briefly();
     }
   }
 
@@ -165,7 +165,7 @@ void stay(void*) {
 ResidentWorker::ResidentWorker() {
   handles.fetch_add(1);
   Task none = Task::kNone;
-  if (task.compare_exchange_strong(none, Task::kQueued)) tbb_aside(stay, nullptr);
+  if (task.compare_exchange_strong(none, Task::kQueued)) run_aside(stay, nullptr);
 }
 
 ResidentWorker::~ResidentWorker() {

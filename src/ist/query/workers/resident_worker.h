@@ -88,7 +88,7 @@ class ResidentWorker {
 
  private:
   // One thread more than TBB would have, so that the loops of a build do not lose one.
-  ScopedThreadLimit limit_{tbb_threads() + 1};
+  ScopedThreadLimit limit_{thread_count() + 1};
 };
 
 /// The points at which a worker can be late, in order.

@@ -1,8 +1,7 @@
 #include "ist/query/workers/split_queue.h"
 
-#include <xmmintrin.h>
-
 #include "ist/base/assert.h"
+#include "ist/base/pause.h"
 
 namespace ist {
 namespace {
@@ -99,7 +98,7 @@ bool SplitQueue::collect(std::size_t chunk, std::chrono::nanoseconds patience) n
   if (completed(chunk)) return true;
   for (const Clock::time_point start = Clock::now(); Clock::now() - start < patience;) {
     if (completed(chunk)) return true;
-    _mm_pause();
+    pause_briefly();
   }
   // Relaxed: dropping a chunk publishes nothing. Where it fails the chunk was completed after all,
   // or dropped before.

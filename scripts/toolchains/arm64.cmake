@@ -1,0 +1,15 @@
+# Builds for ARM64 Linux on another Linux by Debian's compiler, and runs the tests by qemu.
+foreach(program aarch64-linux-gnu-g++ qemu-aarch64)
+  find_program(found_${program} ${program} NO_CACHE)
+  if(NOT found_${program})
+    message(FATAL_ERROR "${program} is missing: run scripts/setup.sh --cross")
+  endif()
+endforeach()
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64)
+# Debian keeps each architecture's libraries in a folder of its own, below the same root.
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(ENV{PKG_CONFIG_LIBDIR} /usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig)
