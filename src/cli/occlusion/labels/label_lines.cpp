@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "cli/occlusion/labels/label_files.h"
+#include "ist/base/printable.h"
 
 namespace ist::cli {
 namespace {
@@ -47,7 +48,7 @@ std::vector<int> labels_of_lines(const std::filesystem::path& file, ToothNumbers
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || rest != text.data() + text.size()) {
       refuse_labels(file, fmt::format("line {} is \"{}\": write one whole number a line", line,
-                                      text.substr(0, 40)));
+                                      printable(text)));
     }
     if (!is_tooth_number(number, system)) {
       refuse_tooth_number(number, system, fmt::format("{}: line {}", file.string(), line));

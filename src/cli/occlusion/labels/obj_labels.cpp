@@ -8,6 +8,7 @@
 
 #include "cli/occlusion/labels/label_files.h"
 #include "ist/base/error.h"
+#include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
 
@@ -90,7 +91,7 @@ class NameReader {
       throw Error(ErrorCode::kInputInvalid,
                   fmt::format("{} names the {} \"{}\", which is {}: name a tooth by its number "
                               "alone, such as 16 or tooth_16, and what is no tooth by a word",
-                              place, noun, name.substr(0, 40),
+                              place, noun, printable(name),
                               other_system ? "a number of another system than --numbering"
                                            : "no tooth's number"));
     }

@@ -14,6 +14,7 @@
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/from_chars.h"
+#include "ist/base/printable.h"
 
 namespace ist {
 namespace {
@@ -38,9 +39,6 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
-// Cuts long words for messages: the file may be binary.
-std::string_view shown(std::string_view word) { return word.substr(0, 40); }
-
 class ScriptReader {
  public:
   ScriptReader(std::string_view text, std::string file, double metres)
@@ -50,7 +48,8 @@ class ScriptReader {
     if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
     const std::string_view header = next_line();
     if (header != kHeader) {
-      fail(fmt::format("'{}' is not the header: begin with the line {}", shown(header), kHeader));
+      fail(fmt::format("'{}' is not the header: begin with the line {}", printable(header),
+                       kHeader));
     }
     std::vector<Waypoint> waypoints;
     for (std::string_view line = next_line(); !line.empty(); line = next_line()) {
@@ -93,7 +92,7 @@ class ScriptReader {
     double number = 0;
     const auto [stop, error] = from_chars(word, number);
     if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(number)) {
-      fail(fmt::format("'{}' is no finite number: write it as 12.5 or 1.25e1", shown(word)));
+      fail(fmt::format("'{}' is no finite number: write it as 12.5 or 1.25e1", printable(word)));
     }
     return number;
   }

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/base64.h"
 #include "ist/mesh/format/text_reader.h"
 
@@ -49,6 +51,13 @@ std::size_t components_of_type(std::string_view type) {
   return type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 0;
 }
 
+// Returns a value as a message quotes it. The text of a deep one would take as deep a stack.
+std::string shown(const Json& value, std::size_t most) {
+  const bool is_nested = std::any_of(value.begin(), value.end(),
+                                     [](const Json& element) { return element.is_structured(); });
+  return is_nested ? fmt::format("a nested {}", value.type_name()) : printable(value.dump(), most);
+}
+
 }  // namespace
 
 GltfFile::GltfFile(std::string_view content, std::string_view file) : file_(file) {
@@ -72,12 +81,12 @@ GltfFile::GltfFile(std::string_view content, std::string_view file) : file_(file
   if (!version->get_ref<const std::string&>().starts_with("2."))
     fail(ErrorCode::kNotAMesh, "asset",
          fmt::format("glTF {} is not supported; export glTF 2.0",
-                     version->get_ref<const std::string&>().substr(0, 40)));
+                     printable(version->get_ref<const std::string&>())));
   if (const Json* required = find(*root_, "extensionsRequired");
       required != nullptr && !required->empty())
     fail(ErrorCode::kNotAMesh, "extensionsRequired",
          fmt::format("{} is not supported; export the mesh without compression or extensions",
-                     required->dump().substr(0, 80)));
+                     shown(*required, 80)));
 }
 
 GltfFile::~GltfFile() = default;
@@ -128,7 +137,7 @@ const Json& GltfFile::element(const char* array, std::uint64_t index) const {
 std::uint64_t GltfFile::whole(const Json& value, std::string_view place) const {
   if (!value.is_number_unsigned())
     fail(ErrorCode::kNotAMesh, place,
-         fmt::format("{} is no whole number; export the mesh again", value.dump().substr(0, 40)));
+         fmt::format("{} is no whole number; export the mesh again", shown(value, 40)));
   return value.get<std::uint64_t>();
 }
 
@@ -172,7 +181,7 @@ std::string_view GltfFile::buffer(std::uint64_t number) {
       fail(ErrorCode::kNotAMesh, place,
            fmt::format("its bytes are in another file, '{}', and only the one that is named is "
                        "read; export a .glb, which holds all",
-                       text.substr(0, 80)));
+                       printable(text, 80)));
     if (decoded_.size() <= number) decoded_.resize(number + 1);
     if (decoded_[number] == nullptr) {
       auto decoded = decode_base64(text.substr(comma + kBase64.size()));

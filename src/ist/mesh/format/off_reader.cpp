@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
@@ -29,7 +30,7 @@ class OffReader {
     if (std::find(kKeywords.begin(), kKeywords.end(), keyword) == kKeywords.end())
       reader_.fail(ErrorCode::kNotAMesh,
                    fmt::format("an OFF of kind '{}' is not supported; export it as plain OFF",
-                               keyword.substr(0, 40)));
+                               printable(keyword)));
     std::string_view word = reader_.word_before_comment();
     if (word.empty()) {
       next_line("header");

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/ply_header.h"
 #include "ist/mesh/format/text_reader.h"
 
@@ -23,7 +24,7 @@ class PlyText {
       reader_.fail(ErrorCode::kMeshTruncated,
                    fmt::format("the file ends after {} of the {} elements '{}' that its header "
                                "counts; copy or export it again",
-                               index, element.count, element.name));
+                               index, element.count, printable(element.name)));
   }
   void end() {
     if (!reader_.word().empty())
@@ -78,7 +79,7 @@ class PlyBytes {
   std::int64_t integer(const PlyType* type) { return static_cast<std::int64_t>(number(type)); }
   void skip(const PlyType* type) { static_cast<void>(take(type->size)); }
   [[noreturn]] void fail(ErrorCode code, std::string_view cause) const {
-    fail_mesh(code, file_, fmt::format("{} {}", element_->name, index_), cause);
+    fail_mesh(code, file_, fmt::format("{} {}", printable(element_->name), index_), cause);
   }
 
  private:

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "ist/base/printable.h"
+
 namespace ist {
 namespace {
 
@@ -34,7 +36,7 @@ const PlyType* read_type(TextReader& reader) {
   for (const PlyType& type : kTypes)
     if (type.name == name) return &type;
   reader.fail_malformed(
-      fmt::format("'{}' is not a PLY property type; export the mesh again", name.substr(0, 40)));
+      fmt::format("'{}' is not a PLY property type; export the mesh again", printable(name)));
 }
 
 PlyEncoding read_encoding(TextReader& reader) {
@@ -43,7 +45,7 @@ PlyEncoding read_encoding(TextReader& reader) {
   if (encoding == "binary_little_endian") return PlyEncoding::kLittleEndian;
   if (encoding == "binary_big_endian") return PlyEncoding::kBigEndian;
   reader.fail_malformed(
-      fmt::format("'{}' is not a PLY encoding; export the mesh again", encoding.substr(0, 40)));
+      fmt::format("'{}' is not a PLY encoding; export the mesh again", printable(encoding)));
 }
 
 PlyElement read_element(TextReader& reader) {
@@ -89,7 +91,7 @@ PlyProperty read_property(TextReader& reader, std::string_view element) {
                      (!list_expected || property.type->is_integer);
   if (property.role != PlyRole::kOther && !right)
     reader.fail(ErrorCode::kNotAMesh,
-                fmt::format("the property '{}' is not {}; export the mesh again", name,
+                fmt::format("the property '{}' is not {}; export the mesh again", printable(name),
                             list_expected ? "a list of integers" : "one number"));
   if (property.count_type != nullptr && !property.count_type->is_integer)
     reader.fail(ErrorCode::kNotAMesh,
@@ -150,7 +152,7 @@ PlyHeader read_ply_header(TextReader& reader) {
       reader.fail_malformed(
           fmt::format("'{}' is not expected in the header of a PLY; export the "
                       "mesh again",
-                      word.substr(0, 40)));
+                      printable(word)));
     }
   }
   reader.fail(ErrorCode::kMeshTruncated,

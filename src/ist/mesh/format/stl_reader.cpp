@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/stl_layout.h"
@@ -70,8 +71,8 @@ class TextStl {
   std::string_view next() { return reader_.word_of_any_line(); }
 
   [[noreturn]] void unexpected(std::string_view word, std::string_view expected) const {
-    reader_.fail_malformed(fmt::format("expected '{}', found '{}'; export the mesh again", expected,
-                                       word.substr(0, 40)));
+    reader_.fail_malformed(
+        fmt::format("expected '{}', found '{}'; export the mesh again", expected, printable(word)));
   }
 
   void expect(std::string_view expected) {

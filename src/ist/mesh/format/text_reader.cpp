@@ -8,14 +8,12 @@
 #include <system_error>
 
 #include "ist/base/from_chars.h"
+#include "ist/base/printable.h"
 
 namespace ist {
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-// Cuts long words in messages: the file may not be text at all.
-std::string_view shown(std::string_view word) { return word.substr(0, 40); }
 
 }  // namespace
 
@@ -90,7 +88,7 @@ double TextReader::rounded(std::string_view word) const {
     fail(ErrorCode::kMeshNotFinite,
          fmt::format("the coordinate '{}' is not finite, or beyond a float's range; repair the "
                      "mesh where it was made",
-                     shown(word)));
+                     printable(word)));
   };
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
@@ -108,7 +106,7 @@ double TextReader::rounded(std::string_view word) const {
     // Older Windows runtimes print NaN as "1.#QNAN" or "-1.#IND".
     if (stop != end && *stop == '#') not_finite();
     if (error == std::errc() && !std::isfinite(value)) not_finite();
-    fail_malformed(fmt::format("'{}' is not a number; export the mesh again", shown(word)));
+    fail_malformed(fmt::format("'{}' is not a number; export the mesh again", printable(word)));
   }
   if (!is_coordinate(static_cast<double>(value))) not_finite();
   return static_cast<double>(value);
@@ -120,7 +118,7 @@ std::int64_t TextReader::integer(std::string_view word) const {
   const char* const end = word.data() + word.size();
   const auto [stop, error] = from_chars(word, value);
   if (error != std::errc() || stop != end)
-    fail_malformed(fmt::format("'{}' is not an integer; export the mesh again", shown(word)));
+    fail_malformed(fmt::format("'{}' is not an integer; export the mesh again", printable(word)));
   return value;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ist/base/from_chars.h"
+#include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/placed_meshes.h"
 #include "ist/mesh/format/text_reader.h"
@@ -60,7 +61,7 @@ class ThreeMfReader {
         xml_.fail(
             ErrorCode::kNotAMesh,
             fmt::format("the extensions '{}' are not supported; export a plain 3MF, or an STL",
-                        required.substr(0, 40)));
+                        printable(required)));
     } else if (name == "object") {
       if (is_open_) xml_.fail(ErrorCode::kNotAMesh, "an object is in another; export it again");
       id_ = whole("id");
@@ -83,7 +84,7 @@ class ThreeMfReader {
   Object& object() {
     if (!is_open_)
       xml_.fail(ErrorCode::kNotAMesh,
-                fmt::format("<{}> is in no object; export the mesh again", xml_.name()));
+                fmt::format("<{}> is in no object; export the mesh again", printable(xml_.name())));
     return objects_.back();
   }
 
@@ -128,7 +129,7 @@ class ThreeMfReader {
     const auto text = xml_.attribute(name);
     if (!text)
       xml_.fail(ErrorCode::kNotAMesh,
-                fmt::format("<{}> has no {}; export the mesh again", xml_.name(), name));
+                fmt::format("<{}> has no {}; export the mesh again", printable(xml_.name()), name));
     return *text;
   }
 
@@ -139,7 +140,7 @@ class ThreeMfReader {
     if (error != std::errc() || stop != text.data() + text.size())
       xml_.fail(ErrorCode::kNotAMesh,
                 fmt::format("{}=\"{}\" is no whole number; export the mesh again", name,
-                            text.substr(0, 40)));
+                            printable(text)));
     return value;
   }
 
@@ -149,7 +150,7 @@ class ThreeMfReader {
       xml_.fail(ErrorCode::kMeshNotFinite,
                 fmt::format("{}=\"{}\" is not finite, or beyond a float's range; repair the mesh "
                             "where it was made",
-                            name, needed(name).substr(0, 40)));
+                            name, printable(needed(name))));
     return value;
   }
 
@@ -159,8 +160,8 @@ class ThreeMfReader {
     const char* const end = digits.data() + digits.size();
     const auto [stop, error] = from_chars(digits, value);
     if (error != std::errc() || stop != end)
-      xml_.fail(ErrorCode::kNotAMesh, fmt::format("{}: '{}' is no number; export the mesh again",
-                                                  name, text.substr(0, 40)));
+      xml_.fail(ErrorCode::kNotAMesh,
+                fmt::format("{}: '{}' is no number; export the mesh again", name, printable(text)));
     return value;
   }
 

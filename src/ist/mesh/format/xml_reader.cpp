@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
@@ -26,7 +27,7 @@ XmlReader::Tag XmlReader::next() {
       if (!open_.empty())
         fail(ErrorCode::kMeshTruncated, fmt::format("the text ends within <{}>; copy or export it "
                                                     "again",
-                                                    open_.back().substr(0, 40)));
+                                                    printable(open_.back())));
       return Tag::kEnd;
     }
     ++cursor_;
@@ -47,7 +48,7 @@ XmlReader::Tag XmlReader::next() {
     skip_blanks();
     if (peek() != '>' || open_.empty() || open_.back() != name_)
       fail(ErrorCode::kNotAMesh,
-           fmt::format("</{}> closes nothing; export the mesh again", name_.substr(0, 40)));
+           fmt::format("</{}> closes nothing; export the mesh again", printable(name_)));
     ++cursor_;
     open_.pop_back();
     return Tag::kClose;
@@ -74,8 +75,7 @@ void XmlReader::read_attributes() {
     const char quote = peek();
     if (!has_value || (quote != '"' && quote != '\''))
       fail(ErrorCode::kNotAMesh,
-           fmt::format("the attribute '{}' has no value; export the mesh again",
-                       name.substr(0, 40)));
+           fmt::format("the attribute '{}' has no value; export the mesh again", printable(name)));
     ++cursor_;
     attributes_.emplace_back(name, until(std::string_view(&quote, 1)));
   }

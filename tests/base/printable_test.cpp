@@ -1,0 +1,44 @@
+#include "ist/base/printable.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+namespace ist {
+namespace {
+
+TEST(Printable, KeepsTextAsItIs) {
+  for (const std::string& text :
+       {std::string(), std::string("a b/c\\d?"), std::string("Zähne 歯 🦷"),
+        std::string("\xC2\xA0\xED\x9F\xBF\xEE\x80\x80"), std::string(40, 'x')})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, MarksWhatATerminalWouldObey) {
+  const std::pair<std::string, std::string> all[] = {
+      {"\x1B[31mred\x1B[0m", "?[31mred?[0m"},
+      {std::string("a\0b", 3), "a?b"},
+      {"line\r\n\ttwo\x1F\x7F", "line???two??"},
+      {"\xC2\x9B"
+       "31m",
+       "??31m"},  // the control sequence introducer of Latin-1, in UTF-8
+      {"\x9B"
+       "31m",
+       "?31m"},  // and as it is
+      {"\xC3", "?"},
+      {"\xC0\xAF", "??"}};
+  for (const auto& [text, shown] : all) EXPECT_EQ(printable(text), shown);
+}
+
+TEST(Printable, CutsBetweenTwoCharacters) {
+  EXPECT_EQ(printable(std::string(41, 'x')), std::string(40, 'x'));
+  const std::string full(39, 'x'), room(38, 'x');
+  EXPECT_EQ(printable(full + "ä"), full);
+  EXPECT_EQ(printable(room + "ä"), room + "ä");
+  EXPECT_EQ(printable("歯歯", 5), "歯");
+  EXPECT_EQ(printable("abc", 0), "");
+}
+
+}  // namespace
+}  // namespace ist
