@@ -165,6 +165,93 @@ TEST(ThreeMf, RefusesAnArchiveThatIsDamaged) {
   EXPECT_TRUE(refusal_of_3mf(sealed).starts_with("not-a-mesh: 3D/3dmodel.model: it is encrypted"));
 }
 
+std::string relationships(const std::string& target) {
+  return "<?xml version=\"1.0\"?>\n<Relationships "
+         "xmlns=\"http://schemas.openxmlformats.org/package/"
+         "2006/relationships\"><Relationship Target=\"/thumbnail.png\" Id=\"a\" Type=\"http://"
+         "schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail\"/>"
+         "<Relationship Target=\"" +
+         target +
+         "\" Id=\"b\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+         "</Relationships>";
+}
+
+// As lib3mf writes every file: each size and each offset in 64 bits.
+TEST(ThreeMf, MayHaveSizesOf64Bits) {
+  const std::vector<test::ZipPart> parts = {{"[Content_Types].xml", "<Types/>"},
+                                            {"_rels/.rels", relationships("/3D/3dmodel.model")},
+                                            {"3D/3dmodel.model", kModelText}};
+  const std::string wide = test::as_zip(parts, test::ZipNumbers::kWide);
+  EXPECT_EQ(corners(read_3mf_bytes(wide)), corners(kCorner));
+  // The sizes alone, as Python's zipfile writes them: the directory has an offset of 32 bits.
+  std::string offset = wide;
+  const std::size_t record = wide.rfind("PK\6\6"), end = wide.rfind("PK\5\6");
+  std::memcpy(offset.data() + end + 16, wide.data() + record + 48, 4);
+  EXPECT_EQ(corners(read_3mf_bytes(offset)), corners(kCorner));
+}
+
+TEST(ThreeMf, RefusesSizesOf64BitsThatAreDamaged) {
+  const std::string wide =
+      test::as_zip({{"3D/3dmodel.model", kModelText}}, test::ZipNumbers::kWide);
+  const std::size_t record = wide.rfind("PK\6\6"), locator = wide.rfind("PK\6\7"),
+                    extra = wide.rfind("3D/3dmodel.model") + 16;
+  const auto with_byte = [&](std::size_t at, char byte) {
+    std::string changed = wide;
+    EXPECT_NE(changed[at], byte);
+    changed[at] = byte;
+    return refusal_of_3mf(changed);
+  };
+  for (const std::size_t at : {record, locator, locator + 8, locator + 15})
+    EXPECT_TRUE(with_byte(at, '\x7F').starts_with("mesh-truncated: byte ")) << at;
+  for (const std::size_t at : {record + 48, record + 55})
+    EXPECT_TRUE(with_byte(at, '\x7F')
+                    .starts_with("not-a-mesh: 3D/3dmodel.model: the archive does not hold it"))
+        << at;
+  for (const auto& [at, byte] : {std::pair{extra, '\2'}, std::pair{extra + 2, '\x10'}})
+    EXPECT_TRUE(with_byte(at, byte).starts_with(
+        "not-a-mesh: 3D/3dmodel.model: its size in 64 bits is missing; "))
+        << at;
+  EXPECT_TRUE(
+      with_byte(extra + 19, '\1')
+          .starts_with("mesh-truncated: 3D/3dmodel.model: its bytes are not in the archive"));
+  EXPECT_TRUE(
+      with_byte(extra + 27, '\1')
+          .starts_with("mesh-truncated: 3D/3dmodel.model: its bytes are not in the archive"));
+  for (std::size_t size = 4; size < wide.size(); ++size)
+    EXPECT_TRUE(refusal_of_3mf(wide.substr(0, size)).starts_with("mesh-truncated: byte ")) << size;
+}
+
+TEST(ThreeMf, SaysTheSizeOf64BitsThatIsTooMuch) {
+  const std::string got = refusal_of_3mf(test::as_zip(
+      {{"3D/3dmodel.model", kModelText, true, 5'000'000'007u}}, test::ZipNumbers::kWide));
+  EXPECT_TRUE(got.starts_with("memory-limit: 3D/3dmodel.model: it unpacks to 5000000007 bytes"))
+      << got;
+}
+
+// The format leaves the name of the model's part to the relationships of the package.
+TEST(ThreeMf, ReadsThePartThatTheRelationshipsName) {
+  const auto package = [](const std::string& target, const std::string& part) {
+    return test::as_zip({{"3D/3dmodel.model", test::threemf_model(test::icosphere(1, 1))},
+                         {part, kModelText},
+                         {"_rels/.rels", relationships(target)}});
+  };
+  EXPECT_EQ(corners(read_3mf_bytes(package("/3D/part.model", "3D/part.model"))), corners(kCorner));
+  EXPECT_EQ(corners(read_3mf_bytes(package("a.model", "A.model"))), corners(kCorner));
+  EXPECT_EQ(refusal_of_3mf(package("/b\x1B.model", "a.model")),
+            "not-a-mesh: b?.model: the archive does not hold it; convert the mesh to 3MF or STL");
+  EXPECT_TRUE(refusal_of_3mf(test::as_zip({{"a.model", replaced(kModelText, "v3=\"2\"", "")},
+                                           {"_rels/.rels", relationships("a.model")}}))
+                  .starts_with("not-a-mesh: a.model, line 12: <triangle> has no v3"));
+  // Without a model among the relationships, the usual name is looked for.
+  for (const char* text : {"", "<Relationships/>"})
+    EXPECT_EQ(corners(read_3mf_bytes(
+                  test::as_zip({{"_rels/.rels", text}, {"3D/3dmodel.model", kModelText}}))),
+              corners(kCorner));
+  EXPECT_TRUE(
+      refusal_of_3mf(test::as_zip({{"_rels/.rels", "<a"}, {"3D/3dmodel.model", kModelText}}))
+          .starts_with("mesh-truncated: _rels/.rels, line 1: "));
+}
+
 // Half a gigabyte of blanks is half a megabyte as a zip.
 TEST(ThreeMf, RefusesAnArchiveThatUnpacksToTooMuch) {
   const std::string small = as_3mf(kModelText);

@@ -28,6 +28,37 @@ std::string deflate_of(const std::string& content) {
   return packed;
 }
 
+constexpr std::size_t kElsewhere = 0xFFFFFFFF;  // the number stands in a field of 64 bits
+
+std::size_t claimed_size(const ZipPart& part) {
+  return part.claimed != 0 ? part.claimed : part.content.size();
+}
+
+// What an entry and the directory say alike, up to the lengths of the name and the extra field.
+std::string shared_fields(const ZipPart& part, std::size_t packed, std::size_t extra, bool wide) {
+  std::string bytes;
+  for (const std::size_t half :
+       {std::size_t{wide ? 45u : 20u}, std::size_t{0}, std::size_t{part.deflated ? 8u : 0u},
+        std::size_t{0}, std::size_t{0}})
+    append(bytes, half, 2);
+  append(bytes,
+         crc32_z(0, reinterpret_cast<const Bytef*>(part.content.data()), part.content.size()), 4);
+  append(bytes, wide ? kElsewhere : packed, 4);
+  append(bytes, wide ? kElsewhere : claimed_size(part), 4);
+  append(bytes, part.name.size(), 2);
+  append(bytes, extra, 2);
+  return bytes;
+}
+
+// The extra field of ZIP64.
+std::string wide_numbers(const std::vector<std::size_t>& numbers) {
+  std::string bytes;
+  append(bytes, 1, 2);
+  append(bytes, 8 * numbers.size(), 2);
+  for (const std::size_t number : numbers) append(bytes, number, 8);
+  return bytes;
+}
+
 std::string spelled(double coordinate) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, coordinate).ptr};
@@ -35,33 +66,50 @@ std::string spelled(double coordinate) {
 
 }  // namespace
 
-std::string as_zip(const std::string& name, const std::string& content, bool deflated,
-                   std::uint32_t claimed) {
-  const std::string packed = deflated ? deflate_of(content) : content;
-  const std::size_t checksum =
-      crc32_z(0, reinterpret_cast<const Bytef*>(content.data()), content.size());
-  std::string shared;  // what the entry and the directory say alike
-  for (const std::size_t half : {std::size_t{20}, std::size_t{0}, std::size_t{deflated ? 8u : 0u},
-                                 std::size_t{0}, std::size_t{0}})
-    append(shared, half, 2);
-  append(shared, checksum, 4);
-  append(shared, packed.size(), 4);
-  append(shared, claimed != 0 ? claimed : content.size(), 4);
-  append(shared, name.size(), 2);
-  append(shared, 0, 2);
-  std::string bytes = "PK\3\4" + shared + name + packed;
-  const std::size_t directory = bytes.size();
-  bytes += "PK\1\2";
-  append(bytes, 20, 2);
-  bytes += shared + std::string(14, '\0') + name;  // of which the last four are the offset
-  const std::size_t length = bytes.size() - directory;
+std::string as_zip(const std::vector<ZipPart>& parts, ZipNumbers numbers) {
+  const bool wide = numbers == ZipNumbers::kWide;
+  std::string bytes, directory;
+  for (const ZipPart& part : parts) {
+    const std::string packed = part.deflated ? deflate_of(part.content) : part.content;
+    const std::size_t offset = bytes.size(), size = claimed_size(part);
+    const std::string local = wide ? wide_numbers({size, packed.size()}) : "";
+    const std::string central = wide ? wide_numbers({size, packed.size(), offset}) : "";
+    bytes += "PK\3\4" + shared_fields(part, packed.size(), local.size(), wide);
+    bytes += part.name + local + packed;
+    directory += "PK\1\2";
+    append(directory, 20, 2);
+    directory += shared_fields(part, packed.size(), central.size(), wide) + std::string(10, '\0');
+    append(directory, wide ? kElsewhere : offset, 4);
+    directory += part.name + central;
+  }
+  const std::size_t begin = bytes.size(), end = begin + directory.size();
+  bytes += directory;
+  if (wide) {
+    bytes += "PK\6\6";
+    append(bytes, 44, 8);  // bytes that follow
+    append(bytes, 45, 2);
+    append(bytes, 45, 2);
+    append(bytes, 0, 8);  // disks
+    append(bytes, parts.size(), 8);
+    append(bytes, parts.size(), 8);
+    append(bytes, directory.size(), 8);
+    append(bytes, begin, 8);
+    bytes += "PK\6\7" + std::string(4, '\0');
+    append(bytes, end, 8);
+    append(bytes, 1, 4);
+  }
   bytes += "PK\5\6" + std::string(4, '\0');
-  append(bytes, 1, 2);
-  append(bytes, 1, 2);
-  append(bytes, length, 4);
-  append(bytes, directory, 4);
+  append(bytes, parts.size(), 2);
+  append(bytes, parts.size(), 2);
+  append(bytes, directory.size(), 4);
+  append(bytes, wide ? kElsewhere : begin, 4);
   append(bytes, 0, 2);
   return bytes;
+}
+
+std::string as_zip(const std::string& name, const std::string& content, bool deflated,
+                   std::uint32_t claimed) {
+  return as_zip({{name, content, deflated, claimed}});
 }
 
 std::string as_3mf(const std::string& model) { return as_zip("3D/3dmodel.model", model); }

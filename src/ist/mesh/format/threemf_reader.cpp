@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <unordered_map>
@@ -20,14 +21,29 @@
 namespace ist {
 namespace {
 
-constexpr std::string_view kModel = "3D/3dmodel.model";
+// Returns the name of the model's part, which the package's relationships tell; where they do not,
+// the usual one.
+std::string model_part(std::string_view archive, std::string_view file) {
+  constexpr std::string_view kRelationships = "_rels/.rels",
+                             kType = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
+  const std::string text = unzip(archive, kRelationships, file).value_or("");
+  XmlReader xml(text, file, kRelationships);
+  for (auto tag = xml.next(); tag != XmlReader::Tag::kEnd; tag = xml.next()) {
+    if (tag != XmlReader::Tag::kOpen || xml.attribute("Type") != kType) continue;
+    std::string_view target = xml.attribute("Target").value_or("");
+    if (target.starts_with('/')) target.remove_prefix(1);
+    if (!target.empty()) return std::string(target);
+  }
+  return "3D/3dmodel.model";
+}
 
 // Reads the objects of a model, meshes or components that place other objects, and places those
 // that the build names.
 class ThreeMfReader {
  public:
-  ThreeMfReader(std::string_view model, std::string_view file)
-      : xml_(model, file, kModel), placed_(file) {}
+  // `part` is the name of the model in the archive.
+  ThreeMfReader(std::string_view model, std::string_view file, std::string_view part)
+      : xml_(model, file, part), placed_(file) {}
 
   TriangleMesh read() {
     for (auto tag = xml_.next(); tag != XmlReader::Tag::kEnd; tag = xml_.next()) {
@@ -196,8 +212,12 @@ class ThreeMfReader {
 }  // namespace
 
 TriangleMesh read_3mf(std::string_view content, std::string_view file) {
-  const std::string model = unzip(content, kModel, file);
-  return ThreeMfReader(model, file).read();
+  const std::string part = model_part(content, file);
+  const std::optional<std::string> model = unzip(content, part, file);
+  if (!model)
+    fail_mesh(ErrorCode::kNotAMesh, file, printable(part),
+              "the archive does not hold it; convert the mesh to 3MF or STL");
+  return ThreeMfReader(*model, file, part).read();
 }
 
 }  // namespace ist

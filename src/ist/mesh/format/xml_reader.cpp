@@ -128,7 +128,7 @@ void XmlReader::skip_blanks() {
 void XmlReader::fail(ErrorCode code, std::string_view cause) const {
   const auto lines =
       1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(cursor_), '\n');
-  fail_mesh(code, file_, fmt::format("{}, line {}", part_, lines), cause);
+  fail_mesh(code, file_, fmt::format("{}, line {}", printable(part_), lines), cause);
 }
 
 }  // namespace ist

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,10 +11,10 @@ namespace ist {
 /// number; a surface of some six million triangles as XML.
 inline constexpr std::size_t kMostUnpacked = std::size_t{1} << 29;
 
-/// Returns the unpacked bytes of an entry of a zip archive, by its name in any case. `file` is
-/// named in errors. Errors: kNotAMesh, kMeshTruncated; kMemoryLimit beyond kMostUnpacked, before
-/// anything is unpacked.
-[[nodiscard]] std::string unzip(std::string_view archive, std::string_view name,
-                                std::string_view file);
+/// Returns the unpacked bytes of an entry of a zip archive, by its name in any case; nothing where
+/// the archive does not hold it. `file` is named in errors. Errors: kNotAMesh, kMeshTruncated;
+/// kMemoryLimit beyond kMostUnpacked, before anything is unpacked.
+[[nodiscard]] std::optional<std::string> unzip(std::string_view archive, std::string_view name,
+                                               std::string_view file);
 
 }  // namespace ist
