@@ -60,6 +60,26 @@ TEST(Gltf, NodesPlaceTheirMeshes) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got[1][i], turned[i], 1e-14) << i;
 }
 
+// A turn of 90 degrees about z, as exporters round it: the corners keep their distances.
+TEST(Gltf, ARotationNeverScales) {
+  for (const char* half : {"0.7071", "0.70710678", "0.7074"}) {
+    const auto got = corners(read_gltf_bytes(with(
+        R"({"mesh":0})", std::string(R"({"mesh":0,"rotation":[0,0,)") + half + "," + half + "]}")));
+    const std::array<double, 9> turned{0, 1, 0, -2, 0, 0, 0, 0, 3};
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got.at(0)[i], turned[i], 1e-15) << half << i;
+  }
+  const std::pair<const char*, const char*> refused[] = {{"[0,0,0.9,0.9]", "1.27279"},
+                                                         {"[0,0,0,0]", "0"},
+                                                         {"[0,0,0,1.001]", "1.001"},
+                                                         {"[0,0,0,0.999]", "0.999"},
+                                                         {"[0,0,1e200,0]", "inf"}};
+  for (const auto& [rotation, length] : refused)
+    EXPECT_EQ(
+        refusal(with(R"({"mesh":0})", std::string(R"({"mesh":0,"rotation":)") + rotation + "}")),
+        std::string("not-a-mesh: node 0: its rotation has the length ") + length +
+            ", not 1; apply it before you export the mesh");
+}
+
 TEST(Gltf, AMirroredMeshKeepsItsOuterSide) {
   const TriangleMesh ball = test::icosphere(2, 1);
   const std::string plain = test::as_gltf(ball);
@@ -118,6 +138,9 @@ TEST(Gltf, RefusesWhatItCannotRead) {
       {"not-a-mesh: buffer 0: its bytes are in another file, 'jaw.bin', and only the one that is "
        "named is read; export a .glb, which holds all",
        test::gltf_json(kOne, "jaw.bin")},
+      {"not-a-mesh: buffer 0: its bytes are in a data URI without base64, which is not supported; "
+       "export a .glb",
+       with(uri, "data:application/octet-stream,")},
       {"not-a-mesh: buffer 0: its bytes are no base64", with(uri, uri + "*")},
       {"not-a-mesh: buffer 0: 'uri' is missing", test::gltf_json(kOne, "")},
       {"mesh-truncated: buffer 0: it holds 48 of the 49 bytes",

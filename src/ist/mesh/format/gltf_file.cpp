@@ -177,7 +177,10 @@ std::string_view GltfFile::buffer(std::uint64_t number) {
     const std::string_view text = uri->get_ref<const std::string&>();
     constexpr std::string_view kBase64 = ";base64,";
     const std::size_t comma = text.find(kBase64);
-    if (!text.starts_with("data:") || comma == text.npos)
+    if (text.starts_with("data:") && comma == text.npos)
+      fail(ErrorCode::kNotAMesh, place,
+           "its bytes are in a data URI without base64, which is not supported; export a .glb");
+    if (!text.starts_with("data:"))
       fail(ErrorCode::kNotAMesh, place,
            fmt::format("its bytes are in another file, '{}', and only the one that is named is "
                        "read; export a .glb, which holds all",

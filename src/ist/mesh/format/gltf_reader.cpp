@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -75,11 +76,24 @@ class GltfReader {
     const auto shift = file_.numbers(node, "translation", {0, 0, 0}, place);
     const auto turn = file_.numbers(node, "rotation", {0, 0, 0, 1}, place);
     const auto scale = file_.numbers(node, "scale", {1, 1, 1}, place);
-    const Eigen::Quaterniond rotation(turn[3], turn[0], turn[1], turn[2]);
-    result.linear() =
-        rotation.toRotationMatrix() * Eigen::Vector3d(scale[0], scale[1], scale[2]).asDiagonal();
+    result.linear() = rotation_of(turn, place).toRotationMatrix() *
+                      Eigen::Vector3d(scale[0], scale[1], scale[2]).asDiagonal();
     result.translation() = Eigen::Vector3d(shift[0], shift[1], shift[2]);
     return result;
+  }
+
+  // A quaternion whose length is not 1 would scale: rounding by the exporter is taken out, and more
+  // is nothing that the format defines.
+  Eigen::Quaterniond rotation_of(const std::vector<double>& q, const std::string& place) const {
+    constexpr double kMostError = 1e-3;
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    if (!(std::abs(square - 1) <= kMostError))
+      file_.fail(ErrorCode::kNotAMesh, place,
+                 fmt::format("its rotation has the length {:g}, not 1; apply it before you export "
+                             "the mesh",
+                             std::sqrt(square)));
+    const double length = std::sqrt(square);
+    return {q[3] / length, q[0] / length, q[1] / length, q[2] / length};
   }
 
   void place_mesh(const Json& node, const Eigen::Affine3d& transform, const std::string& place) {
