@@ -70,6 +70,36 @@ TEST(ThreeMf, MayBeStoredAndHaveAnyXml) {
   EXPECT_EQ(corners(read_3mf_bytes(as_3mf(text))), corners(kCorner));
 }
 
+std::string prefixed(const std::string& declared) {
+  std::string text = replaced(replaced(kModelText, "</", "</c:"), "<", "<c:");
+  text = replaced(replaced(text, "<c:/c:", "</c:"), "<c:?", "<?");
+  return replaced(text, "<c:model ", "<c:model " + declared + " ");
+}
+
+// Elements of the core count, whatever their prefix; those of an extension may have the same names.
+TEST(ThreeMf, NamesMayHaveAPrefix) {
+  const std::string core = "\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
+  for (const std::string& declared : {"xmlns:c=" + core, "xmlns:c=" + core + " xmlns=\"x\"",
+                                      "xmlns=" + core + " xmlns:c=" + core})
+    EXPECT_EQ(corners(read_3mf_bytes(as_3mf(prefixed(declared)))), corners(kCorner)) << declared;
+  EXPECT_TRUE(refusal_of_3mf(as_3mf(prefixed("xmlns:c=\"x\""))).starts_with("mesh-empty: "));
+  const std::string vertex = "<vertex x=\"7\" y=\"0\" z=\"0\"/>";
+  const std::string both = replaced(prefixed("xmlns:c=" + core), "<c:vertices>",
+                                    "<c:vertices>" + vertex + "<d:vertex/>");
+  EXPECT_EQ(corners(read_3mf_bytes(as_3mf(both))), corners(kCorner));
+}
+
+TEST(ThreeMf, RefusesUtf16WithARemedy) {
+  std::string wide("\xFF\xFE");
+  for (const char c : kModelText) wide += {c, '\0'};
+  EXPECT_EQ(
+      refusal_of_3mf(as_3mf(wide)),
+      "not-a-mesh: 3D/3dmodel.model: the text is UTF-16; export it as UTF-8, or export an STL");
+  std::swap(wide[0], wide[1]);
+  EXPECT_TRUE(
+      refusal_of_3mf(as_3mf(wide)).starts_with("not-a-mesh: 3D/3dmodel.model: the text is"));
+}
+
 // As the format defines it: the rows are where the axes and the origin come to lie.
 TEST(ThreeMf, PlacesItemsAndComponents) {
   const std::string two = model_with(

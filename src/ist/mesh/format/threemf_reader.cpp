@@ -47,9 +47,10 @@ class ThreeMfReader {
 
   TriangleMesh read() {
     for (auto tag = xml_.next(); tag != XmlReader::Tag::kEnd; tag = xml_.next()) {
+      if (!root_seen_) read_namespaces();
       if (tag == XmlReader::Tag::kOpen) {
-        open(xml_.name());
-      } else if (xml_.name() == "object" && is_open_) {
+        open(core_name());
+      } else if (core_name() == "object" && is_open_) {
         is_open_ = false;
         known_.emplace(id_, objects_.size() - 1);
       }
@@ -69,6 +70,28 @@ class ThreeMfReader {
     TriangleMesh mesh;
     std::vector<Use> components;
   };
+
+  // The root declares whether names of the core have a prefix.
+  void read_namespaces() {
+    constexpr std::string_view kDefault = "xmlns", kWithPrefix = "xmlns:",
+                               kCore = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+    root_seen_ = true;
+    bool plain = false;
+    for (const auto& [name, space] : xml_.attributes()) {
+      if (space != kCore) continue;
+      if (name == kDefault) plain = true;
+      if (name.starts_with(kWithPrefix)) prefix_ = name.substr(kWithPrefix.size());
+    }
+    is_plain_core_ = plain || prefix_.empty();
+  }
+
+  // The element's name in the core; empty for another namespace.
+  std::string_view core_name() const {
+    const std::string_view name = xml_.name();
+    const std::size_t colon = name.find(':');
+    if (colon == name.npos) return is_plain_core_ ? name : "";
+    return name.substr(0, colon) == prefix_ ? name.substr(colon + 1) : "";
+  }
 
   void open(std::string_view name) {
     if (name == "model") {
@@ -202,6 +225,8 @@ class ThreeMfReader {
 
   XmlReader xml_;
   PlacedMeshes placed_;
+  bool root_seen_ = false, is_plain_core_ = true;
+  std::string_view prefix_;  // of the core's names, empty without one
   std::vector<Object> objects_;
   bool is_open_ = false;                                  // the last object
   std::uint32_t id_ = 0;                                  // of the last object

@@ -14,6 +14,14 @@ constexpr std::string_view kBlanks = " \t\r\n";
 
 }  // namespace
 
+XmlReader::XmlReader(std::string_view text, std::string_view file, std::string_view part)
+    : text_(text), file_(file), part_(part) {
+  // XML in UTF-16 begins with a byte order mark.
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    fail_mesh(ErrorCode::kNotAMesh, file, printable(part),
+              "the text is UTF-16; export it as UTF-8, or export an STL");
+}
+
 XmlReader::Tag XmlReader::next() {
   attributes_.clear();
   if (closes_) {

@@ -18,9 +18,11 @@ class XmlReader {
  public:
   enum class Tag : std::uint8_t { kOpen, kClose, kEnd };
 
-  /// Errors name the file, and the line of `part`, which the text is.
-  XmlReader(std::string_view text, std::string_view file, std::string_view part)
-      : text_(text), file_(file), part_(part) {}
+  using Attribute = std::pair<std::string_view, std::string_view>;
+
+  /// Errors name the file, and the line of `part`, which the text is. Throws kNotAMesh for a text
+  /// in UTF-16.
+  XmlReader(std::string_view text, std::string_view file, std::string_view part);
 
   /// Advances to the next tag; kEnd behind the last one. An element without content, <a/>, opens
   /// and closes. Errors: kNotAMesh, kMeshTruncated.
@@ -29,6 +31,9 @@ class XmlReader {
   [[nodiscard]] std::string_view name() const { return name_; }
   /// Returns an attribute of a tag that opens, without blanks at its ends.
   [[nodiscard]] std::optional<std::string_view> attribute(std::string_view name) const;
+
+  /// The names and values of a tag that opens, as the text spells them.
+  [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }
 
   [[noreturn]] void fail(ErrorCode code, std::string_view cause) const;
 
@@ -44,7 +49,7 @@ class XmlReader {
   std::string_view name_;
   bool closes_ = false;  // the tag that opened was <a/>
   std::vector<std::string_view> open_;
-  std::vector<std::pair<std::string_view, std::string_view>> attributes_;
+  std::vector<Attribute> attributes_;
 };
 
 }  // namespace ist
