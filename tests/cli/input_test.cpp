@@ -1,7 +1,9 @@
 #include "cli/cli_case.h"
 #include "support/data_dir.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/skip.h"
+#include "support/zip_file.h"
 
 namespace ist::test {
 namespace {
@@ -38,6 +40,24 @@ TEST_F(Input, MeshesThatAreNone) {
   }
   refuses({"export", good, "--what", "voxels", "--level", "0", "-o", path("out.ply")}, good,
           "ist build");
+}
+
+// No option changes the readers' limits, so the file is wrong, and not the usage.
+TEST_F(Input, MeshesBeyondTheReadersLimits) {
+  const std::string model = threemf_model(icosphere(1, 1));
+  const std::string bomb = write("bomb.3mf", as_zip("3D/3dmodel.model", model, true, 0xF0000000u));
+  refuses({"info", bomb}, bomb, "[mesh-too-large]");
+  refuses({"build", bomb, "-o", path("out.ist")}, bomb, "it unpacks to 4026531840 bytes");
+  std::string nodes = "{\"mesh\":0}", roots = "0";
+  for (int i = 1; i < 30'000; ++i) {
+    nodes += ",{\"mesh\":0}";
+    roots += "," + std::to_string(i);
+  }
+  const std::string scene = write(
+      "scene.gltf",
+      replaced(replaced(as_gltf(icosphere(3, 1)), "\"nodes\":[0]", "\"nodes\":[" + roots + "]"),
+               "[{\"mesh\":0}]", "[" + nodes + "]"));
+  refuses({"info", scene}, scene, "[mesh-too-large]");
 }
 
 TEST_F(Input, TreesThatAreBroken) {

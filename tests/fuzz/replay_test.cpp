@@ -30,7 +30,7 @@ const std::vector<Target>& targets() {
       {"mesh",
        fuzz_mesh,
        {"fine", "not-a-mesh", "mesh-empty", "mesh-points-only", "mesh-truncated", "mesh-bad-index",
-        "mesh-not-finite", "mesh-extent", "memory-limit"}},
+        "mesh-not-finite", "mesh-extent", "mesh-too-large"}},
       {"poses", fuzz_poses, {"fine", "input-invalid", "pose-invalid"}},
       {"query", fuzz_query, {"touching", "apart", "invalid"}},
       {"scene", fuzz_scene, {"fine", "input-invalid"}},

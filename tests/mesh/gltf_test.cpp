@@ -232,7 +232,7 @@ TEST(Gltf, RefusesAMeshThatIsPlacedTooOften) {
   const std::string bytes =
       replaced(replaced(test::as_gltf(ball), R"("nodes":[0])", "\"nodes\":[" + roots + "]"),
                R"([{"mesh":0}])", "[" + nodes + "]");
-  EXPECT_TRUE(refusal(bytes).starts_with("memory-limit: node ")) << refusal(bytes);
+  EXPECT_TRUE(refusal(bytes).starts_with("mesh-too-large: node ")) << refusal(bytes);
 }
 
 TEST(Gltf, NestingCostsNoStack) {

@@ -254,7 +254,7 @@ TEST(ThreeMf, RefusesSizesOf64BitsThatAreDamaged) {
 TEST(ThreeMf, SaysTheSizeOf64BitsThatIsTooMuch) {
   const std::string got = refusal_of_3mf(test::as_zip(
       {{"3D/3dmodel.model", kModelText, true, 5'000'000'007u}}, test::ZipNumbers::kWide));
-  EXPECT_TRUE(got.starts_with("memory-limit: 3D/3dmodel.model: it unpacks to 5000000007 bytes"))
+  EXPECT_TRUE(got.starts_with("mesh-too-large: 3D/3dmodel.model: it unpacks to 5000000007 bytes"))
       << got;
 }
 
@@ -289,7 +289,7 @@ TEST(ThreeMf, RefusesAnArchiveThatUnpacksToTooMuch) {
   const std::size_t largest = test::largest_allocation([&] {
     got = refusal_of_3mf(test::as_zip("3D/3dmodel.model", kModelText, true, 0xF0000000u));
   });
-  EXPECT_TRUE(got.starts_with("memory-limit: 3D/3dmodel.model: it unpacks to 4026531840 bytes"))
+  EXPECT_TRUE(got.starts_with("mesh-too-large: 3D/3dmodel.model: it unpacks to 4026531840 bytes"))
       << got;
   EXPECT_LT(largest, 1'000'000u);
   // A size below the limit that so few bytes cannot come to is not believed either.
@@ -308,7 +308,7 @@ TEST(ThreeMf, RefusesComponentsThatMultiply) {
   }
   const std::string model = replaced(model_with("</resources>", objects + "</resources>"),
                                      "<item objectid=\"1\"", "<item objectid=\"11\"");
-  EXPECT_TRUE(refusal_of_3mf(as_3mf(model)).starts_with("memory-limit: object "));
+  EXPECT_TRUE(refusal_of_3mf(as_3mf(model)).starts_with("mesh-too-large: object "));
 }
 
 }  // namespace

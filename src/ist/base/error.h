@@ -33,6 +33,7 @@ enum class ErrorCode {
   kArgumentInvalid,    ///< an option or argument is outside its range
   kInputInvalid,       ///< the content of another input file is invalid
   kFixedPointRange,    ///< a number does not fit the hardware's fixed-point format
+  kMeshTooLarge,       ///< the mesh file unpacks, or places, more than its reader allows
 };
 
 /// The exception of the library, beside std::bad_alloc. `what()` names the place, the cause and the

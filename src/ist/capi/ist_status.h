@@ -49,7 +49,8 @@ enum {
   IST_TARGET_MISSING = 119,       /**< the processor lacks the requested instruction set */
   IST_POSE_INVALID = 120,         /**< the pose is not a rigid motion */
   IST_INPUT_INVALID = 121,        /**< the content of a scene or another file is invalid */
-  IST_FIXED_POINT_RANGE = 122     /**< a number exceeds the hardware's fixed-point format */
+  IST_FIXED_POINT_RANGE = 122,    /**< a number exceeds the hardware's fixed-point format */
+  IST_MESH_TOO_LARGE = 123        /**< the mesh file unpacks, or places, too much */
 };
 
 #endif /* IST_CAPI_IST_STATUS_H */

@@ -33,7 +33,8 @@ constexpr struct {
              {kPoseInvalid, IST_POSE_INVALID},
              {kArgumentInvalid, IST_ARGUMENT_INVALID},
              {kInputInvalid, IST_INPUT_INVALID},
-             {kFixedPointRange, IST_FIXED_POINT_RANGE}};
+             {kFixedPointRange, IST_FIXED_POINT_RANGE},
+             {kMeshTooLarge, IST_MESH_TOO_LARGE}};
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < std::size(kRows); ++i)

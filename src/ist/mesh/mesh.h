@@ -48,7 +48,7 @@ struct TriangleMesh {
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.
 /// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
-/// kMeshNotFinite, kMeshExtent, kMemoryLimit; the text names the file and the place in it.
+/// kMeshNotFinite, kMeshExtent, kMeshTooLarge; the text names the file and the place in it.
 [[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding. The

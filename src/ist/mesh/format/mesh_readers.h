@@ -12,7 +12,7 @@ namespace ist {
 /// file itself is not opened.
 ///
 /// Cost: linear in the content, for any counts that the file claims. Errors: kNotAMesh, kMeshEmpty,
-/// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite, kMemoryLimit.
+/// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite, kMeshTooLarge.
 [[nodiscard]] TriangleMesh read_content(std::string_view content,
                                         const std::filesystem::path& file);
 

@@ -12,7 +12,7 @@ namespace ist {
 void PlacedMeshes::expect(std::size_t elements, std::string_view place) {
   // One more, so that a placement of nothing counts as well.
   if (elements >= kMost - expected_)
-    fail_mesh(ErrorCode::kMemoryLimit, file_, place,
+    fail_mesh(ErrorCode::kMeshTooLarge, file_, place,
               fmt::format("the scene places more than {} vertices and triangles; export each mesh "
                           "to a file of its own",
                           kMost));

@@ -24,11 +24,11 @@ class PlacedMeshes {
 
   /// Adds the triangles of `mesh`, whose vertices need not be welded. A transform that mirrors
   /// turns the winding round, so that the outer side stays outside. Each index must be of a vertex.
-  /// Errors, with `place`: kMemoryLimit; kMeshNotFinite for a vertex that is placed beyond the
+  /// Errors, with `place`: kMeshTooLarge; kMeshNotFinite for a vertex that is placed beyond the
   /// range of a float.
   void add(const TriangleMesh& mesh, const Eigen::Affine3d& transform, std::string_view place);
   /// Counts a placement of so many vertices and triangles, before they are read.
-  /// Errors: kMemoryLimit.
+  /// Errors: kMeshTooLarge.
   void expect(std::size_t elements, std::string_view place);
 
   /// Returns the surface. Errors: kMeshEmpty and kMeshPointsOnly, where no triangle was added.

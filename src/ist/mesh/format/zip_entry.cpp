@@ -22,7 +22,7 @@ class Unpacking {
     constexpr std::size_t kMostRatio = 1032;
     const bool is_plain = entry.method == 0 && entry.packed == entry.unpacked;
     if (entry.unpacked > kMostUnpacked)
-      fail(ErrorCode::kMemoryLimit,
+      fail(ErrorCode::kMeshTooLarge,
            fmt::format("it unpacks to {} bytes, more than {}; export the mesh as STL or PLY",
                        entry.unpacked, kMostUnpacked));
     if ((entry.flags & 1) != 0 || !(is_plain || entry.method == Z_DEFLATED) ||

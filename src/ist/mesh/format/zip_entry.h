@@ -13,7 +13,7 @@ inline constexpr std::size_t kMostUnpacked = std::size_t{1} << 29;
 
 /// Returns the unpacked bytes of an entry of a zip archive, by its name in any case; nothing where
 /// the archive does not hold it. `file` is named in errors. Errors: kNotAMesh, kMeshTruncated;
-/// kMemoryLimit beyond kMostUnpacked, before anything is unpacked.
+/// kMeshTooLarge beyond kMostUnpacked, before anything is unpacked.
 [[nodiscard]] std::optional<std::string> unzip(std::string_view archive, std::string_view name,
                                                std::string_view file);
 
