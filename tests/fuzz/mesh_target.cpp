@@ -63,6 +63,12 @@ std::string fuzz_mesh(std::string_view bytes) {
   } catch (const Error& error) {
     const std::string_view text = error.what();
     require(text.find(name) != std::string_view::npos, "an error does not name the file");
+    require(std::none_of(text.begin(), text.end(),
+                         [](char c) {
+                           const auto byte = static_cast<unsigned char>(c);
+                           return byte < 0x20 || byte == 0x7F;
+                         }),
+            "an error holds a control character of the file");
     return to_string(error.code());
   }
   require_sound(mesh);

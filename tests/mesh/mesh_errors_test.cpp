@@ -12,11 +12,13 @@
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/errors.h"
 #include "support/memory_file.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/skip.h"
 #include "support/temp_dir.h"
+#include "support/zip_file.h"
 
 namespace ist {
 namespace {
@@ -251,6 +253,37 @@ TEST(ReadMesh, SaysWhatWhereAndWhatToDo) {
     EXPECT_EQ(error.what(), file.string() +
                                 ": line 4: a face names vertex 9, which does not exist; "
                                 "export the mesh again");
+  }
+}
+
+TEST(ReadMesh, NamesABinaryOff) {
+  const TempDir folder;
+  for (const std::string& content : {std::string("8 12 0\n"), std::string("\0\0\0\3\xFF\n", 6)}) {
+    const std::filesystem::path file = folder.write("a.off", "STOFF BINARY\n" + content);
+    const auto error = test::error_of([&] { static_cast<void>(read_mesh(file)); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->what(),
+              file.string() + ": line 1: a binary OFF is not supported; export it as text");
+  }
+}
+
+// One number, one answer: whichever format spells it.
+TEST(ReadMesh, ReadsANumberAlikeInEveryFormat) {
+  const std::pair<const char*, std::vector<std::string>> numbers[] = {
+      {"fine", {"+1", "1e-400", "-1e-50"}},
+      {"mesh-not-finite", {"1e400", "-1e39", "inf", "NaN", "-nan(ind)", "1.#QNAN", "-1.#IND"}},
+      {"not-a-mesh", {"1,5", "0x1", "++1", "1e-400x", "1e400,5", "one"}}};
+  const TriangleMesh one = test::triangle({7, 0, 0}, {0, 1, 0}, {0, 0, 1});
+  const std::string xml = test::threemf_model(one);
+  for (const auto& [code, texts] : numbers) {
+    for (const std::string& text : texts) {
+      EXPECT_EQ(code_of_bytes("v " + text + " 0 0\n" + kThree + "f 1 3 4\n"), code) << text;
+      EXPECT_EQ(code_of_bytes(replaced(kOff, "0 1 0", text + " 1 0") + "3 0 1 2\n"), code) << text;
+      EXPECT_EQ(code_of_bytes(ply(kFaces + text + " 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")), code) << text;
+      EXPECT_EQ(code_of_bytes(replaced(test::as_text_stl(one), "7", text)), code) << text;
+      EXPECT_EQ(code_of_bytes(test::as_3mf(replaced(xml, "\"7\"", "\"" + text + "\""))), code)
+          << text;
+    }
   }
 }
 

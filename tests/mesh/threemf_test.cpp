@@ -190,6 +190,11 @@ TEST(ThreeMf, RefusesAnArchiveThatIsDamaged) {
       << refusal_of_3mf(wrong);
   EXPECT_TRUE(refusal_of_3mf(test::as_zip("a.txt", "a"))
                   .starts_with("not-a-mesh: 3D/3dmodel.model: the archive does not hold it"));
+  std::string other = test::as_zip("3D/3dmodel.model", kModelText, false);
+  other[other.find("x=\"1\"") + 3] = '2';
+  EXPECT_TRUE(
+      refusal_of_3mf(other).starts_with("not-a-mesh: 3D/3dmodel.model: its checksum is wrong; "))
+      << refusal_of_3mf(other);
   std::string sealed = archive;
   sealed[sealed.find("PK\1\2") + 8] = 1;
   EXPECT_TRUE(refusal_of_3mf(sealed).starts_with("not-a-mesh: 3D/3dmodel.model: it is encrypted"));

@@ -50,9 +50,10 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   if (first_word.starts_with('<') && content.find("<COLLADA") != content.npos)
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               "COLLADA is not supported; export the mesh as glTF (.glb), PLY or STL");
+  if (first_word.ends_with("OFF") && (is_text(content) || reader.word() == "BINARY"))
+    return read_off(content, name);
   if (is_text(content)) {
     if (same_word(first_word, "solid")) return read_text_stl(content, name);
-    if (first_word.ends_with("OFF")) return read_off(content, name);
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
       return read_obj(content, name);
   }

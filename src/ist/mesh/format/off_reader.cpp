@@ -32,6 +32,8 @@ class OffReader {
                    fmt::format("an OFF of kind '{}' is not supported; export it as plain OFF",
                                printable(keyword)));
     std::string_view word = reader_.word_before_comment();
+    if (word == "BINARY")
+      reader_.fail(ErrorCode::kNotAMesh, "a binary OFF is not supported; export it as text");
     if (word.empty()) {
       next_line("header");
       word = reader_.word_before_comment();

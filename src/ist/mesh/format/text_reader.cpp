@@ -15,7 +15,34 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
+template <class Number>
+std::optional<double> rounded(std::string_view word) {
+  constexpr double kNotFinite = std::numeric_limits<double>::infinity();
+  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+  const char* const end = digits.data() + digits.size();
+  Number value = 0;
+  const auto [stop, error] = from_chars(digits, value);
+  if (error == std::errc::result_out_of_range) {
+    if (stop != end) return {};
+    // A number that is too small becomes zero; only one too large is an error.
+    double wide = 0;
+    const std::errc wide_error = from_chars(digits, wide).ec;
+    const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
+                                                : digits.find_first_of("-", 1) != digits.npos;
+    return tiny ? 0 : kNotFinite;
+  }
+  if (error != std::errc()) return {};
+  // Older Windows runtimes print NaN as "1.#QNAN" or "-1.#IND".
+  if (!std::isfinite(value) || (stop != end && *stop == '#')) return kNotFinite;
+  if (stop != end) return {};
+  return static_cast<double>(value);
+}
+
 }  // namespace
+
+std::optional<double> number_of(std::string_view word, Precision precision) {
+  return precision == Precision::kFloat ? rounded<float>(word) : rounded<double>(word);
+}
 
 void fail_mesh(ErrorCode code, std::string_view file, std::string_view place,
                std::string_view cause) {
@@ -79,37 +106,15 @@ std::string_view TextReader::word_of_any_line() {
 
 double TextReader::coordinate(std::string_view word, Precision precision) const {
   if (word.empty()) fail_malformed("a coordinate is missing; export the mesh again");
-  return precision == Precision::kFloat ? rounded<float>(word) : rounded<double>(word);
-}
-
-template <class Number>
-double TextReader::rounded(std::string_view word) const {
-  const auto not_finite = [&] {
+  const std::optional<double> number = number_of(word, precision);
+  if (!number)
+    fail_malformed(fmt::format("'{}' is not a number; export the mesh again", printable(word)));
+  if (!is_coordinate(*number))
     fail(ErrorCode::kMeshNotFinite,
          fmt::format("the coordinate '{}' is not finite, or beyond a float's range; repair the "
                      "mesh where it was made",
                      printable(word)));
-  };
-  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-  const char* const end = digits.data() + digits.size();
-  Number value = 0;
-  auto [stop, error] = from_chars(digits, value);
-  if (error == std::errc::result_out_of_range) {
-    // A number that is too small becomes zero; only one too large is an error.
-    double wide = 0;
-    const std::errc wide_error = from_chars(digits, wide).ec;
-    const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
-                                                : digits.find_first_of("-", 1) != digits.npos;
-    if (!tiny) not_finite();
-    value = 0;
-  } else if (error != std::errc() || stop != end) {
-    // Older Windows runtimes print NaN as "1.#QNAN" or "-1.#IND".
-    if (stop != end && *stop == '#') not_finite();
-    if (error == std::errc() && !std::isfinite(value)) not_finite();
-    fail_malformed(fmt::format("'{}' is not a number; export the mesh again", printable(word)));
-  }
-  if (!is_coordinate(static_cast<double>(value))) not_finite();
-  return static_cast<double>(value);
+  return *number;
 }
 
 std::int64_t TextReader::integer(std::string_view word) const {

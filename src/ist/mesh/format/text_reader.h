@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,10 @@ namespace ist {
 
 /// The type that a number written as text is rounded to.
 enum class Precision : std::uint8_t { kFloat, kDouble };
+
+/// Returns the number that a word spells, rounded once; nothing where it spells no number. A number
+/// too small for its type is 0; one too large is infinite, and so is a NaN of any spelling.
+[[nodiscard]] std::optional<double> number_of(std::string_view word, Precision precision);
 
 /// Whether a number may be a coordinate: it is finite and within the range of a float, so that
 /// products of several coordinates are finite doubles.
@@ -56,8 +61,6 @@ class TextReader {
 
  private:
   [[nodiscard]] bool is_blank(char c) const;
-  template <class Number>
-  [[nodiscard]] double rounded(std::string_view word) const;
 
   std::string_view text_;
   std::string_view file_;

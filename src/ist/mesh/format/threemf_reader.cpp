@@ -194,14 +194,11 @@ class ThreeMfReader {
   }
 
   double number(std::string_view text, const char* name) const {
-    const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
-    double value = 0;
-    const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = from_chars(digits, value);
-    if (error != std::errc() || stop != end)
+    const std::optional<double> value = number_of(text, Precision::kDouble);
+    if (!value)
       xml_.fail(ErrorCode::kNotAMesh,
                 fmt::format("{}: '{}' is no number; export the mesh again", name, printable(text)));
-    return value;
+    return *value;
   }
 
   // Places an object before its components, and these in the order of the file.

@@ -14,9 +14,9 @@ struct ZipEntry {
   std::uint64_t offset = 0;                ///< of the entry in the archive, bytes
 };
 
-/// Returns the entry with a name, in any case; nothing where there is none. Sizes and offsets of 64
-/// bits (ZIP64) are read where an archive has them: some programs write them for any size. `file`
-/// is named in errors. Errors: kMeshTruncated without a directory; kNotAMesh.
+/// Returns the entry with a name, in any case; nothing where the archive does not hold it. Sizes
+/// and offsets of 64 bits (ZIP64) are read too: some programs write them for any size. `file` is
+/// named in errors. Errors: kMeshTruncated without a directory; kNotAMesh.
 [[nodiscard]] std::optional<ZipEntry> find_zip_entry(std::string_view archive,
                                                      std::string_view name, std::string_view file);
 
