@@ -33,6 +33,7 @@ ADVICE = "src/advise/"
 CAPI = "src/ist/capi/"
 HAPTICS = "src/ist/haptics/"
 HARDWARE = "src/hardware/"
+FORMAT = "src/ist/mesh/format/"
 OCCLUSION = "src/cli/occlusion/"
 PAGES = "src/cli/pages/"
 CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
@@ -308,7 +309,7 @@ MUTANTS = [
            [(BINS, "first[i] = block(triangle.min()[axis] - pad - 0.5);",
              "first[i] = block(triangle.min()[axis] + pad);")], ["voxel_test"]),
     Mutant("file-normals-trusted", "triangles are turned as the file's normals say",
-           [("src/ist/mesh/format/stl_reader.cpp", "  return corners;",
+           [(FORMAT + "stl_reader.cpp", "  return corners;",
              """  Eigen::Vector3f n, p[3];
   std::memcpy(n.data(), content.data() + kStlCountEnd + facet * kStlFacetBytes, sizeof n);
   for (std::size_t i = 0; i < 3; ++i) std::memcpy(p[i].data(), corners.data() + 3 * i, sizeof n);
@@ -316,6 +317,43 @@ MUTANTS = [
     for (std::size_t i = 0; i < 3; ++i) std::swap(corners[3 + i], corners[6 + i]);
   return corners;""")],
            ["mesh_test"]),
+    Mutant("off-index-unchecked", "a face of an OFF names a vertex that is not there",
+           [(FORMAT + "off_reader.cpp", "if (corner < 0 || corner >= static_cast<std::int64_t>(surface_.vertices()))",
+             "if (corner < 0)")], ["mesh_test ReadMesh*"]),
+    Mutant("gltf-index-unchecked", "a triangle of a glTF names a vertex that is not there",
+           [(FORMAT + "gltf_reader.cpp", "if (corner >= points)", "if (corner >= points && points == 0)")],
+           ["mesh_test Gltf*"]),
+    Mutant("gltf-parents-forgotten", "a node of a glTF is placed by its own transform alone",
+           [(FORMAT + "gltf_reader.cpp", "node.parent * transform_of(described, place)",
+             "transform_of(described, place)")], ["mesh_test Gltf*"]),
+    Mutant("gltf-rotation-scales", "a quaternion of any length is taken for a rotation",
+           [(FORMAT + "gltf_reader.cpp", "constexpr double kMostError = 1e-3;", "constexpr double kMostError = 1e9;")],
+           ["mesh_test Gltf*"]),
+    Mutant("gltf-extensions-ignored", "a glTF that requires extensions is read without them",
+           [(FORMAT + "gltf_file.cpp", "required != nullptr && !required->empty())",
+             "required != nullptr && required->is_null())")], ["mesh_test Gltf*"]),
+    Mutant("3mf-extensions-ignored", "a 3MF that requires extensions is read without them",
+           [(FORMAT + "threemf_reader.cpp", "if (!required.empty())", "if (required == \"?\")")],
+           ["mesh_test ThreeMf*"]),
+    Mutant("mirrored-inside-out", "a mesh that a scene mirrors keeps its winding",
+           [(FORMAT + "placed_meshes.cpp", "if (mirrors) std::swap", "if (mirrors && vertex_of.empty()) std::swap")],
+           ["mesh_test Gltf*:ThreeMf*"]),
+    Mutant("placed-without-end", "a mesh is placed as often as a few bytes ask for",
+           [(FORMAT + "placed_meshes.cpp", "expected_ += elements + 1;", "expected_ = elements + 1;")],
+           ["mesh_test Gltf*"]),
+    Mutant("zip-checksum-not-compared", "an entry of an archive is accepted with any checksum",
+           [(FORMAT + "zip_entry.cpp", "!= entry.checksum)", "!= entry.checksum && entry.checksum == 0)")],
+           ["mesh_test ThreeMf*"]),
+    Mutant("zip-bomb-unpacked", "an entry may unpack to any size",
+           [(FORMAT + "zip_entry.cpp", "if (entry.unpacked > kMostUnpacked)",
+             "if (entry.unpacked > kMostUnpacked << 16)")], ["mesh_test ThreeMf*"]),
+    Mutant("ply-text-narrowed", "a coordinate that a text PLY declares as double is rounded to float",
+           [(FORMAT + "ply_header.cpp", "std::is_same_v<T, float> ? Precision::kFloat",
+             "std::is_floating_point_v<T> ? Precision::kFloat")], ["mesh_test ReadMesh*"]),
+    Mutant("ply-bytes-narrowed", "a coordinate that a binary PLY declares as double is rounded to float",
+           [(FORMAT + "ply_header.cpp", "return static_cast<double>(value);",
+             "return sizeof(T) == 8 ? static_cast<double>(static_cast<float>(value)) : static_cast<double>(value);")],
+           ["mesh_test ReadMesh*"]),
     Mutant("inside-out-left", "a closed body that is inside out stays so",
            [("src/ist/mesh/orient_outward.cpp", "if (sign >= 0 || !is_outermost(mesh, components, component)) continue;",
              "if (sign >= 0 || is_outermost(mesh, components, component)) continue;")], ["mesh_test"]),
