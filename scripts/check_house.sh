@@ -59,7 +59,7 @@ twice=$(find src simd -name '*.h' -o -name '*.cpp' | xargs -n1 basename | sort |
 wide=$(find src simd -name '*.h' -o -name '*.cpp' | sed 's/\.[a-z]*$//' | sort -u | xargs -n1 dirname | sort | uniq -c | awk '$1 > 20 {print $2 " has " $1 " units"}')
 [ -z "$wide" ] || breach "a folder of over 20 units (a header and its source are one) is several rooms: $wide"
 # Sentences: subject, verb, object; the field's nouns (docs/glossary.md).
-found=$(grep -rnE '\bLikewise\b|\bis none\b|/// What\b' src simd --include='*.h' --include='*.cpp' --include='*.md' || true)
+found=$(grep -rnE '\b[Ll]ikewise\b|\bis none\b|/// What\b' src simd --include='*.h' --include='*.cpp' --include='*.md' || true)
 [ -z "$found" ] || breach "a sentence that leans on another one, or on a bare word: $found"
 found=$(grep -rnE '\b[Ll]ikewise\b|\b(is|are|was|were) none\b|\bso many\b|\b[Tt]old\b|\bcom(es|ing) to\b|\bfor who\b' \
   README.md HACKING.md CHANGELOG.md docs perf scripts --include='*.md' --include='*.py' || true)

@@ -27,7 +27,7 @@ inline constexpr ExitMeaning kExitMeanings[] = {
     {kDeadlinesMissed, "deadlines missed (run)"},
     {kGuaranteeBroken,
      "a result breaks a guarantee (--verify), or differs from the model (table --check)"},
-    {kTouching, "touching (--fail-if-touching)"},
+    {kTouching, "the bodies touch, or may, or one lies in the other (--fail-if-touching)"},
     {130, "interrupted"},  // as a shell tells the end by a signal
 };
 

@@ -111,9 +111,10 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
                   "extent")
       ->check(tolerance());
   command
-      .add_option("--depth", options.questions.depth,
-                  "how sharp the penetration depth shall be, likewise: how deep the deepest point "
-                  "of either surface lies in the other body")
+      .add_option(
+          "--depth", options.questions.depth,
+          "how sharp the penetration depth shall be, by default a 10,000th of that extent; it is "
+          "how deep the deepest point of either surface lies in the other body")
       ->check(tolerance());
   command.add_flag("--exact", options.questions.triangle_pairs,
                    "count all pairs of triangles that meet");

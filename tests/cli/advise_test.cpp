@@ -147,7 +147,7 @@ TEST_F(Advise, WhatIsNoUse) {
   refuses({"--error", "0.1", "--max-memory", "10"}, 2, "allow more");
   refuses({"--error", "0.1", "--voxel-size", "1"}, 2, "--voxel-size");
   refuses({"--error", "0.1", "--poses", path("none.json")}, 3, "none.json");
-  refuses({"--error", "0.1", "--poses", write("bad.json", "[]")}, 3, "column-major");
+  refuses({"--error", "0.1", "--poses", write("bad.json", "[]")}, 3, "column by column");
 }
 
 TEST_F(Advise, BodiesThatAreNoUse) {

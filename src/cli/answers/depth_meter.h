@@ -17,7 +17,7 @@ struct Depth {
   /// The depth of the deepest vertex of either body; empty with open bodies that are not near.
   std::optional<double> at_vertices{};
   /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty
-  /// likewise.
+  /// with open bodies that are not near.
   std::optional<double> area{};
   /// A point that is as deep as the lower end of the interval, or that vertex; fixed coordinates.
   std::optional<Eigen::Vector3d> point{};

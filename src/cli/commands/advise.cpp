@@ -209,10 +209,10 @@ void add_advise(CLI::App& app) {
                       "largest distance between surfaces whose voxels touch, in mesh units: "
                       "recommends the largest voxels with which at most 80 % of it was measured");
   command
-      ->add_option("--poses", options->poses,
-                   "JSON: an array of objects with \"pose\", 16 numbers, column-major; by default "
-                   "a straight "
-                   "closing path to the stored pose, or from there to first contact")
+      ->add_option(
+          "--poses", options->poses,
+          "JSON: an array of objects with \"pose\", 16 numbers, column by column; by "
+          "default a straight closing path to the stored pose, or from there to first contact")
       ->type_name("FILE");
   command
       ->add_option("--axis", options->axis,

@@ -114,7 +114,9 @@ void add_build(CLI::App& app) {
       ->add_option("--classes", options->classes,
                    "classes of voxels: surface, or surface,proximity")
       ->delimiter(',')
-      ->check(CLI::IsMember({"surface", "proximity"}))
+      // Help and pages would show the check as a choice of one word.
+      ->check(CLI::IsMember({"surface", "proximity"}).description(""))
+      ->type_name("LIST")
       ->capture_default_str();
   add_max_memory(*command, options->build.max_memory);
   command->add_flag("--json", options->json, "print one JSON object");

@@ -24,7 +24,7 @@ struct BiteBody {
   SurfaceOcclusion surface;
   std::vector<double> areas;        ///< of each limit of the preset: where d is at most that
   std::optional<Balance> sides;     ///< by `Bite::sides`; empty where nothing touches
-  std::optional<Balance> fore_aft;  ///< by `Bite::fore_aft`, likewise
+  std::optional<Balance> fore_aft;  ///< by `Bite::fore_aft`; empty where nothing touches
   std::vector<Tooth> teeth;         ///< with labels
 };
 

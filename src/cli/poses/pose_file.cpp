@@ -58,7 +58,7 @@ std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
   const nlohmann::json list = parse(file);
   if (!list.is_array() || list.empty()) {
     fail(ErrorCode::kInputInvalid, file,
-         "give an array of objects with \"pose\", 16 numbers, column-major");
+         "give an array of objects with \"pose\", 16 numbers, column by column");
   }
   std::vector<Eigen::Isometry3d> poses;
   for (const nlohmann::json& item : list) {
@@ -69,7 +69,7 @@ std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
                                        [](const nlohmann::json& x) { return x.is_number(); });
     if (!is_matrix) {
       fail(ErrorCode::kInputInvalid, file,
-           place + ": give \"pose\" as an array of 16 numbers, column-major");
+           place + ": give \"pose\" as an array of 16 numbers, column by column");
     }
     Eigen::Isometry3d& matrix = poses.emplace_back();
     for (Eigen::Index i = 0; i < 16; ++i) {
@@ -79,7 +79,7 @@ std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
       fail(ErrorCode::kPoseInvalid, file,
            place +
                ": not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the "
-               "last row 0 0 0 1 (the 16 numbers are column-major)");
+               "last row 0 0 0 1 (the 16 numbers are column by column)");
     }
   }
   return poses;

@@ -6,9 +6,9 @@
 
 namespace ist::cli {
 
-/// Reads the poses of a JSON file: an array of objects with `pose`, 16 numbers, column-major; other
-/// keys are ignored. Throws kFileUnreadable, and kInputInvalid or kPoseInvalid naming the file and
-/// the place.
+/// Reads the poses of a JSON file: an array of objects with `pose`, 16 numbers, column by column;
+/// other keys are ignored. Throws kFileUnreadable, and kInputInvalid or kPoseInvalid naming the
+/// file and the place.
 [[nodiscard]] std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file);
 
 }  // namespace ist::cli

@@ -17,7 +17,7 @@ struct Penetration {
     kDone,             ///< the interval holds the depth
     kInvalidPose,      ///< the pose is no rigid motion
     kFixedNotClosed,   ///< the fixed body has no certain inside: SphereTree::orientation()
-    kMovingNotClosed,  ///< the moving body likewise
+    kMovingNotClosed,  ///< the moving body has no certain inside
     kBusy,             ///< another thread is using the query
   };
 
@@ -46,7 +46,7 @@ struct PenetrationOptions {
   /// interval is true whatever this says.
   const Penetration* last = nullptr;
   Budget budget = {};    ///< `tests` counts points; the interval is wider where it ends the search
-  Proceed proceed = {};  ///< asked every 1,024 points; likewise
+  Proceed proceed = {};  ///< asked every 1,024 points; the interval is wider where it ends it
 };
 
 /// Bounds the depth of two bodies by an interval no wider than `tolerance`, or `narrowest`: by

@@ -18,8 +18,9 @@ struct SurfaceDistance {
 
   /// To the surface, mesh units: negative inside the body, NaN beyond the reach.
   double distance;
-  Eigen::Vector3d closest;  ///< the surface's nearest point, the body's coordinates; NaN likewise
-  /// The triangle that holds it, the first of them by its index; kNoTriangle likewise.
+  /// The surface's nearest point, the body's coordinates; NaN beyond the reach.
+  Eigen::Vector3d closest;
+  /// The triangle that holds it, the first of them by its index; kNoTriangle beyond the reach.
   std::uint32_t triangle;
   /// Whether the sign is known: not where the surface's nearest point lies at an open border, or at
   /// an edge that other than two triangles share, once each way. The distance is positive there.
