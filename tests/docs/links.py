@@ -50,7 +50,12 @@ def main():
     for name, text in texts.items():
         if re.fullmatch(r"docs/[\w-]+\.md", name) and name not in linked:
             wrong.append(f"{name}: README does not link to it")
-        if any(block.language for block in pages.read(text).blocks) and name not in sys.argv[1:]:
+        try:
+            has_code = any(block.language for block in pages.read(text).blocks)
+        except pages.PageError as error:
+            wrong.append(f"{name}, {error}")
+            continue
+        if has_code and name not in sys.argv[1:]:
             wrong.append(f"{name}: its code is run by no test")
     for line in wrong:
         print(line, file=sys.stderr)

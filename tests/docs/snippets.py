@@ -1,6 +1,7 @@
 """Runs the code of one page of README or docs, in a folder of its own, as a reader would: shell, Python and C++ in their order, C++
 and C under two compilers, a scene by `ist run --check`. A block without a language that follows is what they print: it is
-compared, where its `…` stands for any text. The notes that change this are those of pages.py.
+compared, where its `…` stands for any text. The notes that change this are those of pages.py. A block of any other language is
+an error: no block is passed over, but for those whose note gives the reason.
 
 Fragments of C++, blocks without `int main`, are one program together.
 """
@@ -19,6 +20,8 @@ SKIPPED = 77
 OTHER_COMPILER = "clang++-14"
 PYTHON = "/usr/bin/python3"
 C_COMPILERS = ("gcc", "clang-14")
+STUBS = pathlib.Path(__file__).resolve().parent / "stubs"
+LANGUAGES = ("", "sh", "python", "cpp", "c", "toml", "csv", "json", "cmake")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 
 
@@ -50,7 +53,7 @@ class Reader:
                                 PKG_CONFIG_PATH=str(libraries / "pkgconfig"))
         self.printed = None  # of the last block, until it is compared
         self.fragments, self.outputs = [], []  # of the page's one program
-        self.counts = {"run": 0, "compared": 0, "written": 0, "left": 0}
+        self.counts = {"run": 0, "compared": 0, "written": 0, "compiled": 0, "left": 0}
 
     def run(self, command, line):
         ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, cwd=self.folder,
@@ -79,6 +82,13 @@ class Reader:
             raise Failure(f"{self.name}, line {line}: it prints by compiler: {printed}")
         return printed.pop()
 
+    def compile(self, block):
+        """Compiles a file of C++ that needs a library which is not there."""
+        source = self.folder / f"line_{block.line}.cpp"
+        source.write_text(block.text)
+        for compiler in (self.compiler, OTHER_COMPILER):
+            self.run([compiler, "-std=c++20", "-fsyntax-only", *WARNINGS, *self.flags("--cflags"), f"-I{STUBS}", source], block.line)
+
     def fragments_of(self, page):
         """The program of all fragments: includes first, the rest in main()."""
         lines = "".join(block.text for block in self.fragments).splitlines(keepends=True)
@@ -92,9 +102,18 @@ class Reader:
         self.counts["compared"] += 1
 
     def block(self, block):
-        if block.says("not run") or block.language not in ("", "sh", "python", "cpp", "c", "toml", "csv", "json"):
+        if block.language not in LANGUAGES:
+            raise Failure(f"{self.name}, line {block.line}: nobody knows how to run '{block.language}': it is one of "
+                          f"{', '.join(LANGUAGES[1:])}, or nothing where it is output")
+        if block.says("not run"):
             self.counts["left"] += 1
-            print(f"{self.name}, line {block.line}: {block.note or block.language}")
+            print(f"{self.name}, line {block.line}: {block.note}")
+            self.printed = None
+        elif block.says("compiled"):
+            if block.language != "cpp":
+                raise Failure(f"{self.name}, line {block.line}: only cpp is compiled alone")
+            self.compile(block)
+            self.counts["compiled"] += 1
             self.printed = None
         elif block.language == "":
             if self.printed is not None:
@@ -126,7 +145,7 @@ class Reader:
             self.printed = None if block.says("output varies") else printed
             self.counts["run"] += 1
         else:
-            raise Failure(f"{self.name}, line {block.line}: a {block.language} needs the note 'file NAME'")
+            raise Failure(f"{self.name}, line {block.line}: this {block.language} needs the note 'file NAME', or 'not run, REASON'")
 
     def read(self, page):
         if page.setup:
@@ -146,7 +165,11 @@ def main():
     parser.add_argument("--prefix", type=pathlib.Path, required=True)
     parser.add_argument("--compiler", required=True)
     arguments = parser.parse_args()
-    page = pages.read(arguments.page.read_text())
+    try:
+        page = pages.read(arguments.page.read_text())
+    except pages.PageError as wrong:
+        print(f"{arguments.page.name}, {wrong}", file=sys.stderr)
+        return 1
     missing = [f"{tool} is not installed: scripts/setup.sh does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
                if shutil.which(tool) is None]
     missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles installs it" for name in missing_modules(page)]
@@ -164,7 +187,7 @@ def main():
         return 1
     counts = reader.counts
     print(f"{arguments.page.name}: {counts['run']} run, {counts['compared']} outputs compared, {counts['written']} files "
-          f"written, {counts['left']} not run")
+          f"written, {counts['compiled']} compiled, {counts['left']} not run")
     return 0 if any(counts.values()) else 1
 
 
