@@ -82,13 +82,14 @@ void Roff::fill(const std::string& text) {
   std::istringstream words(text);
   std::string row;
   for (std::string word; words >> word;) {
-    if (!row.empty() && row.size() + word.size() >= kColumns) {
+    const std::string roff = with_option_bold(word);
+    if (!row.empty() && row.size() + roff.size() >= kColumns) {
       line(row);
       row.clear();
     }
     // A line that begins with a full stop would be a request.
     row += row.empty() ? (word.front() == '.' ? "\\&" : "") : " ";
-    row += with_option_bold(word);
+    row += roff;
     if (word.back() == '.') {  // roff spaces sentences by the ends of lines
       line(row);
       row.clear();
