@@ -664,4 +664,12 @@ MUTANTS = [
            ["ctest Package.Documents"]),
     Mutant("uninstall-takes-others", "uninstalling removes what others have put beside it",
            [("src/package/uninstall.cmake.in", "if(others)", "if(FALSE)")], ["ctest Package.Uninstall"]),
+
+    # The pages.
+    Mutant("key-without-a-default", "the reader of scenes does not say what a key is where it is absent",
+           [("src/ist/scene/table_reader.cpp", "if (!otherwise.empty()) noted", "if (false) noted")], ["ctest Docs.SceneReference"]),
+    Mutant("left-without-a-reason", "a page's code may be left without a reason",
+           [("tests/docs/pages.py", r"output varies), \S.*", "output varies).*")], ["ctest Docs.Refusals"]),
+    Mutant("guards-end-at-the-line", "tests that an invariant names after a line's end may be missing",
+           [("tests/docs/guards.py", r"(?:,\s+)?)*)", "(?:, )?)*)")], ["ctest Docs.Refusals"]),
 ]
