@@ -114,21 +114,36 @@ def programs_of(mutants):
     return sorted(programs - {"ctest"} | (PACKAGED if "ctest" in programs else set()))
 
 
+def results():
+    """What is known: by mutant, the test that killed it, and the commit at which it did."""
+    return json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}
+
+
+def commit():
+    """The commit of the sources, with a plus where they differ from it but for what this script writes."""
+    git = ["git", "-C", ROOT]
+    head = subprocess.run([*git, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
+    changed = subprocess.run([*git, "status", "--porcelain", "--", ":!perf"], capture_output=True, text=True, check=True).stdout
+    return head + ("+" if changed.strip() else "")
+
+
 def write_table(found):
     """Writes the results and perf/MUTANTS.md; mutants that never ran are marked "not run"."""
-    known = {**(json.loads(RESULTS.read_text()) if RESULTS.is_file() else {}), **found}
+    names = {mutant.name for mutant in MUTANTS}
+    known = {name: row for name, row in {**results(), **found}.items() if name in names}
     RESULTS.write_text(json.dumps(known, indent=1) + "\n")
+    commits = sorted({row["commit"] for row in known.values()})
     lines = ["# Mutants", "",
              "Each mutant is one deliberate fault in the code. The last column names the first test that fails with it. Made by",
              "`scripts/mutate.sh` from `scripts/mutants.py`.", "",
              "| mutant | fault | in | killed by |", "|---|---|---|---|"]
     killed = 0
     for mutant in MUTANTS:
-        killer = known.get(mutant.name, "not run")
+        killer = known.get(mutant.name, {"killed_by": "not run"})["killed_by"]
         killed += killer not in (None, "not run")
         files = ", ".join(sorted({f"`{Path(file).name}`" for file, _, _ in mutant.edits}))
         lines.append(f"| {mutant.name} | {mutant.breaks} | {files} | {killer or '**survives**'} |")
-    lines += ["", f"{killed} of {len(MUTANTS)} killed."]
+    lines += ["", f"{killed} of {len(MUTANTS)} killed, at {'commit' if len(commits) == 1 else 'commits'} {', '.join(commits)}."]
     (ROOT / "perf/MUTANTS.md").write_text("\n".join(lines) + "\n")
 
 
@@ -139,7 +154,10 @@ def main():
             edited(mutant.edits, ROOT)  # it still applies
             print(f"{mutant.name:34} {mutant.breaks}")
         return
-    chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)]
+    now, known = commit(), results()
+    missing = words == ["--missing"]
+    chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)
+              or (missing and known.get(m.name, {}).get("commit") != now)]
     if not chosen:
         fail(f"no mutant is named like {' or '.join(words)}; --list names them")
     copy_sources()
@@ -156,11 +174,11 @@ def main():
     for number, mutant in enumerate(chosen, 1):
         start = time.monotonic()
         killer = killer_of(mutant)
-        found[mutant.name] = killer
+        found[mutant.name] = {"killed_by": killer, "commit": now}
+        write_table(found)  # for a run that is cut short
         print(f"{number:2}/{len(chosen)} {mutant.name:34} {killer or 'SURVIVES'} "
               f"({time.monotonic() - start:.0f} s)", flush=True)
-    write_table(found)
-    survivors = [name for name, killer in found.items() if killer is None]
+    survivors = [name for name, row in found.items() if row["killed_by"] is None]
     if survivors:
         fail(f"no test notices: {', '.join(survivors)}")
     print(f"all {len(found)} mutants are killed")

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ist/base/bit_cast.h"
+#include "ist/base/platform/bit_cast.h"
 #include "simd/contact_step.h"
 #include "simd/lanes.h"
 

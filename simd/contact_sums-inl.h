@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "ist/base/bit_cast.h"
+#include "ist/base/platform/bit_cast.h"
 #include "simd/bounds-inl.h"
 #include "simd/contact_lanes.h"
 

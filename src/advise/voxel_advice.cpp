@@ -8,7 +8,7 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/from_chars.h"
+#include "ist/base/platform/from_chars.h"
 #include "ist/voxel/lattice.h"
 
 namespace ist {

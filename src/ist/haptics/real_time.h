@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "ist/base/timer_slack.h"
+#include "ist/base/platform/timer_slack.h"
 #include "ist/haptics/servo_loop.h"
 
 namespace ist {

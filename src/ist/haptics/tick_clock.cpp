@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "ist/base/assert.h"
-#include "ist/base/pause.h"
+#include "ist/base/platform/pause.h"
 
 namespace ist {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "ist/base/error.h"
-#include "ist/base/from_chars.h"
+#include "ist/base/platform/from_chars.h"
 
 namespace ist {
 

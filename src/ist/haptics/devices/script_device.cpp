@@ -13,7 +13,7 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/from_chars.h"
+#include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
 
 namespace ist {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/mesh/format/affine.h"
 #include "ist/mesh/format/gltf_file.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/placed_meshes.h"
@@ -55,7 +56,7 @@ class GltfReader {
         file_.fail(ErrorCode::kNotAMesh, place,
                    "it is the child of several nodes, or of itself; export the mesh again");
       visited[node.number] = true;
-      const Eigen::Affine3d transform = node.parent * transform_of(described, place);
+      const Eigen::Affine3d transform = joined(node.parent, transform_of(described, place));
       if (GltfFile::find(described, "mesh") != nullptr) place_mesh(described, transform, place);
       push(described, "children", transform);
     }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ist/base/assert.h"
-#include "ist/base/bit_cast.h"
+#include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/format/triangulate.h"
 
 namespace ist {

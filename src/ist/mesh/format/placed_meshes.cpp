@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "ist/mesh/format/affine.h"
 #include "ist/mesh/format/text_reader.h"
 
 namespace ist {
@@ -27,7 +28,7 @@ void PlacedMeshes::add(const TriangleMesh& mesh, const Eigen::Affine3d& transfor
   const auto placed = [&](std::uint32_t corner) {
     std::uint32_t& vertex = vertex_of[corner];
     if (vertex != kUnplaced) return vertex;
-    const Eigen::Vector3d point = transform * mesh.vertices[corner];
+    const Eigen::Vector3d point = moved_by(transform, mesh.vertices[corner]);
     for (const double coordinate : point)
       if (!is_coordinate(coordinate))
         fail_mesh(ErrorCode::kMeshNotFinite, file_, place,

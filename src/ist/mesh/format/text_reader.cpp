@@ -7,7 +7,7 @@
 #include <limits>
 #include <system_error>
 
-#include "ist/base/from_chars.h"
+#include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
 
 namespace ist {

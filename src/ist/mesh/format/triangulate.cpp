@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "ist/base/assert.h"
+#include "ist/base/ordered_vector.h"
 
 namespace ist {
 namespace {
@@ -29,7 +30,7 @@ class Polygon {
 
   // Returns a positive number if the path a, b, c turns left, seen against the normal.
   [[nodiscard]] double turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[b]).dot(normal_);
+    return dot_in_order((vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[b]), normal_);
   }
 
   [[nodiscard]] Triangle corner(std::size_t i) const {

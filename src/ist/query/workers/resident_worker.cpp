@@ -7,8 +7,8 @@
 
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
-#include "ist/base/pause.h"
-#include "ist/base/timer_slack.h"
+#include "ist/base/platform/pause.h"
+#include "ist/base/platform/timer_slack.h"
 #include "ist/query/workers/worker_schedule.h"
 
 namespace ist {

@@ -1,7 +1,7 @@
 #include "ist/query/workers/split_queue.h"
 
 #include "ist/base/assert.h"
-#include "ist/base/pause.h"
+#include "ist/base/platform/pause.h"
 
 namespace ist {
 namespace {

@@ -1,4 +1,4 @@
-#include "ist/mesh/format/zip_directory.h"
+#include "ist/mesh/format/threemf/zip_directory.h"
 
 #include <fmt/format.h>
 

@@ -10,13 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "ist/base/from_chars.h"
+#include "ist/base/platform/from_chars.h"
 #include "ist/base/printable.h"
+#include "ist/mesh/format/affine.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/placed_meshes.h"
 #include "ist/mesh/format/text_reader.h"
-#include "ist/mesh/format/xml_reader.h"
-#include "ist/mesh/format/zip_entry.h"
+#include "ist/mesh/format/threemf/xml_reader.h"
+#include "ist/mesh/format/threemf/zip_entry.h"
 
 namespace ist {
 namespace {
@@ -215,7 +216,7 @@ class ThreeMfReader {
       placed_.add(object.mesh, use.transform, place);
       for (std::size_t i = object.components.size(); i-- > 0;) {
         const Use& component = object.components[i];
-        left.push_back({component.object, use.transform * component.transform});
+        left.push_back({component.object, joined(use.transform, component.transform)});
       }
     }
   }

@@ -1,4 +1,4 @@
-#include "ist/mesh/format/xml_reader.h"
+#include "ist/mesh/format/threemf/xml_reader.h"
 
 #include <fmt/format.h>
 

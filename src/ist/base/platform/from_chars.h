@@ -13,8 +13,8 @@
 
 namespace ist {
 
-/// What std::from_chars makes of a word: `value`, the end of the number in `text`, and an errc. The
-/// host's locale does not matter.
+/// Parses the number at the beginning of `text` as std::from_chars does, which the host's locale
+/// does not change. Returns the number's end and an error.
 template <std::integral Number>
 std::from_chars_result from_chars(std::string_view text, Number& value) {
   return std::from_chars(text.data(), text.data() + text.size(), value);

@@ -1,4 +1,4 @@
-#include "ist/mesh/format/zip_entry.h"
+#include "ist/mesh/format/threemf/zip_entry.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -7,7 +7,7 @@
 
 #include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
-#include "ist/mesh/format/zip_directory.h"
+#include "ist/mesh/format/threemf/zip_directory.h"
 
 namespace ist {
 namespace {
