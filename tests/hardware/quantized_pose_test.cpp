@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hardware/exact_pair.h"
+#include "ist/tree/lookup_table.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
 #include "support/errors.h"
