@@ -239,7 +239,7 @@ MUTANTS = [
     Mutant("table-radius-rounded-down", "the table's radii are rounded down to float",
            [("src/ist/query/traversal/search_plan.cpp",
              "nearest < value ? std::nextafter(nearest, HUGE_VALF)",
-             "nearest > value ? std::nextafter(nearest, -HUGE_VALF)")], [KERNELS]),
+             "nearest > value ? std::nextafter(nearest, -HUGE_VALF)")], ["search_test ImplicitLanes*"]),
     Mutant("table-not-nested", "the balls that a search tests are the published ones",
            [("src/ist/tree/implicit_ball.h", "half * kTableRadii[radius_code] + leaf_excess(level, radius_code)",
              "half * kTableRadii[radius_code] + 0 * leaf_excess(level, radius_code)")],
