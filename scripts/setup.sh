@@ -11,6 +11,8 @@
 #   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
 #   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
+#   scripts/setup.sh --cross     also what builds and runs for ARM64 and WebAssembly, and clang 16; only
+#                                then the architecture arm64 is added to this machine's
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
@@ -20,6 +22,9 @@ packages=(g++ cmake ninja-build pkg-config
   libgtest-dev libgmp-dev python3 valgrind clang-14
   binutils dpkg-dev file)
 bench=(libbenchmark-dev python3-matplotlib)
+cross=(clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
+  libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64
+  zlib1g-dev:arm64 libpng-dev:arm64 libgtest-dev:arm64)
 for argument in "$@"; do
   case $argument in
     --bench) packages+=("${bench[@]}") ;;
@@ -31,15 +36,20 @@ for argument in "$@"; do
     --docs) packages+=(doxygen mkdocs) ;;
     --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
-    -h | --help) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --cross) packages+=("${cross[@]}") ;;
+    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done
 
+# A package may be installed for several architectures.
+native=$(dpkg --print-architecture)
 missing=()
 for package in "${packages[@]}"; do
-  state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$state" = installed ] || missing+=("$package")
+  architecture=${package#*:}
+  [ "$architecture" != "$package" ] || architecture=$native
+  dpkg-query -W -f '${Architecture} ${db:Status-Status}\n' "$package" 2>/dev/null |
+    grep -qE "^($architecture|all) installed$" || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
   echo "setup: everything is installed"
@@ -56,6 +66,7 @@ if [ "$(id -u)" -ne 0 ]; then
   as_root=(sudo)
 fi
 echo "setup: installing ${missing[*]}"
+if [[ ${missing[*]} == *:arm64* ]]; then "${as_root[@]}" dpkg --add-architecture arm64; fi
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
   "${missing[@]}" >/dev/null

@@ -1,7 +1,7 @@
 // The same bits by every build, every instruction set and every platform.
 //
 //   golden_test            compares each kind of answers with its golden hash
-//   golden_test --hashes   prints "target<tab>answers<tab>hash" of each instead
+//   golden_test --hashes   prints "target<tab>answers<tab>hash" of each instead, and of all together
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "golden/answers.h"
+#include "golden/hasher.h"
 #include "simd/targets.h"
 
 namespace ist::test {
@@ -37,11 +38,17 @@ TEST_P(Golden, AnswersHaveTheSameBitsEverywhere) {
 }
 
 void print_hashes() {
+  const auto print = [](const std::string& target, const char* name, std::uint64_t hash) {
+    std::printf("%s\t%s\t%016llx\n", target.c_str(), name, static_cast<unsigned long long>(hash));
+  };
   for (const std::string& target : all_targets()) {
+    Hasher all;
     for (const GoldenAnswers& kind : golden_answers()) {
-      std::printf("%s\t%s\t%016llx\n", target.c_str(), kind.name,
-                  static_cast<unsigned long long>(kind.hash(target)));
+      const std::uint64_t hash = kind.hash(target);
+      all.add(hash);
+      print(target, kind.name, hash);
     }
+    print(target, "all", all.value());
   }
 }
 
