@@ -54,6 +54,9 @@ for preset in clang14 arm64 wasm; do run $preset golden_test; done
 run test all
 $long || exit 0
 
+scripts/golden_table.py --check
+scripts/arm64_package.sh
+run sanitize-all all -E 'House|Package|Docs|Report|Mutants'
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 more() {  # preset, times the samples, program, filter
   echo "== $3 $4, preset $1, $2 times the samples"

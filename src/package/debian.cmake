@@ -18,6 +18,12 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 # A program is bound to one minor version (ist.map.in).
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 
+# Of what is built, which may not be of the machine that builds.
+set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE amd64)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+endif()
+
 # Compressed pages, changelogs and overrides for lintian.
 configure_file(debian_files.cmake.in debian_files.cmake @ONLY)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_BINARY_DIR}/debian_files.cmake)
