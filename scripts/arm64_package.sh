@@ -15,7 +15,7 @@ toolchain=$PWD/scripts/toolchains/arm64.cmake
 cmake -G Ninja -S . -B "$build" --toolchain "$toolchain" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr \
   -DIST_TESTS=OFF -DIST_CLI=OFF >/dev/null
 cmake --build "$build" -- -j"$(nproc)" >"$build/build.log" || { cat "$build/build.log"; exit 1; }
-(cd "$build" && cpack >cpack.log) || { cat "$build/cpack.log"; exit 1; }
+(cd "$build" && cpack >cpack.log 2>&1) || { cat "$build/cpack.log"; exit 1; }
 rm -rf "$root"
 for package in "$build"/*_arm64.deb; do
   echo "$(dpkg-deb -f "$package" Package Architecture | tr '\n' ' ')"
@@ -24,7 +24,7 @@ done
 cmake -G Ninja -S tests/package/consumer -B "$build/consumer" --toolchain "$toolchain" -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$root/usr" >/dev/null
 cmake --build "$build/consumer" >"$build/consumer.log" || { cat "$build/consumer.log"; exit 1; }
-for program in consumer hardware; do
-  file -b "$build/consumer/$program" | cut -d, -f1,2
-  qemu-aarch64 -E LD_LIBRARY_PATH="$root/usr/lib/aarch64-linux-gnu" "$build/consumer/$program"
-done
+on_arm64() { qemu-aarch64 -E LD_LIBRARY_PATH="$root/usr/lib/aarch64-linux-gnu" "$@"; }
+file -b "$build/consumer/consumer" | cut -d, -f1,2
+on_arm64 "$build/consumer/consumer" "$build/consumer/tree.ist"  # writes the tree and reads it
+on_arm64 "$build/consumer/hardware"

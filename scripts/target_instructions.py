@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Counts the instructions of a sphere test and of a contact for each instruction set, by qemu, which counts alike for
-x86-64 and ARM64, and writes the table to docs/performance.md. (It knows no AVX-512: of `avx3` nothing is counted.)
+"""Counts the instructions of a sphere test and of a contact for each instruction set, and writes the table to
+docs/performance.md: by qemu, which counts alike for x86-64 and ARM64; those of `avx3`, which it does not know, one by one
+on this machine, which needs AVX-512.
 
   scripts/target_instructions.py     builds, counts and writes; scripts/setup.sh --cross installs what it needs
 """
@@ -13,6 +14,14 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/performance.md"
 BEGIN, END = "<!-- instruction table -->\n", "<!-- end of instruction table -->\n"
 PLUGIN = ROOT / "build/counting_plugin.so"
+STEPS = ROOT / "build/counting_steps"
+QEMU = ["-plugin", PLUGIN]
+# The platform, the preset, and what runs a program and counts for the targets named, or for all.
+COUNTERS = [
+    ("x86-64", "release", [STEPS], ["avx3"]),
+    ("x86-64", "release", ["qemu-x86_64", "-cpu", "max", *QEMU], []),
+    ("ARM64", "arm64", ["qemu-aarch64", *QEMU], []),
+]
 
 
 def run(*command):
@@ -22,12 +31,12 @@ def run(*command):
     return done.stdout, done.stderr
 
 
-def counted(preset, qemu):
+def counted(preset, counter, targets):
     """By target and question: instructions, sphere tests and leaf pairs."""
     run("cmake", "--preset", preset, *(["-DIST_TESTS=ON"] if preset == "release" else []))
     build = ROOT / "build" / preset
     run("cmake", "--build", build, "--target", "target_instructions", "--", f"-j{os.cpu_count()}")
-    out, marks = run(*qemu, "-plugin", PLUGIN, build / "tests/target_instructions")
+    out, marks = run(*counter, build / "tests/target_instructions", *targets)
     counts = [int(line.split()[1]) for line in marks.splitlines() if line.startswith("mark ")][1::2]
     rows = {}
     for line, instructions in zip(out.splitlines(), counts, strict=True):
@@ -46,9 +55,13 @@ def main():
     if not end:
         sys.exit(f"target_instructions: {PAGE} has no place for the table: {BEGIN.strip()}")
     run("cc", "-shared", "-fPIC", "-O2", "-o", PLUGIN, ROOT / "tests/instructions/counting_plugin.c")
+    run("cc", "-O2", "-o", STEPS, ROOT / "tests/instructions/counting_steps.c")
     lines = ["| platform | target | leaf pairs | a sphere test | contacts | more a leaf pair |\n", "|---|---|---|---|---|---|\n"]
-    for platform, preset, qemu in (("x86-64", "release", ["qemu-x86_64", "-cpu", "max"]), ("ARM64", "arm64", ["qemu-aarch64"])):
-        for target, asked in counted(preset, qemu).items():
+    for platform, preset, counter, targets in COUNTERS:
+        rows = counted(preset, counter, targets)
+        if targets and not rows:
+            sys.exit(f"target_instructions: this processor has no {targets[0]}: run it on one that has")
+        for target, asked in rows.items():
             listed, tests, pairs = asked["leaf_pairs"]
             summed = asked["contacts"][0]
             lines.append(f"| {platform} | `{target}` | {listed:,} | {listed / tests:.1f} | {summed:,} | {(summed - listed) / pairs:.0f} |\n")

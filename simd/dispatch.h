@@ -41,7 +41,8 @@ extern const Kernels kScalarKernels;
 namespace simd {
 
 /// Returns the vector twins of kScalarKernels for each instruction set that this build and this
-/// processor have, best first: avx3, avx2, sse4, ssse3 on x86-64; neon on ARM64.
+/// processor have, best first: avx3, avx2, sse4, ssse3 on x86-64; neon on ARM64;
+/// simd128 in WebAssembly.
 [[nodiscard]] std::vector<Kernels> supported_kernels();
 
 }  // namespace simd

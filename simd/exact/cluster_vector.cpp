@@ -170,10 +170,8 @@ ClusterKernels cluster_kernels(std::int64_t target) {
       return IST_CLUSTER_KERNELS(SSE4);
     case HWY_SSSE3:
       return IST_CLUSTER_KERNELS(SSSE3);
-    case HWY_NEON:
-      return IST_CLUSTER_KERNELS(NEON);
     default:
-      return IST_CLUSTER_KERNELS(WASM);
+      return IST_CLUSTER_KERNELS(NEON);
   }
 }
 

@@ -1,11 +1,14 @@
-// Asks the closed built-in jaws for leaf pairs and for contacts, by each instruction set, between two
-// marks for counting_plugin.c: see scripts/target_instructions.py, which runs this. Prints a line a
-// question: the target, the question, sphere tests and leaf pairs.
+// Asks the closed built-in jaws for leaf pairs and for contacts, by each instruction set, between
+// two marks for counting_plugin.c or counting_steps.c: see scripts/target_instructions.py, which
+// runs this. Prints a line a question: the target, the question, sphere tests and leaf pairs.
+// Arguments name the instruction sets; without any, all that are here are asked.
 
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 #include <vector>
 
 #include "ist/ist.h"
@@ -37,11 +40,14 @@ void count(const char* target, const char* question, const Ask& ask) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  const std::vector<std::string_view> named(argv + 1, argv + argc);
   const ist::SphereTree fixed = jaw(ist::Jaw::kUpper), moving = jaw(ist::Jaw::kLower);
   const Eigen::Isometry3d closed = Eigen::Isometry3d::Identity();
   std::vector<ist::LeafPair> leaf_pairs(1 << 18);
   for (const ist::Kernels& kernels : ist::all_kernels()) {
+    if (!named.empty() && std::find(named.begin(), named.end(), kernels.target) == named.end())
+      continue;
     ist::QueryOptions options;
     options.target = kernels.target;
     ist::Query query(fixed, moving, options);
