@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Sets up, builds as users do, and runs every test: what has threads under ThreadSanitizer, what reads
-# files and what runs in vectors under AddressSanitizer and UndefinedBehaviorSanitizer, then all,
+# Sets up, builds as users do, and runs every test: what users build, with its own tests; what has
+# threads under ThreadSanitizer; what reads files and what runs in vectors under AddressSanitizer and
+# UndefinedBehaviorSanitizer; golden answers by clang, for ARM64 and in WebAssembly; then all,
 # optimised with assertions.
 #
-#   scripts/test.sh          every test, some 25 minutes from nothing built on two cores
-#   scripts/test.sh --long   then what users build with its own tests, golden answers by more compilers
-#                            and optimisations, for ARM64 and in WebAssembly, a program built for ARM64
-#                            from the package, every room and test under the sanitizers, hard cases
-#                            with 20 times the samples, ten million queries of real jaws, an hour of
-#                            simulated pressing, threads for longer, CloudCompare's distances, and each
-#                            fuzzer for a minute; 90 minutes more
+#   scripts/test.sh          every test, some 30 minutes from nothing built on two cores
+#   scripts/test.sh --long   then golden answers by more compilers and optimisations, a program built
+#                            for ARM64 from the package, every room and test under the sanitizers, hard
+#                            cases with 20 times the samples, ten million queries of real jaws, an
+#                            hour of simulated pressing, threads for longer, CloudCompare's distances,
+#                            and each fuzzer for a minute; 90 minutes more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -23,9 +23,9 @@ case ${1:-} in
   -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=(--oracles --docs)
+setup=(--oracles --docs --cross)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
-! $long || setup+=(--cloudcompare --cross)
+! $long || setup+=(--cloudcompare)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
@@ -47,13 +47,14 @@ run() {  # preset and its options, targets to build, then arguments for ctest
 echo "== preset release"
 cmake --preset release >/dev/null
 cmake --build --preset release -- -j"$jobs" >build/release.log || { cat build/release.log; exit 1; }
+run "release -DIST_TESTS=ON" "golden_test base_test mesh_test tree_test query_test search_test" \
+  -L '^(golden|base|mesh|tree|query|search)_test$'
 run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
 run sanitize "capi_test ist_c11_test formats_test labels_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|[/_](avx2|ssse3)$|Published|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|RecordedHand.*/(simple|table)$|House'
+for preset in clang14 arm64 wasm; do run $preset golden_test; done
 run test all
 $long || exit 0
 
-run "release -DIST_TESTS=ON" "golden_test base_test mesh_test tree_test query_test search_test" -E _NOT_BUILT
-for preset in clang14 arm64 wasm; do run $preset golden_test; done
 scripts/golden_table.py --check
 scripts/arm64_package.sh
 run sanitize-all all -E 'House|Package|Docs|Report|Mutants'

@@ -65,8 +65,7 @@ class Refusals(unittest.TestCase):
                 self.setUp()
                 said = self.refused("--toolchain", SOURCE / "scripts/toolchains/arm64.cmake",
                                     path=self.path_without(program))
-                # Where neither is here, the first one is named.
-                self.assertRegex(said, rf"({program}|aarch64-linux-gnu-g\+\+) is missing: run scripts/setup.sh --cross")
+                self.assertIn(f"{program} is missing: run scripts/setup.sh --cross", said)
 
     def test_missing_node(self):
         said = self.refused("--toolchain", SOURCE / "scripts/toolchains/wasm.cmake", "-DIST_WITH_TBB=OFF",
