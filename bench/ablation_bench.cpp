@@ -67,13 +67,24 @@ Steps without() {
   };
 }
 
+// The published query and the fast one, one worker, by policy: the same spheres on both sides.
+Steps same() {
+  Steps steps;
+  for (const SpherePolicy policy : kSpherePolicies) {
+    const std::string name(to_string(policy));
+    steps.push_back({"published-" + name, {Search::kLinear, policy}});
+    steps.push_back({"fast-" + name, {Search::kBatches, policy, best()}});
+  }
+  return steps;
+}
+
 // All variants of a voxel size, checked and measured when the first of them is to be reported.
 Comparison& compared(double voxel_size) {
   static std::map<double, std::unique_ptr<Comparison>> made;
   auto& comparison = made[voxel_size];
   if (comparison == nullptr) {
     std::vector<Parts> parts;
-    for (const Steps& steps : {ladder(), without()}) {
+    for (const Steps& steps : {ladder(), without(), same()}) {
       for (const auto& step : steps) parts.push_back(step.second);
     }
     comparison = std::make_unique<Comparison>(voxel_size, parts);
@@ -135,6 +146,7 @@ const int kRegistered = [] {
   for (const double size : {0.2, 0.8}) {
     add("ladder", ladder(), size);
     add("without", without(), size);
+    add("same", same(), size);
   }
   for (const auto& [name, make] : kWaysToMakeSpheres) {
     benchmark::RegisterBenchmark(

@@ -28,12 +28,15 @@ void advise(benchmark::State& state, const AdviceGoal& goal) {
                                            bodies.moving_box().diagonal().maxCoeff());
     advice = advise_voxel_size(goal, sizes, [&](double size) { return calibration.measure(size); });
     state.counters["seconds"] = 1e-3 * watch.milliseconds();
+    state.counters["poses"] = static_cast<double>(Calibration::kPoses);
+    state.counters["paths_beside"] = static_cast<double>(paths_beside(bodies, *path).size());
   }
   if (!advice.recommended) {
     state.SkipWithError("no voxel size is recommended");
     return;
   }
   const SizeMeasure& recommended = advice.measured[*advice.recommended];
+  state.counters["part_of_limit"] = kOfGoal;
   state.counters["voxel_size"] = recommended.voxel_size;
   state.counters["error"] = recommended.error;
   state.counters["slowest_us"] = recommended.slowest_query;

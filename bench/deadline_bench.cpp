@@ -1,32 +1,40 @@
 // Queries where there is more to find than there is time for: what conformal bodies cost without a
 // budget, and by how much a query with 100 µs runs over them, in the processor's time of its own
 // thread, so that waiting for a core does not count. Interrupts do: beside each query stands a loop
-// that does nothing but look at the clock until its own 100 µs are over. Small bodies are asked
-// within 1 ms as well, in which they come to many contacts.
+// that does nothing but look at the clock until its own 100 µs are over. Leaf pairs and contacts
+// are asked for; coarse and small bodies write many of them. Small bodies are asked within 1 ms as
+// well.
 //
-//   IST_DEADLINE_QUERIES   queries and loops a scene within 100 µs, and a tenth of them within
-//                          1 ms; by default 100000
+//   unbudgeted/SCENE              the whole query
+//   within_GIVENus/VERB/SCENE     by how much a query runs over what it is given
+//
+//   IST_DEADLINE_QUERIES   queries and loops a scene and verb within 100 µs, and a tenth of them
+//                          within 1 ms; by default 50000
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "ist/query/manifold.h"
 #include "ist/query/query.h"
 #include "support/bodies.h"
 #include "support/conformal.h"
+#include "support/effort.h"
 #include "support/latencies.h"
 
 namespace ist::bench {
 namespace {
 
 using Clock = Budget::Clock;
-constexpr double kVoxelSize = 0.2;
+constexpr double kVoxelSize = 0.2, kCoarse = 0.8;
 // Facets of 0.7 mm: bodies as large as a jaw, and ones whose leaves are reached in time.
 constexpr double kLarge = 40, kSmall = 5;
 constexpr int kLargeLevel = 7, kSmallLevel = 4;
@@ -60,10 +68,10 @@ Scene conformal(const test::ConformalPair& pair, const std::string& name) {
           places()};
 }
 
-Scene jaws() {
-  Scene scene{"jaws",
-              {build(upper_jaw(), kVoxelSize, SpherePolicy::kSlab),
-               build(lower_jaw(), kVoxelSize, SpherePolicy::kSlab)},
+Scene jaws(const std::string& name, double voxel_size) {
+  Scene scene{name,
+              {build(upper_jaw(), voxel_size, SpherePolicy::kSlab),
+               build(lower_jaw(), voxel_size, SpherePolicy::kSlab)},
               {}};
   for (const double dz : kClosing) scene.poses.push_back(closing(dz));
   return scene;
@@ -137,10 +145,13 @@ class Overruns {
   double away_ = 0;
 };
 
-void within(benchmark::State& state, std::chrono::microseconds given, const std::string& name,
-            const Make& make) {
+enum class Verb : std::uint8_t { kLeafPairs, kContacts };
+
+void within(benchmark::State& state, std::chrono::microseconds given, Verb verb,
+            const std::string& name, const Make& make) {
   const Scene& scene = made(name, make);
   Query query(scene.trees.first, scene.trees.second, slabs());
+  ContactManifold manifold(scene.trees.first, scene.trees.second, SpherePolicy::kSlab);
   std::vector<LeafPair> leaf_pairs(kContacts);
   Overruns of_query, of_loop;
   std::size_t turn = 0, complete = 0;
@@ -149,7 +160,9 @@ void within(benchmark::State& state, std::chrono::microseconds given, const std:
     const Eigen::Isometry3d& pose = scene.poses[turn++ % scene.poses.size()];
     QueryResult result;
     of_query.measure(given, [&](Clock::time_point deadline) {
-      result = query.leaf_pairs(pose, leaf_pairs, {.deadline = deadline});
+      const Budget budget{.deadline = deadline};
+      result = verb == Verb::kContacts ? query.contacts(pose, manifold, budget)
+                                       : query.leaf_pairs(pose, leaf_pairs, budget);
     });
     of_loop.measure(given, [](Clock::time_point deadline) {
       while (Clock::now() < deadline) {
@@ -165,11 +178,12 @@ void within(benchmark::State& state, std::chrono::microseconds given, const std:
   state.counters["complete"] = static_cast<double>(complete) / queries;
   state.counters["tests"] = tests / queries;
   state.counters["most_pairs"] = most_pairs;
+  state.counters["n"] = queries;
 }
 
 std::int64_t queries() {
   const char* named = std::getenv("IST_DEADLINE_QUERIES");
-  return named != nullptr ? std::atoll(named) : 100'000;
+  return named != nullptr ? std::atoll(named) : rounds(50'000);
 }
 
 void add(const std::string& name, const Make& make) {
@@ -179,10 +193,14 @@ void add(const std::string& name, const Make& make) {
       ->Unit(benchmark::kMicrosecond)
       ->UseManualTime();
   const auto add_within = [&](std::chrono::microseconds given, std::int64_t count) {
-    benchmark::RegisterBenchmark(("within_" + std::to_string(given.count()) + "us/" + name).c_str(),
-                                 [=](benchmark::State& state) { within(state, given, name, make); })
-        ->Iterations(count)
-        ->Unit(benchmark::kMicrosecond);
+    for (const auto& [verb, verb_name] :
+         {std::pair(Verb::kLeafPairs, "leaf_pairs"), std::pair(Verb::kContacts, "contacts")}) {
+      benchmark::RegisterBenchmark(
+          ("within_" + std::to_string(given.count()) + "us/" + verb_name + "/" + name).c_str(),
+          [=, verb = verb](benchmark::State& state) { within(state, given, verb, name, make); })
+          ->Iterations(count)
+          ->Unit(benchmark::kMicrosecond);
+    }
   };
   add_within(std::chrono::microseconds(100), queries());
   if (name.starts_with("small")) add_within(std::chrono::microseconds(1000), queries() / 10);
@@ -193,7 +211,8 @@ const int kRegistered = [] {
                            const std::function<test::ConformalPair()>& of) {
     add(name, [=] { return conformal(of(), name); });
   };
-  add("jaws", jaws);
+  add("jaws", [] { return jaws("jaws", kVoxelSize); });
+  add("coarse_jaws", [] { return jaws("coarse_jaws", kCoarse); });
   add_pair("shells/0.5", [] { return test::shell_in_shell(kLargeLevel, kLarge, 0.5); });
   add_pair("shells/0.05", [] { return test::shell_in_shell(kLargeLevel, kLarge, 0.05); });
   add_pair("peg/0.05", [] { return test::peg_in_hole(1 << kLargeLevel, kLarge, 0.05); });

@@ -104,6 +104,8 @@ void loop(benchmark::State& state, int workers, bool noisy) {
   state.counters["held"] = static_cast<double>(report.held);
   state.counters["contacts"] = static_cast<double>(end.contacts->leaf_pairs);
   state.counters["voxel_size"] = *scene.fixed.voxel_size;
+  state.counters["awake_us"] = microseconds(TickClock::kLead);
+  state.counters["neighbour_MB"] = static_cast<double>(NoisyNeighbour::kMegabytes);
   state.counters["denied"] = static_cast<double>(report.notes.size());
   state.SetLabel(joined(report.notes));
 }

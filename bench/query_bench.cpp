@@ -1,5 +1,5 @@
 // The fast query along a closing: by voxel size, policy, instruction set and workers, back to back
-// and paced at 1 kHz; beside the published query in one run; and with the second worker stalled.
+// and paced at 1 kHz; and with the second worker stalled.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "ist/query/query.h"
-#include "ist/query/reference/reference_query.h"
 #include "ist/query/workers/resident_worker.h"
 #include "simd/dispatch.h"
 #include "support/bodies.h"
@@ -117,42 +116,6 @@ class Closing {
   std::size_t bytes_ = 0;
 };
 
-// The published query, one worker and two, in turn: what the ratios of perf/ are made of.
-void beside_reference(benchmark::State& state, double dz) {
-  const auto& [fixed, moving] = trees(0.2);
-  ReferenceQuery reference(fixed, moving, SpherePolicy::kTable);
-  QueryOptions serial, helped;
-  helped.workers = 2;
-  helped.period = std::chrono::nanoseconds(0);
-  Query one(fixed, moving, serial), two(fixed, moving, helped);
-  std::vector<LeafPair> leaf_pairs(kContacts);
-  Latencies of_reference, of_one, of_two;
-  const auto ask = [&](auto& query, Latencies& latencies) {
-    QueryResult result;
-    for (const double other : kClosing) {
-      const auto begin = Clock::now();
-      result = query.leaf_pairs(closing(other), leaf_pairs);
-      if (other == dz) latencies.add(microseconds(begin, Clock::now()));
-    }
-    return result;
-  };
-  for (auto _ : state) {
-    static_cast<void>(ask(reference, of_reference));
-    for (int i = 0; i < 10; ++i) static_cast<void>(ask(one, of_one));
-    for (int i = 0; i < 10; ++i) static_cast<void>(ask(two, of_two));
-  }
-  const double published = of_reference.quantile(0.5);
-  const QueryResult result = reference.leaf_pairs(closing(dz), leaf_pairs);
-  state.counters["reference_us"] = published;
-  state.counters["reference_ns_a_test"] =
-      1e3 * published / static_cast<double>(result.sphere_tests);
-  state.counters["one_us"] = of_one.quantile(0.5);
-  state.counters["two_us"] = of_two.quantile(0.5);
-  state.counters["one_times"] = published / of_one.quantile(0.5);
-  state.counters["two_times"] = published / of_two.quantile(0.5);
-  state.SetLabel(pair_name());
-}
-
 std::atomic<bool> stalled{false};
 
 // The worker stands still for 50 ms at a time, wherever it is handed something; what the caller
@@ -217,12 +180,6 @@ QueryOptions options(SpherePolicy policy, int workers, std::string target = "") 
 }
 
 const int kRegistered = [] {
-  for (const double dz : kClosing) {
-    benchmark::RegisterBenchmark(("beside_reference/" + number(dz)).c_str(),
-                                 [dz](benchmark::State& state) { beside_reference(state, dz); })
-        ->Iterations(10)
-        ->Unit(benchmark::kMillisecond);
-  }
   for (const double size : {0.8, 0.4, 0.2}) {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const int workers : {1, 2}) {

@@ -11,6 +11,8 @@ import re
 import statistics
 import sys
 
+from report.figures import machine_state, stamp
+
 POLICIES = ("table", "tight", "slab")
 
 
@@ -44,12 +46,13 @@ def main(results, page):
     coarse, fine = rows[max(rows)], rows[min(rows)]
     growth = {p: math.log(fine[p]["real_time"] / coarse[p]["real_time"]) / math.log(fine[p]["leaves"] / coarse[p]["leaves"])
               for p in POLICIES}
-    first, date = data["benchmarks"][0], data["context"]["date"][:10]
+    first, context = data["benchmarks"][0], data["context"]
     text = (
         f"Building a tree from the {first['label']} upper jaw ({first['triangles']:,.0f} triangles), two cores, medians"
-        f" ({pathlib.Path(results).resolve().parent.name}, {date}). From {max(rows):g} to {min(rows):g} the time grows as"
+        f" ({pathlib.Path(results).resolve().parent.name}). From {max(rows):g} to {min(rows):g} the time grows as"
         f" voxels^{growth['table']:.2f}, with `tight` as voxels^{growth['tight']:.2f} and with `slab` as"
-        f" voxels^{growth['slab']:.2f}; the peak is that of `slab`, the default.\n\n" + "\n".join(lines))
+        f" voxels^{growth['slab']:.2f}; the peak is that of `slab`, the default.\n\n" + "\n".join(lines)
+        + "\n\n" + stamp(context["commit"], context["date"][:10], "build_bench", machine_state(context)))
     file = pathlib.Path(page)
     marked = re.compile(r"<!-- build table -->.*?(?=\n## |\Z)", re.S)
     file.write_text(marked.sub(lambda _: f"<!-- build table -->\n{text}\n", file.read_text()))

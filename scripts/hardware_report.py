@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 
+from report.figures import here, stamp, stamped
 from report.results import Results
 from report.text import number, table
 
@@ -152,10 +153,10 @@ def main():
     runs = results.runs("hardware_bench", "hardware")
     context = results.context("hardware_bench")
     clock, said = placed(made)
-    lines = [HEAD.format(latency=latency), *synthesis(made), "", *said, "", *near_misses(runs), "",
-             *worst_tick(runs, latency, clock), "",
-             f"Counts on a {runs[0]['label']} pair of jaws, lengths in millimetres; commit {context['commit']},"
-             f" {context['date'][:10]}. The counts do not depend", "on the machine."]
+    counted = stamp(context["commit"], context["date"][:10], "hardware_bench")
+    lines = [HEAD.format(latency=latency), *stamped(synthesis(made), stamp(*here(), "hardware_report.sh")), "", *said, "",
+             *stamped([*near_misses(runs), "", *worst_tick(runs, latency, clock)], counted), "",
+             f"Counts on a {runs[0]['label']} pair of jaws, lengths in millimetres. The counts do not depend on the machine."]
     file.write_text("\n".join(lines) + "\n")
 
 

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 from mutants import MUTANTS
+from report.figures import stamp
 
 ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "build/mutants/source"
@@ -127,6 +128,11 @@ def commit():
     return head + ("+" if changed.strip() else "")
 
 
+def date_of(name):
+    return subprocess.run(["git", "-C", ROOT, "show", "-s", "--format=%cs", name.rstrip("+")], capture_output=True, text=True,
+                          check=True).stdout.strip()
+
+
 def write_table(found):
     """Writes the results and perf/MUTANTS.md; mutants that never ran are marked "not run"."""
     names = {mutant.name for mutant in MUTANTS}
@@ -143,7 +149,10 @@ def write_table(found):
         killed += killer not in (None, "not run")
         files = ", ".join(sorted({f"`{Path(file).name}`" for file, _, _ in mutant.edits}))
         lines.append(f"| {mutant.name} | {mutant.breaks} | {files} | {killer or '**survives**'} |")
-    lines += ["", f"{killed} of {len(MUTANTS)} killed, at {'commit' if len(commits) == 1 else 'commits'} {', '.join(commits)}."]
+    lines += ["", f"{killed} of {len(MUTANTS)} killed."]
+    for name in commits:
+        ran = sum(row["commit"] == name for row in known.values())
+        lines += ["", stamp(name, date_of(name), "mutate.sh", f"{ran} of them ran there.")]
     (ROOT / "perf/MUTANTS.md").write_text("\n".join(lines) + "\n")
 
 

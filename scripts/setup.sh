@@ -20,7 +20,7 @@ packages=(g++ cmake ninja-build pkg-config
   libtomlplusplus-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libpng-dev
   libgtest-dev libgmp-dev python3 valgrind clang-14
-  binutils dpkg-dev file)
+  binutils dpkg-dev file locales)
 bench=(libbenchmark-dev python3-matplotlib)
 cross=(clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
   libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64

@@ -9,6 +9,8 @@ import sys
 
 import matplotlib
 
+from report.figures import here, stamp
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.colors import SymLogNorm
@@ -100,7 +102,7 @@ def main():
         f"  {HIGHEST} times the computed border. It is above 1 where the contact yields beside the coupling: a wall is no",
         "  stiffer than both in series, and the loop assumes a contact steeper than it is, which damps.", "",
         "![Energy returned by a press over device damping and stiffness](pictures/stability_border.svg)", "",
-        *rows, ""]
+        *rows, "", stamp(*here(), "stability_border.sh"), ""]
     (folder / "HAPTIC_STABILITY.md").write_text("\n".join(lines))
     if broken:
         sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")

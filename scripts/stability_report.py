@@ -9,6 +9,8 @@ import sys
 
 import matplotlib
 
+from report.figures import here, stamp
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
@@ -89,7 +91,7 @@ def main():
     for group, title in GROUPS.items():
         chosen = [case for case in cases if case["group"] == group]
         if chosen:
-            lines += [f"## {title}", "", *table(chosen), ""]
+            lines += [f"## {title}", "", *table(chosen), "", stamp(*here(), "stability_report.sh"), ""]
     (folder / "STABILITY.md").write_text("\n".join(lines))
     if broken:
         print(f"stability_report: {len(broken)} cases break their guarantee", file=sys.stderr)

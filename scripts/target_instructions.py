@@ -10,6 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from report.figures import here, stamp
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/performance.md"
 BEGIN, END = "<!-- instruction table -->\n", "<!-- end of instruction table -->\n"
@@ -65,6 +67,7 @@ def main():
             listed, tests, pairs = asked["leaf_pairs"]
             summed = asked["contacts"][0]
             lines.append(f"| {platform} | `{target}` | {listed:,} | {listed / tests:.1f} | {summed:,} | {(summed - listed) / pairs:.0f} |\n")
+    lines += ["\n", stamp(*here(), "target_instructions.py"), "\n"]
     PAGE.write_text(before + BEGIN + "".join(lines) + END + after)
     print("".join(lines), end="")
 

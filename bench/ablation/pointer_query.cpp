@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "ist/base/float_environment.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/tree/bounds.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::bench {
@@ -20,109 +23,155 @@ bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noex
   return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
 }
 
+struct NoSlab {};
+
+// Only kSlab carries slabs.
+template <bool kSlabs>
+struct PointerVisit {
+  const PointerNode* node;
+  Ball ball;                                                            // in the fixed tree's frame
+  [[no_unique_address]] std::conditional_t<kSlabs, Slab, NoSlab> slab;  // in the fixed tree's frame
+};
+
+template <bool kSlabs>
+struct PointerChildren {
+  int count;
+  PointerVisit<kSlabs> visits[8];
+};
+
+// One descent of both trees.
+template <bool kSlabs>
+class PointerDescent {
+  using Visit = PointerVisit<kSlabs>;
+  using Children = PointerChildren<kSlabs>;
+  using Body = PointerQuery::Body;
+
+ public:
+  PointerDescent(const Body& fixed, const Body& moving, SpherePolicy policy,
+                 const RelativePose& pose, std::vector<LeafPair>& found)
+      : fixed_(fixed), moving_(moving), policy_(policy), pose_(pose), found_(found) {
+    const double reach = fixed.tree.bounding_radius() + moving.tree.bounding_radius();
+    const double farthest = pose.translation.cwiseAbs().maxCoeff();
+    pad_ = pad_in_double(reach, farthest);
+    const Visit a = visit(fixed.tree, fixed.pointers.root(), 0, 0);
+    Visit b = visit(moving.tree, moving.pointers.root(), 0, 0);
+    to_fixed_frame(b);
+    if (touch(a, b) && farthest <= reach + pad_) descend(a, b);
+  }
+
+  [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
+  [[nodiscard]] double pad() const noexcept { return pad_; }
+
+ private:
+  // `node` is child `slot` of `parent`, by the parent's index in the linear octree.
+  [[nodiscard]] Visit visit(const SphereTree& tree, const PointerNode& node, std::uint32_t parent,
+                            int slot) const {
+    Visit visit;
+    visit.node = &node;
+    visit.ball = is_implicit(policy_) ? implicit_ball(policy_, tree.parts().lattice, node.level,
+                                                      node.cube_centre, node.mask)
+                                      : tree.parts().saved_ball(node.level, parent, slot);
+    if constexpr (kSlabs) visit.slab = tree.parts().saved_slab(node.level, parent, slot);
+    return visit;
+  }
+
+  void open(const SphereTree& tree, const PointerNode& node, Children& children) const {
+    children.count = 0;
+    for (const auto& child : node.children) {
+      if (child == nullptr) continue;
+      children.visits[children.count] = visit(tree, *child, node.index, children.count);
+      ++children.count;
+    }
+  }
+
+  void to_fixed_frame(Visit& visit) const noexcept {
+    const Eigen::Matrix3d& r = pose_.rotation;
+    const auto turned = [&r](const Eigen::Vector3d& v) {
+      return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
+                             (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
+                             (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
+    };
+    visit.ball.centre = turned(visit.ball.centre) + pose_.translation;
+    if constexpr (kSlabs) visit.slab.normal = turned(visit.slab.normal);
+  }
+
+  [[nodiscard]] bool touch(const Visit& a, const Visit& b) noexcept {
+    ++tests_;
+    const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+    const double reach = (a.ball.radius + b.ball.radius) + pad_;
+    if (dot(apart, apart) > reach * reach) return false;
+    if constexpr (kSlabs) {
+      return !(beyond(a.slab, apart, b.ball.radius + pad_) ||
+               beyond(b.slab, -apart, a.ball.radius + pad_));
+    }
+    return true;
+  }
+
+  void descend(const Visit& a, const Visit& b) {
+    if (a.node->level == 0 && b.node->level == 0) {
+      found_.push_back({a.node->index, b.node->index});
+      return;
+    }
+    const double edge_a = fixed_.tree.parts().lattice.edge(a.node->level);
+    const double edge_b = moving_.tree.parts().lattice.edge(b.node->level);
+    Children of_a, of_b;
+    if (descends(a.node->level, edge_a, b.node->level, edge_b)) {
+      open(fixed_.tree, *a.node, of_a);
+    } else {
+      of_a.count = 1;
+      of_a.visits[0] = a;
+    }
+    if (descends(b.node->level, edge_b, a.node->level, edge_a)) {
+      open(moving_.tree, *b.node, of_b);
+      for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.visits[j]);
+    } else {
+      of_b.count = 1;
+      of_b.visits[0] = b;
+    }
+    for (int i = 0; i < of_a.count; ++i) {
+      for (int j = 0; j < of_b.count; ++j) {
+        if (touch(of_a.visits[i], of_b.visits[j])) descend(of_a.visits[i], of_b.visits[j]);
+      }
+    }
+  }
+
+  const Body &fixed_, &moving_;
+  const SpherePolicy policy_;
+  const RelativePose pose_;
+  double pad_ = 0;  // mesh units: the error that a test allows for
+  std::uint64_t tests_ = 0;
+  std::vector<LeafPair>& found_;
+};
+
 }  // namespace
 
 QueryResult PointerQuery::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
   const ScopedFloatEnvironment environment;
-  QueryResult result;
   const std::optional<RelativePose> relative =
       relative_pose(pose, fixed_.tree.parts().lattice, moving_.tree.parts().lattice);
   if (!relative) {
+    QueryResult result;
     result.status = QueryStatus::kInvalidPose;
     result.complete = false;
     return result;
   }
-  pose_ = *relative;
-  const double reach = fixed_.tree.bounding_radius() + moving_.tree.bounding_radius();
-  const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  slack_ = pad_in_double(reach, farthest);
-  tests_ = 0;
+  return policy_ == SpherePolicy::kSlab ? search<true>(*relative, out)
+                                        : search<false>(*relative, out);
+}
+
+template <bool kSlabs>
+QueryResult PointerQuery::search(const RelativePose& pose, std::span<LeafPair> out) {
   found_.clear();
-
-  const Visit a = visit(fixed_.tree, fixed_.pointers.root(), 0, 0);
-  Visit b = visit(moving_.tree, moving_.pointers.root(), 0, 0);
-  to_fixed_frame(b);
-  if (touch(a, b) && farthest <= reach + slack_) descend(a, b);
-
+  const PointerDescent<kSlabs> descent(fixed_, moving_, policy_, pose, found_);
   std::stable_sort(found_.begin(), found_.end(),
                    [](const LeafPair& x, const LeafPair& y) { return x.fixed < y.fixed; });
   std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
+  QueryResult result;
   result.leaf_pairs = found_.size();
   result.truncated = found_.size() > out.size();
-  result.sphere_tests = tests_;
-  result.pad = 2 * slack_;
+  result.sphere_tests = descent.tests();
+  result.pad = 2 * descent.pad();
   return result;
-}
-
-PointerQuery::Visit PointerQuery::visit(const SphereTree& tree, const PointerNode& node,
-                                        std::uint32_t parent, int slot) const {
-  Visit visit;
-  visit.node = &node;
-  visit.ball = is_implicit(policy_) ? implicit_ball(policy_, tree.parts().lattice, node.level,
-                                                    node.cube_centre, node.mask)
-                                    : tree.parts().saved_ball(node.level, parent, slot);
-  if (policy_ == SpherePolicy::kSlab)
-    visit.slab = tree.parts().saved_slab(node.level, parent, slot);
-  return visit;
-}
-
-void PointerQuery::open(const SphereTree& tree, const PointerNode& node, Children& children) const {
-  children.count = 0;
-  for (const auto& child : node.children) {
-    if (child == nullptr) continue;
-    children.visits[children.count] = visit(tree, *child, node.index, children.count);
-    ++children.count;
-  }
-}
-
-void PointerQuery::to_fixed_frame(Visit& visit) const noexcept {
-  const Eigen::Matrix3d& r = pose_.rotation;
-  const auto turned = [&r](const Eigen::Vector3d& v) {
-    return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
-                           (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
-                           (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
-  };
-  visit.ball.centre = turned(visit.ball.centre) + pose_.translation;
-  if (policy_ == SpherePolicy::kSlab) visit.slab.normal = turned(visit.slab.normal);
-}
-
-bool PointerQuery::touch(const Visit& a, const Visit& b) noexcept {
-  ++tests_;
-  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
-  const double reach = (a.ball.radius + b.ball.radius) + slack_;
-  if (dot(apart, apart) > reach * reach) return false;
-  return policy_ != SpherePolicy::kSlab || !(beyond(a.slab, apart, b.ball.radius + slack_) ||
-                                             beyond(b.slab, -apart, a.ball.radius + slack_));
-}
-
-void PointerQuery::descend(const Visit& a, const Visit& b) {
-  if (a.node->level == 0 && b.node->level == 0) {
-    found_.push_back({a.node->index, b.node->index});
-    return;
-  }
-  const double edge_a = fixed_.tree.parts().lattice.edge(a.node->level);
-  const double edge_b = moving_.tree.parts().lattice.edge(b.node->level);
-  const bool open_a = descends(a.node->level, edge_a, b.node->level, edge_b);
-  const bool open_b = descends(b.node->level, edge_b, a.node->level, edge_a);
-  Children of_a, of_b;
-  if (open_a) {
-    open(fixed_.tree, *a.node, of_a);
-  } else {
-    of_a.count = 1;
-    of_a.visits[0] = a;
-  }
-  if (open_b) {
-    open(moving_.tree, *b.node, of_b);
-    for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.visits[j]);
-  } else {
-    of_b.count = 1;
-    of_b.visits[0] = b;
-  }
-  for (int i = 0; i < of_a.count; ++i) {
-    for (int j = 0; j < of_b.count; ++j) {
-      if (touch(of_a.visits[i], of_b.visits[j])) descend(of_a.visits[i], of_b.visits[j]);
-    }
-  }
 }
 
 }  // namespace ist::bench

@@ -1,16 +1,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "ablation/pointer_tree.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/results.h"
-#include "ist/tree/bounds.h"
 #include "ist/tree/sphere_tree.h"
-#include "ist/tree/tree_parts.h"
 
 namespace ist::bench {
 
@@ -32,33 +29,15 @@ class PointerQuery {
   PointerQuery(const Body& fixed, const Body& moving, SpherePolicy policy)
       : fixed_(fixed), moving_(moving), policy_(policy) {}
 
-  /// As ReferenceQuery::collide.
+  /// As ReferenceQuery::leaf_pairs.
   [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
 
  private:
-  struct Visit {
-    const PointerNode* node;
-    Ball ball;  // in the fixed tree's frame
-    Slab slab;  // likewise; with kSlab alone
-  };
-  struct Children {
-    int count;
-    Visit visits[8];
-  };
-
-  // `node` is child `slot` of `parent`, by that one's index in the linear octree.
-  [[nodiscard]] Visit visit(const SphereTree& tree, const PointerNode& node, std::uint32_t parent,
-                            int slot) const;
-  void open(const SphereTree& tree, const PointerNode& node, Children& children) const;
-  void to_fixed_frame(Visit& visit) const noexcept;
-  [[nodiscard]] bool touch(const Visit& a, const Visit& b) noexcept;
-  void descend(const Visit& a, const Visit& b);
+  template <bool kSlabs>
+  QueryResult search(const RelativePose& pose, std::span<LeafPair> out);
 
   Body fixed_, moving_;
   SpherePolicy policy_;
-  RelativePose pose_;
-  double slack_ = 0;  // what a test may err by, and a reach is grown by
-  std::uint64_t tests_ = 0;
   std::vector<LeafPair> found_;
 };
 

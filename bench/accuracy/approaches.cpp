@@ -18,7 +18,6 @@ Query& exact_query() {
 
 // Small turns need no sine: a quaternion of any length will do.
 Eigen::Matrix3d small_turn(test::Random& random) {
-  constexpr double kHalfTurn = 0.026;  // 3 degrees
   const Eigen::Vector3d half = random.point(-kHalfTurn, kHalfTurn);
   return Eigen::Quaterniond(1, half[0], half[1], half[2]).normalized().toRotationMatrix();
 }
@@ -30,7 +29,6 @@ Eigen::Vector3d centre(const TriangleMesh& mesh) {
 }
 
 std::vector<Approach> make_approaches() {
-  constexpr double kBeside = 0.36;  // 20 degrees
   std::vector<Approach> ways;
   test::Random random(7);
   const Eigen::Vector3d about = centre(lower_jaw());

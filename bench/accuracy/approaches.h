@@ -38,9 +38,9 @@ template <class Touches>
   return touching;
 }
 
-/// So many of them, always the same: turned by up to 3 degrees about each axis, inclined by
-/// up to 20 to each side, from where surfaces are kApart from each other at least. The exact
-/// contact is found by triangles.
+/// So many of them, always the same: turned by up to 3 degrees about each axis (kHalfTurn),
+/// inclined by up to 20 to each side (kBeside), from where surfaces are kApart from each other at
+/// least. The exact contact is found by triangles.
 [[nodiscard]] std::span<const Approach> approaches();
 
 /// How far apart the surfaces are, by triangles, to within 2e-6 mm.
@@ -48,6 +48,8 @@ template <class Touches>
 /// Whether triangles meet.
 [[nodiscard]] bool exact_touch(const Eigen::Isometry3d& pose);
 
+/// Tangents: of half the largest turn about an axis, and of the largest inclination to a side.
+inline constexpr double kHalfTurn = 0.026, kBeside = 0.36;
 /// Where on a way the jaws would be closed but for the turn, mm.
 inline constexpr double kWayBegin = 30;
 /// mm: a touch that is shorter may be passed over.

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -114,6 +116,10 @@ class Size {
     state.counters["error_p50"] = errors.quantile(0.5);
     state.counters["error_max"] = errors.quantile(1);
     state.counters["resolution"] = finder.triangles ? 0 : finder.resolution;
+    constexpr double kDegrees = 57.29577951308232;
+    state.counters["turned_degrees"] = 2 * kDegrees * std::atan(kHalfTurn);
+    state.counters["inclined_degrees"] = kDegrees * std::atan(kBeside);
+    state.counters["closing_poses"] = static_cast<double>(std::size(kClosing));
     state.counters["n"] = static_cast<double>(errors.size());
     state.counters["rounds"] = static_cast<double>(slowest_[at].size());
     state.counters["build_ms"] = bodies.milliseconds;

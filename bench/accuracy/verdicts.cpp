@@ -17,6 +17,9 @@ namespace {
 
 using Pose = Eigen::Isometry3d;
 
+// How far from first contact poses are, mm.
+constexpr double kBefore = 1.5, kBehind = 0.5;
+
 struct ChunkState {
   Pose pose;
   bool touch;  // of triangles
@@ -26,7 +29,6 @@ struct ChunkState {
 const std::vector<ChunkState>& verdicts() {
   static const std::vector<ChunkState> made = [] {
     constexpr int kAWay = 20;
-    constexpr double kBefore = 1.5, kBehind = 0.5;  // mm
     std::vector<ChunkState> all;
     test::Random random(11);
     for (const Approach& way : approaches()) {
@@ -122,6 +124,8 @@ void judge(benchmark::State& state, double voxel_size, SpherePolicy policy) {
         static_cast<double>(crossing(fixed, moving, closing(0), leaf_pairs));
   }
   const auto n = static_cast<double>(verdicts().size());
+  state.counters["before_mm"] = kBefore;
+  state.counters["behind_mm"] = kBehind;
   state.counters["n"] = n;
   state.counters["touching"] = touching;
   state.counters["missed"] = missed;

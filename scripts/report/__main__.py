@@ -3,13 +3,14 @@
 import pathlib
 import sys
 
-from report import ablation, accuracy, closing, guard, loop, peers, scaling, seed
+from report import ablation, accuracy, closing, deadlines, guard, loop, peers, scaling, seed
 from report.draw import Pictures
+from report.figures import machine_state, stamp, stamped
 from report.results import Results
 from report.runner import Runner
 from report.text import table
 
-CHAPTERS = [accuracy, seed, ablation, peers, scaling, loop, guard]
+CHAPTERS = [accuracy, seed, ablation, peers, scaling, deadlines, loop, guard]
 HEAD = """# What accuracy costs in time
 
 Made by `scripts/perf_report.sh` from the raw results in `{results}`; no number in it is typed by hand. Times are wall times
@@ -21,7 +22,7 @@ the text says which.
 A shared machine changes its speed within minutes, so the same query may take different times in different chapters: compare within one.
 These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, the article's rates, saved
 spheres, folding and levels, the parts of the query, and the peers. All others ran one after the other: voxel sizes, gaps,
-advice, one worker and two, the loop. The last chapter states the load of the machine.
+advice, one worker and two, deadlines, the loop. The last chapter states the load of the machine.
 """
 
 
@@ -32,20 +33,36 @@ def description(results, program):
     return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1], *level, f"commit {c['commit']}", c["date"][:10]])
 
 
+def with_stamps(lines, chapter, results):
+    """Returns the lines with a stamp below each table: of the program that its section names, or else of the chapter's first."""
+    if not chapter.PROGRAMS:
+        return lines
+    made, begins = [], [0, *(i for i, line in enumerate(lines) if line.startswith("#") and i > 0), len(lines)]
+    for begin, end in zip(begins, begins[1:]):
+        section = lines[begin:end]
+        program = getattr(chapter, "SECTIONS", {}).get(section[0].lstrip("# "), chapter.PROGRAMS[0]) if section else None
+        context = results.context(program)
+        made += stamped(section, stamp(context["commit"], context["date"][:10], program, machine_state(context)))
+    return made
+
+
 def made_with(results):
     """Returns the chapter on the machine and the programs."""
     rows = []
     for program in programs():
         c = results.context(program)
         load = ", ".join(f"{value:.1f}" for value in c["load_avg"])
-        rows.append([f"`{program}`", c["commit"], c["date"][:16].replace("T", " "), float(c["seconds"]), load])
+        loop = f"{c['loop_before']}, {c['loop_after']}" if "loop_before" in c else ""
+        rows.append([f"`{program}`", c["commit"], c["date"][:16].replace("T", " "), float(c["seconds"]), load, loop])
     first = results.context(seed.PROGRAMS[0])
     caches = ", ".join(f"L{c['level']} {c['type'].lower()} {c['size'] // 1024} KiB" for c in first["caches"])
     return ["## What it was made with", "",
             f"{first['processor']}, {first['num_cpus']} cores at {first['mhz_per_cpu']} MHz; {caches}. "
             f"{first['compiler']}; `{first['flags']}`.", "",
-            *table(["program", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)"], rows), "",
-            "A + after a commit says that the code had changes beside it."]
+            *table(["program", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)",
+                    "fixed loop before and after, µs"], rows), "",
+            "A + after a commit says that the code had changes beside it. The fixed loop reads no memory: its time shows the clock of the "
+            "core and other work on it."]
 
 
 def programs():
@@ -71,7 +88,7 @@ def main():
         lines += ["**A quick run: it shows that everything runs, and no number in it counts.**", ""]
     for chapter in CHAPTERS:
         machine = description(results, chapter.PROGRAMS[0]) if chapter.PROGRAMS else ""
-        lines += [*chapter.chapter(results, Pictures(folder, machine)), ""]
+        lines += [*with_stamps(chapter.chapter(results, Pictures(folder, machine)), chapter, results), ""]
     lines += made_with(results)
     report = out / "REPORT.md"
     report.write_text("\n".join(lines) + "\n")

@@ -5,6 +5,7 @@ from report.draw import style
 from report.text import number, table
 
 PROGRAMS = ["accuracy_bench", "advise_bench"]
+SECTIONS = {"Advice, held against this curve": "advise_bench"}  # tables of another program than the first
 POLICIES = ("simple", "table", "tight", "slab")
 BUDGET = 300  # µs, of the question that the first plot answers
 NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
@@ -37,12 +38,14 @@ def chapter(results, pictures):
 
 
 def _meaning(first):
+    some = first.runs[0]
     return [
-        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to 3 degrees about each axis and inclined by up to 20 to each side. The "
+        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to {number(some['turned_degrees'], 2)} degrees about each axis and inclined by "
+        f"up to {number(some['inclined_degrees'], 2)} to each side. The "
         "**error** is the distance of the surfaces, by exact triangles, when voxels first report a contact: "
         "the largest of all paths. A contact is never reported too late, and no error exceeds the certain bound: otherwise the program that measures "
         f"fails, and it did not. The **time** is the median ({first.rounds:.0f} rounds, all bounds of a voxel size in turns) of the slowest "
-        "pose, among five of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, written. This "
+        f"pose, among {some['closing_poses']:.0f} of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, written. This "
         "is the search's part of a tick; contact points and effects add to it.", ""]
 
 
@@ -142,11 +145,13 @@ def _advice(results, first):
                      run["slowest_us"], cell["budget"], f"{run['sizes']:.0f}", run["seconds"]])
     verdict = f"Of {known} recommendations on that curve {known - len(beyond) if beyond else 'all'} keep the limit" + (
         f"; the others are in bold, and exceed it by at most {100 * max(beyond):.0f} %." if beyond else ".")
+    some = results.runs("advise_bench", "advise")[0]
+    part = f"{100 * some['part_of_limit']:.0f} %"
     return ["### Advice, held against this curve", "",
-            "`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that keeps "
-            "80 % of the limit: its time at twelve poses of one straight closing, its error on that path and on six "
+            f"`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that keeps "
+            f"{part} of the limit: its time at {some['poses']:.0f} poses of one straight closing, its error on that path and on {some['paths_beside']:.0f} "
             "slightly inclined and turned ones. The columns beside show the curve of `slab` above, interpolated, for other poses, other paths and another time. As only "
-            "80 % of a budget are used, the recommended voxels are larger than the curve allows for all of it. " + verdict, "",
+            f"{part} of a budget are used, the recommended voxels are larger than the curve allows for all of it. " + verdict, "",
             *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
                    rows), ""]
 
@@ -158,7 +163,7 @@ def _verdicts(results):
     some = runs[0]
     missed = sum(run["missed"] for run in runs)
     return ["### Missed and false contacts", "",
-            f"Measured at {some['n']:.0f} poses from 1.5 mm before first contact to 0.5 mm behind it; triangles meet at "
+            f"Measured at {some['n']:.0f} poses from {some['before_mm']:g} mm before first contact to {some['behind_mm']:g} mm behind it; triangles meet at "
             f"{some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no triangles do. "
             "A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
             f"leaf pair would stop the program. **Missed in all: {missed:.0f}.**", "",

@@ -29,6 +29,8 @@ def chapter(_results, _pictures):
         "",
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows),
         "",
+        "Repeated by the test `QueryInstructions`.",
+        "",
         f"Compiled by {context['compiler']}, `{context['flags']}`: the build of the tests, with its assertions. "
         "`within_20000_tests` ends by its budget. "
         "`gap`, `touches` and `collide_exact` ask about triangles: their tests compare clusters of triangles, and cost more.",

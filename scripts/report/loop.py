@@ -27,8 +27,8 @@ def chapter(results, pictures):
              f"holds them closed, with contact, friction and damping, in voxels of {number(loop['voxel_size'])} mm. The lateness of a "
              "tick is the time from its scheduled to its actual begin. Its execution lasts until the wrench is written to "
              "the device. The neighbour is one thread for each core, of ordinary priority, that streams "
-             "through 64 MB of memory and computes. Three empty loops stand beside the loop: the first uses the loop's own "
-             "clock, which wakes 100 µs before a tick and waits awake; the second sleeps until the tick, by a timer at the "
+             f"through {number(loop['neighbour_MB'])} MB of memory and computes. Three empty loops stand beside the loop: the first uses the loop's own "
+             f"clock, which wakes {number(loop['awake_us'])} µs before a tick and waits awake; the second sleeps until the tick, by a timer at the "
              "loop's priority; the third sleeps in an ordinary thread. The last two show the machine's own wake-up "
              "latency.", "", _permitted(loop), ""]
     late = _picture(pictures, runs, "late", KINDS, "loop_late", "began late by more than, µs")

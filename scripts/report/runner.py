@@ -13,6 +13,11 @@ from report.stamp import stamp
 PROGRAMS = pathlib.Path("build/bench/bench")
 
 
+def fixed_loop():
+    """The median time of a fixed loop on this machine, µs, as a text."""
+    return subprocess.run([PROGRAMS / "fixed_loop"], capture_output=True, text=True, check=True).stdout.strip()
+
+
 class Runner:
     def __init__(self, results, context, quick):
         self.results, self.context = results, context
@@ -45,6 +50,7 @@ class Runner:
         if listed.returncode != 0:
             sys.exit(f"perf_report: {program}: {listed.stderr}")
         count = len(listed.stdout.splitlines())
+        loop_before = fixed_loop()
         part, begin = self.results / f"{program}.part", time.monotonic()
         with subprocess.Popen([*command, f"--benchmark_out={part}", "--benchmark_out_format=json"], env=self.environment,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
@@ -65,7 +71,8 @@ class Runner:
             part.unlink()
             sys.exit(f"perf_report: {program}: {wrong[0]['name']}: {wrong[0]['error_message']}")
         # Whole or not there: an interrupted run is run again.
-        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}"])
+        stamp(part, [*self.context, f"seconds={time.monotonic() - begin:.1f}", f"loop_before={loop_before}",
+                     f"loop_after={fixed_loop()}", f"load_after={os.getloadavg()[0]:.2f}"])
         part.rename(self.results / f"{program}.json")
 
 

@@ -7,6 +7,9 @@ namespace ist::cli {
 /// Returns "ist 0.1.0, commit 01234567".
 [[nodiscard]] std::string version_words();
 
+/// Returns the compiler and its version.
+[[nodiscard]] std::string compiler_words();
+
 /// Returns name and version, commit, compiler, instruction sets of this processor, and the version
 /// of tree files: a line each.
 [[nodiscard]] std::string version_lines();

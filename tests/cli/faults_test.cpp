@@ -88,6 +88,19 @@ TEST_F(Faults, ADiskThatFillsUpLeavesTheOlderFile) {
   }
 }
 
+// The folder has no room for the name of a file that is whole.
+TEST_F(Faults, ADiskThatIsFullAtTheRenameLeavesTheOlderFile) {
+  const std::string mesh = ball(), tree = fine_tree(), target = write("target.ply", "older");
+  for (std::vector<std::string> command : writers(mesh, tree)) {
+    command.push_back(target);
+    const auto before = folder();
+    const CommandResult result = with_failing_call("rename", 0, command);
+    EXPECT_EQ(result.exit_code, 1) << command[0];
+    EXPECT_TRUE(says(result.err, cannot("rename", target, "No space left on device")));
+    EXPECT_EQ(folder(), before) << command[0];
+  }
+}
+
 TEST_F(Faults, AReadOnlyFolderIsLeftAsItWas) {
   // Permissions do not bind root, unless it gives up what sets it above them.
   const std::string bound =

@@ -178,6 +178,27 @@ TEST_P(EveryEngine, MakesOneTestFarApart) {
   }
 }
 
+// The pad that docs/guarantees.md derives, from outside: of both bounding radii and the distance of
+// the frames, 17 last bits for a test in float and 24 for one in double; twice that for a pair of
+// leaves that is kept.
+TEST_P(EveryEngine, StatesAPadNoLargerThanDerived) {
+  for (const double far : {0.0, 1.0, 1000.0}) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      Eigen::Isometry3d pose = some_pose(seed);
+      pose.translation() *= 1 + far;
+      const Eigen::Vector3d apart = pose * moving_.origin() - fixed_.origin();
+      const double radii = fixed_.bounding_radius() + moving_.bounding_radius();
+      const double bits = GetParam().published
+                              ? 24 * (radii + std::sqrt(3.0) * apart.lpNorm<Eigen::Infinity>())
+                              : 17 * (radii + apart.norm());
+      const double pad = ask(query_, pose).result.pad;
+      EXPECT_GT(pad, 0);
+      EXPECT_LE(pad, 2 * 1.001 * bits * GetParam().last_bit())
+          << "at " << pose.translation().transpose();
+    }
+  }
+}
+
 // Circumspheres of cubes that meet in a corner touch in a point; the surfaces there may touch too.
 TEST_P(EveryEngine, FindsCubesThatTouchByACorner) {
   const SphereTree tree = tree_of(box({0, 0, 0}, {1, 1, 1}), 1);

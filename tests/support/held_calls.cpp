@@ -1,6 +1,7 @@
 // Preloaded into a command under test, so that system calls of it do not return: a disk or a clock
 // that stands still. IST_HOLD names the call, IST_HOLD_AFTER says how many of them return before,
-// and IST_HOLD_SIGN names a file that then appears. With IST_HOLD_FAILS they fail by EIO instead.
+// and IST_HOLD_SIGN names a file that then appears. With IST_HOLD_FAILS they fail instead, by EIO,
+// and rename() by ENOSPC, as where a folder has to grow on a full disk.
 
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -34,6 +35,14 @@ extern "C" int fsync(int descriptor) {
     return -1;
   }
   return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  if (hold("rename")) {
+    errno = ENOSPC;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
 extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* request,

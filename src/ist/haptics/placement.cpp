@@ -1,5 +1,6 @@
 #include "ist/haptics/placement.h"
 
+#include "ist/base/float_environment.h"
 #include "ist/base/pose.h"
 
 namespace ist {
@@ -48,6 +49,7 @@ std::optional<Placement> Placement::from(const Eigen::Isometry3d& pose) noexcept
 }
 
 Placement Placement::integrated_fast(const Vector6& motion) const noexcept {
+  const ScopedFloatEnvironment environment;
   return {turn_by(0.5 * motion.tail<3>()) * rotation, translation + motion.head<3>()};
 }
 
@@ -59,6 +61,7 @@ Placement Placement::moved(const Vector6& motion) const noexcept {
 }
 
 Vector6 motion_between(const Placement& from, const Placement& to) noexcept {
+  const ScopedFloatEnvironment environment;
   const Eigen::Matrix3d turn = to.rotation * from.rotation.transpose();
   // With the half angle's tangent t: the antisymmetric part is 2t/(1 + t²), 1 + trace 4/(1 + t²).
   const Eigen::Vector3d sine(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0),

@@ -35,6 +35,7 @@ void check(const ServoCallbackOptions& options) {
 
 ServoCallback::ServoCallback(Simulation& simulation, const ServoCallbackOptions& options)
     : simulation_(simulation), options_(options) {
+  const ScopedFloatEnvironment environment;
   check(options);
   period_ = seconds(simulation.dt());
   query_time_ = seconds(options.query_time_fraction * simulation.dt());

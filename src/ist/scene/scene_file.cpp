@@ -59,6 +59,7 @@ CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety)
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file) {
+  const ScopedFloatEnvironment environment;  // of the parser too
   TomlTable document = read_toml(file);
   return read_scene(file, document);
 }

@@ -91,7 +91,10 @@ int SphereTree::depth() const noexcept { return parts_->octree.depth(); }
 Orientation SphereTree::orientation() const noexcept { return parts_->orientation; }
 const MeshSource& SphereTree::source() const noexcept { return parts_->source; }
 bool SphereTree::has_proximity() const noexcept { return parts_->proximity.has_value(); }
-Eigen::Vector3d SphereTree::origin() const noexcept { return parts_->lattice.origin(); }
+Eigen::Vector3d SphereTree::origin() const noexcept {
+  const ScopedFloatEnvironment environment;
+  return parts_->lattice.origin();
+}
 double SphereTree::bounding_radius() const noexcept { return parts_->bounding_radius; }
 const TriangleMesh* SphereTree::triangles() const noexcept {
   return parts_->triangles ? &parts_->triangles->mesh : nullptr;
@@ -122,6 +125,7 @@ void SphereTree::require(SpherePolicy policy, std::string_view body) const {
 }
 
 double SphereTree::largest_leaf_radius(SpherePolicy policy) const noexcept {
+  const ScopedFloatEnvironment environment;
   return is_implicit(policy) ? 0.5 * voxel_size() * kSqrt3 : parts_->largest_saved_leaf;
 }
 

@@ -23,6 +23,21 @@ TEST(ResidentWorkerThread, RunsWhatItIsOfferedAndWhatItWroteIsSeen) {
   }
 }
 
+// By a schedule on which it never sleeps. Between two jobs, and where it is taken off its core, it
+// may not be there at once: an offer is made again a millisecond later, at most 100 times.
+TEST(ResidentWorkerThread, AcceptsEveryOfferWhileItIsAwake) {
+  const Awake awake;
+  ResidentWorker worker;
+  Counting counting;
+  for (int job = 1; job <= 1000; ++job) {
+    int offers = 1;
+    while (!worker.offer(counting.job) && ++offers <= 100) std::this_thread::sleep_for(1ms);
+    ASSERT_LE(offers, 100) << "job " << job;
+    counting.job.wait_idle();
+    ASSERT_EQ(counting.runs, job);
+  }
+}
+
 TEST(ResidentWorkerThread, RefusesAnOfferWhileItIsAtWork) {
   ResidentWorker worker;
   Counting first, second;

@@ -40,4 +40,13 @@ class Stall {
   static inline std::atomic<int> inside_{0};
 };
 
+/// Keeps the resident worker awake while it lives: an injected schedule.
+class Awake {
+ public:
+  Awake() { always_awake = true; }
+  ~Awake() { always_awake = false; }
+  Awake(const Awake&) = delete;
+  Awake& operator=(const Awake&) = delete;
+};
+
 }  // namespace ist::test

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ist/base/error.h"
+#include "ist/base/float_environment.h"
 
 namespace ist {
 namespace {
@@ -73,6 +74,7 @@ HandDevice::HandDevice(HandSettings settings)
       planned_(plan_.start()) {}
 
 std::optional<Placement> HandDevice::read() noexcept {
+  const ScopedFloatEnvironment environment;
   Vector6 seen = motion_between(plan_.start(), pose_);
   if (settings_.resolution > 0) {
     seen.head<3>() = quantised(seen.head<3>(), settings_.resolution);
@@ -87,6 +89,7 @@ std::optional<Placement> HandDevice::read() noexcept {
 }
 
 void HandDevice::write(const Vector6& wrench, double dt) noexcept {
+  const ScopedFloatEnvironment environment;
   constexpr double kRounding = 1 + 1e-9;
   if (!(dt * kRounding >= kShortestTick && dt <= kRounding * kLongestTick) || !wrench.allFinite())
     return;
@@ -139,6 +142,7 @@ void HandDevice::step(double h) noexcept {
 }
 
 double HandDevice::energy() const noexcept {
+  const ScopedFloatEnvironment environment;
   const Vector6 error = motion_between(pose_, planned_);
   const double cosine = half_cosine(error.tail<3>());
   // 4k (1 - cosine) without cancellation.

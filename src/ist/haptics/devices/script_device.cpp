@@ -123,6 +123,16 @@ class ScriptReader {
 ScriptDevice::ScriptDevice(std::vector<Waypoint> waypoints, const DeviceMechanics& mechanics)
     : plan_(std::move(waypoints)), mechanics_(mechanics) {}
 
+std::optional<Placement> ScriptDevice::read() noexcept {
+  const ScopedFloatEnvironment environment;
+  return plan_.at(time_).pose;
+}
+
+void ScriptDevice::write(const Vector6& /*wrench*/, double dt) noexcept {
+  const ScopedFloatEnvironment environment;
+  time_ += dt;
+}
+
 std::vector<Waypoint> read_script(const std::filesystem::path& file, double metres) {
   const ScopedFloatEnvironment environment;
   if (!(std::isfinite(metres) && metres > 0)) {

@@ -14,8 +14,8 @@ class ScriptDevice final : public Device {
   explicit ScriptDevice(std::vector<Waypoint> waypoints, const DeviceMechanics& mechanics = {});
 
   [[nodiscard]] DeviceMechanics mechanics() const noexcept override { return mechanics_; }
-  [[nodiscard]] std::optional<Placement> read() noexcept override { return plan_.at(time_).pose; }
-  void write(const Vector6& /*wrench*/, double dt) noexcept override { time_ += dt; }
+  [[nodiscard]] std::optional<Placement> read() noexcept override;
+  void write(const Vector6& wrench, double dt) noexcept override;
   /// Whether the time of the last waypoint has passed.
   [[nodiscard]] bool done() const noexcept override { return time_ > plan_.end(); }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "ist/base/float_environment.h"
@@ -13,7 +15,19 @@
 #include "ist/tree/tree_parts.h"
 
 namespace ist {
+namespace detail {
+
+// A tree, and its spheres if they are saved.
+struct ReferenceBody {
+  const SphereTree tree;  // shares the content
+  SavedSpheres saved;     // empty with kOnTheFly
+};
+
+}  // namespace detail
+
 namespace {
+
+using detail::ReferenceBody;
 
 double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -25,6 +39,160 @@ bool beyond(const Slab& slab, const Eigen::Vector3d& centre, double radius) noex
   return std::abs(dot(slab.normal, centre) - slab.offset) > slab.half + radius;
 }
 
+// Added to sums of radii, mesh units.
+struct Pads {
+  double ball, fixed_slab, moving_slab;
+};
+
+struct NoSlab {};
+
+// A node of a pair. Only kSlab carries slabs.
+template <bool kSlabs>
+struct ReferenceNode {
+  int level;
+  std::uint32_t index;
+  Eigen::Vector3d cube_centre;  // in voxel edges from the root cube's centre
+  Ball ball;                    // in the fixed tree's frame
+  [[no_unique_address]] std::conditional_t<kSlabs, Slab, NoSlab> slab;  // in the fixed tree's frame
+};
+
+template <bool kSlabs>
+struct ReferenceChildren {
+  int count;
+  ReferenceNode<kSlabs> nodes[8];
+};
+
+// One descent of both trees.
+template <bool kSlabs>
+class Descent {
+  using Node = ReferenceNode<kSlabs>;
+  using Children = ReferenceChildren<kSlabs>;
+
+ public:
+  Descent(const ReferenceBody& fixed, const ReferenceBody& moving, SpherePolicy policy,
+          const RelativePose& pose, std::vector<LeafPair>& found)
+      : fixed_(fixed), moving_(moving), policy_(policy), pose_(pose), found_(found) {
+    const double radius_sum = fixed.tree.bounding_radius() + moving.tree.bounding_radius();
+    const double farthest = pose.translation.cwiseAbs().maxCoeff();
+    set_pads(pad_in_double(radius_sum, farthest));
+    const Node a = root(fixed_);
+    Node b = root(moving_);
+    to_fixed_frame(b);
+    // Far apart, one coordinate decides, because the square of the distance overflows.
+    if (overlap(a, b) && farthest <= radius_sum + inner_.ball) descend(a, b);
+  }
+
+  [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
+  // The error that a test of leaves allows for, mesh units.
+  [[nodiscard]] double pad() const noexcept { return leaf_.ball; }
+
+ private:
+  // Reads the bounds of the node in child `slot` of `parent`.
+  void bound(const ReferenceBody& body, std::uint32_t parent, int slot, Node& node) const {
+    const detail::TreeParts& parts = body.tree.parts();
+    if (!body.saved.empty()) {
+      node.ball = body.saved[static_cast<std::size_t>(node.level)][node.index];
+    } else if (is_implicit(policy_)) {
+      node.ball = parts.ball(policy_, node.level, node.index, node.cube_centre);
+    } else {
+      node.ball = parts.saved_ball(node.level, parent, slot);
+    }
+    if constexpr (kSlabs) node.slab = parts.saved_slab(node.level, parent, slot);
+  }
+
+  [[nodiscard]] Node root(const ReferenceBody& body) const {
+    Node node{body.tree.depth(), 0, Eigen::Vector3d::Zero(), {}, {}};
+    bound(body, 0, 0, node);
+    return node;
+  }
+
+  void open(const ReferenceBody& body, const Node& node, Children& children) const {
+    const LinearOctree& octree = body.tree.parts().octree;
+    const double half = 0.5 * static_cast<double>(std::uint64_t{1} << (node.level - 1));
+    children.count = 0;
+    std::uint32_t index = octree.first_child(node.level, node.index);
+    for (unsigned bits = octree.mask(node.level, node.index); bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      const int slot = children.count++;
+      Node& child = children.nodes[slot];
+      child.level = node.level - 1;
+      child.index = index++;
+      child.cube_centre = {node.cube_centre[0] + ((k & 1) != 0 ? half : -half),
+                           node.cube_centre[1] + ((k & 2) != 0 ? half : -half),
+                           node.cube_centre[2] + ((k & 4) != 0 ? half : -half)};
+      bound(body, node.index, slot, child);
+    }
+  }
+
+  void to_fixed_frame(Node& node) const noexcept {
+    const Eigen::Matrix3d& r = pose_.rotation;
+    const auto turned = [&r](const Eigen::Vector3d& v) {
+      return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
+                             (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
+                             (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
+    };
+    node.ball.centre = turned(node.ball.centre) + pose_.translation;
+    if constexpr (kSlabs) node.slab.normal = turned(node.slab.normal);
+  }
+
+  // A pair of leaves that is kept may be twice the pad apart; an inner test errs by one pad more.
+  void set_pads(double pad) noexcept {
+    const double fixed_leaf = fixed_.tree.largest_leaf_radius(policy_),
+                 moving_leaf = moving_.tree.largest_leaf_radius(policy_);
+    leaf_ = {pad, pad, pad};
+    inner_ = {3 * pad, 3 * pad + slab_rise(fixed_.tree.voxel_size(), moving_leaf + 2 * pad),
+              3 * pad + slab_rise(moving_.tree.voxel_size(), fixed_leaf + 2 * pad)};
+  }
+
+  // Rejects by >, so that a NaN keeps the pair.
+  [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept {
+    ++tests_;
+    const Pads& pads = a.level == 0 && b.level == 0 ? leaf_ : inner_;
+    if (are_apart(a.ball, b.ball, pads.ball)) return false;
+    if constexpr (kSlabs) {
+      const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
+      return !(beyond(a.slab, apart, b.ball.radius + pads.fixed_slab) ||
+               beyond(b.slab, -apart, a.ball.radius + pads.moving_slab));
+    }
+    return true;
+  }
+
+  void descend(const Node& a, const Node& b) {
+    if (a.level == 0 && b.level == 0) {
+      found_.push_back({a.index, b.index});
+      return;
+    }
+    const double edge_a = fixed_.tree.parts().lattice.edge(a.level),
+                 edge_b = moving_.tree.parts().lattice.edge(b.level);
+    Children of_a, of_b;
+    if (descends(a.level, edge_a, b.level, edge_b)) {
+      open(fixed_, a, of_a);
+    } else {
+      of_a.count = 1;
+      of_a.nodes[0] = a;
+    }
+    if (descends(b.level, edge_b, a.level, edge_a)) {
+      open(moving_, b, of_b);
+      for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.nodes[j]);
+    } else {
+      of_b.count = 1;
+      of_b.nodes[0] = b;
+    }
+    for (int i = 0; i < of_a.count; ++i) {
+      for (int j = 0; j < of_b.count; ++j) {
+        if (overlap(of_a.nodes[i], of_b.nodes[j])) descend(of_a.nodes[i], of_b.nodes[j]);
+      }
+    }
+  }
+
+  const ReferenceBody &fixed_, &moving_;
+  const SpherePolicy policy_;
+  const RelativePose pose_;
+  Pads leaf_{}, inner_{};  // of pairs of leaves, and what nodes above such a pair must allow for
+  std::uint64_t tests_ = 0;
+  std::vector<LeafPair>& found_;
+};
+
 }  // namespace
 
 namespace detail {
@@ -32,186 +200,52 @@ namespace detail {
 struct ReferenceState {
   ReferenceState(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                  SphereSource source)
-      : fixed_(fixed), moving_(moving), policy_(policy) {
+      : fixed_{fixed, {}}, moving_{moving, {}}, policy_(policy) {
     fixed.require(policy, "fixed");
     moving.require(policy, "moving");
     const ScopedFloatEnvironment environment;
     if (source == SphereSource::kSaved) {
-      saved_fixed_ = save_spheres(fixed, policy);
-      saved_moving_ = save_spheres(moving, policy);
+      fixed_.saved = save_spheres(fixed, policy);
+      moving_.saved = save_spheres(moving, policy);
     }
   }
-  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out);
 
-  struct Node {
-    int level;
-    std::uint32_t index;
-    Eigen::Vector3d cube_centre;  // in voxel edges from the root cube's centre
-    Ball ball;                    // in the fixed tree's frame
-    Slab slab;                    // in the fixed tree's frame; with kSlab alone
-  };
-  struct Children {
-    int count;
-    Node nodes[8];
-  };
+  [[nodiscard]] QueryResult leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
+    const ScopedFloatEnvironment environment;
+    const std::optional<RelativePose> relative =
+        relative_pose(pose, fixed_.tree.parts().lattice, moving_.tree.parts().lattice);
+    if (!relative) {
+      QueryResult result;
+      result.status = QueryStatus::kInvalidPose;
+      result.complete = false;
+      return result;
+    }
+    return policy_ == SpherePolicy::kSlab ? search<true>(*relative, out)
+                                          : search<false>(*relative, out);
+  }
 
-  // Reads the bounds of the node in child `slot` of `parent`.
-  void bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent, int slot,
-             Node& node) const;
-  [[nodiscard]] Node root(const SphereTree& tree, const SavedSpheres& saved) const;
-  void open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
-            Children& children) const;
-  void to_fixed_frame(Node& node) const noexcept;
-  void set_pads(double pad) noexcept;
-  [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept;
-  void descend(const Node& a, const Node& b);
-
-  const SphereTree fixed_, moving_;  // which share the content
-  SpherePolicy policy_;
-  SavedSpheres saved_fixed_, saved_moving_;  // empty with kOnTheFly
-  RelativePose pose_;
-  // Added to sums of radii, mesh units: the error of a test of leaves (pad_in_double), and what
-  // nodes above a pair of leaves must allow for that is kept by it.
-  struct Pads {
-    double ball, fixed_slab, moving_slab;
-  };
-  Pads leaf_{}, inner_{};
-  std::uint64_t tests_ = 0;
-  std::vector<LeafPair> found_;
-};
-
-QueryResult ReferenceState::leaf_pairs(const Eigen::Isometry3d& pose, std::span<LeafPair> out) {
-  const ScopedFloatEnvironment environment;
-  QueryResult result;
-  const std::optional<RelativePose> relative =
-      relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
-  if (!relative) {
-    result.status = QueryStatus::kInvalidPose;
-    result.complete = false;
+ private:
+  template <bool kSlabs>
+  QueryResult search(const RelativePose& pose, std::span<LeafPair> out) {
+    found_.clear();
+    const Descent<kSlabs> descent(fixed_, moving_, policy_, pose, found_);
+    // Pairs of one fixed leaf were found in order, because moving nodes are descended in order.
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const LeafPair& x, const LeafPair& y) { return x.fixed < y.fixed; });
+    std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
+    QueryResult result;
+    result.leaf_pairs = found_.size();
+    result.truncated = found_.size() > out.size();
+    result.sphere_tests = descent.tests();
+    result.pad = 2 * descent.pad();
+    result.resolution = resolution_of(result, fixed_.tree, moving_.tree, policy_);
     return result;
   }
-  pose_ = *relative;
-  const double radius_sum = fixed_.bounding_radius() + moving_.bounding_radius();
-  const double farthest = pose_.translation.cwiseAbs().maxCoeff();
-  set_pads(pad_in_double(radius_sum, farthest));
-  tests_ = 0;
-  found_.clear();
 
-  const Node a = root(fixed_, saved_fixed_);
-  Node b = root(moving_, saved_moving_);
-  to_fixed_frame(b);
-  // Far apart, one coordinate decides, because the square of the distance overflows.
-  if (overlap(a, b) && farthest <= radius_sum + inner_.ball) descend(a, b);
-
-  // Pairs of one fixed leaf were found in order, because moving nodes are descended in order.
-  std::stable_sort(found_.begin(), found_.end(),
-                   [](const LeafPair& x, const LeafPair& y) { return x.fixed < y.fixed; });
-  std::copy_n(found_.begin(), std::min(found_.size(), out.size()), out.begin());
-  result.leaf_pairs = found_.size();
-  result.truncated = found_.size() > out.size();
-  result.sphere_tests = tests_;
-  result.pad = 2 * leaf_.ball;
-  result.resolution = resolution_of(result, fixed_, moving_, policy_);
-  return result;
-}
-
-void ReferenceState::bound(const SphereTree& tree, const SavedSpheres& saved, std::uint32_t parent,
-                           int slot, Node& node) const {
-  if (!saved.empty()) {
-    node.ball = saved[static_cast<std::size_t>(node.level)][node.index];
-  } else if (is_implicit(policy_)) {
-    node.ball = tree.parts().ball(policy_, node.level, node.index, node.cube_centre);
-  } else {
-    node.ball = tree.parts().saved_ball(node.level, parent, slot);
-  }
-  if (policy_ == SpherePolicy::kSlab) node.slab = tree.parts().saved_slab(node.level, parent, slot);
-}
-
-ReferenceState::Node ReferenceState::root(const SphereTree& tree, const SavedSpheres& saved) const {
-  Node node{tree.depth(), 0, Eigen::Vector3d::Zero(), {}, {}};
-  bound(tree, saved, 0, 0, node);
-  return node;
-}
-
-void ReferenceState::open(const SphereTree& tree, const SavedSpheres& saved, const Node& node,
-                          Children& children) const {
-  const LinearOctree& octree = tree.parts().octree;
-  const double half = 0.5 * static_cast<double>(std::uint64_t{1} << (node.level - 1));
-  children.count = 0;
-  std::uint32_t index = octree.first_child(node.level, node.index);
-  for (unsigned bits = octree.mask(node.level, node.index); bits != 0; bits &= bits - 1) {
-    const int k = std::countr_zero(bits);
-    const int slot = children.count++;
-    Node& child = children.nodes[slot];
-    child.level = node.level - 1;
-    child.index = index++;
-    child.cube_centre = {node.cube_centre[0] + ((k & 1) != 0 ? half : -half),
-                         node.cube_centre[1] + ((k & 2) != 0 ? half : -half),
-                         node.cube_centre[2] + ((k & 4) != 0 ? half : -half)};
-    bound(tree, saved, node.index, slot, child);
-  }
-}
-
-void ReferenceState::to_fixed_frame(Node& node) const noexcept {
-  const Eigen::Matrix3d& r = pose_.rotation;
-  const auto turned = [&r](const Eigen::Vector3d& v) {
-    return Eigen::Vector3d((r(0, 0) * v[0] + r(0, 1) * v[1]) + r(0, 2) * v[2],
-                           (r(1, 0) * v[0] + r(1, 1) * v[1]) + r(1, 2) * v[2],
-                           (r(2, 0) * v[0] + r(2, 1) * v[1]) + r(2, 2) * v[2]);
-  };
-  node.ball.centre = turned(node.ball.centre) + pose_.translation;
-  if (policy_ == SpherePolicy::kSlab) node.slab.normal = turned(node.slab.normal);
-}
-
-// A pair of leaves that is kept may be twice the pad apart; an inner test errs by one pad more.
-void ReferenceState::set_pads(double pad) noexcept {
-  const double fixed_leaf = fixed_.largest_leaf_radius(policy_),
-               moving_leaf = moving_.largest_leaf_radius(policy_);
-  leaf_ = {pad, pad, pad};
-  inner_ = {3 * pad, 3 * pad + slab_rise(fixed_.voxel_size(), moving_leaf + 2 * pad),
-            3 * pad + slab_rise(moving_.voxel_size(), fixed_leaf + 2 * pad)};
-}
-
-// Rejects by >, so that a NaN keeps the pair.
-bool ReferenceState::overlap(const Node& a, const Node& b) noexcept {
-  ++tests_;
-  const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
-  const Pads& pads = a.level == 0 && b.level == 0 ? leaf_ : inner_;
-  if (are_apart(a.ball, b.ball, pads.ball)) return false;
-  return policy_ != SpherePolicy::kSlab ||
-         !(beyond(a.slab, apart, b.ball.radius + pads.fixed_slab) ||
-           beyond(b.slab, -apart, a.ball.radius + pads.moving_slab));
-}
-
-void ReferenceState::descend(const Node& a, const Node& b) {
-  if (a.level == 0 && b.level == 0) {
-    found_.push_back({a.index, b.index});
-    return;
-  }
-  const double edge_a = fixed_.parts().lattice.edge(a.level),
-               edge_b = moving_.parts().lattice.edge(b.level);
-  const bool open_a = descends(a.level, edge_a, b.level, edge_b);
-  const bool open_b = descends(b.level, edge_b, a.level, edge_a);
-  Children of_a, of_b;
-  if (open_a) {
-    open(fixed_, saved_fixed_, a, of_a);
-  } else {
-    of_a.count = 1;
-    of_a.nodes[0] = a;
-  }
-  if (open_b) {
-    open(moving_, saved_moving_, b, of_b);
-    for (int j = 0; j < of_b.count; ++j) to_fixed_frame(of_b.nodes[j]);
-  } else {
-    of_b.count = 1;
-    of_b.nodes[0] = b;
-  }
-  for (int i = 0; i < of_a.count; ++i) {
-    for (int j = 0; j < of_b.count; ++j) {
-      if (overlap(of_a.nodes[i], of_b.nodes[j])) descend(of_a.nodes[i], of_b.nodes[j]);
-    }
-  }
-}
+  ReferenceBody fixed_, moving_;
+  SpherePolicy policy_;
+  std::vector<LeafPair> found_;
+};
 
 }  // namespace detail
 

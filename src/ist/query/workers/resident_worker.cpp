@@ -57,7 +57,9 @@ class WorkerLoop {
       if (tick != tick_) sign_ = now;
       tick_ = tick;
       const Nanoseconds period(last_period.load(std::memory_order_relaxed));
-      const Clock::time_point look = next_look(now, time_of(tick), sign_, period);
+      const Clock::time_point look = always_awake.load(std::memory_order_relaxed)
+                                         ? now
+                                         : next_look(now, time_of(tick), sign_, period);
       if (look <= now) {
         poll();
         if (now - meter_.last_read() > 1ms) meter_.read(now);

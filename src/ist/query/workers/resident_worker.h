@@ -103,6 +103,10 @@ enum class HandOver : std::uint8_t {
 /// worker reads it: one load of a cache line that nobody writes.
 inline std::atomic<void (*)(HandOver) noexcept> hand_over_hook{nullptr};
 
+/// A test's schedule in place of that of worker_schedule.h: while this is true the worker polls all
+/// the time, so that every offer finds it awake. Only the worker reads it.
+inline std::atomic<bool> always_awake{false};
+
 /// Calls the hook for the point `at`. Jobs call it for kClaimed and kWorked.
 inline void hand_over(HandOver at) noexcept {
   if (const auto hook = hand_over_hook.load(std::memory_order_acquire)) hook(at);

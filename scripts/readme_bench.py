@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""Writes the figures of the README: the ratios that `ist bench` prints on this machine.
+
+    scripts/readme_bench.py     after cmake --preset release && cmake --build --preset release; on a quiet machine
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+from report.figures import ROOT, here, stamp
+
+PROGRAM, PAGE = ROOT / "build/release/ist", ROOT / "README.md"
+BEGIN, END = "<!-- ist bench -->\n", "<!-- end of ist bench -->\n"
+
+
+def ratios(printed):
+    """Returns what `ist bench` prints before the times of each query, and refuses a busy machine."""
+    noise = re.search(r"^not a quiet machine: .*", printed, re.M)
+    if noise:
+        sys.exit(f"readme_bench: {noise.group(0)}: wait until nothing else runs")
+    before, found, _ = printed.partition("\nµs a query")
+    if not found:
+        sys.exit(f"readme_bench: {PROGRAM} bench prints no times")
+    return before.rstrip() + "\n"
+
+
+def main():
+    commit, date = here()
+    if commit.endswith("+"):
+        sys.exit("readme_bench: the code differs from its commit: commit it first, so that the figures name what they are of")
+    said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+    built = re.search(r"commit (\w+)", said).group(1)
+    if not built.startswith(commit):
+        sys.exit(f"readme_bench: {PROGRAM} was built at {built}, and this is {commit}: cmake --build --preset release")
+    done = subprocess.run([PROGRAM, "bench"], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"readme_bench: ist bench: {done.stderr}")
+    text = (f"<!-- snippet: output varies, since it is times -->\n```sh\nist bench\n```\n\n```\n{ratios(done.stdout)}```\n\n"
+            f"{stamp(commit, date, 'ist bench')}\n")
+    page = PAGE.read_text()
+    before, begin, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        sys.exit(f"readme_bench: README.md has no place for the figures: {BEGIN.strip()} and its end")
+    PAGE.write_text(before + BEGIN + text + END + after)
+    print("README.md", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:]:
+        print(__doc__.strip())
+        sys.exit(0 if sys.argv[1] in ("-h", "--help") else 2)
+    main()

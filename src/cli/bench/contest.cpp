@@ -1,0 +1,59 @@
+#include "cli/bench/contest.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli/bench/fixed_loop.h"
+
+namespace ist::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Long enough that a second worker, which sleeps between turns, is awake for most of it.
+constexpr double kTurn = 0.01;  // s
+constexpr int kFewestTurns = 3;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+}  // namespace
+
+Contest::Contest(std::vector<Contestant> contestants, std::vector<BenchPose> poses)
+    : contestants_(std::move(contestants)),
+      poses_(std::move(poses)),
+      scores_(contestants_.size(), std::vector<Score>(poses_.size())) {}
+
+void Contest::hold(double seconds, const Proceed& proceed) {
+  const auto begin = Clock::now();
+  std::vector<double> spent(contestants_.size());
+  std::vector<int> turns(contestants_.size());
+  const auto everybody_had_turns = [&] {
+    return std::ranges::all_of(turns, [](int taken) { return taken >= kFewestTurns; });
+  };
+  while (seconds_since(begin) < seconds || !everybody_had_turns()) {
+    const auto next = static_cast<std::size_t>(std::ranges::min_element(spent) - spent.begin());
+    const auto turn = Clock::now();
+    loop_.add(run_fixed_loop());
+    take_turn(next);
+    spent[next] += seconds_since(turn);
+    ++turns[next];
+    proceed(std::min(1.0, seconds_since(begin) / seconds));
+  }
+}
+
+void Contest::take_turn(std::size_t contestant) {
+  const Contestant& asked = contestants_[contestant];
+  for (std::size_t pose = 0; pose < poses_.size(); ++pose) static_cast<void>(asked.ask(pose));
+  const auto begin = Clock::now();
+  do {
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
+      const Contestant::Answer answer = asked.ask(pose);
+      scores_[contestant][pose].times.add(answer.microseconds);
+      scores_[contestant][pose].listed = answer.listed;
+    }
+  } while (seconds_since(begin) < kTurn);
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+#include <semaphore.h>
+
+#include <mutex>
+#include <shared_mutex>
+#include <vector>
+
+#include "query/exact/exact_tree.h"
+#include "query/quiet/locks.h"
+#include "query/scenes.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+template <class Action>
+std::uint64_t locks_of(const Action& action) {
+  const std::uint64_t before = locks();
+  action();
+  return locks() - before;
+}
+
+TEST(Locks, AreCountedHoweverTheyAreAskedFor) {
+  std::mutex mutex;
+  EXPECT_EQ(locks_of([&] { const std::lock_guard lock(mutex); }), 1u);
+  EXPECT_EQ(locks_of([&] {
+              if (mutex.try_lock()) mutex.unlock();
+            }),
+            1u);
+  std::shared_mutex shared;
+  EXPECT_EQ(locks_of([&] { const std::shared_lock lock(shared); }), 1u);
+  EXPECT_EQ(locks_of([&] { const std::unique_lock lock(shared); }), 1u);
+  sem_t semaphore;
+  ASSERT_EQ(sem_init(&semaphore, 0, 1), 0);
+  EXPECT_EQ(locks_of([&] { sem_wait(&semaphore); }), 1u);
+  sem_destroy(&semaphore);
+  EXPECT_EQ(locks_of([] {}), 0u);
+}
+
+// Every verb, from the very first query on, with and without a second worker and a front.
+TEST(Locks, AQueryAsksForNone) {
+  const Scene& scene = solids()[0];
+  for (const int workers : {1, 2}) {
+    for (const std::size_t front_pairs : {std::size_t{0}, std::size_t{1} << 15}) {
+      QueryOptions options = options_of(SpherePolicy::kSlab, "", workers);
+      options.front_pairs = front_pairs;
+      std::vector<LeafPair> out(1 << 16);
+      Query query(scene.fixed, scene.moving, options);
+      ContactManifold manifold(scene.fixed, scene.moving, SpherePolicy::kSlab);
+      std::uint64_t pairs = 0;
+      EXPECT_EQ(locks_of([&] {
+                  for (int i = 0; i < 400; ++i) {
+                    Eigen::Isometry3d pose = scene.pose;
+                    pose.translation()[2] += 0.0005 * (i % 100);
+                    pairs += query.leaf_pairs(pose, out).leaf_pairs;
+                    pairs += query.contacts(pose, manifold).leaf_pairs;
+                  }
+                }),
+                0u)
+          << workers << " workers, a front of " << front_pairs;
+      EXPECT_GT(pairs, 0u);
+    }
+  }
+}
+
+TEST(Locks, AnExactAnswerAsksForNone) {
+  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  for (const int workers : {1, 2}) {
+    QueryOptions options;
+    options.workers = workers;
+    Query query(tree, tree, options);
+    std::vector<TrianglePair> pairs(1 << 16);
+    std::uint64_t found = 0;
+    EXPECT_EQ(locks_of([&] {
+                for (int i = 0; i < 50; ++i) {
+                  const Eigen::Isometry3d pose = shift({0.03 * i, 0, 0});
+                  found += query.triangle_pairs(pose, pairs).triangle_pairs;
+                  found += query.intersects(pose).answer == Answer::kYes ? 1U : 0U;
+                  static_cast<void>(query.distance(pose, 0.01));
+                }
+              }),
+              0u)
+        << workers << " workers";
+    EXPECT_GT(found, 1000u);
+  }
+}
+
+}  // namespace
+}  // namespace ist::test
