@@ -7,6 +7,7 @@
 
 #include "support/exact.h"
 #include "support/random.h"
+#include "support/rigid_pose.h"
 
 namespace ist {
 namespace {
@@ -65,6 +66,16 @@ TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
     EXPECT_LE((rigid->linear() - rotation).norm(), 3 * error + 1e-15);
     EXPECT_EQ(rigid->translation(), translation);
     EXPECT_EQ(rigid->matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
+  }
+}
+
+TEST(ProjectToRigid, IsTheFormulaOfTheGuarantee) {
+  test::Random random(5);
+  for (int i = 0; i < 300; ++i) {
+    Eigen::Matrix3d rotation = random_rotation(random);
+    for (int k = 0; k < 9; ++k) rotation(k) += random.uniform(-2e-6, 2e-6);
+    const Eigen::Isometry3d pose = pose_of(rotation, random.point(-100, 100));
+    EXPECT_EQ(project_to_rigid(pose).value().matrix(), test::rigid_pose(pose).matrix());
   }
 }
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "ist/base/pose.h"
 #include "ist/tree/lookup_table.h"
 #include "query/query_cases.h"
+#include "support/rigid_pose.h"
 
 namespace ist::test {
 namespace {
@@ -36,7 +36,7 @@ Eigen::Vector3d rounded_ball_centre(const HardwareNode& node) {
 
 ExactFrames::ExactFrames(const Eigen::Isometry3d& pose, const Lattice& fixed, const Lattice& moving)
     : ratio_(mpq_class(moving.voxel_size) / mpq_class(fixed.voxel_size)) {
-  const Eigen::Isometry3d rigid = project_to_rigid(pose).value();
+  const Eigen::Isometry3d rigid = rigid_pose(pose);
   const ExactPoint of_fixed = frame_origin(fixed), of_moving = frame_origin(moving);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto row = static_cast<Eigen::Index>(i);

@@ -25,7 +25,7 @@ class Help:
     def __init__(self, command, *words):
         self.text = run(command, *words, "--help")
         self.values = {}  # each spelling, and the type of its value, empty for a flag
-        self.arguments = re.findall(r"^  ([A-Z]+) FILE REQUIRED", self.text, re.M)
+        self.arguments = re.findall(r"^  ([A-Z]+) FILE\b", self.text, re.M)
         for spellings, value in re.findall(r"^  (-\S+)(?: ([A-Z]\S*))?", self.text, re.M):
             self.values.update({each: "" if value.startswith("Excludes") else value for each in spellings.split(",")})
 

@@ -3,15 +3,31 @@
 #include <algorithm>
 #include <string>
 
-#include "ist/base/pose.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
-#include "ist/voxel/morton.h"
+#include "support/rigid_pose.h"
 
 namespace ist::test {
 namespace {
 
 Eigen::Vector3d rounded(const ExactPoint& a) { return {a[0].get_d(), a[1].get_d(), a[2].get_d()}; }
+
+// The codes of the leaves, ascending, from the root down by the occupancy masks alone.
+std::vector<std::uint64_t> leaf_codes(const LinearOctree& octree) {
+  std::vector<std::uint64_t> codes{0};
+  for (int level = octree.depth(); level > 0; --level) {
+    std::vector<std::uint64_t> children;
+    for (std::uint32_t node = 0; node < codes.size(); ++node) {
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        if ((octree.mask(level, node) >> octant & 1) != 0) {
+          children.push_back(8 * codes[node] + octant);
+        }
+      }
+    }
+    codes = std::move(children);
+  }
+  return codes;
+}
 
 }  // namespace
 
@@ -22,13 +38,12 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
   for (std::size_t i = 0; i < 3; ++i) {
     origin_[i] = mpq_class(lattice.corner[i]) + root_centre * voxel_size_;
   }
-  for (const std::uint64_t code : tree.parts().octree.codes(0)) {
-    const Cell cell = morton_decode(code);
+  for (const std::uint64_t code : leaf_codes(tree.parts().octree)) {
+    const ExactBox cube = node_cube(lattice, 0, code);
     Leaf& leaf = leaves_.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) {
-      leaf.cube_centre[i] = (mpq_class(cell[i] + 0.5) - root_centre) * voxel_size_;
-    }
+    leaf.cube_centre = mpq_class(1, 2) * (cube.low + cube.high) - origin_;
     leaf.rounded_centre = rounded(leaf.cube_centre);
+    farthest_ = std::max(farthest_, leaf.rounded_centre.norm() + lattice.voxel_size);
   }
   if (!tree.has(SpherePolicy::kTight)) return;
   unpack_bounds();
@@ -57,7 +72,7 @@ ExactBody::ExactBody(const TriangleMesh& mesh, const SphereTree& tree)
 
 // From the description of the blocks.
 void ExactBody::unpack_bounds() {
-  const std::vector<std::uint64_t> codes = tree_.parts().octree.codes(0);
+  const std::vector<std::uint64_t> codes = leaf_codes(tree_.parts().octree);
   const mpq_class unit = voxel_size_ / 32768, slab_unit = voxel_size_ / 256;
   std::size_t parent = 0;
   int slot = 0;
@@ -87,7 +102,7 @@ void ExactBody::unpack_bounds() {
 
 ExactPair::ExactPair(const ExactBody& fixed, const ExactBody& moving, const Eigen::Isometry3d& pose)
     : fixed_(fixed), moving_(moving) {
-  const Eigen::Isometry3d rigid = project_to_rigid(pose).value();
+  const Eigen::Isometry3d rigid = rigid_pose(pose);
   rounded_rotation_ = rigid.linear();
   std::array<ExactPoint, 3> edges;  // of the moving cubes, by columns
   for (std::size_t i = 0; i < 3; ++i) {
@@ -100,7 +115,7 @@ ExactPair::ExactPair(const ExactBody& fixed, const ExactBody& moving, const Eige
     }
   }
   rounded_translation_ = rounded(translation_);
-  margin_ = 1e-12 * (fixed.tree_.bounding_radius() + moving.tree_.bounding_radius() +
+  margin_ = 1e-12 * (fixed.farthest_ + moving.farthest_ +
                      rounded_translation_.cwiseAbs().maxCoeff());
 
   std::vector<ExactPoint> directions;

@@ -51,14 +51,15 @@ class ExactBody {
   mpq_class voxel_size_;
   ExactPoint origin_;
   std::vector<Leaf> leaves_;
+  double farthest_ = 0;  // no point of a leaf's cube is farther from the origin
 };
 
 /// Two bodies at a pose: what is true of each pair of leaves, decided in rational numbers after a
 /// filter in double that never decides what is close.
 ///
 /// This is the oracle of every query. It knows nothing of inner nodes: the guarantee is about
-/// leaves alone. The pose is that of project_to_rigid, number by number, so that its rotation is
-/// off orthonormal by what that leaves.
+/// leaves alone. The pose is that of rigid_pose, number by number, so that its rotation is off
+/// orthonormal by the rounding of that.
 class ExactPair {
  public:
   /// Both bodies must outlive it; `pose` must be a rigid motion.

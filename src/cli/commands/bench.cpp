@@ -141,9 +141,11 @@ void add_bench(CLI::App& app) {
       "Time every way to ask on this machine, in ten seconds, on built-in jaws or two bodies");
   const auto options = std::make_shared<BenchArguments>();
   command
-      ->add_option("fixed", options->files.fixed, "a mesh or a tree; without it the built-in jaws")
-      ->type_name("FIXED");
-  command->add_option("moving", options->files.moving, "a mesh or a tree")->type_name("MOVING");
+      ->add_option("FIXED", options->files.fixed,
+                   "mesh or tree of the body that stays; by default the built-in jaws")
+      ->type_name("FILE");
+  command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
+      ->type_name("FILE");
   command
       ->add_option("--voxel-size", options->files.voxel_size,
                    "edge of the voxels, mesh units; by default 0.2 of the jaws, 1/500 of the "

@@ -125,7 +125,8 @@ std::string man_page(const CommandView& subcommand, const PageEdition& edition) 
   page.section("SYNOPSIS");
   std::string synopsis = bold("ist " + subcommand.name) + " [" + italic("options") + "]";
   for (const OptionView& argument : subcommand.arguments) {
-    synopsis += " " + italic(argument.spellings.front());
+    const std::string word = italic(argument.spellings.front());
+    synopsis += argument.required ? " " + word : " [" + word + "]";
   }
   page.line(synopsis);
   page.section("DESCRIPTION");

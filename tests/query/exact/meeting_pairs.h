@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "ist/base/pose.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "support/exact_polygon.h"
+#include "support/rigid_pose.h"
 
 namespace ist::test {
 
@@ -16,7 +16,7 @@ namespace ist::test {
 [[nodiscard]] inline std::vector<TrianglePair> meeting_pairs(const SphereTree& fixed,
                                                              const SphereTree& moving,
                                                              const Eigen::Isometry3d& pose) {
-  const auto m = project_to_rigid(pose)->matrix();
+  const Eigen::Isometry3d m = rigid_pose(pose);
   const TriangleMesh& a = fixed.parts().triangles->mesh;
   TriangleMesh b = moving.parts().triangles->mesh;
   for (Eigen::Vector3d& v : b.vertices) {

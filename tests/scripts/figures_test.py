@@ -1,0 +1,128 @@
+"""Figures on pages of results: each names its commit, and scripts/check_figures.sh names those that are older than their code."""
+
+import contextlib
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
+from report import check_figures, figures  # noqa: E402  after its folder is known
+
+
+class Pages(unittest.TestCase):
+    """The pages of this project."""
+
+    def test_every_table_has_a_stamp(self):
+        bare = [f"{page}:{number}" for page in figures.PAGES for number, stamped in figures.tables_in(page) if not stamped]
+        self.assertEqual(bare, [])
+
+    def test_every_stamp_names_a_commit_of_this_history(self):
+        stamps = [(page, number, commit) for page in figures.PAGES for number, commit, _ in figures.stamps_in(page)]
+        self.assertGreater(len(stamps), 0)
+        if not figures.has_history():
+            self.skipTest("no whole history of commits is here")
+        self.assertEqual([f"{page}:{number}: {commit}" for page, number, commit in stamps if not figures.is_commit(commit)], [])
+
+    def test_every_maker_of_figures_has_sources(self):
+        for page in figures.PAGES:
+            for number, _, maker in figures.stamps_in(page):
+                for source in figures.sources_of(maker):
+                    self.assertTrue((figures.ROOT / source).exists(), f"{page}:{number}: {maker} rests on {source}")
+
+
+class Code(unittest.TestCase):
+    def test_comments_and_space_do_not_count(self):
+        self.assertEqual(figures.code_of("int a; // one\n/* two\nlines */ int b;\n", "a.cpp"), figures.code_of("int a;\n  int b;", "a.cpp"))
+
+    def test_what_looks_like_a_comment_in_a_text_counts(self):
+        self.assertNotEqual(figures.code_of('auto a = "//1";', "a.cpp"), figures.code_of('auto a = "//2";', "a.cpp"))
+
+    def test_other_files_count_as_they_are(self):
+        self.assertNotEqual(figures.code_of("a // b", "a.cmake"), figures.code_of("a // c", "a.cmake"))
+
+
+class History(unittest.TestCase):
+    """A project of one source and one page, in a history of its own."""
+
+    PAGE = "page.md"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root, real = pathlib.Path(folder.name), (figures.ROOT, dict(figures.RESTS))
+        figures.ROOT = check_figures.ROOT = self.root
+        figures.RESTS = {"made": ["src"]}
+        self.addCleanup(self.restore, *real)
+        (self.root / "src").mkdir()
+        self.git("init", "-q")
+        self.git("config", "user.email", "nobody@nowhere")
+        self.git("config", "user.name", "nobody")
+        self.commit = self.write("int a;  // one\n")
+
+    @staticmethod
+    def restore(root, rests):
+        figures.ROOT = check_figures.ROOT = root
+        figures.RESTS = rests
+
+    def git(self, *arguments):
+        return subprocess.run(["git", "-C", self.root, *arguments], capture_output=True, text=True, check=True).stdout.strip()
+
+    def write(self, code):
+        (self.root / "src/a.cpp").write_text(code)
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "a change")
+        return self.git("rev-parse", "--short=7", "HEAD")
+
+    def page(self, below):
+        (self.root / self.PAGE).write_text("| a |\n|---|\n| 1 |\n\n" + below + "\n")
+
+    def check(self):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            return check_figures.main([self.PAGE]), said.getvalue()
+
+    def test_figures_of_the_code_as_it_is_are_fine(self):
+        self.page(figures.stamp(self.commit, "2026-01-01", "made"))
+        self.assertIn("the same when this was written", (self.root / self.PAGE).read_text())
+        self.write("int a;  // two\n")
+        self.assertEqual(self.check()[0], 0)
+
+    def test_figures_of_other_code_are_stale(self):
+        self.page(figures.stamp(self.commit, "2026-01-01", "made"))
+        self.write("int b;\n")
+        self.assertEqual(self.check(), (1, f"page.md:5: measured at {self.commit} by made; since then 1 file changed in src\n"))
+        self.assertIn("**its code has changed since**, in `src`", figures.stamp(self.commit, "2026-01-01", "made"))
+
+    def test_a_commit_that_is_not_there_is_named(self):
+        self.page("Measured at commit `fedcba9` on 2026-01-01 by `made`; its code was the same when this was written.")
+        code, said = self.check()
+        self.assertEqual(code, 1)
+        self.assertIn("measured at fedcba9, which is no commit of this history", said)
+
+        self.assertIn("**a commit that this history does not have**", figures.stamp("fedcba9", "2026-01-01", "made"))
+
+    def test_changes_that_no_commit_holds_are_named(self):
+        self.page(figures.stamp(self.commit + "+", "2026-01-01", "made"))
+        self.assertEqual(self.check()[0], 1)
+
+    def test_a_table_without_a_stamp_is_named(self):
+        self.page("No word of its commit.")
+        code, said = self.check()
+        self.assertEqual(code, 1)
+        self.assertIn("page.md:1: the table names neither the commit", said)
+
+    def test_a_table_that_a_test_repeats_needs_none(self):
+        self.page("Repeated by the test `Some.Test`.")
+        self.assertEqual(self.check()[0], 0)
+
+    def test_a_page_that_is_not_there_is_named(self):
+        with self.assertRaises(SystemExit) as said:
+            check_figures.main(["nowhere.md"])
+        self.assertIn("nowhere.md is not there", str(said.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
