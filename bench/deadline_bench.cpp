@@ -38,7 +38,7 @@ constexpr double kVoxelSize = 0.2, kCoarse = 0.8;
 // Facets of 0.7 mm: bodies as large as a jaw, and ones whose leaves are reached in time.
 constexpr double kLarge = 40, kSmall = 5;
 constexpr int kLargeLevel = 7, kSmallLevel = 4;
-constexpr std::size_t kContacts = 1 << 20;
+constexpr std::size_t kMostPairs = 1 << 20;
 
 double thread_microseconds() {
   timespec time{};
@@ -97,7 +97,7 @@ QueryOptions slabs() {
 void unbudgeted(benchmark::State& state, const std::string& name, const Make& make) {
   const Scene& scene = made(name, make);
   Query query(scene.trees.first, scene.trees.second, slabs());
-  std::vector<LeafPair> leaf_pairs(kContacts);
+  std::vector<LeafPair> leaf_pairs(kMostPairs);
   Latencies latencies;
   QueryResult result;
   std::size_t turn = 0;
@@ -152,7 +152,7 @@ void within(benchmark::State& state, std::chrono::microseconds given, Verb verb,
   const Scene& scene = made(name, make);
   Query query(scene.trees.first, scene.trees.second, slabs());
   ContactManifold manifold(scene.trees.first, scene.trees.second, SpherePolicy::kSlab);
-  std::vector<LeafPair> leaf_pairs(kContacts);
+  std::vector<LeafPair> leaf_pairs(kMostPairs);
   Overruns of_query, of_loop;
   std::size_t turn = 0, complete = 0;
   double tests = 0, most_pairs = 0;

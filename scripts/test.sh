@@ -9,7 +9,7 @@
 #                            for ARM64 from the package, every room and test under the sanitizers, hard
 #                            cases with 20 times the samples, ten million queries of real jaws, an
 #                            hour of simulated pressing, threads for longer, CloudCompare's distances,
-#                            and each fuzzer for a minute; 90 minutes more
+#                            the add-on in Blender, and each fuzzer for a minute; 90 minutes more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -23,9 +23,9 @@ case ${1:-} in
   -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=(--oracles --docs --cross)
+setup=(--oracles --python --docs --cross)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
-! $long || setup+=(--cloudcompare)
+! $long || setup+=(--cloudcompare --blender)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
@@ -49,27 +49,34 @@ cmake --preset release >/dev/null
 cmake --build --preset release -- -j"$jobs" >build/release.log || { cat build/release.log; exit 1; }
 run "release -DIST_TESTS=ON" "golden_test base_test mesh_test tree_test query_test search_test" \
   -L '^(golden|base|mesh|tree|query|search)_test$'
-run thread "base_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
+run thread "base_test thread_ranges_test capi_test loop_test tree_test search_test workers_test coherent_test" -R 'Thread|Parallel'
 run sanitize "capi_test ist_c11_test formats_test labels_test mesh_test tree_test search_test fuzz_test coherent_test exact_test" -E '_NOT_BUILT|[/_](avx2|ssse3)$|Published|OfAnIcosphere|Thread\.|Golden\.|NearTouching/(simple|tight)$|MoreContactsThan|RecordedHand.*/(simple|table)$|House'
 for preset in clang14 arm64 wasm; do run $preset golden_test; done
 run test all
 $long || exit 0
 
+# Benchmarks are compiled by nothing else.
+scripts/setup.sh --peers
+cmake --preset bench >/dev/null
+cmake --build --preset bench -- -j"$jobs" >build/bench.log || { cat build/bench.log; exit 1; }
 scripts/golden_table.py --check
 scripts/arm64_package.sh
+run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
 run sanitize-all all -E 'House|Package|Docs|Report|Mutants'
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 more() {  # preset, times the samples, program, filter
   echo "== $3 $4, preset $1, $2 times the samples"
   IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4"
 }
-echo "== Package.Subdirectory, all compiled"
-IST_COMPILE_ALL=1 ctest --preset test -R '^Package\.Subdirectory$'
+echo "== Package.Subdirectory and Python.Sdist, all compiled"
+IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
 for jaws in built-in human; do
   echo "== distances of the $jaws jaws against CloudCompare's"
   /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist \
     "build/test/cloudcompare-$jaws" || [ $? -eq 77 ]
 done
+echo "== the add-on in Blender"
+/usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so || [ $? -eq 77 ]
 more thread 100 search_test 'SharedTreeThread.*'
 more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'  # a million ticks
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
