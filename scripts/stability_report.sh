@@ -38,7 +38,7 @@ wait $load || failed=1
 
 source scripts/machine.sh
 /usr/bin/python3 scripts/stability_report.py "$cases" "$folder" \
-  "$model, $(nproc) cores; $compiler; commit $commit"
+  "$model, $(nproc) cores; $compiler; commit $commit" "$commit" "$(date -I)"
 results=$folder/results/$machine
 mkdir -p "$results"
 cp "$cases" "$results/stability.jsonl"

@@ -16,9 +16,10 @@ def verdict(commit, maker):
     """Returns what is wrong with figures of a maker at a commit, or nothing."""
     if not is_commit(commit):
         return f"measured at {commit}, which is no commit of this history"
-    changed = changed_since(commit, sources_of(maker))
+    sources = sources_of(maker)
+    changed = changed_since(commit, sources)
     files = f"{len(changed)} file{'s' if len(changed) > 1 else ''}"
-    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed).replace('`', '')}"
+    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed, sources).replace('`', '')}"
 
 
 def stale(page):

@@ -42,7 +42,8 @@ PAGES = ["README.md", "docs/performance.md", "perf/HAPTIC_STABILITY.md", "perf/H
 
 def git(*arguments):
     """Returns what git prints, or None where it fails: no history, or no such commit."""
-    done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
+    # Files of any kind are compared: each byte is a character.
+    done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, encoding="latin-1")
     return done.stdout if done.returncode == 0 else None
 
 
@@ -91,14 +92,14 @@ def changed_since(commit, paths):
             continue
         now = ROOT / name
         before = git("show", f"{commit}:{name}")
-        if before is None or not now.exists() or code_of(before, name) != code_of(now.read_text(), name):
+        if before is None or not now.exists() or code_of(before, name) != code_of(now.read_text("latin-1"), name):
             found.append(name)
     return found
 
 
-def rooms(files):
-    """The folders of files, each once: `simd, src/ist/query`."""
-    return ", ".join(f"`{folder}`" for folder in sorted({str(pathlib.PurePath(file).parent) for file in files}))
+def rooms(files, sources):
+    """Those of the sources that hold some of the files: `simd`, `src/ist/query`."""
+    return ", ".join(f"`{source}`" for source in sources if any(file == source or file.startswith(source + "/") for file in files))
 
 
 def stamp(commit, date, maker, more=""):
@@ -110,8 +111,9 @@ def stamp(commit, date, maker, more=""):
     elif not is_commit(commit):
         state = "**a commit that this history does not have**"
     else:
-        changed = changed_since(commit, sources_of(maker))
-        state = f"**its code has changed since**, in {rooms(changed)}" if changed else "its code was the same when this was written"
+        sources = sources_of(maker)
+        changed = changed_since(commit, sources)
+        state = f"**its code has changed since**, in {rooms(changed, sources)}" if changed else "its code was the same when this was written"
     return f"Measured at commit `{commit}` on {date} by `{maker}`; {state}.{' ' + more if more else ''}"
 
 
@@ -129,9 +131,10 @@ def machine_state(context):
     """Returns a sentence on the machine before and after a run: its load, and the time of a fixed loop."""
     load = context.get("load_avg", [])
     before = f"{load[0]:.1f}" if load else "unknown"
+    on = f"On {context['processor']}. " if "processor" in context else ""
     if "loop_before" not in context:
-        return f"Load {before} before."
-    return (f"Load {before} before, {float(context['load_after']):.1f} after; a fixed loop took {context['loop_before']} µs before and "
+        return f"{on}Load {before} before."
+    return (f"{on}Load {before} before, {float(context['load_after']):.1f} after; a fixed loop took {context['loop_before']} µs before and "
             f"{context['loop_after']} µs after.")
 
 
