@@ -606,14 +606,14 @@ MUTANTS = [
 
     # The C interface.
     Mutant("freed-handle-lives", "a stale handle refers to the new content of its slot",
-           [(CAPI + "handle_table.cpp",
+           [(CAPI + "handles/handle_table.cpp",
              "if ((state & ~kUsers) != (tag_of(handle) | kAlive)) return {IST_HANDLE_FREED, nullptr};",
              "if ((state & kAlive) == 0) return {IST_HANDLE_FREED, nullptr};")], ["capi_test CHandles*"]),
     Mutant("busy-query-entered", "two threads may be in one query",
-           [(CAPI + "handle_table.cpp", "use == HandleUse::kAlone ? 0 : kUsers - 1",
+           [(CAPI + "handles/handle_table.cpp", "use == HandleUse::kAlone ? 0 : kUsers - 1",
              "use == HandleUse::kAlone ? kUsers - 1 : kUsers - 1")], ["capi_test CHandles*"]),
     Mutant("removed-under-its-user", "an object freed while a call uses it is destroyed at once",
-           [(CAPI + "handle_table.cpp", "if ((state & kUsers) == 0) empty(slot);", "empty(slot);")],
+           [(CAPI + "handles/handle_table.cpp", "if ((state & kUsers) == 0) empty(slot);", "empty(slot);")],
            ["capi_test CHandles*"]),
     Mutant("unknown-options-ignored", "options of a newer caller are ignored silently",
            [(CAPI + "sized_struct.h", "if (size > sizeof(Struct) &&\n", "if (size == 0 &&\n")],
@@ -744,6 +744,12 @@ MUTANTS = [
     Mutant("bad-pose-felt", "a tick whose device pose is invalid repeats the last wrench",
            [(SIMULATION, "  if (!device) {\n    state.fault();\n", "  if (!device) {\n    tick.wrench = state.limiter.limit(Vector6::Ones(), state.dt);\n")],
            ["haptics_test Pressing*:*Callback*:Simulation*"]),
+
+    Mutant("rows-remember", "a row is answered with what the rows before it left in the query",
+           [(MEASURE + "pose_rows.cpp", "    query.forget();\n", "")], ["capi_test CRows*"]),
+    Mutant("ended-build-kept", "a build that its caller ended goes on to its end, and is kept",
+           [(CAPI + "follower.cpp", "    stopped = true;\n    stop();\n", "    stop();\n"),
+            ("src/ist/base/progress.h", "if (stopped_.load(std::memory_order_relaxed)) {", "if (false) {")], ["capi_test CBuild*"]),
 
     # Figures.
     Mutant("ratio-of-other-spheres", "a ratio that names the same spheres on both sides takes the published circumspheres",

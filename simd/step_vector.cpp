@@ -122,8 +122,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <array>
 
+#include "ist/base/platform/instruction_sets.h"
+
 namespace ist::simd {
 namespace {
+
+// The targets that this processor has. Highway's own answer would need its library.
+std::int64_t supported_targets() {
+#if HWY_ARCH_X86
+  const InstructionSets has = instruction_sets();
+  return (has.ssse3 ? HWY_SSSE3 : 0) | (has.sse4 ? HWY_SSE4 : 0) | (has.avx2 ? HWY_AVX2 : 0) |
+         (has.avx3 ? HWY_AVX3 : 0);
+#else
+  return HWY_TARGETS;
+#endif
+}
 
 struct Compiled {
   std::int64_t bit;
@@ -151,7 +164,7 @@ constexpr std::array kCompiled = {IST_KERNELS("avx3", AVX3), IST_KERNELS("avx2",
 
 std::vector<Kernels> supported_kernels() {
   std::vector<Kernels> kernels;
-  const std::int64_t supported = HWY_SUPPORTED_TARGETS;
+  const std::int64_t supported = supported_targets();
   for (const Compiled& compiled : kCompiled) {
     if (compiled.kernels.advance != nullptr && (supported & compiled.bit) != 0) {
       kernels.push_back(compiled.kernels);

@@ -25,7 +25,7 @@ AT(ist_mesh_info, box_min, 64);
 AT(ist_mesh_info, box_max, 88);
 AT(ist_mesh_info, signed_volume, 112);
 
-SIZE(ist_build_options, 40);
+SIZE(ist_build_options, 48);
 AT(ist_build_options, struct_size, 0);
 AT(ist_build_options, voxel_size, 8);
 AT(ist_build_options, spheres, 16);
@@ -33,6 +33,7 @@ AT(ist_build_options, drop_triangles, 20);
 AT(ist_build_options, proximity, 24);
 AT(ist_build_options, reserved, 28);
 AT(ist_build_options, max_memory, 32);
+AT(ist_build_options, progress, 40);
 
 SIZE(ist_tree_info, 104);
 AT(ist_tree_info, struct_size, 0);
@@ -134,13 +135,14 @@ AT(ist_triangle_pairs_result, sphere_tests, 24);
 AT(ist_triangle_pairs_result, truncated, 32);
 AT(ist_triangle_pairs_result, complete, 36);
 
-SIZE(ist_servo_options, 40);
+SIZE(ist_servo_options, 48);
 AT(ist_servo_options, struct_size, 0);
 AT(ist_servo_options, unit, 8);
 AT(ist_servo_options, reserved, 12);
 AT(ist_servo_options, query_time_fraction, 16);
 AT(ist_servo_options, sphere_tests, 24);
 AT(ist_servo_options, max_memory, 32);
+AT(ist_servo_options, progress, 40);
 
 SIZE(ist_servo_info, 176);
 AT(ist_servo_info, struct_size, 0);
@@ -153,7 +155,7 @@ AT(ist_servo_info, late, 168);
 
 SIZE(ist_progress, 24);
 AT(ist_progress, struct_size, 0);
-AT(ist_progress, proceed, 8);
+AT(ist_progress, report, 8);
 AT(ist_progress, user, 16);
 
 SIZE(ist_surface_distance, 40);
@@ -233,6 +235,37 @@ AT(ist_occlusion, total_area, 24);
 AT(ist_occlusion, penetrating_area, 32);
 AT(ist_occlusion, depth_integral, 40);
 AT(ist_occlusion, depth_at_vertices, 48);
+
+SIZE(ist_rows_options, 48);
+AT(ist_rows_options, questions, 8);
+AT(ist_rows_options, threads, 12);
+AT(ist_rows_options, tolerance, 16);
+AT(ist_rows_options, stiffness, 24);
+AT(ist_rows_options, tests, 32);
+AT(ist_rows_options, progress, 40);
+
+SIZE(ist_row, 120);
+AT(ist_row, status, 0);
+AT(ist_row, intersects, 4);
+AT(ist_row, complete, 8);
+AT(ist_row, not_closed, 12);
+AT(ist_row, leaf_pairs, 16);
+AT(ist_row, sphere_tests, 24);
+AT(ist_row, distance_lower, 32);
+AT(ist_row, distance_upper, 40);
+AT(ist_row, depth_lower, 48);
+AT(ist_row, depth_upper, 56);
+AT(ist_row, area, 64);
+AT(ist_row, force, 72);
+AT(ist_row, torque, 96);
+
+IS(IST_ASK_INTERSECTS, 1);
+IS(IST_ASK_LEAF_PAIRS, 2);
+IS(IST_ASK_DISTANCE, 4);
+IS(IST_ASK_CONTACTS, 8);
+IS(IST_ASK_PENETRATION, 16);
+IS(IST_JAW_LOWER, 0);
+IS(IST_JAW_UPPER, 1);
 
 IS(IST_ABI_VERSION, 1);
 IS(IST_OK, 0);

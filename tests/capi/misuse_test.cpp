@@ -44,6 +44,15 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("path", ist_tree_save(tree_, nullptr));
   is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
   is_null("info", ist_tree_get_info(tree_, nullptr));
+  std::uint64_t bytes = 0;
+  is_null("tree", ist_tree_to_memory(nullptr, nullptr, 0, &bytes));
+  is_null("memory", ist_tree_to_memory(tree_, nullptr, 1, &bytes));
+  is_null("bytes", ist_tree_to_memory(tree_, nullptr, 0, nullptr));
+  is_null("memory", ist_tree_from_memory(nullptr, 1, &no_tree_));
+  is_null("tree", ist_tree_from_memory(corners, 1, nullptr));
+  is_null("tree", ist_tree_get_mesh(nullptr, &no_mesh_));
+  is_null("mesh", ist_tree_get_mesh(tree_, nullptr));
+  is_null("mesh", ist_jaw_create(IST_JAW_LOWER, 1, nullptr));
   is_null("tree", ist_tree_copy_leaf_centres(nullptr, nullptr, 0));
   is_null("centres", ist_tree_copy_leaf_centres(tree_, nullptr, 1));
 
@@ -109,6 +118,7 @@ TEST_F(CMisuse, OfAHandleIsTold) {
     std::function<ist_status(void*)> call;
   };
   const double* pose = pose_.data();
+  std::uint64_t memory_bytes = 0;
   const std::vector<Taker> takers{
       {kMesh, [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), &mesh_info_); }},
       {kMesh,
@@ -128,6 +138,11 @@ TEST_F(CMisuse, OfAHandleIsTold) {
        }},
       {kTree,
        [&](void* h) { return ist_tree_copy_leaf_centres(static_cast<ist_tree*>(h), nullptr, 0); }},
+      {kTree,
+       [&](void* h) {
+         return ist_tree_to_memory(static_cast<ist_tree*>(h), nullptr, 0, &memory_bytes);
+       }},
+      {kTree, [&](void* h) { return ist_tree_get_mesh(static_cast<ist_tree*>(h), &no_mesh_); }},
       {kTree, [&](void* h) { return ist_tree_free(static_cast<ist_tree*>(h)); }},
       {kQuery,
        [&](void* h) { return ist_query_get_info(static_cast<ist_query*>(h), &query_info_); }},

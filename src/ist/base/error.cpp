@@ -12,8 +12,9 @@ constexpr std::array kNames = {
     "mesh-extent",      "voxel-size-invalid", "voxel-size-too-small", "memory-limit",
     "not-a-tree",       "tree-version",       "tree-truncated",       "tree-corrupt",
     "policy-missing",   "triangles-missing",  "target-missing",       "pose-invalid",
-    "argument-invalid", "input-invalid",      "fixed-point-range",    "mesh-too-large"};
-static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::kMeshTooLarge) + 1);
+    "argument-invalid", "input-invalid",      "fixed-point-range",    "mesh-too-large",
+    "cancelled"};
+static_assert(kNames.size() == static_cast<std::size_t>(ErrorCode::kCancelled) + 1);
 
 }  // namespace
 

@@ -34,6 +34,7 @@ enum class ErrorCode {
   kInputInvalid,       ///< the content of another input file is invalid
   kFixedPointRange,    ///< a number does not fit the hardware's fixed-point format
   kMeshTooLarge,       ///< the mesh file unpacks, or places, more than its reader allows
+  kCancelled,          ///< the caller ended the call
 };
 
 /// The exception of the library, beside std::bad_alloc. `what()` names the place, the cause and the

@@ -32,16 +32,18 @@ class ScopedThreadLimit {
 /// Calls `run(context, 0)` … `run(context, ranges - 1)`, each once, on all cores. An exception
 /// reaches the caller. Only parallel_for calls this function.
 ///
-/// This function and the next ones are TBB's, or, in a build without TBB, those of one thread.
+/// This function and the next ones are TBB's. In a build without TBB they are those of threads that
+/// live as long as a loop, and in WebAssembly those of one thread.
 void run_ranges(std::size_t ranges, void (*run)(void* context, std::size_t range), void* context);
 
-/// Calls `run(context)` once on a thread of TBB, concurrently with all other work of TBB, as soon
-/// as a thread is free (even if TBB is limited to one); never in a build without TBB. Returns at
-/// once. The call may begin while the process is ending, so `context` and all objects that `run`
-/// uses must never be destroyed.
+/// Calls `run(context)` once on a thread of its own, concurrently with all loops, as soon as a thread
+/// is free (even if loops are limited to one); never in WebAssembly, nor where the system has no
+/// thread left. Returns at once. The call may begin while the process is ending, so `context` and
+/// all objects that `run` uses must never be destroyed.
 void run_aside(void (*run)(void* context), void* context);
 
-/// Returns the number of threads that a loop uses by default, the caller's included.
+/// Returns the number of threads that a loop uses by default, the caller's included: that of the
+/// processors which it may run on.
 [[nodiscard]] std::size_t thread_count();
 
 }  // namespace ist

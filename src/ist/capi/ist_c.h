@@ -39,18 +39,8 @@
 
 #include "ist/capi/ist_status.h"
 
-#if defined(__GNUC__)
-#define IST_C_API __attribute__((visibility("default"))) /**< a function of the library */
-#define IST_MAY_ALIAS __attribute__((may_alias)) /**< it may share memory with another struct */
-#else
-#define IST_C_API
-#define IST_MAY_ALIAS
-#endif
 #ifdef __cplusplus
-#define IST_NOEXCEPT noexcept /**< no exception leaves a function */
 extern "C" {
-#else
-#define IST_NOEXCEPT
 #endif
 
 /** The version of this interface. It increases with each added function or member; an incompatible
@@ -62,15 +52,6 @@ IST_C_API uint32_t ist_abi_version(void) IST_NOEXCEPT;
 
 /** Returns the version of the library, such as "0.1.0". [real time] */
 IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
-
-/** Returns the name of a code for logs, such as "mesh-truncated"; "unknown" for any other number.
- * [real time] */
-IST_C_API const char* ist_status_name(ist_status status) IST_NOEXCEPT;
-
-/** Returns the message of the calling thread's last error: function, cause, remedy. It is empty
- * before the first error and cut after 511 bytes. Calls that succeed do not change it. The thread
- * owns the text, which stays valid until its next error. [real time] */
-IST_C_API const char* ist_last_error_message(void) IST_NOEXCEPT;
 
 /** An immutable surface of triangles. */
 typedef struct ist_mesh ist_mesh;
@@ -120,6 +101,14 @@ IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info
 IST_C_API ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,
                                    uint32_t* triangles, size_t triangle_capacity) IST_NOEXCEPT;
 
+/** The jaws of ist_jaw_create. */
+enum { IST_JAW_LOWER = 0 /**< the mandible */, IST_JAW_UPPER = 1 /**< the maxilla */ };
+
+/** Creates a human jaw from nothing, in millimetres; `seed` varies its teeth. Both jaws share a
+ * frame, in which they are closed on each other. One seed gives the same bytes on every machine.
+ * Errors: IST_ARGUMENT_INVALID for another jaw. Cost: 5 ms. */
+IST_C_API ist_status ist_jaw_create(int32_t jaw, uint64_t seed, ist_mesh** mesh) IST_NOEXCEPT;
+
 /** Frees a mesh. Every ..._free accepts NULL; a second call returns IST_HANDLE_FREED. */
 IST_C_API ist_status ist_mesh_free(ist_mesh* mesh) IST_NOEXCEPT;
 
@@ -144,11 +133,13 @@ typedef struct ist_build_options {
   int32_t proximity;      /**< 1: add the voxels near the outside, for a scene's proximity effect */
   int32_t reserved;       /**< zero */
   uint64_t max_memory;    /**< memory limit, bytes; default 4 GiB */
+  const ist_progress* progress; /**< follows the build; may be NULL */
 } ist_build_options;
 
 /** Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
  * afterwards. The call uses all cores. Errors: IST_VOXEL_SIZE_INVALID, IST_VOXEL_SIZE_TOO_SMALL,
- * IST_MESH_EXTENT, IST_MEMORY_LIMIT. Cost: 2.5 s for 1.7 million voxels on two cores. */
+ * IST_MESH_EXTENT, IST_MEMORY_LIMIT, IST_CANCELLED. Cost: 2.5 s for 1.7 million voxels on two
+ * cores. */
 IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options,
                                     ist_tree** tree) IST_NOEXCEPT;
 
@@ -158,6 +149,20 @@ IST_C_API ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCE
 
 /** Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
 IST_C_API ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT;
+
+/** Gives the size of the tree's file, and writes it to `memory` where `capacity` is no less;
+ * `memory` may be NULL where `capacity` is 0. Cost: 1 ns per byte. */
+IST_C_API ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
+                                        uint64_t* bytes) IST_NOEXCEPT;
+
+/** Reads a tree from the bytes of its file, as ist_tree_load does, with the same errors. The bytes
+ * may be freed afterwards. */
+IST_C_API ist_status ist_tree_from_memory(const void* memory, size_t bytes,
+                                          ist_tree** tree) IST_NOEXCEPT;
+
+/** Creates a mesh from the triangles that a tree keeps, turned outward. Errors:
+ * IST_TRIANGLES_MISSING. Cost: 10 ns per vertex and triangle. */
+IST_C_API ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT;
 
 /** The properties of a tree; lengths in mesh units. */
 typedef struct ist_tree_info {

@@ -20,9 +20,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.of_moving = found.of_moving;
   out.triangle = found.triangle;
   out.complete = found.complete;
-  out.not_closed = found.status == Penetration::Status::kFixedNotClosed    ? IST_FIXED_NOT_CLOSED
-                   : found.status == Penetration::Status::kMovingNotClosed ? IST_MOVING_NOT_CLOSED
-                                                                           : IST_CLOSED;
+  out.not_closed = not_closed_of(found);
   out.narrowest = found.narrowest;
   out.points = found.points;
   return out;
@@ -70,8 +68,10 @@ Motion motion_of(const ist_motion& given) {
 
 }  // namespace
 
-ist_status cancelled(const Call& call) {
-  return call.fail(IST_CANCELLED, "progress->proceed returned 0: the call was ended as it asked");
+std::int32_t not_closed_of(const Penetration& found) noexcept {
+  return found.status == Penetration::Status::kFixedNotClosed    ? IST_FIXED_NOT_CLOSED
+         : found.status == Penetration::Status::kMovingNotClosed ? IST_MOVING_NOT_CLOSED
+                                                                 : IST_CLOSED;
 }
 
 ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept {
@@ -84,15 +84,6 @@ ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept 
 }
 static_assert(SurfaceDistance::kNoTriangle == IST_NO_TRIANGLE);
 
-ist_status read_progress(const Call& call, const ist_progress* given, Proceed& proceed) {
-  if (given == nullptr) return IST_OK;
-  ist_progress known;
-  if (const ist_status wrong = read_sized(call, "progress", *given, known)) return wrong;
-  if (known.proceed == nullptr) return IST_OK;
-  proceed = [known](double part) { return known.proceed(known.user, part) != 0; };
-  return IST_OK;
-}
-
 }  // namespace ist::capi
 
 using namespace ist::capi;
@@ -103,16 +94,19 @@ ist_status ist_tree_signed_distance(const ist_tree* tree, const double* points, 
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status missing = call.need_array("points", points, count)) return missing;
     if (const ist_status missing = call.need_array("distances", distances, count)) return missing;
-    ist::Proceed proceed;
-    if (const ist_status wrong = read_progress(call, progress, proceed)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<Tree> held(call, "tree", tree);
     if (held.status() != IST_OK) return held.status();
     std::vector<Eigen::Vector3d> at(count);
     for (std::size_t i = 0; i < count; ++i) {
       at[i] = Eigen::Vector3d(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
     }
-    const auto found = ist::signed_distance(*held->tree, at, reach, proceed);
-    if (found.size() < count) return cancelled(call);
+    std::vector<ist::SurfaceDistance> found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      found = ist::signed_distance(*held->tree, at, reach, proceed);
+    });
+    if (!whole) return cancelled(call);
     std::transform(found.begin(), found.end(), distances, surface_distance_of);
     return IST_OK;
   });
@@ -129,15 +123,18 @@ ist_status ist_tree_distance_map(const ist_tree* body, const ist_tree* other, co
     if (const ist_status missing = call.need_array("distances", distances, capacity)) {
       return missing;
     }
-    ist::Proceed proceed;
-    if (const ist_status wrong = read_progress(call, progress, proceed)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<Tree> held_body(call, "body", body);
     if (held_body.status() != IST_OK) return held_body.status();
     const Held<Tree> held_other(call, "other", other);
     if (held_other.status() != IST_OK) return held_other.status();
     const ist::SphereTree& of = *held_body->tree;
-    const auto found = ist::distance_map(of, *held_other->tree, to_isometry(pose), reach, proceed);
-    if (found.size() < of.triangles()->vertices.size()) return cancelled(call);
+    std::vector<ist::SurfaceDistance> found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      found = ist::distance_map(of, *held_other->tree, to_isometry(pose), reach, proceed);
+    });
+    if (!whole) return cancelled(call);
     *vertices = found.size();
     const std::size_t count = std::min(capacity, found.size());
     std::transform(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), distances,
@@ -159,13 +156,18 @@ ist_status ist_query_penetration(ist_query* query, const double pose[16], double
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
     ist::PenetrationOptions options;
     if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
-    if (const ist_status wrong = read_progress(call, progress, options.proceed)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const ist::Penetration before = penetration_of(known);
     if (last != nullptr) options.last = &before;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    const ist::Penetration found =
-        ist::penetration(held->query, to_isometry(pose), tolerance, options);
+    ist::Penetration found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      options.proceed = proceed;
+      found = ist::penetration(held->query, to_isometry(pose), tolerance, options);
+    });
+    if (!whole) return cancelled(call);
     if (found.status == ist::Penetration::Status::kInvalidPose) {
       return status_of(call, ist::QueryStatus::kInvalidPose);
     }
@@ -185,11 +187,16 @@ ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion, d
     if (const ist_status missing = call.need({{"motion->from", known.from}})) return missing;
     ist::FirstContactOptions options;
     if (const ist_status wrong = read_budget(call, budget, options.budget)) return wrong;
-    if (const ist_status wrong = read_progress(call, progress, options.proceed)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    const ist::FirstContact found =
-        ist::first_contact(held->query, motion_of(known), tolerance, options);
+    ist::FirstContact found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      options.proceed = proceed;
+      found = ist::first_contact(held->query, motion_of(known), tolerance, options);
+    });
+    if (!whole) return cancelled(call);
     write_sized(first_contact_of(found), *result);
     return IST_OK;
   });

@@ -5,6 +5,7 @@
 
 #include "ist/capi/objects.h"
 #include "ist/mesh/mesh.h"
+#include "ist/models/models.h"
 
 namespace ist::capi {
 namespace {
@@ -117,6 +118,18 @@ ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_c
       triangles = std::copy_n(triangle.data(), 3, triangles);
     }
     return IST_OK;
+  });
+}
+
+ist_status ist_jaw_create(int32_t jaw, uint64_t seed, ist_mesh** mesh) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
+    *mesh = nullptr;
+    if (jaw != IST_JAW_LOWER && jaw != IST_JAW_UPPER) {
+      return call.fail(IST_ARGUMENT_INVALID, "jaw is {}: pass IST_JAW_LOWER or IST_JAW_UPPER", jaw);
+    }
+    const ist::Jaw made = jaw == IST_JAW_UPPER ? ist::Jaw::kUpper : ist::Jaw::kLower;
+    return give(call, std::make_unique<Mesh>(Mesh{ist::make_jaw(made, seed)}), mesh);
   });
 }
 

@@ -97,7 +97,8 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
     ist::OcclusionOptions asked;
     if (const ist_status wrong = read_options(call, options, asked)) return wrong;
-    if (const ist_status wrong = read_progress(call, progress, asked.proceed)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     ist_occlusion_arrays of_fixed, of_moving;
     if (const ist_status wrong = read_arrays(call, "fixed_arrays", fixed_arrays, of_fixed)) {
       return wrong;
@@ -107,8 +108,12 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
     }
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
-    const ist::Occlusion found = ist::occlusion(held->query, to_isometry(pose), asked);
-    if (!found.complete) return cancelled(call);
+    ist::Occlusion found;
+    const bool whole = followed(follower, [&](const ist::Proceed& proceed) {
+      asked.proceed = proceed;
+      found = ist::occlusion(held->query, to_isometry(pose), asked);
+    });
+    if (!whole) return cancelled(call);
     give_surface(found.fixed, of_fixed, *fixed);
     give_surface(found.moving, of_moving, *moving);
     return IST_OK;

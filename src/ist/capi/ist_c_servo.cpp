@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <memory>
 #include <variant>
 
+#include "ist/capi/follower.h"
 #include "ist/capi/ist_servo.h"
 #include "ist/capi/objects.h"
 #include "ist/haptics/servo_callback.h"
@@ -22,9 +24,13 @@ struct Servo {
   ServoCallback callback;  // refers to the scene's simulation
 };
 
+// The stages that the trees of two bodies begin at most.
+constexpr unsigned kMostStages = 12;
+
 struct OpenOptions {
   ServoCallbackOptions callback;
   std::uint64_t max_memory = BuildOptions{}.max_memory;
+  Follower follower;
 };
 
 ist_status read_servo_options(const Call& call, const ist_servo_options& given,
@@ -50,7 +56,7 @@ ist_status read_servo_options(const Call& call, const ist_servo_options& given,
   }
   if (known.sphere_tests > 0) options.callback.sphere_tests = known.sphere_tests;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
-  return IST_OK;
+  return read_follower(call, known.progress, options.follower);
 }
 
 // Replaces the scene's device by the caller, and keeps only the mechanics of the scene's device.
@@ -89,10 +95,13 @@ ist_status ist_servo_open_scene(const char* path, const ist_servo_options* optio
     if (const ist_status wrong = read_servo_options(call, *options, asked)) return wrong;
     ist::Scene scene = ist::read_scene(path);
     replace_device(scene);
-    return give(
-        call,
-        std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory), asked.callback),
-        servo);
+    ist::Progress progress;
+    std::unique_ptr<Servo> made;
+    const bool whole = followed(asked.follower, progress, kMostStages, [&] {
+      made = std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory, &progress),
+                                     asked.callback);
+    });
+    return whole ? give(call, std::move(made), servo) : cancelled(call);
   });
 }
 

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/capi/follower.h"
 #include "ist/capi/objects.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
@@ -12,7 +16,7 @@ namespace ist::capi {
 namespace {
 
 ist_status read_build_options(const Call& call, const ist_build_options& given,
-                              BuildOptions& options) {
+                              BuildOptions& options, Follower& follower) {
   ist_build_options known;
   if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
   if (!are_spheres(known.spheres)) {
@@ -31,7 +35,14 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
   options.keep_triangles = known.drop_triangles == 0;
   options.proximity = known.proximity == 1;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
-  return IST_OK;
+  return read_follower(call, known.progress, follower);
+}
+
+// The stages that a build begins.
+unsigned stages_of(const BuildOptions& options) {
+  constexpr unsigned kVoxelsAndOctree = 4;
+  return kVoxelsAndOctree + (is_implicit(options.spheres) ? 0U : 1U) +
+         (options.proximity ? 1U : 0U);
 }
 
 ist_tree_info tree_info_of(const Tree& object) {
@@ -66,10 +77,16 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
     *tree = nullptr;
     if (const ist_status missing = call.need({{"options", options}})) return missing;
     ist::BuildOptions build;
-    if (const ist_status wrong = read_build_options(call, *options, build)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_build_options(call, *options, build, follower)) return wrong;
     const Held<Mesh> held(call, "mesh", mesh);
     if (held.status() != IST_OK) return held.status();
-    return give(call, std::make_unique<Tree>(ist::build_tree(held->mesh, build)), tree);
+    ist::Progress progress;
+    std::unique_ptr<Tree> made;
+    const bool whole = followed(follower, progress, stages_of(build), [&] {
+      made = std::make_unique<Tree>(ist::build_tree(held->mesh, build, nullptr, &progress));
+    });
+    return whole ? give(call, std::move(made), tree) : cancelled(call);
   });
 }
 
@@ -89,6 +106,48 @@ ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT {
     if (held.status() != IST_OK) return held.status();
     ist::write_tree(*held->tree, path);
     return IST_OK;
+  });
+}
+
+ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
+                              uint64_t* bytes) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
+    *bytes = 0;
+    if (const ist_status missing = call.need_array("memory", memory, capacity)) return missing;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    const std::vector<std::byte> file = ist::tree_to_bytes(*held->tree);
+    *bytes = file.size();
+    if (capacity >= file.size()) std::memcpy(memory, file.data(), file.size());
+    return IST_OK;
+  });
+}
+
+ist_status ist_tree_from_memory(const void* memory, size_t bytes, ist_tree** tree) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
+    *tree = nullptr;
+    if (const ist_status missing = call.need_array("memory", memory, bytes)) return missing;
+    return give(call,
+                std::make_unique<Tree>(
+                    ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes})),
+                tree);
+  });
+}
+
+ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
+    *mesh = nullptr;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    const ist::TriangleMesh* kept = held->tree->triangles();
+    if (kept == nullptr) {
+      return call.fail(IST_TRIANGLES_MISSING,
+                       "the tree keeps no triangles: build it with options->drop_triangles = 0");
+    }
+    return give(call, std::make_unique<Mesh>(Mesh{*kept}), mesh);
   });
 }
 

@@ -4,9 +4,9 @@
 /**
  * @file
  * Measures of two bodies that take milliseconds: signed distances of points, penetration depth,
- * first contact along a motion, occlusion. The conventions of ist_c.h apply. All need trees with
- * triangles (IST_TRIANGLES_MISSING), allocate memory, and use all cores for many points. The first
- * call for a tree takes 0.3 us per triangle more.
+ * first contact along a motion, occlusion; and answers at many poses. The conventions of ist_c.h
+ * apply. Measures need trees with triangles (IST_TRIANGLES_MISSING), allocate memory, and use all
+ * cores for many points. The first call for a tree takes 0.3 us per triangle more.
  */
 
 #include "ist/capi/ist_c.h"
@@ -14,16 +14,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/** The caller's function that follows a call, on the caller's thread. NULL in place of the struct:
- * nobody follows. */
-typedef struct ist_progress {
-  size_t struct_size; /**< the size of this struct, bytes */
-  /** Is told now and then which part is done, 0 to 1 as far as that is known. Returns 0 to end the
-   * call. It must return: no longjmp, no exception. */
-  int32_t (*proceed)(void* user, double part);
-  void* user; /**< handed to `proceed`; never read */
-} ist_progress;
 
 /** The triangle of a point beyond the reach. */
 #define IST_NO_TRIANGLE 0xFFFFFFFFu
@@ -78,9 +68,9 @@ typedef struct ist_penetration {
 
 /** Bounds the depth of the deepest point of either surface inside the other body by an interval no
  * wider than `tolerance`. `last` may be an earlier answer, from which the search goes on in less
- * time, or NULL. Of `budget` the tests are points; it and `progress` may end the search: then
- * `complete` is 0 and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: 5
- * to 10 ms for jaws in occlusion. */
+ * time, or NULL. Of `budget` the tests are points; where it ends the search, `complete` is 0
+ * and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 5 to
+ * 10 ms for jaws in occlusion. */
 IST_C_API ist_status ist_query_penetration(ist_query* query, const double pose[16],
                                            double tolerance, const ist_penetration* last,
                                            const ist_budget* budget, const ist_progress* progress,
@@ -130,7 +120,8 @@ typedef struct ist_first_contact {
 /** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes
  * farther than `tolerance`, mesh units. Of `budget` the tests are distances. The
  * query forgets what earlier poses left. Errors:
- * IST_POSE_INVALID, IST_ARGUMENT_INVALID. Cost: some 10 to 40 distances for jaws that close. */
+ * IST_POSE_INVALID, IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: some 10 to 40 distances for jaws
+ * that close. */
 IST_C_API ist_status ist_query_first_contact(ist_query* query, const ist_motion* motion,
                                              double tolerance, const ist_budget* budget,
                                              const ist_progress* progress,
@@ -195,6 +186,53 @@ IST_C_API ist_status ist_query_occlusion(ist_query* query, const double pose[16]
                                          const ist_occlusion_arrays* fixed_arrays,
                                          const ist_occlusion_arrays* moving_arrays,
                                          ist_occlusion* fixed, ist_occlusion* moving) IST_NOEXCEPT;
+
+/** The questions of ist_query_rows, to be added up. */
+enum {
+  IST_ASK_INTERSECTS = 1,  /**< ist_query_intersects */
+  IST_ASK_LEAF_PAIRS = 2,  /**< ist_query_leaf_pairs, which counts them */
+  IST_ASK_DISTANCE = 4,    /**< ist_query_distance, to the tolerance */
+  IST_ASK_CONTACTS = 8,    /**< ist_query_contacts and ist_contact_sums_wrench */
+  IST_ASK_PENETRATION = 16 /**< ist_query_penetration, to the tolerance */
+};
+
+/** What ist_query_rows asks at every pose. */
+typedef struct ist_rows_options {
+  size_t struct_size; /**< the size of this struct, bytes */
+  int32_t questions;  /**< the sum of IST_ASK_...; required */
+  int32_t threads;    /**< most threads; 0: one for each core */
+  double tolerance;   /**< of distances and depths, mesh units; default 0 */
+  double stiffness;   /**< of springs, N/mm^3; default 1 */
+  uint64_t tests;     /**< most tests of each search of bounds or triangles; 0: no limit */
+  const ist_progress* progress; /**< follows the call; may be NULL */
+} ist_rows_options;
+
+/** The answers at one pose; lengths in mesh units. A number is 0, and an interval NaN, where it was
+ * not asked for, or the pose is invalid. */
+typedef struct ist_row {
+  ist_status status;     /**< IST_OK, or IST_POSE_INVALID: then there is no answer */
+  int32_t intersects;    /**< IST_ANSWER_..., or IST_ANSWER_UNKNOWN */
+  int32_t complete;      /**< 1: every search came to its end and every tolerance was reached */
+  int32_t not_closed;    /**< IST_CLOSED, or why there is no depth */
+  uint64_t leaf_pairs;   /**< leaf pairs found */
+  uint64_t sphere_tests; /**< tests made by all searches together, those of a depth excepted */
+  double distance_lower, /**< the distance between the surfaces is no less */
+      distance_upper;    /**< and no more */
+  double depth_lower,    /**< the penetration depth is no less */
+      depth_upper;       /**< and no more */
+  double area;           /**< sum of the weights of all leaf pairs, mesh units^2 */
+  double force[3],       /**< of springs on the moving body, N for meshes in mm */
+      torque[3];         /**< about the origin of the fixed tree (ist_tree_info), N mm */
+} ist_row;
+
+/** Answers the same questions at `count` poses, 16 numbers each: row i is what the calls for each
+ * question say at pose i after ist_query_forget, bit by bit, whatever the number of threads. An
+ * invalid pose is a row with its status, and no error. The query forgets what earlier poses left;
+ * each further thread makes a query of its own. Errors: IST_ARGUMENT_INVALID; IST_TRIANGLES_MISSING
+ * where a depth is asked for; IST_NOT_PREPARED where contacts are, and the query was created
+ * without; IST_MEMORY_LIMIT, IST_CANCELLED. Cost: that of the calls, shared by the threads. */
+IST_C_API ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
+                                    const ist_rows_options* options, ist_row* rows) IST_NOEXCEPT;
 
 #ifdef __cplusplus
 } /* extern "C" */

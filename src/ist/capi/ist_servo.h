@@ -35,13 +35,15 @@ typedef struct ist_servo_options {
   uint64_t sphere_tests; /**< tests per query of a tick, instead of a time limit: the same forces in
                             every run; 0: the time limit applies */
   uint64_t max_memory;   /**< memory limit of each tree, bytes; default 4 GiB */
+  const ist_progress* progress; /**< follows the construction; may be NULL */
 } ist_servo_options;
 
 /** Reads a scene (TOML), reads or creates its bodies, builds the trees of its effects and moves the
  * tool to a free place. The caller is the scene's device: the damping and the delay in the scene's
  * table `device` limit the stable coupling; the caller's poses replace its motion.
  * Errors: IST_INPUT_INVALID, with the scene's file and line in the message; the errors of
- * ist_mesh_read and ist_tree_load; IST_ARGUMENT_INVALID. Cost: a few seconds. */
+ * ist_mesh_read and ist_tree_load; IST_ARGUMENT_INVALID; IST_CANCELLED. Cost: a few
+ * seconds. */
 IST_C_API ist_status ist_servo_open_scene(const char* path, const ist_servo_options* options,
                                           ist_servo** servo) IST_NOEXCEPT;
 

@@ -3,10 +3,25 @@
 
 /**
  * @file
- * The results of the calls of ist_c.h.
+ * The results of the calls of ist_c.h, and how a caller follows one that lasts.
  */
 
+#include <stddef.h>
 #include <stdint.h>
+
+#if defined(__GNUC__)
+#define IST_C_API __attribute__((visibility("default"))) /**< a function of the library */
+#define IST_MAY_ALIAS __attribute__((may_alias)) /**< it may share memory with another struct */
+#else
+#define IST_C_API
+#define IST_MAY_ALIAS
+#endif
+#ifdef __cplusplus
+#define IST_NOEXCEPT noexcept /**< no exception leaves a function */
+extern "C" {
+#else
+#define IST_NOEXCEPT
+#endif
 
 /** The result of a call. The numbers never change. */
 typedef int32_t ist_status;
@@ -52,5 +67,30 @@ enum {
   IST_FIXED_POINT_RANGE = 122,    /**< a number exceeds the hardware's fixed-point format */
   IST_MESH_TOO_LARGE = 123        /**< the mesh file unpacks, or places, too much */
 };
+
+/** The caller's function that follows a call which may last, on the caller's thread. NULL in place
+ * of the struct: nobody follows. */
+typedef struct ist_progress {
+  size_t struct_size; /**< the size of this struct, bytes */
+  /** Is called when the call begins, and at least every 0.05 s, with the part that is done, 0 to 1
+   * as far as that is known. Returns 0 to go on; any other number ends the call with IST_CANCELLED,
+   * and nothing is made. It must return: no longjmp, no exception. It may call the library, but not
+   * with the query or servo of the call. */
+  int32_t (*report)(void* user, double part);
+  void* user; /**< handed to `report`; never read */
+} ist_progress;
+
+/** Returns the name of a code for logs, such as "mesh-truncated"; "unknown" for any other number.
+ * [real time] */
+IST_C_API const char* ist_status_name(ist_status status) IST_NOEXCEPT;
+
+/** Returns the message of the calling thread's last error: function, cause, remedy. It is empty
+ * before the first error and cut after 511 bytes. Calls that succeed do not change it. The thread
+ * owns the text, which stays valid until its next error. [real time] */
+IST_C_API const char* ist_last_error_message(void) IST_NOEXCEPT;
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
 
 #endif /* IST_CAPI_IST_STATUS_H */

@@ -29,6 +29,12 @@ ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget
   return IST_OK;
 }
 
+ist_status not_prepared(const Call& call) {
+  return call.fail(IST_NOT_PREPARED,
+                   "the query was created with options->contacts = -1: create it with 0, the "
+                   "default, or a number of contacts");
+}
+
 ist_status status_of(const Call& call, QueryStatus status) {
   switch (status) {
     case QueryStatus::kDone:

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "ist/capi/handle.h"
+#include "ist/capi/handles/handle.h"
 #include "ist/capi/sized_struct.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/query.h"
@@ -44,14 +44,18 @@ struct QueryObject {
               const std::optional<ManifoldOptions>& manifold_options)
       : fixed(std::move(fixed_tree)),
         moving(std::move(moving_tree)),
-        query(*fixed, *moving, options) {
+        query(*fixed, *moving, options),
+        query_options(options) {
     if (!manifold_options) return;
+    contact_options = *manifold_options;
     max_contacts = manifold_options->points;
     manifold.emplace(*fixed, *moving, query.policy(), *manifold_options);
   }
 
   std::shared_ptr<const SphereTree> fixed, moving;  // the query refers to them
   Query query;
+  QueryOptions query_options;  // for further queries of the same bodies
+  ManifoldOptions contact_options;
   std::optional<ContactManifold> manifold;
   std::size_t max_contacts = 0;
 };
@@ -81,6 +85,9 @@ void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept;
 
 /// Converts a caller's budget; NULL leaves the default, which has no limit.
 [[nodiscard]] ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget);
+
+/// Stores the message of a query that was created without contacts.
+ist_status not_prepared(const Call& call);
 
 /// Converts a query's status; stores the message of an error.
 [[nodiscard]] ist_status status_of(const Call& call, QueryStatus status);

@@ -34,7 +34,8 @@ constexpr struct {
              {kArgumentInvalid, IST_ARGUMENT_INVALID},
              {kInputInvalid, IST_INPUT_INVALID},
              {kFixedPointRange, IST_FIXED_POINT_RANGE},
-             {kMeshTooLarge, IST_MESH_TOO_LARGE}};
+             {kMeshTooLarge, IST_MESH_TOO_LARGE},
+             {kCancelled, IST_CANCELLED}};
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < std::size(kRows); ++i)

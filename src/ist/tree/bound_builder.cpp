@@ -100,6 +100,7 @@ BoundBlocks build_bounds(SpherePolicy policy, const TriangleMesh& mesh, const Vo
   // extent: two roundings for a coordinate, and three or four for each of three cuts.
   const double pad = 0x1p-48 * (2 * voxels.lattice.root_centre());
   parallel_for(parents.size() - 1, kParentsARange, [&](std::size_t begin, std::size_t end) {
+    shown.check();
     LeafBuilder builder(lattice_mesh, voxels, octree, pad);
     for (std::size_t parent = begin; parent < end; ++parent) {
       builder.build(static_cast<std::uint32_t>(parent), bounds.balls[0][parent],

@@ -239,6 +239,7 @@ void nest_bounds(const LinearOctree& octree, double pad, BoundBlocks& bounds, Pr
       here.resize(octree.node_count(level));
     }
     parallel_for(parents.size() - 1, kGrain, [&](std::size_t begin, std::size_t end) {
+      shown.check();
       LevelNester nester(octree, bounds, level, pad, below);
       for (std::size_t parent = begin; parent < end; ++parent) {
         nester.fit(static_cast<std::uint32_t>(parent), bounds.balls[index][parent],

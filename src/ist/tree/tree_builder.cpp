@@ -76,6 +76,7 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
       report->stages.push_back(
           {name, std::chrono::duration<double, std::milli>(now - begin).count()});
     begin = std::chrono::steady_clock::now();
+    if (progress != nullptr) progress->check();
   };
   const OrientationResult oriented = orient_outward(mesh);
   if (report != nullptr) report->turned_components = oriented.turned_components;

@@ -211,13 +211,10 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
   }
 }
 
-}  // namespace
-
-std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
+std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
   const ScopedFloatEnvironment environment;
   const Lattice& lattice = tree.parts().lattice;
   const MeshSource& source = tree.source();
-  TreeWriter writer(file);
   const std::uint32_t sections = (tree.has(SpherePolicy::kTight) ? kBallsSection : 0u) |
                                  (tree.has(SpherePolicy::kSlab) ? kSlabsSection : 0u) |
                                  (tree.triangles() ? kTrianglesSection : 0u) |
@@ -254,9 +251,8 @@ std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& fi
   return writer.commit();
 }
 
-SphereTree read_tree(const std::filesystem::path& file) {
+SphereTree read(TreeReader reader) {
   const ScopedFloatEnvironment environment;
-  TreeReader reader(file);
   const auto header = reader.value<Header>();
   const auto sections = header.sections;
   const Lattice lattice{header.corner, header.voxel_size, header.cells,
@@ -311,6 +307,24 @@ SphereTree read_tree(const std::filesystem::path& file) {
                                            "a slab's numbers are out of range");
   if (proximity) parts.proximity = ProximityTree{verified(reader, std::move(*proximity))};
   return SphereTree(std::move(parts));
+}
+
+}  // namespace
+
+std::uint64_t write_tree(const SphereTree& tree, const std::filesystem::path& file) {
+  return write(tree, TreeWriter(file));
+}
+
+std::vector<std::byte> tree_to_bytes(const SphereTree& tree) {
+  std::vector<std::byte> bytes;
+  write(tree, TreeWriter(bytes));
+  return bytes;
+}
+
+SphereTree read_tree(const std::filesystem::path& file) { return read(TreeReader(file)); }
+
+SphereTree tree_from_bytes(std::span<const std::byte> bytes, const std::string& name) {
+  return read(TreeReader(bytes, name));
 }
 
 bool is_tree_file(const std::filesystem::path& file) {

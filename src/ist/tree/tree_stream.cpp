@@ -4,7 +4,10 @@
 #define XXH_INLINE_ALL  // so the library needs the header alone
 #include <xxhash.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
+#include <utility>
 
 #include "ist/tree/sphere_tree.h"
 
@@ -40,11 +43,23 @@ std::uint64_t Checksum::value() const { return XXH3_64bits_digest(&state_->xxh3)
 
 TreeWriter::TreeWriter(const std::filesystem::path& file) : file_(file) {
   const Preamble later;
-  file_.write(&later, sizeof(later));
+  store(&later, sizeof(later));
+}
+
+TreeWriter::TreeWriter(std::vector<std::byte>& memory) : memory_(&memory) {
+  memory.clear();
+  const Preamble later;
+  store(&later, sizeof(later));
+}
+
+void TreeWriter::store(const void* data, std::size_t count) {
+  if (file_) return file_->write(data, count);
+  const auto* begin = static_cast<const std::byte*>(data);
+  memory_->insert(memory_->end(), begin, begin + count);
 }
 
 void TreeWriter::bytes(const void* data, std::size_t count) {
-  file_.write(data, count);
+  store(data, count);
   checksum_.add(data, count);
   bytes_ += count;
 }
@@ -53,14 +68,36 @@ std::uint64_t TreeWriter::commit() {
   Preamble preamble;
   preamble.bytes = sizeof(preamble) + bytes_;
   preamble.checksum = checksum_.value();
-  file_.write_at(0, &preamble, sizeof(preamble));
-  file_.commit();
+  if (file_) {
+    file_->write_at(0, &preamble, sizeof(preamble));
+    file_->commit();
+  } else {
+    std::memcpy(memory_->data(), &preamble, sizeof(preamble));
+  }
   return preamble.bytes;
 }
 
-TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(file_.size()) {
+TreeReader::TreeReader(const std::filesystem::path& file)
+    : file_(std::in_place, file), name_(file.string()), size_(file_->size()), left_(size_) {
+  read_preamble();
+}
+
+TreeReader::TreeReader(std::span<const std::byte> memory, std::string name)
+    : memory_(memory), name_(std::move(name)), size_(memory.size()), left_(size_) {
+  read_preamble();
+}
+
+std::size_t TreeReader::take(void* data, std::size_t count) {
+  if (file_) return file_->read(data, count);
+  count = std::min(count, memory_.size());
+  if (count > 0) std::memcpy(data, memory_.data(), count);
+  memory_ = memory_.subspan(count);
+  return count;
+}
+
+void TreeReader::read_preamble() {
   Preamble preamble;
-  const std::size_t got = file_.read(&preamble, sizeof(preamble));
+  const std::size_t got = take(&preamble, sizeof(preamble));
   if (got < sizeof(kTreeFileMagic) || preamble.magic != kTreeFileMagic) {
     fail(ErrorCode::kNotATree, "it is not a tree file: make one with ist build");
   }
@@ -75,9 +112,9 @@ TreeReader::TreeReader(const std::filesystem::path& file) : file_(file), left_(f
                      "the mesh",
                      preamble.version, kTreeFileVersion));
   }
-  if (preamble.bytes != file_.size()) {
+  if (preamble.bytes != size_) {
     fail(ErrorCode::kTreeTruncated,
-         fmt::format("it has {} bytes and should have {}: copy or build it again", file_.size(),
+         fmt::format("it has {} bytes and should have {}: copy or build it again", size_,
                      preamble.bytes));
   }
   expected_ = preamble.checksum;
@@ -90,7 +127,7 @@ void TreeReader::verify_checksum() const {
 }
 
 void TreeReader::bytes(void* data, std::uint64_t count) {
-  if (count > left_ || file_.read(data, count) != count) truncated();
+  if (count > left_ || take(data, count) != count) truncated();
   checksum_.add(data, count);
   left_ -= count;
 }
@@ -104,7 +141,7 @@ void TreeReader::corrupt(const char* what) const {
 }
 
 void TreeReader::fail(ErrorCode code, const std::string& what) const {
-  throw Error(code, fmt::format("{}: {}", file_.path().string(), what));
+  throw Error(code, fmt::format("{}: {}", name_, what));
 }
 
 }  // namespace ist

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <string>
@@ -32,11 +34,13 @@ class Checksum {
   std::unique_ptr<State> state_;
 };
 
-/// Writes a tree file: its preamble, then values and arrays in their memory layout. Throws
-/// kFileUnwritable.
+/// Writes a tree file, to a disk or to memory: its preamble, then values and arrays in their memory
+/// layout. Throws kFileUnwritable.
 class TreeWriter {
  public:
   explicit TreeWriter(const std::filesystem::path& file);
+  /// @param memory takes the file; must outlive the writer
+  explicit TreeWriter(std::vector<std::byte>& memory);
 
   template <typename T>
   void value(const T& value) {
@@ -49,23 +53,29 @@ class TreeWriter {
     bytes(std::ranges::data(values), std::ranges::size(values) * sizeof(T));
   }
 
-  /// Completes the file under its own name. Returns the file's size, bytes.
+  /// Completes the file, on a disk under its own name. Returns its size, bytes.
   std::uint64_t commit();
 
  private:
   void bytes(const void* data, std::size_t count);
+  void store(const void* data, std::size_t count);
 
-  OutputFile file_;
+  std::optional<OutputFile> file_;  // empty: in memory
+  std::vector<std::byte>* memory_ = nullptr;
   Checksum checksum_;
   std::uint64_t bytes_ = 0;
 };
 
-/// Reads a tree file straight into the arrays of the tree. Each count is checked against the bytes
-/// left in the file; the arrays' content may be trusted only after verify_checksum().
-/// Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated, kTreeCorrupt.
+/// Reads a tree file, from a disk or from memory, straight into the arrays of the tree. Each count
+/// is checked against the bytes left in the file; the arrays' content may be trusted only after
+/// verify_checksum(). Throws kFileUnreadable, kNotATree, kTreeVersion, kTreeTruncated,
+/// kTreeCorrupt.
 class TreeReader {
  public:
   explicit TreeReader(const std::filesystem::path& file);
+  /// @param memory the whole file; must outlive the reader
+  /// @param name   names the memory in errors
+  TreeReader(std::span<const std::byte> memory, std::string name);
 
   template <typename T>
   T value() {
@@ -89,14 +99,18 @@ class TreeReader {
   }
 
  private:
+  void read_preamble();
+  std::size_t take(void* data, std::size_t count);
   void bytes(void* data, std::uint64_t count);
   [[noreturn]] void truncated() const;
   [[noreturn]] void corrupt(const char* what) const;
   [[noreturn]] void fail(ErrorCode code, const std::string& what) const;
 
-  InputFile file_;
+  std::optional<InputFile> file_;  // empty: from memory
+  std::span<const std::byte> memory_;
+  std::string name_;
   Checksum checksum_;
-  std::uint64_t expected_ = 0, left_;
+  std::uint64_t expected_ = 0, size_, left_;
 };
 
 }  // namespace ist

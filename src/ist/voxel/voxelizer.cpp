@@ -92,6 +92,7 @@ std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, do
   result.first_voxel.resize(blocks + 1);
   result.first_pair.resize(blocks + 1);
   parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    progress.check();
     std::vector<BlockCell> cells;
     for (std::size_t b = begin; b < end; ++b) {
       BlockSurvey& block = result.blocks[b];
@@ -328,6 +329,7 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
     set.triangles.ids.resize(found->pairs());
   }
   parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    shown.check();
     const auto writer = std::make_unique<BlockWriter>(lattice_mesh, *found, set);
     for (std::size_t b = begin; b < end; ++b) writer->write(b);
     shown.add(end - begin);

@@ -1,4 +1,4 @@
-// What tbb_ranges.cpp does, in a build without TBB: in the calling thread alone.
+// What tbb_ranges.cpp does, where there are no threads (WebAssembly): in the calling thread alone.
 
 #include "ist/base/parallel.h"
 

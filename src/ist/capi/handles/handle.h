@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "ist/capi/guard.h"
-#include "ist/capi/handle_table.h"
+#include "ist/capi/handles/handle_table.h"
 
 namespace ist::capi {
 

@@ -1,4 +1,4 @@
-#include "ist/capi/handle.h"
+#include "ist/capi/handles/handle.h"
 
 namespace ist::capi {
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "ist/base/progress.h"
+#include "ist/capi/guard.h"
+
+namespace ist::capi {
+
+/// A caller's function that follows a call; empty: nobody does.
+using Follower = std::optional<ist_progress>;
+
+/// Converts a caller's progress. NULL, and one without a function, leave nobody.
+[[nodiscard]] ist_status read_follower(const Call& call, const ist_progress* given,
+                                       Follower& follower);
+
+/// Runs `work` to its end. The follower's function is called first and every 20 ms meanwhile on the
+/// calling thread, and `work` then runs on a thread of its own; from the first answer other than 0
+/// on its `proceed` says no. An exception of `work` reaches the caller.
+///
+/// Returns whether the follower let it come to its end.
+bool followed(const Follower& follower, const std::function<void(const Proceed& proceed)>& work);
+
+/// Runs a build of so many stages, as followed() does.
+bool followed(const Follower& follower, Progress& progress, unsigned stages,
+              const std::function<void()>& work);
+
+/// Stores the message of a call that its follower ended.
+ist_status cancelled(const Call& call);
+
+}  // namespace ist::capi
