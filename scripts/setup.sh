@@ -8,9 +8,11 @@
 #   scripts/setup.sh --fuzz      also what the fuzzers need
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
 #   scripts/setup.sh --oracles   also what reads and measures again what the command writes
+#   scripts/setup.sh --python    also what makes and tests the Python package
 #   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
 #   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
+#   scripts/setup.sh --blender   also Blender, in which its add-on is tested
 #   scripts/setup.sh --cross     also what builds and runs for ARM64 and WebAssembly, and clang 16; only
 #                                then the architecture arm64 is added to this machine's
 set -euo pipefail
@@ -33,11 +35,14 @@ for argument in "$@"; do
     --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
+    --python) packages+=(python3-numpy python3-setuptools python3-wheel python3-build python3-venv python3-pip
+      mypy python3-matplotlib python3-meshio python3-vtk9) ;;
     --docs) packages+=(doxygen mkdocs) ;;
     --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
+    --blender) packages+=(blender) ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

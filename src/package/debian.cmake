@@ -1,9 +1,9 @@
-# `cpack` makes three packages, each of one component.
+# `cpack` makes four packages, each of one component.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ist)
 # Debian wants an address. The project has none, and nobody can have one in .example (RFC 2606).
 set(CPACK_PACKAGE_CONTACT "IST developers <noreply@ist.example>")
-set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_COMPONENTS_ALL runtime development python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -55,6 +55,16 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${runtime} (= ${PROJECT_VERSION}), libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS ist)  # has the documents
 ist_describe(DEVELOPMENT "development files" "This package has the headers, for CMake and pkg-config.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ist)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS OFF)  # ctypes names the library
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${runtime} (= ${PROJECT_VERSION}), python3 (>= 3.9), python3-numpy (>= 1:1.21)")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS ist)  # has the documents
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/src/python/debian/postinst
+    ${PROJECT_SOURCE_DIR}/src/python/debian/prerm)
+ist_describe(PYTHON "Python 3 package" "This package has the modules for Python, which take and give numpy arrays.")
 
 if(TARGET ist_cli)
   list(APPEND CPACK_COMPONENTS_ALL command)

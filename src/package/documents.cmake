@@ -69,6 +69,6 @@ foreach(picture IN LISTS pictures)
   ist_install_document(${picture} ${PROJECT_SOURCE_DIR}/${picture})
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
-        COMPONENT ${documents_component})
+        COMPONENT ${documents_component} PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/data/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
         COMPONENT ${documents_component})

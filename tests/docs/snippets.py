@@ -3,10 +3,12 @@ and C under two compilers, a scene by `ist run --check`. A block without a langu
 compared, where its `…` stands for any text. The notes that change this are those of pages.py. A block of any other language is
 an error: no block is passed over, but for those whose note gives the reason.
 
-Fragments of C++, blocks without `int main`, are one program together.
+Fragments of C++, blocks without `int main`, are one program together. Blocks of Python are one too: each knows the names of
+those before it. A file of Python is a program of its own.
 """
 
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -21,14 +23,15 @@ OTHER_COMPILER = "clang++-14"
 PYTHON = "/usr/bin/python3"
 C_COMPILERS = ("gcc", "clang-14")
 STUBS = pathlib.Path(__file__).resolve().parent / "stubs"
+PACKAGE = STUBS.parents[2] / "src/python"  # where the package `ist` is
 LANGUAGES = ("", "sh", "python", "cpp", "c", "toml", "csv", "json", "cmake")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 
 
 def missing_modules(page):
-    """The modules that the page's Python imports, and PYTHON does not have."""
+    """The modules of others that the page's Python imports, and PYTHON does not have."""
     named = {name for block in page.blocks if block.language == "python"
-             for name in re.findall(r"(?m)^(?:import|from) (\w+)", block.text)}
+             for name in re.findall(r"(?m)^(?:import|from) (\w+)", block.text)} - {"ist"}
     return [name for name in sorted(named)
             if subprocess.run([PYTHON, "-c", f"import {name}"], stderr=subprocess.DEVNULL, check=False).returncode != 0]
 
@@ -43,6 +46,49 @@ def is_output(expected, printed):
     return re.fullmatch(pattern, printed.rstrip("\n"), re.S) is not None
 
 
+class Session:
+    """A page's Python: one interpreter, which runs block after block. A block that begins with `>>>` shows what it prints: doctest
+    compares it."""
+
+    PROGRAM = """
+import doctest, json, sys
+names = {"__name__": "__main__"}
+for line in sys.stdin:
+    code = json.loads(line)
+    if code.startswith(">>> "):
+        test = doctest.DocTestParser().get_doctest(code, names, "the page", None, 0)
+        if doctest.DocTestRunner().run(test, clear_globs=False).failed:
+            sys.exit(1)
+        names.update(test.globs)
+    else:
+        exec(compile(code, "the page", "exec"), names)
+    print("\\0", flush=True)
+"""
+
+    def __init__(self, folder, environment):
+        self.errors = folder / "python_errors.txt"
+        with open(self.errors, "w") as errors:
+            self.process = subprocess.Popen([PYTHON, "-Bc", self.PROGRAM], cwd=folder, env=environment, text=True,
+                                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors)
+
+    def run(self, text):
+        """Whether a block runs to its end, and what it prints."""
+        self.process.stdin.write(json.dumps(text) + "\n")
+        self.process.stdin.flush()
+        printed = []
+        for line in self.process.stdout:
+            if line.endswith("\0\n"):
+                return True, "".join(printed) + line[:-2]
+            printed.append(line)
+        self.process.wait()
+        return False, "".join(printed) + self.errors.read_text()
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+
+
 class Reader:
     """Does what a page says."""
 
@@ -50,7 +96,9 @@ class Reader:
         self.name, self.folder, self.prefix, self.compiler = name, folder, prefix, compiler
         libraries = next(prefix.rglob("pkgconfig/ist.pc")).parent.parent
         self.environment = dict(os.environ, PATH=f"{prefix}/bin:{os.environ['PATH']}", LD_LIBRARY_PATH=str(libraries),
-                                PKG_CONFIG_PATH=str(libraries / "pkgconfig"))
+                                PKG_CONFIG_PATH=str(libraries / "pkgconfig"), PYTHONPATH=str(PACKAGE),
+                                IST_LIBRARY=str(libraries / "libist.so"), MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
+        self.session = None  # of the page's Python, from its first block on
         self.printed = None  # of the last block, until it is compared
         self.fragments, self.outputs = [], []  # of the page's one program
         self.counts = {"run": 0, "compared": 0, "written": 0, "compiled": 0, "left": 0}
@@ -65,6 +113,14 @@ class Reader:
 
     def shell(self, text, line):
         return self.run(["bash", "-euo", "pipefail", "-c", text], line)
+
+    def python(self, text, line):
+        if self.session is None:
+            self.session = Session(self.folder, self.environment)
+        is_run, printed = self.session.run(text)
+        if not is_run:
+            raise Failure(f"{self.name}, line {line}: this Python failed:\n{printed}")
+        return printed
 
     def flags(self, what):
         return self.run(["pkg-config", what, "ist"], 0).split()
@@ -133,6 +189,9 @@ class Reader:
             if block.language == "c":
                 self.printed = self.program(block.text, block.line, "c", C_COMPILERS, "-std=c11")
                 self.counts["run"] += 1
+            if block.language == "python":
+                self.printed = self.run([PYTHON, "-B", file], block.line)
+                self.counts["run"] += 1
         elif block.language == "cpp" and "int main" not in block.text:
             self.fragments.append(block)
             self.counts["run"] += 1
@@ -141,7 +200,7 @@ class Reader:
                 printed = self.program(block.text, block.line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20")
             else:
                 printed = (self.shell(block.text, block.line) if block.language == "sh" else
-                           self.run([PYTHON, "-Bc", block.text], block.line))
+                           self.python(block.text, block.line))
             self.printed = None if block.says("output varies") else printed
             self.counts["run"] += 1
         else:
@@ -150,8 +209,12 @@ class Reader:
     def read(self, page):
         if page.setup:
             self.shell(page.setup, 0)
-        for block in page.blocks:
-            self.block(block)
+        try:
+            for block in page.blocks:
+                self.block(block)
+        finally:
+            if self.session is not None:
+                self.session.end()
         if self.fragments:
             line = self.fragments[0].line
             printed = self.program(self.fragments_of(page), line, "cpp", (self.compiler, OTHER_COMPILER), "-std=c++20")
@@ -172,7 +235,7 @@ def main():
         return 1
     missing = [f"{tool} is not installed: scripts/setup.sh does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
                if shutil.which(tool) is None]
-    missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles installs it" for name in missing_modules(page)]
+    missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles --python installs it" for name in missing_modules(page)]
     if missing:
         print(f"snippets: skipped: {'; '.join(missing)}", file=sys.stderr)
         return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED

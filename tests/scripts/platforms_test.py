@@ -78,6 +78,10 @@ class Refusals(unittest.TestCase):
         said = self.refused("--toolchain", SOURCE / "scripts/toolchains/wasm.cmake")
         self.assertIn("WebAssembly has neither threads nor zlib here: set IST_WITH_TBB=OFF", said)
 
+    def test_tbb_in_a_portable_library(self):
+        said = self.refused(*COMPILER, "-DIST_PORTABLE=ON")
+        self.assertIn("A portable library has threads of its own, and no oneTBB: set IST_WITH_TBB=OFF", said)
+
 
 if __name__ == "__main__":
     unittest.main()

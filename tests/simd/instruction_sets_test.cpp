@@ -4,9 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "ist/base/platform/instruction_sets.h"
 #include "simd/targets.h"
 
 namespace ist::test {
@@ -38,6 +44,34 @@ TEST(InstructionSets, AreThoseOfThePlatform) {
   for (const std::string& target : all_targets())
     EXPECT_NE(std::find(known.begin(), known.end(), target), known.end()) << target;
 }
+
+#if defined(__x86_64__)
+// By the system's own list, which it makes of what the processor says and of what it saves.
+TEST(InstructionSets, AreThoseThatTheSystemNames) {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  std::set<std::string> flags;
+  while (flags.empty() && std::getline(file, line)) {
+    std::istringstream words(line);
+    if (line.rfind("flags", 0) == 0) flags.insert(std::istream_iterator<std::string>(words), {});
+  }
+  ASSERT_TRUE(flags.contains("sse2"));
+  const auto all = [&](std::initializer_list<const char*> names) {
+    return std::all_of(names.begin(), names.end(), [&](auto name) { return flags.contains(name); });
+  };
+  const InstructionSets here = instruction_sets();
+  EXPECT_EQ(here.ssse3, all({"ssse3"}));
+  EXPECT_EQ(here.sse4, here.ssse3 && all({"sse4_1", "sse4_2", "aes", "pclmulqdq"}));
+  EXPECT_EQ(here.avx2, here.sse4 && all({"avx", "avx2", "bmi1", "bmi2", "fma", "f16c"}));
+  EXPECT_EQ(here.avx3, here.avx2 && all({"avx512f", "avx512vl", "avx512dq", "avx512bw"}));
+  for (const std::string& target : all_targets()) {
+    EXPECT_TRUE(target == "scalar" || (target == "ssse3" && here.ssse3) ||
+                (target == "sse4" && here.sse4) || (target == "avx2" && here.avx2) ||
+                (target == "avx3" && here.avx3))
+        << target;
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace ist::test

@@ -115,8 +115,8 @@ ExactPair::ExactPair(const ExactBody& fixed, const ExactBody& moving, const Eige
     }
   }
   rounded_translation_ = rounded(translation_);
-  margin_ = 1e-12 * (fixed.farthest_ + moving.farthest_ +
-                     rounded_translation_.cwiseAbs().maxCoeff());
+  margin_ =
+      1e-12 * (fixed.farthest_ + moving.farthest_ + rounded_translation_.cwiseAbs().maxCoeff());
 
   std::vector<ExactPoint> directions;
   for (std::size_t i = 0; i < 3; ++i) {

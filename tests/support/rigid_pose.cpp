@@ -20,8 +20,7 @@ Rows nearer(const Rows& r) {
   Rows next;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      next[i][j] =
-          in_order(r[i][0] * rest[0][j], r[i][1] * rest[1][j], r[i][2] * rest[2][j]) / 2;
+      next[i][j] = in_order(r[i][0] * rest[0][j], r[i][1] * rest[1][j], r[i][2] * rest[2][j]) / 2;
     }
   }
   return next;

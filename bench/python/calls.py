@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Times calls from Python beside the same calls from C, in turns, and prints medians: what a call costs more, and how much of C's
+poses a second rows reach.
+
+    IST_LIBRARY=build/release/src/package/libist.so PYTHONPATH=src/python bench/python/calls.py
+
+Needs gcc, numpy, and a library that was built (scripts/setup.sh --python; cmake --preset release; cmake --build --preset release).
+"""
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+import ist
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CALLS, POSES, ROUNDS = 4000, 20_000, 7
+
+
+def in_c(program, trees):
+    done = subprocess.run([program, *trees, str(CALLS), str(POSES)], capture_output=True, text=True, check=True)
+    return {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines()}
+
+
+def in_python(query):
+    pose = np.eye(4)
+    pose[:3, 3] = 0.1, 0.2, -1.5
+    pairs, contacts, found = np.empty(4096, ist.LEAF_PAIR), np.empty(32, ist.CONTACT), {}
+    verbs = {
+        "intersects": lambda: query.intersects(pose),
+        "leaf_pairs": lambda: query.leaf_pairs(pose, out=pairs),
+        "contacts": lambda: query.contacts(pose, out=contacts),
+    }
+    for name, verb in verbs.items():
+        times = []
+        for i in range(-CALLS // 10, CALLS):
+            pose[0, 3] = 0.1 + 1e-9 * i
+            begin = time.perf_counter_ns()
+            verb()
+            if i >= 0:
+                times.append(time.perf_counter_ns() - begin)
+        found[name] = statistics.median(times)
+    poses = np.tile(pose, (POSES, 1, 1))
+    poses[:, 2, 3] = -2.5 * np.arange(POSES) / POSES
+    out = np.empty(POSES, ist.ROW)
+    begin = time.perf_counter()
+    query.rows(poses, tolerance=0.01, threads=2, out=out)
+    found["rows"] = POSES / (time.perf_counter() - begin)
+    return found
+
+
+def main():
+    library = os.environ.get("IST_LIBRARY")
+    if not library or not pathlib.Path(library).is_file():
+        sys.exit(__doc__)
+    with tempfile.TemporaryDirectory() as folder:
+        program, trees = f"{folder}/calls", [f"{folder}/upper.ist", f"{folder}/lower.ist"]
+        subprocess.run(["gcc", "-O2", "-std=gnu11", f"-I{ROOT}/src", f"{ROOT}/bench/python/calls.c", library,
+                        f"-Wl,-rpath,{pathlib.Path(library).resolve().parent}", "-o", program], check=True)
+        bodies = [ist.build(jaw, 0.4) for jaw in ist.jaws()]
+        for body, name in zip(bodies, trees):
+            body.save(name)
+        query = ist.Query(*bodies)
+        rounds = [(in_c(program, trees), in_python(query)) for _ in range(ROUNDS)]
+    print("| call | C, µs | Python, µs | more, µs |\n|---|---|---|---|")
+    for name in ("intersects", "leaf_pairs", "contacts"):
+        c, python = (statistics.median(each[i][name] for each in rounds) / 1e3 for i in (0, 1))
+        more = statistics.median(each[1][name] - each[0][name] for each in rounds) / 1e3
+        print(f"| `{name}` | {c:.2f} | {python:.2f} | {more:.2f} |")
+    c, python = (statistics.median(each[i]["rows"] for each in rounds) for i in (0, 1))
+    share = statistics.median(each[1]["rows"] / each[0]["rows"] for each in rounds)
+    print(f"\nRows on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+"""Where two rigid triangle meshes touch, how deep, how far apart.
+
+Lengths are in the meshes' unit, millimetres by habit. A pose is (4, 4) float64, row by row, and maps the moving body to the
+fixed one: p_fixed = pose @ p_moving. Answers are structured arrays and named tuples.
+
+>>> import ist, numpy as np
+>>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+>>> query = ist.Query(upper, lower)
+>>> query.intersects(np.eye(4))
+True
+
+Research software, not a medical device.
+"""
+
+from ._answers import (
+    BodyOcclusion,
+    Contacts,
+    Distance,
+    FirstContact,
+    LeafPairs,
+    Occlusion,
+    Penetration,
+    ServoTick,
+    TrianglePairs,
+)
+from ._errors import BusyError, Error, FileError, FreedError, InputError, MemoryLimitError
+from ._library import LIBRARY as _LIBRARY
+from ._measures import distance_map, signed_distance
+from ._mesh import jaws, read_mesh
+from ._query import Query
+from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR
+from ._servo import Servo
+from ._tree import Tree, build, load
+
+__version__ = _LIBRARY.ist_version_string().decode()
+
+NO_TRIANGLE = 0xFFFFFFFF
+UNKNOWN, NO, NEAR, YES = range(4)
+
+
+def occlusion(fixed, moving, pose=None, **options):
+    """Measures the occlusion of two trees, as Query.occlusion() does, by a query of its own."""
+    with Query(fixed, moving, contacts=-1) as query:
+        return query.occlusion(pose, **options)
+
+
+__all__ = [name for name in dir() if not name.startswith("_")]

@@ -1,0 +1,324 @@
+"""Where two rigid triangle meshes touch, how deep, how far apart. Lengths are in the meshes' unit, millimetres by
+habit. A pose is (4, 4) float64, row by row, and maps the moving body to the fixed one: p_fixed = pose @ p_moving."""
+
+from os import PathLike
+from types import TracebackType
+from typing import Any, Callable, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Type, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+Path = Union[str, "PathLike[str]"]
+Spheres = Literal["default", "simple", "table", "tight", "slab"]
+Question = Literal["intersects", "leaf_pairs", "distance", "contacts", "penetration"]
+F8 = NDArray[np.float64]
+U4 = NDArray[np.uint32]
+Records = NDArray[np.void]
+Mesh = Tuple[F8, U4]
+Follow = Callable[[float], Any]
+
+LEAF_PAIR: np.dtype[np.void]
+TRIANGLE_PAIR: np.dtype[np.void]
+CONTACT: np.dtype[np.void]
+SURFACE_DISTANCE: np.dtype[np.void]
+CONTACT_REGION: np.dtype[np.void]
+ROW: np.dtype[np.void]
+NO_TRIANGLE: int
+UNKNOWN: int
+NO: int
+NEAR: int
+YES: int
+
+class Error(Exception):
+    code: int
+    name: str
+
+class InputError(Error, ValueError): ...
+class FileError(Error, OSError): ...
+class MemoryLimitError(Error, MemoryError): ...
+class BusyError(Error, RuntimeError): ...
+class FreedError(Error, RuntimeError): ...
+
+class HasMesh(Protocol):
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+class Tree:
+    @property
+    def voxel_size(self) -> float: ...
+    @property
+    def leaves(self) -> int: ...
+    @property
+    def triangles(self) -> int: ...
+    @property
+    def depth(self) -> int: ...
+    @property
+    def nbytes(self) -> int: ...
+    @property
+    def spheres(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def outward(self) -> bool: ...
+    @property
+    def origin(self) -> F8: ...
+    @property
+    def vertices(self) -> F8: ...
+    @property
+    def faces(self) -> U4: ...
+    @property
+    def leaf_centres(self) -> F8: ...
+    def save(self, path: Path) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    def free(self) -> None: ...
+    def __enter__(self) -> Tree: ...
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None: ...
+
+def build(
+    mesh: Union[Path, HasMesh, Tuple[ArrayLike, ArrayLike]],
+    voxel_size: float,
+    *,
+    spheres: Spheres = "default",
+    keep_triangles: bool = True,
+    proximity: bool = False,
+    max_memory: int = 4 << 30,
+    progress: Optional[Follow] = None,
+) -> Tree: ...
+def load(source: Union[Path, bytes, bytearray, memoryview]) -> Tree: ...
+def read_mesh(path: Path) -> Mesh: ...
+def jaws(seed: int = 1) -> Tuple[Mesh, Mesh]: ...
+
+class LeafPairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    level: int
+    distance: Optional[Tuple[float, float]]
+    resolution: float
+    sphere_tests: int
+
+class Contacts(NamedTuple):
+    contacts: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    leaf_pairs: int
+    area: float
+    sphere_tests: int
+    sums: Records
+    def wrench(self, stiffness: float) -> Tuple[F8, F8, F8]: ...
+
+class Distance(NamedTuple):
+    lower: float
+    upper: float
+    complete: bool
+    narrowest: float
+    sphere_tests: int
+
+class TrianglePairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+
+class Penetration(NamedTuple):
+    lower: float
+    upper: float
+    complete: bool
+    point: F8
+    direction: F8
+    of_moving: bool
+    triangle: int
+    not_closed: Optional[Literal["fixed", "moving"]]
+    narrowest: float
+    points: int
+
+class FirstContact(NamedTuple):
+    outcome: Literal["contact", "none", "grazing", "touches at start", "inside at start", "stopped"]
+    lower: float
+    upper: float
+    distance: Tuple[float, float]
+    triangles: Optional[Tuple[int, int]]
+    grazed: bool
+    narrowest: float
+    distances: int
+
+class BodyOcclusion(NamedTuple):
+    distances: Records
+    regions: Records
+    areas: F8
+    total_area: float
+    penetrating_area: float
+    depth_integral: float
+    depth_at_vertices: float
+
+class Occlusion(NamedTuple):
+    limits: F8
+    fixed: BodyOcclusion
+    moving: BodyOcclusion
+
+class Query:
+    def __init__(
+        self,
+        fixed: Tree,
+        moving: Tree,
+        *,
+        spheres: Spheres = "default",
+        workers: Literal[1, 2] = 1,
+        contacts: int = 32,
+        push_distance: float = 2.0,
+        front_pairs: int = 0,
+        target: Optional[str] = None,
+    ) -> None: ...
+    @property
+    def fixed(self) -> Tree: ...
+    @property
+    def moving(self) -> Tree: ...
+    @property
+    def spheres(self) -> str: ...
+    @property
+    def target(self) -> str: ...
+    @property
+    def workers(self) -> int: ...
+    @property
+    def has_triangles(self) -> bool: ...
+    @property
+    def nbytes(self) -> int: ...
+    def intersects(self, pose: ArrayLike, *, tests: int = 0, seconds: float = 0.0) -> Optional[bool]: ...
+    def leaf_pairs(
+        self,
+        pose: ArrayLike,
+        *,
+        out: Optional[Records] = None,
+        most: Optional[int] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> LeafPairs: ...
+    def contacts(
+        self, pose: ArrayLike, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0
+    ) -> Contacts: ...
+    def distance(
+        self, pose: ArrayLike, tolerance: float = 0.0, *, tests: int = 0, seconds: float = 0.0
+    ) -> Distance: ...
+    def triangle_pairs(
+        self,
+        pose: ArrayLike,
+        *,
+        out: Optional[Records] = None,
+        most: Optional[int] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> TrianglePairs: ...
+    def penetration(
+        self,
+        pose: ArrayLike,
+        tolerance: float,
+        *,
+        last: Optional[Penetration] = None,
+        points: int = 0,
+        seconds: float = 0.0,
+        progress: Optional[Follow] = None,
+    ) -> Penetration: ...
+    def first_contact(
+        self,
+        start: ArrayLike,
+        stop: ArrayLike,
+        tolerance: float,
+        *,
+        distances: int = 0,
+        seconds: float = 0.0,
+        progress: Optional[Follow] = None,
+    ) -> FirstContact: ...
+    def occlusion(
+        self,
+        pose: Optional[ArrayLike] = None,
+        *,
+        limits: Sequence[float] = (0.05, 0.1, 0.2, 0.35),
+        reach: float = 2.0,
+        contact: float = 0.1,
+        least_area: float = 0.01,
+        longest_edge: float = 0.2,
+        foundation: float = 0.1,
+        change: float = 0.05,
+        progress: Optional[Follow] = None,
+    ) -> Occlusion: ...
+    def rows(
+        self,
+        poses: ArrayLike,
+        *,
+        want: Sequence[Question] = ("intersects", "distance"),
+        tolerance: float = 0.0,
+        stiffness: float = 1.0,
+        tests: int = 0,
+        threads: int = 0,
+        out: Optional[Records] = None,
+        progress: Optional[Follow] = None,
+    ) -> Records: ...
+    def forget(self) -> None: ...
+    def free(self) -> None: ...
+    def __enter__(self) -> Query: ...
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None: ...
+
+def signed_distance(
+    tree: Tree,
+    points: ArrayLike,
+    *,
+    reach: float = ...,
+    out: Optional[Records] = None,
+    progress: Optional[Follow] = None,
+) -> Records: ...
+def distance_map(
+    body: Tree,
+    other: Tree,
+    pose: Optional[ArrayLike] = None,
+    *,
+    reach: float = ...,
+    out: Optional[Records] = None,
+    progress: Optional[Follow] = None,
+) -> Records: ...
+def occlusion(fixed: Tree, moving: Tree, pose: Optional[ArrayLike] = None, **options: Any) -> Occlusion: ...
+
+class ServoTick(NamedTuple):
+    force: F8
+    torque: F8
+
+class Servo:
+    def __init__(
+        self,
+        scene: Path,
+        *,
+        unit: Literal["m", "mm"] = "mm",
+        query_time_fraction: float = 0.7,
+        sphere_tests: int = 0,
+        max_memory: int = 4 << 30,
+        progress: Optional[Follow] = None,
+    ) -> None: ...
+    @property
+    def warnings(self) -> Tuple[str, ...]: ...
+    @property
+    def tick_seconds(self) -> float: ...
+    @property
+    def tool(self) -> F8: ...
+    @property
+    def ticks(self) -> int: ...
+    @property
+    def held(self) -> int: ...
+    @property
+    def faults(self) -> int: ...
+    @property
+    def late(self) -> int: ...
+    def tick(self, pose: Optional[ArrayLike]) -> ServoTick: ...
+    def free(self) -> None: ...
+    def __enter__(self) -> Servo: ...
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None: ...

@@ -1,0 +1,111 @@
+"""The answers of a query."""
+
+from typing import NamedTuple, Optional, Tuple
+
+import numpy as np
+
+
+class LeafPairs(NamedTuple):
+    """Pairs of voxels whose bounds overlap, sorted by fixed and then by moving voxel."""
+
+    pairs: np.ndarray  # LEAF_PAIR
+    count: int  # all that were found, in the array or not
+    complete: bool  # False: a limit ended the search
+    truncated: bool  # True: the array was too short and holds the first pairs
+    level: int  # levels above the leaves at which the search ended
+    distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, where it is known
+    resolution: float  # the surfaces in a pair are no farther apart
+    sphere_tests: int
+
+
+class Contacts(NamedTuple):
+    """Where a hand feels the other body, and the sums that forces are made of."""
+
+    contacts: np.ndarray  # CONTACT, fixed mesh coordinates
+    count: int
+    complete: bool  # False: a limit ended the search; there is no force
+    leaf_pairs: int
+    area: float  # sum of the weights of all leaf pairs, mesh units²
+    sphere_tests: int
+    sums: np.ndarray  # CONTACT_SUMS, one element
+
+    def wrench(self, stiffness):
+        """The springs' force on the moving body, their torque, and the point that the torque is about, fixed mesh
+        coordinates. A stiffness in N/mm³ and meshes in mm give N and N mm."""
+        sums = self.sums[0]
+        return stiffness * sums["spring_force"], stiffness * sums["spring_torque"], sums["about"].copy()
+
+
+class Distance(NamedTuple):
+    """The distance between the surfaces, mesh units: it lies between `lower` and `upper`."""
+
+    lower: float
+    upper: float
+    complete: bool  # the interval is no wider than the tolerance
+    narrowest: float  # no tolerance below this width can be reached here
+    sphere_tests: int
+
+
+class TrianglePairs(NamedTuple):
+    """Pairs of triangles with a common point, exactly, sorted by fixed and then by moving triangle."""
+
+    pairs: np.ndarray  # TRIANGLE_PAIR
+    count: int
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+
+
+class Penetration(NamedTuple):
+    """How deep the deepest point of either surface lies inside the other body, mesh units."""
+
+    lower: float
+    upper: float
+    complete: bool
+    point: np.ndarray  # (3,), fixed mesh coordinates, `lower` deep
+    direction: np.ndarray  # (3,), from there to the other surface's nearest point
+    of_moving: bool  # whose surface the point lies on
+    triangle: int  # of that surface
+    not_closed: Optional[str]  # "fixed" or "moving": that body has no certain inside, and there is no answer
+    narrowest: float
+    points: int  # points of which the distance was measured
+
+
+class FirstContact(NamedTuple):
+    """The first contact along a motion: at `upper`, 0 to 1, triangles intersect; before `lower` none do."""
+
+    outcome: str  # "contact", "none", "grazing", "touches at start", "inside at start", "stopped"
+    lower: float
+    upper: float
+    distance: Tuple[float, float]  # of the surfaces at `lower`
+    triangles: Optional[Tuple[int, int]]  # fixed and moving, that intersect at `upper`, where they are known
+    grazed: bool
+    narrowest: float
+    distances: int  # asked for
+
+
+class BodyOcclusion(NamedTuple):
+    """One surface against the other body."""
+
+    distances: np.ndarray  # SURFACE_DISTANCE, of its vertices
+    regions: np.ndarray  # CONTACT_REGION, the largest first
+    areas: np.ndarray  # within each limit, mesh units²
+    total_area: float
+    penetrating_area: float
+    depth_integral: float
+    depth_at_vertices: float
+
+
+class Occlusion(NamedTuple):
+    """Distance maps, areas and contact regions of two bodies; docs/occlusion.md defines each number."""
+
+    limits: np.ndarray  # distances whose areas were measured, mesh units
+    fixed: BodyOcclusion
+    moving: BodyOcclusion
+
+
+class ServoTick(NamedTuple):
+    """The output of a tick for the hand, along the scene's axes."""
+
+    force: np.ndarray  # (3,), N
+    torque: np.ndarray  # (3,), N m, about the tool's origin

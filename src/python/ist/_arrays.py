@@ -1,0 +1,103 @@
+"""Arrays and numbers of the caller, as the library takes them. What makes no sense is an InputError."""
+
+import ctypes
+import math
+import operator
+
+import numpy as np
+
+from ._errors import refuse
+from ._records import Budget
+
+
+def address(array):
+    """Returns where an array's data begin."""
+    return array.__array_interface__["data"][0]
+
+
+def floats(values, shape, what):
+    """Returns an array of float64 in C order, of a shape in which None stands for any length; no copy where it is one."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "fiubO":
+            raise TypeError(f"the dtype is {array.dtype}")
+        array = np.asarray(array, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        refuse(f"{what}: {error}: pass numbers")
+    if array.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in zip(shape, array.shape)):
+        wanted = ", ".join("N" if length is None else str(length) for length in shape)
+        refuse(f"{what} has the shape {array.shape}: pass ({wanted})")
+    return array
+
+
+def by_columns(poses):
+    """Returns poses, (N, 4, 4) or (4, 4), row by row, as the library takes them: column by column."""
+    return np.ascontiguousarray(poses.swapaxes(-1, -2))
+
+
+def pose_of(pose, what="pose"):
+    """Returns a pose column by column, and the identity for None."""
+    return np.eye(4) if pose is None else by_columns(floats(pose, (4, 4), what))
+
+
+def indices(values, what):
+    """Returns an array of uint32, (N, 3). Numbers that no index can be are refused with their place."""
+    array = np.asarray(values)
+    if array.size == 0:
+        array = array.reshape(-1, 3).astype(np.uint32)
+    if array.dtype.kind not in "iu":
+        refuse(f"{what} has the dtype {array.dtype}: pass whole numbers")
+    if array.ndim != 2 or array.shape[1] != 3:
+        refuse(f"{what} has the shape {array.shape}: pass (N, 3), triangles")
+    if array.dtype != np.uint32:
+        wrong = (array < 0) | (array > 0xFFFFFFFF)
+        if wrong.any():
+            row = int(np.argmax(wrong.any(axis=1)))
+            refuse(f"{what}[{row}] is {array[row].tolist()}: pass indices from 0 to 2**32 - 1")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def count_of(value, what, most=2**64 - 1):
+    """Returns a whole number from 0 to `most`."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        refuse(f"{what} is {value!r}: pass a whole number")
+    if not 0 <= number <= most:
+        refuse(f"{what} is {number}: pass a number from 0 to {most}")
+    return number
+
+
+def number_of(value, what):
+    """Returns a float that is not NaN."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        refuse(f"{what} is {value!r}: pass a number")
+    if math.isnan(number):
+        refuse(f"{what} is NaN: pass a number")
+    return number
+
+
+def out_of(out, dtype, length=None):
+    """Returns an array for answers, checked: of the dtype, in C order, one-dimensional, writeable, and of a length."""
+    if not isinstance(out, np.ndarray) or out.dtype != dtype:
+        refuse(f"out is {getattr(out, 'dtype', type(out).__name__)}: pass an array of the dtype {dtype}")
+    flags = out.flags
+    if out.ndim != 1 or not flags.c_contiguous or not flags.writeable or not flags.aligned:
+        refuse("out has to be one-dimensional, contiguous, aligned and writeable: make it by numpy.empty")
+    if length is not None and len(out) != length:
+        refuse(f"out has {len(out)} elements: pass {length}")
+    return out
+
+
+def budget_of(tests, seconds):
+    """Returns a Budget and its address, or (None, None) without limits."""
+    if tests == 0 and seconds == 0:
+        return None, None
+    limit = number_of(seconds, "seconds")
+    if limit < 0:
+        refuse(f"seconds is {limit}: pass a number of at least 0")
+    nanoseconds = 0 if limit == 0 or limit > 1e9 else max(1, int(limit * 1e9))
+    budget = Budget(tests=count_of(tests, "tests"), nanoseconds=nanoseconds)
+    return budget, ctypes.addressof(budget)

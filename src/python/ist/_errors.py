@@ -1,0 +1,69 @@
+"""The library's errors as Python's."""
+
+from ._library import LIBRARY
+
+
+class Error(Exception):
+    """An error of the library: the text names cause and remedy, `code` and `name` are those of ist_status.h."""
+
+    code = 0
+    name = ""
+
+
+class InputError(Error, ValueError):
+    """An argument, a mesh, a tree or a scene that makes no sense."""
+
+
+class FileError(Error, OSError):
+    """A file that cannot be read or written."""
+
+
+class MemoryLimitError(Error, MemoryError):
+    """More memory than is allowed, or than there is."""
+
+
+class BusyError(Error, RuntimeError):
+    """Another thread is using the query or the servo."""
+
+
+class FreedError(Error, RuntimeError):
+    """The object was freed."""
+
+
+FREED, BUSY, OUT_OF_MEMORY, CANCELLED, FILE_UNREADABLE, FILE_UNWRITABLE, MEMORY_LIMIT = 6, 7, 9, 14, 101, 102, 112
+KINDS = {
+    4: FreedError,
+    5: FreedError,
+    FREED: FreedError,
+    BUSY: BusyError,
+    8: Error,
+    OUT_OF_MEMORY: MemoryLimitError,
+    10: Error,
+    11: Error,
+    13: Error,
+    CANCELLED: Error,
+    FILE_UNREADABLE: FileError,
+    FILE_UNWRITABLE: FileError,
+    MEMORY_LIMIT: MemoryLimitError,
+}
+
+
+def error_of(status, text=None):
+    """Returns the exception of a status, with the library's last message unless a text is given."""
+    if text is None:
+        text = LIBRARY.ist_last_error_message().decode("utf-8", "replace")
+    error = KINDS.get(status, InputError)(text)
+    error.code = status
+    error.name = LIBRARY.ist_status_name(status).decode()
+    return error
+
+
+def check(status):
+    """Raises the exception of a status other than 0."""
+    if status:
+        raise error_of(status)
+
+
+def refuse(text):
+    """Raises an InputError of this package's own: the argument never reached the library."""
+    raise error_of(3, text)

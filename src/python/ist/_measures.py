@@ -1,0 +1,296 @@
+"""The questions to a query that take milliseconds, and rows of many poses. Each of them hears Ctrl-C."""
+
+import ctypes
+
+from ctypes import addressof
+
+import numpy as np
+
+from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
+from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, out_of, pose_of
+from ._errors import check, refuse
+from ._follow import Follower
+from ._library import LIBRARY
+from ._records import (
+    CONTACT_REGION,
+    ROW,
+    SURFACE_DISTANCE,
+    FirstContactResult,
+    Motion,
+    OcclusionArrays,
+    OcclusionOptions,
+    OcclusionSums,
+    PenetrationResult,
+    RowsOptions,
+)
+
+OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
+NOT_CLOSED = (None, "fixed", "moving")
+QUESTIONS = {"intersects": 1, "leaf_pairs": 2, "distance": 4, "contacts": 8, "penetration": 16}
+
+
+def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, progress=None):
+    """How deep the deepest point of either surface lies inside the other body: an interval no wider than the tolerance.
+
+    p_fixed = pose @ p_moving. Both bodies have to be closed, else `not_closed` names the one that is not. last: an earlier
+    answer, from which the search goes on. points: the most points to measure.
+    """
+    handle = self._enter()
+    try:
+        at = pose_of(pose)
+        budget, limit = budget_of(points, seconds)
+        result = PenetrationResult()
+        before = None
+        if last is not None:
+            if not isinstance(last, Penetration):
+                raise TypeError(f"last is a {type(last).__name__}: pass an answer of penetration()")
+            before = PenetrationResult(
+                lower=last.lower,
+                upper=last.upper,
+                point=tuple(last.point),
+                of_moving=int(last.of_moving),
+                triangle=last.triangle,
+            )
+        with Follower(progress) as follower:
+            status = LIBRARY.ist_query_penetration(
+                handle,
+                address(at),
+                number_of(tolerance, "tolerance"),
+                None if before is None else addressof(before),
+                limit,
+                follower.address,
+                addressof(result),
+            )
+            follower.finish(status)
+        return Penetration(
+            result.lower,
+            result.upper,
+            result.complete == 1,
+            np.array(result.point),
+            np.array(result.direction),
+            result.of_moving == 1,
+            result.triangle,
+            NOT_CLOSED[result.not_closed],
+            result.narrowest,
+            result.points,
+        )
+    finally:
+        self._lock.release()
+
+
+def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, progress=None):
+    """The first contact on the way from one pose to another, by the screw that turns least. p_fixed = pose @ p_moving.
+
+    From `lower` to `upper` no point of the moving body goes farther than the tolerance. distances: the most to ask for.
+    """
+    handle = self._enter()
+    try:
+        begin, end = pose_of(start, "start"), pose_of(stop, "stop")
+        motion = Motion(from_=address(begin), to=address(end))
+        budget, limit = budget_of(distances, seconds)
+        result = FirstContactResult()
+        with Follower(progress) as follower:
+            status = LIBRARY.ist_query_first_contact(
+                handle, addressof(motion), number_of(tolerance, "tolerance"), limit, follower.address, addressof(result)
+            )
+            follower.finish(status)
+        return FirstContact(
+            OUTCOMES[result.outcome],
+            result.lower,
+            result.upper,
+            (result.distance_lower, result.distance_upper),
+            (result.fixed, result.moving) if result.triangles_known else None,
+            result.grazed == 1,
+            result.narrowest,
+            result.distances,
+        )
+    finally:
+        self._lock.release()
+
+
+def rows(
+    self,
+    poses,
+    *,
+    want=("intersects", "distance"),
+    tolerance=0.0,
+    stiffness=1.0,
+    tests=0,
+    threads=0,
+    out=None,
+    progress=None,
+):
+    """Answers the same questions at many poses, (N, 4, 4), p_fixed = pose @ p_moving: an array of ROW, one element a pose.
+
+    Each row is bit for bit what the single calls say after forget(), whatever the number of threads (0: one for each core).
+    want: of intersects, leaf_pairs, distance, contacts, penetration. A pose that is no rigid motion is a row with a status,
+    and no error; what was not asked for is 0, intervals NaN. stiffness: of the contacts' force, N/mm³, and its torque about
+    the fixed tree's origin. tests: the most of each search.
+
+    >>> import ist, numpy as np
+    >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+    >>> poses = np.tile(np.eye(4), (3, 1, 1))
+    >>> poses[:, 2, 3] = 0, -1, -2
+    >>> rows = ist.Query(upper, lower).rows(poses, want=["intersects"])
+    >>> (rows["intersects"] == ist.YES).tolist()
+    [True, True, False]
+    """
+    handle = self._enter()
+    try:
+        at = by_columns(floats(poses, (None, 4, 4), "poses"))
+        unknown = [name for name in ([want] if isinstance(want, str) else want) if name not in QUESTIONS]
+        if unknown or isinstance(want, str) or len(want) == 0:
+            refuse(f"want is {want!r}: pass a list of some of {', '.join(QUESTIONS)}")
+        found = np.empty(len(at), ROW) if out is None else out_of(out, ROW, len(at))
+        options = RowsOptions(
+            questions=sum({QUESTIONS[name] for name in want}),
+            threads=count_of(threads, "threads", 1024),
+            tolerance=number_of(tolerance, "tolerance"),
+            stiffness=number_of(stiffness, "stiffness"),
+            tests=count_of(tests, "tests"),
+        )
+        with Follower(progress) as follower:
+            options.progress = follower.pointer
+            status = LIBRARY.ist_query_rows(handle, address(at), len(at), addressof(options), address(found))
+            follower.finish(status)
+        return found
+    finally:
+        self._lock.release()
+
+
+# The library takes 0 for a default, and -1 for 0.
+def _or_none(value, what):
+    number = number_of(value, what)
+    if number < 0:
+        refuse(f"{what} is {number}: pass a number of at least 0")
+    return -1.0 if number == 0 else number
+
+
+def _arrays(vertices, regions, limits):
+    distances = np.empty(vertices, SURFACE_DISTANCE)
+    found = np.empty(regions, CONTACT_REGION)
+    areas = np.empty(len(limits))
+    struct = OcclusionArrays(
+        distances=address(distances),
+        distance_capacity=vertices,
+        regions=address(found),
+        region_capacity=regions,
+        areas=address(areas) if len(limits) else None,
+    )
+    return struct, distances, found, areas
+
+
+def occlusion_of(
+    self,
+    pose=None,
+    *,
+    limits=(0.05, 0.1, 0.2, 0.35),
+    reach=2.0,
+    contact=0.1,
+    least_area=0.01,
+    longest_edge=0.2,
+    foundation=0.1,
+    change=0.05,
+    progress=None,
+):
+    """Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for each surface.
+
+    p_fixed = pose @ p_moving; without a pose the bodies are as stored. The defaults are made for millimetres. Distances are
+    negative inside the other body and NaN beyond `reach`; surfaces no farther apart than `contact` touch.
+    """
+    handle = self._enter()
+    try:
+        at = pose_of(pose)
+        bounds = floats(limits, (None,), "limits")
+        options = OcclusionOptions(
+            reach=number_of(reach, "reach"),
+            contact=_or_none(contact, "contact"),
+            least_area=_or_none(least_area, "least_area"),
+            longest_edge=number_of(longest_edge, "longest_edge"),
+            foundation=_or_none(foundation, "foundation"),
+            change=_or_none(change, "change"),
+            limits=address(bounds) if len(bounds) else None,
+            limit_count=len(bounds),
+        )
+        for name in ("reach", "longest_edge"):
+            if getattr(options, name) <= 0:
+                refuse(f"{name} is {getattr(options, name)}: pass a number above 0")
+        room = [1024, 1024]
+        trees = (self.fixed, self.moving)
+        while True:
+            arrays = [_arrays(len(tree.vertices), size, bounds) for tree, size in zip(trees, room)]
+            sums = [OcclusionSums(), OcclusionSums()]
+            with Follower(progress) as follower:
+                status = LIBRARY.ist_query_occlusion(
+                    handle,
+                    address(at),
+                    addressof(options),
+                    follower.address,
+                    addressof(arrays[0][0]),
+                    addressof(arrays[1][0]),
+                    addressof(sums[0]),
+                    addressof(sums[1]),
+                )
+                follower.finish(status)
+            if all(each.regions <= size for each, size in zip(sums, room)):
+                break
+            room = [each.regions for each in sums]
+        bodies = [
+            BodyOcclusion(
+                distances,
+                regions[: each.regions],
+                areas,
+                each.total_area,
+                each.penetrating_area,
+                each.depth_integral,
+                each.depth_at_vertices,
+            )
+            for (_, distances, regions, areas), each in zip(arrays, sums)
+        ]
+        return Occlusion(bounds, *bodies)
+    finally:
+        self._lock.release()
+
+
+def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):
+    """The distances of points, (N, 3) mesh coordinates, from the surface of a tree: an array of SURFACE_DISTANCE.
+
+    Negative inside; NaN beyond `reach`. is_signed is 0 where the nearest point lies at an open border.
+
+    >>> import ist
+    >>> box = ist.build(([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), 0.5)
+    >>> ist.signed_distance(box, [[1, 1, 1], [1, 1, -2]])["distance"].round(3).tolist()
+    [-0.577, 2.0]
+    """
+    at = floats(points, (None, 3), "points")
+    found = np.empty(len(at), SURFACE_DISTANCE) if out is None else out_of(out, SURFACE_DISTANCE, len(at))
+    with Follower(progress) as follower:
+        status = LIBRARY.ist_tree_signed_distance(
+            tree._need(), address(at), len(at), number_of(reach, "reach"), follower.address, address(found)
+        )
+        follower.finish(status)
+    return found
+
+
+def distance_map(body, other, pose=None, *, reach=np.inf, out=None, progress=None):
+    """The signed distances of the vertices of `body` from the surface of `other`: an array of SURFACE_DISTANCE.
+
+    p_other = pose @ p_body; `closest` is in coordinates of `other`.
+    """
+    at = pose_of(pose)
+    count = len(body.vertices)
+    found = np.empty(count, SURFACE_DISTANCE) if out is None else out_of(out, SURFACE_DISTANCE, count)
+    written = ctypes.c_uint64()
+    with Follower(progress) as follower:
+        status = LIBRARY.ist_tree_distance_map(
+            body._need(),
+            other._need(),
+            address(at),
+            number_of(reach, "reach"),
+            follower.address,
+            address(found),
+            len(found),
+            addressof(written),
+        )
+        follower.finish(status)
+    return found

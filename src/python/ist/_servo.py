@@ -1,0 +1,92 @@
+"""A scene's haptic loop, a tick at a time."""
+
+from ctypes import addressof
+
+import numpy as np
+
+from ._answers import ServoTick
+from ._arrays import address, by_columns, count_of, floats, number_of
+from ._errors import check, error_of, refuse
+from ._follow import Follower
+from ._handle import Lone, Out
+from ._library import LIBRARY
+from ._mesh import path_bytes
+from ._records import ServoInfo, ServoOptions
+
+UNITS = {"m": 1, "mm": 2}
+
+
+class Servo(Lone):
+    """A simulated scene: each tick takes the pose of the device and gives the force and the torque for the hand.
+
+    For tests and figures: Python keeps no hard deadlines. A pose is (4, 4), row by row, and maps the tool's frame to the
+    scene; its translation is in `unit`. sphere_tests: the limit of each tick's query, for the same forces in every run; 0:
+    the limit is query_time_fraction of a tick.
+    """
+
+    _free = LIBRARY.ist_servo_free
+
+    def __init__(
+        self, scene, *, unit="mm", query_time_fraction=0.7, sphere_tests=0, max_memory=4 << 30, progress=None
+    ):
+        if unit not in UNITS:
+            refuse(f"unit is {unit!r}: pass 'm' or 'mm', the unit of the poses")
+        options = ServoOptions(
+            unit=UNITS[unit],
+            query_time_fraction=number_of(query_time_fraction, "query_time_fraction"),
+            sphere_tests=count_of(sphere_tests, "sphere_tests"),
+            max_memory=count_of(max_memory, "max_memory"),
+        )
+        path = path_bytes(scene, "scene")
+        with Follower(progress) as follower:
+            options.progress = follower.pointer
+            out = Out()
+            status = LIBRARY.ist_servo_open_scene(path, addressof(options), out.address)
+            super().__init__(out.handle)  # which is freed with this object whatever finish() raises
+            follower.finish(status)
+        self._force, self._torque = np.zeros(3), np.zeros(3)
+
+    def tick(self, pose):
+        """Computes one tick. None for the pose: the device did not say where it is, which is a fault. Raises after a fault,
+        and the next forces come back gradually."""
+        handle = self._enter()
+        try:
+            at = None if pose is None else by_columns(floats(pose, (4, 4), "pose"))
+            place = None if at is None else address(at)
+            status = LIBRARY.ist_servo_on_tick(handle, place, address(self._force), address(self._torque))
+            if status:
+                raise error_of(status)
+            return ServoTick(self._force.copy(), self._torque.copy())
+        finally:
+            self._lock.release()
+
+    def _info(self):
+        handle = self._enter()
+        try:
+            info = ServoInfo()
+            check(LIBRARY.ist_servo_get_info(handle, addressof(info)))
+            return info
+        finally:
+            self._lock.release()
+
+    tick_seconds = property(lambda self: self._info().tick_seconds, doc="The nominal duration of a tick, s.")
+    ticks = property(lambda self: self._info().ticks, doc="Ticks so far.")
+    held = property(lambda self: self._info().held, doc="Ticks with too little time for all contacts.")
+    faults = property(lambda self: self._info().faults, doc="Ticks with an error: the force was zero.")
+    late = property(lambda self: self._info().late, doc="Ticks that took longer than tick_seconds.")
+
+    @property
+    def tool(self):
+        """The pose of the tool, (4, 4): to begin with where the device should be, later what to draw."""
+        return np.array(self._info().tool).reshape(4, 4).T.copy()
+
+    @property
+    def warnings(self):
+        """The warnings of the scene's construction."""
+        found, handle = [], self._enter()
+        try:
+            while (text := LIBRARY.ist_servo_warning(handle, len(found))) is not None:
+                found.append(text.decode("utf-8", "replace"))
+        finally:
+            self._lock.release()
+        return tuple(found)

@@ -1,0 +1,171 @@
+"""Trees: bodies prepared for queries."""
+
+import ctypes
+
+import numpy as np
+
+from ._arrays import address, count_of, number_of
+from ._errors import check, refuse
+from ._follow import Follower
+from ._handle import Handle, Out
+from ._library import LIBRARY
+from ._mesh import MeshHandle, handle_of, path_bytes
+from ._records import BuildOptions, TreeInfo
+
+SPHERES = ("default", "simple", "table", "tight", "slab")
+UNITS = ("unknown", "mm", "m", "inch", "µm")
+
+
+def spheres_number(name):
+    """Returns the library's number of a kind of spheres."""
+    if name not in SPHERES:
+        refuse(f"spheres is {name!r}: pass one of {', '.join(SPHERES)}")
+    return SPHERES.index(name)
+
+
+class Tree(Handle):
+    """A body prepared for queries, by build() or load(). It never changes; any number of threads may share it.
+
+    It may be pickled, as the bytes of its file. Arrays that it gives are read-only.
+    """
+
+    _free = LIBRARY.ist_tree_free
+
+    def __init__(self, handle):
+        super().__init__(handle)
+        self._arrays = {}
+        info = TreeInfo()
+        check(LIBRARY.ist_tree_get_info(handle, ctypes.addressof(info)))
+        self._info = info
+
+    voxel_size = property(lambda self: self._info.voxel_size, doc="The edge of a voxel, mesh units.")
+    leaves = property(lambda self: self._info.leaves, doc="The number of voxels on the surface.")
+    triangles = property(lambda self: self._info.triangles, doc="The number of triangles kept; 0: no exact answers.")
+    depth = property(lambda self: self._info.depth, doc="Levels above the leaves.")
+    nbytes = property(lambda self: self._info.bytes, doc="Memory in use, bytes.")
+    spheres = property(lambda self: SPHERES[self._info.spheres], doc="The tightest bounds: simple, table, tight, slab.")
+    unit = property(lambda self: UNITS[self._info.unit], doc="The unit of its lengths, where it is known.")
+    outward = property(lambda self: bool(self._info.outward), doc="Whether the surface is closed, so that inside is known.")
+
+    @property
+    def origin(self):
+        """The origin of the tree's frame, (3,), mesh coordinates: torques are about that of the fixed tree."""
+        return self._kept("origin", lambda: np.array(self._info.origin))
+
+    @property
+    def vertices(self):
+        """The vertices of its mesh, (V, 3) float64. Raises InputError where no triangles were kept."""
+        return self._mesh()[0]
+
+    @property
+    def faces(self):
+        """The triangles of its mesh, (T, 3) uint32, turned outward where the mesh was inside out."""
+        return self._mesh()[1]
+
+    @property
+    def leaf_centres(self):
+        """The centres of the voxels, (leaves, 3), mesh coordinates, in the order of the indices of leaf pairs."""
+
+        def copy():
+            centres = np.empty((self.leaves, 3))
+            check(LIBRARY.ist_tree_copy_leaf_centres(self._need(), address(centres), len(centres)))
+            return centres
+
+        return self._kept("leaf_centres", copy)
+
+    def save(self, path):
+        """Writes the tree's file, whole or not at all. Raises FileError."""
+        check(LIBRARY.ist_tree_save(self._need(), path_bytes(path, "path")))
+
+    def to_bytes(self):
+        """Returns the bytes of the tree's file, for load().
+
+        >>> import ist
+        >>> tree = ist.build(ist.jaws()[0], voxel_size=2)
+        >>> ist.load(tree.to_bytes()).leaves == tree.leaves
+        True
+        """
+        size = ctypes.c_uint64()
+        check(LIBRARY.ist_tree_to_memory(self._need(), None, 0, ctypes.addressof(size)))
+        memory = ctypes.create_string_buffer(size.value)
+        check(LIBRARY.ist_tree_to_memory(self._handle, memory, len(memory), ctypes.addressof(size)))
+        return memory.raw
+
+    def __reduce__(self):
+        return load, (self.to_bytes(),)
+
+    def __repr__(self):
+        if self._handle is None:
+            return "<ist.Tree, freed>"
+        return f"<ist.Tree of {self.leaves} voxels of {self.voxel_size:g} and {self.triangles} triangles, {self.spheres}>"
+
+    def _kept(self, name, make):
+        self._need()
+        array = self._arrays.get(name)
+        if array is None:
+            array = make()
+            array.setflags(write=False)
+            self._arrays[name] = array
+        return array
+
+    def _mesh(self):
+        self._need()
+        if "vertices" not in self._arrays:
+            out = Out()
+            check(LIBRARY.ist_tree_get_mesh(self._handle, out.address))
+            vertices, faces = MeshHandle(out.handle).arrays()
+            self._kept("faces", lambda: faces)
+            self._kept("vertices", lambda: vertices)
+        return self._arrays["vertices"], self._arrays["faces"]
+
+
+def build(
+    mesh,
+    voxel_size,
+    *,
+    spheres="default",
+    keep_triangles=True,
+    proximity=False,
+    max_memory=4 << 30,
+    progress=None,
+):
+    """Builds a tree from a mesh, on all cores.
+
+    mesh: a path; (vertices, faces), (V, 3) and (T, 3), counter-clockwise seen from outside; or an object of another library
+    with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units.
+    keep_triangles: for exact answers and all measures. progress: called with the part that is done; what it raises ends the
+    build. Raises InputError, FileError, MemoryLimitError.
+
+    >>> import ist
+    >>> upper, lower = ist.jaws()
+    >>> tree = ist.build(upper, voxel_size=1)
+    >>> tree.leaves, tree.outward
+    (21863, True)
+    """
+    kind = spheres_number(spheres)
+    options = BuildOptions(
+        voxel_size=number_of(voxel_size, "voxel_size"),
+        spheres=kind,
+        drop_triangles=int(not keep_triangles),
+        proximity=int(bool(proximity)),
+        max_memory=count_of(max_memory, "max_memory"),
+    )
+    source = handle_of(mesh)
+    with Follower(progress) as follower:
+        options.progress = follower.pointer
+        out = Out()
+        status = LIBRARY.ist_tree_build(source._need(), ctypes.addressof(options), out.address)
+        tree = None if status else Tree(out.handle)  # it owns the handle whatever finish() raises
+        follower.finish(status)
+    return tree
+
+
+def load(source):
+    """Reads a tree from its file: a path, or its bytes. Every number in it is checked. Raises FileError, InputError."""
+    out = Out()
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        memory = np.frombuffer(source, np.uint8)
+        check(LIBRARY.ist_tree_from_memory(address(memory), len(memory), out.address))
+    else:
+        check(LIBRARY.ist_tree_load(path_bytes(source, "source"), out.address))
+    return Tree(out.handle)

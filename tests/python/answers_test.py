@@ -1,0 +1,225 @@
+"""The package answers what the command answers, at poses that turn, and rows are the single calls bit by bit."""
+
+import json
+import os
+import pickle
+import unittest
+
+import numpy as np
+from support import JAW_POSES, Jaws, box, command_lines, folder, pose_of
+
+import ist
+
+
+def same_bits(a, b):
+    return np.float64(a).tobytes() == np.float64(b).tobytes()
+
+
+class Command(Jaws):
+    """Beside the command, which reads the same trees and poses from files."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        import tempfile
+
+        cls.place = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.place.cleanup)
+        cls.files = [os.path.join(cls.place.name, name) for name in ("upper.ist", "lower.ist")]
+        cls.upper.save(cls.files[0])
+        cls.lower.save(cls.files[1])
+        poses = os.path.join(cls.place.name, "poses.json")
+        with open(poses, "w", encoding="utf-8") as file:
+            json.dump([{"pose": pose.T.ravel().tolist()} for pose in JAW_POSES], file)
+        cls.lines = command_lines(
+            "collide", *cls.files, "--poses", poses, "--json", "--distance", 0.001, "--depth", 0.01, "--exact"
+        )
+
+    def test_touch_distance_depth_and_counts(self):
+        self.assertEqual(len(self.lines), len(JAW_POSES))
+        touches = [line["touch"] for line in self.lines]
+        self.assertEqual(set(touches), {"yes", "no"})
+        for pose, line in zip(JAW_POSES, self.lines):
+            self.query.forget()
+            self.assertEqual(self.query.intersects(pose), {"yes": True, "no": False, "near": None}[line["touch"]])
+            self.assertEqual(self.query.triangle_pairs(pose).count, line["triangle_pairs"])
+            self.assertEqual(self.query.leaf_pairs(pose).count, line["leaf_pairs"])
+            self.query.forget()
+            distance = self.query.distance(pose, 0.001)
+            self.assertLessEqual(distance.lower, line["distance_upper"])
+            self.assertGreaterEqual(distance.upper, line["distance_lower"])
+            depth = self.query.penetration(pose, 0.01)
+            self.assertTrue(same_bits(depth.lower, line["depth_lower"]) and same_bits(depth.upper, line["depth_upper"]))
+
+    def test_trees_from_files_and_bytes_are_the_same(self):
+        with open(self.files[0], "rb") as file:
+            content = file.read()
+        self.assertEqual(self.upper.to_bytes(), content)
+        for tree in (ist.load(self.files[0]), ist.load(content), ist.load(memoryview(content)), pickle.loads(pickle.dumps(self.upper))):
+            self.assertEqual(tree.to_bytes(), content)
+
+
+class Verbs(Jaws):
+    def test_a_pose_maps_the_moving_body_to_the_fixed_one(self):
+        pose = pose_of([0, 0, 1], np.pi / 2, [5, 0, 0])  # (x, y, z) goes to (5 - y, x, z)
+        fixed = ist.build(box([-6, -1, -1], [-4, 1, 1]), voxel_size=0.25)
+        moving = ist.build(box([-1, 9, -1], [1, 12, 1]), voxel_size=0.25)  # goes to x from -7 to -4, y from -1 to 1
+        query = ist.Query(fixed, moving)
+        self.assertIs(query.intersects(pose), True)
+        self.assertIs(query.intersects(pose.T), False) if np.allclose(pose.T[3], [0, 0, 0, 1]) else None
+        back = np.linalg.inv(pose)
+        self.assertIs(query.intersects(back), False)
+        moved = pose @ np.array([0, 12, 0, 1])
+        np.testing.assert_allclose(moved, [-7, 0, 0, 1], atol=1e-12)
+        self.assertAlmostEqual(query.distance(pose_of([0, 0, 1], np.pi / 2, [8, 0, 0]), 1e-6).upper, 0, places=6)
+        self.assertAlmostEqual(query.distance(pose_of([0, 0, 1], np.pi / 2, [10, 0, 0]), 1e-6).upper, 2, places=6)
+
+    def test_arrays_are_filled_in_place(self):
+        pose = JAW_POSES[1]
+        pairs = self.query.leaf_pairs(pose)
+        self.assertGreater(pairs.count, 100)
+        out = np.full(50, 7, ist.LEAF_PAIR)
+        short = self.query.leaf_pairs(pose, out=out)
+        self.assertTrue(short.truncated and not pairs.truncated and short.count == pairs.count)
+        self.assertIs(short.pairs.base, out)
+        self.assertEqual(out.tolist(), pairs.pairs[:50].tolist())
+        self.assertEqual(self.query.leaf_pairs(pose, most=3).pairs.tolist(), pairs.pairs[:3].tolist())
+        self.assertEqual(self.query.leaf_pairs(pose, most=0).count, pairs.count)
+        met = self.query.triangle_pairs(pose)
+        out = np.empty(met.count + 5, ist.TRIANGLE_PAIR)
+        self.assertEqual(self.query.triangle_pairs(pose, out=out).pairs.tolist(), met.pairs.tolist())
+        contacts = self.query.contacts(pose)
+        out = np.empty(32, ist.CONTACT)
+        self.assertEqual(self.query.contacts(pose, out=out).contacts.tobytes(), contacts.contacts.tobytes())
+        self.assertGreater(len(contacts.contacts), 3)
+
+    def test_fields_go_through_dlpack(self):
+        found = self.query.rows(np.array(JAW_POSES), want=["distance"])
+        shared = np.from_dlpack(found["distance_lower"])
+        self.assertTrue(np.shares_memory(shared, found))
+        np.testing.assert_array_equal(shared, found["distance_lower"])
+
+    def test_leaf_pairs_are_near_each_other(self):
+        pose = JAW_POSES[1]
+        pairs = self.query.leaf_pairs(pose).pairs
+        moved = self.lower.leaf_centres @ pose[:3, :3].T + pose[:3, 3]
+        apart = np.linalg.norm(self.upper.leaf_centres[pairs["fixed"]] - moved[pairs["moving"]], axis=1)
+        self.assertLess(apart.max(), 2 * 0.8 * np.sqrt(3))
+
+    def test_a_limit_ends_a_search(self):
+        stopped = self.query.leaf_pairs(JAW_POSES[2], tests=200)
+        self.assertFalse(stopped.complete)
+        self.assertLessEqual(stopped.sphere_tests, 201)
+        low, high = stopped.distance
+        self.assertTrue(0 <= low <= high)
+        self.assertIsNone(self.query.intersects(JAW_POSES[2], tests=1))
+        self.assertFalse(self.query.leaf_pairs(JAW_POSES[2], seconds=1e-9).complete)
+
+    def test_forces_push_the_lower_jaw_down(self):
+        felt = ist.Query(self.upper, self.lower, push_distance=0).contacts(JAW_POSES[2])
+        force, torque, about = felt.wrench(1.0)
+        self.assertLess(force[2], -1)
+        np.testing.assert_allclose(about, self.upper.origin)
+        twice, _, _ = felt.wrench(2.0)
+        np.testing.assert_array_equal(twice, 2 * force)
+        self.assertEqual(torque.shape, (3,))
+
+    def test_first_contact_on_the_way(self):
+        found = self.query.first_contact(JAW_POSES[0], JAW_POSES[2], 1e-3)
+        self.assertEqual(found.outcome, "contact")
+        self.assertTrue(0 < found.lower <= found.upper < 1)
+        self.assertIsNotNone(found.triangles)
+        self.assertEqual(self.query.first_contact(JAW_POSES[2], JAW_POSES[0], 1e-3).outcome, "touches at start")
+
+    def test_depth_of_an_open_body(self):
+        vertices, faces = box([0, 0, 0], [2, 2, 2])
+        query = ist.Query(ist.build((vertices, faces), 0.25), ist.build((vertices, faces[:-1]), 0.25))
+        self.assertEqual(query.penetration(pose_of([0, 0, 1], 0.1, [0.5, 0, 0]), 0.01).not_closed, "moving")
+
+    def test_signed_distances(self):
+        tree = ist.build(box([0, 0, 0], [2, 2, 2]), 0.25)
+        found = ist.signed_distance(tree, [[1, 1, 1.5], [1, 1, 4], [9, 9, 9]], reach=3)
+        np.testing.assert_array_equal(found["distance"], [-0.5, 2, np.nan])
+        self.assertEqual(found["triangle"][2], ist.NO_TRIANGLE)
+        pose = pose_of([0, 0, 1], np.pi / 2, [0, 0, 3])
+        found = ist.distance_map(tree, tree, pose)
+        corners = np.c_[tree.vertices, np.ones(8)] @ pose.T
+        self.assertEqual(found["distance"].shape, (8,))
+        np.testing.assert_allclose(found["distance"][corners[:, 0] < -1], np.sqrt(4 + (corners[corners[:, 0] < -1][:, 2] - 2) ** 2))
+
+    def test_occlusion(self):
+        found = self.query.occlusion(JAW_POSES[2], limits=[0.1, 0.5])
+        self.assertEqual(found.fixed.distances.shape, (len(self.upper.vertices),))
+        self.assertEqual(found.fixed.areas.shape, (2,))
+        self.assertTrue(0 < found.fixed.areas[0] < found.fixed.areas[1] < found.fixed.total_area)
+        self.assertGreater(len(found.moving.regions), 1)
+        self.assertTrue((np.diff(found.moving.regions["area"]) <= 0).all())
+        alone = ist.occlusion(self.upper, self.lower, JAW_POSES[2], limits=[0.1, 0.5])
+        self.assertEqual(alone.moving.regions.tobytes(), found.moving.regions.tobytes())
+
+    def test_trees_keep_their_mesh(self):
+        vertices, faces = self.meshes[0]
+        np.testing.assert_array_equal(self.upper.vertices, vertices)
+        np.testing.assert_array_equal(self.upper.faces, faces)
+        self.assertFalse(self.upper.vertices.flags.writeable or self.upper.leaf_centres.flags.writeable)
+        self.assertEqual(self.upper.leaf_centres.shape, (self.upper.leaves, 3))
+        single = ist.build((vertices.astype(np.float32), faces.astype(np.int64)), 0.8)
+        self.assertEqual(single.to_bytes(), self.upper.to_bytes())  # the built-in jaws are floats
+
+    def test_a_file_is_read_as_the_arrays_in_it(self):
+        name = os.path.join(folder(self), "box.obj")
+        vertices, faces = box([0, 0, 0], [1, 2, 3])
+        with open(name, "w", encoding="utf-8") as file:
+            file.writelines(f"v {x} {y} {z}\n" for x, y, z in vertices)
+            file.writelines(f"f {a} {b} {c}\n" for a, b, c in faces + 1)
+        read = ist.read_mesh(name)
+        np.testing.assert_array_equal(read[0][read[1]], vertices[faces])
+        self.assertEqual(ist.build(name, 0.5).leaves, ist.build((vertices, faces), 0.5).leaves)
+
+
+class Rows(Jaws):
+    WANT = ["intersects", "leaf_pairs", "distance", "contacts", "penetration"]
+
+    def poses(self, count):
+        random = np.random.default_rng(5)
+        poses = []
+        for i in range(count):
+            poses.append(pose_of(random.normal(size=3), random.normal(scale=0.02), [*random.normal(scale=0.3, size=2), -2.5 * random.random()]))
+            if i % 8 == 7:
+                poses[-1][0, 0] = np.nan if i % 16 == 7 else 2
+        return np.array(poses)
+
+    def test_rows_are_the_single_calls_bit_by_bit(self):
+        poses = self.poses(24)
+        found = self.query.rows(poses, want=self.WANT, tolerance=0.01, stiffness=1.5)
+        self.assertEqual(set(found["intersects"].tolist()), {ist.UNKNOWN, ist.NO, ist.YES})
+        for pose, row in zip(poses, found):
+            if row["status"]:
+                with self.assertRaises(ist.InputError):
+                    self.query.distance(pose)
+                self.assertTrue(np.isnan(row["distance_lower"]))
+                continue
+            self.query.forget()
+            self.assertEqual(self.query.intersects(pose), row["intersects"] == ist.YES)
+            self.query.forget()
+            distance = self.query.distance(pose, 0.01)
+            self.assertTrue(same_bits(row["distance_lower"], distance.lower) and same_bits(row["distance_upper"], distance.upper))
+            self.assertEqual(self.query.leaf_pairs(pose, most=0).count, row["leaf_pairs"])
+            force, torque, _ = self.query.contacts(pose).wrench(1.5)
+            self.assertEqual((force.tobytes(), torque.tobytes()), (row["force"].tobytes(), row["torque"].tobytes()))
+            self.query.forget()
+            depth = self.query.penetration(pose, 0.01)
+            self.assertTrue(same_bits(row["depth_lower"], depth.lower) and same_bits(row["depth_upper"], depth.upper))
+
+    def test_threads_and_out_change_nothing(self):
+        poses = self.poses(100)
+        one = self.query.rows(poses, threads=1)
+        for threads in (2, 5, 0):
+            out = np.empty(100, ist.ROW)
+            self.assertIs(self.query.rows(poses, threads=threads, out=out), out)
+            self.assertEqual(out.tobytes(), one.tobytes())
+        self.assertEqual(self.query.rows(np.empty((0, 4, 4))).shape, (0,))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,185 @@
+"""Calls that last: their caller follows them, ends them by an exception, and Ctrl-C ends them too."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+from support import JAW_POSES, Jaws, box
+
+import ist
+
+
+class Ended(Exception):
+    pass
+
+
+class Follow(Jaws):
+    def calls(self):
+        """Calls of some 0.1 s and more, each with a progress function."""
+        poses = np.tile(JAW_POSES[1], (3000, 1, 1))
+        points = np.random.default_rng(1).normal(scale=30, size=(200_000, 3))
+        return {
+            "build": lambda progress: ist.build(self.meshes[0], 0.25, progress=progress),
+            "rows": lambda progress: self.query.rows(poses, tolerance=0.01, progress=progress),
+            "occlusion": lambda progress: self.query.occlusion(JAW_POSES[2], longest_edge=0.1, progress=progress),
+            "signed_distance": lambda progress: ist.signed_distance(self.upper, points, progress=progress),
+            "distance_map": lambda progress: ist.distance_map(self.upper, self.lower, JAW_POSES[1], progress=progress),
+        }
+
+    def test_parts_are_told_on_the_callers_thread(self):
+        for name, call in self.calls().items():
+            with self.subTest(name):
+                parts, threads, times = [], set(), []
+
+                def progress(part):
+                    parts.append(part)
+                    threads.add(threading.get_ident())
+                    times.append(time.monotonic())
+
+                began = time.monotonic()
+                call(progress)
+                ended = time.monotonic()
+                self.assertEqual(threads, {threading.get_ident()})
+                self.assertGreaterEqual(len(parts), 1 if ended - began < 0.03 else 2)
+                self.assertTrue(all(0 <= part <= 1 for part in parts))
+                self.assertEqual(parts, sorted(parts))
+
+    def test_an_exception_ends_the_call_and_comes_out(self):
+        for name, call in self.calls().items():
+            for kind in (Ended, KeyboardInterrupt, SystemExit):
+                with self.subTest(name, kind=kind):
+
+                    def progress(part):
+                        raise kind("as asked")
+
+                    with self.assertRaises(kind):
+                        call(progress)
+        self.assertIs(self.query.intersects(JAW_POSES[2]), True)  # and the query goes on
+
+    def test_nothing_half_made_is_left(self):
+        def progress(part):
+            raise Ended
+
+        poses = np.tile(JAW_POSES[1], (500, 1, 1))
+        out = np.full(500, 7, ist.ROW)
+        before = out.tobytes()
+        with self.assertRaises(Ended):
+            self.query.rows(poses, out=out, progress=progress)
+        self.assertEqual(out.tobytes(), before)
+
+
+class Interrupt(unittest.TestCase):
+    """SIGINT while a call lasts: a process of its own says what it heard."""
+
+    CALLS = {
+        "build": "ist.build(ist.jaws()[0], 0.06, max_memory=16 << 30)",
+        "occlusion": "query.occlusion(np.eye(4), longest_edge=0.01)",
+        "rows": "query.rows(np.tile(np.eye(4), (400_000, 1, 1)), tolerance=0.001, threads=1)",
+    }
+
+    def test_a_call_hears_it(self):
+        for name, call in self.CALLS.items():
+            with self.subTest(name):
+                program = (
+                    "import ist, numpy as np, sys, time\n"
+                    "query = ist.Query(*(ist.build(jaw, 0.8) for jaw in ist.jaws()))\n"
+                    "print('ready', flush=True)\n"
+                    "began = time.monotonic()\n"
+                    f"try:\n    {call}\n    print('ended by itself after', time.monotonic() - began)\n"
+                    "except KeyboardInterrupt:\n"
+                    "    print('interrupted', query.intersects(np.eye(4)))\n"
+                )
+                run = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(run.stdout.readline(), "ready\n")
+                time.sleep(0.4)
+                sent = time.monotonic()
+                run.send_signal(signal.SIGINT)
+                out, err = run.communicate(timeout=120)
+                self.assertEqual((out, run.returncode), ("interrupted True\n", 0), err)
+                self.assertEqual(err, "")
+                self.assertLess(time.monotonic() - sent, 20)
+
+
+class Threads(Jaws):
+    def test_a_query_serves_one_thread(self):
+        entered, leave = threading.Event(), threading.Event()
+
+        def progress(part):
+            entered.set()
+            leave.wait(10)
+
+        caller = threading.Thread(target=lambda: self.query.rows(np.tile(JAW_POSES[0], (10, 1, 1)), progress=progress))
+        caller.start()
+        self.assertTrue(entered.wait(10))
+        try:
+            for call in (lambda: self.query.intersects(JAW_POSES[0]), self.query.forget, self.query.free,
+                         lambda: self.query.rows(np.eye(4)[None])):
+                with self.assertRaises(ist.BusyError):
+                    call()
+        finally:
+            leave.set()
+            caller.join()
+        self.assertIs(self.query.intersects(JAW_POSES[0]), False)
+
+    def test_threads_share_trees_and_run_at_once(self):
+        answers, poses = [], JAW_POSES * 20
+        expected = [self.query.distance(pose, 0.0)[:2] for pose in poses]
+
+        def ask():
+            query = ist.Query(self.upper, self.lower)
+            answers.append([query.distance(pose, 0.0)[:2] for pose in poses])
+
+        threads = [threading.Thread(target=ask) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(answers, [expected] * 4)
+
+    def test_other_threads_run_during_a_call(self):
+        ticks, end = [], threading.Event()
+
+        def tick():
+            while not end.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.001)
+
+        ticker = threading.Thread(target=tick)
+        ticker.start()
+        began = time.monotonic()
+        ist.build(self.meshes[0], 0.25)
+        ended = time.monotonic()
+        end.set()
+        ticker.join()
+        self.assertGreater(sum(began < each < ended for each in ticks), 10)
+
+    def test_a_tree_may_be_freed_while_others_ask(self):
+        tree = ist.build(box([0, 0, 0], [2, 2, 2]), 0.1)
+        points = np.random.default_rng(2).normal(size=(50_000, 3))
+        seen = []
+
+        def ask():
+            try:
+                for _ in range(20):
+                    ist.signed_distance(tree, points)
+            except ist.FreedError as error:
+                seen.append(error)
+
+        threads = [threading.Thread(target=ask) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        time.sleep(0.05)
+        tree.free()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(seen), 3)
+
+
+if __name__ == "__main__":
+    assert os.name == "posix"
+    unittest.main()

@@ -1,0 +1,287 @@
+"""Bad input of every function is an exception that says what to do, and never a crash."""
+
+import os
+import pickle
+import unittest
+
+import numpy as np
+from support import BOX_FACES, box, folder, pose_of
+
+import ist
+
+VERTICES, FACES = box([0, 0, 0], [2, 2, 2])
+EYE = np.eye(4)
+
+
+class Misuse(unittest.TestCase):
+    def refuses(self, kind, words, call, *arguments, **options):
+        with self.assertRaises(kind) as raised:
+            call(*arguments, **options)
+        text = str(raised.exception)
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, text)
+        if isinstance(raised.exception, ist.Error):
+            self.assertGreater(raised.exception.code, 0)
+            self.assertNotIn(raised.exception.name, ("", "unknown"))
+        return raised.exception
+
+    def setUp(self):
+        self.tree = ist.build((VERTICES, FACES), 0.5)
+        self.query = ist.Query(self.tree, self.tree)
+
+
+class Meshes(Misuse):
+    def builds(self, words, mesh, voxel_size=0.5, **options):
+        return self.refuses(ist.InputError, words, ist.build, mesh, voxel_size, **options)
+
+    def test_shapes_and_dtypes(self):
+        self.builds(["vertices", "(8, 2)"], (VERTICES[:, :2], FACES))
+        self.builds(["vertices", "shape"], (VERTICES.ravel(), FACES))
+        self.builds(["faces", "(12, 2)"], (VERTICES, FACES[:, :2]))
+        self.builds(["faces", "float64"], (VERTICES, FACES.astype(float)))
+        self.builds(["faces", "bool"], (VERTICES, FACES > 0))
+        self.builds(["vertices", "numbers"], (np.array([["a", "b", "c"]]), FACES))
+        self.builds(["vertices", "numbers"], ([[1, 2], [3]], FACES))
+        self.builds("3 parts", (VERTICES, FACES, FACES))
+
+    def test_indices(self):
+        for bad in (-1, 2**32, 2**63 - 1):
+            faces = FACES.astype(np.int64)
+            faces[5, 1] = bad
+            self.builds(["faces[5]", str(bad)], (VERTICES, faces))
+        faces = FACES.astype(np.uint64)
+        faces[3, 0] = 2**64 - 1
+        self.builds("faces[3]", (VERTICES, faces))
+        faces = FACES.copy()
+        faces[7, 2] = 8
+        self.assertEqual(self.builds(["triangle 7", "vertex"], (VERTICES, faces)).name, "mesh-bad-index")
+
+    def test_content(self):
+        vertices = VERTICES.copy()
+        vertices[4, 1] = np.nan
+        self.assertEqual(self.builds("vertex 4", (vertices, FACES)).name, "mesh-not-finite")
+        self.builds("triangle", (VERTICES, np.empty((0, 3), int)))
+        self.builds("vert", (np.empty((0, 3)), np.empty((0, 3), int)))
+        self.assertEqual(self.builds("extent", (VERTICES * 0, FACES)).name, "mesh-extent")
+        self.assertEqual(self.builds("extent", (VERTICES * 1e20, FACES)).name, "mesh-extent")
+
+    def test_options(self):
+        for size in (0, -1, np.inf):
+            self.builds("voxel size", (VERTICES, FACES), size)
+        self.builds("voxel_size", (VERTICES, FACES), np.nan)
+        self.builds("voxel_size", (VERTICES, FACES), "small")
+        self.builds(["spheres", "tight"], (VERTICES, FACES), spheres="round")
+        self.builds("max_memory", (VERTICES, FACES), max_memory=-1)
+        self.builds("max_memory", (VERTICES, FACES), max_memory=2**64)
+        self.refuses(ist.MemoryLimitError, "memory", ist.build, (VERTICES, FACES), 0.001, max_memory=1 << 20)
+        self.assertTrue(issubclass(ist.MemoryLimitError, MemoryError) and issubclass(ist.InputError, ValueError))
+        self.refuses(TypeError, "progress", ist.build, (VERTICES, FACES), 0.5, progress=3)
+
+    def test_objects_that_are_no_mesh(self):
+        self.builds(["int", "vertices and faces"], 7)
+        self.builds("NoneType", None)
+        self.builds("dict", {"vertices": VERTICES, "faces": FACES})
+
+    def test_files(self):
+        place = folder(self)
+        missing = os.path.join(place, "missing.stl")
+        error = self.refuses(ist.FileError, "missing.stl", ist.build, missing, 0.5)
+        self.assertIsInstance(error, OSError)
+        self.refuses(ist.FileError, "missing.stl", ist.read_mesh, missing)
+        empty = os.path.join(place, "empty.stl")
+        with open(empty, "wb") as file:
+            file.write(b"nothing of use")
+        self.refuses(ist.InputError, "empty.stl", ist.read_mesh, empty)
+        self.refuses(ist.InputError, "empty.stl", ist.load, empty)
+        self.refuses(ist.InputError, "zero", ist.read_mesh, "a\0b.stl")
+        self.refuses(TypeError, "", ist.read_mesh, 5)
+        self.refuses(ist.FileError, "folder", self.tree.save, os.path.join(place, "no", "folder.ist"))
+
+    def test_jaws(self):
+        for seed in (-1, 2**64, 1.5, "one"):
+            self.refuses(ist.InputError, "seed", ist.jaws, seed)
+
+
+class Trees(Misuse):
+    def test_damaged_pickles(self):
+        content = self.tree.to_bytes()
+        for at in range(0, len(content), max(1, len(content) // 60)):
+            damaged = bytearray(content)
+            damaged[at] ^= 0x10
+            self.refuses(ist.InputError, "", ist.load, bytes(damaged))
+            self.refuses(ist.InputError, "", pickle.loads, pickle.dumps(self.tree).replace(content, bytes(damaged)))
+        for length in (0, 7, 31, len(content) - 1):
+            self.refuses(ist.InputError, "", ist.load, content[:length])
+        self.refuses(ist.InputError, "", ist.load, content + b"\0")
+        self.refuses(TypeError, "", ist.load, None)
+
+    def test_a_tree_without_triangles(self):
+        bare = ist.build((VERTICES, FACES), 0.5, keep_triangles=False)
+        self.assertEqual(self.refuses(ist.InputError, "triangles", lambda: bare.vertices).name, "triangles-missing")
+        query = ist.Query(bare, self.tree)
+        self.assertIsNone(query.intersects(EYE))
+        self.refuses(ist.InputError, "triangles", query.triangle_pairs, EYE)
+        self.refuses(ist.InputError, "triangles", query.penetration, EYE, 0.1)
+        self.refuses(ist.InputError, "triangles", query.occlusion, EYE)
+        self.refuses(ist.InputError, "triangles", query.rows, EYE[None], want=["penetration"])
+        self.refuses(ist.InputError, "triangles", ist.signed_distance, bare, [[0, 0, 0]])
+
+    def test_freed_objects(self):
+        query = ist.Query(self.tree, self.tree)
+        self.tree.free()
+        self.tree.free()
+        self.assertIs(query.intersects(EYE), True)  # a query keeps its trees alive
+        for call in (self.tree.to_bytes, lambda: self.tree.vertices, lambda: self.tree.leaf_centres, lambda: ist.Query(self.tree, self.tree),
+                     lambda: ist.signed_distance(self.tree, [[0, 0, 0]])):
+            self.refuses(ist.FreedError, "freed", call)
+        self.assertIn("freed", repr(self.tree))
+        with query as same:
+            same.free()
+        for call in (query.forget, lambda: query.intersects(EYE), lambda: query.rows(EYE[None]), lambda: query.distance(EYE)):
+            self.refuses(ist.FreedError, "freed", call)
+        del query, same
+
+
+class Queries(Misuse):
+    def test_poses(self):
+        verbs = [self.query.intersects, self.query.leaf_pairs, self.query.contacts, self.query.distance, self.query.triangle_pairs,
+                 self.query.occlusion, lambda pose: self.query.penetration(pose, 0.1),
+                 lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1)]
+        mirrored, scaled, nan, row = EYE.copy(), 2 * EYE, EYE.copy(), EYE.copy()
+        mirrored[0, 0], nan[1, 3], row[3, 0] = -1, np.nan, 1
+        scaled[3, 3] = 1
+        transposed = pose_of([0, 0, 1], 0.5, [1, 2, 3]).T
+        for verb in verbs:
+            for pose in (mirrored, scaled, nan, row, transposed, np.full((4, 4), np.inf)):
+                self.assertEqual(self.refuses(ist.InputError, "rigid motion", verb, pose).name, "pose-invalid")
+            for pose in (EYE[:3], EYE[None], 5, "pose", [[1, 2], [3]], EYE.astype(complex)):
+                self.refuses(ist.InputError, "", verb, pose)
+        self.assertIs(self.query.intersects(EYE), True)  # and goes on
+
+    def test_poses_of_other_dtypes_and_layouts_are_taken(self):
+        pose = pose_of([0, 0, 1], 0.5, [1.9, 0.2, 0.1])
+        expected = self.query.distance(pose, 1e-6)
+        for other in (pose.tolist(), np.asfortranarray(pose), pose.astype(">f8"), np.stack([pose, pose])[1], pose.astype(object)):
+            self.assertEqual(self.query.distance(other, 1e-6)[:2], expected[:2])
+        self.assertIs(self.query.intersects(np.eye(4, dtype=int)), True)
+
+    def test_arrays_for_answers(self):
+        wrong = [np.empty(5, ist.CONTACT), np.empty((5, 1), ist.LEAF_PAIR), np.empty(10, ist.LEAF_PAIR)[::2], [1, 2], "text",
+                 np.empty(5, ist.LEAF_PAIR).view("u1")]
+        frozen = np.empty(5, ist.LEAF_PAIR)
+        frozen.setflags(write=False)
+        for out in [*wrong, frozen]:
+            self.refuses(ist.InputError, "out", self.query.leaf_pairs, EYE, out=out)
+        good = np.empty(5, ist.LEAF_PAIR)
+        self.query.leaf_pairs(EYE, out=good)
+        good.setflags(write=False)
+        self.refuses(ist.InputError, "out", self.query.leaf_pairs, EYE, out=good)
+        self.refuses(ist.InputError, "out", self.query.contacts, EYE, out=np.empty(5, ist.LEAF_PAIR))
+        self.refuses(ist.InputError, "out", self.query.triangle_pairs, EYE, out=np.empty(5, ist.CONTACT))
+        self.refuses(ist.InputError, ["out", "2"], self.query.rows, np.stack([EYE, EYE]), out=np.empty(3, ist.ROW))
+        self.refuses(ist.InputError, "out", ist.signed_distance, self.tree, [[0, 0, 0]], out=np.empty(2, ist.SURFACE_DISTANCE))
+        self.assertEqual(len(self.query.leaf_pairs(EYE, out=np.empty(0, ist.LEAF_PAIR)).pairs), 0)
+
+    def test_numbers(self):
+        for tests in (-1, 2**64, 1.5, "many", None):
+            self.refuses(ist.InputError, "tests", self.query.intersects, EYE, tests=tests)
+        for seconds in (-1, np.nan, "soon"):
+            self.refuses(ist.InputError, "seconds", self.query.intersects, EYE, seconds=seconds)
+        for tolerance in (-1, np.nan, "fine"):
+            self.refuses(ist.InputError, "tolerance", self.query.distance, EYE, tolerance)
+            self.refuses(ist.InputError, "tolerance", self.query.penetration, EYE, tolerance)
+            self.refuses(ist.InputError, "tolerance", self.query.first_contact, EYE, EYE, tolerance)
+            self.refuses(ist.InputError, "tolerance", self.query.rows, EYE[None], tolerance=tolerance)
+        self.refuses(ist.InputError, "most", self.query.leaf_pairs, EYE, most=-1)
+        self.assertTrue(self.query.leaf_pairs(EYE, seconds=np.inf).complete)
+
+    def test_options(self):
+        make = ist.Query
+        tree = self.tree
+        self.refuses(TypeError, "fixed", make, (VERTICES, FACES), tree)
+        self.refuses(TypeError, "moving", make, tree, None)
+        self.refuses(ist.InputError, "workers", make, tree, tree, workers=3)
+        self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=0)
+        self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=5000)
+        self.refuses(ist.InputError, "push_distance", make, tree, tree, push_distance=3)
+        self.refuses(ist.InputError, "front_pairs", make, tree, tree, front_pairs=-1)
+        self.refuses(ist.InputError, "spheres", make, tree, tree, spheres="round")
+        self.assertEqual(self.refuses(ist.InputError, "", make, tree, tree, target="abacus").name, "target-missing")
+        simple = ist.build((VERTICES, FACES), 0.5, spheres="simple")
+        self.assertEqual(self.refuses(ist.InputError, "", make, simple, tree, spheres="slab").name, "policy-missing")
+        self.assertEqual(self.refuses(ist.InputError, "contacts", make(tree, tree, contacts=-1).contacts, EYE).name, "not-prepared")
+
+    def test_rows(self):
+        rows = self.query.rows
+        self.refuses(ist.InputError, "poses", rows, EYE)
+        self.refuses(ist.InputError, "poses", rows, np.empty((3, 4, 3)))
+        for want in ([], ["touch"], "distance", ["intersects", "depth"]):
+            self.refuses(ist.InputError, "want", rows, EYE[None], want=want)
+        self.refuses(ist.InputError, "threads", rows, EYE[None], threads=-1)
+        self.refuses(ist.InputError, "threads", rows, EYE[None], threads=5000)
+        self.refuses(ist.InputError, "stiffness", rows, EYE[None], stiffness=np.inf)
+        self.assertEqual(rows(np.zeros((1, 4, 4)))["status"].tolist(), [120])
+
+    def test_measures(self):
+        self.refuses(ist.InputError, "reach", self.query.occlusion, EYE, reach=0)
+        self.refuses(ist.InputError, "reach", self.query.occlusion, EYE, reach=np.nan)
+        self.refuses(ist.InputError, "contact", self.query.occlusion, EYE, contact=-0.1)
+        self.refuses(ist.InputError, "limits", self.query.occlusion, EYE, limits=0.5)
+        self.refuses(ist.InputError, "points", ist.signed_distance, self.tree, [[0, 0]])
+        self.refuses(ist.InputError, "", ist.signed_distance, self.tree, [[0, 0, np.nan]])
+        self.refuses(ist.InputError, "reach", ist.signed_distance, self.tree, [[0, 0, 0]], reach=-1)
+        self.refuses(TypeError, "last", self.query.penetration, EYE, 0.1, last=(1, 2))
+
+
+class Servos(Misuse):
+    SCENE = """unit = "mm"
+[fixed]
+shape = "box"
+size = [10, 10, 4]
+voxel_size = 0.5
+[held]
+shape = "sphere"
+radius = 2
+voxel_size = 0.5
+translation = [0, 0, 4.5]
+[device]
+kind = "null"
+[effects.contact]
+stiffness = 1000
+"""
+
+    def scene(self, text):
+        name = os.path.join(folder(self), "scene.toml")
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+        return name
+
+    def test_a_tick_and_its_faults(self):
+        with ist.Servo(self.scene(self.SCENE), sphere_tests=100_000) as servo:
+            start = servo.tool
+            np.testing.assert_allclose(start[:3, :3], np.eye(3), atol=1e-9)
+            deep = start.copy()
+            deep[2, 3] -= 1.5
+            for _ in range(400):
+                felt = servo.tick(deep)
+            self.assertGreater(felt.force[2], 0.05)  # pushed out of the box
+            self.refuses(ist.InputError, "pose", servo.tick, 2 * np.eye(4))
+            self.refuses(ist.InputError, "pose", servo.tick, np.eye(3))
+            self.refuses(ist.InputError, "pose", servo.tick, None)
+            self.assertEqual((servo.faults, servo.ticks), (2, 402))
+            self.assertEqual(servo.tick_seconds, 0.001)
+            self.assertIsInstance(servo.warnings, tuple)
+        self.refuses(ist.FreedError, "freed", servo.tick, start)
+
+    def test_bad_scenes(self):
+        self.refuses(ist.InputError, "scene.toml:3", ist.Servo, self.scene(self.SCENE.replace('"box"', '"bax"')))
+        self.refuses(ist.FileError, "missing.toml", ist.Servo, "missing.toml")
+        name = self.scene(self.SCENE)
+        self.refuses(ist.InputError, "unit", ist.Servo, name, unit="inch")
+        self.refuses(ist.InputError, "query_time_fraction", ist.Servo, name, query_time_fraction=2)
+        self.refuses(ist.InputError, "sphere_tests", ist.Servo, name, sphere_tests=-5)
+
+
+if __name__ == "__main__":
+    assert BOX_FACES.shape == (12, 3)
+    unittest.main()
