@@ -9,7 +9,7 @@ import sys
 
 import matplotlib
 
-from report.figures import here, stamp
+from report.figures import stamp
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -80,7 +80,7 @@ def table(groups):
 
 
 def main():
-    source, folder, machine = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+    source, folder, machine, commit, date = sys.argv[1], pathlib.Path(sys.argv[2]), *sys.argv[3:]
     groups = grouped(json.loads(line) for line in open(source))
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     plot(groups, folder / "pictures/stability_border.svg")
@@ -102,7 +102,7 @@ def main():
         f"  {HIGHEST} times the computed border. It is above 1 where the contact yields beside the coupling: a wall is no",
         "  stiffer than both in series, and the loop assumes a contact steeper than it is, which damps.", "",
         "![Energy returned by a press over device damping and stiffness](pictures/stability_border.svg)", "",
-        *rows, "", stamp(*here(), "stability_border.sh"), ""]
+        *rows, "", stamp(commit, date, "stability_border.sh"), ""]
     (folder / "HAPTIC_STABILITY.md").write_text("\n".join(lines))
     if broken:
         sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")

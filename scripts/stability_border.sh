@@ -20,5 +20,5 @@ mkdir -p "$results"
 build/bench/bench/stability_border >build/stability_border.jsonl
 mv build/stability_border.jsonl "$results/stability_border.jsonl"
 /usr/bin/python3 scripts/stability_border.py "$results/stability_border.jsonl" perf \
-  "$model; $compiler; commit $commit"
+  "$model; $compiler; commit $commit" "$commit" "$(date -I)"
 echo perf/HAPTIC_STABILITY.md >&2

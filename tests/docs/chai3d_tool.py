@@ -46,7 +46,7 @@ def with_declarations(folder, prefix, libraries, compilers):
 
 
 def with_chai3d(folder, prefix, libraries, compiler):
-    run("cmake", "-S", HERE / "chai3d", "-B", folder / "itself", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_COMPILER={compiler}",
+    run("cmake", "-Wno-dev", "-S", HERE / "chai3d", "-B", folder / "itself", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_COMPILER={compiler}",
         f"-DIST_TOOL_FOLDER={folder}", f"-DIST_INCLUDE_FOLDER={prefix}/include", f"-DIST_LIBRARY_FOLDER={libraries}")
     run("cmake", "--build", folder / "itself")
     run(folder / "itself/turns", SCENE, env=dict(os.environ, LD_LIBRARY_PATH=str(libraries)))

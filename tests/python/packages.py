@@ -141,9 +141,10 @@ class Packages(WithoutLibrary, DebianPackage):
         for name in ("pyproject.toml", "setup.py", "README.md", "PKG-INFO", *modules(), *LICENCES):
             require((root / name).is_file(), f"{archive.name} lacks {name}")
         # What CMake and the compiler have read of the project for the library that lies beside.
-        reads = {SOURCE / name for name in re.findall(rf"{re.escape(str(SOURCE))}/(\S+?\.(?:h|cpp))(?=\s|$)", run("ninja", "-C", self.made, "-t", "deps"))}
-        reads |= {SOURCE / "CMakePresets.json", SOURCE / "CMakeLists.txt", SOURCE / "src/platform.cmake", SOURCE / "src/package/ist.map.in"}
-        reads = {file for file in reads if not file.is_relative_to(self.build)}
+        lines = run("ninja", "-C", self.made, "-t", "deps").splitlines()
+        reads = {(self.made / line.strip()).resolve() for line in lines if line.startswith("    ")}
+        reads |= {SOURCE / name for name in ("CMakePresets.json", "CMakeLists.txt", "src/platform.cmake", "src/package/ist.map.in")}
+        reads = {file for file in reads if file.is_relative_to(SOURCE) and not file.is_relative_to(SOURCE / "build")}
         require(len(reads) > 250, f"{len(reads)} files were read")
         for file in reads:
             copy = root / "sources" / file.relative_to(SOURCE)
