@@ -30,8 +30,8 @@ def main():
     if commit.endswith("+"):
         sys.exit("readme_bench: the code differs from its commit: commit it first, so that the figures name what they are of")
     said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
-    built = re.search(r"commit (\w+)", said).group(1)
-    if not built.startswith(commit):
+    built = re.search(r"commit (\S+)", said).group(1)
+    if not built.startswith(commit) or built.endswith("+"):
         sys.exit(f"readme_bench: {PROGRAM} was built at {built}, and this is {commit}: cmake --build --preset release")
     done = subprocess.run([PROGRAM, "bench"], capture_output=True, text=True)
     if done.returncode != 0:

@@ -26,9 +26,9 @@ RESTS = {
     "haptics_bench": LOOP,
     "loop_bench": LOOP,
     "measure_bench": [*QUERY, "src/ist/measure"],
-    "ist bench": [*QUERY, "src/cli/bench"],
-    "mutate.sh": ["simd", "src", "tests"],
-    "stability_border.sh": ["bench/stability_border.cpp", "src/ist/haptics", "tests/haptics/wall_press.cpp"],
+    "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/ist/models"],
+    "mutate.sh": ["scripts/mutants.py", "simd", "src", "tests"],
+    "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/ist", "tests/fuzz", "tests/query", "tests/stability"],
     "target_instructions.py": [*QUERY, "tests/instructions"],
 }

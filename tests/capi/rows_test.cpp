@@ -2,13 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 #include "c_bodies.h"
+#include "ist/base/parallel.h"
 #include "ist/capi/ist_measure.h"
+#include "ist/measure/pose_rows.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -158,6 +165,27 @@ TEST_F(CRows, KeepALimitOfTests) {
     stopped += row.status == IST_OK && row.complete == 0;
   }
   EXPECT_GE(stopped, 5);
+}
+
+TEST_F(CRows, AreSharedByThreadsHoweverLongAPoseTakesThread) {
+  const SphereTree tree = build_tree(icosphere(1, 2), {.voxel_size = 0.5});
+  Query query(tree, tree);
+  const std::vector<Eigen::Isometry3d> at(40, Eigen::Isometry3d::Identity());
+  std::mutex mutex;
+  std::map<std::thread::id, int> given;
+  EXPECT_TRUE(
+      answer_rows({query, {}, {}}, at, {.intersects = true}, 0, [&](std::size_t, const PoseRow&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(6));
+        const std::lock_guard lock(mutex);
+        ++given[std::this_thread::get_id()];
+      }));
+  int all = 0, most = 0;
+  for (const auto& [thread, count] : given) {
+    all += count;
+    most = std::max(most, count);
+  }
+  EXPECT_EQ(all, 40);
+  EXPECT_LE(most, thread_count() > 1 ? 36 : 40);
 }
 
 TEST_F(CRows, OfNoPosesAreNone) {

@@ -73,6 +73,35 @@ class Follow(Jaws):
         self.assertEqual(out.tobytes(), before)
 
 
+class Hook(unittest.TestCase):
+    """What Python cannot raise in a callback's first line reaches a hook, which names the callback until Python 3.12."""
+
+    def hears(self, value, of_callback):
+        import types
+
+        from ist._follow import Follower
+
+        before, heard, hook = sys.unraisablehook, [], lambda each: heard.append(each.exc_value)
+        sys.unraisablehook = hook
+        try:
+            with Follower() as follower:
+                named = follower._target if of_callback else None
+                sys.unraisablehook(types.SimpleNamespace(object=named, exc_value=value))
+                self.assertEqual(follower._report(None, 0.5), 0 if heard else 1)
+            self.assertIs(sys.unraisablehook, hook)
+        finally:
+            sys.unraisablehook = before
+        return not heard
+
+    def test_an_interrupt_ends_the_call_named_or_not(self):
+        self.assertTrue(self.hears(KeyboardInterrupt(), True))
+        self.assertTrue(self.hears(KeyboardInterrupt(), False))
+        self.assertTrue(self.hears(Ended(), True))
+
+    def test_others_go_where_they_went(self):
+        self.assertFalse(self.hears(Ended(), False))
+
+
 class Interrupt(unittest.TestCase):
     """SIGINT while a call lasts: a process of its own says what it heard."""
 

@@ -72,6 +72,7 @@ class Meshes(Misuse):
         self.builds("voxel_size", (VERTICES, FACES), "small")
         self.builds(["spheres", "tight"], (VERTICES, FACES), spheres="round")
         self.builds("max_memory", (VERTICES, FACES), max_memory=-1)
+        self.builds("max_memory", (VERTICES, FACES), max_memory=0)
         self.builds("max_memory", (VERTICES, FACES), max_memory=2**64)
         self.refuses(ist.MemoryLimitError, "memory", ist.build, (VERTICES, FACES), 0.001, max_memory=1 << 20)
         self.assertTrue(issubclass(ist.MemoryLimitError, MemoryError) and issubclass(ist.InputError, ValueError))
@@ -154,7 +155,7 @@ class Queries(Misuse):
         for verb in verbs:
             for pose in (mirrored, scaled, nan, row, transposed, np.full((4, 4), np.inf)):
                 self.assertEqual(self.refuses(ist.InputError, "rigid motion", verb, pose).name, "pose-invalid")
-            for pose in (EYE[:3], EYE[None], 5, "pose", [[1, 2], [3]], EYE.astype(complex)):
+            for pose in (EYE[:3], EYE[None], 5, "pose", [[1, 2], [3]], EYE.astype(complex), [[10**400] * 4] * 4):
                 self.refuses(ist.InputError, "", verb, pose)
         self.assertIs(self.query.intersects(EYE), True)  # and goes on
 
@@ -176,6 +177,10 @@ class Queries(Misuse):
         self.query.leaf_pairs(EYE, out=good)
         good.setflags(write=False)
         self.refuses(ist.InputError, "out", self.query.leaf_pairs, EYE, out=good)
+        grown = np.empty(5, ist.LEAF_PAIR)
+        self.query.leaf_pairs(EYE, out=grown)
+        grown.resize(10_000, refcheck=False)  # its memory is elsewhere now
+        self.assertEqual(self.query.leaf_pairs(EYE, out=grown).pairs.tolist(), self.query.leaf_pairs(EYE).pairs.tolist())
         self.refuses(ist.InputError, "out", self.query.contacts, EYE, out=np.empty(5, ist.LEAF_PAIR))
         self.refuses(ist.InputError, "out", self.query.triangle_pairs, EYE, out=np.empty(5, ist.CONTACT))
         self.refuses(ist.InputError, ["out", "2"], self.query.rows, np.stack([EYE, EYE]), out=np.empty(3, ist.ROW))
@@ -187,7 +192,7 @@ class Queries(Misuse):
             self.refuses(ist.InputError, "tests", self.query.intersects, EYE, tests=tests)
         for seconds in (-1, np.nan, "soon"):
             self.refuses(ist.InputError, "seconds", self.query.intersects, EYE, seconds=seconds)
-        for tolerance in (-1, np.nan, "fine"):
+        for tolerance in (-1, np.nan, "fine", -(10**400)):
             self.refuses(ist.InputError, "tolerance", self.query.distance, EYE, tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.penetration, EYE, tolerance)
             self.refuses(ist.InputError, "tolerance", self.query.first_contact, EYE, EYE, tolerance)

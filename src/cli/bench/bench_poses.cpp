@@ -55,6 +55,12 @@ std::vector<BenchPose> poses_among(const std::filesystem::path& file,
                             "anything to find: add poses with contact",
                             file.string(), poses.size()));
   }
+  if (*most == *fewest) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: each of its {} poses has {} leaf pairs, and two situations are "
+                            "compared: add a pose with fewer or more",
+                            file.string(), poses.size(), *most));
+  }
   const auto at = [&](auto place) {
     return poses[static_cast<std::size_t>(place - pairs.begin())];
   };

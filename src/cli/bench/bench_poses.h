@@ -19,8 +19,8 @@ namespace ist::cli {
 [[nodiscard]] std::vector<BenchPose> poses_on_way(const SphereTree& fixed,
                                                   const SphereTree& moving);
 
-/// Returns of the poses the one with most leaf pairs, and the one with fewest, which are two at
-/// least. Throws kInputInvalid, which names `file`, where no leaf pair overlaps at any.
+/// Returns of the poses the one with most leaf pairs, and the one with fewest. Throws
+/// kInputInvalid, which names `file`, where no leaf pair overlaps at any, or as many at each.
 [[nodiscard]] std::vector<BenchPose> poses_among(const std::filesystem::path& file,
                                                  const std::vector<Eigen::Isometry3d>& poses,
                                                  const SphereTree& fixed, const SphereTree& moving);

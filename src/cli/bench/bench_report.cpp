@@ -65,7 +65,8 @@ std::string name_of(const Contestant& contestant) {
 }
 
 std::string loop_words(const Samples& loop) {
-  return fmt::format("a fixed loop took {:.0f} to {:.0f} µs", loop.quantile(0.05), loop.quantile(0.95));
+  return fmt::format("a fixed loop took {:.0f} to {:.0f} µs", loop.quantile(0.05),
+                     loop.quantile(0.95));
 }
 
 std::string machine_words(const BenchSetting& setting, const Samples& loop) {

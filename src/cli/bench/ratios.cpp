@@ -44,6 +44,7 @@ RatioGroup to_published(const std::vector<Contestant>& among) {
   }
   const Wanted table{"leaf pairs", kPublishedWay, to_string(SpherePolicy::kTable)};
   for (const int workers : {1, 2}) {
+    if (workers == 1 && tightest == to_string(SpherePolicy::kTable)) continue;  // as above
     add(group, fmt::format("{} against table{}", tightest, workers == 2 ? ", two workers" : ""),
         among, {"leaf pairs", kFastWay, tightest, workers}, table);
   }

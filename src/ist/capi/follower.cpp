@@ -18,8 +18,10 @@ bool run_beside(const ist_progress& follower, const std::function<void()>& work,
   if (follower.report(follower.user, 0) != 0) return false;
   std::future<void> ended = std::async(std::launch::async, work);
   bool stopped = false;
+  double told = 0;
   while (ended.wait_for(kBetween) != std::future_status::ready) {
-    if (stopped || follower.report(follower.user, part()) == 0) continue;
+    told = std::max(told, part());
+    if (stopped || follower.report(follower.user, told) == 0) continue;
     stopped = true;
     stop();
   }

@@ -83,7 +83,7 @@ ist_row row_of(const PoseRow& found, double stiffness) {
   }
   if (found.contacts) {
     count(*found.contacts);
-    row.leaf_pairs = found.contacts->leaf_pairs;
+    if (!found.leaf_pairs) row.leaf_pairs = found.contacts->leaf_pairs;
     row.area = found.sums.weight;
     copy(stiffness * found.sums.spring.force, row.force);
     copy(stiffness * found.sums.spring.torque, row.torque);

@@ -200,7 +200,7 @@ enum {
 typedef struct ist_rows_options {
   size_t struct_size; /**< the size of this struct, bytes */
   int32_t questions;  /**< the sum of IST_ASK_...; required */
-  int32_t threads;    /**< most threads; 0: one for each core */
+  int32_t threads;    /**< most threads, of the whole process meanwhile; 0: all cores */
   double tolerance;   /**< of distances and depths, mesh units; default 0 */
   double stiffness;   /**< of springs, N/mm^3; default 1 */
   uint64_t tests;     /**< most tests of each search of bounds or triangles; 0: no limit */

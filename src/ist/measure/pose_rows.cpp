@@ -116,8 +116,10 @@ bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> pos
   std::optional<ScopedThreadLimit> limit;
   if (threads > 0) limit.emplace(threads);
   Askers askers(search, questions.contacts);
-  // A slice is as long as the last one was quick.
-  std::size_t slice = kPosesAtOnce * std::max<std::size_t>(threads, 4);
+  // A slice is as long as the last one was quick, and has work for every thread.
+  const std::size_t most = threads > 0 ? std::min(threads, thread_count()) : thread_count();
+  const std::size_t least = kPosesAtOnce * most;
+  std::size_t slice = least;
   for (std::size_t done = 0; done < poses.size();) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(poses.size()))) {
       return false;
@@ -134,7 +136,7 @@ bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> pos
     done += count;
     const auto spent = std::chrono::steady_clock::now() - begin;
     if (spent < kSlice / 2) slice *= 2;
-    if (spent > kSlice && slice > kPosesAtOnce) slice /= 2;
+    if (spent > kSlice) slice = std::max(slice / 2, least);
   }
   return true;
 }

@@ -45,8 +45,9 @@ struct RowSearch {
 ///
 /// @param give    takes the row of a pose, by its index; called from all threads, once for each
 /// pose
-/// @param threads the most threads; 0: one for each core
-/// @param proceed asked every 20 ms; false ends the call
+/// @param threads the most threads, of all loops of the process meanwhile; 0: one for each core
+/// @param proceed asked every 20 ms, or every few poses where these take longer; false ends the
+/// call
 ///
 /// Returns whether all rows were given. Throws kTrianglesMissing, kArgumentInvalid (tolerance),
 /// kMemoryLimit. Cost: that of the verbs; each further thread makes a query of its own, a few ms.

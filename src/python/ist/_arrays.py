@@ -22,7 +22,7 @@ def floats(values, shape, what):
         if array.dtype.kind not in "fiubO":
             raise TypeError(f"the dtype is {array.dtype}")
         array = np.asarray(array, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         refuse(f"{what}: {error}: pass numbers")
     if array.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in zip(shape, array.shape)):
         wanted = ", ".join("N" if length is None else str(length) for length in shape)
@@ -57,14 +57,14 @@ def indices(values, what):
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
-def count_of(value, what, most=2**64 - 1):
-    """Returns a whole number from 0 to `most`."""
+def count_of(value, what, most=2**64 - 1, least=0):
+    """Returns a whole number from `least` to `most`."""
     try:
         number = operator.index(value)
     except TypeError:
         refuse(f"{what} is {value!r}: pass a whole number")
-    if not 0 <= number <= most:
-        refuse(f"{what} is {number}: pass a number from 0 to {most}")
+    if not least <= number <= most:
+        refuse(f"{what} is {number}: pass a number from {least} to {most}")
     return number
 
 
@@ -72,7 +72,7 @@ def number_of(value, what):
     """Returns a float that is not NaN."""
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         refuse(f"{what} is {value!r}: pass a number")
     if math.isnan(number):
         refuse(f"{what} is NaN: pass a number")

@@ -38,8 +38,11 @@ class Follower:
     # Python handles a signal before the first line of a function, where no `try` of it catches the exception. From a
     # callback the exception then goes to this hook, and the next report ends the call.
     def _hear(self, unraisable):
-        if unraisable.object is self._target and unraisable.exc_value is not None:
-            self._raised = unraisable.exc_value
+        raised = unraisable.exc_value
+        # From Python 3.13 on the callback is not named.
+        ours = unraisable.object is self._target or (unraisable.object is None and isinstance(raised, KeyboardInterrupt))
+        if ours and raised is not None:
+            self._raised = raised
         else:
             self._hook_before(unraisable)
 

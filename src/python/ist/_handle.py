@@ -26,7 +26,7 @@ class Handle:
             type(self)._free(handle)
 
     def __del__(self):
-        self.free()
+        Handle.free(self)  # whatever a lock says: nobody has the object any more
 
     def __enter__(self):
         return self

@@ -101,7 +101,6 @@ class Query(Lone):
         self._apart_at = addressof(self._apart)
         self._met = TrianglePairsResult()
         self._met_at = addressof(self._met)
-        self._out, self._out_at = None, 0
 
     spheres = property(lambda self: SPHERES[self._info.spheres], doc="The bounds in use.")
     target = property(lambda self: self._info.target.decode(), doc="The instruction set in use.")
@@ -115,13 +114,6 @@ class Query(Lone):
             self._pose[:] = pose.T
         else:
             self._pose[:] = by_columns(floats(pose, (4, 4), "pose"))
-
-    # The place of an array of answers, which is the same one in most calls.
-    def _place(self, out, dtype):
-        if out is not self._out or not out.flags.writeable or out.dtype != dtype:
-            self._out = out_of(out, dtype)
-            self._out_at = address(out)
-        return self._out_at
 
     def intersects(self, pose, *, tests=0, seconds=0.0):
         """Whether the bodies intersect: exact where both trees have triangles.
@@ -155,7 +147,7 @@ class Query(Lone):
                 out = self._room(LEAF_PAIR, most, lambda at, room: _leaf_pairs(
                     handle, self._pose_at, limit, at, room, self._found_at), lambda: found.leaf_pairs)
             else:
-                status = _leaf_pairs(handle, self._pose_at, limit, self._place(out, LEAF_PAIR), len(out), self._found_at)
+                status = _leaf_pairs(handle, self._pose_at, limit, address(out_of(out, LEAF_PAIR)), len(out), self._found_at)
                 if status:
                     raise error_of(status)
             distance = (found.distance_lower, found.distance_upper) if found.distance_known else None
@@ -183,7 +175,7 @@ class Query(Lone):
                 out = self._room(TRIANGLE_PAIR, most, lambda at, room: _triangle_pairs(
                     handle, self._pose_at, limit, at, room, self._met_at), lambda: found.pairs)
             else:
-                place = self._place(out, TRIANGLE_PAIR)
+                place = address(out_of(out, TRIANGLE_PAIR))
                 status = _triangle_pairs(handle, self._pose_at, limit, place, len(out), self._met_at)
                 if status:
                     raise error_of(status)
@@ -227,7 +219,7 @@ class Query(Lone):
             sums["struct_size"] = CONTACT_SUMS.itemsize
             found = self._found
             status = _contacts(
-                handle, self._pose_at, limit, self._place(out, CONTACT), len(out), address(sums), self._found_at
+                handle, self._pose_at, limit, address(out_of(out, CONTACT)), len(out), address(sums), self._found_at
             )
             if status:
                 raise error_of(status)

@@ -35,7 +35,7 @@ class Servo(Lone):
             unit=UNITS[unit],
             query_time_fraction=number_of(query_time_fraction, "query_time_fraction"),
             sphere_tests=count_of(sphere_tests, "sphere_tests"),
-            max_memory=count_of(max_memory, "max_memory"),
+            max_memory=count_of(max_memory, "max_memory", least=1),
         )
         path = path_bytes(scene, "scene")
         with Follower(progress) as follower:

@@ -148,7 +148,7 @@ def build(
         spheres=kind,
         drop_triangles=int(not keep_triangles),
         proximity=int(bool(proximity)),
-        max_memory=count_of(max_memory, "max_memory"),
+        max_memory=count_of(max_memory, "max_memory", least=1),
     )
     source = handle_of(mesh)
     with Follower(progress) as follower:
