@@ -76,6 +76,23 @@ class Snippets(unittest.TestCase):
         self.refuses(block("", "1\n"), "line 1", "follows nothing that prints")
         self.refuses(block("sh", "exit 3\n"), "line 1", "failed with 3")
 
+    def test_blocks_of_python_are_one_program(self):
+        first = block("python", "one = 1\nprint('first', end='')\n") + block("", "first\n")
+        self.assertEqual(self.reads(first + block("python", "print(one + 1)\n") + block("", "2\n"))["compared"], 2)
+        self.refuses(first + block("python", "print(one + 1)\n") + block("", "3\n"), "line 11", "the page shows\n3", "printed:\n2")
+        self.refuses(block("python", "print(one)\n") + first, "line 1", "NameError")
+        self.refuses(first + block("python", "raise SystemExit(0)\n"), "line 8", "this Python failed")
+
+    def test_a_block_that_shows_what_it_prints(self):
+        first = block("python", ">>> one = 1\n>>> one + 1\n2\n")
+        self.assertEqual(self.reads(first + block("python", ">>> one\n1\n"))["run"], 2)
+        self.refuses(first + block("python", ">>> one\n2\n"), "line 6", "Expected:\n    2\nGot:\n    1")
+
+    def test_a_file_of_python_is_a_program_of_its_own(self):
+        first = block("python", "one = 1\n") + NOTE.format("file own.py")
+        self.assertEqual(self.reads(first + block("python", "print(__file__[-6:])\n") + block("", "own.py\n"))["compared"], 1)
+        self.refuses(first + block("python", "print(one)\n"), "line 5", "NameError")
+
     def test_code_that_is_compiled_alone(self):
         note = NOTE.format("compiled, since a library is missing")
         with_stub = "#include <chai3d.h>\nvoid set(chai3d::cWorld& world) { world.setLocalPos({1.0, 2.0, 3.0}); }\n"
@@ -93,6 +110,22 @@ class Guards(unittest.TestCase):
         self.assertEqual(self.flaws("- **A.** `Real`,\n  `Other`. They do `anything`\n- **B**: quiet. `Other`\n"), ([], 3))
         self.assertEqual(self.flaws("- **A.** `Real`,\n  `NoSuchTest`\n"), (["'A.' names NoSuchTest, and there is no such test"], 2))
         self.assertEqual(self.flaws("- **A.** words\n"), (["'A.' names no test"], 0))
+
+    def test_guarantees(self):
+        head = "# Page\n\n### Each guarantee, its tests, and a mutant that they kill\n\n| guarantee | tests | mutant |\n|---|---|---|\n"
+
+        def flaws(row):
+            return guards.flaws_of_guarantees(f"{head}{row}\n\n## Next\n", {"Real.Thing", "Some/Other.Thing/1"}, {"broken", "lives", "elsewhere", "proven"},
+                                              {"broken": "Real.Thing", "elsewhere": "Other.Thing", "proven": guards.PROOF})
+
+        self.assertEqual(flaws("| It holds | `Real`, `Some/Other.Thing` | `broken` |"), ([], 2))
+        self.assertEqual(flaws("| It holds | `Rea`, `Real` | `broken` |")[0], ["'It holds' names Rea, and there is no such test"])
+        self.assertEqual(flaws("| It holds |  | `broken` |")[0], ["'It holds' names no test: "])
+        self.assertEqual(flaws("| It holds | `Real` | none |")[0], ["'It holds' names no mutant: none"])
+        self.assertEqual(flaws("| It holds | `Real` | `gone` |")[0], ["'It holds' names gone, and there is no such mutant"])
+        self.assertEqual(flaws("| It holds | `Real` | `proven` |"), ([], 1))
+        self.assertEqual(flaws("| It holds | `Real` | `elsewhere` |")[0], ["'It holds' names elsewhere, and Other.Thing killed it, none of its tests"])
+        self.assertEqual(flaws("| It holds | `Real` | `lives` |")[0], ["'It holds' names lives, and no test has killed it: scripts/mutate.sh lives"])
 
     def test_lines_without_a_title(self):
         wrong, _ = self.flaws("- **A.** `Real`\n- Untitled. `NoSuchTest`\n")
