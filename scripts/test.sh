@@ -6,7 +6,7 @@
 #
 #   scripts/test.sh          every test, some 30 minutes from nothing built on two cores
 #   scripts/test.sh --long   then golden answers by more compilers and optimisations, a program built
-#                            for ARM64 from the package, every room and test under the sanitizers, hard
+#                            for ARM64 from the package, the wheel and the sdist, every room and test under the sanitizers, hard
 #                            cases with 20 times the samples, ten million queries of real jaws, an
 #                            hour of simulated pressing, threads for longer, CloudCompare's distances,
 #                            the add-on in Blender, and each fuzzer for a minute; 90 minutes more

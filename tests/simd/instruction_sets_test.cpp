@@ -1,6 +1,8 @@
 // Tests that have an instruction set as their parameter run for those that are here. The others are
 // skipped by name here, so that no one takes their absence for a pass.
 
+#include "ist/base/platform/instruction_sets.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "ist/base/platform/instruction_sets.h"
 #include "simd/targets.h"
 
 namespace ist::test {

@@ -36,10 +36,10 @@ class ScopedThreadLimit {
 /// live as long as a loop, and in WebAssembly those of one thread.
 void run_ranges(std::size_t ranges, void (*run)(void* context, std::size_t range), void* context);
 
-/// Calls `run(context)` once on a thread of its own, concurrently with all loops, as soon as a thread
-/// is free (even if loops are limited to one); never in WebAssembly, nor where the system has no
-/// thread left. Returns at once. The call may begin while the process is ending, so `context` and
-/// all objects that `run` uses must never be destroyed.
+/// Calls `run(context)` once on a thread of its own, concurrently with all loops, as soon as a
+/// thread is free (even if loops are limited to one); never in WebAssembly, nor where the system
+/// has no thread left. Returns at once. The call may begin while the process is ending, so
+/// `context` and all objects that `run` uses must never be destroyed.
 void run_aside(void (*run)(void* context), void* context);
 
 /// Returns the number of threads that a loop uses by default, the caller's included: that of the

@@ -30,9 +30,9 @@ struct InstructionSets {
   sets.avx2 = sets.sse4 && f16c &&
               all(__builtin_cpu_supports("avx2"), __builtin_cpu_supports("bmi"),
                   __builtin_cpu_supports("bmi2"), __builtin_cpu_supports("fma"));
-  sets.avx3 = sets.avx2 &&
-              all(__builtin_cpu_supports("avx512f"), __builtin_cpu_supports("avx512vl"),
-                  __builtin_cpu_supports("avx512dq"), __builtin_cpu_supports("avx512bw"));
+  sets.avx3 =
+      sets.avx2 && all(__builtin_cpu_supports("avx512f"), __builtin_cpu_supports("avx512vl"),
+                       __builtin_cpu_supports("avx512dq"), __builtin_cpu_supports("avx512bw"));
 #endif
   return sets;
 }

@@ -1,5 +1,5 @@
-// What tbb_ranges.cpp does, by threads that live as long as a loop: for builds that link nothing but
-// libc. A loop that takes a millisecond does not notice how long a thread takes to start.
+// What tbb_ranges.cpp does, by threads that live as long as a loop: for builds that link nothing
+// but libc. A loop that takes a millisecond does not notice how long a thread takes to start.
 
 #include <sched.h>
 
