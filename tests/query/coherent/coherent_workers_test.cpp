@@ -27,6 +27,8 @@ constexpr HandOver kPointsOfDelay[] = {HandOver::kSeen, HandOver::kEntered, Hand
 
 class CoherentQueryThread : public ::testing::Test {
  protected:
+  const Awake awake_;
+
   static QueryOptions helped() {
     QueryOptions options = options_of(SpherePolicy::kSlab, "", 2);
     options.front_pairs = 1 << 15;
