@@ -146,14 +146,15 @@ def stamps_in(page):
 
 
 def tables_in(page):
-    """Yields the line number of each table on a page, and whether a stamp stands below it, before the next table or heading."""
+    """Yields the line number of each table on a page, and whether its figures name their commit: by a stamp below it, before the
+    next table or heading, or row by row."""
     lines = (ROOT / page).read_text().splitlines()
     begins = [i for i, line in enumerate(lines) if line.startswith("|") and (i == 0 or not lines[i - 1].startswith("|"))]
     for begin in begins:
         below = begin
         while below < len(lines) and lines[below].startswith("|"):
             below += 1
-        stamped = False
+        stamped = "| commit |" in lines[begin]
         for line in lines[below:]:
             if line.startswith(("|", "#")):
                 break

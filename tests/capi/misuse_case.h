@@ -48,6 +48,7 @@ class CMisuse : public ::testing::Test {
   std::array<float, 9> floats_ = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   std::array<std::uint32_t, 3> indices_ = {0, 1, 2};
   ist_mesh_info mesh_info_ = sized<ist_mesh_info>();
+  std::uint64_t count_ = 0;
   ist_tree_info tree_info_ = sized<ist_tree_info>();
   ist_query_info query_info_ = sized<ist_query_info>();
   ist_servo_info servo_info_ = sized<ist_servo_info>();

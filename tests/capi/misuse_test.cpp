@@ -31,6 +31,11 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("mesh", ist_mesh_read(file_.c_str(), nullptr));
   is_null("mesh", ist_mesh_get_info(nullptr, &mesh_info_));
   is_null("info", ist_mesh_get_info(mesh_, nullptr));
+  is_null("mesh", ist_mesh_get_size(nullptr, &count_, &count_));
+  is_null("vertices", ist_mesh_get_size(mesh_, nullptr, &count_));
+  is_null("triangles", ist_mesh_get_size(mesh_, &count_, nullptr));
+  is_null("path", ist_mesh_read_with_progress(nullptr, nullptr, &no_mesh_));
+  is_null("mesh", ist_mesh_read_with_progress(file_.c_str(), nullptr, nullptr));
   is_null("mesh", ist_mesh_copy(nullptr, nullptr, 0, nullptr, 0));
   is_null("vertices", ist_mesh_copy(mesh_, nullptr, 1, nullptr, 0));
   is_null("triangles", ist_mesh_copy(mesh_, nullptr, 0, nullptr, 1));
@@ -40,6 +45,10 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("tree", ist_tree_build(mesh_, &build_, nullptr));
   is_null("path", ist_tree_load(nullptr, &no_tree_));
   is_null("tree", ist_tree_load(file_.c_str(), nullptr));
+  is_null("path", ist_tree_load_with_progress(nullptr, nullptr, &no_tree_));
+  is_null("tree", ist_tree_load_with_progress(file_.c_str(), nullptr, nullptr));
+  is_null("tree", ist_tree_save_with_progress(nullptr, file_.c_str(), nullptr));
+  is_null("path", ist_tree_save_with_progress(tree_, nullptr, nullptr));
   is_null("tree", ist_tree_save(nullptr, file_.c_str()));
   is_null("path", ist_tree_save(tree_, nullptr));
   is_null("tree", ist_tree_get_info(nullptr, &tree_info_));
@@ -121,6 +130,8 @@ TEST_F(CMisuse, OfAHandleIsTold) {
   std::uint64_t memory_bytes = 0;
   const std::vector<Taker> takers{
       {kMesh, [&](void* h) { return ist_mesh_get_info(static_cast<ist_mesh*>(h), &mesh_info_); }},
+      {kMesh,
+       [&](void* h) { return ist_mesh_get_size(static_cast<ist_mesh*>(h), &count_, &count_); }},
       {kMesh,
        [&](void* h) { return ist_tree_build(static_cast<ist_mesh*>(h), &build_, &no_tree_); }},
       {kMesh,

@@ -102,6 +102,10 @@ TEST(CMesh, IsTheSameOfFloats) {
   EXPECT_EQ(info.closed, 0);
   EXPECT_EQ(info.boundary_edges, 3u);
   EXPECT_EQ(info.components, 1u);
+  std::uint64_t vertices = 0, triangles = 0;
+  ASSERT_EQ(name(ist_mesh_get_size(mesh, &vertices, &triangles)), "ok");
+  EXPECT_EQ(vertices, 3u);
+  EXPECT_EQ(triangles, 1u);
   EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
 }
 

@@ -1,4 +1,5 @@
-// Trees in memory, meshes of trees, jaws from nothing, and builds that their caller follows.
+// Trees in memory, meshes of trees, jaws from nothing, and builds and files that their caller
+// follows.
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "c_bodies.h"
+#include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
@@ -165,6 +167,45 @@ TEST(CBuild, IsFollowedOnTheCallersThreadAndEndsWhereItSaysSo) {
   EXPECT_EQ(name(ist_tree_build(mesh, &options, &tree)), "voxel-size-too-small");
   EXPECT_NE(std::string(ist_last_error_message()).find("voxel"), std::string::npos);
   EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
+}
+
+// A sphere of 327,680 triangles: its files take longer than the time between two reports.
+TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
+  const TempDir folder;
+  const std::string stl = (folder.path() / "a.stl").string(),
+                    ist = (folder.path() / "a.ist").string();
+  write_stl(icosphere(7, 10), stl);
+  Listener listener;
+  const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
+  ist_mesh* mesh = nullptr;
+  ASSERT_EQ(name(ist_mesh_read_with_progress(stl.c_str(), &progress, &mesh)), "ok");
+  EXPECT_GE(listener.reports, 2);
+  auto options = sized<ist_build_options>();
+  options.voxel_size = 0.1;
+  ist_tree *tree = nullptr, *back = nullptr;
+  ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok");
+  ASSERT_EQ(name(ist_tree_save_with_progress(tree, ist.c_str(), &progress)), "ok");
+  ASSERT_EQ(name(ist_tree_load_with_progress(ist.c_str(), &progress, &back)), "ok");
+  EXPECT_EQ(bytes_of(back), bytes_of(tree));
+  EXPECT_EQ(name(ist_tree_free(back)), "ok");
+  EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
+  const std::string saved = file_content(ist);
+  for (const int at : {1, 2}) {
+    listener = {.stop_at = at};
+    EXPECT_EQ(name(ist_mesh_read_with_progress(stl.c_str(), &progress, &mesh)), "cancelled");
+    EXPECT_EQ(mesh, nullptr);
+    EXPECT_EQ(listener.reports, at);
+  }
+  listener = {.stop_at = 1};
+  EXPECT_EQ(name(ist_tree_load_with_progress(ist.c_str(), &progress, &back)), "cancelled");
+  EXPECT_EQ(back, nullptr);
+  listener = {.stop_at = 1};
+  EXPECT_EQ(name(ist_tree_save_with_progress(tree, ist.c_str(), &progress)), "cancelled");
+  EXPECT_EQ(file_content(ist), saved);
+  EXPECT_EQ(folder.entries(), 2u);
+  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_save_with_progress"),
+            std::string::npos);
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
 }  // namespace

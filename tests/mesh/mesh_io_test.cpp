@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cctype>
 #include <cmath>
@@ -14,8 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/cancellation.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/errors.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -252,6 +256,20 @@ TEST(ReadMesh, GivesTrianglesForPolygonsWithoutAnAnswer) {
   EXPECT_EQ(read_bytes(star + "f 1 2 3 4 5\n").triangles.size(), 3u);
   EXPECT_EQ(read_bytes(star + "f 1 2 1 2 1 2\n").triangles.size(), 4u);
   EXPECT_EQ(read_bytes("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 3 2 4\n").triangles.size(), 2u);
+}
+
+TEST(ReadMesh, EndsWhereItsThreadIsAsked) {
+  const std::atomic<bool> asked{true};
+  for (const auto& [name, bytes] : all_formats(kBox)) {
+    const ScopedCancellation cancellation(asked);
+    EXPECT_EQ(test::error_name([&] { static_cast<void>(read_content(bytes, "mesh")); }),
+              "cancelled")
+        << name;
+  }
+  const TempDir folder;
+  const auto file = folder.write("mesh", test::as_binary_stl(kBox));
+  const ScopedCancellation cancellation(asked);
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(read_mesh(file)); }), "cancelled");
 }
 
 TEST(ReadMesh, ReadsTheSameJawFromEveryFormat) {

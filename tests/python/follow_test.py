@@ -4,12 +4,13 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
 
 import numpy as np
-from support import JAW_POSES, Jaws, box
+from support import JAW_POSES, Jaws, box, write_stl
 
 import ist
 
@@ -19,11 +20,24 @@ class Ended(Exception):
 
 
 class Follow(Jaws):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        write_stl(os.path.join(cls.folder.name, "upper.stl"), *cls.meshes[0])
+        cls.upper.save(os.path.join(cls.folder.name, "upper.ist"))
+
     def calls(self):
         """Calls of some 0.1 s and more, each with a progress function."""
         poses = np.tile(JAW_POSES[1], (3000, 1, 1))
         points = np.random.default_rng(1).normal(scale=30, size=(200_000, 3))
+        stl, tree = (os.path.join(self.folder.name, name) for name in ("upper.stl", "upper.ist"))
         return {
+            "read_mesh": lambda progress: ist.read_mesh(stl, progress=progress),
+            "build of a file": lambda progress: ist.build(stl, 2, progress=progress),
+            "load": lambda progress: ist.load(tree, progress=progress),
+            "save": lambda progress: self.upper.save(tree, progress=progress),
             "build": lambda progress: ist.build(self.meshes[0], 0.25, progress=progress),
             "rows": lambda progress: self.query.rows(poses, tolerance=0.01, progress=progress),
             "occlusion": lambda progress: self.query.occlusion(JAW_POSES[2], longest_edge=0.1, progress=progress),
@@ -71,6 +85,17 @@ class Follow(Jaws):
         with self.assertRaises(Ended):
             self.query.rows(poses, out=out, progress=progress)
         self.assertEqual(out.tobytes(), before)
+        path = os.path.join(self.folder.name, "kept.ist")
+        ist.build(self.meshes[1], 4).save(path)
+        with self.assertRaises(Ended):
+            self.upper.save(path, progress=progress)
+        self.assertEqual(ist.load(path).voxel_size, 4)
+        self.assertEqual(sorted(os.listdir(self.folder.name)), ["kept.ist", "upper.ist", "upper.stl"])
+        os.remove(path)
+
+    def test_what_is_in_memory_is_not_followed(self):
+        with self.assertRaises(TypeError):
+            ist.load(self.upper.to_bytes(), progress=print)
 
 
 class Hook(unittest.TestCase):

@@ -50,6 +50,13 @@ JAW_POSES = [
 ]
 
 
+def write_stl(path, vertices, faces):
+    facets = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = vertices[faces]
+    with open(path, "wb") as file:
+        file.write(bytes(80) + np.uint32(len(faces)).tobytes() + facets.tobytes())
+
+
 class Jaws(unittest.TestCase):
     """Both built-in jaws, in voxels of 0.8 mm."""
 

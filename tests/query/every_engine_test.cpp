@@ -174,6 +174,12 @@ TEST_P(EveryEngine, MakesOneTestFarApart) {
       EXPECT_EQ(answer.result.leaf_pairs, 0u) << "at " << at.transpose();
       EXPECT_EQ(answer.result.sphere_tests, 1u) << "at " << at.transpose();
       EXPECT_TRUE(std::isfinite(answer.result.pad)) << "at " << at.transpose();
+      if (GetParam().published) continue;
+      // Both bodies lie within 2.5 of their frames' origins.
+      const double apart = at.stableNorm();
+      ASSERT_TRUE(answer.result.distance) << "at " << at.transpose();
+      EXPECT_GE(answer.result.distance->lower, std::min(0.99 * (apart - 5), 1e308));
+      EXPECT_GE(answer.result.distance->upper, std::min(apart - 5, 1e308));
     }
   }
 }

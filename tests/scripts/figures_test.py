@@ -118,6 +118,10 @@ class History(unittest.TestCase):
         self.page("Repeated by the test `Some.Test`.")
         self.assertEqual(self.check()[0], 0)
 
+    def test_a_table_whose_rows_name_their_commits_needs_none(self):
+        (self.root / self.PAGE).write_text(f"| a | commit |\n|---|---|\n| 1 | {self.commit} |\n")
+        self.assertEqual(self.check()[0], 0)
+
     def test_a_page_that_is_not_there_is_named(self):
         with self.assertRaises(SystemExit) as said:
             check_figures.main(["nowhere.md"])

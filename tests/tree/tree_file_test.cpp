@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <span>
 
+#include "ist/base/cancellation.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "support/errors.h"
@@ -111,6 +113,20 @@ TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
               (void)write_tree(tree_of(test::icosphere(1, 1), 0.3, 0), folder.path() / "no" / "t");
             }),
             "file-unwritable");
+}
+
+TEST(TreeFile, IsNeitherReadNorWrittenWhereItsThreadIsAskedToEnd) {
+  const test::TempDir folder;
+  const SphereTree tree = build_tree(test::icosphere(2, 1), {.voxel_size = 0.2});
+  const auto file = folder.write("tree.ist", "older");
+  const std::vector<std::byte> bytes = tree_to_bytes(tree);
+  const std::atomic<bool> asked{true};
+  const ScopedCancellation cancellation(asked);
+  EXPECT_EQ(test::error_name([&] { write_tree(tree, file); }), "cancelled");
+  EXPECT_EQ(test::file_content(file), "older");
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(tree_from_bytes(bytes)); }), "cancelled");
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(read_tree(file)); }), "cancelled");
 }
 
 TEST(TreeFile, BeginsAsItsDescriptionSays) {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -13,10 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/cancellation.h"
 #include "ist/base/error.h"
 
 namespace ist {
 namespace {
+
+// The most bytes read or written between two cancellation points.
+constexpr std::size_t kAtOnce = 4 << 20;
 
 // All temporary files of the process. A file is created and removed only under the lock, so the
 // list is complete for whoever holds the lock.
@@ -56,7 +61,8 @@ std::size_t InputFile::read(void* data, std::size_t bytes) {
   char* next = static_cast<char*>(data);
   std::size_t left = bytes;
   while (left > 0) {
-    const ssize_t got = ::read(descriptor_, next, left);
+    cancellation_point();
+    const ssize_t got = ::read(descriptor_, next, std::min(left, kAtOnce));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(std::strerror(errno));
     if (got == 0) break;
@@ -130,7 +136,8 @@ OutputFile::~OutputFile() {
 void OutputFile::write(const void* data, std::size_t bytes) {
   const char* next = static_cast<const char*>(data);
   while (bytes > 0) {
-    const ssize_t written = ::write(descriptor_, next, bytes);
+    cancellation_point();
+    const ssize_t written = ::write(descriptor_, next, std::min(bytes, kAtOnce));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("write", errno);
     next += written;
@@ -152,6 +159,7 @@ void OutputFile::write_at(std::size_t offset, const void* data, std::size_t byte
 }
 
 void OutputFile::commit() {
+  cancellation_point();
   OutputFile* const alone = this;
   commit_all({&alone, 1});
 }

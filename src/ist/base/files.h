@@ -11,7 +11,7 @@
 namespace ist {
 
 /// Reads a regular file from front to back. Every function throws kFileUnreadable with the file and
-/// the cause.
+/// the cause; reading and writing have cancellation points (cancellation.h).
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path file);

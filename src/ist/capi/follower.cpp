@@ -5,6 +5,7 @@
 #include <chrono>
 #include <future>
 
+#include "ist/base/cancellation.h"
 #include "ist/capi/sized_struct.h"
 
 namespace ist::capi {
@@ -50,8 +51,12 @@ bool followed(const Follower& follower, const std::function<void(const Proceed&)
     done.store(part, std::memory_order_relaxed);
     return !stopped.load(std::memory_order_relaxed);
   };
+  const auto cancellable = [&] {
+    const ScopedCancellation cancellation(stopped);
+    work(proceed);
+  };
   return run_beside(
-      *follower, [&] { work(proceed); }, [&] { return done.load(std::memory_order_relaxed); },
+      *follower, cancellable, [&] { return done.load(std::memory_order_relaxed); },
       [&] { stopped.store(true, std::memory_order_relaxed); });
 }
 

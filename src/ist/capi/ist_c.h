@@ -75,6 +75,13 @@ IST_C_API ist_status ist_mesh_create_float(const float* vertices, size_t vertex_
  * Errors: IST_FILE_UNREADABLE, IST_NOT_A_MESH and all IST_MESH_... codes; the message names the
  * file and the position in it. Cost: about 50 ms for 100,000 triangles. */
 IST_C_API ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT;
+/** Reads a mesh as ist_mesh_read does. `progress` may be NULL; IST_CANCELLED as it says. */
+IST_C_API ist_status ist_mesh_read_with_progress(const char* path, const ist_progress* progress,
+                                                 ist_mesh** mesh) IST_NOEXCEPT;
+
+/** Gives the numbers of vertices and triangles, for ist_mesh_copy. Cost: 1 us. */
+IST_C_API ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,
+                                       uint64_t* triangles) IST_NOEXCEPT;
 
 /** The counts of a mesh's elements and defects. */
 typedef struct ist_mesh_info {
@@ -146,9 +153,16 @@ IST_C_API ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_option
 /** Reads a tree file and checks every number in it. Cost: 1 ns per byte. Errors:
  * IST_FILE_UNREADABLE, IST_NOT_A_TREE, IST_TREE_VERSION, IST_TREE_TRUNCATED, IST_TREE_CORRUPT. */
 IST_C_API ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT;
+/** Reads a tree as ist_tree_load does. `progress` may be NULL; IST_CANCELLED as it says. */
+IST_C_API ist_status ist_tree_load_with_progress(const char* path, const ist_progress* progress,
+                                                 ist_tree** tree) IST_NOEXCEPT;
 
 /** Writes a tree file completely or not at all. Errors: IST_FILE_UNWRITABLE. Cost: disk time. */
 IST_C_API ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT;
+/** Writes a tree as ist_tree_save does. `progress` may be NULL; IST_CANCELLED as it says, and an
+ * older file stays. A file that already waits for the disk is completed, with IST_OK. */
+IST_C_API ist_status ist_tree_save_with_progress(const ist_tree* tree, const char* path,
+                                                 const ist_progress* progress) IST_NOEXCEPT;
 
 /** Gives the size of the tree's file, and writes it to `memory` where `capacity` is no less;
  * `memory` may be NULL where `capacity` is 0. Cost: 1 ns per byte. */

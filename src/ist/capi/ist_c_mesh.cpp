@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "ist/capi/follower.h"
 #include "ist/capi/objects.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
@@ -68,6 +69,22 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
   });
 }
 
+ist_status read(const char* function, const char* path, const ist_progress* progress,
+                ist_mesh** out) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"mesh", out}})) return missing;
+    *out = nullptr;
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    std::unique_ptr<Mesh> mesh;
+    const bool whole = followed(follower, [&](const Proceed&) {
+      mesh = std::make_unique<Mesh>(Mesh{ist::read_mesh(path)});
+    });
+    return whole ? give(call, std::move(mesh), out) : cancelled(call);
+  });
+}
+
 }  // namespace
 }  // namespace ist::capi
 
@@ -87,16 +104,31 @@ ist_status ist_mesh_create_float(const float* vertices, size_t vertex_count,
 }
 
 ist_status ist_mesh_read(const char* path, ist_mesh** mesh) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"mesh", mesh}})) return missing;
-    *mesh = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    return give(call, std::make_unique<Mesh>(Mesh{ist::read_mesh(path)}), mesh);
-  });
+  return read(__func__, path, nullptr, mesh);
+}
+
+ist_status ist_mesh_read_with_progress(const char* path, const ist_progress* progress,
+                                       ist_mesh** mesh) IST_NOEXCEPT {
+  return read(__func__, path, progress, mesh);
 }
 
 ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT {
   return get_info<Mesh>(__func__, mesh, info, mesh_info_of);
+}
+
+ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,
+                             uint64_t* triangles) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const auto missing = call.need({{"vertices", vertices}, {"triangles", triangles}})) {
+      return missing;
+    }
+    *vertices = *triangles = 0;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    *vertices = held->mesh.vertices.size();
+    *triangles = held->mesh.triangles.size();
+    return IST_OK;
+  });
 }
 
 ist_status ist_mesh_copy(const ist_mesh* mesh, double* vertices, size_t vertex_capacity,

@@ -65,6 +65,39 @@ ist_tree_info tree_info_of(const Tree& object) {
   return info;
 }
 
+ist_status load(const char* function, const char* path, const ist_progress* progress,
+                ist_tree** out) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", out}})) return missing;
+    *out = nullptr;
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    std::unique_ptr<Tree> tree;
+    const bool whole = followed(
+        follower, [&](const Proceed&) { tree = std::make_unique<Tree>(ist::read_tree(path)); });
+    return whole ? give(call, std::move(tree), out) : cancelled(call);
+  });
+}
+
+ist_status save(const char* function, const ist_tree* tree, const char* path,
+                const ist_progress* progress) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    bool written = false;
+    followed(follower, [&](const Proceed&) {
+      ist::write_tree(*held->tree, path);
+      written = true;
+    });
+    // A caller who says stop while the file waits for the disk is too late.
+    return written ? IST_OK : cancelled(call);
+  });
+}
+
 }  // namespace
 }  // namespace ist::capi
 
@@ -91,22 +124,21 @@ ist_status ist_tree_build(const ist_mesh* mesh, const ist_build_options* options
 }
 
 ist_status ist_tree_load(const char* path, ist_tree** tree) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
-    *tree = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    return give(call, std::make_unique<Tree>(ist::read_tree(path)), tree);
-  });
+  return load(__func__, path, nullptr, tree);
+}
+
+ist_status ist_tree_load_with_progress(const char* path, const ist_progress* progress,
+                                       ist_tree** tree) IST_NOEXCEPT {
+  return load(__func__, path, progress, tree);
 }
 
 ist_status ist_tree_save(const ist_tree* tree, const char* path) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
-    ist::write_tree(*held->tree, path);
-    return IST_OK;
-  });
+  return save(__func__, tree, path, nullptr);
+}
+
+ist_status ist_tree_save_with_progress(const ist_tree* tree, const char* path,
+                                       const ist_progress* progress) IST_NOEXCEPT {
+  return save(__func__, tree, path, progress);
 }
 
 ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,

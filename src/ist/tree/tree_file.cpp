@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/cancellation.h"
 #include "ist/base/float_environment.h"
 #include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
@@ -190,6 +191,7 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
       mesh.vertices.empty() || all_finite(mesh.vertices.front().data(), 3 * mesh.vertices.size()),
       "a vertex is not finite");
   for (const Triangle& triangle : mesh.triangles) {
+    cancellation_point();
     for (const std::uint32_t vertex : triangle) {
       reader.require(vertex < mesh.vertices.size(),
                      "a triangle refers to a vertex that does not exist");
@@ -199,6 +201,7 @@ void verify_triangles(const TreeReader& reader, const Lattice& lattice, const Tr
   reader.require(lists.first.front() == 0 && lists.first.back() == lists.ids.size(),
                  "the triangle lists do not cover their entries");
   for (std::size_t leaf = 0; leaf < lists.size(); ++leaf) {
+    cancellation_point();
     reader.require(
         lists.first[leaf] < lists.first[leaf + 1] && lists.first[leaf + 1] <= lists.ids.size(),
         "a leaf's triangle list is out of range");

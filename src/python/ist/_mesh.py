@@ -7,9 +7,9 @@ import numpy as np
 
 from ._arrays import address, count_of, floats, indices
 from ._errors import check, refuse
+from ._follow import Follower
 from ._handle import Handle, Out
 from ._library import LIBRARY
-from ._records import MeshInfo
 
 
 class MeshHandle(Handle):
@@ -19,10 +19,10 @@ class MeshHandle(Handle):
 
     def arrays(self):
         """Returns the vertices, (V, 3) float64, and the triangles, (T, 3) uint32."""
-        info = MeshInfo()
-        check(LIBRARY.ist_mesh_get_info(self._need(), ctypes.addressof(info)))
-        vertices = np.empty((info.vertices, 3))
-        faces = np.empty((info.triangles, 3), np.uint32)
+        points, triangles = ctypes.c_uint64(), ctypes.c_uint64()
+        check(LIBRARY.ist_mesh_get_size(self._need(), ctypes.addressof(points), ctypes.addressof(triangles)))
+        vertices = np.empty((points.value, 3))
+        faces = np.empty((triangles.value, 3), np.uint32)
         check(LIBRARY.ist_mesh_copy(self._handle, address(vertices), len(vertices), address(faces), len(faces)))
         return vertices, faces
 
@@ -39,6 +39,16 @@ def made(create, *arguments):
     out = Out()
     check(create(*arguments, out.address))
     return MeshHandle(out.handle)
+
+
+def read(path, what, progress):
+    """Returns the library's mesh of a file."""
+    out = Out()
+    with Follower(progress) as follower:
+        status = LIBRARY.ist_mesh_read_with_progress(path_bytes(path, what), follower.address, out.address)
+        mesh = None if status else MeshHandle(out.handle)  # it owns the handle whatever finish() raises
+        follower.finish(status)
+    return mesh
 
 
 def of_vtk(data):
@@ -84,10 +94,10 @@ def arrays_of(mesh):
     )
 
 
-def handle_of(mesh):
+def handle_of(mesh, progress=None):
     """Returns the library's copy of a mesh: a path, a pair of arrays, or an object of another library."""
     if isinstance(mesh, (str, bytes, os.PathLike)):
-        return made(LIBRARY.ist_mesh_read, path_bytes(mesh, "mesh"))
+        return read(mesh, "mesh", progress)
     vertices, faces = arrays_of(mesh)
     triangles = indices(faces, "faces")
     single = isinstance(vertices, np.ndarray) and vertices.dtype == np.float32
@@ -98,12 +108,13 @@ def handle_of(mesh):
     return made(create, address(points), len(points), address(triangles), len(triangles))
 
 
-def read_mesh(path):
+def read_mesh(path, *, progress=None):
     """Reads an STL, PLY, OBJ, OFF, glTF or 3MF file: returns vertices, (V, 3) float64, and faces, (T, 3) uint32.
 
-    Vertices with equal coordinates are merged. Raises FileError and InputError, which name the file and the place.
+    Vertices with equal coordinates are merged. progress: called while the file is read; what it raises ends that. Raises
+    FileError and InputError, which name the file and the place.
     """
-    return made(LIBRARY.ist_mesh_read, path_bytes(path, "path")).arrays()
+    return read(path, "path", progress).arrays()
 
 
 def jaws(seed=1):

@@ -102,23 +102,6 @@ class TreeInfo(Sized):
     ]
 
 
-class MeshInfo(Sized):
-    _fields_ = [
-        ("struct_size", c_size_t),
-        ("vertices", c_uint64),
-        ("triangles", c_uint64),
-        ("boundary_edges", c_uint64),
-        ("non_manifold_edges", c_uint64),
-        ("degenerate_triangles", c_uint64),
-        ("components", c_uint64),
-        ("closed", c_int32),
-        ("consistent", c_int32),
-        ("box_min", c_double * 3),
-        ("box_max", c_double * 3),
-        ("signed_volume", c_double),
-    ]
-
-
 class QueryOptions(Sized):
     _fields_ = [
         ("struct_size", c_size_t),

@@ -73,9 +73,12 @@ class Tree(Handle):
 
         return self._kept("leaf_centres", copy)
 
-    def save(self, path):
-        """Writes the tree's file, whole or not at all. Raises FileError."""
-        check(LIBRARY.ist_tree_save(self._need(), path_bytes(path, "path")))
+    def save(self, path, *, progress=None):
+        """Writes the tree's file, whole or not at all. progress: called meanwhile; what it raises ends it. Raises FileError."""
+        with Follower(progress) as follower:
+            follower.finish(
+                LIBRARY.ist_tree_save_with_progress(self._need(), path_bytes(path, "path"), follower.address)
+            )
 
     def to_bytes(self):
         """Returns the bytes of the tree's file, for load().
@@ -133,8 +136,8 @@ def build(
 
     mesh: a path; (vertices, faces), (V, 3) and (T, 3), counter-clockwise seen from outside; or an object of another library
     with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units.
-    keep_triangles: for exact answers and all measures. progress: called with the part that is done; what it raises ends the
-    build. Raises InputError, FileError, MemoryLimitError.
+    keep_triangles: for exact answers and all measures. progress: called with the part of the build that is done, 0 while a
+    file is read; what it raises ends both. Raises InputError, FileError, MemoryLimitError.
 
     >>> import ist
     >>> upper, lower = ist.jaws()
@@ -150,7 +153,7 @@ def build(
         proximity=int(bool(proximity)),
         max_memory=count_of(max_memory, "max_memory", least=1),
     )
-    source = handle_of(mesh)
+    source = handle_of(mesh, progress)
     with Follower(progress) as follower:
         options.progress = follower.pointer
         out = Out()
@@ -160,12 +163,19 @@ def build(
     return tree
 
 
-def load(source):
-    """Reads a tree from its file: a path, or its bytes. Every number in it is checked. Raises FileError, InputError."""
+def load(source, *, progress=None):
+    """Reads a tree from its file: a path, or its bytes. Every number in it is checked. progress: called while a file is read;
+    what it raises ends that. Raises FileError, InputError.
+    """
     out = Out()
     if isinstance(source, (bytes, bytearray, memoryview)):
+        if progress is not None:
+            raise TypeError("progress follows the reading of a file: pass a path, or no progress")
         memory = np.frombuffer(source, np.uint8)
         check(LIBRARY.ist_tree_from_memory(address(memory), len(memory), out.address))
-    else:
-        check(LIBRARY.ist_tree_load(path_bytes(source, "source"), out.address))
-    return Tree(out.handle)
+        return Tree(out.handle)
+    with Follower(progress) as follower:
+        status = LIBRARY.ist_tree_load_with_progress(path_bytes(source, "source"), follower.address, out.address)
+        tree = None if status else Tree(out.handle)
+        follower.finish(status)
+    return tree

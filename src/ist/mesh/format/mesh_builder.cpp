@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ist/base/assert.h"
+#include "ist/base/cancellation.h"
 #include "ist/base/platform/bit_cast.h"
 #include "ist/mesh/format/triangulate.h"
 
@@ -44,6 +45,7 @@ std::uint32_t MeshBuilder::vertex_at(const Eigen::Vector3d& given) {
 }
 
 void MeshBuilder::add_face(std::span<const std::uint32_t> corners) {
+  cancellation_point();
   triangulate(corners, mesh_.vertices, mesh_.triangles);
 }
 
@@ -66,7 +68,13 @@ void MeshBuilder::double_slots() {
     slots_[slot_of(mesh_.vertices[i])] = static_cast<std::uint32_t>(i);
 }
 
+void IndexedFaces::add_vertex(const Eigen::Vector3d& point) {
+  cancellation_point();
+  points_.push_back(point);
+}
+
 void IndexedFaces::add_face(std::span<const std::uint32_t> corners) {
+  cancellation_point();
   corners_.push_back(static_cast<std::uint32_t>(corners.size()));
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   ++faces_;

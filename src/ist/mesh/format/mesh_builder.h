@@ -54,7 +54,7 @@ void require_face_size(std::int64_t corners, const Reader& reader) {
 /// Collects a file's vertices and faces, which name vertices by index, in any order.
 class IndexedFaces {
  public:
-  void add_vertex(const Eigen::Vector3d& point) { points_.push_back(point); }
+  void add_vertex(const Eigen::Vector3d& point);
   void add_face(std::span<const std::uint32_t> corners);
   [[nodiscard]] std::size_t vertices() const { return points_.size(); }
   [[nodiscard]] std::size_t faces() const { return faces_; }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <atomic>
+
+namespace ist {
+
+/// Lets another thread end long work of this one, as a cancellation point of POSIX threads does:
+/// while an object lives and `asked` is true, cancellation_point() throws on the thread that made
+/// the object. `asked` must outlive it. Objects on one thread nest.
+class ScopedCancellation {
+ public:
+  explicit ScopedCancellation(const std::atomic<bool>& asked) noexcept;
+  ~ScopedCancellation();
+  ScopedCancellation(const ScopedCancellation&) = delete;
+  ScopedCancellation& operator=(const ScopedCancellation&) = delete;
+
+ private:
+  const std::atomic<bool>* before_;
+};
+
+/// Throws kCancelled where this thread was asked to end. Readers and writers of files call it at
+/// each face and each 4 MiB. Cost: 2 ns.
+void cancellation_point();
+
+}  // namespace ist
