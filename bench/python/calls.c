@@ -45,7 +45,8 @@ static void contacts_of(void) {
   need(ist_query_contacts(query, pose, NULL, contacts, 32, &sums, &result));
 }
 
-static void time_of(const char* name, void (*call)(void), int calls) {
+static void time_of(const char* name, void (*call)(void), int calls, double height) {
+  pose[14] = height;
   double* times = malloc((size_t)calls * sizeof *times);
   for (int i = -calls / 10; i < calls; ++i) {
     pose[12] = 0.1 + 1e-9 * i;
@@ -54,7 +55,7 @@ static void time_of(const char* name, void (*call)(void), int calls) {
     if (i >= 0) times[i] = now() - begin;
   }
   qsort(times, (size_t)calls, sizeof *times, ascending);
-  printf("%s %.1f\n", name, times[calls / 2]);
+  printf("%s_at_%.1f %.1f\n", name, height, times[calls / 2]);
   free(times);
 }
 
@@ -65,9 +66,12 @@ int main(int argc, char** argv) {
   need(ist_tree_load(argv[2], &moving));
   need(ist_query_create(fixed, moving, NULL, &query));
   const int calls = atoi(argv[3]), count = atoi(argv[4]);
-  time_of("intersects", intersects, calls);
-  time_of("leaf_pairs", leaf_pairs, calls);
-  time_of("contacts", contacts_of, calls);
+  const double heights[] = {-500, -1.5};
+  for (int i = 0; i < 2; ++i) {
+    time_of("intersects", intersects, calls, heights[i]);
+    time_of("leaf_pairs", leaf_pairs, calls, heights[i]);
+    time_of("contacts", contacts_of, calls, heights[i]);
+  }
   double* poses = malloc((size_t)count * 16 * sizeof *poses);
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < 16; ++k) poses[16 * i + k] = pose[k];

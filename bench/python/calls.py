@@ -6,6 +6,7 @@ poses a second rows reach.
 
 Needs gcc, numpy, and a library that was built (scripts/setup.sh --python; cmake --preset release; cmake --build --preset release).
 """
+import itertools
 import os
 import pathlib
 import statistics
@@ -19,7 +20,12 @@ import numpy as np
 import ist
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+from report.figures import here, stamp  # noqa: E402  after its folder is known
+
 CALLS, POSES, ROUNDS = 4000, 20_000, 7
+# The lower jaw far below, where a call is nearly nothing, and about to touch.
+HEIGHTS = {-500.0: "far apart", -1.5: "near"}
 
 
 def in_c(program, trees):
@@ -29,22 +35,22 @@ def in_c(program, trees):
 
 def in_python(query):
     pose = np.eye(4)
-    pose[:3, 3] = 0.1, 0.2, -1.5
+    pose[:3, 3] = 0.1, 0.2, 0
     pairs, contacts, found = np.empty(4096, ist.LEAF_PAIR), np.empty(32, ist.CONTACT), {}
     verbs = {
         "intersects": lambda: query.intersects(pose),
         "leaf_pairs": lambda: query.leaf_pairs(pose, out=pairs),
         "contacts": lambda: query.contacts(pose, out=contacts),
     }
-    for name, verb in verbs.items():
-        times = []
+    for name, height in itertools.product(verbs, HEIGHTS):
+        verb, pose[2, 3], times = verbs[name], height, []
         for i in range(-CALLS // 10, CALLS):
             pose[0, 3] = 0.1 + 1e-9 * i
             begin = time.perf_counter_ns()
             verb()
             if i >= 0:
                 times.append(time.perf_counter_ns() - begin)
-        found[name] = statistics.median(times)
+        found[f"{name}_at_{height:.1f}"] = statistics.median(times)
     poses = np.tile(pose, (POSES, 1, 1))
     poses[:, 2, 3] = -2.5 * np.arange(POSES) / POSES
     out = np.empty(POSES, ist.ROW)
@@ -67,14 +73,16 @@ def main():
             body.save(name)
         query = ist.Query(*bodies)
         rounds = [(in_c(program, trees), in_python(query)) for _ in range(ROUNDS)]
-    print("| call | C, µs | Python, µs | more, µs |\n|---|---|---|---|")
-    for name in ("intersects", "leaf_pairs", "contacts"):
-        c, python = (statistics.median(each[i][name] for each in rounds) / 1e3 for i in (0, 1))
-        more = statistics.median(each[1][name] - each[0][name] for each in rounds) / 1e3
-        print(f"| `{name}` | {c:.2f} | {python:.2f} | {more:.2f} |")
+    print("| call with `out=` | bodies | C, µs | Python, µs | more, µs |\n|---|---|---|---|---|")
+    for height, name in itertools.product(HEIGHTS, ("intersects", "leaf_pairs", "contacts")):
+        key = f"{name}_at_{height:.1f}"
+        c, python = (statistics.median(each[i][key] for each in rounds) / 1e3 for i in (0, 1))
+        more = statistics.median(each[1][key] - each[0][key] for each in rounds) / 1e3
+        print(f"| `{name}` | {HEIGHTS[height]} | {c:.2f} | {python:.2f} | {more:.2f} |")
     c, python = (statistics.median(each[i]["rows"] for each in rounds) for i in (0, 1))
     share = statistics.median(each[1]["rows"] / each[0]["rows"] for each in rounds)
-    print(f"\nRows on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.")
+    commit, date = here()
+    print(f"\n{stamp(commit, date, 'calls.py')}\n\nRows on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.")
 
 
 if __name__ == "__main__":

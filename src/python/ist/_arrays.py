@@ -12,7 +12,7 @@ from ._records import Budget
 
 def address(array):
     """Returns where an array's data begin."""
-    return array.__array_interface__["data"][0]
+    return array.ctypes.data
 
 
 def floats(values, shape, what):
@@ -83,8 +83,7 @@ def out_of(out, dtype, length=None):
     """Returns an array for answers, checked: of the dtype, in C order, one-dimensional, writeable, and of a length."""
     if not isinstance(out, np.ndarray) or out.dtype != dtype:
         refuse(f"out is {getattr(out, 'dtype', type(out).__name__)}: pass an array of the dtype {dtype}")
-    flags = out.flags
-    if out.ndim != 1 or not flags.c_contiguous or not flags.writeable or not flags.aligned:
+    if out.ndim != 1 or not out.flags.carray:  # contiguous, aligned and writeable
         refuse("out has to be one-dimensional, contiguous, aligned and writeable: make it by numpy.empty")
     if length is not None and len(out) != length:
         refuse(f"out has {len(out)} elements: pass {length}")

@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _measures
 from ._answers import Contacts, Distance, LeafPairs, TrianglePairs
-from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, out_of
+from ._arrays import address, budget_of, count_of, floats, number_of, out_of
 from ._errors import check, error_of, refuse
 from ._handle import Lone, Out
 from ._library import LIBRARY
@@ -17,6 +17,7 @@ from ._records import (
     CONTACT_SUMS,
     LEAF_PAIR,
     TRIANGLE_PAIR,
+    ContactSums,
     DistanceResult,
     QueryInfo,
     QueryOptions,
@@ -93,8 +94,11 @@ class Query(Lone):
         # Arguments that every call needs are made once.
         self._pose = np.eye(4)
         self._pose_at = address(self._pose)
+        self._rows = self._pose.T  # the same numbers, row by row
         self._found = QueryResult()
         self._found_at = addressof(self._found)
+        self._sums = ContactSums()
+        self._sums_at = addressof(self._sums)
         self._answer = ctypes.c_int32()
         self._answer_at = addressof(self._answer)
         self._apart = DistanceResult()
@@ -111,9 +115,9 @@ class Query(Lone):
     # Copies a pose to the place that calls read it from.
     def _take(self, pose):
         if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype == np.float64:
-            self._pose[:] = pose.T
+            self._rows[...] = pose
         else:
-            self._pose[:] = by_columns(floats(pose, (4, 4), "pose"))
+            self._rows[...] = floats(pose, (4, 4), "pose")
 
     def intersects(self, pose, *, tests=0, seconds=0.0):
         """Whether the bodies intersect: exact where both trees have triangles.
@@ -215,11 +219,9 @@ class Query(Lone):
             budget, limit = budget_of(tests, seconds)
             if out is None:
                 out = np.empty(self._info.contacts, CONTACT)
-            sums = np.zeros(1, CONTACT_SUMS)
-            sums["struct_size"] = CONTACT_SUMS.itemsize
-            found = self._found
+            found, sums = self._found, self._sums
             status = _contacts(
-                handle, self._pose_at, limit, address(out_of(out, CONTACT)), len(out), address(sums), self._found_at
+                handle, self._pose_at, limit, address(out_of(out, CONTACT)), len(out), self._sums_at, self._found_at
             )
             if status:
                 raise error_of(status)
@@ -228,9 +230,9 @@ class Query(Lone):
                 found.contacts,
                 found.complete == 1,
                 found.leaf_pairs,
-                float(sums["weight"][0]),
+                sums.weight,
                 found.sphere_tests,
-                sums,
+                np.frombuffer(bytearray(sums), CONTACT_SUMS),
             )
         finally:
             self._lock.release()

@@ -102,6 +102,21 @@ class TreeInfo(Sized):
     ]
 
 
+class ContactSums(Sized):
+    """One element of CONTACT_SUMS."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("pairs", c_uint64),
+        ("weight", c_double),
+        ("pressure_force", c_double * 3),
+        ("pressure_torque", c_double * 3),
+        ("spring_force", c_double * 3),
+        ("spring_torque", c_double * 3),
+        ("about", c_double * 3),
+    ]
+
+
 class QueryOptions(Sized):
     _fields_ = [
         ("struct_size", c_size_t),
