@@ -51,6 +51,7 @@ only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|examples/[a-z_]+\
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 only "a sum whose order depends on the platform's vectors (base/ordered_vector.h has one order)" '\.(dot|norm|squaredNorm|normalized|normalize|stableNorm|inverse)\(' 'none' "src/ist/base src/ist/mesh src/ist/voxel src/ist/tree src/ist/query src/ist/measure simd"
 only "what a processor or a system decides" '__x86_64__|__aarch64__|__linux__|_mm_|prctl' 'src/ist/base/platform/.*' "src/ist simd"
+only "a function of libm, whose bits depend on the platform" 'std::(sin|cos|tan|asin|acos|atan2?|sinh|cosh|tanh|exp2?|log(2|10|1p)?|pow|cbrt|hypot|fma|erf|tgamma)f?\(' 'none' "src/ist/base src/ist/mesh src/ist/models src/ist/voxel src/ist/tree src/ist/query src/ist/measure simd"
 only "a root of several numbers at once, whose bits depend on the processor (Eigen's is an estimate)" '\.r?sqrt\(\)' 'none' "src simd"
 # Sizes rounded up to a vector's can hide it, so a test of sizes alone does not.
 found=$(grep -rnE '^ +(const )?Eigen::(Isometry3|Affine3|Projective3|Transform|Matrix4|Vector4|Quaternion)[^&*()]* [a-z_]+( = [^;]*|\{[^;]*\})?;' src/ist --include='*.h' || true)

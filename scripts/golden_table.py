@@ -3,11 +3,13 @@
 writes the table of hashes to docs/guarantees.md. Ends with 1, and writes nothing, where two hashes differ.
 
   scripts/golden_table.py           builds, runs and writes; 15 minutes on two cores
-  scripts/golden_table.py --check   ends with 1 where the table in the page is another
+  scripts/golden_table.py --check   ends with 1 where the table in the page is another; names the targets that this
+                                    processor lacks, which are not compared
 
 scripts/setup.sh --cross installs what it needs.
 """
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -55,17 +57,48 @@ def hashes_of(name):
     return {target: value for target, answers, value in rows if answers == "all"}
 
 
-def table():
-    lines, seen = ["| build | targets | hash of all golden answers |\n", "|---|---|---|\n"], {}
+ROW = re.compile(r"\| (.+?) \| (.+?) \| (.+?) \|\n")
+
+
+def line_of(name, hashes):
+    """A row of the table."""
+    return f"| {name} | {', '.join(f'`{target}`' for target in hashes)} | {', '.join(f'`{value}`' for value in dict.fromkeys(hashes.values()))} |\n"
+
+
+def rows_of(text):
+    """The targets and the hashes of a table, by build."""
+    words = re.compile("`([^`]*)`")
+    return {name: (words.findall(targets), words.findall(hashes)) for name, targets, hashes in ROW.findall(text)[1:] if "`" in hashes}
+
+
+def made_here():
+    """The hashes by build and target. Ends the program where two differ."""
+    made, seen = {}, {}
     for name in BUILDS:
         print(name, flush=True)
-        hashes = hashes_of(name)
-        for target, value in hashes.items():
+        made[name] = hashes_of(name)
+        for target, value in made[name].items():
             seen.setdefault(value, []).append(f"{name}, {target}")
-        lines.append(f"| {name} | {', '.join(f'`{target}`' for target in hashes)} | {', '.join(f'`{value}`' for value in set(hashes.values()))} |\n")
     if len(seen) != 1:
         sys.exit("golden_table: the answers differ:\n" + "\n".join(f"{value}: {'; '.join(where)}" for value, where in seen.items()))
-    return "".join(lines)
+    return made
+
+
+def compared(shown, made):
+    """The ways in which a page's table differs from what was made here, and the builds with the targets that this processor lacks."""
+    wrong, absent = [], {}
+    for name in {**shown, **made}:
+        if name not in shown or name not in made:
+            wrong.append(f"{name} is in {'the page' if name in shown else 'this run'} alone")
+            continue
+        targets, hashes = shown[name]
+        if set(hashes) != set(made[name].values()):
+            wrong.append(f"{name}: the page shows {', '.join(hashes)}, and here it is {', '.join(set(made[name].values()))}")
+        if new := [target for target in made[name] if target not in targets]:
+            wrong.append(f"{name}: the page lacks {', '.join(new)}")
+        if missing := [target for target in targets if target not in made[name]]:
+            absent[name] = missing
+    return wrong, absent
 
 
 def main():
@@ -78,12 +111,16 @@ def main():
     shown, end, after = rest.partition(END)
     if not end:
         sys.exit(f"golden_table: {PAGE} has no place for the table: {BEGIN.strip()}")
-    made = table()
+    made = made_here()
+    wrong, absent = compared(rows_of(shown), made)
+    for name, targets in absent.items():
+        print(f"{name}: this processor has no {', '.join(targets)}: not compared")
     if check:
-        if made != shown:
-            sys.exit("golden_table: the page shows another table: run scripts/golden_table.py")
-        return
-    PAGE.write_text(before + BEGIN + made + END + after)
+        sys.exit("golden_table: " + "; ".join(wrong) + ": run scripts/golden_table.py" if wrong else 0)
+    if absent:
+        sys.exit("golden_table: the page keeps its table, which has more targets: run this where all of them are")
+    lines = "".join(line_of(name, hashes) for name, hashes in made.items())
+    PAGE.write_text(before + BEGIN + "| build | targets | hash of all golden answers |\n|---|---|---|\n" + lines + END + after)
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ run() {  # preset and its options, targets to build, then arguments for ctest
   ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
 }
 
-# What users build, file by file: builds of several files as one hide a missing include.
+# What users build: the library file by file, since builds of several files as one hide a missing include.
 echo "== preset release"
 cmake --preset release >/dev/null
 cmake --build --preset release -- -j"$jobs" >build/release.log || { cat build/release.log; exit 1; }
@@ -68,7 +68,10 @@ run sanitize-all all -E 'House|Package|Docs|Report|Mutants'
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 more() {  # preset, times the samples, program, filter
   echo "== $3 $4, preset $1, $2 times the samples"
-  IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4"
+  local said
+  said=$(IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4") || { echo "$said"; return 1; }
+  echo "$said"
+  ! grep -q "Running 0 tests" <<<"$said" || { echo "test: no test of $3 is named like $4" >&2; return 1; }
 }
 echo "== Package.Subdirectory and Python.Sdist, all compiled"
 IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'

@@ -16,13 +16,16 @@ namespace {
 
 constexpr double kSixth = 1.0 / 6;
 
-Ball in_half_edges(const TableBall& ball) {
-  return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[radius_code(ball)]};
+Ball in_half_edges(const TableBall& ball, unsigned code) {
+  return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[code]};
 }
 
 }  // namespace
 
-Ball looked_up(std::uint8_t mask) { return in_half_edges(kLookupTable[mask]); }
+// By the code in the table's word, as a search takes it.
+Ball looked_up(std::uint8_t mask) {
+  return in_half_edges(kLookupTable[mask], kTableWords[mask] >> 9);
+}
 
 Ball enclosed(std::uint8_t mask) {
   std::array<Eigen::Vector3d, 27> corners;
@@ -36,7 +39,10 @@ Ball enclosed(std::uint8_t mask) {
   return enclosing_ball(std::span(corners).first(count), 1e-9);
 }
 
-Ball searched(std::uint8_t mask) { return in_half_edges(lookup_table_detail::smallest_ball(mask)); }
+Ball searched(std::uint8_t mask) {
+  const TableBall ball = lookup_table_detail::smallest_ball(mask);
+  return in_half_edges(ball, radius_code(ball));
+}
 
 std::vector<std::uint8_t> some_masks(const LinearOctree& octree, std::size_t count) {
   const std::span<const std::uint8_t> all = octree.masks(1);

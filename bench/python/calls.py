@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Times calls from Python beside the same calls from C, in turns, and prints medians: what a call costs more, and how much of C's
-poses a second rows reach.
+poses a second rows reach. Given a page, writes the table there.
 
-    IST_LIBRARY=build/release/src/package/libist.so PYTHONPATH=src/python bench/python/calls.py
+    IST_LIBRARY=build/release/src/package/libist.so PYTHONPATH=src/python bench/python/calls.py [docs/performance.md]
 
-Needs gcc, numpy, and a library that was built (scripts/setup.sh --python; cmake --preset release; cmake --build --preset release).
+From the project's root. Needs gcc, numpy, a library that was built (scripts/setup.sh --python; cmake --preset release; cmake --build
+--preset release), and the fixed loop (cmake --preset bench; cmake --build --preset bench --target fixed_loop).
 """
 import itertools
 import os
@@ -21,7 +22,8 @@ import ist
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from report.figures import here, stamp  # noqa: E402  after its folder is known
+from report.figures import here, machine_state, stamp  # noqa: E402  after its folder is known
+from report.runner import fixed_loop  # noqa: E402
 
 CALLS, POSES, ROUNDS = 4000, 20_000, 7
 # The lower jaw far below, where a call is nearly nothing, and about to touch.
@@ -72,17 +74,32 @@ def main():
         for body, name in zip(bodies, trees):
             body.save(name)
         query = ist.Query(*bodies)
+        context = {"load_avg": os.getloadavg(), "loop_before": fixed_loop()}
         rounds = [(in_c(program, trees), in_python(query)) for _ in range(ROUNDS)]
-    print("| call with `out=` | bodies | C, µs | Python, µs | more, µs |\n|---|---|---|---|---|")
+        context |= {"load_after": os.getloadavg()[0], "loop_after": fixed_loop()}
+    lines = ["| call with `out=` | bodies | C, µs | Python, µs | more, µs |", "|---|---|---|---|---|"]
     for height, name in itertools.product(HEIGHTS, ("intersects", "leaf_pairs", "contacts")):
         key = f"{name}_at_{height:.1f}"
         c, python = (statistics.median(each[i][key] for each in rounds) / 1e3 for i in (0, 1))
         more = statistics.median(each[1][key] - each[0][key] for each in rounds) / 1e3
-        print(f"| `{name}` | {HEIGHTS[height]} | {c:.2f} | {python:.2f} | {more:.2f} |")
+        lines.append(f"| `{name}` | {HEIGHTS[height]} | {c:.2f} | {python:.2f} | {more:.2f} |")
     c, python = (statistics.median(each[i]["rows"] for each in rounds) for i in (0, 1))
     share = statistics.median(each[1]["rows"] / each[0]["rows"] for each in rounds)
-    commit, date = here()
-    print(f"\n{stamp(commit, date, 'calls.py')}\n\nRows on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.")
+    lines += ["", f"`rows` on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.", ""]
+    lines.append(stamp(*here(), "calls.py", machine_state(context)))
+    show("\n".join(lines) + "\n")
+
+
+def show(text):
+    """Prints the table, or writes it into a page between its marks."""
+    if len(sys.argv) < 2:
+        return print(text, end="")
+    page = pathlib.Path(sys.argv[1])
+    before, begin, rest = page.read_text().partition("<!-- python table -->\n")
+    _, end, after = rest.partition("<!-- end of python table -->")
+    if not begin or not end:
+        sys.exit(f"{page} has no place for the table: <!-- python table --> and its end")
+    page.write_text(before + begin + text + end + after)
 
 
 if __name__ == "__main__":

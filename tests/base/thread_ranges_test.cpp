@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ist/base/parallel.h"
+#include "support/skip.h"
 
 namespace ist {
 namespace {
@@ -65,7 +66,7 @@ TEST(ThreadRanges, RunsEachRangeOnceByNoMoreThreadsThanAreAllowed) {
 }
 
 TEST(ThreadRanges, RunsTwoRangesAtOnceAndTheCallersThreadIsOneOfTheirs) {
-  if (thread_count() < 2) GTEST_SKIP() << "this process may run on one processor";
+  if (thread_count() < 2) IST_SKIP("this process may run on one processor");
   EXPECT_TRUE(two_at_once());
   EXPECT_EQ(threads_of_a_loop().count(std::this_thread::get_id()), 1u);
 }

@@ -7,6 +7,7 @@
 #include "ist/tree/sphere_tree.h"
 #include "simd/dispatch.h"
 #include "support/shapes.h"
+#include "support/skip.h"
 
 namespace ist::test {
 namespace {
@@ -325,7 +326,7 @@ TEST_F(QueryOutput, ContactsAreThereWholeOrNotAtAll) {
 }
 
 TEST_F(QueryOutput, AFullDiskIsAFailure) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "/dev/full is not there";
+  if (!std::filesystem::exists("/dev/full")) IST_SKIP("/dev/full is not there");
   const std::string tree = ball_tree();
   std::filesystem::create_symlink("/dev/full", path("full.csv"));
   const CommandResult result =

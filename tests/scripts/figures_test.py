@@ -26,6 +26,11 @@ class Pages(unittest.TestCase):
             self.skipTest("no whole history of commits is here")
         self.assertEqual([f"{page}:{number}: {commit}" for page, number, commit in stamps if not figures.is_commit(commit)], [])
 
+    def test_the_figures_of_ist_bench_have_a_stamp(self):
+        begin, end = "<!-- ist bench -->", "<!-- end of ist bench -->"
+        between = (figures.ROOT / "README.md").read_text().split(begin)[1].split(end)[0]
+        self.assertRegex(between, figures.STAMP)
+
     def test_every_maker_of_figures_has_sources(self):
         for page in figures.PAGES:
             for number, _, maker in figures.stamps_in(page):

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <span>
 
+#include "ist/base/float_environment.h"
 #include "ist/capi/objects.h"
 
 namespace ist::capi {
@@ -142,6 +143,7 @@ ist_status ist_contact_sums_wrench(const ist_contact_sums* sums, double stiffnes
     if (!std::isfinite(stiffness)) {
       return call.fail(IST_ARGUMENT_INVALID, "stiffness is {}: pass a finite number", stiffness);
     }
+    const ist::ScopedFloatEnvironment environment;
     for (int i = 0; i < 3; ++i) {
       force[i] = stiffness * known.spring_force[i];
       torque[i] = stiffness * known.spring_torque[i];

@@ -4,6 +4,8 @@
 #include <bit>
 #include <limits>
 
+#include "ist/base/float_environment.h"
+
 namespace ist {
 namespace {
 
@@ -53,6 +55,7 @@ LatencyHistogram::Nanoseconds LatencyHistogram::mean() const noexcept {
 }
 
 LatencyHistogram::Nanoseconds LatencyHistogram::quantile(double q) const noexcept {
+  const ScopedFloatEnvironment environment;
   const double rank = std::max(1.0, q * static_cast<double>(count_));  // 1 if q is NaN
   std::uint64_t seen = 0;
   for (std::size_t bucket = 0; bucket + 1 < kBuckets; ++bucket) {

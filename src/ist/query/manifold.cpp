@@ -1,5 +1,6 @@
 #include "ist/query/manifold.h"
 
+#include "ist/base/float_environment.h"
 #include "ist/query/contacts/contact_reducer.h"
 
 namespace ist {
@@ -18,6 +19,7 @@ SpherePolicy ContactManifold::policy() const noexcept { return reducer_->policy(
 std::size_t ContactManifold::bytes() const noexcept { return reducer_->bytes(); }
 
 Wrench ContactManifold::wrench(double stiffness) const noexcept {
+  const ScopedFloatEnvironment environment;
   return {stiffness * sums().spring.force, stiffness * sums().spring.torque};
 }
 
