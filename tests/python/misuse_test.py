@@ -1,5 +1,6 @@
 """Bad input of every function is an exception that says what to do, and never a crash."""
 
+import copy
 import os
 import pickle
 import unittest
@@ -42,6 +43,7 @@ class Meshes(Misuse):
         self.builds(["faces", "bool"], (VERTICES, FACES > 0))
         self.builds(["vertices", "numbers"], (np.array([["a", "b", "c"]]), FACES))
         self.builds(["vertices", "numbers"], ([[1, 2], [3]], FACES))
+        self.builds(["faces", "(N, 3)"], (VERTICES, [[0, 1, 2], [0, 1]]))
         self.builds("3 parts", (VERTICES, FACES, FACES))
 
     def test_indices(self):
@@ -126,6 +128,16 @@ class Trees(Misuse):
         self.refuses(ist.InputError, "triangles", query.occlusion, EYE)
         self.refuses(ist.InputError, "triangles", query.rows, EYE[None], want=["penetration"])
         self.refuses(ist.InputError, "triangles", ist.signed_distance, bare, [[0, 0, 0]])
+        self.refuses(ist.InputError, "keep_triangles=True", query.triangle_pairs, EYE)
+        self.refuses(ist.InputError, "contacts=-1: make it with 32", ist.Query(bare, bare, contacts=-1).contacts, EYE)
+
+    def test_other_objects(self):
+        for other in (self.query, (VERTICES, FACES), None):
+            for call in (lambda: ist.signed_distance(other, [[0, 0, 0]]), lambda: ist.distance_map(other, self.tree),
+                         lambda: ist.distance_map(self.tree, other), lambda: ist.Query(self.tree, other)):
+                self.refuses(TypeError, "pass an ist.Tree", call)
+        for call in (lambda: copy.copy(self.query), lambda: copy.deepcopy(self.query), lambda: pickle.dumps(self.query)):
+            self.refuses(TypeError, "neither copied nor pickled", call)
 
     def test_freed_objects(self):
         query = ist.Query(self.tree, self.tree)
@@ -154,7 +166,7 @@ class Queries(Misuse):
         transposed = pose_of([0, 0, 1], 0.5, [1, 2, 3]).T
         for verb in verbs:
             for pose in (mirrored, scaled, nan, row, transposed, np.full((4, 4), np.inf)):
-                self.assertEqual(self.refuses(ist.InputError, "rigid motion", verb, pose).name, "pose-invalid")
+                self.assertEqual(self.refuses(ist.InputError, ["rigid motion", "row by row"], verb, pose).name, "pose-invalid")
             for pose in (EYE[:3], EYE[None], 5, "pose", [[1, 2], [3]], EYE.astype(complex), [[10**400] * 4] * 4):
                 self.refuses(ist.InputError, "", verb, pose)
         self.assertIs(self.query.intersects(EYE), True)  # and goes on
@@ -168,7 +180,7 @@ class Queries(Misuse):
 
     def test_arrays_for_answers(self):
         wrong = [np.empty(5, ist.CONTACT), np.empty((5, 1), ist.LEAF_PAIR), np.empty(10, ist.LEAF_PAIR)[::2], [1, 2], "text",
-                 np.empty(5, ist.LEAF_PAIR).view("u1")]
+                 np.empty(5, ist.LEAF_PAIR).view("u1"), np.zeros(41, "u1")[1:].view(ist.LEAF_PAIR)]
         frozen = np.empty(5, ist.LEAF_PAIR)
         frozen.setflags(write=False)
         for out in [*wrong, frozen]:

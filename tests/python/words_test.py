@@ -89,7 +89,7 @@ class Stub(unittest.TestCase):
         said_names = set(said) | {each.target.id for each in tree.body if isinstance(each, ast.AnnAssign)}
         self.assertEqual(set(ist.__all__) - said_names, set())
         for name, stub in said.items():
-            if name in ("HasMesh",):
+            if name.startswith("_"):
                 continue
             real = getattr(ist, name)
             if isinstance(stub, ast.FunctionDef):

@@ -41,11 +41,29 @@ class MemoryLimitError(Error, MemoryError): ...
 class BusyError(Error, RuntimeError): ...
 class FreedError(Error, RuntimeError): ...
 
-class HasMesh(Protocol):
+class _HasFaces(Protocol):  # trimesh's
     @property
     def vertices(self) -> Any: ...
     @property
     def faces(self) -> Any: ...
+
+class _HasTriangles(Protocol):  # Open3D's
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def triangles(self) -> Any: ...
+
+class _HasCells(Protocol):  # meshio's
+    @property
+    def points(self) -> Any: ...
+    @property
+    def cells_dict(self) -> Any: ...
+
+class _HasPolys(Protocol):  # vtkPolyData's
+    def GetPoints(self) -> Any: ...
+    def GetPolys(self) -> Any: ...
+
+_HasMesh = Union[_HasFaces, _HasTriangles, _HasCells, _HasPolys]
 
 class Tree:
     @property
@@ -81,7 +99,7 @@ class Tree:
     ) -> None: ...
 
 def build(
-    mesh: Union[Path, HasMesh, Tuple[ArrayLike, ArrayLike]],
+    mesh: Union[Path, _HasMesh, Tuple[ArrayLike, ArrayLike]],
     voxel_size: float,
     *,
     spheres: Spheres = "default",

@@ -42,7 +42,10 @@ def pose_of(pose, what="pose"):
 
 def indices(values, what):
     """Returns an array of uint32, (N, 3). Numbers that no index can be are refused with their place."""
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of different lengths
+        refuse(f"{what}: {error}: pass (N, 3), triangles")
     if array.size == 0:
         array = array.reshape(-1, 3).astype(np.uint32)
     if array.dtype.kind not in "iu":
@@ -79,15 +82,19 @@ def number_of(value, what):
     return number
 
 
-def out_of(out, dtype, length=None):
-    """Returns an array for answers, checked: of the dtype, in C order, one-dimensional, writeable, and of a length."""
+def place_of(out, dtype, length=None):
+    """Returns where an array for answers begins, checked: of the dtype, in C order, one-dimensional, writeable, of a length, and
+    aligned as the library's structs are."""
     if not isinstance(out, np.ndarray) or out.dtype != dtype:
         refuse(f"out is {getattr(out, 'dtype', type(out).__name__)}: pass an array of the dtype {dtype}")
-    if out.ndim != 1 or not out.flags.carray:  # contiguous, aligned and writeable
-        refuse("out has to be one-dimensional, contiguous, aligned and writeable: make it by numpy.empty")
+    if out.ndim != 1 or not out.flags.carray:
+        refuse("out has to be one-dimensional, contiguous and writeable: make it by numpy.empty")
     if length is not None and len(out) != length:
         refuse(f"out has {len(out)} elements: pass {length}")
-    return out
+    place = out.ctypes.data
+    if place % 8 != 0:
+        refuse("out does not begin at a multiple of 8 bytes: make it by numpy.empty")
+    return place
 
 
 def budget_of(tests, seconds):

@@ -45,18 +45,21 @@ class Lone(Handle):
     def _enter(self):
         """Returns the handle, for one call, which has to end with self._lock.release()."""
         if not self._lock.acquire(blocking=False):
-            raise error_of(BUSY, f"another thread is using this {type(self).__name__}: make one for each thread")
+            raise error_of(BUSY, f"this {type(self).__name__} is answering another call: make one for each thread")
         if self._handle is None:
             self._lock.release()
             self._need()
         return self._handle
+
+    def __reduce__(self):
+        raise TypeError(f"a {type(self).__name__} is neither copied nor pickled: make one for each thread and each process")
 
     def free(self):
         lock = getattr(self, "_lock", None)
         if lock is None:
             return
         if not lock.acquire(blocking=False):
-            raise error_of(BUSY, f"another thread is using this {type(self).__name__}: free it afterwards")
+            raise error_of(BUSY, f"this {type(self).__name__} is answering a call: free it afterwards")
         try:
             super().free()
         finally:

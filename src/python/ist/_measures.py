@@ -7,7 +7,7 @@ from ctypes import addressof
 import numpy as np
 
 from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
-from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, out_of, pose_of
+from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
 from ._errors import check, refuse
 from ._follow import Follower
 from ._library import LIBRARY
@@ -23,6 +23,7 @@ from ._records import (
     PenetrationResult,
     RowsOptions,
 )
+from ._tree import need_tree
 
 OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
 NOT_CLOSED = (None, "fixed", "moving")
@@ -141,7 +142,8 @@ def rows(
         unknown = [name for name in ([want] if isinstance(want, str) else want) if name not in QUESTIONS]
         if unknown or isinstance(want, str) or len(want) == 0:
             refuse(f"want is {want!r}: pass a list of some of {', '.join(QUESTIONS)}")
-        found = np.empty(len(at), ROW) if out is None else out_of(out, ROW, len(at))
+        found = np.empty(len(at), ROW) if out is None else out
+        place = place_of(found, ROW, len(at))
         options = RowsOptions(
             questions=sum({QUESTIONS[name] for name in want}),
             threads=count_of(threads, "threads", 1024),
@@ -151,7 +153,7 @@ def rows(
         )
         with Follower(progress) as follower:
             options.progress = follower.pointer
-            status = LIBRARY.ist_query_rows(handle, address(at), len(at), addressof(options), address(found))
+            status = LIBRARY.ist_query_rows(handle, address(at), len(at), addressof(options), place)
             follower.finish(status)
         return found
     finally:
@@ -201,7 +203,7 @@ def occlusion_of(
     handle = self._enter()
     try:
         at = pose_of(pose)
-        bounds = floats(limits, (None,), "limits")
+        bounds = floats(limits, (None,), "limits").copy()  # it stays in the answer
         options = OcclusionOptions(
             reach=number_of(reach, "reach"),
             contact=_or_none(contact, "contact"),
@@ -262,11 +264,13 @@ def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):
     >>> ist.signed_distance(box, [[1, 1, 1], [1, 1, -2]])["distance"].round(3).tolist()
     [-0.577, 2.0]
     """
+    need_tree(tree, "tree")
     at = floats(points, (None, 3), "points")
-    found = np.empty(len(at), SURFACE_DISTANCE) if out is None else out_of(out, SURFACE_DISTANCE, len(at))
+    found = np.empty(len(at), SURFACE_DISTANCE) if out is None else out
+    place = place_of(found, SURFACE_DISTANCE, len(at))
     with Follower(progress) as follower:
         status = LIBRARY.ist_tree_signed_distance(
-            tree._need(), address(at), len(at), number_of(reach, "reach"), follower.address, address(found)
+            tree._need(), address(at), len(at), number_of(reach, "reach"), follower.address, place
         )
         follower.finish(status)
     return found
@@ -277,9 +281,12 @@ def distance_map(body, other, pose=None, *, reach=np.inf, out=None, progress=Non
 
     p_other = pose @ p_body; `closest` is in coordinates of `other`.
     """
+    need_tree(body, "body")
+    need_tree(other, "other")
     at = pose_of(pose)
     count = len(body.vertices)
-    found = np.empty(count, SURFACE_DISTANCE) if out is None else out_of(out, SURFACE_DISTANCE, count)
+    found = np.empty(count, SURFACE_DISTANCE) if out is None else out
+    place = place_of(found, SURFACE_DISTANCE, count)
     written = ctypes.c_uint64()
     with Follower(progress) as follower:
         status = LIBRARY.ist_tree_distance_map(
@@ -288,7 +295,7 @@ def distance_map(body, other, pose=None, *, reach=np.inf, out=None, progress=Non
             address(at),
             number_of(reach, "reach"),
             follower.address,
-            address(found),
+            place,
             len(found),
             addressof(written),
         )

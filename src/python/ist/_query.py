@@ -1,6 +1,7 @@
 """Queries: two trees, and the memory of their answers."""
 
 import ctypes
+import time
 
 from ctypes import addressof
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from . import _measures
 from ._answers import Contacts, Distance, LeafPairs, TrianglePairs
-from ._arrays import address, budget_of, count_of, floats, number_of, out_of
+from ._arrays import address, budget_of, count_of, floats, number_of, place_of
 from ._errors import check, error_of, refuse
 from ._handle import Lone, Out
 from ._library import LIBRARY
@@ -24,7 +25,7 @@ from ._records import (
     QueryResult,
     TrianglePairsResult,
 )
-from ._tree import SPHERES, Tree, spheres_number
+from ._tree import SPHERES, need_tree, spheres_number
 
 _ANSWERS = (None, False, None, True)  # IST_ANSWER_UNKNOWN, NO, NEAR, YES
 _leaf_pairs, _contacts, _distance = LIBRARY.ist_query_leaf_pairs, LIBRARY.ist_query_contacts, LIBRARY.ist_query_distance
@@ -68,8 +69,7 @@ class Query(Lone):
         target=None,
     ):
         for tree, name in ((fixed, "fixed"), (moving, "moving")):
-            if not isinstance(tree, Tree):
-                raise TypeError(f"{name} is a {type(tree).__name__}: pass an ist.Tree, from ist.build or ist.load")
+            need_tree(tree, name)
         if workers not in (1, 2):
             refuse(f"workers is {workers!r}: pass 1 or 2")
         if contacts == 0 or contacts < -1:
@@ -148,10 +148,10 @@ class Query(Lone):
             budget, limit = budget_of(tests, seconds)
             found = self._found
             if out is None:
-                out = self._room(LEAF_PAIR, most, lambda at, room: _leaf_pairs(
+                out = self._room(LEAF_PAIR, most, budget, lambda at, room: _leaf_pairs(
                     handle, self._pose_at, limit, at, room, self._found_at), lambda: found.leaf_pairs)
             else:
-                status = _leaf_pairs(handle, self._pose_at, limit, address(out_of(out, LEAF_PAIR)), len(out), self._found_at)
+                status = _leaf_pairs(handle, self._pose_at, limit, place_of(out, LEAF_PAIR), len(out), self._found_at)
                 if status:
                     raise error_of(status)
             distance = (found.distance_lower, found.distance_upper) if found.distance_known else None
@@ -176,10 +176,10 @@ class Query(Lone):
             budget, limit = budget_of(tests, seconds)
             found = self._met
             if out is None:
-                out = self._room(TRIANGLE_PAIR, most, lambda at, room: _triangle_pairs(
+                out = self._room(TRIANGLE_PAIR, most, budget, lambda at, room: _triangle_pairs(
                     handle, self._pose_at, limit, at, room, self._met_at), lambda: found.pairs)
             else:
-                place = address(out_of(out, TRIANGLE_PAIR))
+                place = place_of(out, TRIANGLE_PAIR)
                 status = _triangle_pairs(handle, self._pose_at, limit, place, len(out), self._met_at)
                 if status:
                     raise error_of(status)
@@ -190,8 +190,9 @@ class Query(Lone):
             self._lock.release()
 
     # Asks once with some room, and again where there was too little.
-    def _room(self, dtype, most, ask, count):
+    def _room(self, dtype, most, budget, ask, count):
         room = 4096 if most is None else count_of(most, "most")
+        end = time.monotonic_ns() + budget.nanoseconds if budget is not None and budget.nanoseconds > 0 else None
         while True:
             array = np.empty(room, dtype)
             status = ask(address(array), room)
@@ -200,6 +201,8 @@ class Query(Lone):
             if most is not None or count() <= room:
                 return array
             room = count()
+            if end is not None:  # the time is that of the whole call
+                budget.nanoseconds = max(1, end - time.monotonic_ns())
 
     def contacts(self, pose, *, out=None, tests=0, seconds=0.0):
         """A few contacts, and the sums over all leaf pairs that forces are made of. p_fixed = pose @ p_moving.
@@ -221,7 +224,7 @@ class Query(Lone):
                 out = np.empty(self._info.contacts, CONTACT)
             found, sums = self._found, self._sums
             status = _contacts(
-                handle, self._pose_at, limit, address(out_of(out, CONTACT)), len(out), self._sums_at, self._found_at
+                handle, self._pose_at, limit, place_of(out, CONTACT), len(out), self._sums_at, self._found_at
             )
             if status:
                 raise error_of(status)

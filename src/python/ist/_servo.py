@@ -20,7 +20,8 @@ class Servo(Lone):
     """A simulated scene: each tick takes the pose of the device and gives the force and the torque for the hand.
 
     For tests and figures: Python keeps no hard deadlines. A pose is (4, 4), row by row, and maps the tool's frame to the
-    scene; its translation is in `unit`. sphere_tests: the limit of each tick's query, for the same forces in every run; 0:
+    scene; its translation is in `unit`. The tool's frame has the axes of the held body's mesh and its origin in the middle of
+    that body's grid (Tree.origin), and not at the mesh's origin: begin with `tool`, and move that. sphere_tests: the limit of each tick's query, for the same forces in every run; 0:
     the limit is query_time_fraction of a tick.
     """
 

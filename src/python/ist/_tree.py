@@ -122,6 +122,11 @@ class Tree(Handle):
         return self._arrays["vertices"], self._arrays["faces"]
 
 
+def need_tree(tree, what):
+    if not isinstance(tree, Tree):
+        raise TypeError(f"{what} is a {type(tree).__name__}: pass an ist.Tree, from ist.build or ist.load")
+
+
 def build(
     mesh,
     voxel_size,
