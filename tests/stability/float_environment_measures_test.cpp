@@ -76,7 +76,11 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoJaw) {
 }
 
 TEST_P(FloatEnvironmentOfAMeasure, ChangesNoPlaceOfATree) {
+  // Not in the middle of the coordinates, where the grid's corner and size would be exact.
+  const SphereTree aside =
+      tree(moved(icosphere(1, 0.7 * unit_), unit_ * Eigen::Vector3d(0.1, 7, 3)));
   changes_nothing("SphereTree::leaf_centres and its kin", 1000, [&](Record& record) {
+    record.add(aside.origin());
     record.add(fixed_.leaf_centres());
     record.add(fixed_.origin());
     record.add(fixed_.bounding_radius());

@@ -199,6 +199,7 @@ TEST_P(FloatEnvironmentOfAQuery, ChangesNoContact) {
     for (const Contact& contact : manifold.points()) record.add(contact);
     record.add(manifold.sums().spring.torque);
     record.add(manifold.sums().pressure.force);
+    record.add(manifold.wrench(0.3).torque);
   });
 }
 
