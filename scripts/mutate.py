@@ -34,7 +34,11 @@ def sources():
 
 
 def copy_sources():
-    """Copies the sources as they are now; unchanged files keep their time."""
+    """Copies the sources as they are now; unchanged files keep their time, and files that are gone go."""
+    there = {source.relative_to(ROOT) for source in sources()}
+    for copy in [path for path in COPY.rglob("*") if path.is_file()]:
+        if copy.relative_to(COPY) not in there:
+            copy.unlink()
     for source in sources():
         copy = COPY / source.relative_to(ROOT)
         if copy.is_file() and copy.read_bytes() == source.read_bytes():
