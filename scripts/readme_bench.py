@@ -36,7 +36,8 @@ def main():
     done = subprocess.run([PROGRAM, "bench"], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"readme_bench: ist bench: {done.stderr}")
-    text = (f"<!-- snippet: output varies, since it is times -->\n```sh\nist bench\n```\n\n```\n{ratios(done.stdout)}```\n\n"
+    note = "<!-- snippet: output varies, since it is times -->\n"
+    text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{ratios(done.stdout)}```\n\n"
             f"{stamp(commit, date, 'ist bench')}\n")
     page = PAGE.read_text()
     before, begin, rest = page.partition(BEGIN)
