@@ -46,20 +46,27 @@ def with_stamps(lines, chapter, results):
     return made
 
 
+def machine_of(context):
+    """Returns a sentence on the machine and the compiler of a program's run."""
+    caches = ", ".join(f"L{c['level']} {c['type'].lower()} {c['size'] // 1024} KiB" for c in context["caches"])
+    return (f"{context['processor']}, {context['num_cpus']} cores at {context['mhz_per_cpu']} MHz; {caches}. "
+            f"{context['compiler']}; `{context['flags']}`.")
+
+
 def made_with(results):
     """Returns the chapter on the machine and the programs."""
-    rows = []
+    rows, machines = [], []
     for program in programs():
         c = results.context(program)
+        machine = machine_of(c)
+        if machine not in machines:
+            machines.append(machine)
         load = ", ".join(f"{value:.1f}" for value in c["load_avg"])
         loop = f"{c['loop_before']}, {c['loop_after']}" if "loop_before" in c else ""
-        rows.append([f"`{program}`", c["commit"], c["date"][:16].replace("T", " "), float(c["seconds"]), load, loop])
-    first = results.context(seed.PROGRAMS[0])
-    caches = ", ".join(f"L{c['level']} {c['type'].lower()} {c['size'] // 1024} KiB" for c in first["caches"])
-    return ["## What it was made with", "",
-            f"{first['processor']}, {first['num_cpus']} cores at {first['mhz_per_cpu']} MHz; {caches}. "
-            f"{first['compiler']}; `{first['flags']}`.", "",
-            *table(["program", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)",
+        rows.append([f"`{program}`", machines.index(machine) + 1, c["commit"], c["date"][:16].replace("T", " "), float(c["seconds"]), load, loop])
+    mixed = ["**Not all of it was measured on one machine: compare within a chapter, and not across machines.**", ""] if len(machines) > 1 else []
+    return ["## What it was made with", "", *(f"{number}. {machine}" for number, machine in enumerate(machines, 1)), "", *mixed,
+            *table(["program", "machine", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)",
                     "fixed loop before and after, µs"], rows), "",
             "A + after a commit says that the code had changes beside it. The fixed loop reads no memory: its time shows the clock of the "
             "core and other work on it."]
