@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "ist/query/results.h"
@@ -12,7 +15,8 @@
 namespace ist::test {
 
 /// All pairs of triangles that meet, sorted, each decided in rational numbers of what is guaranteed
-/// to be the moved vertices. Both trees must have triangles.
+/// to be the moved vertices. Both trees must have triangles. Boxes are swept along x. Cost: some
+/// microseconds a triangle, and 0.1 ms a pair of boxes that overlap.
 [[nodiscard]] inline std::vector<TrianglePair> meeting_pairs(const SphereTree& fixed,
                                                              const SphereTree& moving,
                                                              const Eigen::Isometry3d& pose) {
@@ -34,13 +38,23 @@ namespace ist::test {
     return boxes;
   };
   const auto boxes_a = boxes_of(a), boxes_b = boxes_of(b);
+  std::vector<std::uint32_t> order(boxes_b.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto left = [&](std::uint32_t j) { return boxes_b[j].min()[0]; };
+  std::ranges::sort(order, {}, left);
+  double widest = 0;
+  for (const auto& box : boxes_b) widest = std::max(widest, box.sizes()[0]);
   std::vector<TrianglePair> pairs;
   for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
-    for (std::uint32_t j = 0; j < b.triangles.size(); ++j) {
-      if (!boxes_a[i].intersects(boxes_b[j])) continue;
-      if (polygons_meet(exact_triangle(a, i), exact_triangle(b, j))) pairs.push_back({i, j});
+    const Eigen::AlignedBox3d& box = boxes_a[i];
+    const double from = box.min()[0] - 1.001 * widest;  // for the rounding of a width
+    for (auto j = std::ranges::lower_bound(order, from, {}, left);
+         j != order.end() && left(*j) <= box.max()[0]; ++j) {
+      if (!box.intersects(boxes_b[*j])) continue;
+      if (polygons_meet(exact_triangle(a, i), exact_triangle(b, *j))) pairs.push_back({i, *j});
     }
   }
+  std::ranges::sort(pairs, {}, [](const TrianglePair& p) { return std::pair(p.fixed, p.moving); });
   return pairs;
 }
 
