@@ -42,24 +42,29 @@ Query query_of(const std::string& target, SpherePolicy policy = SpherePolicy::kS
   return {upper(), lower(), options_of(policy, target)};
 }
 
-// A file's name that no other process has, gone with this object.
+// A file's name in a folder that no other process has, gone with this object. An address would not
+// tell processes apart: an emulator gives each the same.
 class ScratchFile {
  public:
-  explicit ScratchFile(const char* name)
-      : path_(std::filesystem::temp_directory_path() /
-              (std::string("ist-golden-") + std::to_string(reinterpret_cast<std::uintptr_t>(this)) +
-               name)) {}
-  ~ScratchFile() { std::filesystem::remove(path_); }
+  explicit ScratchFile(const std::string& name) {
+    const auto root = std::filesystem::temp_directory_path();
+    for (int i = 0; folder_.empty(); ++i) {
+      const auto folder = root / ("ist-golden-" + std::to_string(i));
+      if (std::filesystem::create_directory(folder)) folder_ = folder;
+    }
+    path_ = folder_ / name;
+  }
+  ~ScratchFile() { std::filesystem::remove_all(folder_); }
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path folder_, path_;
 };
 
 std::uint64_t hash_mesh_file(const std::string&) {
-  const ScratchFile file(".obj");
+  const ScratchFile file("golden.obj");
   std::ofstream(file.path()) << "v 0.1 1e-3 -2.5\nv 1.7976931348623157 -0 3\nv 4 .25 1e-40\n"
                                 "v 1 2 3.00000000000000044\nf 1 2 3 4\nf -1 -2 -4\n";
   const TriangleMesh mesh = read_mesh(file.path());
@@ -71,7 +76,7 @@ std::uint64_t hash_mesh_file(const std::string&) {
 }
 
 std::uint64_t hash_tree_file(const std::string&) {
-  const ScratchFile file(".ist");
+  const ScratchFile file("golden.ist");
   Hasher hasher;
   for (const SphereTree* tree : {&upper(), &lower()}) {
     write_tree(*tree, file.path());
