@@ -1,4 +1,4 @@
-"""Runs the mutants of mutants.py; see mutate.sh."""
+"""Runs the mutants of mutants/; see mutate.sh."""
 
 import json
 import os
@@ -145,7 +145,7 @@ def write_table(found):
     commits = sorted({row["commit"] for row in known.values()})
     lines = ["# Mutants", "",
              "Each mutant is one deliberate fault in the code. The last column names the first test that fails with it. Made by",
-             "`scripts/mutate.sh` from `scripts/mutants.py`.", "",
+             "`scripts/mutate.sh` from `scripts/mutants`.", "",
              "| mutant | fault | in | killed by |", "|---|---|---|---|"]
     killed = 0
     for mutant in MUTANTS:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests the tests: breaks the code in one named way after the other (scripts/mutants.py), in a copy,
+# Tests the tests: breaks the code in one named way after the other (scripts/mutants), in a copy,
 # and runs tests until one fails. A mutant that no test kills fails the run. All of them take about
 # half an hour on two cores. Writes perf/MUTANTS.md, where a run of some renews their rows.
 #

@@ -4,7 +4,7 @@
 # UndefinedBehaviorSanitizer; golden answers by clang, for ARM64 and in WebAssembly; then all,
 # optimised with assertions.
 #
-#   scripts/test.sh          every test, some 30 minutes from nothing built on two cores
+#   scripts/test.sh          every test, 30 to 60 minutes from nothing built on two cores
 #   scripts/test.sh --long   then golden answers by more compilers and optimisations, a program built
 #                            for ARM64 from the package, the wheel and the sdist, every room and test under the sanitizers, hard
 #                            cases with 20 times the samples, ten million queries of real jaws, an

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSixth = 1.0 / 6;
 
-Ball in_half_edges(const TableBall& ball, unsigned code) {
+Ball in_half_edges(const TableBall& ball, std::size_t code) {
   return {{kSixth * ball.x, kSixth * ball.y, kSixth * ball.z}, kTableRadii[code]};
 }
 

@@ -28,7 +28,7 @@ RESTS = {
     "measure_bench": [*QUERY, "src/ist/measure"],
     "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
     "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/cli/engine.cpp", "src/ist/models"],
-    "mutate.sh": ["scripts/mutants.py", "simd", "src", "tests"],
+    "mutate.sh": ["scripts/mutants", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/ist", "tests/fuzz", "tests/query", "tests/stability"],
     "target_instructions.py": [*QUERY, "tests/instructions"],

@@ -98,8 +98,8 @@ TEST_F(Usage, SubcommandsAndFlagsThatAreNotThere) {
   refuses({"nonsense"}, "nonsense: no such subcommand\nTry");
   refuses({"--nonsense"}, "--nonsense: no such option");
   refuses({"help", "nonsense"}, "nonsense: no such subcommand");
-  for (const char* command :
-       {"demo", "build", "info", "export", "collide", "approach", "advise", "bench", "table", "run"}) {
+  for (const char* command : {"demo", "build", "info", "export", "collide", "approach", "advise",
+                              "bench", "table", "run"}) {
     const CommandResult result = ist({command, "--nonsense", "1"});
     EXPECT_EQ(result.exit_code, 2) << command;
     EXPECT_EQ(result.out, "");

@@ -12,8 +12,10 @@ namespace {
 
 void list(const ist::TomlTable& table, const std::string& path) {
   for (const ist::KnownKey& key : table.known) {
-    const nlohmann::ordered_json line{{"path", path + key.name},      {"values", key.values},
-                                      {"unit", std::string(key.unit)}, {"default", key.otherwise},
+    const nlohmann::ordered_json line{{"path", path + key.name},
+                                      {"values", key.values},
+                                      {"unit", std::string(key.unit)},
+                                      {"default", key.otherwise},
                                       {"optional", key.optional}};
     fmt::print("{}\n", line.dump());
   }

@@ -1,7 +1,8 @@
 // The same bits by every build, every instruction set and every platform.
 //
 //   golden_test            compares each kind of answers with its golden hash
-//   golden_test --hashes   prints "target<tab>answers<tab>hash" of each instead, and of all together
+//   golden_test --hashes   prints "target<tab>answers<tab>hash" of each instead, and of all
+//   together
 
 #include <gtest/gtest.h>
 

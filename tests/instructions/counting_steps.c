@@ -1,6 +1,7 @@
-/* Runs a program step by step, for instructions that qemu does not know: prints how many have run since the last mark,
-   which is a system call of number 4095, to standard error, as counting_plugin.c does. Steps are taken from every other
-   mark to the next alone; a step of a string instruction counts as one instruction.
+/* Runs a program step by step, for instructions that qemu does not know: prints how many have run
+   since the last mark, which is a system call of number 4095, to standard error, as
+   counting_plugin.c does. Steps are taken from every other mark to the next alone; a step of a
+   string instruction counts as one instruction.
 
      counting_steps PROGRAM [ARGUMENT…] */
 #include <inttypes.h>

@@ -128,8 +128,8 @@ class Trees(Misuse):
         self.refuses(ist.InputError, "triangles", query.occlusion, EYE)
         self.refuses(ist.InputError, "triangles", query.rows, EYE[None], want=["penetration"])
         self.refuses(ist.InputError, "triangles", ist.signed_distance, bare, [[0, 0, 0]])
-        self.refuses(ist.InputError, "keep_triangles=True", query.triangle_pairs, EYE)
-        self.refuses(ist.InputError, "contacts=-1: make it with 32", ist.Query(bare, bare, contacts=-1).contacts, EYE)
+        self.refuses(ist.InputError, "build both trees with them", query.triangle_pairs, EYE)
+        self.refuses(ist.InputError, "created without contacts", ist.Query(bare, bare, contacts=-1).contacts, EYE)
 
     def test_other_objects(self):
         for other in (self.query, (VERTICES, FACES), None):
@@ -166,7 +166,7 @@ class Queries(Misuse):
         transposed = pose_of([0, 0, 1], 0.5, [1, 2, 3]).T
         for verb in verbs:
             for pose in (mirrored, scaled, nan, row, transposed, np.full((4, 4), np.inf)):
-                self.assertEqual(self.refuses(ist.InputError, ["rigid motion", "row by row"], verb, pose).name, "pose-invalid")
+                self.assertEqual(self.refuses(ist.InputError, "rigid motion", verb, pose).name, "pose-invalid")
             for pose in (EYE[:3], EYE[None], 5, "pose", [[1, 2], [3]], EYE.astype(complex), [[10**400] * 4] * 4):
                 self.refuses(ist.InputError, "", verb, pose)
         self.assertIs(self.query.intersects(EYE), True)  # and goes on
@@ -177,6 +177,23 @@ class Queries(Misuse):
         for other in (pose.tolist(), np.asfortranarray(pose), pose.astype(">f8"), np.stack([pose, pose])[1], pose.astype(object)):
             self.assertEqual(self.query.distance(other, 1e-6)[:2], expected[:2])
         self.assertIs(self.query.intersects(np.eye(4, dtype=int)), True)
+
+    def test_a_question_asked_twice_has_one_time_limit(self):
+        from ist._arrays import budget_of
+
+        budget, _ = budget_of(0, 60.0)
+        given = []
+
+        def ask(_, room):
+            given.append((room, budget.nanoseconds))
+            return 0
+
+        array = self.query._room(ist.LEAF_PAIR, None, budget, ask, lambda: 10_000)
+        self.assertEqual(len(array), 10_000)
+        (few, whole), (enough, rest) = given
+        self.assertEqual((few, enough, whole), (4096, 10_000, 60_000_000_000))
+        self.assertLess(rest, whole)
+        self.assertGreater(rest, 0)
 
     def test_arrays_for_answers(self):
         wrong = [np.empty(5, ist.CONTACT), np.empty((5, 1), ist.LEAF_PAIR), np.empty(10, ist.LEAF_PAIR)[::2], [1, 2], "text",

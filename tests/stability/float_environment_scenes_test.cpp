@@ -108,5 +108,13 @@ TEST_P(FloatEnvironmentOfAScene, ChangesNoPlacement) {
   });
 }
 
+// A tenth of ten times is one of them, but more than one where 0.1 · 10 is rounded up.
+TEST_P(FloatEnvironmentOfAScene, ChangesNoQuantile) {
+  LatencyHistogram times;
+  for (int i = 1; i <= 10; ++i) times.record(std::chrono::microseconds(100 * i));
+  changes_nothing("LatencyHistogram::quantile", 8,
+                  [&](Record& record) { record.add(times.quantile(0.1).count()); });
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -11,7 +11,7 @@
 namespace ist {
 
 /// Reads a regular file from front to back. Every function throws kFileUnreadable with the file and
-/// the cause; reading and writing have cancellation points (cancellation.h).
+/// the cause. Reading has cancellation points (cancellation.h).
 class InputFile {
  public:
   explicit InputFile(std::filesystem::path file);
@@ -54,8 +54,8 @@ class UnwritableFile : public Error {
 /// same name stays unchanged. A target that is not a regular file, such as /dev/stdout, is written
 /// directly.
 ///
-/// Every function throws UnwritableFile with the file and the cause. An OutputFile belongs to one
-/// thread at a time.
+/// Every function throws UnwritableFile with the file and the cause. write() and commit() have
+/// cancellation points. An OutputFile belongs to one thread at a time.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path target);

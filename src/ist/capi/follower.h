@@ -17,8 +17,8 @@ using Follower = std::optional<ist_progress>;
 
 /// Runs `work` to its end. The follower's function is called first and every 20 ms meanwhile on the
 /// calling thread, and `work` then runs on a thread of its own; from the first answer other than 0
-/// on its `proceed` says no, and it ends at its next cancellation point. Another exception of `work`
-/// reaches the caller.
+/// on its `proceed` says no, and it ends at its next cancellation point. Another exception of
+/// `work` reaches the caller.
 ///
 /// Returns whether the follower let it come to its end.
 bool followed(const Follower& follower, const std::function<void(const Proceed& proceed)>& work);

@@ -3,7 +3,6 @@
 #include <limits>
 #include <span>
 
-#include "ist/capi/follower.h"
 #include "ist/capi/objects.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
@@ -70,19 +69,9 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
 }
 
 ist_status read(const char* function, const char* path, const ist_progress* progress,
-                ist_mesh** out) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"mesh", out}})) return missing;
-    *out = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<Mesh> mesh;
-    const bool whole = followed(follower, [&](const Proceed&) {
-      mesh = std::make_unique<Mesh>(Mesh{ist::read_mesh(path)});
-    });
-    return whole ? give(call, std::move(mesh), out) : cancelled(call);
-  });
+                ist_mesh** mesh) noexcept {
+  return read_object<Mesh>(function, path, progress, mesh,
+                           [](const char* file) { return Mesh{ist::read_mesh(file)}; });
 }
 
 }  // namespace

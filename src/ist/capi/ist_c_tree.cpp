@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
-#include "ist/capi/follower.h"
 #include "ist/capi/objects.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
@@ -66,18 +65,9 @@ ist_tree_info tree_info_of(const Tree& object) {
 }
 
 ist_status load(const char* function, const char* path, const ist_progress* progress,
-                ist_tree** out) noexcept {
-  return guarded(function, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", out}})) return missing;
-    *out = nullptr;
-    if (const ist_status missing = call.need({{"path", path}})) return missing;
-    Follower follower;
-    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
-    std::unique_ptr<Tree> tree;
-    const bool whole = followed(
-        follower, [&](const Proceed&) { tree = std::make_unique<Tree>(ist::read_tree(path)); });
-    return whole ? give(call, std::move(tree), out) : cancelled(call);
-  });
+                ist_tree** tree) noexcept {
+  return read_object<Tree>(function, path, progress, tree,
+                           [](const char* file) { return ist::read_tree(file); });
 }
 
 ist_status save(const char* function, const ist_tree* tree, const char* path,
@@ -176,8 +166,7 @@ ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT
     if (held.status() != IST_OK) return held.status();
     const ist::TriangleMesh* kept = held->tree->triangles();
     if (kept == nullptr) {
-      return call.fail(IST_TRIANGLES_MISSING,
-                       "the tree keeps no triangles: build it with options->drop_triangles = 0");
+      return call.fail(IST_TRIANGLES_MISSING, "the tree keeps no triangles: build it with them");
     }
     return give(call, std::make_unique<Mesh>(Mesh{*kept}), mesh);
   });

@@ -31,8 +31,7 @@ ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget
 
 ist_status not_prepared(const Call& call) {
   return call.fail(IST_NOT_PREPARED,
-                   "the query was created with options->contacts = -1: create it with 0, the "
-                   "default, or a number of contacts");
+                   "the query was created without contacts: create it with a number of them");
 }
 
 ist_status status_of(const Call& call, QueryStatus status) {
@@ -42,11 +41,11 @@ ist_status status_of(const Call& call, QueryStatus status) {
     case QueryStatus::kInvalidPose:
       return call.fail(
           IST_POSE_INVALID,
-          "pose is not a rigid motion: pass 16 finite numbers in column-major order, with 0 0 "
-          "0 1 as the last row and a rotation that is orthonormal to 1e-5");
+          "pose is not a rigid motion: pass finite numbers, with 0 0 0 1 as the last row and a "
+          "rotation that is orthonormal to 1e-5");
     case QueryStatus::kNoTriangles:
       return call.fail(IST_TRIANGLES_MISSING,
-                       "a tree has no triangles: build both trees with drop_triangles = 0");
+                       "a tree has no triangles: build both trees with them");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
       break;

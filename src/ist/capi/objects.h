@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "ist/capi/follower.h"
 #include "ist/capi/handles/handle.h"
 #include "ist/capi/sized_struct.h"
 #include "ist/mesh/mesh.h"
@@ -102,6 +103,24 @@ template <typename T, SizedStruct Info, typename Body>
     if (held.status() != IST_OK) return held.status();
     write_sized(info_of(*held), *info);
     return IST_OK;
+  });
+}
+
+/// Implements every function that makes an object of a file, by `read(path)`.
+template <typename T, typename Read>
+[[nodiscard]] ist_status read_object(const char* function, const char* path,
+                                     const ist_progress* progress, typename T::Handle** out,
+                                     const Read& read) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{T::kName, out}})) return missing;
+    *out = nullptr;
+    if (const ist_status missing = call.need({{"path", path}})) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    std::unique_ptr<T> made;
+    const bool whole =
+        followed(follower, [&](const Proceed&) { made = std::make_unique<T>(read(path)); });
+    return whole ? give(call, std::move(made), out) : cancelled(call);
   });
 }
 

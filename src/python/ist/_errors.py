@@ -47,27 +47,11 @@ KINDS = {
 }
 
 
-# What the library says to callers in C, and what a caller in Python is to do.
-REMEDIES = (
-    ("pass 16 finite numbers in column-major order, with 0 0 0 1 as the last row",
-     "pass (4, 4) finite numbers, row by row, with 0 0 0 1 as the last row"),
-    ("the query was created with options->contacts = -1: create it with 0, the default", "the query was made with contacts=-1: make it with 32"),
-    ("with options->drop_triangles = 0", "with keep_triangles=True"),
-    ("with drop_triangles = 0", "with keep_triangles=True"),
-    ("give a rotation and a shift", "pass a rotation and a shift, (4, 4), row by row"),
-    ("pose is NULL: pass a valid pointer", "there is no pose: the device did not say where it is"),
-    ("motion->from:", "start:"),
-    ("motion->to:", "stop:"),
-    ("options->", ""),
-)
-
-
 def error_of(status, text=None):
     """Returns the exception of a status, with the library's last message unless a text is given."""
     if text is None:
-        text = LIBRARY.ist_last_error_message().decode("utf-8", "replace")
-        for in_c, in_python in REMEDIES:
-            text = text.replace(in_c, in_python)
+        # A member of C's options is an argument here.
+        text = LIBRARY.ist_last_error_message().decode("utf-8", "replace").replace("options->", "")
     error = KINDS.get(status, InputError)(text)
     error.code = status
     error.name = LIBRARY.ist_status_name(status).decode()

@@ -94,7 +94,7 @@ class Query(Lone):
         # Arguments that every call needs are made once.
         self._pose = np.eye(4)
         self._pose_at = address(self._pose)
-        self._rows = self._pose.T  # the same numbers, row by row
+        self._by_row = self._pose.T  # the same numbers, row by row
         self._found = QueryResult()
         self._found_at = addressof(self._found)
         self._sums = ContactSums()
@@ -115,9 +115,9 @@ class Query(Lone):
     # Copies a pose to the place that calls read it from.
     def _take(self, pose):
         if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype == np.float64:
-            self._rows[...] = pose
+            self._by_row[...] = pose
         else:
-            self._rows[...] = floats(pose, (4, 4), "pose")
+            self._by_row[...] = floats(pose, (4, 4), "pose")
 
     def intersects(self, pose, *, tests=0, seconds=0.0):
         """Whether the bodies intersect: exact where both trees have triangles.

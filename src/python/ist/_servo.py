@@ -27,6 +27,8 @@ class Servo(Lone):
 
     _free = LIBRARY.ist_servo_free
 
+    _NO_POSE = "the pose is None: the device did not say where it is, which is a fault"
+
     def __init__(
         self, scene, *, unit="mm", query_time_fraction=0.7, sphere_tests=0, max_memory=4 << 30, progress=None
     ):
@@ -56,7 +58,7 @@ class Servo(Lone):
             place = None if at is None else address(at)
             status = LIBRARY.ist_servo_on_tick(handle, place, address(self._force), address(self._torque))
             if status:
-                raise error_of(status)
+                raise error_of(status, self._NO_POSE if pose is None else None)
             return ServoTick(self._force.copy(), self._torque.copy())
         finally:
             self._lock.release()

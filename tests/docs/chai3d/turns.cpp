@@ -1,28 +1,29 @@
-/// Runs the tool of docs/chai3d.md in the hand of a scripted device: free, pressed 2 mm into the block of probe.toml,
-/// free again and turned, 4,000 turns in all. chai3d_tool.py writes the page's class to ist_tool.h, and compiles this with
-/// CHAI3D or with the declarations of stubs/.
+/// Runs the tool of docs/chai3d.md in the hand of a scripted device: free, pressed 2 mm into the
+/// block of probe.toml, free again and turned, 4,000 turns in all. chai3d_tool.py writes the page's
+/// class to ist_tool.h, and compiles this with CHAI3D or with the declarations of stubs/.
 ///
 ///   turns SCENE
-
-#include "ist_tool.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "ist_tool.h"
+
 namespace {
 
-constexpr int kTurns = 4000;      // of a millisecond each
-constexpr double kWay = 0.004;    // downwards, m; the block begins after half of it
+constexpr int kTurns = 4000;    // of a millisecond each
+constexpr double kWay = 0.004;  // downwards, m; the block begins after half of it
 constexpr double kInside = 0.002;
-constexpr double kAngle = 0.1;    // about the scene's x axis, at the end, radians
+constexpr double kAngle = 0.1;  // about the scene's x axis, at the end, radians
 
 int failures = 0;
 
 void holds(const char* what, double value, double least, double most) {
   const bool is_held = value >= least && value <= most;
-  std::printf("%-32s %12.6g, from %g to %g%s\n", what, value, least, most, is_held ? "" : ": WRONG");
+  std::printf("%-32s %12.6g, from %g to %g%s\n", what, value, least, most,
+              is_held ? "" : ": WRONG");
   if (!is_held) ++failures;
 }
 
@@ -80,8 +81,9 @@ void run(ist_servo* servo) {
   ist_servo_info info = {};
   info.struct_size = sizeof info;
   ist_servo_get_info(servo, &info);
-  const chai3d::cVector3d start(info.tool[12], info.tool[13], info.tool[14]);  // about which torques are
-  const chai3d::cVector3d centre(0, 0, 0.012);                                 // of the ball, where it starts
+  const chai3d::cVector3d start(info.tool[12], info.tool[13],
+                                info.tool[14]);  // about which torques are
+  const chai3d::cVector3d centre(0, 0, 0.012);   // of the ball, where it starts
 
   const auto world = std::make_unique<chai3d::cWorld>();
   const auto tool = new IstTool(world.get(), servo);  // its world deletes it
@@ -98,10 +100,12 @@ void run(ist_servo* servo) {
   for (int i = 0; i < kTurns; ++i) {
     const chai3d::cVector3d down(0, 0, -kWay * part_at(i));
     device->position = begin + chai3d::cTranspose(turn) * down;
-    device->rotation = chai3d::cMul(chai3d::cMul(chai3d::cTranspose(turn), turned_at(i)), chai3d::cMul(turn, begin_turned));
+    device->rotation = chai3d::cMul(chai3d::cMul(chai3d::cTranspose(turn), turned_at(i)),
+                                    chai3d::cMul(turn, begin_turned));
     world->computeGlobalPositions(true);
     tool->updateFromDevice();
-    if (i == 0) holds("begins off its start, m", length(tool->getDeviceGlobalPos() - start), 0, 1e-12);
+    if (i == 0)
+      holds("begins off its start, m", length(tool->getDeviceGlobalPos() - start), 0, 1e-12);
     tool->computeInteractionForces();
     tool->applyToDevice();
     if (tool->last() != IST_OK) ++errors;
@@ -113,14 +117,15 @@ void run(ist_servo* servo) {
     if (i == 2499) {
       holds("pressed: upwards, N", force(2), 0.2, 20);
       holds("pressed: sideways of upwards", std::hypot(force(0), force(1)) / force(2), 0, 0.05);
-      holds("pressed: torque off it, N m", length(turn * device->torque - cross(centre - start, force)), 0, 2e-4);
+      holds("pressed: torque off it, N m",
+            length(turn * device->torque - cross(centre - start, force)), 0, 2e-4);
       holds("pressed: drawn above hand, m", sunk, 0.75 * kInside, 1.25 * kInside);
     }
     if (i == kTurns - 1) {
       holds("free again: force, N", length(force), 0, 1e-3);
       holds("free again: drawn off hand, m", std::abs(sunk), 0, 1e-5);
-      holds("free again: drawn turned, sine", tool->m_image->getGlobalRot()(2, 1), std::sin(kAngle) - 1e-4,
-            std::sin(kAngle) + 1e-4);
+      holds("free again: drawn turned, sine", tool->m_image->getGlobalRot()(2, 1),
+            std::sin(kAngle) - 1e-4, std::sin(kAngle) + 1e-4);
       holds("gripper, N", device->gripper_force, 0, 0);
     }
   }

@@ -4,8 +4,9 @@
 #include <memory>
 #include <vector>
 
-/// The classes of CHAI3D 3.3 that docs/chai3d.md and its test use, with the members that they use, declared as
-/// CHAI3D's headers declare them. Each does here what CHAI3D says of it; nothing is drawn.
+/// The classes of CHAI3D 3.3 that docs/chai3d.md and its test use, with the members that they use,
+/// declared as CHAI3D's headers declare them. Each does here what CHAI3D says of it; nothing is
+/// drawn.
 namespace chai3d {
 
 class cVector3d {
@@ -16,7 +17,8 @@ class cVector3d {
   const double& operator()(int index) const { return values_[index]; }
 
  private:
-  static constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();  // CHAI3D leaves it open
+  static constexpr double kUnset =
+      std::numeric_limits<double>::quiet_NaN();  // CHAI3D leaves it open
   double values_[3] = {kUnset, kUnset, kUnset};
 };
 

@@ -1,0 +1,47 @@
+"""What a mutant is, and the places and the tests that several of them name."""
+
+from typing import NamedTuple
+
+
+class Mutant(NamedTuple):
+    name: str
+    breaks: str  # what it does, for perf/MUTANTS.md
+    edits: list  # (file, a passage that is there once, what stands there instead)
+    tests: list  # programs, or programs and a filter, in the order in which they are asked
+
+
+SEARCH_POSE = "src/ist/query/traversal/search_pose.cpp"
+LANES = "simd/lanes.h"
+BOUNDS_INL = "simd/bounds-inl.h"
+MEASURE_INL = "simd/measure-inl.h"
+PAIR_ROWS_INL = "simd/pair_rows-inl.h"
+SHARED = "src/ist/query/workers/shared_search.cpp"
+NODE_BOUNDS = "src/ist/tree/node_bounds.cpp"
+LEAF_SEARCH = "src/ist/tree/leaf_search.cpp"
+VOXELIZER = "src/ist/voxel/voxelizer.cpp"
+BINS = "src/ist/voxel/triangle_bins.cpp"
+BOX = "src/ist/voxel/triangle_box.h"
+EXACT = "src/ist/query/exact/"
+CONTACTS = "src/ist/query/contacts/"
+MEASURE = "src/ist/measure/"
+COHERENT = "src/ist/query/coherent/"
+FRONT_INL = "simd/front-inl.h"
+FRONT_STEP = "simd/front_step.h"
+FRONT_SCALAR = "simd/front_scalar.cpp"
+QUERY_STATE = "src/ist/query/query_state.cpp"
+ADVICE = "src/advise/"
+CAPI = "src/ist/capi/"
+HAPTICS = "src/ist/haptics/"
+HARDWARE = "src/hardware/"
+FORMAT = "src/ist/mesh/format/"
+OCCLUSION = "src/cli/occlusion/"
+PAGES = "src/cli/pages/"
+CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
+SIMULATION = HAPTICS + "simulation.cpp"
+FRICTION = HAPTICS + "effects/friction_effect.cpp"
+
+TANGENCY = "stability_test *Tangency*"
+KERNELS = "search_test *Border*:*Advance*"
+GUARANTEE = "search_test *Guarantee*-*Thread*"
+FRONTS = "search_test *Front*"
+COHERENT_ANSWERS = "coherent_test *CoherentQuery.*"

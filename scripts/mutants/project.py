@@ -1,0 +1,46 @@
+"""Faults in figures, the package and the pages."""
+
+from .mutant import Mutant, PAGES
+
+MUTANTS = [
+    # Figures.
+    Mutant("ratio-of-other-spheres", "a ratio that names the same spheres on both sides takes the published circumspheres",
+           [("src/cli/bench/ratios.cpp", "{\"leaf pairs\", kPublishedWay, spheres});", "{\"leaf pairs\", kPublishedWay, \"simple\"});")],
+           ["cli_test Bench.ComparesTheSameSpheres*"]),
+    Mutant("slow-asked-as-often", "a bench asks everybody as often, however long it takes",
+           [("src/cli/bench/contest.cpp", "spent[next] += seconds_since(turn);", "spent[next] += 1;")], ["cli_test BenchContest.*"]),
+    Mutant("stale-figures-pass", "figures that are older than their code are no failure",
+           [("scripts/report/check_figures.py", "return 1 if found else 0", "return 0")], ["ctest Figures"]),
+    Mutant("comments-age-figures", "a comment that changes makes figures stale",
+           [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["ctest Figures"]),
+
+    # The package.
+    Mutant("export-map-loosened", "symbols of other libraries are exported too",
+           [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),
+    Mutant("private-exported", "private members of public classes are exported",
+           [("src/ist/query/query_state.h", "struct QueryState {", "struct __attribute__((visibility(\"default\"))) QueryState {")],
+           ["ctest Package.Symbols"]),
+    Mutant("vtables-kept-in", "the vtable of a public class is no longer exported",
+           [("src/package/ist.map.in", "      vtable?for?ist::*;\n", "")], ["ctest Package.Symbols"]),
+    Mutant("header-left-at-home", "a header that another one includes is not installed",
+           [("src/package/public_headers.txt", "ist/query/manifold.h\n", "")], ["ctest Package.Headers"]),
+    Mutant("page-without-groups", "manual pages leave out the options that stand in a group of their own",
+           [(PAGES + "man_page.cpp", "page.subsection(group.title);\n    add_entries", "continue;\n    add_entries")],
+           ["ctest Package.ManPages"]),
+    Mutant("choices-as-files", "bash completes the name of a file where a word of a fixed set belongs",
+           [(PAGES + "bash_completion.cpp", "if (option.value.empty()) continue;",
+             "if (option.value.empty() || !option.choices.empty()) continue;")], ["ctest Package.Completion"]),
+    Mutant("installed-links-astray", "links of the installed documents lead to where the sources have things",
+           [("src/package/documents.cmake", "set(place examples/${CMAKE_MATCH_1})", "set(place src/examples/${CMAKE_MATCH_1})")],
+           ["ctest Package.Documents"]),
+    Mutant("uninstall-takes-others", "uninstalling removes what others have put beside it",
+           [("src/package/uninstall.cmake.in", "if(others)", "if(FALSE)")], ["ctest Package.Uninstall"]),
+
+    # The pages.
+    Mutant("key-without-a-default", "the reader of scenes does not say what a key is where it is absent",
+           [("src/ist/scene/table_reader.cpp", "if (!otherwise.empty()) noted", "if (false) noted")], ["ctest Docs.SceneReference"]),
+    Mutant("left-without-a-reason", "a page's code may be left without a reason",
+           [("tests/docs/pages.py", r"output varies), \S.*", "output varies).*")], ["ctest Docs.Refusals"]),
+    Mutant("guards-end-at-the-line", "tests that an invariant names after a line's end may be missing",
+           [("tests/docs/guards.py", r"(?:,\s+)?)*)", "(?:, )?)*)")], ["ctest Docs.Refusals"]),
+]
