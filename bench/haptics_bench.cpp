@@ -25,10 +25,10 @@ Scene pressed_jaws(double voxel_size, const Names& effects) {
   Scene scene{};
   scene.file = "bench";
   scene.unit = 1e-3;
-  scene.fixed.source = BuiltInShape{.kind = BuiltInShape::Kind::kUpperJaw};
-  scene.held.source = BuiltInShape{.kind = BuiltInShape::Kind::kLowerJaw};
-  scene.fixed.voxel_size = scene.held.voxel_size = voxel_size;
-  scene.held.translation = {0, 0, -5};
+  scene.fixed.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kUpperJaw};
+  scene.held.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kLowerJaw};
+  scene.fixed.front().voxel_size = scene.held.front().voxel_size = voxel_size;
+  scene.held.front().translation = {0, 0, -5};
   scene.device = ScriptSettings{{.damping = 2, .angular_damping = 2e-3, .delay = 0},
                                 {},
                                 {waypoint(0, 0), waypoint(0.3, 4.5), waypoint(1e6, 4.5)}};

@@ -66,7 +66,7 @@ Scene closing_scene(int workers) {
   Scene scene = scene_of_jaws();
   scene.seconds = seconds();
   scene.workers = workers;
-  scene.fixed.voxel_size = scene.held.voxel_size = quick() ? 0.8 : 0.2;
+  scene.fixed.front().voxel_size = scene.held.front().voxel_size = quick() ? 0.8 : 0.2;
   scene.proximity.reset();
   scene.gravity.reset();
   scene.snap.reset();
@@ -103,7 +103,7 @@ void loop(benchmark::State& state, int workers, bool noisy) {
   state.counters["missed"] = static_cast<double>(report.missed);
   state.counters["held"] = static_cast<double>(report.held);
   state.counters["contacts"] = static_cast<double>(end.contacts->leaf_pairs);
-  state.counters["voxel_size"] = *scene.fixed.voxel_size;
+  state.counters["voxel_size"] = *scene.fixed.front().voxel_size;
   state.counters["awake_us"] = microseconds(TickClock::kLead);
   state.counters["neighbour_MB"] = static_cast<double>(NoisyNeighbour::kMegabytes);
   state.counters["denied"] = static_cast<double>(report.notes.size());

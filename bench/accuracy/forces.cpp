@@ -5,7 +5,7 @@
 
 #include "accuracy/approaches.h"
 #include "accuracy/sections.h"
-#include "ist/haptics/tool_contact_query.h"
+#include "ist/haptics/bodies/tool_contact_query.h"
 #include "support/latencies.h"
 
 namespace ist::bench {
@@ -25,6 +25,7 @@ std::vector<Eigen::Vector3d> forces(double voxel_size, SpherePolicy policy) {
   for (const Approach& way : approaches()) {
     for (const double depth : kDepths) {
       const Placement tool = *Placement::from(way.pose(way.pair + depth));
+      contacts.clear();
       static_cast<void>(query.find(tool, {}, contacts));
       found.push_back(contacts.spring.head<3>());
     }

@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "ist/haptics/tool_contact_query.h"
+#include "ist/haptics/bodies/tool_contact_query.h"
 #include "support/bodies.h"
 #include "support/effort.h"
 
@@ -16,9 +16,10 @@ std::size_t ticks(std::size_t most) { return quick() ? most / 10 : most; }
 // The poses at which a scene's ticks ask, from `first` on.
 Poses recorded(const Scene& scene, std::size_t first, std::size_t end) {
   BuiltScene built = build_scene(scene);
-  const BodyFrames frames{scene.unit,
-                          {scene.fixed.rotation, scene.unit * scene.fixed.translation},
-                          built.trees.held->origin()};
+  const BodyFrames frames{
+      scene.unit,
+      {scene.fixed.front().rotation, scene.unit * scene.fixed.front().translation},
+      built.trees.back().contact->origin()};
   Poses poses;
   for (std::size_t i = 0; i < end; ++i) {
     if (i >= first) poses.push_back(frames.query_pose(built.simulation->tool_pose()));
@@ -89,7 +90,7 @@ Scene scene_of_jaws(double voxel_size) {
   if (real) setenv("IST_DATA_DIR", data_file("").parent_path().c_str(), 0);
   Scene scene = read_scene(scene_file(real ? "human_pair.toml" : "jaws.toml"));
   scene.workers = 1;
-  scene.fixed.voxel_size = scene.held.voxel_size = voxel_size;
+  scene.fixed.front().voxel_size = scene.held.front().voxel_size = voxel_size;
   return scene;
 }
 

@@ -83,16 +83,19 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
 
   BallOnBox made;
   detail::SimulationParts parts{.effects = effects_of(effects, start),
-                                .tool = Tool(0, Tool::kNoLimit),
+                                .max_step = Tool::kNoLimit,
                                 .start = start,
                                 .dt = 1e-3};
+  std::unique_ptr<ToolContactQuery> contacts, proximity;
+  double radius = 0;
   if (effects.contains("contact")) {
     made.box = tree_of(box, {.voxel_size = kBoxVoxel, .spheres = SpherePolicy::kSlab});
     made.ball = tree_of(ball, {.voxel_size = kBallVoxel, .spheres = SpherePolicy::kSlab});
-    parts.contacts = std::make_unique<ToolContactQuery>(
+    contacts = std::make_unique<ToolContactQuery>(
         *made.box, *made.ball, frames,
         ToolContactOptions{.policy = SpherePolicy::kSlab, .least_depth = -kMargin});
-    parts.tool = Tool(kUnit * surface_radius(*made.ball), kUnit * kBallVoxel);
+    radius = kUnit * surface_radius(*made.ball);
+    parts.max_step = kUnit * kBallVoxel;
   }
   if (effects.contains("proximity")) {
     const double voxel = 0.5 * kNear;
@@ -100,10 +103,11 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
         tree_of(box, {.voxel_size = voxel, .spheres = SpherePolicy::kTable, .proximity = true});
     made.near_box = std::make_unique<const SphereTree>(proximity_body(*around));
     made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
-    parts.proximity = std::make_unique<ToolContactQuery>(
+    proximity = std::make_unique<ToolContactQuery>(
         *made.near_box, *made.near_ball, frames,
         ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
   }
+  detail::add_two_bodies(parts, frames, radius, std::move(contacts), std::move(proximity));
   made.device = std::make_unique<HandDevice>(HandSettings{.plan = plan_from(start)});
   made.simulation = std::make_unique<Simulation>(std::move(parts));
   return made;

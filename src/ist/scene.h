@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Scenes: two bodies, a device and the effects between them, read from TOML or made by a program.
+/// Scenes: bodies, a device and the effects between them, read from TOML or made by a program.
 #include "ist/base/api.h"
 
 #if __cplusplus >= 202002L  // else ist/base/api.h has said what is needed
@@ -54,6 +54,9 @@ struct BuiltInShape {
 
 /// A body of a scene. Lengths are in the scene's unit.
 struct SceneBody {
+  /// For changes, recordings and messages; no two bodies share one. By default "fixed" or "held",
+  /// of several the first is "fixed.1".
+  std::string name = {};
   /// A mesh file, a tree file or a shape.
   std::variant<std::filesystem::path, BuiltInShape> source = {};
   std::optional<double> voxel_size = {};     ///< required unless the source is a tree
@@ -61,6 +64,18 @@ struct SceneBody {
   bool trust_normals = false;  ///< contact forces even if the mesh is not closed and consistent
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from mesh to scene
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< of the mesh's origin, scene axes
+  bool attachable = false;                                 ///< the hand may take it and release it
+  /// Of a fixed body: its motions from that place, as those of the tool; empty: it rests. It moves
+  /// by half a voxel a tick at most, rests after the last waypoint, and is not attachable.
+  std::vector<Waypoint> script = {};
+  std::filesystem::path script_file = {};  ///< from which `script` was read; empty otherwise
+};
+
+/// A body that the hand takes or releases during a run.
+struct SceneChange {
+  double time = 0;     ///< from the first tick on, s
+  std::string body;    ///< its name
+  bool attach = true;  ///< false: it is released
 };
 
 /// GravitySettings, with the centre of mass in mesh coordinates: the tool's frame is known only
@@ -84,17 +99,20 @@ struct ScriptSettings {
 };
 
 /// The content of a scene file, or a scene made by a program. SI but for the bodies. Poses of the
-/// tool are motions of the held body from its place in the scene: a turn about the centre of its
-/// root cube, then a translation along scene axes.
+/// tool are motions of the held bodies from their places in the scene: a turn about the centre of
+/// the first one's root cube, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
   std::shared_ptr<const detail::SceneLines> lines = {};  ///< of keys in `file`; null without a file
-  double unit = 0;       ///< metres in the unit of lengths; required
-  double rate = 1000;    ///< ticks a second, 1 to 10,000
-  double seconds = 10;   ///< length of a run
-  int workers = 1;       ///< threads that search for contacts, 1 or 2
-  SceneBody fixed = {},  ///< the body that rests
-      held = {};         ///< the body in the hand: the tool
+  double unit = 0;      ///< metres in the unit of lengths; required
+  double rate = 1000;   ///< ticks a second, 1 to 10,000
+  double seconds = 10;  ///< length of a run
+  int workers = 1;      ///< threads that search for contacts, 1 or 2
+  /// One at least.
+  std::vector<SceneBody> fixed = std::vector<SceneBody>(1);
+  /// In the hand, and moved as one: one at least. The first one gives the tool its frame.
+  std::vector<SceneBody> held = std::vector<SceneBody>(1);
+  std::vector<SceneChange> changes = {};  ///< by ascending time
   /// The axis, of unit length, along which the held body is moved until it is free.
   std::optional<Eigen::Vector3d> open = {};
   std::variant<NullSettings, ScriptSettings, HandSettings> device = {};  ///< by default it rests
@@ -114,13 +132,11 @@ struct Scene {
 /// an unknown or missing key, a value of the wrong kind or out of range, and a missing file.
 [[nodiscard]] IST_API Scene read_scene(const std::filesystem::path& file);
 
-/// The trees of a scene.
-struct SceneTrees {
-  std::unique_ptr<const SphereTree> fixed = {},  ///< null if no effect needs contacts
-      held = {};                                 ///< null if no effect needs contacts
-  std::unique_ptr<const SphereTree>
-      near_fixed = {},  ///< with proximity voxels; null if no effect needs proximity
-      near_held = {};   ///< in voxels of that size; null if no effect needs proximity
+/// The trees of a body of a scene, as far as its effects need them.
+struct BodyTrees {
+  std::unique_ptr<const SphereTree> contact = {},  ///< for contacts
+      near = {},    ///< with proximity voxels, of a body that may be fixed
+      coarse = {};  ///< in voxels of that size, of a body that may be held
 };
 
 /// A stage of build_scene(), built or skipped.
@@ -134,7 +150,7 @@ struct BuildNote {
 
 /// A scene ready to run, with the trees and queries that its effects need.
 struct BuiltScene {
-  SceneTrees trees = {};                        ///< all that the effects need
+  std::vector<BodyTrees> trees = {};            ///< by body: the fixed ones, then the held ones
   std::unique_ptr<Simulation> simulation = {};  ///< refers to the trees
   std::unique_ptr<Device> device = {};          ///< as Scene::device says
   double step_limit = 0;  ///< bound on the displacement of the tool's surface in a tick, m
@@ -145,19 +161,21 @@ struct BuiltScene {
 /// Reads or makes the bodies, builds what the effects need, and places the tool. The tool starts at
 /// the beginning of the device's plan; if the bodies intersect there, or one is inside the other,
 /// it is moved along Scene::open until they are free. If no effect needs contacts, nothing is
-/// searched.
+/// searched. Of several bodies, a pair that cannot meet wherever the device's plan leads has no
+/// query: should its roots overlap all the same, the tool is held.
 ///
 /// The coupling is clamped to the stability border of the device in Scene::device. To run another
 /// device, put its mechanics there: `scene.device = NullSettings{mechanics}`.
 ///
 /// Effects of the caller's `own` are called after the scene's, and their needs() join the needs of
 /// the scene's. If the outside of a body is not known, effects that need normals, depth or
-/// proximity are left out, with a warning. `max_memory` is in bytes, for each tree.
+/// proximity are left out, with a warning. `max_memory` is in bytes, for each tree, and for all
+/// queries together.
 ///
 /// Throws the errors of reading a mesh or a tree; kArgumentInvalid for a null effect or a shape
 /// without extent; kInputInvalid, with the scene's file, line and remedy, for missing trees or
-/// meshes, voxels that are too small, a start that is not free, and, in a scene made by a program,
-/// a value out of range.
+/// meshes, voxels that are too small, a start that is not free, queries beyond the memory, and, in
+/// a scene made by a program, a value out of range.
 [[nodiscard]] IST_API BuiltScene build_scene(const Scene& scene,
                                              std::vector<std::unique_ptr<Effect>> own = {},
                                              std::uint64_t max_memory = BuildOptions{}.max_memory,

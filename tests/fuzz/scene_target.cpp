@@ -36,8 +36,8 @@ void check(const Scene& scene) {
   require(scene.unit > 0 && scene.unit <= 1, "the unit is none");
   require(scene.rate >= 1 && scene.rate <= 1e4, "the rate is out of range");
   require(scene.seconds > 0 && std::isfinite(scene.seconds), "the time is none");
-  check_body(scene.fixed);
-  check_body(scene.held);
+  for (const ist::SceneBody& body : scene.fixed) check_body(body);
+  for (const ist::SceneBody& body : scene.held) check_body(body);
   require(!scene.open || scene.open->norm() == 1, "the axis is not of unit length");
   if (const auto* hand = std::get_if<HandSettings>(&scene.device)) {
     require(hand->mass > 0 && hand->inertia > 0, "a hand has no mass");

@@ -19,16 +19,15 @@ SphereTree tree_of(const TriangleMesh& mesh, double voxel_size) {
 
 Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
   const BodyFrames frames{1e-3, Placement(), held_->origin()};
-  detail::SimulationParts parts{
+  detail::SimulationParts parts{.coupling = kHapticCoupling,
+                                .safety = kHapticSafety,
+                                .max_step = voxel(),
+                                .start = at(1e-3),
+                                .dt = 1e-3};
+  detail::add_two_bodies(
+      parts, frames, 1e-3 * surface_radius(*held_),
       std::make_unique<ToolContactQuery>(*fixed_, *held_, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}),
-      nullptr,
-      {},
-      kHapticCoupling,
-      kHapticSafety,
-      Tool(1e-3 * surface_radius(*held_), voxel()),
-      at(1e-3),
-      1e-3};
+                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}));
   parts.effects.push_back(std::make_unique<ContactEffect>(ContactSettings{2000, 0.5}));
   if (other) parts.effects.push_back(std::move(other));
   return Simulation(std::move(parts));

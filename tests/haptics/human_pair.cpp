@@ -50,16 +50,15 @@ bool HumanPair::surfaces_meet(const Placement& tool) {
 
 Simulation HumanPair::simulation(const CouplingSettings& coupling) const {
   const double voxel = 1e-3 * held_.voxel_size();
-  detail::SimulationParts parts{
+  detail::SimulationParts parts{.coupling = coupling,
+                                .safety = kSafety,
+                                .max_step = voxel,
+                                .start = moved(kOpen),
+                                .dt = kPeriod};
+  detail::add_two_bodies(
+      parts, frames_, 1e-3 * surface_radius(held_),
       std::make_unique<ToolContactQuery>(fixed_, held_, frames_,
-                                         ToolContactOptions{SpherePolicy::kSlab, -kMargin}),
-      nullptr,
-      {},
-      coupling,
-      kSafety,
-      Tool(1e-3 * surface_radius(held_), voxel),
-      moved(kOpen),
-      kPeriod};
+                                         ToolContactOptions{SpherePolicy::kSlab, -kMargin}));
   auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
   const ContactEffect& load = *contact;
   parts.effects.push_back(std::move(contact));

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "ist/haptics/bodies/tool_contact_query.h"
 #include "ist/haptics/devices/hand_device.h"
 #include "ist/haptics/simulation.h"
-#include "ist/haptics/tool_contact_query.h"
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 

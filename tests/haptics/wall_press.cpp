@@ -63,16 +63,15 @@ Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
   const BodyFrames frames{kMillimetre, Placement(), wall.held->origin()};
   // Nothing but the coupling shapes the wrench.
   constexpr SafetySettings kOpen{1e4, 100, 1e9, 1e7, 0};
-  detail::SimulationParts parts{
+  detail::SimulationParts parts{.coupling = coupling_of(wall, settings),
+                                .safety = kOpen,
+                                .max_step = kMillimetre * wall.held->voxel_size(),
+                                .start = start_of(wall),
+                                .dt = 1 / settings.rate};
+  detail::add_two_bodies(
+      parts, frames, kMillimetre * surface_radius(*wall.held),
       std::make_unique<ToolContactQuery>(*wall.fixed, *wall.held, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}),
-      nullptr,
-      {},
-      coupling_of(wall, settings),
-      kOpen,
-      Tool(kMillimetre * surface_radius(*wall.held), kMillimetre * wall.held->voxel_size()),
-      start_of(wall),
-      1 / settings.rate};
+                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}));
   parts.effects.push_back(
       std::make_unique<ContactEffect>(ContactSettings{wall.contact_stiffness, 0.5}));
   return Simulation(std::move(parts));

@@ -20,7 +20,7 @@ using Pose = Eigen::Isometry3d;
 using ContactStatus = FirstContact::Status;
 
 // The interval is as narrow as was asked for, and at its end triangles intersect.
-void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
+void expect_contact(HandPair& pair, const Motion& motion, double tolerance,
                     const FirstContact& found) {
   EXPECT_EQ(found.status, ContactStatus::kContact) << to_string(found.status);
   EXPECT_TRUE(pair.meet(motion.at(found.upper)));
@@ -33,7 +33,7 @@ void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
 }
 
 TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
-  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  HandPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   const Motion motion = Motion::between(place({0.3, 0.2, 4}), place({0.3, 0.2, -2}));
   for (const double tolerance : {0.1, 1e-3, 1e-6, 1e-9}) {
     const FirstContact found = first_contact(pair.query, motion, tolerance);
@@ -49,7 +49,7 @@ TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
 }
 
 TEST(FirstContact, HasAStatusForEveryEnd) {
-  BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  HandPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const auto status = [&](const Vector& from, const Vector& until) {
     const FirstContact found = first_contact(pair.query, place(from), place(until), 1e-3);
     return std::string(to_string(found.status));
@@ -69,7 +69,7 @@ TEST(FirstContact, HasAStatusForEveryEnd) {
 
 // Along a face, nearer to it than a sixteenth of the tolerance, and then against a step.
 TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
-  BodyPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
+  HandPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
                 box({-1, -1, 0}, {1, 1, 1}));
   const Motion motion = Motion::between(place({-8, 0, 1e-4}), place({8, 0, 1e-4}));
   const FirstContact found = first_contact(pair.query, motion, 0.01);
@@ -85,7 +85,7 @@ TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
 
 // Two plates thinner than any distance is certain: it may have met either.
 TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
-  BodyPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
+  HandPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
                 box({0, 0, 0}, {1, 1, 1e-9}));
   const Motion motion = Motion::between(place({0, 0, 9}), place({0.1, 0, -9}));
   const FirstContact found = first_contact(pair.query, motion, 1e-3);
@@ -96,7 +96,7 @@ TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
 
 TEST(FirstContact, PassesThroughNothingHoweverThin) {
   for (const double thick : {1e-2, 1e-5, 1e-8}) {
-    BodyPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
+    HandPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
     const Motion motion = Motion::between(place({0.1, 0.2, 500}), place({0.3, -0.2, -700}));
     const FirstContact found = first_contact(plate.query, motion, 1e-3);
     // Thinner than distances are certain to within, it is said to graze there.
@@ -109,7 +109,7 @@ TEST(FirstContact, PassesThroughNothingHoweverThin) {
 
 // A needle goes down between two teeth that are 0.02 apart, and beside it into one.
 TEST(FirstContact, OfANeedleBetweenTeeth) {
-  BodyPair pair(joined(box({-4, -2, 0}, {-0.01, 2, 3}), box({0.01, -2, 0}, {4, 2, 3})),
+  HandPair pair(joined(box({-4, -2, 0}, {-0.01, 2, 3}), box({0.01, -2, 0}, {4, 2, 3})),
                 box({-0.005, -0.005, 0}, {0.005, 0.005, 8}));
   const auto down = [&](double x) {
     return first_contact(pair.query, place({x, 0.3, 5}), place({x, 0.3, -9}), 1e-3).status;
@@ -122,7 +122,7 @@ TEST(FirstContact, OfANeedleBetweenTeeth) {
 
 TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
   // A rod that turns about z comes to a post from behind: after 350 degrees less their widths.
-  BodyPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
+  HandPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
   const Motion motion =
       Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, -4 * std::numbers::pi, 20);
   const FirstContact found = first_contact(pair.query, motion, 1e-4);
@@ -138,7 +138,7 @@ TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
   Random random(83);
   int contacts = 0;
   for (int i = 0; i < 60; ++i) {
-    BodyPair pair(random_mesh(random), random_mesh(random));
+    HandPair pair(random_mesh(random), random_mesh(random));
     Pose from = Pose::Identity(), until = Pose::Identity();
     from.linear() = random.rotation();
     const Eigen::AngleAxisd turn(i % 3 == 0 ? 0 : 0.3, random.direction());
@@ -172,7 +172,7 @@ TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
 }
 
 TEST(FirstContact, OfClosingJawsTakesFewDistances) {
-  BodyPair jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
+  HandPair jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
   const Motion motion = Motion::between(place({0, 0, -7}), place({0, 0, 0}));
   const FirstContact found = first_contact(jaws.query, motion, 1e-3);
   expect_contact(jaws, motion, 1e-3, found);
@@ -199,7 +199,7 @@ TEST(FirstContact, HasTheSameBitsOnEveryTargetWhateverWasAskedBefore) {
 }
 
 TEST(FirstContact, EndsWhereItIsTold) {
-  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), icosphere(3, 1));
+  HandPair pair(box({0, 0, 0}, {1, 1, 1}), icosphere(3, 1));
   const Motion motion = Motion::between(place({5, 5, 5}), place({0, 0, 0}));
   const FirstContact truth = first_contact(pair.query, motion, 1e-6);
   double last = -1;
@@ -220,7 +220,7 @@ TEST(FirstContact, EndsWhereItIsTold) {
 }
 
 TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
-  BodyPair pair(icosphere(2, 1), icosphere(2, 1));
+  HandPair pair(icosphere(2, 1), icosphere(2, 1));
   const FirstContact far =
       first_contact(pair.query, place({1e14, 3e13, 0}), place({1e14, 4e13, 0}), 1);
   EXPECT_EQ(far.status, ContactStatus::kNone) << to_string(far.status);
@@ -234,7 +234,7 @@ TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
 }
 
 TEST(FirstContact, RefusesWhatIsNoQuestion) {
-  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  HandPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   for (const double tolerance : {-1.0, std::nan("")}) {
     EXPECT_EQ(error_name([&] {
                 static_cast<void>(

@@ -131,7 +131,7 @@ TEST_F(BadSceneTest, HoldsWhatNobodyKnows) {
       {"shape = \"box\"", "shap = \"box\"", 4, "'shap' in [fixed] is unknown",
        "did you mean 'shape'?"},
       {"size = [40, 40, 10]", "size = [40, 40, 10]\nradius = 3", 6,
-       "'radius' in [fixed] is unknown", "take it out; known here are file, shape, size"},
+       "'radius' in [fixed] is unknown", "take it out; known here are name, file, shape, size"},
       {"size = [40, 40, 10]", "size = [40, 40, 10]\nopen = \"z\"", 6,
        "'open' in [fixed] is unknown", "known here are"},
       {"kind = \"hand\"", "kind = \"hand\"\npath = \"a.csv\"", 13, "'path' in [device] is unknown",

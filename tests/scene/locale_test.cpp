@@ -57,9 +57,9 @@ TEST_F(Locale, MeshesAreReadAlikeInEveryFormat) {
 
 TEST_F(Locale, ScenesAreReadAlike) {
   const Scene scene = read_scene(folder_.write("scene.toml", kSoundScene));
-  EXPECT_EQ(scene.held.voxel_size, 0.5);
+  EXPECT_EQ(scene.held.front().voxel_size, 0.5);
   const std::string finer = replaced(kSoundScene, "voxel_size = 1\n", "voxel_size = 1.25e-1\n");
-  EXPECT_EQ(read_scene(folder_.write("finer.toml", finer)).fixed.voxel_size, 0.125);
+  EXPECT_EQ(read_scene(folder_.write("finer.toml", finer)).fixed.front().voxel_size, 0.125);
 }
 
 }  // namespace

@@ -49,11 +49,11 @@ std::vector<std::unique_ptr<Effect>> push(const EffectNeeds& needs, Push::Seen& 
 // A ball 6 mm above a box, which a hand presses on it.
 Scene ball_on_box() {
   Scene scene{.unit = 1e-3};
-  scene.fixed.source = BuiltInShape{.size = Eigen::Vector3d(40, 40, 10)};
-  scene.fixed.voxel_size = 1;
-  scene.held.source = BuiltInShape{.kind = BuiltInShape::Kind::kSphere, .radius = 5};
-  scene.held.voxel_size = 0.5;
-  scene.held.translation = {0, 0, 11};
+  scene.fixed.front().source = BuiltInShape{.size = Eigen::Vector3d(40, 40, 10)};
+  scene.fixed.front().voxel_size = 1;
+  scene.held.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kSphere, .radius = 5};
+  scene.held.front().voxel_size = 0.5;
+  scene.held.front().translation = {0, 0, 11};
   const Placement down{Eigen::Matrix3d::Identity(), {0, 0, -2e-3}};
   scene.device = HandSettings{.plan = {{0, {}}, {0.2, down}, {0.4, down}}};
   return scene;
@@ -83,7 +83,7 @@ TEST(MadeScene, AnOwnEffectIsFeltAndTimed) {
   const BuiltScene built = build_scene(ball_on_box(), push({}, seen));
   ASSERT_EQ(built.simulation->effects().size(), 1u);
   EXPECT_EQ(built.simulation->effects()[0].name, "push");
-  EXPECT_EQ(built.trees.fixed, nullptr);
+  EXPECT_EQ(built.trees.front().contact, nullptr);
   const Tick tick = run(built, 600);
   EXPECT_NEAR(tick.wrench[0], kPush, 1e-3);
   EXPECT_EQ(seen.ticks, 599);
@@ -95,15 +95,15 @@ TEST(MadeScene, AnOwnEffectIsFeltAndTimed) {
 TEST(MadeScene, TheNeedsOfAnOwnEffectAreBuilt) {
   Push::Seen seen;
   const BuiltScene built = build_scene(ball_on_box(), push({.normals = true, .depth = true}, seen));
-  ASSERT_NE(built.trees.fixed, nullptr);
-  EXPECT_EQ(built.trees.near_fixed, nullptr);
-  EXPECT_EQ(built.trees.fixed->triangles(), nullptr);
+  ASSERT_NE(built.trees.front().contact, nullptr);
+  EXPECT_EQ(built.trees.front().near, nullptr);
+  EXPECT_EQ(built.trees.front().contact->triangles(), nullptr);
   EXPECT_TRUE(run(built, 400).contacts);
   EXPECT_GT(seen.contacts, 1);
 
   const BuiltScene exact = build_scene(ball_on_box(), push({.triangles = true}, seen));
-  ASSERT_NE(exact.trees.fixed, nullptr);
-  EXPECT_NE(exact.trees.fixed->triangles(), nullptr);
+  ASSERT_NE(exact.trees.front().contact, nullptr);
+  EXPECT_NE(exact.trees.front().contact->triangles(), nullptr);
 }
 
 TEST(MadeScene, AnOwnEffectMayNeedProximityWithItsTable) {
@@ -144,11 +144,11 @@ TEST(MadeScene, ValuesOutOfRangeAreRefused) {
   EXPECT_EQ(refusal([](Scene& s) { s.rate = std::nan(""); }),
             "the scene's rate: it is nan: give a number from 1 to 10000 Hz");
   EXPECT_EQ(refusal([](Scene& s) { s.workers = 3; }), "the scene's workers: it is 3: give 1 or 2");
-  EXPECT_EQ(refusal([](Scene& s) { s.held.voxel_size.reset(); }),
+  EXPECT_EQ(refusal([](Scene& s) { s.held.front().voxel_size.reset(); }),
             "the scene's held.voxel_size: a shape has no voxels: give their size");
   for (const auto& change : std::vector<std::function<void(Scene&)>>{
-           [](Scene& s) { s.rate = 1e5; }, [](Scene& s) { s.fixed.rotation *= 2; },
-           [](Scene& s) { s.fixed.translation.x() = std::nan(""); },
+           [](Scene& s) { s.rate = 1e5; }, [](Scene& s) { s.fixed.front().rotation *= 2; },
+           [](Scene& s) { s.fixed.front().translation.x() = std::nan(""); },
            [](Scene& s) { s.device = HandSettings{}; },
            [](Scene& s) { s.device = ScriptSettings{}; },
            [](Scene& s) { s.device = NullSettings{{.damping = -1}}; },

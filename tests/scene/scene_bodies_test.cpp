@@ -121,8 +121,8 @@ TEST_F(SceneBodies, ProximityNeedsTheTrianglesOfATree) {
     EXPECT_NE(std::string(error->what()).find(part), std::string::npos) << error->what();
   }
   const BuiltScene scene = built(with_ball("file = \"exact.ist\"\n") + proximity);
-  ASSERT_TRUE(scene.trees.near_held);
-  EXPECT_EQ(scene.trees.near_held->voxel_size(), 0.5);
+  ASSERT_TRUE(scene.trees.back().coarse);
+  EXPECT_EQ(scene.trees.back().coarse->voxel_size(), 0.5);
 }
 
 // By whatever spheres are named, if the tree has them; by the tightest of both where none are.

@@ -53,8 +53,8 @@ Names built_of(const BuiltScene& scene) {
 
 std::uint64_t bytes_of(const BuiltScene& scene) {
   std::uint64_t bytes = scene.simulation->bytes();
-  for (const auto* tree :
-       {&scene.trees.fixed, &scene.trees.held, &scene.trees.near_fixed, &scene.trees.near_held}) {
+  for (const auto* tree : {&scene.trees.front().contact, &scene.trees.back().contact,
+                           &scene.trees.front().near, &scene.trees.back().coarse}) {
     if (*tree) bytes += (*tree)->bytes();
   }
   return bytes;
@@ -67,10 +67,10 @@ const Names kProximityStages{"proximity voxels", "held tree, coarse", "proximity
 void expect_built_for(const BuiltScene& scene, const Names& effects) {
   const bool contacts = effects.contains("contact"), proximity = effects.contains("proximity");
   EXPECT_EQ(effects_of(scene), effects);
-  EXPECT_EQ(scene.trees.fixed != nullptr, contacts);
-  EXPECT_EQ(scene.trees.held != nullptr, contacts);
-  EXPECT_EQ(scene.trees.near_fixed != nullptr, proximity);
-  EXPECT_EQ(scene.trees.near_held != nullptr, proximity);
+  EXPECT_EQ(scene.trees.front().contact != nullptr, contacts);
+  EXPECT_EQ(scene.trees.back().contact != nullptr, contacts);
+  EXPECT_EQ(scene.trees.front().near != nullptr, proximity);
+  EXPECT_EQ(scene.trees.back().coarse != nullptr, proximity);
   Names stages;
   if (contacts) stages.insert(kContactStages.begin(), kContactStages.end());
   if (proximity) stages.insert(kProximityStages.begin(), kProximityStages.end());
@@ -164,7 +164,7 @@ TEST_F(PayOnlyForWhatIsNamed, WhatOnlyBrakesDoesNotHoldTheTool) {
 // Built shapes, voxels and needs in one table: what the effects ask for is what they say.
 TEST_F(PayOnlyForWhatIsNamed, NeedsAreTheUnionOfAllEffects) {
   const auto needs = [&](const Names& effects) {
-    const EffectNeeds of = needs_of(make_effects(scene_of(text_of(effects)), {}, true));
+    const EffectNeeds of = needs_of(make_effects(scene_of(text_of(effects)), {}, true, 1));
     return std::array{of.contacts(), of.velocity, of.proximity, of.triangles};
   };
   EXPECT_EQ(needs({}), (std::array{false, false, false, false}));

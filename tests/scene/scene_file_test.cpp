@@ -60,14 +60,14 @@ TEST_F(SceneFile, SaysWhatIsSimulated) {
   EXPECT_EQ(scene.file, folder_.path() / "scene.toml");
   EXPECT_EQ(scene.unit, 1e-3);
   EXPECT_EQ(scene.rate, 1000);
-  const auto& fixed = std::get<BuiltInShape>(scene.fixed.source);
+  const auto& fixed = std::get<BuiltInShape>(scene.fixed.front().source);
   EXPECT_EQ(fixed.kind, BuiltInShape::Kind::kBox);
   EXPECT_EQ(fixed.size, Vector(40, 40, 10));
-  EXPECT_EQ(scene.fixed.voxel_size, 1);
-  const auto& held = std::get<BuiltInShape>(scene.held.source);
+  EXPECT_EQ(scene.fixed.front().voxel_size, 1);
+  const auto& held = std::get<BuiltInShape>(scene.held.front().source);
   EXPECT_EQ(held.kind, BuiltInShape::Kind::kSphere);
   EXPECT_EQ(held.radius, 5);
-  EXPECT_EQ(scene.held.voxel_size, 0.5);
+  EXPECT_EQ(scene.held.front().voxel_size, 0.5);
   const auto& hand = std::get<HandSettings>(scene.device);
   ASSERT_EQ(hand.plan.size(), 2u);
   EXPECT_EQ(hand.plan[0].time, 0);
@@ -88,7 +88,7 @@ TEST_F(SceneFile, HasDefaults) {
   const Scene scene = read(replaced(kSoundScene, "rate = 1000", ""));
   EXPECT_EQ(scene.rate, 1000);
   EXPECT_EQ(scene.seconds, 10);
-  for (const SceneBody* body : {&scene.fixed, &scene.held}) {
+  for (const SceneBody* body : {&scene.fixed.front(), &scene.held.front()}) {
     EXPECT_FALSE(body->spheres);
     EXPECT_FALSE(body->trust_normals);
     EXPECT_EQ(body->rotation, Eigen::Matrix3d::Identity());
@@ -246,19 +246,19 @@ open = "-y"
 )");
   EXPECT_EQ(scene.rate, 4000.5);
   EXPECT_EQ(scene.seconds, 2);
-  const auto& jaw = std::get<BuiltInShape>(scene.fixed.source);
+  const auto& jaw = std::get<BuiltInShape>(scene.fixed.front().source);
   EXPECT_EQ(jaw.kind, BuiltInShape::Kind::kUpperJaw);
   EXPECT_EQ(jaw.seed, 7u);
-  EXPECT_EQ(scene.fixed.spheres, SpherePolicy::kTight);
-  EXPECT_TRUE(scene.fixed.trust_normals);
-  const auto& cylinder = std::get<BuiltInShape>(scene.held.source);
+  EXPECT_EQ(scene.fixed.front().spheres, SpherePolicy::kTight);
+  EXPECT_TRUE(scene.fixed.front().trust_normals);
+  const auto& cylinder = std::get<BuiltInShape>(scene.held.front().source);
   EXPECT_EQ(cylinder.kind, BuiltInShape::Kind::kCylinder);
   EXPECT_EQ(cylinder.radius, 2);
   EXPECT_EQ(cylinder.height, 3);
-  EXPECT_EQ(scene.held.spheres, SpherePolicy::kSimple);
-  EXPECT_FALSE(scene.held.trust_normals);
-  EXPECT_EQ(scene.held.translation, Vector(1, -2, 3.5)) << "not in the scene's unit";
-  EXPECT_EQ(scene.held.rotation, Vector(-1, -1, 1).asDiagonal().toDenseMatrix());
+  EXPECT_EQ(scene.held.front().spheres, SpherePolicy::kSimple);
+  EXPECT_FALSE(scene.held.front().trust_normals);
+  EXPECT_EQ(scene.held.front().translation, Vector(1, -2, 3.5)) << "not in the scene's unit";
+  EXPECT_EQ(scene.held.front().rotation, Vector(-1, -1, 1).asDiagonal().toDenseMatrix());
   EXPECT_EQ(scene.open.value(), Vector(0, -1, 0));
 }
 
@@ -272,7 +272,7 @@ TEST_F(SceneFile, KnowsUnitsPoliciesAxesAndShapes) {
   }
   for (const SpherePolicy policy : kSpherePolicies) {
     const std::string line = "radius = 5\nspheres = \"" + std::string(to_string(policy)) + "\"";
-    EXPECT_EQ(read(replaced(kSoundScene, "radius = 5", line)).held.spheres, policy);
+    EXPECT_EQ(read(replaced(kSoundScene, "radius = 5", line)).held.front().spheres, policy);
   }
   const std::pair<const char*, Vector> axes[] = {{"x", {1, 0, 0}}, {"-x", {-1, 0, 0}},
                                                  {"y", {0, 1, 0}}, {"-y", {0, -1, 0}},
@@ -282,8 +282,8 @@ TEST_F(SceneFile, KnowsUnitsPoliciesAxesAndShapes) {
     EXPECT_EQ(read(replaced(kSoundScene, "radius = 5", line)).open.value(), axis);
   }
   const Scene jaw = read(replaced(kSoundScene, "\"sphere\"\nradius = 5", "\"lower jaw\""));
-  EXPECT_EQ(std::get<BuiltInShape>(jaw.held.source).kind, BuiltInShape::Kind::kLowerJaw);
-  EXPECT_EQ(std::get<BuiltInShape>(jaw.held.source).seed, 1u);
+  EXPECT_EQ(std::get<BuiltInShape>(jaw.held.front().source).kind, BuiltInShape::Kind::kLowerJaw);
+  EXPECT_EQ(std::get<BuiltInShape>(jaw.held.front().source).seed, 1u);
 }
 
 TEST_F(SceneFile, FindsFilesFromItsFolderAndFromThatOfTheData) {
@@ -295,7 +295,7 @@ TEST_F(SceneFile, FindsFilesFromItsFolderAndFromThatOfTheData) {
   write_tree(build_tree(cube, options), tree);
   const std::string shape = "shape = \"box\"\nsize = [40, 40, 10]\nvoxel_size = 1\n";
   const auto read_from = [&](const std::string& name) {
-    return read(replaced(kSoundScene, shape, "file = \"" + name + "\"\n")).fixed;
+    return read(replaced(kSoundScene, shape, "file = \"" + name + "\"\n")).fixed.front();
   };
   const auto expect_tree = [&](const SceneBody& body) {
     EXPECT_TRUE(std::filesystem::equivalent(std::get<std::filesystem::path>(body.source), tree));
@@ -309,7 +309,7 @@ TEST_F(SceneFile, FindsFilesFromItsFolderAndFromThatOfTheData) {
   ::unsetenv("IST_DATA_DIR");
   folder_.write("cube.stl", "solid\nendsolid\n");
   const SceneBody mesh =
-      read(replaced(kSoundScene, shape, "file = \"cube.stl\"\nvoxel_size = 1\n")).fixed;
+      read(replaced(kSoundScene, shape, "file = \"cube.stl\"\nvoxel_size = 1\n")).fixed.front();
   EXPECT_EQ(std::get<std::filesystem::path>(mesh.source), folder_.path() / "cube.stl");
   EXPECT_EQ(mesh.voxel_size, 1);
 }
@@ -334,7 +334,8 @@ TEST_F(SceneFile, TakesQuaternionsOfAnyLength) {
     const std::string line = "radius = 5\nquaternion = [" + std::to_string(q.w()) + ", " +
                              std::to_string(q.x()) + ", " + std::to_string(q.y()) + ", " +
                              std::to_string(q.z()) + "]";
-    const Eigen::Matrix3d rotation = read(replaced(kSoundScene, "radius = 5", line)).held.rotation;
+    const Eigen::Matrix3d rotation =
+        read(replaced(kSoundScene, "radius = 5", line)).held.front().rotation;
     // to_string() gives six digits after the point.
     EXPECT_LT((rotation - turn.normalized().toRotationMatrix()).cwiseAbs().maxCoeff(),
               4e-6 / std::min(length, 1.0));

@@ -17,11 +17,12 @@ Scene tilted_scene() {
   Scene scene{};
   scene.file = "scene.toml";
   scene.unit = 1e-3;
-  scene.fixed.source = BuiltInShape{.kind = BuiltInShape::Kind::kBox, .size = Vector3d(30, 20, 6)};
-  scene.fixed.voxel_size = 1;
-  scene.held.source = BuiltInShape{.kind = BuiltInShape::Kind::kSphere, .radius = 4};
-  scene.held.voxel_size = 0.5;
-  scene.held.translation = {1, 2, 7.5};
+  scene.fixed.front().source =
+      BuiltInShape{.kind = BuiltInShape::Kind::kBox, .size = Vector3d(30, 20, 6)};
+  scene.fixed.front().voxel_size = 1;
+  scene.held.front().source = BuiltInShape{.kind = BuiltInShape::Kind::kSphere, .radius = 4};
+  scene.held.front().voxel_size = 0.5;
+  scene.held.front().translation = {1, 2, 7.5};
   scene.device =
       ScriptSettings{{.damping = 2, .angular_damping = 2e-3},
                      {},
@@ -70,7 +71,7 @@ TEST(SceneFrames, ATurnedAndMovedSceneIsFeltTurned) {
     const Eigen::Matrix3d turn = random.rotation();
     const Vector3d way = random.point(-200, 200);  // mm
     Scene moved = plain;
-    for (SceneBody* body : {&moved.fixed, &moved.held}) {
+    for (SceneBody* body : {&moved.fixed.front(), &moved.held.front()}) {
       body->translation = turn * body->translation + way;
       body->rotation = turn * body->rotation;
     }
@@ -96,7 +97,7 @@ TEST(SceneFrames, AnotherUnitIsFeltTheSame) {
     Scene scaled = plain;
     const double scale = plain.unit / unit;
     scaled.unit = unit;
-    for (SceneBody* body : {&scaled.fixed, &scaled.held}) {
+    for (SceneBody* body : {&scaled.fixed.front(), &scaled.held.front()}) {
       auto& shape = std::get<BuiltInShape>(body->source);
       shape.size *= scale;
       shape.radius *= scale;

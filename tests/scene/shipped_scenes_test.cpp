@@ -25,9 +25,9 @@ TEST(ShippedScene, PressesASphereOnABox) {
   const Scene scene = shipped("press");
   EXPECT_TRUE(scene.contact);
   EXPECT_EQ(effects(scene), 1);
-  const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.source).size.z();
+  const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.front().source).size.z();
   const double bottom =
-      scene.held.translation.z() - std::get<BuiltInShape>(scene.held.source).radius;
+      scene.held.front().translation.z() - std::get<BuiltInShape>(scene.held.front().source).radius;
   EXPECT_GT(bottom, top) << "does not start free";
   const auto& plan = std::get<HandSettings>(scene.device).plan;
   EXPECT_LT(bottom + plan[1].pose.translation.z() / scene.unit, top) << "does not press";
@@ -53,9 +53,9 @@ TEST(ShippedScene, SlidesABoxOverABox) {
   const Scene scene = shipped("slide");
   EXPECT_TRUE(scene.contact && scene.friction && scene.damping);
   EXPECT_EQ(effects(scene), 3);
-  const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.source).size.z();
-  const double bottom =
-      scene.held.translation.z() - 0.5 * std::get<BuiltInShape>(scene.held.source).size.z();
+  const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.front().source).size.z();
+  const double bottom = scene.held.front().translation.z() -
+                        0.5 * std::get<BuiltInShape>(scene.held.front().source).size.z();
   EXPECT_GT(bottom, top) << "does not start free";
   const auto& plan = std::get<HandSettings>(scene.device).plan;
   EXPECT_LT(bottom + plan[1].pose.translation.z() / scene.unit, top) << "does not press";
@@ -66,12 +66,12 @@ TEST(ShippedScene, SlidesABoxOverABox) {
 TEST(ShippedScene, ClosesTwoJawsWithAllEffects) {
   const Scene scene = shipped("jaws");
   EXPECT_EQ(effects(scene), 6);
-  EXPECT_EQ(std::get<BuiltInShape>(scene.fixed.source).kind, BuiltInShape::Kind::kUpperJaw);
-  EXPECT_EQ(std::get<BuiltInShape>(scene.held.source).kind, BuiltInShape::Kind::kLowerJaw);
+  EXPECT_EQ(std::get<BuiltInShape>(scene.fixed.front().source).kind, BuiltInShape::Kind::kUpperJaw);
+  EXPECT_EQ(std::get<BuiltInShape>(scene.held.front().source).kind, BuiltInShape::Kind::kLowerJaw);
   // make_jaw() promises that the jaws are free there, and not where the plan leads.
-  EXPECT_LE(scene.held.translation.z(), -2);
+  EXPECT_LE(scene.held.front().translation.z(), -2);
   const auto& plan = std::get<HandSettings>(scene.device).plan;
-  EXPECT_GT(scene.held.translation.z() + plan[1].pose.translation.z() / scene.unit, -1);
+  EXPECT_GT(scene.held.front().translation.z() + plan[1].pose.translation.z() / scene.unit, -1);
   EXPECT_EQ(scene.seconds, plan.back().time);
 }
 
@@ -83,10 +83,12 @@ TEST(ShippedScene, ClosesTheHumanPair) {
   }
   ASSERT_EQ(::setenv("IST_DATA_DIR", folder.c_str(), 1), 0);
   const Scene scene = shipped("human_pair");
-  EXPECT_EQ(std::get<std::filesystem::path>(scene.fixed.source), folder / "human_maxilla.stl");
-  EXPECT_EQ(std::get<std::filesystem::path>(scene.held.source), folder / "human_mandible.stl");
-  EXPECT_EQ(scene.fixed.voxel_size, 0.2);
-  EXPECT_EQ(scene.held.voxel_size, 0.2);
+  EXPECT_EQ(std::get<std::filesystem::path>(scene.fixed.front().source),
+            folder / "human_maxilla.stl");
+  EXPECT_EQ(std::get<std::filesystem::path>(scene.held.front().source),
+            folder / "human_mandible.stl");
+  EXPECT_EQ(scene.fixed.front().voxel_size, 0.2);
+  EXPECT_EQ(scene.held.front().voxel_size, 0.2);
   EXPECT_EQ(scene.open.value(), Eigen::Vector3d(0, 0, -1));
   EXPECT_TRUE(scene.contact && scene.friction && scene.damping);
   EXPECT_EQ(effects(scene), 3);

@@ -39,8 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Once, FloatEnvironmentOfAScene, ::testing::Values(1.0),
 TEST_P(FloatEnvironmentOfAScene, ChangesNoSceneThatIsRead) {
   changes_nothing("read_scene", 16, [&](Record& record) {
     const ist::Scene scene = read_scene(file_);
-    record.add(*scene.fixed.voxel_size);
-    record.add(*scene.held.voxel_size);
+    record.add(*scene.fixed.front().voxel_size);
+    record.add(*scene.held.front().voxel_size);
     record.add(scene.rate);
   });
 }

@@ -90,9 +90,12 @@ void run(const RunArguments& options) {
   refuse_if(options.seconds && std::isnan(*options.seconds), "--seconds", "give a number");
   refuse_to_overwrite(options.record, {options.scene, options.replay});
   Scene scene = read_scene(options.scene);
-  for (const SceneBody* body : {&scene.fixed, &scene.held}) {
-    const auto* file = std::get_if<std::filesystem::path>(&body->source);
-    if (file != nullptr) refuse_to_overwrite(options.record, {*file});
+  for (const auto* bodies : {&scene.fixed, &scene.held}) {
+    for (const SceneBody& body : *bodies) {
+      const auto* file = std::get_if<std::filesystem::path>(&body.source);
+      if (file != nullptr) refuse_to_overwrite(options.record, {*file});
+      refuse_to_overwrite(options.record, {body.script_file});
+    }
   }
   if (const auto* script = std::get_if<ScriptSettings>(&scene.device)) {
     refuse_to_overwrite(options.record, {script->file});

@@ -24,8 +24,8 @@ struct Servo {
   ServoCallback callback;  // refers to the scene's simulation
 };
 
-// The stages that the trees of two bodies begin at most.
-constexpr unsigned kMostStages = 12;
+// The stages that the trees of a body begin at most.
+constexpr std::size_t kMostStages = 6;
 
 struct OpenOptions {
   ServoCallbackOptions callback;
@@ -97,7 +97,9 @@ ist_status ist_servo_open_scene(const char* path, const ist_servo_options* optio
     replace_device(scene);
     ist::Progress progress;
     std::unique_ptr<Servo> made;
-    const bool whole = followed(asked.follower, progress, kMostStages, [&] {
+    const auto stages =
+        static_cast<unsigned>(kMostStages * (scene.fixed.size() + scene.held.size()));
+    const bool whole = followed(asked.follower, progress, stages, [&] {
       made = std::make_unique<Servo>(ist::build_scene(scene, {}, asked.max_memory, &progress),
                                      asked.callback);
     });

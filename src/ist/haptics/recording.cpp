@@ -20,6 +20,7 @@ TickRecord record_of(std::uint64_t number, double dt, const Tick& tick,
   record.contacts = tick.contacts;
   record.proximity = tick.proximity;
   record.leaf_pairs = tick.leaf_pairs;
+  record.change = tick.change;
   return record;
 }
 

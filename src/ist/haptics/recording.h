@@ -35,6 +35,7 @@ struct TickRecord {
   std::optional<QueryResult> contacts,  ///< Tick::contacts, mesh units
       proximity;                        ///< Tick::proximity, mesh units
   double leaf_pairs;                    ///< load-bearing leaf pairs, by weight
+  std::optional<HandChange> change;     ///< Tick::change
   std::int64_t late_ns;                 ///< from the tick's release to its start
   std::int64_t execution_ns;            ///< from its start to the end of Device::write
   std::int64_t cpu_ns;                  ///< processor time of the loop's thread meanwhile

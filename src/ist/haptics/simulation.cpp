@@ -20,23 +20,63 @@ bool is_complete(const std::optional<QueryResult>& result) noexcept {
 
 }  // namespace
 
+const char* to_string(ChangeStatus status) noexcept {
+  switch (status) {
+    case ChangeStatus::kDone:
+      return "done";
+    case ChangeStatus::kUnknownBody:
+      return "unknown-body";
+    case ChangeStatus::kFixedForGood:
+      return "fixed-for-good";
+    case ChangeStatus::kAlreadyThere:
+      return "already-there";
+    case ChangeStatus::kTouching:
+      return "touching";
+    case ChangeStatus::kUnfinished:
+      return "unfinished";
+  }
+  return "unknown";
+}
+
+void detail::add_two_bodies(SimulationParts& parts, const BodyFrames& frames, double radius,
+                            std::unique_ptr<ToolContactQuery> contacts,
+                            std::unique_ptr<ToolContactQuery> proximity) {
+  const Placement home{Eigen::Matrix3d::Identity(), frames.unit * frames.tool_origin};
+  parts.bodies = Bodies(frames.unit, home,
+                        {{"fixed", frames.fixed, Eigen::Vector3d::Zero(), 0},
+                         {"held", Placement(), frames.tool_origin, radius, /*held=*/true}});
+  if (contacts) parts.contacts.add({0, 1}, std::move(contacts));
+  if (proximity) parts.proximity.add({0, 1}, std::move(proximity));
+}
+
 struct detail::SimulationState {
   // The contacts at a pose whose queries were complete.
   struct LastComplete {
     Placement tool;
     ToolContacts contacts, proximity;
+    double time = 0;  // of bodies with a script, s
   };
 
   explicit SimulationState(SimulationParts parts);
 
   [[nodiscard]] bool query_contacts(const TickBudget& budget, Tick& tick) noexcept;
+  [[nodiscard]] bool query_changed(const TickBudget& budget) noexcept;
+  [[nodiscard]] std::optional<HandChange> next_change(const TickBudget& budget) noexcept;
+  [[nodiscard]] ChangeStatus attach(std::size_t body, const TickBudget& budget) noexcept;
+  [[nodiscard]] ChangeStatus release(std::size_t body, const TickBudget& budget) noexcept;
   [[nodiscard]] std::optional<Vector6> move(const VirtualCoupling::Stretch& stretch) noexcept;
+  void go_back() noexcept;
+  void set_time(double time) noexcept;
+  void place() noexcept;
   void fault() noexcept;
   [[nodiscard]] EffectInput input() const noexcept {
     return {last_complete.tool, last_complete.contacts, last_complete.proximity, dt};
   }
 
-  std::unique_ptr<ToolContactQuery> contacts, proximity;
+  Bodies bodies;
+  PairQueries contacts, proximity;
+  std::vector<PlannedChange> changes;
+  std::size_t changes_made = 0;
   TimedEffects effects;
   VirtualCoupling coupling;
   WrenchLimiter limiter;
@@ -49,19 +89,26 @@ struct detail::SimulationState {
   // are complete; if the tool is moved back they must not have advanced.
   std::optional<Vector6> motion;
   double step_scale = 1;  // fraction of the tool's longest step
+  double time = 0;        // of bodies with a script, s
+  std::uint64_t ticks = 0;
 };
 
 detail::SimulationState::SimulationState(SimulationParts parts)
-    : contacts(std::move(parts.contacts)),
+    : bodies(std::move(parts.bodies)),
+      contacts(std::move(parts.contacts)),
       proximity(std::move(parts.proximity)),
+      changes(std::move(parts.changes)),
       effects(std::move(parts.effects)),
       coupling(parts.coupling),
       limiter(parts.safety),
-      tool(parts.tool),
+      tool(bodies.held_radius(), parts.max_step),
       dt(parts.dt),
-      tool_pose(parts.start) {
+      tool_pose(parts.start),
+      last_complete{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())},
+      candidate{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())} {
   IST_ASSERT(dt > 0);
-  last_complete.tool = tool_pose;
+  bodies.set_time(0, dt);
+  place();
 }
 
 void detail::SimulationState::fault() noexcept {
@@ -71,12 +118,24 @@ void detail::SimulationState::fault() noexcept {
   effects.reset();
 }
 
+void detail::SimulationState::place() noexcept {
+  contacts.place(bodies);
+  proximity.place(bodies);
+}
+
+void detail::SimulationState::set_time(double to) noexcept {
+  if (!bodies.has_scripts()) return;
+  time = to;
+  bodies.set_time(time, step_scale * dt);
+  place();
+}
+
 // Finds the contacts at the tool's pose. Returns whether the load-bearing ones are complete;
 // proximity, which only brakes, may be a tick old and must not hold the tool.
 bool detail::SimulationState::query_contacts(const TickBudget& budget, Tick& tick) noexcept {
-  if (contacts) tick.contacts = contacts->find(tool_pose, budget.contacts, candidate.contacts);
+  tick.contacts = contacts.find(bodies, tool_pose, budget.contacts, candidate.contacts);
   if (!is_complete(tick.contacts)) return false;
-  if (proximity) tick.proximity = proximity->find(tool_pose, budget.proximity, candidate.proximity);
+  tick.proximity = proximity.find(bodies, tool_pose, budget.proximity, candidate.proximity);
   if (!is_complete(tick.proximity)) candidate.proximity = last_complete.proximity;
   if (motion) {
     effects.advance(input(), *motion);
@@ -84,8 +143,73 @@ bool detail::SimulationState::query_contacts(const TickBudget& budget, Tick& tic
     motion.reset();
   }
   candidate.tool = tool_pose;
+  candidate.time = time;
+  if (bodies.has_scripts()) {
+    set_time(time);  // the step may be longer now
+    contacts.note_drift(bodies, tool_pose, candidate.contacts);
+    proximity.note_drift(bodies, tool_pose, candidate.proximity);
+  }
   std::swap(last_complete, candidate);
   return true;
+}
+
+void detail::SimulationState::go_back() noexcept {
+  tool_pose = last_complete.tool;
+  motion.reset();
+  step_scale = std::max(kLeastStepScale, 0.5 * step_scale);
+  set_time(last_complete.time);
+}
+
+// Finds the contacts after a body was attached or released; the tool has not moved.
+bool detail::SimulationState::query_changed(const TickBudget& budget) noexcept {
+  place();
+  return is_complete(contacts.find(bodies, tool_pose, budget.contacts, candidate.contacts));
+}
+
+ChangeStatus detail::SimulationState::attach(std::size_t body, const TickBudget& budget) noexcept {
+  if (body >= bodies.size()) return ChangeStatus::kUnknownBody;
+  if (!bodies.is_attachable(body)) return ChangeStatus::kFixedForGood;
+  if (bodies.is_held(body)) return ChangeStatus::kAlreadyThere;
+  Tick before;
+  if (!query_contacts(budget, before)) return ChangeStatus::kUnfinished;
+  if (last_complete.contacts.count > 0) return ChangeStatus::kTouching;
+  bodies.attach(body, tool_pose);
+  const bool known = query_changed(budget);
+  if (known && candidate.contacts.count == 0) {
+    std::swap(last_complete.contacts, candidate.contacts);
+    tool.set_radius(bodies.held_radius());
+    return ChangeStatus::kDone;
+  }
+  bodies.undo(body);
+  place();
+  return known ? ChangeStatus::kTouching : ChangeStatus::kUnfinished;
+}
+
+ChangeStatus detail::SimulationState::release(std::size_t body, const TickBudget& budget) noexcept {
+  if (body >= bodies.size()) return ChangeStatus::kUnknownBody;
+  if (!bodies.is_attachable(body)) return ChangeStatus::kFixedForGood;
+  if (!bodies.is_held(body)) return ChangeStatus::kAlreadyThere;
+  Tick before;
+  if (!query_contacts(budget, before)) return ChangeStatus::kUnfinished;
+  bodies.release(body, tool_pose);
+  if (query_changed(budget)) {
+    std::swap(last_complete.contacts, candidate.contacts);
+    tool.set_radius(bodies.held_radius());
+    return ChangeStatus::kDone;
+  }
+  bodies.undo(body);
+  place();
+  return ChangeStatus::kUnfinished;
+}
+
+// Makes the change that is due, one a tick.
+std::optional<HandChange> detail::SimulationState::next_change(const TickBudget& budget) noexcept {
+  if (changes_made == changes.size()) return std::nullopt;
+  const PlannedChange& change = changes[changes_made];
+  if (!(static_cast<double>(ticks) * dt >= change.time)) return std::nullopt;
+  ++changes_made;
+  return HandChange{change.body, change.attach,
+                    change.attach ? attach(change.body, budget) : release(change.body, budget)};
 }
 
 // Moves the tool from its last complete pose. Empty if there is no finite motion.
@@ -95,6 +219,7 @@ std::optional<Vector6> detail::SimulationState::move(
   if (!found) return found;
   tool_pose = tool_pose.moved(*found);
   motion = found;
+  set_time(time + step_scale * dt);
   return found;
 }
 
@@ -112,12 +237,10 @@ Tick Simulation::tick(const std::optional<Placement>& device, const TickBudget& 
   Tick tick;
   tick.device = device.value_or(state.device.value_or(state.tool_pose));
   const std::uint64_t faults = state.limiter.faults();
+  tick.change = state.next_change(budget);
+  ++state.ticks;
   tick.held = !state.query_contacts(budget, tick);
-  if (tick.held) {
-    state.tool_pose = state.last_complete.tool;
-    state.motion.reset();
-    state.step_scale = std::max(kLeastStepScale, 0.5 * state.step_scale);
-  }
+  if (tick.held) state.go_back();
   tick.leaf_pairs = state.last_complete.contacts.count;
 
   if (!device) {
@@ -144,8 +267,28 @@ double Simulation::dt() const noexcept { return state_->dt; }
 const Placement& Simulation::tool_pose() const noexcept { return state_->tool_pose; }
 std::span<const EffectTime> Simulation::effects() const noexcept { return state_->effects.times(); }
 std::size_t Simulation::bytes() const noexcept {
-  return (state_->contacts ? state_->contacts->bytes() : 0) +
-         (state_->proximity ? state_->proximity->bytes() : 0);
+  return state_->contacts.bytes() + state_->proximity.bytes();
+}
+
+ChangeStatus Simulation::attach(std::size_t body, const TickBudget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
+  return state_->attach(body, budget);
+}
+ChangeStatus Simulation::release(std::size_t body, const TickBudget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
+  return state_->release(body, budget);
+}
+
+std::size_t Simulation::bodies() const noexcept { return state_->bodies.size(); }
+std::string_view Simulation::body_name(std::size_t body) const noexcept {
+  return body < bodies() ? std::string_view(state_->bodies.name(body)) : std::string_view();
+}
+bool Simulation::is_held(std::size_t body) const noexcept {
+  return body < bodies() && state_->bodies.is_held(body);
+}
+Placement Simulation::body_pose(std::size_t body) const noexcept {
+  const ScopedFloatEnvironment environment;
+  return body < bodies() ? state_->bodies.place(body, state_->tool_pose) : Placement();
 }
 
 }  // namespace ist

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,25 @@ struct TickBudget {
       proximity = {};    ///< of the proximity points
 };
 
+/// Whether a body was attached or released, or why not.
+enum class ChangeStatus : std::uint8_t {
+  kDone,
+  kUnknownBody,   ///< there is no body of that number
+  kFixedForGood,  ///< the body is not `attachable`, or it follows a script
+  kAlreadyThere,  ///< a held body was to be attached, or a fixed one released
+  kTouching,      ///< something touches the body, or a body that the hand holds
+  kUnfinished,    ///< the budget ended a query before the answer was known
+};
+/// Returns the status' name, such as "touching".
+[[nodiscard]] IST_API const char* to_string(ChangeStatus status) noexcept;
+
+/// An attach or a release that a tick tried.
+struct HandChange {
+  std::size_t body;     ///< by its number
+  bool attach;          ///< false: a release
+  ChangeStatus status;  ///< other than kDone: nothing changed
+};
+
 /// The result of a tick.
 struct Tick {
   Placement device = {};             ///< as read; the last known pose if it could not be read
@@ -50,11 +70,13 @@ struct Tick {
   Vector6 wrench = Vector6::Zero();  ///< on the hand, about the tool's origin
   bool fault = false;  ///< no device pose, or numbers that are not finite: the wrench is zero
   bool held = false;   ///< the contacts were incomplete: the tool is at its last complete pose
-  /// The results of the queries at the tool's pose before the tick, mesh units. Empty if no effect
-  /// needs the query.
+  /// The results of the queries at the tool's pose before the tick, over all pairs of a fixed and a
+  /// held body: counts are sums, the distance is the least, and all pairs must be complete. Mesh
+  /// units. Empty if no effect needs the query.
   std::optional<QueryResult> contacts = {},  ///< of the contacts
       proximity = {};                        ///< of the proximity points
   double leaf_pairs = 0;                     ///< load-bearing leaf pairs, by weight
+  std::optional<HandChange> change = {};     ///< that the scene planned for this tick
 };
 
 /// An effect of a simulation and the time spent in it.
@@ -66,10 +88,16 @@ struct EffectTime {
 /// Computes the wrench on the hand from the pose of the hand, tick by tick, without a clock. Equal
 /// device poses and equal results of the queries give equal bits. Made by build_scene().
 ///
+/// Each body is fixed or held; held bodies move as one with the tool. Contacts are those of every
+/// pair of a fixed and a held body. Their wrenches are summed about the tool's origin; friction
+/// sticks pair by pair. A body is named by its number: the fixed ones of the scene, then the held
+/// ones.
+///
 /// A tick queries the contacts at the tool's pose, moves the tool to the balance of coupling and
 /// effects by at most one voxel, and returns the coupling's wrench. If the contacts are incomplete
 /// the tool returns to its last complete pose and contacts, and its step limit halves: lack of time
 /// never lowers resistance. If the proximity points are incomplete the last complete ones are used.
+/// Bodies that follow a script wait while the tool is held, and at a fault.
 ///
 /// A tick allocates nothing, locks nothing and makes no system call. Cost: the queries, and 5 to 15
 /// µs. A simulation is used by one thread at a time.
@@ -89,6 +117,24 @@ class IST_API Simulation {
                           const TickBudget& budget = {}) noexcept;
   /// Sets the wrench to zero; it returns through the soft start. Effects forget earlier ticks.
   void fault() noexcept;
+
+  /// Takes a fixed body into the hand, where it is. Refused while anything touches it or a body in
+  /// the hand. Between ticks; cost: two queries of each pair that is concerned.
+  /// @param budget limits these queries
+  [[nodiscard]] ChangeStatus attach(std::size_t body, const TickBudget& budget = {}) noexcept;
+  /// Leaves a held body where it is, as a fixed one, whatever touches it. The hand may be empty
+  /// then. Between ticks; cost as of attach().
+  [[nodiscard]] ChangeStatus release(std::size_t body, const TickBudget& budget = {}) noexcept;
+
+  /// The number of bodies.
+  [[nodiscard]] std::size_t bodies() const noexcept;
+  /// The name of a body, from 0 on; empty beyond the last.
+  [[nodiscard]] std::string_view body_name(std::size_t body) const noexcept;
+  /// Whether the hand holds a body.
+  [[nodiscard]] bool is_held(std::size_t body) const noexcept;
+  /// Maps the mesh of a body, in metres, to the scene, after the last tick. The identity beyond the
+  /// last body.
+  [[nodiscard]] Placement body_pose(std::size_t body) const noexcept;
 
   /// The length of a tick, s.
   [[nodiscard]] double dt() const noexcept;

@@ -3,23 +3,39 @@
 #include <memory>
 #include <vector>
 
+#include "ist/haptics/bodies/bodies.h"
+#include "ist/haptics/bodies/pair_queries.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/simulation.h"
 #include "ist/haptics/tool.h"
-#include "ist/haptics/tool_contact_query.h"
 
 namespace ist::detail {
 
+/// An attach or a release at a time of the simulation.
+struct PlannedChange {
+  double time;       ///< from the first tick on, s
+  std::size_t body;  ///< by its number
+  bool attach;       ///< false: a release
+};
+
 /// The parts of a Simulation.
 struct SimulationParts {
-  std::unique_ptr<ToolContactQuery> contacts = {};   ///< null if no effect needs contacts
-  std::unique_ptr<ToolContactQuery> proximity = {};  ///< null if no effect needs proximity
+  Bodies bodies = {};
+  PairQueries contacts = {},                ///< empty if no effect needs contacts
+      proximity = {};                       ///< empty if no effect needs proximity
+  std::vector<PlannedChange> changes = {};  ///< by ascending time
   std::vector<std::unique_ptr<Effect>> effects = {};
   CouplingSettings coupling = {};
   SafetySettings safety = {};
-  Tool tool;
+  double max_step;       ///< bound on the displacement of a held surface in a tick, m
   Placement start = {};  ///< of the tool
   double dt;             ///< length of a tick, s
 };
+
+/// Gives `parts` a fixed and a held body at home, and the query between them.
+/// @param radius bound on the distance of the held surface from the tool's origin, m
+void add_two_bodies(SimulationParts& parts, const BodyFrames& frames, double radius,
+                    std::unique_ptr<ToolContactQuery> contacts,
+                    std::unique_ptr<ToolContactQuery> proximity = nullptr);
 
 }  // namespace ist::detail

@@ -64,6 +64,8 @@ class Tool {
   [[nodiscard]] double way(const Vector6& motion) const noexcept;
 
   [[nodiscard]] double max_step() const noexcept { return max_step_; }
+  /// Says how far the held surface reaches from now on.
+  void set_radius(double radius) noexcept { radius_ = radius; }
 
  private:
   double radius_, max_step_;

@@ -4,31 +4,35 @@
 
 namespace ist {
 
-FreeStart::FreeStart(const SphereTree& fixed, const SphereTree& held,
-                     const TriangleMesh* fixed_mesh, const TriangleMesh* held_mesh)
-    : query_(fixed, held),
-      voxel_(std::min(fixed.voxel_size(), held.voxel_size())),
-      farthest_(2 * (fixed.bounding_radius() + held.bounding_radius())) {
-  if (fixed_mesh != nullptr && held_mesh != nullptr) inside_.emplace(*fixed_mesh, *held_mesh);
+void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const TriangleMesh* fixed_mesh,
+                    const TriangleMesh* held_mesh, const Eigen::Isometry3d& pose,
+                    const Eigen::Vector3d& axis) {
+  const double voxel = std::min(fixed.voxel_size(), held.voxel_size());
+  voxel_ = pairs_.empty() ? voxel : std::min(voxel_, voxel);
+  farthest_ = std::max(farthest_, 2 * (fixed.bounding_radius() + held.bounding_radius()));
+  pairs_.push_back({Query(fixed, held), std::nullopt, pose, axis});
+  if (fixed_mesh != nullptr && held_mesh != nullptr) {
+    pairs_.back().inside.emplace(*fixed_mesh, *held_mesh);
+  }
 }
 
-FreeStart::State FreeStart::at(const Eigen::Isometry3d& pose) noexcept {
-  if (const IntersectionResult found = query_.intersects(pose);
-      found.status != QueryStatus::kDone || found.answer != Answer::kNo)
-    return State::kIntersecting;
-  if (inside_ && inside_->at(pose) != Inside::kNone) return State::kInside;
-  return State::kFree;
+std::optional<FreeStart::Flaw> FreeStart::flaw(double distance) noexcept {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    Pair& pair = pairs_[i];
+    Eigen::Isometry3d pose = pair.pose;
+    pose.translation() += distance * pair.axis;
+    if (const IntersectionResult found = pair.query.intersects(pose);
+        found.status != QueryStatus::kDone || found.answer != Answer::kNo) {
+      return Flaw{i, Way::kIntersecting};
+    }
+    if (pair.inside && pair.inside->at(pose) != Inside::kNone) return Flaw{i, Way::kInside};
+  }
+  return std::nullopt;
 }
 
-std::optional<double> FreeStart::open_distance(const Eigen::Isometry3d& pose,
-                                               const Eigen::Vector3d& axis) noexcept {
-  if (at(pose) == State::kFree) return 0;
-  Eigen::Isometry3d moved = pose;
+std::optional<double> FreeStart::open_distance() noexcept {
   for (double distance = voxel_; distance <= farthest_; distance += voxel_) {
-    moved.translation() = pose.translation() + distance * axis;
-    if (at(moved) != State::kFree) continue;
-    moved.translation() = pose.translation() + (distance + voxel_) * axis;
-    if (at(moved) == State::kFree) return distance + voxel_;
+    if (!flaw(distance) && !flaw(distance + voxel_)) return distance + voxel_;
   }
   return std::nullopt;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
 #include "ist/scene/scene_lines.h"
@@ -30,14 +32,14 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Sce
   body.origin = lattice_of(*body.mesh, voxel_size).origin();
 }
 
-}  // namespace
-
-LoadedBody load_body(const Scene& scene, const SceneBody& body, const char* table,
+LoadedBody load_body(const Scene& scene, const SceneBody& body, bool held, std::string table,
                      std::vector<std::string>& warnings) {
   LoadedBody loaded{};
-  loaded.table = table;
+  loaded.named = &body;
+  loaded.held = held;
+  loaded.table = std::move(table);
   if (const auto* shape = std::get_if<BuiltInShape>(&body.source)) {
-    loaded.name = fmt::format("the {} shape", table);
+    loaded.name = fmt::format("the {} shape", loaded.table);
     take_mesh(loaded, make_shape(*shape), *body.voxel_size, scene);
   } else {
     const auto& file = std::get<std::filesystem::path>(body.source);
@@ -54,6 +56,20 @@ LoadedBody load_body(const Scene& scene, const SceneBody& body, const char* tabl
   }
   loaded.outside_is_known |= body.trust_normals;
   return loaded;
+}
+
+}  // namespace
+
+std::vector<LoadedBody> load_bodies(const Scene& scene, std::vector<std::string>& warnings) {
+  std::vector<LoadedBody> bodies;
+  const auto load = [&](const std::vector<SceneBody>& all, const char* key, bool held) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      bodies.push_back(load_body(scene, all[i], held, path_of_body(key, i, all.size()), warnings));
+    }
+  };
+  load(scene.fixed, "fixed", false);
+  load(scene.held, "held", true);
+  return bodies;
 }
 
 }  // namespace ist

@@ -11,19 +11,26 @@ namespace ist {
 
 /// A body of a scene as read from its file or made from its shape.
 struct LoadedBody {
-  const char* table;  ///< of the scene: "fixed" or "held"
-  std::string name;   ///< of the file or the shape, for messages
+  const SceneBody* named;  ///< as the scene has it
+  bool held;               ///< in the hand at the start
+  std::string table;       ///< its path in the scene: "fixed", "fixed.2" or "held"
+  std::string name;        ///< of the file or the shape, for messages
   /// Oriented outward. Null if the source is a tree that was built without triangles.
   std::unique_ptr<TriangleMesh> mesh;
   std::unique_ptr<const SphereTree> tree;            ///< null unless the source is a tree
   bool outside_is_known = false;                     ///< from its triangles, or trusted
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of the grid, mesh coordinates
+
+  /// Whether it is fixed at some time of a run.
+  [[nodiscard]] bool may_be_fixed() const { return !held || named->attachable; }
+  /// Whether it is in the hand at some time of a run.
+  [[nodiscard]] bool may_be_held() const { return held || named->attachable; }
 };
 
-/// Reads or makes the body of the table "fixed" or "held", and adds the flaws of its mesh to
-/// `warnings`. Throws the errors of reading; kInputInvalid (fail_at) for a missing voxel size or
-/// one that does not fit the mesh.
-[[nodiscard]] LoadedBody load_body(const Scene& scene, const SceneBody& body, const char* table,
-                                   std::vector<std::string>& warnings);
+/// Reads or makes all bodies: the fixed ones, then the held ones. Adds the flaws of their meshes to
+/// `warnings`. Throws the errors of reading; kInputInvalid (fail_at) for a voxel size that does not
+/// fit the mesh.
+[[nodiscard]] std::vector<LoadedBody> load_bodies(const Scene& scene,
+                                                  std::vector<std::string>& warnings);
 
 }  // namespace ist

@@ -9,14 +9,16 @@
 
 namespace ist {
 
-std::vector<std::unique_ptr<Effect>> make_effects(const Scene& scene, const ToolHome& home,
-                                                  bool contacts) {
+std::vector<std::unique_ptr<Effect>> make_effects(const Scene& scene, const BodyHome& home,
+                                                  bool contacts, std::size_t pairs) {
   std::vector<std::unique_ptr<Effect>> effects;
   if (scene.contact && contacts) {
     auto contact = std::make_unique<ContactEffect>(*scene.contact);
     const ContactEffect& load = *contact;
     effects.push_back(std::move(contact));
-    if (scene.friction) effects.push_back(std::make_unique<FrictionEffect>(*scene.friction, load));
+    if (scene.friction) {
+      effects.push_back(std::make_unique<FrictionEffect>(*scene.friction, load, pairs));
+    }
     if (scene.damping) effects.push_back(std::make_unique<DampingEffect>(*scene.damping));
   }
   if (scene.proximity && contacts) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "ist/scene/ranges.h"
 #include "ist/scene/scene_parts.h"
@@ -57,8 +58,11 @@ BuiltInShape read_shape(TableReader& table, double unit) {
   return shape;
 }
 
-SceneBody read_body(TableReader table, double unit) {
+SceneBody read_body(TableReader& table, double unit) {
   SceneBody body;
+  body.name = table.path();
+  if (table.has("name")) body.name = table.text("name", "a name, which no other body has");
+  if (body.name.empty()) table.fail("name", table.name() + " has an empty 'name'", "give a name");
   if (table.has("file") && table.has("shape")) {
     table.fail("shape", table.name() + " has both a 'file' and a 'shape'", "take out one of them");
   }
@@ -84,7 +88,50 @@ SceneBody read_body(TableReader table, double unit) {
   body.trust_normals = table.flag("trust_normals", false);
   body.rotation = table.rotation("quaternion");
   body.translation = table.vector("translation", kPlace, Eigen::Vector3d::Zero());
+  body.attachable = table.flag("attachable", false);
   return body;
+}
+
+std::vector<SceneBody> read_fixed(TableReader& scene, double unit) {
+  std::vector<SceneBody> bodies;
+  for (TableReader& table : scene.table_or_tables("fixed")) {
+    SceneBody body = read_body(table, unit);
+    if (table.has("script")) {
+      body.script_file = read_path(table, "script");
+      body.script = read_script(body.script_file, unit);
+    }
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+std::vector<SceneBody> read_held(TableReader& scene, Scene& result) {
+  std::vector<SceneBody> bodies;
+  for (TableReader& table : scene.table_or_tables("held")) {
+    bodies.push_back(read_body(table, result.unit));
+    if (bodies.size() > 1 || !table.has("open")) continue;
+    result.open = table.choice("open", axis, R"("x", "-x", "y", "-y", "z" or "-z")");
+  }
+  return bodies;
+}
+
+std::vector<SceneChange> read_changes(TableReader& scene) {
+  std::vector<SceneChange> changes;
+  if (!scene.has("changes")) return changes;
+  for (TableReader& table : scene.tables("changes")) {
+    SceneChange change;
+    change.time = table.number("time", kInstant);
+    const bool attach = table.has("attach"), release = table.has("release");
+    if (attach && release) {
+      table.fail("release", table.name() + " has both 'attach' and 'release'",
+                 "take out one of them");
+    }
+    if (!attach && !release) table.fail_missing("attach", "it or 'release', the name of a body");
+    change.attach = attach;
+    change.body = table.text(attach ? "attach" : "release", "the name of a body");
+    changes.push_back(std::move(change));
+  }
+  return changes;
 }
 
 }  // namespace
@@ -115,12 +162,9 @@ std::filesystem::path read_path(TableReader& table, std::string_view key) {
 }
 
 void read_bodies(TableReader& scene, Scene& result) {
-  result.fixed = read_body(scene.table("fixed"), result.unit);
-  result.held = read_body(scene.table("held"), result.unit);
-  TableReader held = scene.table("held");
-  if (held.has("open")) {
-    result.open = held.choice("open", axis, R"("x", "-x", "y", "-y", "z" or "-z")");
-  }
+  result.fixed = read_fixed(scene, result.unit);
+  result.held = read_held(scene, result);
+  result.changes = read_changes(scene);
 }
 
 }  // namespace ist

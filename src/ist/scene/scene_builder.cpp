@@ -13,6 +13,7 @@
 #include "ist/scene/load_body.h"
 #include "ist/scene/make_effects.h"
 #include "ist/scene/scene_lines.h"
+#include "ist/scene/scene_pairs.h"
 #include "ist/scene/scene_parts.h"
 
 namespace ist {
@@ -22,50 +23,68 @@ class Builder {
  public:
   Builder(const Scene& scene, std::vector<std::unique_ptr<Effect>> own, std::uint64_t max_memory,
           Progress* progress)
-      : scene_(scene), own_(std::move(own)), max_memory_(max_memory), progress_(progress) {}
+      : scene_(scene),
+        own_(std::move(own)),
+        max_memory_(max_memory),
+        progress_(progress),
+        // In whole nanoseconds, as the loop's clock counts.
+        period_(1e-9 * std::floor(1e9 / scene.rate)) {}
 
   BuiltScene build() {
-    load();
+    bodies_ = load_bodies(scene_, built_.warnings);
+    home_ = home_of(bodies_[scene_.fixed.size()]);
     choose_effects();
-    built_.trees = build_scene_trees(scene_, fixed_, held_, needs_, max_memory_, notes_, progress_);
-    place();
+    built_.trees = build_scene_trees(scene_, bodies_, needs_, max_memory_, notes_, progress_);
+    place_bodies();
+    place_tool();
     build_simulation();
     built_.notes = notes_.take();
     return std::move(built_);
   }
 
  private:
-  void load();
   void choose_effects();
   void warn_of_unknown_outside(const LoadedBody& body);
-  void place();
+  void place_bodies();
+  void place_tool();
   void build_simulation();
+  void build_queries(detail::SimulationParts& parts);
+  [[nodiscard]] std::unique_ptr<ToolContactQuery> contact_query(const HandPair& pair) const;
+  [[nodiscard]] std::unique_ptr<ToolContactQuery> proximity_query(const HandPair& pair) const;
   void warn_of(const BorderLimit& limit, const char* key, const char* unit);
-  [[nodiscard]] Placement plan_start() const;
+  [[nodiscard]] BodyHome home_of(const LoadedBody& body) const;
+  [[nodiscard]] std::string label_of(const char* what, const HandPair& pair) const;
+  [[nodiscard]] std::vector<Waypoint> plan() const;
   [[nodiscard]] std::unique_ptr<Device> make_device() const;
 
   const Scene& scene_;
   std::vector<std::unique_ptr<Effect>> own_;
   std::uint64_t max_memory_;
   Progress* progress_;
+  double period_;  // s
   BuiltScene built_;
   BuildNotes notes_;
-  LoadedBody fixed_{}, held_{};
-  BodyFrames frames_;
-  ToolHome home_;
+  std::vector<LoadedBody> bodies_;
+  std::vector<HandPair> pairs_;
+  BodyHome home_;
+  Bodies placed_;
+  double max_step_ = Tool::kNoLimit;  // of the held surfaces in a tick, m
   Placement start_;
   std::vector<std::unique_ptr<Effect>> effects_;
   EffectNeeds needs_;
 };
 
-void Builder::load() {
-  fixed_ = load_body(scene_, scene_.fixed, "fixed", built_.warnings);
-  held_ = load_body(scene_, scene_.held, "held", built_.warnings);
-  frames_ = {
-      scene_.unit, {scene_.fixed.rotation, scene_.unit * scene_.fixed.translation}, held_.origin};
-  home_ = {{scene_.held.rotation,
-            scene_.unit * (scene_.held.rotation * held_.origin + scene_.held.translation)},
-           held_.origin};
+BodyHome Builder::home_of(const LoadedBody& body) const {
+  const SceneBody& named = *body.named;
+  return {{named.rotation, scene_.unit * (named.rotation * body.origin + named.translation)},
+          body.origin};
+}
+
+// "contact points", or of several pairs "contact points, splint – mandible".
+std::string Builder::label_of(const char* what, const HandPair& pair) const {
+  if (pairs_.size() == 1) return what;
+  return fmt::format("{}, {} – {}", what, bodies_[pair.fixed].named->name,
+                     bodies_[pair.held].named->name);
 }
 
 bool needs_outside(const EffectNeeds& needs) {
@@ -84,46 +103,97 @@ void Builder::warn_of_unknown_outside(const LoadedBody& body) {
 }
 
 void Builder::choose_effects() {
-  warn_of_unknown_outside(fixed_);
-  warn_of_unknown_outside(held_);
-  const bool outside_is_known = fixed_.outside_is_known && held_.outside_is_known;
-  effects_ = make_effects(scene_, home_, outside_is_known);
+  pairs_ = pairs_of(bodies_);
+  bool outside_is_known = true;
+  for (const LoadedBody& body : bodies_) {
+    warn_of_unknown_outside(body);
+    outside_is_known = outside_is_known && body.outside_is_known;
+  }
+  effects_ = make_effects(scene_, home_, outside_is_known, pairs_.size());
   for (auto& effect : own_) {
     if (outside_is_known || !needs_outside(effect->needs())) effects_.push_back(std::move(effect));
   }
   needs_ = needs_of(effects_);
 }
 
-// The device's pose at the beginning of its plan.
-Placement Builder::plan_start() const {
-  if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
-    return home_.moved(script->plan.front().pose);
+// Puts the bodies at their places, and bounds the tool's step by the least voxel, so that nothing
+// tunnels: what a script moves in a tick is taken off.
+void Builder::place_bodies() {
+  std::vector<double> radii(bodies_.size(), 0);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!built_.trees[i].contact) continue;
+    const SphereTree& tree = *built_.trees[i].contact;
+    radii[i] = scene_.unit * surface_radius(tree);
+    max_step_ = std::min(max_step_, scene_.unit * tree.voxel_size());
   }
-  if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) {
-    return home_.moved(hand->plan.front().pose);
+  std::vector<BodyPart> parts;
+  double script_step = 0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const LoadedBody& body = bodies_[i];
+    const SceneBody& named = *body.named;
+    BodyPart part{.name = named.name,
+                  .place = {named.rotation, scene_.unit * named.translation},
+                  .centre = body.origin,
+                  .radius = radii[i],
+                  .held = body.held,
+                  .attachable = named.attachable};
+    if (!named.script.empty()) {
+      script_step =
+          std::max(script_step, step_of(scene_, body, radii[i], period_, 0.5 * max_step_));
+      part.script = plan_of(named, home_of(body), scene_.unit);
+    }
+    parts.push_back(std::move(part));
   }
-  return home_.pose;
+  if (max_step_ < Tool::kNoLimit) max_step_ -= script_step;
+  placed_ = Bodies(scene_.unit, home_.pose, std::move(parts));
+  placed_.set_time(0, period_);
 }
 
-void Builder::place() {
-  start_ = plan_start();
+// The device's plan in the scene; empty if it has none.
+std::vector<Waypoint> Builder::plan() const {
+  std::vector<Waypoint> plan;
+  if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) plan = script->plan;
+  if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) plan = hand->plan;
+  for (Waypoint& waypoint : plan) waypoint.pose = home_.moved(waypoint.pose);
+  return plan;
+}
+
+void Builder::place_tool() {
+  const std::vector<Waypoint> plan = this->plan();
+  start_ = plan.empty() ? home_.pose : plan.front().pose;
   if (!needs_.contacts()) {
     notes_.skip("free start", "no effect needs contacts");
     return;
   }
-  FreeStart start(*built_.trees.fixed, *built_.trees.held, fixed_.mesh.get(), held_.mesh.get());
-  const Eigen::Isometry3d pose = frames_.query_pose(start_);
-  const FreeStart::State state = start.at(pose);
-  if (!fixed_.mesh || !held_.mesh) {
+  const Eigen::Vector3d axis = scene_.open.value_or(Eigen::Vector3d::Zero());
+  FreeStart start;
+  std::vector<HandPair> asked;
+  for (const HandPair& pair : pairs_) {
+    if (!placed_.are_apart(pair.fixed, pair.held)) continue;
+    const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
+    const BodyFrames frames = placed_.frames(pair.fixed, pair.held);
+    start.add(*built_.trees[pair.fixed].contact, *built_.trees[pair.held].contact, fixed.mesh.get(),
+              held.mesh.get(), frames.query_pose(start_), frames.fixed.rotation.transpose() * axis);
+    asked.push_back(pair);
+  }
+  for (const LoadedBody& body : bodies_) {
+    if (body.mesh) continue;
     built_.warnings.push_back(
         fmt::format("{}: the tree has no triangles, so a start inside the other body cannot be "
                     "detected: build it without --no-triangles",
-                    (fixed_.mesh ? held_ : fixed_).name));
+                    body.name));
   }
-  if (state == FreeStart::State::kFree) return;
-  const char* how = state == FreeStart::State::kIntersecting
-                        ? "the bodies intersect, or may intersect,"
-                        : "one body is inside the other";
+  const std::optional<FreeStart::Flaw> flaw = start.flaw();
+  if (!flaw) return;
+  const HandPair& pair = asked[flaw->pair];
+  const std::string which = asked.size() == 1
+                                ? "the bodies"
+                                : fmt::format("{} and {}", bodies_[pair.fixed].named->name,
+                                              bodies_[pair.held].named->name);
+  const std::string how = flaw->way == FreeStart::Way::kIntersecting
+                              ? fmt::format("{} intersect, or may intersect,", which)
+                          : asked.size() == 1 ? "one body is inside the other"
+                                              : fmt::format("of {} one is inside the other", which);
   if (!scene_.open) {
     fail_at(
         scene_, "held.open",
@@ -131,8 +201,7 @@ void Builder::place() {
                     "as open = \"-z\", or start elsewhere",
                     how));
   }
-  const std::optional<double> way =
-      start.open_distance(pose, scene_.fixed.rotation.transpose() * *scene_.open);
+  const std::optional<double> way = start.open_distance();
   if (!way) {
     fail_at(scene_, "held.open",
             fmt::format("{} where the device starts, and all along the axis of held.open: name "
@@ -146,16 +215,12 @@ void Builder::place() {
 }
 
 std::unique_ptr<Device> Builder::make_device() const {
-  const auto at_home = [&](std::vector<Waypoint> plan) {
-    for (Waypoint& waypoint : plan) waypoint.pose = home_.moved(waypoint.pose);
-    return plan;
-  };
   if (const auto* script = std::get_if<ScriptSettings>(&scene_.device)) {
-    return make_script_device(at_home(script->plan), script->mechanics);
+    return make_script_device(plan(), script->mechanics);
   }
   if (const auto* hand = std::get_if<HandSettings>(&scene_.device)) {
     HandSettings settings = *hand;
-    settings.plan = at_home(settings.plan);
+    settings.plan = plan();
     return make_hand_device(std::move(settings));
   }
   return make_null_device(start_, std::get<NullSettings>(scene_.device).mechanics);
@@ -169,56 +234,108 @@ void Builder::warn_of(const BorderLimit& limit, const char* key, const char* uni
                   key, limit.asked, unit, limit.largest, limit.used));
 }
 
+std::unique_ptr<ToolContactQuery> Builder::contact_query(const HandPair& pair) const {
+  const SphereTree &fixed = *built_.trees[pair.fixed].contact,
+                   &held = *built_.trees[pair.held].contact;
+  const SpherePolicy policy =
+      std::min(bodies_[pair.fixed].named->spheres.value_or(fixed.tightest()),
+               bodies_[pair.held].named->spheres.value_or(held.tightest()));
+  return std::make_unique<ToolContactQuery>(
+      fixed, held, placed_.frames(pair.fixed, pair.held),
+      ToolContactOptions{
+          .policy = policy,
+          .least_depth = -scene_.contact.value_or(ContactSettings()).margin,
+          .workers = scene_.workers,
+          .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * period_))});
+}
+
+std::unique_ptr<ToolContactQuery> Builder::proximity_query(const HandPair& pair) const {
+  return std::make_unique<ToolContactQuery>(
+      *built_.trees[pair.fixed].near, *built_.trees[pair.held].coarse,
+      placed_.frames(pair.fixed, pair.held),
+      ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
+}
+
+void Builder::build_queries(detail::SimulationParts& parts) {
+  const PlanReach reach(plan(), start_);
+  std::uint64_t bytes = 0;
+  // Refuses the query that is one too many.
+  const auto add = [&](PairQueries& queries, const HandPair& pair,
+                       std::unique_ptr<ToolContactQuery> query) {
+    bytes += query->bytes();
+    if (bytes > max_memory_) {
+      const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
+      fail_at(scene_, fixed.table,
+              fmt::format("the queries up to that of {} and {} take {:.0f} MB, and {:.0f} MB are "
+                          "allowed: allow more with --max-memory, or take bodies out",
+                          fixed.named->name, held.named->name, 1e-6 * static_cast<double>(bytes),
+                          1e-6 * static_cast<double>(max_memory_)));
+    }
+    queries.add(pair, std::move(query));
+  };
+  for (const HandPair& pair : pairs_) {
+    const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
+    const bool lasts =
+        fixed.named->script.empty() && !fixed.named->attachable && !held.named->attachable;
+    if (pairs_.size() > 1 && lasts && needs_.contacts() && reach.keeps_apart(placed_, pair)) {
+      const char* why = "their roots stay apart wherever the plan leads";
+      notes_.skip(label_of("contact points", pair), why);
+      parts.contacts.add_far(pair);
+      continue;
+    }
+    if (needs_.contacts()) {
+      const std::string why = fmt::format("for effects at contacts; up to {} leaf pairs are kept",
+                                          ToolContactOptions().front_pairs);
+      add(parts.contacts, pair,
+          notes_.make(label_of("contact points", pair), why, [&] { return contact_query(pair); }));
+    }
+    if (needs_.proximity) {
+      add(parts.proximity, pair,
+          notes_.make(label_of("proximity query", pair), "for effects.proximity",
+                      [&] { return proximity_query(pair); }));
+    }
+  }
+  if (!needs_.contacts()) notes_.skip("contact points", "no effect needs them");
+  if (!needs_.proximity) notes_.skip("proximity query", "no effect needs it");
+}
+
 void Builder::build_simulation() {
   built_.device = make_device();
-  // In whole nanoseconds, as the loop's clock counts.
-  const double period = 1e-9 * std::floor(1e9 / scene_.rate);
   const ClampedCoupling coupling =
-      clamp_coupling(scene_.coupling, built_.device->mechanics(), period);
+      clamp_coupling(scene_.coupling, built_.device->mechanics(), period_);
   warn_of(coupling.damping, "coupling.damping", "N s/m");
   warn_of(coupling.stiffness, "coupling.stiffness", "N/m");
   warn_of(coupling.angular_damping, "coupling.angular_damping", "N m s/rad");
   warn_of(coupling.angular_stiffness, "coupling.angular_stiffness", "N m/rad");
 
+  built_.step_limit = max_step_;
   detail::SimulationParts parts{.coupling = coupling.settings,
                                 .safety = scene_.safety,
-                                .tool = Tool(0, 0),
+                                .max_step = max_step_,
                                 .start = start_,
-                                .dt = period};
-  built_.step_limit = Tool::kNoLimit;
-  double radius = 0;
-  const SceneTrees& trees = built_.trees;
-  if (trees.fixed) {
-    const std::string why = fmt::format("for effects at contacts; up to {} leaf pairs are kept",
-                                        ToolContactOptions().front_pairs);
-    parts.contacts = notes_.make("contact points", why, [&] {
-      const SpherePolicy policy = std::min(scene_.fixed.spheres.value_or(trees.fixed->tightest()),
-                                           scene_.held.spheres.value_or(trees.held->tightest()));
-      return std::make_unique<ToolContactQuery>(
-          *trees.fixed, *trees.held, frames_,
-          ToolContactOptions{
-              .policy = policy,
-              .least_depth = -scene_.contact.value_or(ContactSettings()).margin,
-              .workers = scene_.workers,
-              .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * period))});
+                                .dt = period_};
+  build_queries(parts);
+  for (const SceneChange& change : scene_.changes) {
+    const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const LoadedBody& each) {
+      return each.named->name == change.body;
     });
-    built_.step_limit = scene_.unit * std::min(trees.fixed->voxel_size(), trees.held->voxel_size());
-    radius = scene_.unit * surface_radius(*trees.held);
-  } else {
-    notes_.skip("contact points", "no effect needs them");
+    parts.changes.push_back(
+        {change.time, static_cast<std::size_t>(body - bodies_.begin()), change.attach});
   }
-  if (trees.near_fixed) {
-    parts.proximity = notes_.make("proximity query", "for effects.proximity", [&] {
-      return std::make_unique<ToolContactQuery>(
-          *trees.near_fixed, *trees.near_held, frames_,
-          ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
-    });
-  } else {
-    notes_.skip("proximity query", "no effect needs it");
-  }
-  parts.tool = Tool(radius, built_.step_limit);
+  parts.bodies = std::move(placed_);
   parts.effects = std::move(effects_);
   built_.simulation = std::make_unique<Simulation>(std::move(parts));
+}
+
+Scene with_names(Scene scene) {
+  const auto name_all = [](const char* key, std::vector<SceneBody>& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (bodies[i].name.empty()) bodies[i].name = path_of_body(key, i, bodies.size());
+    }
+  };
+  name_all("fixed", scene.fixed);
+  name_all("held", scene.held);
+  return scene;
 }
 
 }  // namespace
@@ -226,11 +343,12 @@ void Builder::build_simulation() {
 BuiltScene build_scene(const Scene& scene, std::vector<std::unique_ptr<Effect>> own,
                        std::uint64_t max_memory, Progress* progress) {
   const ScopedFloatEnvironment environment;
-  check_scene(scene);
+  const Scene named = with_names(scene);
+  check_scene(named);
   if (std::any_of(own.begin(), own.end(), [](const auto& effect) { return !effect; })) {
     throw Error(ErrorCode::kArgumentInvalid, "an own effect is null: give effects only");
   }
-  return Builder(scene, std::move(own), max_memory, progress).build();
+  return Builder(named, std::move(own), max_memory, progress).build();
 }
 
 }  // namespace ist

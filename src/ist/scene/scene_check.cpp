@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "ist/scene/ranges.h"
 #include "ist/scene/scene_lines.h"
@@ -25,6 +29,13 @@ class Check {
     }
   }
   void body(const std::string& table, const SceneBody& body) const {
+    if (!body.script.empty() && body.attachable) {
+      fail_at(
+          scene_, table + ".attachable",
+          fmt::format("{} follows a script, so the hand cannot take it: take out one of the two",
+                      body.name));
+    }
+
     if (std::holds_alternative<BuiltInShape>(body.source) && !body.voxel_size) {
       fail_at(scene_, table + ".voxel_size", "a shape has no voxels: give their size");
     }
@@ -37,6 +48,78 @@ class Check {
  private:
   const Scene& scene_;
 };
+
+std::vector<std::string> names_of(const std::map<std::string, bool>& held) {
+  std::vector<std::string> names;
+  for (const auto& [name, is_held] : held) names.push_back(name);
+  return names;
+}
+
+void check_bodies(const Check& check, const Scene& scene) {
+  std::set<std::string> names;
+  const auto check_all = [&](const char* key, const std::vector<SceneBody>& bodies) {
+    if (bodies.empty()) {
+      fail_at(scene, key, fmt::format("there is no {} body: give one at least", key));
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const std::string table = path_of_body(key, i, bodies.size());
+      check.body(table, bodies[i]);
+      if (names.insert(bodies[i].name).second) continue;
+      fail_at(scene, table + ".name",
+              fmt::format("two bodies are called {}: give each a name of its own", bodies[i].name));
+    }
+  };
+  check_all("fixed", scene.fixed);
+  check_all("held", scene.held);
+  for (const SceneBody& body : scene.held) {
+    if (body.script.empty()) continue;
+    fail_at(
+        scene, "held.script",
+        fmt::format("{} is held, and cannot follow a script: move it by the device", body.name));
+  }
+}
+
+// Follows who holds what from change to change.
+void check_changes(const Scene& scene) {
+  std::map<std::string, bool> held;
+  std::set<std::string> attachable;
+  for (const SceneBody& body : scene.fixed) held[body.name] = false;
+  for (const SceneBody& body : scene.held) held[body.name] = true;
+  for (const auto* bodies : {&scene.fixed, &scene.held}) {
+    for (const SceneBody& body : *bodies) {
+      if (body.attachable) attachable.insert(body.name);
+    }
+  }
+  double before = 0;
+  for (std::size_t i = 0; i < scene.changes.size(); ++i) {
+    const SceneChange& change = scene.changes[i];
+    const std::string table = path_of_body("changes", i, scene.changes.size());
+    const std::string key = table + (change.attach ? ".attach" : ".release");
+    const auto body = held.find(change.body);
+    if (body == held.end()) {
+      fail_at(scene, key,
+              fmt::format("there is no body called {}: the bodies are {}", change.body,
+                          fmt::join(names_of(held), ", ")));
+    }
+    if (!attachable.contains(change.body)) {
+      fail_at(
+          scene, key,
+          fmt::format("{} stays where it is: write attachable = true in its table", change.body));
+    }
+    if (body->second == change.attach) {
+      fail_at(scene, key,
+              fmt::format("{} is {} at that time: take the change out, or another one before it",
+                          change.body, change.attach ? "in the hand already" : "not in the hand"));
+    }
+    body->second = change.attach;
+    if (!(change.time >= before) || !std::isfinite(change.time)) {
+      fail_at(scene, table + ".time",
+              fmt::format("the time {} s does not come after {} s: let times ascend from 0",
+                          change.time, before));
+    }
+    before = change.time;
+  }
+}
 
 void check_coupling(const Check& check, const CouplingSettings& coupling,
                     const SafetySettings& safety) {
@@ -119,8 +202,8 @@ void check_scene(const Scene& scene) {
   if (scene.workers != 1 && scene.workers != 2) {
     fail_at(scene, "workers", fmt::format("it is {}: give 1 or 2", scene.workers));
   }
-  check.body("fixed", scene.fixed);
-  check.body("held", scene.held);
+  check_bodies(check, scene);
+  check_changes(scene);
   const DeviceMechanics& mechanics = mechanics_of(scene);
   check.number("device.damping", mechanics.damping, kDamping);
   check.number("device.angular_damping", mechanics.angular_damping, kAngularDamping);

@@ -17,6 +17,16 @@ void detail::SceneLines::add(const TomlTable& table, const std::string& path) {
     const std::string key = path.empty() ? entry.key : fmt::format("{}.{}", path, entry.key);
     lines_.emplace(key, entry.value.line);
     if (const auto* inner = std::get_if<TomlTable>(&entry.value.content)) add(*inner, key);
+    const auto* items = std::get_if<std::vector<TomlValue>>(&entry.value.content);
+    if (items == nullptr) continue;
+    // As TableReader names them.
+    for (std::size_t i = 0; i < items->size(); ++i) {
+      const auto* inner = std::get_if<TomlTable>(&(*items)[i].content);
+      if (inner == nullptr) continue;
+      const std::string each = path_of_body(key, i, items->size());
+      lines_.insert_or_assign(each, (*items)[i].line);
+      add(*inner, each);
+    }
   }
 }
 
@@ -28,6 +38,10 @@ std::size_t detail::SceneLines::line_of(std::string_view key) const {
     line = lines_.find(key);
   }
   return line->second;
+}
+
+std::string path_of_body(std::string_view key, std::size_t index, std::size_t count) {
+  return count == 1 ? std::string(key) : fmt::format("{}.{}", key, index + 1);
 }
 
 void fail_at(const Scene& scene, std::string_view key, std::string_view text) {

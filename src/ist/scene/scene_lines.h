@@ -32,6 +32,9 @@ class SceneLines {
 
 }  // namespace detail
 
+/// The path of the table of body `index` (from 0) of `count` under `key`: "fixed", or "fixed.2".
+[[nodiscard]] std::string path_of_body(std::string_view key, std::size_t index, std::size_t count);
+
 /// Throws kInputInvalid for a key by its path: the scene's file, the key's line, and `text`, which
 /// ends in a remedy. For a scene without a file it names the key instead.
 [[noreturn]] void fail_at(const Scene& scene, std::string_view key, std::string_view text);

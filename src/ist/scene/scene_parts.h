@@ -15,7 +15,7 @@ namespace ist {
 /// which keys are known there.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, TomlTable& document);
 
-/// Reads the tables `fixed` and `held`, including `held.open`.
+/// Reads the tables `fixed` and `held`, including `held.open`, and the array `changes`.
 void read_bodies(TableReader& scene, Scene& result);
 
 /// Reads the table `device`.
@@ -56,12 +56,14 @@ class BuildNotes {
 
 struct LoadedBody;
 
-/// Builds the trees that effects need, or takes them from the bodies.
+/// Builds the trees that effects need, or takes them from the bodies: one element a body.
 /// @param max_memory bytes, for each tree
 /// Throws kInputInvalid (fail_at): voxels too small for the mesh or the memory, a tree file without
-/// the required spheres or triangles, a fixed body without outside.
-[[nodiscard]] SceneTrees build_scene_trees(const Scene& scene, LoadedBody& fixed, LoadedBody& held,
-                                           const EffectNeeds& needs, std::uint64_t max_memory,
-                                           BuildNotes& notes, Progress* progress);
+/// the required spheres or triangles, a body without outside that may be fixed.
+[[nodiscard]] std::vector<BodyTrees> build_scene_trees(const Scene& scene,
+                                                       std::vector<LoadedBody>& bodies,
+                                                       const EffectNeeds& needs,
+                                                       std::uint64_t max_memory, BuildNotes& notes,
+                                                       Progress* progress);
 
 }  // namespace ist

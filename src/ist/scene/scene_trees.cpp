@@ -1,6 +1,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ist/base/error.h"
 #include "ist/scene/load_body.h"
 #include "ist/scene/scene_lines.h"
@@ -22,19 +24,15 @@ class TreeBuilder {
   TreeBuilder(const Scene& scene, std::uint64_t max_memory, BuildNotes& notes, Progress* progress)
       : scene_(scene), max_memory_(max_memory), notes_(notes), progress_(progress) {}
 
-  void build_contact_trees(LoadedBody& fixed, LoadedBody& held, bool triangles) {
-    trees_.fixed = contact_tree(fixed, scene_.fixed, triangles);
-    trees_.held = contact_tree(held, scene_.held, triangles);
-  }
-  void build_near_trees(const LoadedBody& fixed, const LoadedBody& held);
-  [[nodiscard]] SceneTrees take() { return std::move(trees_); }
-
- private:
   using Tree = std::unique_ptr<const SphereTree>;
 
-  [[nodiscard]] Tree contact_tree(LoadedBody& body, const SceneBody& named, bool triangles);
-  [[nodiscard]] double near_voxel_size(const LoadedBody& fixed, const LoadedBody& held) const;
-  void check_tree(const LoadedBody& body, const SceneBody& named, bool triangles) const;
+  [[nodiscard]] Tree contact_tree(LoadedBody& body, bool triangles);
+  [[nodiscard]] double near_voxel_size(const std::vector<LoadedBody>& bodies) const;
+  [[nodiscard]] Tree near_tree(const LoadedBody& body, double voxel_size);
+  [[nodiscard]] Tree coarse_tree(const LoadedBody& body, double voxel_size);
+
+ private:
+  void check_tree(const LoadedBody& body, bool triangles) const;
   // `key` is the scene's key of the voxel size.
   [[nodiscard]] Tree build(const LoadedBody& body, const std::string& key, BuildOptions options);
 
@@ -42,8 +40,11 @@ class TreeBuilder {
   std::uint64_t max_memory_;
   BuildNotes& notes_;
   Progress* progress_;
-  SceneTrees trees_;
 };
+
+std::string voxels_of(double size) {
+  return fmt::format("voxels of {:.3g}, for effects.proximity", size);
+}
 
 TreeBuilder::Tree TreeBuilder::build(const LoadedBody& body, const std::string& key,
                                      BuildOptions options) {
@@ -56,26 +57,27 @@ TreeBuilder::Tree TreeBuilder::build(const LoadedBody& body, const std::string& 
 }
 
 // Checks that a tree file has the spheres and triangles that the scene needs.
-void TreeBuilder::check_tree(const LoadedBody& body, const SceneBody& named, bool triangles) const {
+void TreeBuilder::check_tree(const LoadedBody& body, bool triangles) const {
   if (triangles && body.tree->triangles() == nullptr) {
     fail_at(scene_, fmt::format("{}.file", body.table),
             fmt::format("an effect needs triangles, and {} has none: name the mesh, or build the "
                         "tree without --no-triangles",
                         body.name));
   }
-  if (!named.spheres || body.tree->has(*named.spheres)) return;
+  const std::optional<SpherePolicy> spheres = body.named->spheres;
+  if (!spheres || body.tree->has(*spheres)) return;
   fail_at(scene_, fmt::format("{}.spheres", body.table),
           fmt::format("spheres = \"{0}\" in [{1}], and {2} has none: build the tree "
                       "with --spheres {0}, or take the key out",
-                      to_string(*named.spheres), body.table, body.name));
+                      to_string(*spheres), body.table, body.name));
 }
 
-TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, const SceneBody& named,
-                                            bool triangles) {
+TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, bool triangles) {
+  const SceneBody& named = *body.named;
   const std::string why = fmt::format("{}, for contacts", body.name);
-  return notes_.make(fmt::format("{} tree", body.table), why, [&] {
+  return notes_.make(fmt::format("{} tree", named.name), why, [&] {
     if (body.tree) {
-      check_tree(body, named, triangles);
+      check_tree(body, triangles);
       return std::move(body.tree);
     }
     return build(body, fmt::format("{}.voxel_size", body.table),
@@ -85,72 +87,82 @@ TreeBuilder::Tree TreeBuilder::contact_tree(LoadedBody& body, const SceneBody& n
   });
 }
 
-double TreeBuilder::near_voxel_size(const LoadedBody& fixed, const LoadedBody& held) const {
+double TreeBuilder::near_voxel_size(const std::vector<LoadedBody>& bodies) const {
   if (!scene_.proximity) {
     fail_at(scene_, "effects.proximity",
             "an effect needs proximity voxels, whose size is half of the distance: add the table "
             "with a distance; damping = 0 makes it no brake");
   }
   const double size = scene_.proximity->distance / (kProximityEdges * scene_.unit);
-  for (const LoadedBody* body : {&fixed, &held}) {
-    if (!body->mesh) {
+  for (const LoadedBody& body : bodies) {
+    if (!body.mesh) {
       fail_at(scene_, "effects.proximity",
               fmt::format("proximity needs triangles, and {} has none: name the mesh, or "
                           "build the tree without --no-triangles",
-                          body->name));
+                          body.name));
     }
-    if (const std::optional<Error> flaw = lattice_flaw(*body->mesh, size)) {
-      fail_at(
-          scene_, kDistance,
-          fmt::format("proximity voxels have half that size: {}: {}", body->name, flaw->what()));
+    if (const std::optional<Error> flaw = lattice_flaw(*body.mesh, size)) {
+      fail_at(scene_, kDistance,
+              fmt::format("proximity voxels have half that size: {}: {}", body.name, flaw->what()));
     }
   }
   return size;
 }
 
-void TreeBuilder::build_near_trees(const LoadedBody& fixed, const LoadedBody& held) {
-  const double size = near_voxel_size(fixed, held);
-  const std::string why = fmt::format("voxels of {:.3g}, for effects.proximity", size);
-  trees_.near_fixed = notes_.make("proximity voxels", why, [&] {
-    const Tree tree = build(fixed, kDistance,
-                            {.voxel_size = size,
+TreeBuilder::Tree TreeBuilder::near_tree(const LoadedBody& body, double voxel_size) {
+  const std::string what = scene_.fixed.size() == 1 && !body.held
+                               ? "proximity voxels"
+                               : fmt::format("{} voxels", body.named->name);
+  return notes_.make(what, voxels_of(voxel_size), [&] {
+    const Tree tree = build(body, kDistance,
+                            {.voxel_size = voxel_size,
                              .spheres = SpherePolicy::kTable,
                              .keep_triangles = false,
                              .proximity = true});
     if (!tree->parts().proximity) {
       fail_at(scene_, "effects.proximity",
-              fmt::format("{} has no outside: repair the mesh, or take the table out", fixed.name));
+              fmt::format("{} has no outside: repair the mesh, or take the table out", body.name));
     }
     return std::make_unique<const SphereTree>(proximity_body(*tree));
   });
-  trees_.near_held = notes_.make("held tree, coarse", why, [&] {
-    return build(held, kDistance,
-                 {.voxel_size = size, .spheres = SpherePolicy::kTight, .keep_triangles = false});
+}
+
+TreeBuilder::Tree TreeBuilder::coarse_tree(const LoadedBody& body, double voxel_size) {
+  return notes_.make(fmt::format("{} tree, coarse", body.named->name), voxels_of(voxel_size), [&] {
+    return build(
+        body, kDistance,
+        {.voxel_size = voxel_size, .spheres = SpherePolicy::kTight, .keep_triangles = false});
   });
 }
 
 }  // namespace
 
-SceneTrees build_scene_trees(const Scene& scene, LoadedBody& fixed, LoadedBody& held,
-                             const EffectNeeds& needs, std::uint64_t max_memory, BuildNotes& notes,
-                             Progress* progress) {
+std::vector<BodyTrees> build_scene_trees(const Scene& scene, std::vector<LoadedBody>& bodies,
+                                         const EffectNeeds& needs, std::uint64_t max_memory,
+                                         BuildNotes& notes, Progress* progress) {
   TreeBuilder builder(scene, max_memory, notes, progress);
-  if (needs.contacts()) {
-    builder.build_contact_trees(fixed, held, needs.triangles);
-  } else {
-    const bool outside_is_known = fixed.outside_is_known && held.outside_is_known;
-    for (const LoadedBody* body : {&fixed, &held}) {
-      notes.skip(fmt::format("{} tree", body->table),
+  std::vector<BodyTrees> trees(bodies.size());
+  const bool outside_is_known =
+      std::all_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.outside_is_known; });
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (needs.contacts()) {
+      trees[i].contact = builder.contact_tree(bodies[i], needs.triangles);
+    } else {
+      notes.skip(fmt::format("{} tree", bodies[i].named->name),
                  outside_is_known ? "no effect needs contacts"
                                   : "the outside is not known, so no contact is felt");
     }
   }
-  if (needs.proximity) {
-    builder.build_near_trees(fixed, held);
-  } else {
+  if (!needs.proximity) {
     notes.skip("proximity voxels", "no effect needs them");
+    return trees;
   }
-  return builder.take();
+  const double size = builder.near_voxel_size(bodies);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].may_be_fixed()) trees[i].near = builder.near_tree(bodies[i], size);
+    if (bodies[i].may_be_held()) trees[i].coarse = builder.coarse_tree(bodies[i], size);
+  }
+  return trees;
 }
 
 }  // namespace ist

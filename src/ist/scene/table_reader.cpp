@@ -213,6 +213,17 @@ std::vector<TableReader> TableReader::tables(std::string_view key) {
   return readers;
 }
 
+std::vector<TableReader> TableReader::table_or_tables(std::string_view key) {
+  const TomlEntry* found = entry(key);
+  if (found == nullptr || !std::holds_alternative<std::vector<TomlValue>>(found->value.content)) {
+    return {table(key)};
+  }
+  std::vector<TableReader> readers = tables(key);
+  note(key, "a table");
+  if (readers.size() == 1) readers.front().path_ = path_of(key);
+  return readers;
+}
+
 void TableReader::fail(std::string_view key, std::string_view wrong,
                        std::string_view remedy) const {
   const TomlEntry* found = entry(key);

@@ -36,6 +36,8 @@ class TableReader {
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   /// The table's name for messages: "[effects.contact]", or "the file" for the outermost one.
   [[nodiscard]] std::string name() const;
+  /// The keys from the outermost table, joined by dots, such as "fixed" or "fixed.2".
+  [[nodiscard]] const std::string& path() const { return path_; }
 
   [[nodiscard]] bool has(std::string_view key);
   /// A number. Without `otherwise` the key is required.
@@ -63,6 +65,8 @@ class TableReader {
   [[nodiscard]] TableReader table(std::string_view key);
   /// An array of at least one table.
   [[nodiscard]] std::vector<TableReader> tables(std::string_view key);
+  /// A table, or an array of at least one.
+  [[nodiscard]] std::vector<TableReader> table_or_tables(std::string_view key);
 
   /// Throws for a wrong value, at its line, or at the table's if the key is missing.
   [[noreturn]] void fail(std::string_view key, std::string_view wrong,

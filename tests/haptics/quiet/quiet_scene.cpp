@@ -10,11 +10,12 @@ Scene scene_with_all_effects() {
   Scene scene{};
   scene.file = "scene.toml";
   scene.unit = 1e-3;
-  scene.fixed.source = BuiltInShape{.kind = Kind::kBox, .size = Eigen::Vector3d(40, 40, 10)};
-  scene.fixed.voxel_size = 1;
-  scene.held.source = BuiltInShape{.kind = Kind::kSphere, .radius = 5};
-  scene.held.voxel_size = 0.5;
-  scene.held.translation = {0, 0, 11};
+  scene.fixed.front().source =
+      BuiltInShape{.kind = Kind::kBox, .size = Eigen::Vector3d(40, 40, 10)};
+  scene.fixed.front().voxel_size = 1;
+  scene.held.front().source = BuiltInShape{.kind = Kind::kSphere, .radius = 5};
+  scene.held.front().voxel_size = 0.5;
+  scene.held.front().translation = {0, 0, 11};
   HandSettings hand{};
   hand.mechanics = {2, 2e-3, 0};
   hand.mass = 0.2;

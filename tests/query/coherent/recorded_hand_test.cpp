@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ist/haptics/tool_contact_query.h"
+#include "ist/haptics/bodies/tool_contact_query.h"
 #include "ist/scene.h"
 #include "query/coherent/kept_answers.h"
 #include "support/stability.h"
@@ -22,18 +22,19 @@ INSTANTIATE_TEST_SUITE_P(Policies, RecordedHand, ::testing::ValuesIn(kSpherePoli
 TEST_P(RecordedHand, IsAnsweredAsByAFreshQuery) {
   ist::Scene file = read_scene(std::string(IST_SCENES) + "/jaws.toml");
   file.workers = 1;
-  file.fixed.spheres = file.held.spheres = GetParam();
+  file.fixed.front().spheres = file.held.front().spheres = GetParam();
   BuiltScene built = build_scene(file);
   const BodyFrames frames{file.unit,
-                          {file.fixed.rotation, file.unit * file.fixed.translation},
-                          built.trees.held->origin()};
+                          {file.fixed.front().rotation, file.unit * file.fixed.front().translation},
+                          built.trees.back().contact->origin()};
   std::vector<Eigen::Isometry3d> poses;
   for (int i = 0; i < 6000; ++i) {
     poses.push_back(frames.query_pose(built.simulation->tool_pose()));
     const Tick tick = built.simulation->tick(built.device->read(), {});
     built.device->write(tick.wrench, built.simulation->dt());
   }
-  const Scene scene{"recorded", *built.trees.fixed, *built.trees.held, poses.front()};
+  const Scene scene{"recorded", *built.trees.front().contact, *built.trees.back().contact,
+                    poses.front()};
   Random random(4000);
   for (int round = 0; round < samples(2); ++round) {
     QueryOptions options = options_of(GetParam(), "", 1 + round % 2);

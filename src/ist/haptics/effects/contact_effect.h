@@ -8,8 +8,8 @@ namespace ist {
 ///
 ///     f = k · stiffness_fraction · max(0, depth - n · u) · n
 ///
-/// with the displacement u of the point. At the pose of the query the wrench is the sum over all
-/// leaf pairs, none merged (ToolContacts::spring); the points give its change.
+/// with the displacement u of the point from the fixed body. At the pose of the query the wrench is
+/// the sum over all leaf pairs, none merged (ToolContacts::spring); the points give its change.
 ///
 /// Within a tick the change is extrapolated to kLead times the motion, because a contact that
 /// deepens gains pairs and weight: where surfaces first meet, the sum grows 1.5 times as steeply as
@@ -33,7 +33,7 @@ class ContactEffect final : public Effect {
   void respond(const EffectInput& input, const Vector6& motion,
                Response& response) const noexcept override;
 
-  /// The normal force at a point after `motion`, N.
+  /// The normal force at a point after a motion from its fixed body, N.
   [[nodiscard]] double force(const ToolContact& point, const Vector6& motion) const noexcept;
 
  private:

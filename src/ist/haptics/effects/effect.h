@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "ist/base/api.h"
 #include "ist/haptics/placement.h"
@@ -14,7 +14,7 @@ namespace ist {
 /// A contact point of the tool: metres, scene axes.
 struct ToolContact {
   Eigen::Vector3d arm;     ///< from the tool's origin to the point
-  Eigen::Vector3d normal;  ///< of unit length, from the fixed body to the tool
+  Eigen::Vector3d normal;  ///< of unit length, from the fixed body to the held one
   double depth;            ///< at least 0, measured from the depth at which contacts begin
   /// The point's fraction of a contact's stiffness. A point of one whole leaf pair has 1. More than
   /// 10 whole pairs share the stiffness of 10, so that a broad contact is no stiffer than the loop
@@ -27,11 +27,25 @@ struct ToolContact {
   }
 };
 
-/// All contacts of the tool at one pose.
+/// The contact points of one pair of bodies: a fixed one, and one that the hand holds.
+struct ContactPair {
+  std::size_t number;      ///< of the pair, the same in every tick
+  std::size_t begin, end;  ///< its points, of ToolContacts::points()
+  /// The motion of the fixed body in this tick, about the tool's origin; zero while it rests.
+  Vector6 drift = Vector6::Zero();
+};
+
+/// All contacts of the tool at one pose, pair by pair of bodies.
 class ToolContacts {
  public:
-  /// The most points.
+  /// The most points of a pair.
   static constexpr std::size_t kMost = 32;
+
+  /// Reserves room for the points of `pairs` pairs.
+  explicit ToolContacts(std::size_t pairs = 1) {
+    points_.reserve(pairs * kMost);
+    pairs_.reserve(pairs);
+  }
 
   /// The sum over all leaf pairs, none merged, of stiffness_fraction · depth · normal, and its
   /// torque: the wrench of a contact with a stiffness of 1 N/m.
@@ -40,25 +54,40 @@ class ToolContacts {
   double count = 0;
 
   /// The points, in the order of add().
-  [[nodiscard]] std::span<const ToolContact> points() const noexcept {
-    return {points_.data(), size_};
+  [[nodiscard]] std::span<const ToolContact> points() const noexcept { return points_; }
+  /// The points of a pair.
+  [[nodiscard]] std::span<const ToolContact> points(const ContactPair& pair) const noexcept {
+    return points().subspan(pair.begin, pair.end - pair.begin);
   }
+  /// The pairs, by ascending number: all that were asked, with points or without.
+  [[nodiscard]] std::span<ContactPair> pairs() noexcept { return pairs_; }
+  /// The same, to read.
+  [[nodiscard]] std::span<const ContactPair> pairs() const noexcept { return pairs_; }
   /// Leaves no contact.
   void clear() noexcept {
     spring.setZero();
     count = 0;
-    size_ = 0;
+    points_.clear();
+    pairs_.clear();
   }
-  /// Adds a point. Returns false, and adds none, if there are kMost points.
+  /// Begins a pair. Allocates nothing up to the number of pairs that room was reserved for.
+  void begin_pair(std::size_t number) noexcept {
+    pairs_.push_back({number, points_.size(), points_.size()});
+  }
+  /// Adds a point to the last pair; the first one begins pair 0. Returns false, and adds none, if
+  /// the pair has kMost points.
   bool add(const ToolContact& point) noexcept {
-    if (size_ == kMost) return false;
-    points_[size_++] = point;
+    if (pairs_.empty()) begin_pair(0);
+    ContactPair& pair = pairs_.back();
+    if (pair.end - pair.begin == kMost) return false;
+    points_.push_back(point);
+    ++pair.end;
     return true;
   }
 
  private:
-  std::array<ToolContact, kMost> points_;
-  std::size_t size_ = 0;
+  std::vector<ToolContact> points_;
+  std::vector<ContactPair> pairs_;
 };
 
 /// The inputs of an effect. The union over all effects of a scene decides which trees are built and
@@ -67,7 +96,7 @@ struct EffectNeeds {
   bool normals = false;    ///< of contacts
   bool depth = false;      ///< of contacts
   bool velocity = false;   ///< of the tool, within a tick
-  bool proximity = false;  ///< proximity voxels of the fixed body
+  bool proximity = false;  ///< proximity voxels of the fixed bodies
   bool triangles = false;  ///< kept in the trees
 
   /// Whether the bodies must be voxelised and searched.
@@ -87,7 +116,7 @@ struct EffectNeeds {
 struct EffectInput {
   const Placement& tool;         ///< the pose at which the contacts were found
   const ToolContacts& contacts;  ///< empty if no effect needs contacts
-  /// Points near the fixed body, without a depth; empty if no effect needs proximity.
+  /// Points near the fixed bodies, without a depth; empty if no effect needs proximity.
   const ToolContacts& proximity;
   double dt;  ///< the nominal length of the tick, s
 };

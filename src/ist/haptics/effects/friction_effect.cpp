@@ -22,9 +22,10 @@ class Stretch {
     return way - point.normal.dot(way) * point.normal;
   }
   // The sum over all points, by stiffness fraction.
-  [[nodiscard]] double sum(const ToolContacts& contacts, const Vector6& motion) const noexcept {
+  [[nodiscard]] double sum(std::span<const ToolContact> points,
+                           const Vector6& motion) const noexcept {
     double sum = 0;
-    for (const ToolContact& point : contacts.points())
+    for (const ToolContact& point : points)
       sum += point.stiffness_fraction * at(point, motion).norm();
     return sum;
   }
@@ -34,47 +35,80 @@ class Stretch {
   Eigen::Matrix3d turn_;
 };
 
-}  // namespace
-
-double FrictionEffect::limit(double normal_force) const noexcept {
-  return (sliding_ ? settings_.dynamic_coefficient : settings_.static_coefficient) * normal_force;
+// The anchor after a motion of the fixed body about the tool's origin at `tool`.
+Placement carried(const Placement& anchor, const Placement& tool, const Vector6& drift) noexcept {
+  if (drift.isZero(0)) return anchor;  // bit by bit, so that it cannot creep
+  const Eigen::Matrix3d turn =
+      Placement()
+          .moved((Vector6() << Eigen::Vector3d::Zero(), drift.tail<3>()).finished())
+          .rotation;
+  return {turn * anchor.rotation,
+          tool.translation + drift.head<3>() + turn * (anchor.translation - tool.translation)};
 }
 
-double FrictionEffect::normal_force(const ToolContacts& contacts,
-                                    const Vector6& motion) const noexcept {
+}  // namespace
+
+double FrictionEffect::limit(const Grip& grip, double normal_force) const noexcept {
+  return (grip.sliding ? settings_.dynamic_coefficient : settings_.static_coefficient) *
+         normal_force;
+}
+
+double FrictionEffect::normal_force(std::span<const ToolContact> points,
+                                    const Vector6& relative) const noexcept {
   double sum = 0;
-  for (const ToolContact& point : contacts.points()) sum += contact_.force(point, motion);
+  for (const ToolContact& point : points) sum += contact_.force(point, relative);
   return sum;
 }
 
 void FrictionEffect::respond(const EffectInput& input, const Vector6& motion,
                              Response& response) const noexcept {
-  const Stretch stretch(anchor_.value_or(input.tool), input.tool, input.tool);
-  const double pull = settings_.stiffness * stretch.sum(input.contacts, motion);
-  const double most = limit(normal_force(input.contacts, motion));
-  const double part = pull > most ? most / pull : 1;
-  for (const ToolContact& point : input.contacts.points()) {
-    const double stiffness = part * settings_.stiffness * point.stiffness_fraction;
-    const Eigen::Matrix3d across =
-        Eigen::Matrix3d::Identity() - point.normal * point.normal.transpose();
-    response.add(point.arm, -stiffness * stretch.at(point, motion), stiffness * across);
+  for (const ContactPair& pair : input.contacts.pairs()) {
+    const Grip& grip = grips_[pair.number];
+    const std::span<const ToolContact> points = input.contacts.points(pair);
+    const Vector6 relative = motion - pair.drift;
+    const Stretch stretch(grip.anchor.value_or(input.tool), input.tool, input.tool);
+    const double pull = settings_.stiffness * stretch.sum(points, relative);
+    const double most = limit(grip, normal_force(points, relative));
+    const double part = pull > most ? most / pull : 1;
+    for (const ToolContact& point : points) {
+      const double stiffness = part * settings_.stiffness * point.stiffness_fraction;
+      const Eigen::Matrix3d across =
+          Eigen::Matrix3d::Identity() - point.normal * point.normal.transpose();
+      response.add(point.arm, -stiffness * stretch.at(point, relative), stiffness * across);
+    }
   }
 }
 
 void FrictionEffect::advance(const EffectInput& input, const Vector6& motion) noexcept {
-  const double force = normal_force(input.contacts, motion);
-  if (!(force > 0)) return reset();
+  // A pair that was not asked, as its bodies are held both, has lost its grip.
+  std::size_t next = 0;
+  for (const ContactPair& pair : input.contacts.pairs()) {
+    for (; next < pair.number; ++next) grips_[next] = {};
+    advance(grips_[next++], input, pair, motion);
+  }
+  for (; next < grips_.size(); ++next) grips_[next] = {};
+}
+
+void FrictionEffect::advance(Grip& grip, const EffectInput& input, const ContactPair& pair,
+                             const Vector6& motion) const noexcept {
+  const std::span<const ToolContact> points = input.contacts.points(pair);
+  const double force = normal_force(points, motion - pair.drift);
+  if (!(force > 0)) {
+    grip = {};
+    return;
+  }
   const Placement tool = input.tool.moved(motion);
-  if (!anchor_) anchor_ = input.tool;
-  const Stretch stretch(*anchor_, input.tool, tool);
-  const double pull = settings_.stiffness * stretch.sum(input.contacts, Vector6::Zero());
-  sliding_ = pull > (1 + kRest) * limit(force);
-  if (sliding_) anchor_ = tool.moved(limit(force) / pull * motion_between(tool, *anchor_));
+  grip.anchor = carried(grip.anchor.value_or(input.tool), input.tool, pair.drift);
+  const Stretch stretch(*grip.anchor, input.tool, tool);
+  const double pull = settings_.stiffness * stretch.sum(points, Vector6::Zero());
+  grip.sliding = pull > (1 + kRest) * limit(grip, force);
+  if (grip.sliding) {
+    grip.anchor = tool.moved(limit(grip, force) / pull * motion_between(tool, *grip.anchor));
+  }
 }
 
 void FrictionEffect::reset() noexcept {
-  anchor_.reset();
-  sliding_ = false;
+  for (Grip& grip : grips_) grip = {};
 }
 
 }  // namespace ist

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "ist/haptics/effects/contact_effect.h"
 
@@ -23,6 +25,9 @@ namespace ist {
 /// drift. Without normal force there is no anchor; the first tick with one sets it to the pose at
 /// its beginning.
 ///
+/// Each pair of bodies sticks and slides by itself. Where the fixed body moves, the anchor moves
+/// with it.
+///
 /// Within a tick a point moves by ToolContact::moved; the anchor follows its exact position. After
 /// sliding, a stretch is exact up to a fraction of it, the square of the turn in radians between
 /// anchor and tool. With constant fractions and normals no energy is returned beyond the energy
@@ -36,9 +41,10 @@ namespace ist {
 /// motion). Cost: some 250 flops a point.
 class FrictionEffect final : public Effect {
  public:
-  /// `contact` must outlive the effect.
-  FrictionEffect(const FrictionSettings& settings, const ContactEffect& contact)
-      : settings_(settings), contact_(contact) {}
+  /// `contact` must outlive the effect; `pairs` are the pairs of bodies.
+  FrictionEffect(const FrictionSettings& settings, const ContactEffect& contact,
+                 std::size_t pairs = 1)
+      : settings_(settings), contact_(contact), grips_(pairs) {}
 
   [[nodiscard]] std::string_view name() const noexcept override { return "friction"; }
   [[nodiscard]] EffectNeeds needs() const noexcept override {
@@ -49,21 +55,30 @@ class FrictionEffect final : public Effect {
   void advance(const EffectInput& input, const Vector6& motion) noexcept override;
   void reset() noexcept override;
 
-  /// The pose at which the tool stuck; empty without normal force.
-  [[nodiscard]] const std::optional<Placement>& anchor() const noexcept { return anchor_; }
+  /// The pose at which the tool stuck to the fixed body of a pair; empty without normal force.
+  [[nodiscard]] const std::optional<Placement>& anchor(std::size_t pair = 0) const noexcept {
+    return grips_[pair].anchor;
+  }
   /// Whether the last tick slid.
-  [[nodiscard]] bool slides() const noexcept { return sliding_; }
+  [[nodiscard]] bool slides(std::size_t pair = 0) const noexcept { return grips_[pair].sliding; }
 
  private:
+  // Of a pair of bodies.
+  struct Grip {
+    std::optional<Placement> anchor = {};
+    bool sliding = false;
+  };
+
   // The largest tangential force, N.
-  [[nodiscard]] double limit(double normal_force) const noexcept;
-  [[nodiscard]] double normal_force(const ToolContacts& contacts,
-                                    const Vector6& motion) const noexcept;
+  [[nodiscard]] double limit(const Grip& grip, double normal_force) const noexcept;
+  [[nodiscard]] double normal_force(std::span<const ToolContact> points,
+                                    const Vector6& relative) const noexcept;
+  void advance(Grip& grip, const EffectInput& input, const ContactPair& pair,
+               const Vector6& motion) const noexcept;
 
   FrictionSettings settings_;
   const ContactEffect& contact_;
-  std::optional<Placement> anchor_;
-  bool sliding_ = false;
+  std::vector<Grip> grips_;  // by the pairs' numbers
 };
 
 }  // namespace ist

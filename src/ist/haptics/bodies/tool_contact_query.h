@@ -7,11 +7,12 @@
 
 namespace ist {
 
-/// Maps between mesh coordinates and the scene.
+/// Maps between the mesh coordinates of a fixed and a held body and the scene.
 struct BodyFrames {
   double unit;                  ///< metres in a mesh unit, of both bodies
   Placement fixed;              ///< from the fixed mesh, in metres, to the scene
   Eigen::Vector3d tool_origin;  ///< the tool's origin in held mesh coordinates, mesh units
+  Eigen::Matrix3d held_turn = Eigen::Matrix3d::Identity();  ///< from held mesh axes to tool axes
 
   /// Maps held mesh coordinates to fixed mesh coordinates, mesh units.
   [[nodiscard]] Eigen::Isometry3d query_pose(const Placement& tool) const noexcept;
@@ -29,23 +30,25 @@ struct ToolContactOptions {
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one query to the next
 };
 
-/// Finds the contacts of the tool in scene terms. Holds references to both trees. Memory: a Query
-/// and a ContactManifold.
+/// Finds the contacts between a fixed and a held body in scene terms. Holds references to both
+/// trees. Memory: a Query and a ContactManifold.
 class ToolContactQuery {
  public:
   /// Throws as Query and ContactManifold do.
   ToolContactQuery(const SphereTree& fixed, const SphereTree& held, const BodyFrames& frames,
                    const ToolContactOptions& options);
 
-  /// Finds the contacts at a pose of the tool. Leaves `contacts` unchanged unless the result is
-  /// complete. Where the tool is apart, the distance of the result is a clearance, as far as it is
-  /// known.
+  /// Finds the contacts at a pose of the tool, and adds them to `contacts` as those of the pair
+  /// `number`. Leaves `contacts` unchanged unless the result is complete. Where the tool is apart,
+  /// the distance of the result is a clearance, as far as it is known.
   [[nodiscard]] QueryResult find(const Placement& tool, const Budget& budget,
-                                 ToolContacts& contacts) noexcept;
+                                 ToolContacts& contacts, std::size_t number = 0) noexcept;
+  /// Says where the bodies are from now on.
+  void place(const BodyFrames& frames) noexcept { frames_ = frames; }
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + manifold_.bytes(); }
 
  private:
-  void reduce(const Placement& tool, ToolContacts& contacts) const noexcept;
+  void add_to(ToolContacts& contacts, const Placement& tool) const noexcept;
 
   BodyFrames frames_;
   double area_;  // of a whole leaf pair, mesh units squared

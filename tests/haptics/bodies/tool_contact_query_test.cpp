@@ -1,4 +1,4 @@
-#include "ist/haptics/tool_contact_query.h"
+#include "ist/haptics/bodies/tool_contact_query.h"
 
 #include <gtest/gtest.h>
 
@@ -169,6 +169,7 @@ TEST(ToolContactQuery, KeepsWhatItKnewWhereTheAnswerIsNotComplete) {
   EXPECT_EQ(contacts.spring, before.spring);
   EXPECT_EQ(contacts.count, before.count);
   EXPECT_EQ(contacts.points().size(), before.points().size());
+  contacts.clear();
   EXPECT_TRUE(query.find(scenery.tool(pressed(-2)), {}, contacts).complete);
   EXPECT_EQ(contacts.count, 0);
   EXPECT_TRUE(contacts.points().empty());
@@ -185,6 +186,7 @@ TEST(ToolContactQuery, TellsAClearanceWhereNothingIsTouched) {
   double lowest = 1;
   for (int i = 0; i <= 400; ++i) {
     const double gap = 1.6 - 2e-3 * i;
+    contacts.clear();
     const QueryResult result = query.find(scenery.tool(pressed(-gap)), {}, contacts);
     ASSERT_TRUE(result.complete);
     ASSERT_EQ(result.leaf_pairs, 0u);

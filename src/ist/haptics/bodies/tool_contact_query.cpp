@@ -1,4 +1,4 @@
-#include "ist/haptics/tool_contact_query.h"
+#include "ist/haptics/bodies/tool_contact_query.h"
 
 #include <algorithm>
 
@@ -13,9 +13,10 @@ constexpr double kFullPairs = 10;
 Eigen::Isometry3d BodyFrames::query_pose(const Placement& tool) const noexcept {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const Eigen::Matrix3d to_fixed = fixed.rotation.transpose();
-  pose.linear() = to_fixed * tool.rotation;
+  const Eigen::Matrix3d held = tool.rotation * held_turn;
+  pose.linear() = to_fixed * held;
   pose.translation() =
-      to_fixed * ((tool.translation - fixed.translation) / unit - tool.rotation * tool_origin);
+      to_fixed * ((tool.translation - fixed.translation) / unit - held * tool_origin);
   return pose;
 }
 
@@ -39,25 +40,26 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
                  .margin = options.margin}) {}
 
 QueryResult ToolContactQuery::find(const Placement& tool, const Budget& budget,
-                                   ToolContacts& contacts) noexcept {
+                                   ToolContacts& contacts, std::size_t number) noexcept {
   const Eigen::Isometry3d pose = frames_.query_pose(tool);
   QueryResult result = query_.contacts(pose, manifold_, budget);
   if (result.status != QueryStatus::kDone || !result.complete) return result;
-  reduce(tool, contacts);
+  contacts.begin_pair(number);
+  add_to(contacts, tool);
   return result;
 }
 
-void ToolContactQuery::reduce(const Placement& tool, ToolContacts& contacts) const noexcept {
+void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) const noexcept {
   const ContactSums& sums = manifold_.sums();
-  contacts.clear();
-  contacts.count = sums.weight / area_;
-  const double fraction = 1 / (area_ * std::max(1.0, contacts.count / kFullPairs));
+  const double count = sums.weight / area_;
+  const double fraction = 1 / (area_ * std::max(1.0, count / kFullPairs));
+  contacts.count += count;
 
   const Eigen::Matrix3d& turn = frames_.fixed.rotation;
   const Eigen::Vector3d arm = frames_.to_scene(sums.about) - tool.translation;
   const Eigen::Vector3d force = turn * ((fraction * frames_.unit) * sums.spring.force);
-  contacts.spring.head<3>() = force;
-  contacts.spring.tail<3>() =
+  contacts.spring.head<3>() += force;
+  contacts.spring.tail<3>() +=
       turn * ((fraction * frames_.unit * frames_.unit) * sums.spring.torque) + arm.cross(force);
 
   for (const Contact& point : manifold_.points()) {

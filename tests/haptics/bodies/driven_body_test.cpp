@@ -1,0 +1,105 @@
+// A fixed body that follows a script pushes the tool, and drags it along by friction.
+
+#include <gtest/gtest.h>
+
+#include "haptics/bodies/body_cases.h"
+#include "ist/base/error.h"
+#include "ist/haptics/simulation.h"
+#include "support/errors.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// A plate under the ball that a hand holds, 1 mm below it, which moves by `way` mm in a second.
+Scene driven(const Vector3d& way) {
+  Scene scene{.unit = 1e-3};
+  scene.fixed = {box_body("plate", {-30, -30, -8}, {30, 30, 0})};
+  scene.fixed.front().script = {{0, {}}, {1, {Eigen::Matrix3d::Identity(), 1e-3 * way}}};
+  scene.held = {ball_body("tool", {0, 0, 6}, 5)};
+  scene.device = NullSettings{kDeviceUnderTest};
+  scene.contact = ContactSettings{};
+  scene.friction = FrictionSettings{.static_coefficient = 1, .dynamic_coefficient = 0.8};
+  return scene;
+}
+
+TEST(DrivenBody, PushesTheTool) {
+  const BuiltScene built = build_scene(driven({0, 0, 4}));
+  const Placement start = built.simulation->tool_pose();
+  Tick tick{};
+  for (int i = 0; i < 1200; ++i) tick = built.simulation->tick(start);
+  EXPECT_GT(tick.wrench[2], 0.5);
+  EXPECT_GT(built.simulation->tool_pose().translation.z() - start.translation.z(), 1e-3);
+  EXPECT_NEAR(built.simulation->body_pose(0).translation.z(), 0, 1e-12) << "4 mm up from -4 mm";
+}
+
+// Pressed on the plate, the tool sticks to it: the hand is drawn along as far as friction goes.
+TEST(DrivenBody, DragsWhatSticksToIt) {
+  for (const double way : {2.0, -2.0}) {
+    const BuiltScene built = build_scene(driven({way, 0, 0}));
+    const Placement start = built.simulation->tool_pose();
+    const Placement pressed = moved_by(start, {0, 0, -3});
+    Tick tick{};
+    for (int i = 0; i < 1000; ++i) {
+      tick = built.simulation->tick(moved_by(start, {0, 0, -3 * std::min(1.0, i / 100.0)}));
+    }
+    EXPECT_GT(tick.wrench[2], 1);
+    const double dragged = tick.tool.translation.x() - pressed.translation.x();
+    EXPECT_GT(dragged * way, 0) << "with the plate";
+    EXPECT_GT(std::abs(dragged), 5e-4);
+    EXPECT_GT(tick.wrench[0] * way, 0) << "the hand is drawn along";
+    EXPECT_LE(std::abs(tick.wrench[0]), 1.02 * tick.wrench[2]) << "no more than friction holds";
+  }
+}
+
+// It sticks without creeping: after the plate has come to rest the tool rests too.
+TEST(DrivenBody, HoldsStillWhenItRests) {
+  const BuiltScene built = build_scene(driven({0.5, 0, 0}));
+  const Placement start = built.simulation->tool_pose();
+  Tick tick{};
+  for (int i = 0; i < 2000; ++i) {
+    tick = built.simulation->tick(moved_by(start, {0, 0, -3 * std::min(1.0, i / 100.0)}));
+  }
+  const Vector3d before = tick.tool.translation;
+  for (int i = 0; i < 1000; ++i) tick = built.simulation->tick(moved_by(start, {0, 0, -3}));
+  EXPECT_LT((tick.tool.translation - before).norm(), 1e-7);
+}
+
+// While an answer is missing the tool is held, and the plate waits for it.
+TEST(DrivenBody, WaitsWhileTheToolIsHeld) {
+  const BuiltScene built = build_scene(driven({0, 0, 4}));
+  const Placement start = built.simulation->tool_pose();
+  for (int i = 0; i < 600; ++i) static_cast<void>(built.simulation->tick(start));
+  const Vector3d before = built.simulation->body_pose(0).translation;
+  TickBudget none;
+  none.contacts.tests = 0;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(built.simulation->tick(start, none).held);
+  EXPECT_NEAR((built.simulation->body_pose(0).translation - before).norm(), 0, 1e-5);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(built.simulation->tick(start).held);
+  EXPECT_GT(built.simulation->body_pose(0).translation.z(), before.z());
+}
+
+TEST(DrivenBody, ThatJumpsIsRefused) {
+  Scene scene = driven({0, 0, 4});
+  scene.fixed.front().script.back().time = 0.005;
+  const auto error = error_of([&] { static_cast<void>(build_scene(scene)); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+  EXPECT_NE(std::string(error->what()).find("give the motion more time"), std::string::npos)
+      << error->what();
+}
+
+TEST(DrivenBody, IsNotForTheHand) {
+  Scene scene = driven({0, 0, 4});
+  scene.fixed.front().attachable = true;
+  const auto error = error_of([&] { static_cast<void>(build_scene(scene)); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("follows a script"), std::string::npos);
+  scene = driven({0, 0, 4});
+  scene.held.front().script = scene.fixed.front().script;
+  ASSERT_TRUE(error_of([&] { static_cast<void>(build_scene(scene)); }));
+}
+
+}  // namespace
+}  // namespace ist::test

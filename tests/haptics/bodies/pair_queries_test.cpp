@@ -1,0 +1,186 @@
+#include "ist/haptics/bodies/pair_queries.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "ist/haptics/tool.h"
+#include "support/random.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMillimetre = 1e-3;
+constexpr ToolContactOptions kOptions{.policy = SpherePolicy::kSlab, .least_depth = -0.5};
+
+SphereTree tree_of(const TriangleMesh& mesh) {
+  BuildOptions options;
+  options.voxel_size = 0.5;
+  return build_tree(mesh, options);
+}
+
+// A ball in a corner of three boxes, whose faces are x = 0, y = 0 and z = 0.
+class Corner : public ::testing::Test {
+ protected:
+  // The boxes in an order; the ball is the last body.
+  struct Setting {
+    Bodies bodies;
+    PairQueries queries;
+  };
+  [[nodiscard]] Setting setting(const std::vector<std::size_t>& order) const {
+    std::vector<BodyPart> parts;
+    for (const std::size_t i : order) {
+      parts.push_back({std::to_string(i), Placement(), boxes_[i].origin(), radius_of(boxes_[i])});
+    }
+    parts.push_back({"ball", Placement(), ball_.origin(), radius_of(ball_), true});
+    Setting made{Bodies(kMillimetre, home(), std::move(parts)), PairQueries()};
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      made.queries.add({i, order.size()},
+                       std::make_unique<ToolContactQuery>(
+                           boxes_[order[i]], ball_, made.bodies.frames(i, order.size()), kOptions));
+    }
+    return made;
+  }
+  [[nodiscard]] Placement home() const {
+    return {Eigen::Matrix3d::Identity(), kMillimetre * ball_.origin()};
+  }
+  // The ball's centre so far from the three faces, mm.
+  [[nodiscard]] Placement pressed(const Vector3d& depth) const {
+    return {Eigen::Matrix3d::Identity(),
+            home().translation + kMillimetre * (Vector3d::Constant(5) - depth)};
+  }
+  static double radius_of(const SphereTree& tree) { return kMillimetre * surface_radius(tree); }
+
+  const std::vector<SphereTree> boxes_ = [] {
+    std::vector<SphereTree> boxes;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector3d min(-3, -3, -3), max(12, 12, 12);
+      max[axis] = 0;
+      min[axis] = -4;
+      boxes.push_back(tree_of(box(min, max)));
+    }
+    return boxes;
+  }();
+  const SphereTree ball_ = tree_of(icosphere(4, 5));
+};
+
+ToolContacts contacts_for(const PairQueries& queries) { return ToolContacts(queries.size()); }
+
+TEST_F(Corner, AllPairsTogetherAreTheSumOfEach) {
+  Setting all = setting({0, 1, 2});
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Placement tool = pressed(random.point(-1.5, 0.4));
+    ToolContacts together = contacts_for(all.queries);
+    const auto result = all.queries.find(all.bodies, tool, {}, together);
+    ASSERT_TRUE(result && result->complete);
+    ASSERT_EQ(together.pairs().size(), 3u);
+    Vector6 spring = Vector6::Zero();
+    double count = 0, nearest = 1e9;
+    std::uint64_t leaf_pairs = 0, tests = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Setting one = setting({k});
+      ToolContacts alone = contacts_for(one.queries);
+      const auto single = one.queries.find(one.bodies, tool, {}, alone);
+      ASSERT_TRUE(single && single->complete);
+      spring += alone.spring;
+      count += alone.count;
+      leaf_pairs += single->leaf_pairs;
+      tests += single->sphere_tests;
+      nearest = std::min(nearest, single->distance->lower);
+      const ContactPair& pair = together.pairs()[k];
+      EXPECT_EQ(pair.number, k);
+      const auto points = together.points(pair);
+      ASSERT_EQ(points.size(), alone.points().size());
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        EXPECT_EQ(points[p].arm, alone.points()[p].arm);
+        EXPECT_EQ(points[p].normal, alone.points()[p].normal);
+        EXPECT_EQ(points[p].depth, alone.points()[p].depth);
+        EXPECT_EQ(points[p].stiffness_fraction, alone.points()[p].stiffness_fraction);
+      }
+    }
+    EXPECT_EQ(together.spring, spring);
+    EXPECT_EQ(together.count, count);
+    EXPECT_EQ(result->leaf_pairs, leaf_pairs);
+    EXPECT_EQ(result->distance->lower, nearest);
+  }
+}
+
+// A permutation of the bodies permutes the pairs; sums differ by their rounding alone.
+TEST_F(Corner, PermutingBodiesPermutesTheAnswer) {
+  std::vector<std::size_t> order{0, 1, 2};
+  Setting plain = setting(order);
+  const Placement tool = pressed({0.3, 0.2, 0.35});
+  ToolContacts expected = contacts_for(plain.queries);
+  ASSERT_TRUE(plain.queries.find(plain.bodies, tool, {}, expected)->complete);
+  ASSERT_GT(expected.count, 3);
+  while (std::next_permutation(order.begin(), order.end())) {
+    Setting other = setting(order);
+    ToolContacts found = contacts_for(other.queries);
+    ASSERT_TRUE(other.queries.find(other.bodies, tool, {}, found)->complete);
+    EXPECT_NEAR((found.spring - expected.spring).norm(), 0, 1e-15);
+    EXPECT_NEAR(found.count, expected.count, 1e-12);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const auto points = found.points(found.pairs()[i]);
+      const auto same = expected.points(expected.pairs()[order[i]]);
+      ASSERT_EQ(points.size(), same.size());
+      for (std::size_t p = 0; p < points.size(); ++p) EXPECT_EQ(points[p].arm, same[p].arm);
+    }
+  }
+}
+
+// A budget of as many tests as all pairs need is enough, however it is divided: what one does not
+// need the others may spend. A tenth of it is not.
+TEST_F(Corner, ABudgetIsDividedByWhatEachPairNeeds) {
+  Setting all = setting({0, 1, 2});
+  const Placement tool = pressed({0.3, -8, 0.1});  // the second is apart
+  ToolContacts contacts = contacts_for(all.queries);
+  const auto needed = all.queries.find(all.bodies, tool, {}, contacts)->sphere_tests;
+  Budget budget;
+  budget.tests = needed;
+  for (int i = 0; i < 3; ++i) {
+    const auto result = all.queries.find(all.bodies, tool, budget, contacts);
+    EXPECT_TRUE(result->complete);
+    EXPECT_LE(result->sphere_tests, budget.tests);
+  }
+  budget.tests = needed / 10;
+  const auto stopped = all.queries.find(all.bodies, tool, budget, contacts);
+  EXPECT_FALSE(stopped->complete);
+  EXPECT_LE(stopped->sphere_tests, budget.tests + 3) << "the roots are always tested";
+}
+
+TEST_F(Corner, ADeadlineThatIsPastEndsEveryPair) {
+  Setting all = setting({0, 1, 2});
+  ToolContacts contacts = contacts_for(all.queries);
+  Budget late;
+  late.deadline = Budget::Clock::now() - std::chrono::seconds(1);
+  EXPECT_FALSE(all.queries.find(all.bodies, pressed({0.3, 0.2, 0.35}), late, contacts)->complete);
+  Budget enough;
+  enough.deadline = Budget::Clock::now() + std::chrono::seconds(60);
+  EXPECT_TRUE(all.queries.find(all.bodies, pressed({0.3, 0.2, 0.35}), enough, contacts)->complete);
+}
+
+// A pair without a query is no answer as soon as its balls overlap.
+TEST_F(Corner, APairThatWasNotExpectedToMeetHoldsTheTool) {
+  Setting one = setting({0});
+  one.queries = PairQueries();
+  one.queries.add_far({0, 1});
+  ToolContacts contacts = contacts_for(one.queries);
+  const Placement near = pressed({0.1, 0, 0});
+  const Placement far = pressed({-200, 0, 0});
+  EXPECT_FALSE(one.queries.find(one.bodies, near, {}, contacts)->complete);
+  EXPECT_TRUE(one.queries.find(one.bodies, far, {}, contacts)->complete);
+  EXPECT_TRUE(contacts.pairs().empty());
+}
+
+TEST_F(Corner, WithoutPairsThereIsNoAnswer) {
+  PairQueries none;
+  ToolContacts contacts;
+  EXPECT_FALSE(none.find(Bodies(), Placement(), {}, contacts));
+}
+
+}  // namespace
+}  // namespace ist::test
