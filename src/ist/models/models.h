@@ -40,7 +40,7 @@ IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 /// free along z. No point of it is within 0.2 mm of either jaw. Where no tooth is near it ends 1.5
 /// mm beyond the occlusal plane of either arch.
 ///
-/// Closed, of genus 0, facing outward, of 33,632 triangles. Coordinates are floats held as doubles;
+/// Closed, of genus 0, facing outward, of 33,520 triangles. Coordinates are floats held as doubles;
 /// the same bytes on every machine.
 ///
 /// Errors: kArgumentInvalid for an opening outside 0 to 20 mm, or one that leaves less than 0.5 mm

@@ -9,6 +9,7 @@
 #include "ist/models/jaw/jaw_section.h"
 #include "ist/models/models.h"
 #include "ist/models/splint/clearance_map.h"
+#include "ist/models/splint/height_fit.h"
 #include "ist/models/splint/horseshoe.h"
 
 namespace ist {
@@ -47,8 +48,8 @@ TriangleMesh make_splint(std::uint64_t seed, double opening) {
   const Horseshoe horseshoe;
   const ClearanceMap upper(make_jaw(Jaw::kUpper, seed), horseshoe.area());
   const ClearanceMap lower(upside_down(make_jaw(Jaw::kLower, seed)), horseshoe.area());
-  std::vector<double> top = horseshoe.fit_below(upper, kOcclusalPlane + kRim);
-  std::vector<double> bottom = horseshoe.fit_below(lower, kRim - kOcclusalPlane);
+  std::vector<double> top = fit_below(upper, horseshoe, kOcclusalPlane + kRim);
+  std::vector<double> bottom = fit_below(lower, horseshoe, kRim - kOcclusalPlane);
   double thickness = kWidestOpening;
   for (std::size_t i = 0; i < top.size(); ++i) {
     top[i] = round_down(top[i]);

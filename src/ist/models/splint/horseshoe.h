@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ist/mesh/mesh.h"
@@ -10,29 +11,25 @@
 namespace ist {
 
 /// The splint seen from above: a grid of constant width along the dental arch, from molar to molar.
-/// Coordinates are floats held as doubles.
+/// Its triangles run counterclockwise. Coordinates are floats held as doubles.
 class Horseshoe {
  public:
   Horseshoe();
 
+  [[nodiscard]] std::span<const Eigen::Vector2d> points() const { return points_; }
+  [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
+
   /// Returns a rectangle of whole millimetres round all points.
   [[nodiscard]] PlaneBox area() const;
 
-  /// Returns the heights of the points such that the triangles between them stay below the heights
-  /// of the map and of `highest`, and as close to them as this grid and its order of work allow.
-  [[nodiscard]] std::vector<double> fit_below(const ClearanceMap& map, double highest) const;
-
-  /// Joins an upper and a lower face of the grid by walls along its border.
-  [[nodiscard]] TriangleMesh close(const std::vector<double>& upper,
-                                   const std::vector<double>& lower) const;
+  /// Joins an upper and a lower face, heights of the points, by walls along the border.
+  [[nodiscard]] TriangleMesh close(std::span<const double> upper,
+                                   std::span<const double> lower) const;
 
  private:
-  void push_down(const ClearanceMap& map, const Triangle& triangle,
-                 std::vector<double>& heights) const;
-
   std::vector<Eigen::Vector2d> points_;
-  std::vector<Triangle> triangles_;    // counterclockwise as seen from above
-  std::vector<std::uint32_t> border_;  // counterclockwise as seen from above
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> border_;  // counterclockwise
 };
 
 }  // namespace ist
