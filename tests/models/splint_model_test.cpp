@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -41,6 +42,19 @@ TEST_P(SplintModel, IsClosedAndFacesOutward) {
   EXPECT_EQ(report.degenerate_triangles, 0u);
   EXPECT_GT(report.signed_volume, 3000);
   EXPECT_LT(report.signed_volume, 8000);
+}
+
+TEST_P(SplintModel, IsAsThickAsIsGuaranteedBetweenItsFaces) {
+  const std::size_t points = mesh_.vertices.size() / 2;  // of each face, in the same order
+  double least = kSplintOpening, largest = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const Eigen::Vector3d &upper = mesh_.vertices[i], &lower = mesh_.vertices[points + i];
+    ASSERT_EQ(upper.head<2>(), lower.head<2>());
+    least = std::min(least, upper.z() - lower.z());
+    largest = std::max(largest, upper.z() - lower.z());
+  }
+  EXPECT_GE(least, 1.5);
+  EXPECT_EQ(largest, kSplintOpening + 3);
 }
 
 TEST_P(SplintModel, HasFloatVerticesNoTwoAlike) {
