@@ -38,18 +38,23 @@ struct BuiltInShape {
     kBox,       ///< as wide along x, y and z as `size`
     kSphere,    ///< of `radius`
     kCylinder,  ///< of `radius` and `height`
+    kSplint,    ///< make_splint(seed, opening)
+    kFossa,     ///< of inner `radius` and `thickness`, opening towards -z
   };
   Kind kind = Kind::kBox;                          ///< decides which members count
-  std::uint64_t seed = 1;                          ///< of a jaw
+  std::uint64_t seed = 1;                          ///< of a jaw, or of the jaws of a splint
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< of a box, mesh units
-  double radius = 1,                               ///< of a sphere or a cylinder, mesh units
-      height = 1;                                  ///< of a cylinder, mesh units
+  double radius = 1,  ///< of a sphere, a cylinder or the inside of a fossa, mesh units
+      height = 1,     ///< of a cylinder, mesh units
+      opening = 5,    ///< by which a splint's lower jaw is lowered, mm
+      thickness = 1;  ///< of a fossa, mesh units
 };
 
 /// Makes the mesh of a shape: closed, facing outward, in the scene's unit, with the same bits on
 /// every machine. Spheres (20,480 triangles) and cylinders (1,024) lie within their surface, no
-/// farther from it than 3e-4 of their radius. Throws kArgumentInvalid for a length outside 1e-12 to
-/// 1e12.
+/// farther from it than 3e-4 of their radius; a fossa's triangles (16,384) lie no farther below the
+/// spheres of their vertices than 1e-3 of the radius. Throws kArgumentInvalid for a length outside
+/// 1e-12 to 1e12, and for an opening that make_splint() refuses.
 [[nodiscard]] IST_API TriangleMesh make_shape(const BuiltInShape& shape);
 
 /// A body of a scene. Lengths are in the scene's unit.

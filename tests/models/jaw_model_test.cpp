@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <ostream>
 #include <set>
@@ -16,9 +15,12 @@
 #include <vector>
 
 #include "ist/models/models.h"
+#include "support/fingerprint.h"
 
 namespace ist {
 namespace {
+
+using test::fingerprint;
 
 constexpr std::uint64_t kSeed = 1, kOtherSeed = 0x9876543210abcdef;
 
@@ -113,19 +115,6 @@ TEST_P(JawModel, HasAJawsSizeInTheDocumentedFrame) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR((high - low)[axis], expected[axis], 2.5);
   EXPECT_NEAR(low.x() + high.x(), 0, 2);
   EXPECT_NEAR(low.y(), -52, 2);
-}
-
-// FNV-1a over all bytes of the mesh.
-std::uint64_t fingerprint(const TriangleMesh& mesh) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  const auto add = [&](const void* data, std::size_t size) {
-    std::vector<unsigned char> bytes(size);
-    std::memcpy(bytes.data(), data, size);
-    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
-  };
-  add(mesh.vertices.data(), mesh.vertices.size() * sizeof(mesh.vertices[0]));
-  add(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
-  return hash;
 }
 
 TEST(JawModelBytes, AreTheSameOnEveryMachine) {

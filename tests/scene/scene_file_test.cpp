@@ -284,6 +284,21 @@ TEST_F(SceneFile, KnowsUnitsPoliciesAxesAndShapes) {
   const Scene jaw = read(replaced(kSoundScene, "\"sphere\"\nradius = 5", "\"lower jaw\""));
   EXPECT_EQ(std::get<BuiltInShape>(jaw.held.front().source).kind, BuiltInShape::Kind::kLowerJaw);
   EXPECT_EQ(std::get<BuiltInShape>(jaw.held.front().source).seed, 1u);
+
+  const auto held = [&](const char* shape) {
+    const Scene scene = read(replaced(kSoundScene, "\"sphere\"\nradius = 5", shape));
+    return std::get<BuiltInShape>(scene.held.front().source);
+  };
+  const BuiltInShape splint = held("\"splint\"\nseed = 4\nopening = 4.5");
+  EXPECT_EQ(splint.kind, BuiltInShape::Kind::kSplint);
+  EXPECT_EQ(splint.seed, 4u);
+  EXPECT_EQ(splint.opening, 4.5);
+  EXPECT_EQ(held("\"splint\"").seed, 1u);
+  EXPECT_EQ(held("\"splint\"").opening, 5);
+  const BuiltInShape fossa = held("\"fossa\"\nradius = 7\nthickness = 2");
+  EXPECT_EQ(fossa.kind, BuiltInShape::Kind::kFossa);
+  EXPECT_EQ(fossa.radius, 7);
+  EXPECT_EQ(fossa.thickness, 2);
 }
 
 TEST_F(SceneFile, FindsFilesFromItsFolderAndFromThatOfTheData) {

@@ -29,6 +29,25 @@ enum class Jaw {
 /// one seed gives the same bytes on every machine. Cost: some 5 ms, one thread.
 IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 
+/// Makes an occlusal splint to lie between both jaws of make_jaw(), the lower one lowered by dz =
+/// -`opening`: a demonstration shape, not a design for a patient.
+///
+/// @param seed    of both jaws
+/// @param opening mm
+///
+/// A horseshoe of 10.5 mm along the dental arch, from molar to molar. Its upper face is a height
+/// over the occlusal plane, and so is its lower one: teeth leave imprints, and either arch comes
+/// free along z. Its surface is at least 0.2 mm from either jaw's. Where no tooth is near it ends
+/// 1.5 mm beyond the occlusal plane of either arch. It is thinnest between canines; with an opening
+/// of 5 mm, 1.5 mm or more for each seed up to 200.
+///
+/// Closed, of genus 0, facing outward, of 33,520 triangles. Coordinates are floats held as doubles;
+/// the same bytes on every machine. Cost: some 0.2 s, part of it on all cores.
+///
+/// Errors: kArgumentInvalid for an opening outside 0 to 20 mm, or one that leaves less than 0.5 mm
+/// of splint somewhere; the text names the least opening that leaves as much.
+[[nodiscard]] IST_API TriangleMesh make_splint(std::uint64_t seed, double opening);
+
 // Basic shapes: closed, of genus 0, facing outward, mesh units, the same bits on every machine.
 
 /// Makes a box of 12 triangles between two opposite corners. Precondition: min < max on every axis.
@@ -42,5 +61,11 @@ IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 /// Makes a cylinder round the z axis, from z = 0 up, of 4 * `quarter` sides with corners on the
 /// circle: 16 * `quarter` triangles. Precondition: quarter from 1 to 2^24.
 [[nodiscard]] IST_API TriangleMesh make_cylinder(int quarter, double radius, double height);
+
+/// Makes a fossa, the socket of a condyle: the solid between two half spheres round the origin,
+/// z >= 0, of `radius` and of `radius + thickness`; it opens towards -z, with a flat rim at z = 0.
+/// All vertices lie on the spheres: 16 * `quarter`^2 triangles, no deeper below their sphere than
+/// 1/`quarter`^2 of its radius. Precondition: quarter from 1 to 2^12.
+[[nodiscard]] IST_API TriangleMesh make_fossa(int quarter, double radius, double thickness);
 
 }  // namespace ist

@@ -58,6 +58,40 @@ TriangleMesh make_icosphere(int level, double radius) {
   return mesh;
 }
 
+namespace {
+
+// Adds a half sphere round the origin, z >= 0, that faces outward, as rings that are as close to
+// each other as the vertices of a ring. Returns the index of its first vertex; the first ring lies
+// in the plane z = 0.
+std::uint32_t add_half_sphere(TriangleMesh& mesh, int quarter, double radius) {
+  std::uint32_t last = 0;
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int i = 0; i < quarter; ++i) {
+    const double t = static_cast<double>(i) / quarter, scale = radius / (1 + t * t);
+    const std::uint32_t ring = add_ring(mesh, quarter, (1 - t * t) * scale, 2 * t * scale);
+    if (i > 0) add_band(mesh, quarter, last, ring);
+    last = ring;
+  }
+  const auto pole = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.emplace_back(0, 0, radius);
+  for (std::uint32_t i = last; i < pole; ++i) {
+    mesh.triangles.push_back({i, i + 1 < pole ? i + 1 : last, pole});
+  }
+  return first;
+}
+
+}  // namespace
+
+TriangleMesh make_fossa(int quarter, double radius, double thickness) {
+  const ScopedFloatEnvironment environment;
+  TriangleMesh mesh;
+  const std::uint32_t inner = add_half_sphere(mesh, quarter, radius);
+  for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  const std::uint32_t outer = add_half_sphere(mesh, quarter, radius + thickness);
+  add_band(mesh, quarter, inner, outer);
+  return mesh;
+}
+
 TriangleMesh make_cylinder(int quarter, double radius, double height) {
   const ScopedFloatEnvironment environment;
   TriangleMesh mesh;

@@ -15,6 +15,7 @@ inline constexpr NumberRange kRate{1, 1e4, "Hz"};
 inline constexpr NumberRange kDuration{1e-3, 1e6, "s"};
 inline constexpr NumberRange kInstant{0, 1e6, "s"};
 inline constexpr NumberRange kLength{1e-12, 1e12, "in the scene's unit"};
+inline constexpr NumberRange kOpening{0, 20, "mm"};
 inline constexpr NumberRange kResolution{0, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kPlace{-1e12, 1e12, "in the scene's unit"};
 inline constexpr NumberRange kStiffness{0, 1e6, "N/m"};

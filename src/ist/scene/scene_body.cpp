@@ -14,7 +14,8 @@ namespace {
 
 using Kind = BuiltInShape::Kind;
 
-constexpr std::string_view kShapes = R"("upper jaw", "lower jaw", "box", "sphere" or "cylinder")";
+constexpr std::string_view kShapes =
+    R"("upper jaw", "lower jaw", "splint", "fossa", "box", "sphere" or "cylinder")";
 
 std::optional<Kind> shape_kind(std::string_view name) {
   if (name == "upper jaw") return Kind::kUpperJaw;
@@ -22,6 +23,8 @@ std::optional<Kind> shape_kind(std::string_view name) {
   if (name == "box") return Kind::kBox;
   if (name == "sphere") return Kind::kSphere;
   if (name == "cylinder") return Kind::kCylinder;
+  if (name == "splint") return Kind::kSplint;
+  if (name == "fossa") return Kind::kFossa;
   return std::nullopt;
 }
 
@@ -34,16 +37,29 @@ std::optional<Eigen::Vector3d> axis(std::string_view name) {
   return (turned ? -1.0 : 1.0) * Eigen::Vector3d::Unit(index);
 }
 
+void need_millimetres(TableReader& table, std::string_view shape, double unit) {
+  if (unit == metres_in("mm")) return;
+  table.fail("shape",
+             fmt::format("a built-in {} is in millimetres, and the scene's unit is another", shape),
+             R"(write unit = "mm")");
+}
+
 BuiltInShape read_shape(TableReader& table, double unit) {
   BuiltInShape shape{.kind = table.choice("shape", shape_kind, kShapes)};
   switch (shape.kind) {
     case Kind::kUpperJaw:
     case Kind::kLowerJaw:
       shape.seed = table.whole_number("seed", kSeed, shape.seed);
-      if (unit != metres_in("mm")) {
-        table.fail("shape", "a built-in jaw is in millimetres, and the scene's unit is another",
-                   R"(write unit = "mm")");
-      }
+      need_millimetres(table, "jaw", unit);
+      break;
+    case Kind::kSplint:
+      shape.seed = table.whole_number("seed", kSeed, shape.seed);
+      shape.opening = table.number("opening", kOpening, shape.opening);
+      need_millimetres(table, "splint", unit);
+      break;
+    case Kind::kFossa:
+      shape.radius = table.number("radius", kLength);
+      shape.thickness = table.number("thickness", kLength);
       break;
     case Kind::kBox:
       shape.size = table.vector("size", kLength);

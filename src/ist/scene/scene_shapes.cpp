@@ -9,7 +9,7 @@ namespace ist {
 namespace {
 
 constexpr int kSphereLevel = 5;
-constexpr int kCylinderQuarter = 64;
+constexpr int kCylinderQuarter = 64, kFossaQuarter = 32;
 
 void check_length(double length) {
   if (length >= 1e-12 && length <= 1e12) return;
@@ -43,6 +43,12 @@ TriangleMesh make_shape(const BuiltInShape& shape) {
       check_length(shape.radius);
       check_length(shape.height);
       return centred_cylinder(shape.radius, shape.height);
+    case Kind::kSplint:
+      return make_splint(shape.seed, shape.opening);
+    case Kind::kFossa:
+      check_length(shape.radius);
+      check_length(shape.thickness);
+      return make_fossa(kFossaQuarter, shape.radius, shape.thickness);
   }
   throw Error(ErrorCode::kArgumentInvalid,
               "an unknown kind of shape: give one of BuiltInShape::Kind");
