@@ -198,10 +198,26 @@ TEST(FirstContact, HasTheSameBitsOnEveryTargetWhateverWasAskedBefore) {
   }
 }
 
+// How far a convex body that holds the origin reaches along a direction.
+double reach_of(const TriangleMesh& convex, const Vector& direction) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : convex.triangles) {
+    const Vector& corner = convex.vertices[a];
+    const Vector normal = (convex.vertices[b] - corner).cross(convex.vertices[c] - corner);
+    const double along = normal.dot(direction);
+    if (along > 0) least = std::min(least, normal.dot(corner) / along);
+  }
+  return least;
+}
+
+// A ball comes along the diagonal of a cube: the cube's corner is the first to meet it.
 TEST(FirstContact, EndsWhereItIsTold) {
-  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), icosphere(3, 1));
-  const Motion motion = Motion::between(place({5, 5, 5}), place({0, 0, 0}));
-  const FirstContact truth = first_contact(pair.query, motion, 1e-6);
+  const TriangleMesh ball = icosphere(3, 1);
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), ball);
+  const Vector start(5, 5, 5), corner(1, 1, 1);
+  const Motion motion = Motion::between(place(start), place({0, 0, 0}));
+  const double reach = reach_of(ball, -corner.normalized());
+  const double meets = ((start - corner).norm() - reach) / start.norm();
   double last = -1;
   const FirstContact stopped =
       first_contact(pair.query, motion, 1e-6, {.proceed = [&](double part) {
@@ -211,12 +227,16 @@ TEST(FirstContact, EndsWhereItIsTold) {
                     }});
   EXPECT_EQ(stopped.status, ContactStatus::kStopped);
   EXPECT_GE(stopped.lower, 0.3);
-  EXPECT_LE(stopped.lower, truth.upper);
+  EXPECT_LE(stopped.lower, meets);
   EXPECT_EQ(stopped.upper, 1);
   const FirstContact one = first_contact(pair.query, motion, 1e-6, {.budget = {.tests = 1}});
   EXPECT_EQ(one.status, ContactStatus::kStopped);
   EXPECT_EQ(one.distances, 1U);
-  EXPECT_LE(one.lower, truth.upper);
+  EXPECT_LE(one.lower, meets);
+  const FirstContact whole = first_contact(pair.query, motion, 1e-6);
+  EXPECT_EQ(whole.status, ContactStatus::kContact);
+  EXPECT_LE(whole.lower, meets + 1e-12);
+  EXPECT_GE(whole.upper, meets - 1e-12);
 }
 
 TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
