@@ -40,7 +40,7 @@ std::vector<Eigen::Isometry3d> poses() {
 std::uint64_t hash_of_answers(const TriangleMesh& a, const TriangleMesh& b,
                               const std::vector<Eigen::Isometry3d>& at) {
   Hasher hasher;
-  const BuildOptions options{.voxel_size = 0.125 * kUnit};
+  const BuildOptions options{.voxel_size = 0.25 * kUnit};
   const SphereTree fixed = build_tree(a, options), moving = build_tree(b, options);
   for (const SphereTree* tree : {&fixed, &moving}) {
     const std::vector<std::byte> bytes = tree_to_bytes(*tree);
@@ -64,7 +64,7 @@ std::uint64_t hash_of_answers(const TriangleMesh& a, const TriangleMesh& b,
 }
 
 TEST(FloatEnvironment, OfTheCallerChangesNothing) {
-  const TriangleMesh a = small_body(2), b = small_body(1);
+  const TriangleMesh a = small_body(1), b = small_body(0);
   const std::vector<Eigen::Isometry3d> at = poses();
   const std::uint64_t expected = hash_of_answers(a, b, at);
   for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
