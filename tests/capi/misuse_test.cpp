@@ -31,6 +31,8 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("mesh", ist_mesh_read(file_.c_str(), nullptr));
   is_null("mesh", ist_mesh_get_info(nullptr, &mesh_info_));
   is_null("info", ist_mesh_get_info(mesh_, nullptr));
+  is_null("mesh", ist_mesh_get_info_with_progress(nullptr, nullptr, &mesh_info_));
+  is_null("info", ist_mesh_get_info_with_progress(mesh_, nullptr, nullptr));
   is_null("mesh", ist_mesh_get_size(nullptr, &count_, &count_));
   is_null("vertices", ist_mesh_get_size(mesh_, nullptr, &count_));
   is_null("triangles", ist_mesh_get_size(mesh_, &count_, nullptr));
@@ -59,6 +61,11 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("bytes", ist_tree_to_memory(tree_, nullptr, 0, nullptr));
   is_null("memory", ist_tree_from_memory(nullptr, 1, &no_tree_));
   is_null("tree", ist_tree_from_memory(corners, 1, nullptr));
+  is_null("tree", ist_tree_to_memory_with_progress(nullptr, nullptr, 0, nullptr, &bytes));
+  is_null("memory", ist_tree_to_memory_with_progress(tree_, nullptr, 1, nullptr, &bytes));
+  is_null("bytes", ist_tree_to_memory_with_progress(tree_, nullptr, 0, nullptr, nullptr));
+  is_null("memory", ist_tree_from_memory_with_progress(nullptr, 1, nullptr, &no_tree_));
+  is_null("tree", ist_tree_from_memory_with_progress(corners, 1, nullptr, nullptr));
   is_null("tree", ist_tree_get_mesh(nullptr, &no_mesh_));
   is_null("mesh", ist_tree_get_mesh(tree_, nullptr));
   is_null("mesh", ist_jaw_create(IST_JAW_LOWER, 1, nullptr));

@@ -1,8 +1,9 @@
-// Trees in memory, meshes of trees, jaws from nothing, and builds and files that their caller
-// follows.
+// Trees in memory, meshes of trees, jaws from nothing, and builds, checks and files that their
+// caller follows.
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <thread>
@@ -206,6 +207,68 @@ TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
   EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_save_with_progress"),
             std::string::npos);
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+}
+
+TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
+  ist_tree *tree = c_tree(icosphere(6, 10), 0.1), *back = nullptr;
+  const std::vector<unsigned char> bytes = bytes_of(tree);
+  std::vector<unsigned char> memory(bytes.size(), 7);
+  Listener listener;
+  const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
+  std::uint64_t size = 0;
+  const auto write = [&] {
+    return name(
+        ist_tree_to_memory_with_progress(tree, memory.data(), memory.size(), &progress, &size));
+  };
+  const auto read = [&] {
+    return name(ist_tree_from_memory_with_progress(bytes.data(), bytes.size(), &progress, &back));
+  };
+  EXPECT_EQ(write(), "ok");
+  EXPECT_EQ(size, bytes.size());
+  EXPECT_EQ(memory, bytes);
+  EXPECT_GE(listener.reports, 1);
+  listener = {};
+  EXPECT_EQ(read(), "ok");
+  EXPECT_GE(listener.reports, 2);
+  EXPECT_EQ(bytes_of(back), bytes);
+  EXPECT_EQ(name(ist_tree_free(back)), "ok");
+
+  memory.assign(bytes.size(), 7);
+  listener = {.stop_at = 1};
+  EXPECT_EQ(write(), "cancelled");
+  EXPECT_EQ(size, 0u);
+  EXPECT_EQ(memory, std::vector<unsigned char>(bytes.size(), 7));
+  for (const int at : {1, 2}) {
+    listener = {.stop_at = at};
+    EXPECT_EQ(read(), "cancelled");
+    EXPECT_EQ(back, nullptr);
+    EXPECT_EQ(listener.reports, at);
+  }
+  EXPECT_NE(std::string(ist_last_error_message()).find("ist_tree_from_memory_with_progress"),
+            std::string::npos);
+  // An error of the work reaches a caller who follows it.
+  listener = {};
+  EXPECT_EQ(name(ist_tree_from_memory_with_progress(bytes.data(), 40, &progress, &back)),
+            "tree-truncated");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+}
+
+TEST(CMeshCheck, IsFollowedAndEndsWhereTheCallerSaysSo) {
+  ist_mesh* mesh = c_mesh(icosphere(7, 10));
+  auto wanted = sized<ist_mesh_info>(), info = wanted;
+  ASSERT_EQ(name(ist_mesh_get_info(mesh, &wanted)), "ok");
+  Listener listener;
+  const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
+  ASSERT_EQ(name(ist_mesh_get_info_with_progress(mesh, &progress, &info)), "ok");
+  EXPECT_EQ(std::memcmp(&info, &wanted, sizeof info), 0);
+  EXPECT_GE(listener.reports, 2);
+  for (const int at : {1, 2}) {
+    listener = {.stop_at = at};
+    EXPECT_EQ(name(ist_mesh_get_info_with_progress(mesh, &progress, &info)), "cancelled");
+    EXPECT_EQ(info.triangles, 0u);
+    EXPECT_EQ(listener.reports, at);
+  }
+  EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace ist::test {
 
 /// Two bodies, and a query of them.
-struct HandPair {
-  HandPair(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
+struct BodyPair {
+  BodyPair(const TriangleMesh& a, const TriangleMesh& b, double voxel_size = 0.5)
       : fixed(build_tree(a, {.voxel_size = voxel_size})),
         moving(build_tree(b, {.voxel_size = voxel_size})),
         query(fixed, moving) {}

@@ -20,7 +20,7 @@ using Pose = Eigen::Isometry3d;
 using ContactStatus = FirstContact::Status;
 
 // The interval is as narrow as was asked for, and at its end triangles intersect.
-void expect_contact(HandPair& pair, const Motion& motion, double tolerance,
+void expect_contact(BodyPair& pair, const Motion& motion, double tolerance,
                     const FirstContact& found) {
   EXPECT_EQ(found.status, ContactStatus::kContact) << to_string(found.status);
   EXPECT_TRUE(pair.meet(motion.at(found.upper)));
@@ -33,7 +33,7 @@ void expect_contact(HandPair& pair, const Motion& motion, double tolerance,
 }
 
 TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
-  HandPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   const Motion motion = Motion::between(place({0.3, 0.2, 4}), place({0.3, 0.2, -2}));
   for (const double tolerance : {0.1, 1e-3, 1e-6, 1e-9}) {
     const FirstContact found = first_contact(pair.query, motion, tolerance);
@@ -49,7 +49,7 @@ TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
 }
 
 TEST(FirstContact, HasAStatusForEveryEnd) {
-  HandPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
+  BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const auto status = [&](const Vector& from, const Vector& until) {
     const FirstContact found = first_contact(pair.query, place(from), place(until), 1e-3);
     return std::string(to_string(found.status));
@@ -69,7 +69,7 @@ TEST(FirstContact, HasAStatusForEveryEnd) {
 
 // Along a face, nearer to it than a sixteenth of the tolerance, and then against a step.
 TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
-  HandPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
+  BodyPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
                 box({-1, -1, 0}, {1, 1, 1}));
   const Motion motion = Motion::between(place({-8, 0, 1e-4}), place({8, 0, 1e-4}));
   const FirstContact found = first_contact(pair.query, motion, 0.01);
@@ -85,7 +85,7 @@ TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
 
 // Two plates thinner than any distance is certain: it may have met either.
 TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
-  HandPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
+  BodyPair pair(joined(box({-5, -5, 0}, {5, 5, 1e-9}), box({-5, -5, 3}, {5, 5, 3 + 1e-9})),
                 box({0, 0, 0}, {1, 1, 1e-9}));
   const Motion motion = Motion::between(place({0, 0, 9}), place({0.1, 0, -9}));
   const FirstContact found = first_contact(pair.query, motion, 1e-3);
@@ -96,7 +96,7 @@ TEST(FirstContact, GrazesFromTheFirstPlaceToTheLast) {
 
 TEST(FirstContact, PassesThroughNothingHoweverThin) {
   for (const double thick : {1e-2, 1e-5, 1e-8}) {
-    HandPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
+    BodyPair plate(box({-5, -5, 0}, {5, 5, thick}), box({0, 0, 0}, {1, 1, thick}));
     const Motion motion = Motion::between(place({0.1, 0.2, 500}), place({0.3, -0.2, -700}));
     const FirstContact found = first_contact(plate.query, motion, 1e-3);
     // Thinner than distances are certain to within, it is said to graze there.
@@ -109,7 +109,7 @@ TEST(FirstContact, PassesThroughNothingHoweverThin) {
 
 // A needle goes down between two teeth that are 0.02 apart, and beside it into one.
 TEST(FirstContact, OfANeedleBetweenTeeth) {
-  HandPair pair(joined(box({-4, -2, 0}, {-0.01, 2, 3}), box({0.01, -2, 0}, {4, 2, 3})),
+  BodyPair pair(joined(box({-4, -2, 0}, {-0.01, 2, 3}), box({0.01, -2, 0}, {4, 2, 3})),
                 box({-0.005, -0.005, 0}, {0.005, 0.005, 8}));
   const auto down = [&](double x) {
     return first_contact(pair.query, place({x, 0.3, 5}), place({x, 0.3, -9}), 1e-3).status;
@@ -122,7 +122,7 @@ TEST(FirstContact, OfANeedleBetweenTeeth) {
 
 TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
   // A rod that turns about z comes to a post from behind: after 350 degrees less their widths.
-  HandPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
+  BodyPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
   const Motion motion =
       Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, -4 * std::numbers::pi, 20);
   const FirstContact found = first_contact(pair.query, motion, 1e-4);
@@ -138,7 +138,7 @@ TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
   Random random(83);
   int contacts = 0;
   for (int i = 0; i < 60; ++i) {
-    HandPair pair(random_mesh(random), random_mesh(random));
+    BodyPair pair(random_mesh(random), random_mesh(random));
     Pose from = Pose::Identity(), until = Pose::Identity();
     from.linear() = random.rotation();
     const Eigen::AngleAxisd turn(i % 3 == 0 ? 0 : 0.3, random.direction());
@@ -172,7 +172,7 @@ TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
 }
 
 TEST(FirstContact, OfClosingJawsTakesFewDistances) {
-  HandPair jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
+  BodyPair jaws(make_jaw(Jaw::kUpper, 1), make_jaw(Jaw::kLower, 1), 1);
   const Motion motion = Motion::between(place({0, 0, -7}), place({0, 0, 0}));
   const FirstContact found = first_contact(jaws.query, motion, 1e-3);
   expect_contact(jaws, motion, 1e-3, found);
@@ -198,10 +198,26 @@ TEST(FirstContact, HasTheSameBitsOnEveryTargetWhateverWasAskedBefore) {
   }
 }
 
+// How far a convex body that holds the origin reaches along a direction.
+double reach_of(const TriangleMesh& convex, const Vector& direction) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : convex.triangles) {
+    const Vector& corner = convex.vertices[a];
+    const Vector normal = (convex.vertices[b] - corner).cross(convex.vertices[c] - corner);
+    const double along = normal.dot(direction);
+    if (along > 0) least = std::min(least, normal.dot(corner) / along);
+  }
+  return least;
+}
+
+// A ball comes along the diagonal of a cube: the cube's corner is the first to meet it.
 TEST(FirstContact, EndsWhereItIsTold) {
-  HandPair pair(box({0, 0, 0}, {1, 1, 1}), icosphere(3, 1));
-  const Motion motion = Motion::between(place({5, 5, 5}), place({0, 0, 0}));
-  const FirstContact truth = first_contact(pair.query, motion, 1e-6);
+  const TriangleMesh ball = icosphere(3, 1);
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), ball);
+  const Vector start(5, 5, 5), corner(1, 1, 1);
+  const Motion motion = Motion::between(place(start), place({0, 0, 0}));
+  const double reach = reach_of(ball, -corner.normalized());
+  const double meets = ((start - corner).norm() - reach) / start.norm();
   double last = -1;
   const FirstContact stopped =
       first_contact(pair.query, motion, 1e-6, {.proceed = [&](double part) {
@@ -211,16 +227,20 @@ TEST(FirstContact, EndsWhereItIsTold) {
                     }});
   EXPECT_EQ(stopped.status, ContactStatus::kStopped);
   EXPECT_GE(stopped.lower, 0.3);
-  EXPECT_LE(stopped.lower, truth.upper);
+  EXPECT_LE(stopped.lower, meets);
   EXPECT_EQ(stopped.upper, 1);
   const FirstContact one = first_contact(pair.query, motion, 1e-6, {.budget = {.tests = 1}});
   EXPECT_EQ(one.status, ContactStatus::kStopped);
   EXPECT_EQ(one.distances, 1U);
-  EXPECT_LE(one.lower, truth.upper);
+  EXPECT_LE(one.lower, meets);
+  const FirstContact whole = first_contact(pair.query, motion, 1e-6);
+  EXPECT_EQ(whole.status, ContactStatus::kContact);
+  EXPECT_LE(whole.lower, meets + 1e-12);
+  EXPECT_GE(whole.upper, meets - 1e-12);
 }
 
 TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
-  HandPair pair(icosphere(2, 1), icosphere(2, 1));
+  BodyPair pair(icosphere(2, 1), icosphere(2, 1));
   const FirstContact far =
       first_contact(pair.query, place({1e14, 3e13, 0}), place({1e14, 4e13, 0}), 1);
   EXPECT_EQ(far.status, ContactStatus::kNone) << to_string(far.status);
@@ -234,7 +254,7 @@ TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
 }
 
 TEST(FirstContact, RefusesWhatIsNoQuestion) {
-  HandPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   for (const double tolerance : {-1.0, std::nan("")}) {
     EXPECT_EQ(error_name([&] {
                 static_cast<void>(

@@ -19,8 +19,8 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 
-struct Bite : HandPair {
-  using HandPair::HandPair;
+struct Bite : BodyPair {
+  using BodyPair::BodyPair;
   [[nodiscard]] Occlusion at(const Vector& to, const OcclusionOptions& options = {}) const {
     return occlusion(query, place(to), options);
   }

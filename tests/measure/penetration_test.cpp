@@ -21,8 +21,8 @@ using Vector = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using DepthStatus = Penetration::Status;
 
-struct Bodies : HandPair {
-  using HandPair::HandPair;
+struct Bodies : BodyPair {
+  using BodyPair::BodyPair;
   [[nodiscard]] Penetration at(const Pose& pose, double tolerance,
                                const PenetrationOptions& options = {}) {
     return penetration(query, pose, tolerance, options);

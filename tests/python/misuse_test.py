@@ -299,6 +299,10 @@ stiffness = 1000
             for _ in range(400):
                 felt = servo.tick(deep)
             self.assertGreater(felt.force[2], 0.05)  # pushed out of the box
+            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty(6))
+            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty((2, 3), np.float32))
+            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty((3, 2)).T)
+            self.refuses(ist.InputError, "out", servo.tick, deep, out=[[0, 0, 0], [0, 0, 0]])
             self.refuses(ist.InputError, "pose", servo.tick, 2 * np.eye(4))
             self.refuses(ist.InputError, "pose", servo.tick, np.eye(3))
             self.refuses(ist.InputError, "pose", servo.tick, None)
@@ -306,6 +310,26 @@ stiffness = 1000
             self.assertEqual(servo.tick_seconds, 0.001)
             self.assertIsInstance(servo.warnings, tuple)
         self.refuses(ist.FreedError, "freed", servo.tick, start)
+
+    def test_a_tick_fills_what_it_is_given(self):
+        scene, forces = self.scene(self.SCENE), []
+        for out in (None, np.full((2, 3), 7.0)):
+            with ist.Servo(scene, sphere_tests=100_000) as servo:
+                deep = servo.tool.copy()
+                deep[2, 3] -= 1.5
+                before = servo.tick(deep, out=out)
+                for _ in range(399):
+                    felt = servo.tick(deep, out=out)
+                forces.append(np.array(felt))
+                if out is None:
+                    self.assertFalse(np.shares_memory(before.force, felt.force))
+                    continue
+                self.assertTrue(np.shares_memory(felt.force, out) and np.shares_memory(felt.torque, out))
+                self.assertEqual(out.tobytes(), forces[0].tobytes())
+                with self.assertRaises(ist.InputError):
+                    servo.tick(None, out=out)
+                self.assertEqual(out.tolist(), np.zeros((2, 3)).tolist())
+        self.assertGreater(forces[0][0, 2], 0.05)
 
     def test_bad_scenes(self):
         self.refuses(ist.InputError, "scene.toml:3", ist.Servo, self.scene(self.SCENE.replace('"box"', '"bax"')))

@@ -31,7 +31,7 @@ rows = query.rows(np.eye(4)[None], want=["intersects", "penetration"], progress=
 force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))
 with ist.Servo("scene.toml", unit="m") as servo:
-    tick = servo.tick(None)
+    tick = servo.tick(None, out=np.empty((2, 3)))
     z: float = float(tick.force[2])
 """
 MISUSE = 'import ist\nist.Query(1, 2)\nist.Query(ist.load("a"), ist.load("b"), spheres="round")\nx: str = ist.load("a").leaves\n'

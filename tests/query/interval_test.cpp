@@ -1,10 +1,13 @@
-// The interval that a stopped search tells, against the formula of docs/guarantees.md, computed
-// from the list of all pairs that are pruned or live where the search stopped.
+// The interval that a stopped search tells, against the formula of docs/guarantees.md, computed in
+// double, by nothing of the kernels, from the list of all pairs that are pruned or live where the
+// search stopped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <memory>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "ist/query/manifold.h"
@@ -13,27 +16,86 @@
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
-#include "simd/lanes.h"
 
 namespace ist::test {
 namespace {
 
-// The distances that the bounds of a pair allow, mesh units, in double; without the pads for
-// rounding, but slabs of inner nodes count as wider for large partners.
-struct Distances {
-  double least, greatest;
+// A node's bound in its tree's frame, mesh units, as the tree holds it. The slab of kSlab alone.
+struct Bound {
+  Ball ball;
+  Slab slab;
 };
 
-Distances distances_of(const PairTest& test, const Pads& rounding, bool slabs) {
-  const double distance = std::sqrt(double{test.squared});
-  const double radii = double{test.radius_sum} - rounding.ball;
-  Distances distances{distance - radii, distance + radii};
-  if (slabs) {
-    const double fixed = double{test.over_fixed} - (double{test.fixed_sum} - rounding.slab_fixed);
-    const double moving =
-        (double{test.over_moving} - double{test.moving_sum}) / kSlabScale + rounding.slab_moving;
-    distances.least = std::max({distances.least, fixed, moving});
+Bound bound_of(const SphereTree& tree, SpherePolicy policy, int level, std::uint32_t parent,
+               int slot) {
+  const TreeParts& parts = tree.parts();
+  if (policy == SpherePolicy::kSlab) {
+    return {parts.saved_ball(level, parent, slot), parts.saved_slab(level, parent, slot)};
   }
+  if (policy == SpherePolicy::kTight) return {parts.saved_ball(level, parent, slot), {}};
+  const OctreeNode& above = parts.octree.nodes(level + 1)[parent];
+  Eigen::Vector3d centre(above.centre[0], above.centre[1], above.centre[2]);
+  if (level < tree.depth()) {  // the root has the centre of its parent
+    unsigned octants = parts.octree.mask(level + 1, parent);
+    for (int i = 0; i < slot; ++i) octants &= octants - 1;
+    const unsigned octant = static_cast<unsigned>(std::countr_zero(octants));
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      centre[axis] += std::ldexp((octant >> axis & 1) != 0 ? 0.5 : -0.5, level);
+    }
+  }
+  const std::uint32_t node = above.first_child + static_cast<std::uint32_t>(slot);
+  return {parts.nested_ball(policy, level, node, centre), {}};
+}
+
+// The level of the nodes that a side of a step reads.
+int level_of(const SphereTree& tree, const SearchSide& side) {
+  int level = tree.depth() + 1;
+  while (level > 1 && tree.parts().octree.nodes(level).data() != side.nodes) --level;
+  return level;
+}
+
+// The bounds that a step tests of a frontier's node: of its children, or its own.
+std::vector<Bound> bounds_of(const SphereTree& tree, SpherePolicy policy, const SearchSide& side,
+                             std::uint32_t node) {
+  const int level = level_of(tree, side);
+  if (!side.descends) {
+    return {bound_of(tree, policy, level - 1, node / 8, static_cast<int>(node % 8))};
+  }
+  std::vector<Bound> bounds;
+  for (int slot = 0; slot < tree.parts().octree.child_count(level, node); ++slot) {
+    bounds.push_back(bound_of(tree, policy, level - 1, node, slot));
+  }
+  return bounds;
+}
+
+// The distances that the bounds of a pair allow, mesh units, without the pads for rounding, but
+// slabs of inner nodes count as wider for large partners; and whether they overlap, within all
+// pads.
+struct Distances {
+  double least, greatest;
+  bool overlap;
+};
+
+Distances distances_of(const Bound& fixed, const Bound& moving, const RelativePose& pose,
+                       const Pads& pads, const Pads& rounding, bool slabs) {
+  const Eigen::Vector3d between =
+      pose.rotation * moving.ball.centre + pose.translation - fixed.ball.centre;
+  const double distance = between.norm(), radii = fixed.ball.radius + moving.ball.radius;
+  Distances distances{distance - radii, distance + radii, distance - radii <= double{pads.ball}};
+  if (!slabs) return distances;
+  // How far a partner's ball is beyond a slab; `between` leads from the slab's ball to it.
+  const auto beyond = [](const Slab& slab, const Eigen::Vector3d& between, double radius) {
+    return std::abs(slab.normal.dot(between) - slab.offset) - slab.half - radius;
+  };
+  const double of_fixed = beyond(fixed.slab, between, moving.ball.radius);
+  const double of_moving =
+      beyond(moving.slab, -(pose.rotation.transpose() * between), fixed.ball.radius);
+  const auto rise = [](float pad, float of_rounding) { return double{pad} - double{of_rounding}; };
+  distances.overlap = distances.overlap && of_fixed <= double{pads.slab_fixed} &&
+                      of_moving <= double{pads.slab_moving};
+  distances.least =
+      std::max({distances.least, of_fixed - rise(pads.slab_fixed, rounding.slab_fixed),
+                of_moving - rise(pads.slab_moving, rounding.slab_moving)});
   return distances;
 }
 
@@ -43,35 +105,46 @@ Pads rounding_of(const SearchPose& pose) {
   return {pose.inner.ball, slab, slab};
 }
 
+// Two trees at a pose, whose bounds are read as the policy says.
+struct Bodies {
+  const SphereTree &fixed, &moving;
+  SpherePolicy policy;
+  RelativePose at;
+};
+
 // Lists pairs, and keeps its own list of all pairs that are pruned, and of those that are live: an
-// overlapping pair is live until all its children are tested.
+// overlapping pair is live until all its children are tested. Distances are computed in double from
+// the content of the trees, and so is whether a pair overlaps.
 class Listing : public PairLister {
  public:
-  Listing(const SearchPose& pose, LeafPairSink& sink, const BudgetMeter& meter)
-      : PairLister(pose, sink, meter, Measured::kBoth), pose_(pose), inner_(rounding_of(pose)) {}
+  Listing(const Bodies& bodies, const SearchPose& pose, LeafPairSink& sink,
+          const BudgetMeter& meter)
+      : PairLister(pose, sink, meter, Measured::kBoth),
+        bodies_(bodies),
+        pose_(pose),
+        inner_(rounding_of(pose)) {}
 
   Advanced advance(const SearchBatch& batch) noexcept {
     SearchCursor from = batch.cursor;
     const Advanced made = PairLister::advance(batch);
-    const bool slabs = batch.step.fixed.slabs != nullptr;
+    const SearchStep& step = batch.step;
+    const bool slabs = bodies_.policy == SpherePolicy::kSlab;
     std::uint64_t tests = 0;
     for (; tests < made.tests; ++from.group, from.row = from.moving = 0) {
       const SearchGroup group = batch.in.groups[from.group];
       const std::uint32_t begin = from.group == 0 ? 0 : batch.in.groups[from.group - 1].end;
-      const std::uint32_t rows = decode(batch.step.fixed, group.fixed, scratch_->fixed[0].lanes, 0);
-      for (; from.row < rows && tests < made.tests; ++from.row, from.moving = 0) {
-        turn(pose_, pads_of(pose_, batch.step), slabs, scratch_->fixed[0].lanes, from.row,
-             scratch_->fixed[0].rows);
+      const std::vector<Bound> rows =
+          bounds_of(bodies_.fixed, bodies_.policy, step.fixed, group.fixed);
+      for (; from.row < rows.size() && tests < made.tests; ++from.row, from.moving = 0) {
         for (std::uint32_t i = begin + from.moving; i < group.end && tests < made.tests; ++i) {
-          const std::uint32_t lanes =
-              decode(batch.step.moving, batch.in.moving[i], scratch_->moving, 0);
-          for (std::uint32_t at = 0; at < lanes; ++at) {
-            const PairTest test(scratch_->fixed[0].rows, from.row, scratch_->moving, at, slabs);
+          for (const Bound& moving :
+               bounds_of(bodies_.moving, bodies_.policy, step.moving, batch.in.moving[i])) {
             const Distances distances =
-                distances_of(test, batch.step.leaves ? pose_.leaf : inner_, slabs);
-            (test.overlap() ? live_ : pruned_).push_back(distances);
+                distances_of(rows[from.row], moving, bodies_.at, pads_of(pose_, step),
+                             step.leaves ? pose_.leaf : inner_, slabs);
+            (distances.overlap ? live_ : pruned_).push_back(distances);
+            ++tests;
           }
-          tests += lanes;
         }
       }
     }
@@ -82,11 +155,14 @@ class Listing : public PairLister {
   // With a step that is whole, the pairs before it are live no more.
   bool enter(std::size_t /*step*/, const Frontier& pairs, bool whole) noexcept {
     EXPECT_TRUE(whole);
-    keep_last(pairs.moving_count);
+    end_step(pairs.moving_count);
     return true;
   }
-  void keep_last(std::size_t pairs) {
-    live_.erase(live_.begin(), live_.end() - static_cast<std::ptrdiff_t>(pairs));
+  // The search found that so many pairs of the step overlap.
+  void end_step(std::size_t pairs) {
+    live_.erase(live_.begin(), live_.begin() + static_cast<std::ptrdiff_t>(before_));
+    before_ = live_.size();
+    EXPECT_EQ(before_, pairs);
   }
 
   [[nodiscard]] DistanceInterval formula(double pad) const {
@@ -101,10 +177,11 @@ class Listing : public PairLister {
   }
 
  private:
+  const Bodies& bodies_;
   const SearchPose& pose_;
   Pads inner_;
-  std::unique_ptr<SearchScratch> scratch_ = std::make_unique<SearchScratch>();
-  std::vector<Distances> live_{{-HUGE_VAL, HUGE_VAL}};  // first the pair of roots
+  std::vector<Distances> live_{{-HUGE_VAL, HUGE_VAL, true}};  // first the pair of roots
+  std::size_t before_ = 1;                                    // live before the step
   std::vector<Distances> pruned_;
 };
 
@@ -126,13 +203,15 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           const QueryResult told =
               query.leaf_pairs(at, std::span<LeafPair>(), {.tests = tests + 1});
           if (told.sphere_tests == 1) continue;  // the roots are apart, or no test was left
-          const SearchPose pose = to_float(
-              *relative_pose(at, scene.fixed.parts().lattice, scene.moving.parts().lattice),
-              lengths_of(scene.fixed, policy), lengths_of(scene.moving, policy));
+          const Bodies bodies{
+              scene.fixed, scene.moving, policy,
+              *relative_pose(at, scene.fixed.parts().lattice, scene.moving.parts().lattice)};
+          const SearchPose pose = to_float(bodies.at, lengths_of(scene.fixed, policy),
+                                           lengths_of(scene.moving, policy));
           LeafPairSink sink(plan, kernels, {});
-          Listing listing(pose, sink, BudgetMeter({.tests = tests}));
+          Listing listing(bodies, pose, sink, BudgetMeter({.tests = tests}));
           const std::size_t steps = search.run(listing);
-          if (steps == plan.steps().size()) listing.keep_last(sink.count());
+          if (steps == plan.steps().size()) listing.end_step(sink.count());
           EXPECT_EQ(listing.tests() + 1, told.sphere_tests);
           EXPECT_EQ(static_cast<int>(plan.steps().size() - steps), told.level);
           EXPECT_EQ(told.complete, told.level == 0);

@@ -7,7 +7,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 from report.curves import between, crossings, power  # noqa: E402  after its folder is known
 from report.peer_answers import Answers  # noqa: E402
-from report.peers_elsewhere import absent, native_fcl  # noqa: E402
+from report.peers_elsewhere import ELSEWHERE, absent, native_fcl  # noqa: E402
 from report.peers_otherwise import asked_in  # noqa: E402
 from report.results import Results  # noqa: E402
 from report.text import number, table  # noqa: E402
@@ -56,11 +56,15 @@ class Peers(unittest.TestCase):
         self.assertIn("some 1.7 to 2.1 times faster", text)
         self.assertIn("at 1 of 2 poses (truth7)", text)
 
+    def test_every_figure_from_elsewhere_has_a_source(self):
+        for name, figures in ELSEWHERE.items():
+            self.assertGreater(len(figures["source"]), 50, name)
+
     def test_nothing_is_said_of_a_question_that_was_not_measured_so(self):
         self.assertEqual(native_fcl("candidates", self.meets), [])
 
     def test_who_is_absent_stands_in_proportion_to_fcl_here(self):
-        self.assertIn(f"some {number(15 * 4609 / 12610)} µs here; IST takes 10.", absent({"pairs": self.meets})[0])
+        self.assertIn(f"some {number(15 * ELSEWHERE['pqp']['p50_us']['pqp'] / ELSEWHERE['pqp']['p50_us']['fcl'])} µs here; IST takes 10.", absent({"pairs": self.meets})[0])
 
     def test_what_was_not_asked_is_left_out(self):
         self.assertEqual(asked_in(self.results, "avx2"), {})

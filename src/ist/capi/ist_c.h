@@ -43,16 +43,6 @@
 extern "C" {
 #endif
 
-/** The version of this interface. It increases with each added function or member; an incompatible
- * change also changes the library's SONAME. */
-#define IST_ABI_VERSION 1
-
-/** Returns the IST_ABI_VERSION of the library. [real time] */
-IST_C_API uint32_t ist_abi_version(void) IST_NOEXCEPT;
-
-/** Returns the version of the library, such as "0.1.0". [real time] */
-IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
-
 /** An immutable surface of triangles. */
 typedef struct ist_mesh ist_mesh;
 
@@ -101,6 +91,10 @@ typedef struct ist_mesh_info {
 
 /** Gives the size and the defects of a mesh. Cost: about 40 ms for 100,000 triangles. */
 IST_C_API ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT;
+/** Does what ist_mesh_get_info does. `progress` may be NULL; IST_CANCELLED as it says. */
+IST_C_API ist_status ist_mesh_get_info_with_progress(const ist_mesh* mesh,
+                                                     const ist_progress* progress,
+                                                     ist_mesh_info* info) IST_NOEXCEPT;
 
 /** Copies the first `vertex_capacity` vertices, 3 coordinates each, and the first
  * `triangle_capacity` triangles, 3 indices each, in the order of the indices in answers. An array
@@ -168,11 +162,18 @@ IST_C_API ist_status ist_tree_save_with_progress(const ist_tree* tree, const cha
  * `memory` may be NULL where `capacity` is 0. Cost: 1 ns per byte. */
 IST_C_API ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
                                         uint64_t* bytes) IST_NOEXCEPT;
+/** Does what ist_tree_to_memory does. `progress` may be NULL; IST_CANCELLED as it says. */
+IST_C_API ist_status ist_tree_to_memory_with_progress(const ist_tree* tree, void* memory,
+                                                      size_t capacity, const ist_progress* progress,
+                                                      uint64_t* bytes) IST_NOEXCEPT;
 
-/** Reads a tree from the bytes of its file, as ist_tree_load does, with the same errors. The bytes
- * may be freed afterwards. */
+/** Reads a tree from its file's bytes, with the errors of ist_tree_load. They may go afterwards. */
 IST_C_API ist_status ist_tree_from_memory(const void* memory, size_t bytes,
                                           ist_tree** tree) IST_NOEXCEPT;
+/** Does what ist_tree_from_memory does. `progress` may be NULL; IST_CANCELLED as it says. */
+IST_C_API ist_status ist_tree_from_memory_with_progress(const void* memory, size_t bytes,
+                                                        const ist_progress* progress,
+                                                        ist_tree** tree) IST_NOEXCEPT;
 
 /** Creates a mesh from the triangles that a tree keeps, turned outward. Errors:
  * IST_TRIANGLES_MISSING. Cost: 10 ns per vertex and triangle. */
@@ -386,8 +387,7 @@ IST_C_API ist_status ist_query_triangle_pairs(ist_query* query, const double pos
                                               size_t capacity,
                                               ist_triangle_pairs_result* result) IST_NOEXCEPT;
 
-/** Forgets what earlier poses left behind: the next answers are those of a new query. [real time]
- */
+/** Forgets what earlier poses left behind: next answers are those of a new query. [real time] */
 IST_C_API ist_status ist_query_forget(ist_query* query) IST_NOEXCEPT;
 
 /** Frees a query. */

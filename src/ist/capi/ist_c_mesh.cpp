@@ -68,6 +68,22 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
   });
 }
 
+ist_status check(const char* function, const ist_mesh* mesh, const ist_progress* progress,
+                 ist_mesh_info* info) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "info", info)) return wrong;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Mesh> held(call, "mesh", mesh);
+    if (held.status() != IST_OK) return held.status();
+    ist_mesh_info found{};
+    const bool whole = followed(follower, [&](const Proceed&) { found = mesh_info_of(*held); });
+    if (!whole) return cancelled(call);
+    write_sized(found, *info);
+    return IST_OK;
+  });
+}
+
 ist_status read(const char* function, const char* path, const ist_progress* progress,
                 ist_mesh** mesh) noexcept {
   return read_object<Mesh>(function, path, progress, mesh,
@@ -102,7 +118,12 @@ ist_status ist_mesh_read_with_progress(const char* path, const ist_progress* pro
 }
 
 ist_status ist_mesh_get_info(const ist_mesh* mesh, ist_mesh_info* info) IST_NOEXCEPT {
-  return get_info<Mesh>(__func__, mesh, info, mesh_info_of);
+  return check(__func__, mesh, nullptr, info);
+}
+
+ist_status ist_mesh_get_info_with_progress(const ist_mesh* mesh, const ist_progress* progress,
+                                           ist_mesh_info* info) IST_NOEXCEPT {
+  return check(__func__, mesh, progress, info);
 }
 
 ist_status ist_mesh_get_size(const ist_mesh* mesh, uint64_t* vertices,

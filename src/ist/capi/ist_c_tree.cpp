@@ -88,6 +88,56 @@ ist_status save(const char* function, const ist_tree* tree, const char* path,
   });
 }
 
+// The memory of a caller that takes a tree's file, and where its size goes.
+struct TargetMemory {
+  void* memory;
+  std::size_t capacity;
+  std::uint64_t* bytes;
+};
+
+ist_status to_memory(const char* function, const ist_tree* tree, const TargetMemory& to,
+                     const ist_progress* progress) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"bytes", to.bytes}})) return missing;
+    *to.bytes = 0;
+    if (const auto missing = call.need_array("memory", to.memory, to.capacity)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    std::vector<std::byte> file;
+    const bool whole =
+        followed(follower, [&](const Proceed&) { file = ist::tree_to_bytes(*held->tree); });
+    if (!whole) return cancelled(call);
+    *to.bytes = file.size();
+    if (to.capacity >= file.size()) std::memcpy(to.memory, file.data(), file.size());
+    return IST_OK;
+  });
+}
+
+// The memory of a caller that holds a tree's file.
+struct SourceMemory {
+  const void* memory;
+  std::size_t bytes;
+};
+
+ist_status from_memory(const char* function, const SourceMemory& from, const ist_progress* progress,
+                       ist_tree** tree) noexcept {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
+    *tree = nullptr;
+    if (const auto missing = call.need_array("memory", from.memory, from.bytes)) return missing;
+    Follower follower;
+    if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
+    std::unique_ptr<Tree> made;
+    const bool whole = followed(follower, [&](const Proceed&) {
+      made = std::make_unique<Tree>(
+          ist::tree_from_bytes({static_cast<const std::byte*>(from.memory), from.bytes}));
+    });
+    return whole ? give(call, std::move(made), tree) : cancelled(call);
+  });
+}
+
 }  // namespace
 }  // namespace ist::capi
 
@@ -133,29 +183,23 @@ ist_status ist_tree_save_with_progress(const ist_tree* tree, const char* path,
 
 ist_status ist_tree_to_memory(const ist_tree* tree, void* memory, size_t capacity,
                               uint64_t* bytes) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"bytes", bytes}})) return missing;
-    *bytes = 0;
-    if (const ist_status missing = call.need_array("memory", memory, capacity)) return missing;
-    const Held<Tree> held(call, "tree", tree);
-    if (held.status() != IST_OK) return held.status();
-    const std::vector<std::byte> file = ist::tree_to_bytes(*held->tree);
-    *bytes = file.size();
-    if (capacity >= file.size()) std::memcpy(memory, file.data(), file.size());
-    return IST_OK;
-  });
+  return to_memory(__func__, tree, {memory, capacity, bytes}, nullptr);
+}
+
+ist_status ist_tree_to_memory_with_progress(const ist_tree* tree, void* memory, size_t capacity,
+                                            const ist_progress* progress,
+                                            uint64_t* bytes) IST_NOEXCEPT {
+  return to_memory(__func__, tree, {memory, capacity, bytes}, progress);
 }
 
 ist_status ist_tree_from_memory(const void* memory, size_t bytes, ist_tree** tree) IST_NOEXCEPT {
-  return guarded(__func__, [&](const Call& call) -> ist_status {
-    if (const ist_status missing = call.need({{"tree", tree}})) return missing;
-    *tree = nullptr;
-    if (const ist_status missing = call.need_array("memory", memory, bytes)) return missing;
-    return give(call,
-                std::make_unique<Tree>(
-                    ist::tree_from_bytes({static_cast<const std::byte*>(memory), bytes})),
-                tree);
-  });
+  return from_memory(__func__, {memory, bytes}, nullptr, tree);
+}
+
+ist_status ist_tree_from_memory_with_progress(const void* memory, size_t bytes,
+                                              const ist_progress* progress,
+                                              ist_tree** tree) IST_NOEXCEPT {
+  return from_memory(__func__, {memory, bytes}, progress, tree);
 }
 
 ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT {

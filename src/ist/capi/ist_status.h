@@ -3,7 +3,7 @@
 
 /**
  * @file
- * The results of the calls of ist_c.h, and how a caller follows one that lasts.
+ * The version of the interface, the results of its calls, and how a caller follows one that lasts.
  */
 
 #include <stddef.h>
@@ -22,6 +22,16 @@ extern "C" {
 #else
 #define IST_NOEXCEPT
 #endif
+
+/** The version of this interface. It increases with each added function or member; an incompatible
+ * change also changes the library's SONAME. */
+#define IST_ABI_VERSION 1
+
+/** Returns the IST_ABI_VERSION of the library. [real time] */
+IST_C_API uint32_t ist_abi_version(void) IST_NOEXCEPT;
+
+/** Returns the version of the library, such as "0.1.0". [real time] */
+IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
 
 /** The result of a call. The numbers never change. */
 typedef int32_t ist_status;

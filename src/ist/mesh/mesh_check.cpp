@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "ist/base/cancellation.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
@@ -112,10 +113,15 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
   MeshReport report;
   report.vertices = mesh.vertices.size();
   report.triangles = mesh.triangles.size();
+  cancellation_point();
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  cancellation_point();
   count_edges(uses, report);
+  cancellation_point();
   count_components(mesh, uses, report);
+  cancellation_point();
   report.duplicate_triangles = count_duplicates(mesh);
+  cancellation_point();
   report.degenerate_triangles = static_cast<std::size_t>(
       std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
                     [&mesh](const Triangle& t) { return is_degenerate(mesh, t); }));

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "ist/base/cancellation.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -54,6 +55,7 @@ TreeWriter::TreeWriter(std::vector<std::byte>& memory) : memory_(&memory) {
 
 void TreeWriter::store(const void* data, std::size_t count) {
   if (file_) return file_->write(data, count);
+  cancellation_point();
   const auto* begin = static_cast<const std::byte*>(data);
   memory_->insert(memory_->end(), begin, begin + count);
 }
@@ -89,6 +91,7 @@ TreeReader::TreeReader(std::span<const std::byte> memory, std::string name)
 
 std::size_t TreeReader::take(void* data, std::size_t count) {
   if (file_) return file_->read(data, count);
+  cancellation_point();
   count = std::min(count, memory_.size());
   if (count > 0) std::memcpy(data, memory_.data(), count);
   memory_ = memory_.subspan(count);

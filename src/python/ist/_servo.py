@@ -5,7 +5,7 @@ from ctypes import addressof
 import numpy as np
 
 from ._answers import ServoTick
-from ._arrays import address, by_columns, count_of, floats, number_of
+from ._arrays import address, by_columns, count_of, floats, number_of, place_of
 from ._errors import check, error_of, refuse
 from ._follow import Follower
 from ._handle import Lone, Out
@@ -47,19 +47,24 @@ class Servo(Lone):
             status = LIBRARY.ist_servo_open_scene(path, addressof(options), out.address)
             super().__init__(out.handle)  # which is freed with this object whatever finish() raises
             follower.finish(status)
-        self._force, self._torque = np.zeros(3), np.zeros(3)
 
-    def tick(self, pose):
+    def tick(self, pose, *, out=None):
         """Computes one tick. None for the pose: the device did not say where it is, which is a fault. Raises after a fault,
-        and the next forces come back gradually."""
+        and the next forces come back gradually. out: an array of float64, (2, 3), that is filled; force and torque are its
+        rows.
+        """
         handle = self._enter()
         try:
             at = None if pose is None else by_columns(floats(pose, (4, 4), "pose"))
-            place = None if at is None else address(at)
-            status = LIBRARY.ist_servo_on_tick(handle, place, address(self._force), address(self._torque))
+            if out is None:
+                out = np.empty((2, 3))
+            elif not isinstance(out, np.ndarray) or out.shape != (2, 3) or not out.flags.carray:
+                refuse("out has to be an array of float64, (2, 3), contiguous and writeable: make it by numpy.empty((2, 3))")
+            force = place_of(out.reshape(-1), np.float64)
+            status = LIBRARY.ist_servo_on_tick(handle, None if at is None else address(at), force, force + out.strides[0])
             if status:
                 raise error_of(status, self._NO_POSE if pose is None else None)
-            return ServoTick(self._force.copy(), self._torque.copy())
+            return ServoTick(out[0], out[1])
         finally:
             self._lock.release()
 

@@ -80,8 +80,8 @@ class Tree(Handle):
                 LIBRARY.ist_tree_save_with_progress(self._need(), path_bytes(path, "path"), follower.address)
             )
 
-    def to_bytes(self):
-        """Returns the bytes of the tree's file, for load().
+    def to_bytes(self, *, progress=None):
+        """Returns the bytes of the tree's file, for load(). progress: called meanwhile; what it raises ends it.
 
         >>> import ist
         >>> tree = ist.build(ist.jaws()[0], voxel_size=2)
@@ -89,9 +89,15 @@ class Tree(Handle):
         True
         """
         size = ctypes.c_uint64()
-        check(LIBRARY.ist_tree_to_memory(self._need(), None, 0, ctypes.addressof(size)))
-        memory = ctypes.create_string_buffer(size.value)
-        check(LIBRARY.ist_tree_to_memory(self._handle, memory, len(memory), ctypes.addressof(size)))
+
+        def fill(memory, capacity):
+            handle, place = self._need(), ctypes.addressof(size)
+            follower.finish(LIBRARY.ist_tree_to_memory_with_progress(handle, memory, capacity, follower.address, place))
+
+        with Follower(progress) as follower:
+            fill(None, 0)
+            memory = ctypes.create_string_buffer(size.value)
+            fill(memory, len(memory))
         return memory.raw
 
     def __reduce__(self):
@@ -169,18 +175,18 @@ def build(
 
 
 def load(source, *, progress=None):
-    """Reads a tree from its file: a path, or its bytes. Every number in it is checked. progress: called while a file is read;
-    what it raises ends that. Raises FileError, InputError.
+    """Reads a tree from its file: a path, or its bytes. Every number in it is checked. progress: called meanwhile; what it
+    raises ends that. Raises FileError, InputError.
     """
     out = Out()
-    if isinstance(source, (bytes, bytearray, memoryview)):
-        if progress is not None:
-            raise TypeError("progress follows the reading of a file: pass a path, or no progress")
-        memory = np.frombuffer(source, np.uint8)
-        check(LIBRARY.ist_tree_from_memory(address(memory), len(memory), out.address))
-        return Tree(out.handle)
     with Follower(progress) as follower:
-        status = LIBRARY.ist_tree_load_with_progress(path_bytes(source, "source"), follower.address, out.address)
+        if isinstance(source, (bytes, bytearray, memoryview)):
+            memory = np.frombuffer(source, np.uint8)
+            status = LIBRARY.ist_tree_from_memory_with_progress(
+                address(memory), len(memory), follower.address, out.address
+            )
+        else:
+            status = LIBRARY.ist_tree_load_with_progress(path_bytes(source, "source"), follower.address, out.address)
         tree = None if status else Tree(out.handle)
         follower.finish(status)
     return tree
