@@ -11,7 +11,7 @@ struct BodyPose {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-/// Returns a pose projected to a rigid motion, or nothing where it is none (project_to_rigid).
+/// Returns a pose projected to a rigid motion, or nothing where it cannot be (project_to_rigid).
 [[nodiscard]] std::optional<BodyPose> body_pose(const Eigen::Isometry3d& pose) noexcept;
 
 /// Returns the motion from b's mesh coordinates to a's, a⁻¹ b. Each number is summed in twice the

@@ -34,13 +34,11 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   double upper = kLargestDistance;
   const std::vector<detail::WorldState::Candidate>& candidates = s.answers.candidates;
   const std::span<PairDistance> pairs = std::span(s.answers.nearest).first(candidates.size());
-  bool lost = lacks_a_pose(s);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const PairAtPose at = s.look(candidates[k].bodies);
     pairs[k] = {};
     static_cast<NearPair&>(pairs[k]) = at.near;
     leave(at, pairs[k]);
-    if (at.near.status == QueryStatus::kInvalidPose) lost = true;
     upper = std::min(upper, at.near.roots.upper);
   }
   std::sort(pairs.begin(), pairs.end(), [](const NearPair& a, const NearPair& b) {
@@ -50,7 +48,6 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   const double width = tolerance > 0 ? tolerance : 0;
   std::uint64_t spent = 0;
   for (PairDistance& pair : pairs) {
-    if (pair.status == QueryStatus::kInvalidPose) continue;
     // All pairs that are left are no nearer than this one's roots.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
@@ -69,12 +66,12 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   double least = kLargestDistance;
   for (const PairDistance& pair : pairs) {
     all.sphere_tests += pair.result.sphere_tests;
-    if (pair.status == QueryStatus::kInvalidPose) continue;
     const double end = pair.result.distance.upper;
     if (all.nearest && !(end < least || (end == least && pair.bodies < *all.nearest))) continue;
     all.nearest = pair.bodies;
     least = end;
   }
+  const bool lost = lacks_a_pose(s);
   if (lost) all.status = QueryStatus::kInvalidPose;
   all.complete = !lost && upper - all.distance.lower <= width;
   std::sort(pairs.begin(), pairs.end(),

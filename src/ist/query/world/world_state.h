@@ -23,7 +23,7 @@ struct WorldState {
     std::array<double, 16> given;  // the pose as it was given
     BodyPose pose;                 // projected
   };
-  /// What is kept for a pair from call to call.
+  /// The memory of a pair from call to call.
   struct PairMemory {
     PairMemory(BodyPair pair, const Body& a, const Body& b, const WorldOptions& options);
     BodyPair bodies;
@@ -55,9 +55,11 @@ struct WorldState {
 
   explicit WorldState(const WorldOptions& options);
 
-  /// Returns a pair in order. Throws kArgumentInvalid where it is none.
+  /// Returns a pair in order. Throws kArgumentInvalid for bodies that are
+  /// not there, or the same.
   [[nodiscard]] BodyPair checked(BodyIndex a, BodyIndex b) const;
-  /// Returns the pairs in their order, each once. Throws for one that is none, or ignored.
+  /// Returns the pairs in their order, each once. Throws so for each of them, and for one
+  /// that is ignored.
   [[nodiscard]] std::vector<BodyPair> checked(std::span<const BodyPair> pairs) const;
   /// Returns all pairs that are not ignored, in their order.
   [[nodiscard]] std::vector<BodyPair> all_pairs() const;
