@@ -8,6 +8,7 @@
 #include <set>
 
 #include "ist/query/traversal/root_test.h"
+#include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/world/world_cases.h"
@@ -55,6 +56,38 @@ TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
     EXPECT_EQ(world.near_pairs().near_pairs, 1u) << turn;
     static_cast<void>(pose_at(1.01 * last));
     EXPECT_EQ(world.near_pairs().near_pairs, 0u) << turn;
+  }
+}
+
+// Two bodies, anywhere, as far apart as any two bounds of theirs can be and still overlap in a
+// search in float: their bounding radii, and the pad of inner nodes.
+TEST(BroadPhase, HoldsBallsThatTouchWithTheirPads) {
+  Random random(2);
+  for (int turn = 0; turn < 200 && !::testing::Test::HasFailure(); ++turn) {
+    const double size = std::ldexp(1.0, static_cast<int>(random.below(20U)) - 10);
+    const SphereTree a = ball_of_cubes(size), b = ball_of_cubes(size * random.uniform(0.1, 1));
+    const double radii = a.bounding_radius() + b.bounding_radius();
+    const double reach = turn % 3 == 0 ? size : 0;
+    const Eigen::Isometry3d first = pose_of(random.rotation(), size * random.direction());
+    const Eigen::Matrix3d turned = random.rotation();
+    const Eigen::Vector3d away = random.direction();
+    BroadPhase broad;
+    broad.reserve(2);
+    broad.add();
+    broad.add();
+    broad.set(0, ball_of(a, *body_pose(first), reach, 0));
+    const auto near_at = [&](double t) {
+      const Eigen::Isometry3d second = pose_of(turned, first.translation() + t * away);
+      broad.set(1, ball_of(b, *body_pose(second), reach, 0));
+      const BodyPose pose = between(*body_pose(first), *body_pose(second));
+      const auto relative = relative_pose(to_isometry(pose), a.parts().lattice, b.parts().lattice);
+      const Eigen::Vector3d& way = relative->translation;
+      return way.norm() <= radii + inner_ball_pad(radii, way.cwiseAbs().maxCoeff(), reach);
+    };
+    ASSERT_TRUE(near_at(last_touching(0, 20 * size, near_at)));
+    int found = 0;
+    broad.near([&](BodyPair) { ++found; });
+    EXPECT_EQ(found, 1) << turn;
   }
 }
 
