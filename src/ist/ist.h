@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// All of IST that answers questions about two bodies: meshes, built-in models, trees, queries.
+/// All of IST that answers questions about bodies: meshes, built-in models, trees, queries of two
+/// bodies, worlds of many.
 /// ist/haptics.h and ist/scene.h stand apart.
 #include "ist/base/api.h"
 
@@ -15,5 +16,6 @@
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
 #include "ist/query/results.h"
+#include "ist/query/world/world.h"
 #include "ist/tree/sphere_tree.h"
 #endif

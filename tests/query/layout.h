@@ -6,6 +6,7 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
+#include "ist/query/world/world.h"
 
 namespace ist::test {
 
@@ -19,7 +20,9 @@ consteval std::array<std::size_t, 2 * sizeof...(Types)> layout_of() {
 consteval auto public_layout() {
   return layout_of<SphereTree, TriangleMesh, ReferenceQuery, Query, QueryOptions, ContactManifold,
                    Contact, ContactSums, ManifoldOptions, LeafPair, IntersectionResult, QueryResult,
-                   TrianglePairsResult, DistanceResult, Sharing>();
+                   TrianglePairsResult, DistanceResult, Sharing, World, WorldOptions, NearPair,
+                   PairIntersection, PairContacts, PairLeaves, PairTriangles, PairDistance,
+                   WorldAnswer<PairContacts>, WorldDistance>();
 }
 
 /// As code compiled for AVX-512 does.

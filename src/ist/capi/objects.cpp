@@ -48,6 +48,8 @@ ist_status status_of(const Call& call, QueryStatus status) {
                        "a tree has no triangles: build both trees with them");
     case QueryStatus::kManifoldMismatch:  // each manifold belongs to its query
     case QueryStatus::kBusy:              // a handle is used by one thread at a time
+    case QueryStatus::kNotPrepared:       // of a world
+    case QueryStatus::kNoSuchBody:        // of a world
       break;
   }
   return call.fail(IST_INTERNAL_ERROR, "a query returned an unknown status: report this bug");

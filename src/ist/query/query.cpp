@@ -46,7 +46,7 @@ const char* to_string(Answer answer) noexcept {
 
 const char* to_string(QueryStatus status) noexcept {
   constexpr std::array kNames = {"done", "invalid-pose", "no-triangles", "manifold-mismatch",
-                                 "busy"};
+                                 "busy", "not-prepared", "no-such-body"};
   const auto at = static_cast<std::size_t>(status);
   return at < kNames.size() ? kNames[at] : "unknown";
 }

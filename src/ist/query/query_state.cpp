@@ -35,7 +35,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
                        const QueryOptions& options, const ScopedFloatEnvironment&)
     : fixed(fixed_tree),
       moving(moving_tree),
-      policy(options.policy.value_or(std::min(fixed.tightest(), moving.tightest()))),
+      policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
       plan(fixed, moving, policy) {
   if (one_or_two(options.workers) == 2) {
@@ -53,6 +53,22 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
     exact.emplace(fixed, moving, kernels, WorkerOptions{options.workers, options.period});
   }
+}
+
+std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                  const QueryOptions& options) {
+  const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
+  std::size_t bytes = Search::bytes_for(plan, options.frontier_pairs) +
+                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  if (options.front_pairs > 0) {
+    const std::size_t pairs = within_limit("front_pairs", options.front_pairs);
+    bytes += CoherentSearch::bytes_for(
+        plan, {options.frontier_pairs, pairs, options.workers, options.period});
+  }
+  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
+    bytes += ExactSearch::bytes_for(fixed, moving);
+  }
+  return bytes;
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {

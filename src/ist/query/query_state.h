@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <atomic>
 #include <optional>
 #include <variant>
@@ -26,6 +27,15 @@ struct Approach {
 struct QueryState {
   QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
              const QueryOptions& options, const ScopedFloatEnvironment& environment);
+
+  /// Returns the bytes that the memory of a query with one worker takes. Throws as the constructor.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                             const QueryOptions& options);
+  /// Returns the bounds of a query of two trees.
+  [[nodiscard]] static SpherePolicy policy_of(const SphereTree& fixed, const SphereTree& moving,
+                                              const QueryOptions& options) noexcept {
+    return options.policy.value_or(std::min(fixed.tightest(), moving.tightest()));
+  }
 
   /// Composes the relative pose and tests the roots. Returns nothing where `pose` is no rigid
   /// motion.

@@ -61,6 +61,8 @@ enum class QueryStatus : std::uint8_t {
   kNoTriangles,       ///< the question needs triangles, and a tree was built without them
   kManifoldMismatch,  ///< the manifold was made for other trees or another policy
   kBusy,              ///< another thread is using the query; nothing was searched or changed
+  kNotPrepared,       ///< of a World: nothing was reserved for this question before
+  kNoSuchBody,        ///< of a World: no body has this number
 };
 /// Returns the status' name, such as "invalid-pose", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(QueryStatus status) noexcept;

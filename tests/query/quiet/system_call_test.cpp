@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "query/exact/exact_tree.h"
+#include "query/quiet/world_ticks.h"
 #include "query/scenes.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -138,6 +139,18 @@ TEST_F(SystemCalls, CertifiedAnswersMakeNone) {
           static_cast<void>(query.leaf_pairs(pose, leaf_pairs, {.deadline = deadline}));
         }
         end_process(triangles > 1000 ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST_F(SystemCalls, AWorldMakesNone) {
+  EXPECT_EXIT(
+      {
+        World world = row_of_balls();
+        std::vector<LeafPair> leaves(1 << 10);
+        std::vector<TrianglePair> triangles(1 << 10);
+        forbid_system_calls();
+        end_process(ask_everything(world, leaves, triangles) > 10000 ? 0 : 1);
       },
       ::testing::ExitedWithCode(0), "");
 }

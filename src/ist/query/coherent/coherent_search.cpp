@@ -239,4 +239,11 @@ std::size_t CoherentSearch::bytes() const noexcept {
   return fronts_[0].bytes() + fronts_[1].bytes() + rows_.bytes() + search_.bytes();
 }
 
+std::size_t CoherentSearch::bytes_for(const SearchPlan& plan,
+                                      const CoherentOptions& options) noexcept {
+  return 2 * Front::bytes_for(options.front_pairs) +
+         FrontRowMemory::bytes_for(options.front_pairs) +
+         Search::bytes_for(plan, options.frontier_pairs);
+}
+
 }  // namespace ist

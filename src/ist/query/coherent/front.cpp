@@ -7,10 +7,10 @@ namespace {
 
 static_assert(sizeof(float) == sizeof(std::uint32_t));
 
-std::size_t row_capacity(std::size_t pairs) { return pairs / 2 + 1; }
+std::size_t row_capacity(std::size_t pairs) noexcept { return pairs / 2 + 1; }
 
 // The bytes of an array of numbers of 32 bits, in whole lines.
-std::size_t array_bytes(std::size_t count) { return (count + kFrontSpare + 15) / 16 * 64; }
+std::size_t array_bytes(std::size_t count) noexcept { return (count + kFrontSpare + 15) / 16 * 64; }
 
 // Hands out arrays, one behind the other.
 class Arrays {
@@ -34,10 +34,11 @@ class Arrays {
 
 }  // namespace
 
-Front::Front(std::size_t pairs)
-    : memory_(
-          ((kLanes + 8) * array_bytes(pairs) + (kLanes + 5) * array_bytes(row_capacity(pairs))) /
-          sizeof(FrontLine)) {
+std::size_t Front::bytes_for(std::size_t pairs) noexcept {
+  return (kLanes + 8) * array_bytes(pairs) + (kLanes + 5) * array_bytes(row_capacity(pairs));
+}
+
+Front::Front(std::size_t pairs) : memory_(bytes_for(pairs) / sizeof(FrontLine)) {
   lanes.pair_capacity = pairs;
   lanes.row_capacity = row_capacity(pairs);
   Arrays arrays(memory_.data());
@@ -51,8 +52,11 @@ Front::Front(std::size_t pairs)
   arrays.give(lanes.row_capacity, {&f.id, &f.address});
 }
 
-FrontRowMemory::FrontRowMemory(std::size_t pairs)
-    : memory_(16 * array_bytes(row_capacity(pairs)) / sizeof(FrontLine)) {
+std::size_t FrontRowMemory::bytes_for(std::size_t pairs) noexcept {
+  return 16 * array_bytes(row_capacity(pairs));
+}
+
+FrontRowMemory::FrontRowMemory(std::size_t pairs) : memory_(bytes_for(pairs) / sizeof(FrontLine)) {
   Arrays arrays(memory_.data());
   FrontRows::Surface& on = rows_.surface;
   arrays.give(row_capacity(pairs),

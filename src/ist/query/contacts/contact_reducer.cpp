@@ -95,4 +95,13 @@ std::size_t ContactReducer::bytes() const noexcept {
          points_.size() * sizeof(Contact);
 }
 
+std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                      const ManifoldOptions& options) {
+  static_cast<void>(scale_of(fixed, moving, options));  // checks them
+  if (options.points == 0) return sizeof(ContactAdder);
+  return sizeof(ContactAdder) +
+         LeafSums::bytes_for(fixed.parts().octree, std::max<std::size_t>(options.max_leaves, 1)) +
+         options.points * sizeof(Contact);
+}
+
 }  // namespace ist::detail

@@ -65,6 +65,10 @@ class ContactReducer {
   }
   /// Returns the bytes reserved.
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a reducer for this fixed tree reserves. Throws kArgumentInvalid for an
+  /// option out of range.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                             const ManifoldOptions& options);
 
  private:
   const SphereTree fixed_, moving_;  // which share the content

@@ -37,6 +37,10 @@ LeafSums::LeafSums(const LinearOctree& octree, std::size_t most)
   IST_ASSERT(most > 0 && static_cast<std::size_t>(octree.depth()) < kMostLevels);
 }
 
+std::size_t LeafSums::bytes_for(const LinearOctree& octree, std::size_t most) noexcept {
+  return std::min<std::size_t>(most, octree.leaf_count()) * sizeof(LeafSum);
+}
+
 void LeafSums::clear() noexcept {
   shorten(0);
   level_ = 0;

@@ -66,6 +66,8 @@ class LeafSums final : public ContactTermsStream {
   void shorten(std::size_t count) noexcept;
 
   [[nodiscard]] std::size_t bytes() const noexcept { return nodes_.size() * sizeof(LeafSum); }
+  /// Returns the bytes that a list of at most `most` nodes of an octree reserves.
+  [[nodiscard]] static std::size_t bytes_for(const LinearOctree& octree, std::size_t most) noexcept;
 
  private:
   void push(const LeafSum& leaf) noexcept;

@@ -4,22 +4,31 @@
 
 namespace ist {
 
+// A step is from a moving level to the one below, with fixed nodes of the same level, or of the
+// fixed root's where that is lower; their children may be all nodes below.
+ClusterSearch::Lengths ClusterSearch::step_lengths(const TriangleClusters& fixed,
+                                                   const TriangleClusters& moving,
+                                                   int level) noexcept {
+  if (level == 0) return {};  // clusters have no children
+  const auto nodes_at = [&](int at) -> std::size_t {
+    return fixed.node_count(std::clamp(at, 0, fixed.root_level()));
+  };
+  const bool top = level == moving.root_level() + 1;
+  const std::size_t lanes = top ? 1 : kClusterWidth;
+  return {nodes_at(level) + kClusterWidth,
+          lanes * nodes_at(top ? level - 1 : level) + kClusterWidth,
+          lanes * nodes_at(level - 1) + kClusterWidth};
+}
+
 ClusterSearch::ClusterSearch(const TriangleClusters& fixed, const TriangleClusters& moving,
                              const ClusterKernels& kernels)
     : fixed_(fixed), moving_(moving), kernels_(kernels) {
-  // A step is from a moving level to the one below, with fixed nodes of the same level, or of the
-  // fixed root's where that is lower; their children may be all nodes below.
-  const auto nodes_at = [&](int level) -> std::size_t {
-    return fixed.node_count(std::clamp(level, 0, fixed.root_level()));
-  };
-  const int top = moving.root_level() + 1;
-  for (int level = 0; level <= top; ++level) {
+  for (int level = 0; level <= moving.root_level() + 1; ++level) {
+    const Lengths lengths = step_lengths(fixed, moving, level);
     Step& step = steps_.emplace_back();
-    if (level == 0) continue;  // clusters have no children
-    const std::size_t lanes = level == top ? 1 : kClusterWidth;
-    step.bits.resize(nodes_at(level) + kClusterWidth);
-    step.near.resize(lanes * nodes_at(level == top ? level - 1 : level) + kClusterWidth);
-    step.deeper.resize(lanes * nodes_at(level - 1) + kClusterWidth);
+    step.bits.resize(lengths.bits);
+    step.near.resize(lengths.near);
+    step.deeper.resize(lengths.deeper);
   }
 }
 
@@ -110,6 +119,16 @@ std::size_t ClusterSearch::bytes() const noexcept {
   for (const Step& step : steps_) {
     bytes += sizeof(Step) +
              (step.bits.size() + step.near.size() + step.deeper.size()) * sizeof(std::uint32_t);
+  }
+  return bytes;
+}
+
+std::size_t ClusterSearch::bytes_for(const TriangleClusters& fixed,
+                                     const TriangleClusters& moving) noexcept {
+  std::size_t bytes = 0;
+  for (int level = 0; level <= moving.root_level() + 1; ++level) {
+    const Lengths lengths = step_lengths(fixed, moving, level);
+    bytes += sizeof(Step) + (lengths.bits + lengths.near + lengths.deeper) * sizeof(std::uint32_t);
   }
   return bytes;
 }

@@ -53,8 +53,17 @@ class ClusterSearch {
   /// Returns a lower bound of the distance of all nodes that an ended search did not come to.
   [[nodiscard]] double nearest_left() const noexcept { return nearest_left_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a search of these trees reserves.
+  [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
+                                             const TriangleClusters& moving) noexcept;
 
  private:
+  // The lengths of a step's lists.
+  struct Lengths {
+    std::size_t bits, near, deeper;
+  };
+  [[nodiscard]] static Lengths step_lengths(const TriangleClusters& fixed,
+                                            const TriangleClusters& moving, int level) noexcept;
   // A step from a moving node to its children, which are lanes.
   struct Step {
     TurnedBlock turned;

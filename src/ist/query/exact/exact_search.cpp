@@ -186,4 +186,10 @@ std::size_t ExactSearch::bytes() const noexcept {
   return search_.bytes() + list_.bytes() + memory_.bytes() + (shared_ ? shared_->bytes() : 0);
 }
 
+std::size_t ExactSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving) noexcept {
+  return ClusterSearch::bytes_for(fixed.parts().triangles->clusters,
+                                  moving.parts().triangles->clusters) +
+         kSorted * sizeof(TrianglePair) + FoundMemory::bytes_reserved();
+}
+
 }  // namespace ist

@@ -82,6 +82,9 @@ class ExactSearch {
     return shared_ ? shared_->sharing() : Sharing{};
   }
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a search of these trees reserves, with one worker.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed,
+                                             const SphereTree& moving) noexcept;
 
  private:
   struct Witness {

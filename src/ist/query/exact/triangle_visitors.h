@@ -33,8 +33,9 @@ class FoundMemory {
     found = {{ids, ids + kLength}, {ids + 2 * kLength, ids + 3 * kLength}, squares_.data()};
     batch.count = 0;
   }
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return ids_.size() * sizeof(std::uint32_t) + squares_.size() * sizeof(float) + sizeof(batch);
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_reserved(); }
+  [[nodiscard]] static constexpr std::size_t bytes_reserved() noexcept {
+    return 4 * kLength * sizeof(std::uint32_t) + kLength * sizeof(float) + sizeof(TriangleBatch);
   }
 
   TriangleBatch batch;

@@ -13,15 +13,20 @@ constexpr std::size_t kBeamPairs = 16;
 // Where even this part of the widest beam holds too many pairs, some of them are left out.
 constexpr float kLeastWidth = 0x1p-6F;
 
+// The most pairs before step `i`, or leaf pairs, that fit the memory.
+std::size_t capacity_of(const SearchPlan& plan, std::size_t i, std::size_t pairs) noexcept {
+  const std::size_t most = i == 0 ? 1 : plan.most_pairs(i - 1);
+  const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
+  return std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
+}
+
 }  // namespace
 
 Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs)
     : plan_(plan), kernels_(kernels), scratch_(std::make_unique<SearchScratch>()) {
   const std::size_t steps = plan.steps().size();
   for (std::size_t i = 0; i <= steps; ++i) {
-    const std::size_t most = i == 0 ? 1 : plan.most_pairs(i - 1);
-    const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
-    const std::size_t capacity = std::max(row, std::min({pairs, most, std::size_t{1} << 31}));
+    const std::size_t capacity = capacity_of(plan, i, pairs);
     Memory& memory = memory_.emplace_back();
     memory.groups.resize(capacity + kFrontierSpare);
     memory.moving.resize(capacity + kFrontierSpare);
@@ -92,6 +97,15 @@ std::size_t Search::bytes() const noexcept {
   for (const Memory& memory : memory_) {
     bytes +=
         memory.groups.size() * sizeof(SearchGroup) + memory.moving.size() * sizeof(std::uint32_t);
+  }
+  return bytes;
+}
+
+std::size_t Search::bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept {
+  std::size_t bytes = sizeof(SearchScratch);
+  for (std::size_t i = 0; i <= plan.steps().size(); ++i) {
+    bytes += (capacity_of(plan, i, pairs) + kFrontierSpare) *
+             (sizeof(SearchGroup) + sizeof(std::uint32_t));
   }
   return bytes;
 }

@@ -1,0 +1,134 @@
+#include "ist/query/world/world_state.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "ist/query/contacts/contact_scale.h"
+#include "ist/query/query_state.h"
+#include "ist/query/traversal/root_test.h"
+#include "ist/tree/tree_parts.h"
+
+namespace ist::detail {
+namespace {
+
+constexpr DistanceInterval kUnknown = {0, kLargestDistance};
+
+// An upper bound of the rounding error of a moved triangle (ExactSearch::moved_error): no vertex
+// lies beyond the bounding radius.
+double moved_error(const SphereTree& moving, const BodyPose& pose) noexcept {
+  const Eigen::Vector3d origin = moving.origin();
+  return 0x1p-48 * ((origin.cwiseAbs().maxCoeff() + moving.bounding_radius()) +
+                    pose.translation.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+WorldState::PairMemory::PairMemory(BodyPair pair, const Body& a, const Body& b,
+                                   const WorldOptions& options)
+    : bodies(pair),
+      query(a.tree, b.tree, options.query),
+      manifold(a.tree, b.tree, query.policy(), options.manifold) {}
+
+WorldState::Answers::Answers(std::size_t most)
+    : room(most),
+      near(most),
+      pairs(most),
+      intersections(most),
+      contacts(most),
+      leaves(most),
+      triangles(most),
+      distances(most),
+      nearest(most) {
+  candidates.reserve(most);
+}
+
+void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
+  Body& body = bodies[index];
+  const double* const numbers = pose.matrix().data();
+  // Bit by bit, so that what is not a number is compared as all else.
+  if (std::memcmp(body.given.data(), numbers, sizeof body.given) == 0) return;
+  std::copy_n(numbers, body.given.size(), body.given.begin());
+  stale = true;
+  const std::optional<BodyPose> rigid = body_pose(pose);
+  if (!rigid) {
+    broad.take_out(index);
+    return;
+  }
+  body.pose = *rigid;
+  broad.set(index, ball_of(body.tree, body.pose, options.reach, options.manifold.margin));
+}
+
+PairAtPose WorldState::look(BodyPair pair) const noexcept {
+  PairAtPose at{{pair, QueryStatus::kInvalidPose, kUnknown}, true, table[pair], {}};
+  if (!broad.has(pair.a) || !broad.has(pair.b)) return at;
+  const SphereTree &a = bodies[pair.a].tree, &b = bodies[pair.b].tree;
+  at.pose = between(bodies[pair.a].pose, bodies[pair.b].pose);
+  const auto relative = relative_pose(to_isometry(at.pose), a.parts().lattice, b.parts().lattice);
+  if (!relative) {  // no double holds the way: over a third of the largest is between them
+    at.near = {pair, QueryStatus::kNotPrepared, {0.25 * kLargestDistance, kLargestDistance}};
+    at.overlap = false;
+    return at;
+  }
+  const double margin =
+      std::max({options.reach, ContactScale(a, b, -2, options.manifold.margin).margin,
+                moved_error(b, at.pose)});
+  const RootTest roots =
+      test_roots(a, b, QueryState::policy_of(a, b, options.query), *relative, margin);
+  at.overlap = roots.overlap;
+  at.near.roots = roots.distance;
+  at.near.status = at.place < PairTable::kIgnored ? QueryStatus::kDone : QueryStatus::kNotPrepared;
+  return at;
+}
+
+void WorldState::find_near() noexcept {
+  if (!stale) return;
+  stale = false;
+  NearSet& near = answers.near;
+  near.clear();
+  const auto add = [&](BodyPair pair) {
+    if (table[pair] == PairTable::kIgnored) return;
+    const PairAtPose at = look(pair);
+    if (at.overlap) near.add(at);
+  };
+  broad.near(add);
+  const auto count = static_cast<BodyIndex>(bodies.size());
+  for (BodyIndex lost = 0; lost < count; ++lost) {
+    if (broad.has(lost)) continue;
+    for (BodyIndex a = 0; a < lost; ++a) add({a, lost});
+    for (BodyIndex b = lost + 1; b < count; ++b) {
+      if (broad.has(b)) add({lost, b});  // else it was added above
+    }
+  }
+  near.finish();
+}
+
+double WorldState::find_candidates() noexcept {
+  std::vector<Candidate>& list = answers.candidates;
+  list.clear();
+  double within = kLargestDistance, rest = kLargestDistance;
+  broad.nearest([&](BodyPair pair, const DistanceInterval& distance) {
+    if (table[pair] == PairTable::kIgnored) return false;
+    within = std::min(within, distance.upper);
+    const Candidate candidate{distance.lower, pair};
+    if (list.size() < answers.room) {
+      list.push_back(candidate);
+      if (list.size() == answers.room) std::make_heap(list.begin(), list.end());
+      return true;
+    }
+    // The one farthest away leaves.
+    double left = candidate.lower;
+    if (candidate < list.front()) {
+      left = list.front().lower;
+      std::pop_heap(list.begin(), list.end());
+      list.back() = candidate;
+      std::push_heap(list.begin(), list.end());
+    }
+    rest = std::min(rest, left);
+    return true;
+  });
+  std::erase_if(list, [&](const Candidate& candidate) { return candidate.lower > within; });
+  std::sort(list.begin(), list.end());
+  return rest;
+}
+
+}  // namespace ist::detail

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ist/base/float_environment.h"
+#include "ist/query/world/broad_phase.h"
+#include "ist/query/world/near_set.h"
+#include "ist/query/world/pair_table.h"
+#include "ist/query/world/world.h"
+
+namespace ist::detail {
+
+/// The memory of a World, and the steps that its verbs share.
+struct WorldState {
+  struct Body {
+    SphereTree tree;  // which shares the content
+    std::string name;
+    std::array<double, 16> given;  // the pose as it was given
+    BodyPose pose;                 // projected
+  };
+  /// The memory of a pair from call to call.
+  struct PairMemory {
+    PairMemory(BodyPair pair, const Body& a, const Body& b, const WorldOptions& options);
+    BodyPair bodies;
+    Query query;
+    ContactManifold manifold;
+  };
+  /// A pair that may be the nearest, by the balls of its bodies.
+  struct Candidate {
+    double lower;
+    BodyPair bodies;
+    friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  };
+  /// The room for answers.
+  struct Answers {
+    Answers() = default;
+    explicit Answers(std::size_t room);
+    /// Returns the bytes that they reserve.
+    static std::uint64_t bytes_for(std::size_t room) noexcept;
+    std::size_t room = 0;
+    NearSet near;
+    std::vector<Candidate> candidates;
+    std::vector<NearPair> pairs;
+    std::vector<PairIntersection> intersections;
+    std::vector<PairContacts> contacts;
+    std::vector<PairLeaves> leaves;
+    std::vector<PairTriangles> triangles;
+    std::vector<PairDistance> distances, nearest;
+  };
+
+  explicit WorldState(const WorldOptions& options);
+
+  /// Returns a pair in order. Throws kArgumentInvalid for bodies that are
+  /// not there, or the same.
+  [[nodiscard]] BodyPair checked(BodyIndex a, BodyIndex b) const;
+  /// Returns the pairs in their order, each once. Throws so for each of them, and for one
+  /// that is ignored.
+  [[nodiscard]] std::vector<BodyPair> checked(std::span<const BodyPair> pairs) const;
+  /// Returns all pairs that are not ignored, in their order.
+  [[nodiscard]] std::vector<BodyPair> all_pairs() const;
+  /// Returns the pairs that one answer may list where so many are prepared.
+  [[nodiscard]] std::size_t room_for(std::size_t prepared) const noexcept;
+  /// Returns the bytes of the query and the manifold of a pair.
+  [[nodiscard]] std::uint64_t bytes_of(BodyPair pair) const;
+  /// Returns the bytes that prepare() takes for these pairs. Throws kMemoryLimit beyond `limit`,
+  /// naming the pair that was too much.
+  [[nodiscard]] std::uint64_t bytes_for(std::span<const BodyPair> pairs, std::uint64_t limit) const;
+  void prepare(std::span<const BodyPair> pairs);
+
+  void move(BodyIndex body, const Eigen::Isometry3d& pose) noexcept;
+  [[nodiscard]] bool is_there(BodyIndex body) const noexcept { return body < bodies.size(); }
+  /// Returns the query of a pair that is prepared.
+  [[nodiscard]] PairMemory& memory(const PairAtPose& pair) noexcept { return *made[pair.place]; }
+  /// Returns a pair at its poses.
+  [[nodiscard]] PairAtPose look(BodyPair pair) const noexcept;
+  /// Finds the pairs that are near, if a body was moved since.
+  void find_near() noexcept;
+  /// Lists the pairs that may be nearest, by their balls. Returns a lower bound of the distance of
+  /// all others that are not farther than one of these.
+  [[nodiscard]] double find_candidates() noexcept;
+
+  WorldOptions options;
+  std::vector<Body> bodies;
+  BroadPhase broad;
+  PairTable table;
+  std::vector<std::unique_ptr<PairMemory>> made;  // by the table's places
+  Answers answers;
+  bool ready = false;  // the answers have room for these bodies
+  bool stale = true;   // a body was moved since the last find_near()
+  std::atomic_flag in_use;
+};
+
+/// The use of a world by one thread: false where another thread is using it.
+class WorldUse {
+ public:
+  explicit WorldUse(WorldState& state) noexcept
+      : state_(state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state) {}
+  ~WorldUse() {
+    if (state_ != nullptr) state_->in_use.clear(std::memory_order_release);
+  }
+  WorldUse(const WorldUse&) = delete;
+  WorldUse& operator=(const WorldUse&) = delete;
+  [[nodiscard]] explicit operator bool() const noexcept { return state_ != nullptr; }
+
+ private:
+  WorldState* state_;
+};
+
+}  // namespace ist::detail

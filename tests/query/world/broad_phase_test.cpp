@@ -1,0 +1,148 @@
+// The broad phase loses no pair whose roots' bounds are near, to the last bit; and it does not look
+// at all pairs.
+#include "ist/query/world/broad_phase.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "ist/query/traversal/root_test.h"
+#include "ist/query/traversal/search_pose.h"
+#include "ist/tree/tree_parts.h"
+#include "query/exact/exact_tree.h"
+#include "query/world/world_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+// Balls whose root is the circumsphere of a cube round the origin of the frame, the largest bound.
+SphereTree ball_of_cubes(double radius) {
+  return build_tree(icosphere(1, radius), {.voxel_size = radius / 3, .keep_triangles = false});
+}
+
+bool roots_meet(const SphereTree& a, const SphereTree& b, const Eigen::Isometry3d& pose,
+                double margin) {
+  const auto relative = relative_pose(pose, a.parts().lattice, b.parts().lattice);
+  return test_roots(a, b, SpherePolicy::kSimple, *relative, margin).overlap;
+}
+
+// Two bodies, anywhere, as far apart as their roots can be and still meet.
+TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
+  Random random(0);
+  for (int turn = 0; turn < 200 && !::testing::Test::HasFailure(); ++turn) {
+    const double size = std::ldexp(1.0, static_cast<int>(random.below(20U)) - 10);
+    const SphereTree a = ball_of_cubes(size), b = ball_of_cubes(size * random.uniform(0.1, 1));
+    const double place =
+        turn % 2 == 0 ? 0 : size * std::ldexp(1.0, static_cast<int>(random.below(30U)));
+    WorldOptions options = small_world();
+    options.query.policy = SpherePolicy::kSimple;
+    options.reach = turn % 3 == 0 ? size : 0;
+    World world(options);
+    const Eigen::Isometry3d first = pose_of(random.rotation(), place * random.direction());
+    const Eigen::Matrix3d turned = random.rotation();
+    const Eigen::Vector3d away = random.direction();
+    world.add(a, first);
+    world.add(b, first);
+    world.prepare({});
+    const auto pose_at = [&](double t) {
+      world.set_pose(1, pose_of(turned, first.translation() + t * away));
+      return *world.pose_of(0, 1);
+    };
+    const double last = last_touching(
+        0, 20 * size, [&](double t) { return roots_meet(a, b, pose_at(t), options.reach); });
+    static_cast<void>(pose_at(last));
+    EXPECT_EQ(world.near_pairs().near_pairs, 1u) << turn;
+    static_cast<void>(pose_at(1.01 * last));
+    EXPECT_EQ(world.near_pairs().near_pairs, 0u) << turn;
+  }
+}
+
+// Two bodies, anywhere, as far apart as any two bounds of theirs can be and still overlap in a
+// search in float: their bounding radii, and the pad of inner nodes.
+TEST(BroadPhase, HoldsBallsThatTouchWithTheirPads) {
+  Random random(2);
+  for (int turn = 0; turn < 200 && !::testing::Test::HasFailure(); ++turn) {
+    const double size = std::ldexp(1.0, static_cast<int>(random.below(20U)) - 10);
+    const SphereTree a = ball_of_cubes(size), b = ball_of_cubes(size * random.uniform(0.1, 1));
+    const double radii = a.bounding_radius() + b.bounding_radius();
+    const double reach = turn % 3 == 0 ? size : 0;
+    const Eigen::Isometry3d first = pose_of(random.rotation(), size * random.direction());
+    const Eigen::Matrix3d turned = random.rotation();
+    const Eigen::Vector3d away = random.direction();
+    BroadPhase broad;
+    broad.reserve(2);
+    broad.add();
+    broad.add();
+    broad.set(0, ball_of(a, *body_pose(first), reach, 0));
+    const auto near_at = [&](double t) {
+      const Eigen::Isometry3d second = pose_of(turned, first.translation() + t * away);
+      broad.set(1, ball_of(b, *body_pose(second), reach, 0));
+      const BodyPose pose = between(*body_pose(first), *body_pose(second));
+      const auto relative = relative_pose(to_isometry(pose), a.parts().lattice, b.parts().lattice);
+      const Eigen::Vector3d& way = relative->translation;
+      return way.norm() <= radii + inner_ball_pad(radii, way.cwiseAbs().maxCoeff(), reach);
+    };
+    ASSERT_TRUE(near_at(last_touching(0, 20 * size, near_at)));
+    int found = 0;
+    broad.near([&](BodyPair) { ++found; });
+    EXPECT_EQ(found, 1) << turn;
+  }
+}
+
+// Against all pairs of many bodies, as they move.
+TEST(BroadPhase, FindsWhatAllPairsTell) {
+  Random random(1);
+  const SphereTree tree = ball_of_cubes(1);
+  for (const std::size_t count : {0u, 1u, 2u, 3u, 150u}) {
+    BroadPhase broad;
+    broad.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) broad.add();
+    std::vector<BodyBall> balls(count);
+    std::vector<bool> there(count, false);
+    for (int tick = 0; tick < 30; ++tick) {
+      for (BodyIndex body = 0; body < count; ++body) {
+        if (tick > 0 && random.below(3U) > 0) continue;
+        there[body] = random.below(10U) > 0;
+        Eigen::Vector3d at = random.point(-8, 8);
+        at[tick % 3] *= 4;
+        balls[body] = ball_of(tree, {random.rotation(), at}, 0.1, 1);
+        if (there[body]) {
+          broad.set(body, balls[body]);
+        } else {
+          broad.take_out(body);
+        }
+      }
+      std::set<BodyPair> expected, found;
+      double least = HUGE_VAL;
+      for (BodyIndex a = 0; a < count; ++a) {
+        for (BodyIndex b = a + 1; b < count; ++b) {
+          if (!there[a] || !there[b]) continue;
+          const double apart = (balls[b].centre - balls[a].centre).norm();
+          const double radii = balls[a].radius + balls[b].radius;
+          if (apart <= radii + balls[a].margin + balls[b].margin) expected.insert({a, b});
+          least = std::min(least, apart + radii);
+        }
+      }
+      broad.near([&](BodyPair pair) { EXPECT_TRUE(found.insert(pair).second); });
+      EXPECT_EQ(found, expected);
+      std::size_t looked = 0;
+      double upper = HUGE_VAL;
+      broad.nearest([&](BodyPair, const DistanceInterval& distance) {
+        ++looked;
+        upper = std::min(upper, distance.upper);
+        return true;
+      });
+      if (least < HUGE_VAL) {
+        EXPECT_NEAR(upper, least, 1e-9);
+      }
+      if (count > 100) {
+        EXPECT_LT(looked, count * count / 8);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "ist/query/world/world.h"
+#include "support/random.h"
+
+namespace ist::test {
+
+/// A body of a test, and its place.
+struct PlacedTree {
+  SphereTree tree;
+  Eigen::Isometry3d pose;
+};
+
+/// Small bodies with triangles, some of them near each other, some touching, some far: `count` of
+/// them in a cube of edge `extent`.
+[[nodiscard]] std::vector<PlacedTree> scattered(Random& random, std::size_t count, double extent);
+
+/// Options with little memory.
+[[nodiscard]] WorldOptions small_world();
+
+/// A world of these bodies, in this order, with a query for each pair.
+[[nodiscard]] World world_of(const std::vector<PlacedTree>& bodies,
+                             const WorldOptions& options = small_world());
+
+/// Everything that a world answers, in numbers that can be compared: but for the distances, whose
+/// ends depend on earlier questions, and `sphere_tests`.
+struct WorldAnswers {
+  struct OfPair {
+    BodyPair bodies;
+    QueryStatus status;
+    double lower, upper;  // of the roots
+    Answer answer;
+    std::vector<LeafPair> leaf_pairs;
+    std::vector<TrianglePair> triangles;
+    double weight;  // of the contacts
+    std::size_t contacts;
+    friend bool operator==(const OfPair&, const OfPair&) = default;
+  };
+  std::vector<OfPair> pairs;
+  friend bool operator==(const WorldAnswers&, const WorldAnswers&) = default;
+};
+[[nodiscard]] WorldAnswers answers_of(World& world);
+
+/// The answer of a pair, or null where it is not listed.
+template <class Pair>
+[[nodiscard]] const Pair* find(const WorldAnswer<Pair>& answer, BodyPair bodies) {
+  for (const Pair& pair : answer.pairs) {
+    if (pair.bodies == bodies) return &pair;
+  }
+  return nullptr;
+}
+
+}  // namespace ist::test

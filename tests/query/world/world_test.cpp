@@ -1,0 +1,327 @@
+// A world's answers: against fresh queries and brute force, over all pairs; and what they do not
+// depend on.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "ist/tree/tree_parts.h"
+#include "query/exact/exact_tree.h"
+#include "query/exact/meeting_pairs.h"
+#include "query/world/world_cases.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// What a fresh query of the two bodies says.
+void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodies,
+                              const WorldOptions& options, BodyPair pair, int& meeting) {
+  const std::optional<Eigen::Isometry3d> pose = world.pose_of(pair.a, pair.b);
+  ASSERT_TRUE(pose);
+  const SphereTree &fixed = bodies[pair.a].tree, &moving = bodies[pair.b].tree;
+  Query fresh(fixed, moving, options.query);
+  ContactManifold manifold(fixed, moving, fresh.policy(), options.manifold);
+  std::vector<LeafPair> out(1 << 18);
+  const auto intersections = world.intersects();
+  const PairIntersection* listed = find(intersections, pair);
+  const Answer truth =
+      meeting_pairs(fixed, moving, *pose).empty() ? ist::Answer::kNo : ist::Answer::kYes;
+  meeting += truth == ist::Answer::kYes ? 1 : 0;
+  const QueryResult leaf_pairs = fresh.leaf_pairs(*pose, {});
+  if (listed == nullptr) {  // it is apart
+    EXPECT_EQ(truth, ist::Answer::kNo);
+    EXPECT_EQ(leaf_pairs.leaf_pairs, 0u);
+    EXPECT_EQ(leaf_pairs.sphere_tests, 1u);
+    EXPECT_EQ(fresh.contacts(*pose, manifold).leaf_pairs, 0u);
+    return;
+  }
+  EXPECT_EQ(listed->result.answer, truth);
+  const auto leaves = world.leaf_pairs(out);
+  FoundPairs expected = ask(fresh, *pose);
+  const PairLeaves& of_leaves = *find(leaves, pair);
+  if (options.query.front_pairs > 0) {  // how much was kept shows there
+    expected.result.sphere_tests = of_leaves.result.sphere_tests;
+  }
+  EXPECT_TRUE(same({of_leaves.result, {of_leaves.pairs.begin(), of_leaves.pairs.end()}}, expected));
+  const auto felt = world.contacts();
+  const PairContacts& of_contacts = *find(felt, pair);
+  EXPECT_EQ(of_contacts.result.leaf_pairs, fresh.contacts(*pose, manifold).leaf_pairs);
+  ASSERT_NE(of_contacts.manifold, nullptr);
+  EXPECT_EQ(of_contacts.manifold->sums().weight, manifold.sums().weight);
+  EXPECT_EQ(of_contacts.manifold->sums().spring.torque, manifold.sums().spring.torque);
+  EXPECT_EQ(of_contacts.manifold->points().size(), manifold.points().size());
+}
+
+TEST(World, AnswersAsAQueryOfEachPair) {
+  int meeting = 0;
+  for (std::uint64_t seed = 0; seed < 6 && !::testing::Test::HasFailure(); ++seed) {
+    Random random(seed);
+    const std::vector<PlacedTree> bodies = scattered(random, 8, 4);
+    WorldOptions options = small_world();
+    options.manifold.margin = seed % 2 == 0 ? 0 : 1;
+    options.query.front_pairs = seed % 3 == 0 ? 1000 : 0;
+    World world = world_of(bodies, options);
+    for (BodyIndex a = 0; a < 8; ++a) {
+      for (BodyIndex b = a + 1; b < 8; ++b) {
+        SCOPED_TRACE(std::to_string(seed) + ": " + std::to_string(a) + ", " + std::to_string(b));
+        expect_answer_of_a_query(world, bodies, options, {a, b}, meeting);
+      }
+    }
+  }
+  EXPECT_GT(meeting, 10);
+}
+
+TEST(World, ListsPairsInOrder) {
+  Random random(1);
+  const std::vector<PlacedTree> bodies = scattered(random, 20, 6);
+  World world = world_of(bodies);
+  const auto near = world.near_pairs();
+  ASSERT_GT(near.pairs.size(), 20u);
+  EXPECT_LT(near.pairs.size(), 190u);
+  EXPECT_EQ(near.near_pairs, near.pairs.size());
+  EXPECT_TRUE(
+      std::is_sorted(near.pairs.begin(), near.pairs.end(),
+                     [](const NearPair& x, const NearPair& y) { return x.bodies < y.bodies; }));
+  for (const NearPair& pair : near.pairs) EXPECT_LT(pair.bodies.a, pair.bodies.b);
+}
+
+// A world that has moved about answers as one that was just made, in the same order.
+TEST(World, DependsOnNoEarlierPose) {
+  Random random(2);
+  const std::vector<PlacedTree> bodies = scattered(random, 16, 3);
+  for (const std::size_t most_near : {std::size_t{1} << 12, std::size_t{0}}) {
+    WorldOptions options = small_world();
+    options.most_near = most_near;
+    World moved_about = world_of(bodies, options);
+    for (int tick = 0; tick < 40; ++tick) {
+      for (BodyIndex body = 0; body < 16; ++body) {
+        // Along one axis after the other, so that bodies pass each other.
+        Eigen::Vector3d to = random.point(0, 7);
+        if (tick % 2 == 0) to[tick / 2 % 3] *= 10;
+        moved_about.set_pose(body, pose_of(random.rotation(), to));
+      }
+      static_cast<void>(moved_about.intersects());
+    }
+    for (BodyIndex body = 0; body < 16; ++body) moved_about.set_pose(body, bodies[body].pose);
+    World fresh = world_of(bodies, options);
+    const WorldAnswers expected = answers_of(fresh);
+    EXPECT_GT(expected.pairs.size(), 10u);
+    EXPECT_EQ(answers_of(moved_about), expected);
+  }
+}
+
+// The order of adding decides which body is the fixed one, and nothing else.
+TEST(World, PermutesItsAnswersWithItsBodies) {
+  Random random(3);
+  const std::vector<PlacedTree> bodies = scattered(random, 14, 7);
+  World world = world_of(bodies);
+  const WorldAnswers expected = answers_of(world);
+  for (int turn = 0; turn < 4; ++turn) {
+    std::vector<BodyIndex> at(bodies.size());  // by the new number, the old one
+    std::iota(at.begin(), at.end(), BodyIndex{0});
+    for (std::size_t i = at.size(); i > 1; --i) std::swap(at[i - 1], at[random.below(i)]);
+    std::vector<PlacedTree> permuted;
+    for (const BodyIndex old : at) permuted.push_back(bodies[old]);
+    World other = world_of(permuted);
+    WorldAnswers found = answers_of(other);
+    for (auto& pair : found.pairs) {
+      pair.bodies = {at[pair.bodies.a], at[pair.bodies.b]};
+      if (pair.bodies.a < pair.bodies.b) continue;
+      pair.bodies = {pair.bodies.b, pair.bodies.a};
+      for (LeafPair& leaves : pair.leaf_pairs) std::swap(leaves.fixed, leaves.moving);
+      for (TrianglePair& triangles : pair.triangles) std::swap(triangles.fixed, triangles.moving);
+      std::sort(pair.leaf_pairs.begin(), pair.leaf_pairs.end());
+      std::sort(pair.triangles.begin(), pair.triangles.end());
+    }
+    std::sort(found.pairs.begin(), found.pairs.end(),
+              [](const auto& x, const auto& y) { return x.bodies < y.bodies; });
+    ASSERT_EQ(found.pairs.size(), expected.pairs.size());
+    for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+      EXPECT_EQ(found.pairs[k].bodies, expected.pairs[k].bodies);
+      EXPECT_EQ(found.pairs[k].answer, expected.pairs[k].answer);
+      EXPECT_EQ(found.pairs[k].leaf_pairs, expected.pairs[k].leaf_pairs);
+      EXPECT_EQ(found.pairs[k].triangles, expected.pairs[k].triangles);
+      EXPECT_NEAR(found.pairs[k].lower, expected.pairs[k].lower, 1e-12);
+    }
+  }
+}
+
+// Wherever the bodies lie together, they have the same answers.
+TEST(World, DoesNotDependOnThePlace) {
+  Random random(4);
+  std::vector<PlacedTree> bodies = scattered(random, 10, 3);
+  // On a grid, so that a shift is exact.
+  for (PlacedTree& body : bodies) {
+    body.pose = pose_of(quarter_turns()[random.below(24U)], random.point_on_grid(0, 3, 0x1p-10));
+  }
+  World here = world_of(bodies);
+  const WorldAnswers expected = answers_of(here);
+  for (PlacedTree& body : bodies) body.pose.translation() += Eigen::Vector3d(0x1p40, -0x1p38, 3);
+  World there = world_of(bodies);
+  EXPECT_GT(expected.pairs.size(), 5u);
+  EXPECT_EQ(answers_of(there), expected);
+}
+
+TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
+  Random random(5);
+  const std::vector<PlacedTree> bodies = scattered(random, 8, 4);
+  World world = world_of(bodies);
+  const WorldAnswers before = answers_of(world);
+  Eigen::Isometry3d bad = bodies[3].pose;
+  bad.translation()[1] = kNan;
+  EXPECT_EQ(world.set_pose(3, bad), QueryStatus::kInvalidPose);
+  EXPECT_EQ(world.set_pose(3, bad), QueryStatus::kInvalidPose);
+  EXPECT_FALSE(world.pose_of(0, 3));
+  const auto is_of_3 = [](BodyPair pair) { return pair.a == 3 || pair.b == 3; };
+  const auto answer = world.intersects();
+  EXPECT_EQ(answer.status, QueryStatus::kDone);
+  EXPECT_FALSE(answer.complete);
+  EXPECT_EQ(std::count_if(answer.pairs.begin(), answer.pairs.end(),
+                          [&](const auto& pair) { return is_of_3(pair.bodies); }),
+            7);
+  WorldAnswers after = answers_of(world), others = before;
+  for (const auto& pair : after.pairs) {
+    EXPECT_EQ(pair.status, is_of_3(pair.bodies) ? QueryStatus::kInvalidPose : QueryStatus::kDone);
+  }
+  for (const auto& pair : world.contacts().pairs) {
+    EXPECT_EQ(pair.result.status, pair.status);
+    EXPECT_EQ(pair.manifold == nullptr, is_of_3(pair.bodies));
+  }
+  std::erase_if(after.pairs, [&](const auto& pair) { return is_of_3(pair.bodies); });
+  std::erase_if(others.pairs, [&](const auto& pair) { return is_of_3(pair.bodies); });
+  EXPECT_FALSE(others.pairs.empty());
+  EXPECT_EQ(after, others);
+  // Two of them: each pair is listed once. Then all is well again.
+  world.set_pose(6, bad);
+  const auto near = world.near_pairs();
+  EXPECT_EQ(std::count_if(near.pairs.begin(), near.pairs.end(),
+                          [](const NearPair& pair) { return pair.status != QueryStatus::kDone; }),
+            13);
+  world.set_pose(6, bodies[6].pose);
+  EXPECT_EQ(world.set_pose(3, bodies[3].pose), QueryStatus::kDone);
+  EXPECT_EQ(answers_of(world), before);
+}
+
+// Poses at the end of what a double holds: nothing is missed, and nothing hangs.
+TEST(World, HoldsPosesFarAway) {
+  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  World world(small_world());
+  for (const double x : {1e308, 1e308, -1e308, 0.0, 1.5, 1e200, 1e154})
+    world.add(ball, shift({x, x, x}));
+  world.prepare();
+  const auto answer = world.intersects();
+  ASSERT_NE(find(answer, {0, 1}), nullptr);
+  EXPECT_EQ(find(answer, {0, 1})->status, QueryStatus::kDone);
+  EXPECT_EQ(find(answer, {3, 4}), nullptr);
+  EXPECT_EQ(answer.pairs.size(), 1u);
+  const WorldDistance least = world.distance(0.1);
+  EXPECT_EQ(least.distance.upper, 0);
+  // Farther apart than a double tells.
+  World ends(small_world());
+  for (const double x : {1e308, -1e308}) ends.add(ball, shift({x, x, x}));
+  ends.prepare();
+  EXPECT_TRUE(ends.intersects().pairs.empty());
+  const WorldDistance far = ends.distance(0.1);
+  EXPECT_EQ(far.status, QueryStatus::kDone);
+  EXPECT_GT(far.distance.lower, 1e307);
+}
+
+TEST(World, NeverLooksAtAPairThatIsIgnored) {
+  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  World world(small_world());
+  for (const double x : {0.0, 0.5, 1.0}) world.add(ball, shift({x, 0, 0}));
+  world.ignore(2, 0);
+  world.prepare();
+  EXPECT_EQ(find(world.intersects(), {0, 2}), nullptr);
+  EXPECT_EQ(world.intersects().pairs.size(), 2u);
+  EXPECT_EQ(world.query(0, 2), nullptr);
+  const std::uint64_t before = world.bytes();
+  world.ignore(0, 1);  // after prepare() too
+  EXPECT_EQ(world.intersects().pairs.size(), 1u);
+  EXPECT_EQ(before - world.bytes(), world.bytes_for(0, 1));
+  world.ignore(1, 2);
+  Eigen::Isometry3d bad = shift({kNan, 0, 0});
+  world.set_pose(1, bad);
+  EXPECT_TRUE(world.intersects().pairs.empty());
+  EXPECT_TRUE(world.intersects().complete);
+  const WorldDistance none = world.distance(0.1);
+  EXPECT_EQ(none.status, QueryStatus::kDone);
+  EXPECT_TRUE(none.complete);
+  EXPECT_FALSE(none.nearest);
+  EXPECT_EQ(none.distance.lower, std::numeric_limits<double>::max());
+}
+
+TEST(World, TellsOfPairsThatWereNotPrepared) {
+  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  World world(small_world());
+  EXPECT_EQ(world.intersects().status, QueryStatus::kNotPrepared);
+  for (const double x : {0.0, 1.5, 3.0}) world.add(ball, shift({x, 0, 0}));
+  EXPECT_EQ(world.near_pairs().status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.distance(0.1).status, QueryStatus::kNotPrepared);
+  const BodyPair first{1, 0};
+  world.prepare({&first, 1});
+  const auto answer = world.intersects();
+  EXPECT_EQ(answer.status, QueryStatus::kDone);
+  EXPECT_FALSE(answer.complete);
+  ASSERT_EQ(answer.pairs.size(), 2u);
+  EXPECT_EQ(answer.pairs[0].result.answer, ist::Answer::kYes);
+  EXPECT_EQ(answer.pairs[1].status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(answer.pairs[1].result.status, QueryStatus::kNotPrepared);
+  EXPECT_STREQ(to_string(answer.pairs[1].status), "not-prepared");
+  EXPECT_EQ(answer.pairs[1].roots.lower, 0);
+  EXPECT_GT(answer.pairs[1].roots.upper, 3);
+  EXPECT_EQ(world.contacts().pairs[1].manifold, nullptr);
+  // The pairs that are near can be prepared as they are listed.
+  std::vector<BodyPair> wanted;
+  for (const NearPair& pair : world.near_pairs().pairs) wanted.push_back(pair.bodies);
+  world.prepare(wanted);
+  EXPECT_TRUE(world.intersects().complete);
+  EXPECT_EQ(world.intersects().pairs[1].result.answer, ist::Answer::kYes);
+  world.add(ball, shift({9, 0, 0}));
+  EXPECT_EQ(world.intersects().status, QueryStatus::kNotPrepared);
+}
+
+TEST(World, ListsThePreparedPairsFirstWhereMoreAreNearThanFit) {
+  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  WorldOptions options = small_world();
+  options.most_near = 2;
+  World world(options);
+  for (int i = 0; i < 6; ++i) world.add(ball, shift({0.1 * i, 0, 0}));
+  const BodyPair last[] = {{4, 5}, {2, 5}};
+  world.prepare(last);
+  const auto answer = world.intersects();
+  EXPECT_TRUE(answer.truncated);
+  EXPECT_FALSE(answer.complete);
+  EXPECT_EQ(answer.near_pairs, 15u);
+  std::vector<BodyPair> listed;
+  for (const auto& pair : answer.pairs) listed.push_back(pair.bodies);
+  EXPECT_EQ(listed, (std::vector<BodyPair>{{0, 1}, {0, 2}, {2, 5}, {4, 5}}));
+  EXPECT_EQ(answer.pairs[2].result.answer, ist::Answer::kYes);
+  // Pairs that are not listed count in the distance all the same.
+  EXPECT_EQ(world.distance(0.1).distance.lower, 0);
+}
+
+TEST(World, ReachesFartherWhereItIsAskedTo) {
+  const SphereTree ball = exact_tree(icosphere(2, 1), 8);
+  for (const double reach : {0.0, 3.0}) {
+    WorldOptions options = small_world();
+    options.reach = reach;
+    World world(options);
+    world.add(ball);
+    world.add(ball, shift({4, 0, 0}));
+    world.prepare();
+    const auto answer = world.distances(1e-3);
+    ASSERT_EQ(answer.pairs.size(), reach > 0 ? 1u : 0u);
+    if (reach == 0) continue;
+    EXPECT_NEAR(answer.pairs[0].result.distance.lower, 2, 0.2);
+    EXPECT_GT(answer.pairs[0].roots.lower, 1);
+    EXPECT_LE(answer.pairs[0].roots.lower, answer.pairs[0].result.distance.lower);
+  }
+}
+
+}  // namespace
+}  // namespace ist::test
