@@ -119,8 +119,8 @@ TEST(SceneShape, IsAFossaInWhichACondyleTurns) {
                                      Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX()) *
                                      Eigen::Translation3d(-kCondyle);
       const double distance = query.distance(pose, 0).distance.lower;
-      EXPECT_GT(distance, 0.3) << turn;
-      EXPECT_LT(distance, 1) << turn;
+      EXPECT_GT(distance, 0.4) << turn;
+      EXPECT_LT(distance, 0.5) << turn;
     }
   }
 }
