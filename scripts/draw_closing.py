@@ -38,7 +38,8 @@ def record(ist, scene, folder):
     run = subprocess.run([ist, "run", scene, "--unpaced", "--record", ticks, "--json"], check=True, stdout=subprocess.PIPE)
     period = 1 / json.loads(run.stdout.splitlines()[-1])["rate"]
     unit = re.search(r'^unit\s*=\s*"(\w+)"', scene.read_text(), re.MULTILINE)[1]
-    return [json.loads(line) for line in ticks.open()], period, unit
+    lines = map(json.loads, ticks.open())
+    return [line for line in lines if "device" in line], period, unit
 
 
 def draw(ticks, period, unit, output):

@@ -108,6 +108,7 @@ struct ScriptSettings {
 /// the first one's root cube, then a translation along scene axes.
 struct Scene {
   std::filesystem::path file = {};                       ///< for messages
+  std::string text = {};                                 ///< of `file`; empty without a file
   std::shared_ptr<const detail::SceneLines> lines = {};  ///< of keys in `file`; null without a file
   double unit = 0;      ///< metres in the unit of lengths; required
   double rate = 1000;   ///< ticks a second, 1 to 10,000

@@ -37,8 +37,11 @@ struct RunArguments {
 
 // A run that a signal may stop, and its recording, if one is asked for.
 struct StoppableRun {
-  explicit StoppableRun(const std::filesystem::path& record)
-      : file(record.empty() ? nullptr : std::make_unique<TickWriter>(record)) {
+  StoppableRun(const std::filesystem::path& record, const Scene& scene,
+               const Simulation& simulation)
+      : file(record.empty()
+                 ? nullptr
+                 : std::make_unique<TickWriter>(record, RecordingHeader(scene, simulation))) {
     if (file) recorder.emplace(*file, stop);
   }
 
@@ -59,9 +62,9 @@ ServoReport run_loop(BuiltScene& built, const ServoOptions& servo, StoppableRun&
   return report;
 }
 
-void replay_ticks(BuiltScene& built, const RunArguments& options) {
-  TickReader reader(options.replay, built.simulation->dt());
-  StoppableRun run(options.record);
+void replay_ticks(BuiltScene& built, const Scene& scene, const RunArguments& options) {
+  TickReader reader(options.replay, RecordingHeader(scene, *built.simulation));
+  StoppableRun run(options.record, scene, *built.simulation);
   const std::atomic<bool>& stop = run.stop.asked();
   ProgressBar progress;
   progress.begin_stage("replaying ticks", reader.bytes());
@@ -115,13 +118,13 @@ void run(const RunArguments& options) {
     return print_notes(built.notes, options.json);
   }
   if (options.check) return;
-  if (!options.replay.empty()) return replay_ticks(built, options);
+  if (!options.replay.empty()) return replay_ticks(built, scene, options);
 
   ServoOptions servo;
   servo.ticks = static_cast<std::uint64_t>(scene.rate * scene.seconds + 0.5);
   servo.paced = !options.unpaced;
   servo.real_time.cpu = options.cpu;
-  StoppableRun stoppable(options.record);
+  StoppableRun stoppable(options.record, scene, *built.simulation);
   const ServoReport report = run_loop(built, servo, stoppable);
   begin_json();
   print_report(report, scene, *built.simulation, options.json);

@@ -92,9 +92,16 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
                                 {"worst_cpu_microseconds", microseconds(report.worst_cpu)},
                                 {"worst_effects_microseconds", microseconds(report.worst_effects)},
                                 {"effects", nlohmann::ordered_json::object()},
+                                {"changes", nlohmann::ordered_json::array()},
                                 {"notes", report.notes}};
     for (const EffectTime& effect : simulation.effects()) {
       line["effects"][std::string(effect.name)] = microseconds(effect.time) / ticks;
+    }
+    for (const HandChange& change : simulation.changes()) {
+      line["changes"].push_back(
+          {{"time", change.time},
+           {change.attach ? "attach" : "release", std::string(simulation.body_name(change.body))},
+           {"status", to_string(change.status)}});
     }
     fmt::print("{}\n", line.dump());
     return;
@@ -105,6 +112,10 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
   if (report.fresh + report.kept + report.clear > 0) {
     fmt::print("contacts: {} ticks by a search, {} among the pairs kept, {} inside a clearance\n",
                report.fresh, report.kept, report.clear);
+  }
+  for (const HandChange& change : simulation.changes()) {
+    fmt::print("{:.4g} s: {} {}: {}\n", change.time, change.attach ? "attach" : "release",
+               simulation.body_name(change.body), to_string(change.status));
   }
   fmt::print("\n");
   fmt::print("{:<12}", "µs");

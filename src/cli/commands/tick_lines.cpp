@@ -79,12 +79,21 @@ void append_csv(const TickRecord& record, std::string& lines) {
 
 }  // namespace
 
-TickWriter::TickWriter(const std::filesystem::path& file)
-    : file_(file), csv_(file.extension() == ".csv") {
-  if (csv_) lines_ += kCsvHeader;
+TickWriter::TickWriter(const std::filesystem::path& file, const RecordingHeader& header)
+    : file_(file), csv_(file.extension() == ".csv"), names_(header.body_names()) {
+  lines_ += csv_ ? std::string(kCsvHeader) : header.line() + '\n';
+}
+
+void TickWriter::append_change(const TickRecord& record) {
+  const HandChange& change = *record.change;
+  const nlohmann::ordered_json line{{"tick", record.tick},
+                                    {change.attach ? "attach" : "release", names_[change.body]},
+                                    {"status", to_string(change.status)}};
+  lines_ += line.dump() + '\n';
 }
 
 void TickWriter::write(const TickRecord& record) {
+  if (record.change && !csv_) append_change(record);
   csv_ ? append_csv(record, lines_) : append_json(record, lines_);
   if (lines_.size() >= kFlush) flush();
 }
@@ -99,7 +108,8 @@ void TickWriter::flush() {
   lines_.clear();
 }
 
-TickReader::TickReader(std::filesystem::path file, double dt) : lines_(std::move(file)), dt_(dt) {}
+TickReader::TickReader(std::filesystem::path file, RecordingHeader header)
+    : lines_(std::move(file)), header_(std::move(header)) {}
 
 void TickReader::refuse(const std::string& what) const {
   throw Error(ErrorCode::kInputInvalid,
@@ -107,13 +117,24 @@ void TickReader::refuse(const std::string& what) const {
                           lines_.path().string(), line_, what));
 }
 
-std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
-  const std::optional<std::string> text = lines_.next(stop);
-  if (!text) return std::nullopt;
+std::optional<std::string> TickReader::next_line(const std::atomic<bool>& stop) {
+  std::optional<std::string> text = lines_.next(stop);
+  if (!text) return text;
   ++line_;
   bytes_read_ += text->size() + 1;
-  const nlohmann::json line = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
-  if (!line.is_object()) refuse("not a JSON object");
+  return text;
+}
+
+std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
+  nlohmann::json line;
+  do {
+    const std::optional<std::string> text = next_line(stop);
+    if (!text) return std::nullopt;
+    line = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (!line.is_object()) refuse("not a JSON object");
+    if (line_ == 1) header_.check(line, lines_.path());
+    // The scene plans its changes itself.
+  } while (line_ == 1 || line.contains("attach") || line.contains("release"));
   RecordedTick tick{};
   const auto value = [&](const char* key) -> const nlohmann::json& {
     const auto found = line.find(key);
@@ -135,12 +156,13 @@ std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
 
   const auto dt = line.find("dt");
   if (dt == line.end() || !dt->is_number()) refuse("no number 'dt'");
-  if (dt->get<double>() != dt_) {
+  const double own = header_.dt();
+  if (dt->get<double>() != own) {
     throw Error(
         ErrorCode::kInputInvalid,
         fmt::format(
             "{}:{}: it was recorded at {:.6g} Hz, and the scene runs at {:.6g}: give --rate {:.6g}",
-            lines_.path().string(), line_, 1 / dt->get<double>(), 1 / dt_, 1 / dt->get<double>()));
+            lines_.path().string(), line_, 1 / dt->get<double>(), 1 / own, 1 / dt->get<double>()));
   }
   const auto device = line.find("device");
   if (device == line.end()) refuse("no key 'device'");

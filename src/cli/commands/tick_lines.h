@@ -4,19 +4,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "cli/commands/recording_header.h"
 #include "cli/line_reader.h"
 #include "ist/base/files.h"
 #include "ist/haptics/recording.h"
 
 namespace ist::cli {
 
-/// Writes ticks, one a line: JSON objects, or CSV with a header if the file's name ends in .csv.
-/// Times come last, so lines of equal ticks differ only at their end. The file appears, complete,
-/// after commit().
+/// Writes ticks, one a line: JSON objects below a header, or CSV below the columns' names if the
+/// file's name ends in .csv. A body that the hand takes or releases has a line of its own in JSON,
+/// before that of its tick. Times come last, so lines of equal ticks differ only at their end. The
+/// file appears, complete, after commit().
 class TickWriter {
  public:
-  explicit TickWriter(const std::filesystem::path& file);
+  TickWriter(const std::filesystem::path& file, const RecordingHeader& header);
 
   void write(const TickRecord& record);
   void commit();
@@ -24,21 +27,24 @@ class TickWriter {
  private:
   void flush();
 
+  void append_change(const TickRecord& record);
+
   OutputFile file_;
   bool csv_;
-  std::string lines_;  // not yet written
+  std::vector<std::string> names_;  // of the bodies
+  std::string lines_;               // not yet written
 };
 
 /// Reads the JSON lines of a TickWriter, tick by tick.
 class TickReader {
  public:
   /// Opens the file. Throws kFileUnreadable.
-  /// @param dt time step of the replay, s
-  TickReader(std::filesystem::path file, double dt);
+  /// @param header of the scene that replays it
+  TickReader(std::filesystem::path file, RecordingHeader header);
 
   /// Returns the next tick, or nothing at the end, or when `stop` is set while it waits for a pipe.
-  /// Throws kInputInvalid, naming file, line and remedy, for a line that is no tick or has another
-  /// time step; kFileUnreadable.
+  /// Throws kInputInvalid, naming file, line and remedy, for a header of another scene, a line that
+  /// is no tick or has another time step; kFileUnreadable.
   [[nodiscard]] std::optional<RecordedTick> next(const std::atomic<bool>& stop);
 
   /// The size of the file when it was opened, and the bytes read so far.
@@ -47,9 +53,10 @@ class TickReader {
 
  private:
   [[noreturn]] void refuse(const std::string& what) const;
+  [[nodiscard]] std::optional<std::string> next_line(const std::atomic<bool>& stop);
 
   LineReader lines_;
-  double dt_;
+  RecordingHeader header_;
   std::uint64_t line_ = 0, bytes_read_ = 0;
 };
 

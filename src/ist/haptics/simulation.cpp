@@ -76,7 +76,7 @@ struct detail::SimulationState {
   Bodies bodies;
   PairQueries contacts, proximity;
   std::vector<PlannedChange> changes;
-  std::size_t changes_made = 0;
+  std::vector<HandChange> tried;  // those of `changes`; its memory is reserved
   TimedEffects effects;
   VirtualCoupling coupling;
   WrenchLimiter limiter;
@@ -107,6 +107,7 @@ detail::SimulationState::SimulationState(SimulationParts parts)
       last_complete{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())},
       candidate{parts.start, ToolContacts(contacts.size()), ToolContacts(proximity.size())} {
   IST_ASSERT(dt > 0);
+  tried.reserve(changes.size());
   bodies.set_time(0, dt);
   place();
 }
@@ -204,12 +205,12 @@ ChangeStatus detail::SimulationState::release(std::size_t body, const TickBudget
 
 // Makes the change that is due, one a tick.
 std::optional<HandChange> detail::SimulationState::next_change(const TickBudget& budget) noexcept {
-  if (changes_made == changes.size()) return std::nullopt;
-  const PlannedChange& change = changes[changes_made];
+  if (tried.size() == changes.size()) return std::nullopt;
+  const PlannedChange& change = changes[tried.size()];
   if (!(static_cast<double>(ticks) * dt >= change.time)) return std::nullopt;
-  ++changes_made;
-  return HandChange{change.body, change.attach,
-                    change.attach ? attach(change.body, budget) : release(change.body, budget)};
+  tried.push_back({change.time, change.body, change.attach,
+                   change.attach ? attach(change.body, budget) : release(change.body, budget)});
+  return tried.back();
 }
 
 // Moves the tool from its last complete pose. Empty if there is no finite motion.
@@ -279,6 +280,7 @@ ChangeStatus Simulation::release(std::size_t body, const TickBudget& budget) noe
   return state_->release(body, budget);
 }
 
+std::span<const HandChange> Simulation::changes() const noexcept { return state_->tried; }
 std::size_t Simulation::bodies() const noexcept { return state_->bodies.size(); }
 std::string_view Simulation::body_name(std::size_t body) const noexcept {
   return body < bodies() ? std::string_view(state_->bodies.name(body)) : std::string_view();

@@ -58,6 +58,7 @@ enum class ChangeStatus : std::uint8_t {
 
 /// An attach or a release that a tick tried.
 struct HandChange {
+  double time;          ///< that it was planned for, from the first tick on, s
   std::size_t body;     ///< by its number
   bool attach;          ///< false: a release
   ChangeStatus status;  ///< other than kDone: nothing changed
@@ -125,6 +126,9 @@ class IST_API Simulation {
   /// Leaves a held body where it is, as a fixed one, whatever touches it. The hand may be empty
   /// then. Between ticks; cost as of attach().
   [[nodiscard]] ChangeStatus release(std::size_t body, const TickBudget& budget = {}) noexcept;
+
+  /// The changes that the scene planned and ticks have tried so far.
+  [[nodiscard]] std::span<const HandChange> changes() const noexcept;
 
   /// The number of bodies.
   [[nodiscard]] std::size_t bodies() const noexcept;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ist/base/float_environment.h"
 #include "ist/scene/ranges.h"
@@ -60,8 +61,11 @@ CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety)
 
 Scene read_scene(const std::filesystem::path& file) {
   const ScopedFloatEnvironment environment;  // of the parser too
-  TomlTable document = read_toml(file);
-  return read_scene(file, document);
+  std::string text = read_toml_text(file);
+  TomlTable document = parse_toml(file, text);
+  Scene scene = read_scene(file, document);
+  scene.text = std::move(text);
+  return scene;
 }
 
 Scene read_scene(const std::filesystem::path& file, TomlTable& document) {

@@ -101,20 +101,27 @@ void fail_line(const std::filesystem::path& file, std::size_t line, std::string_
               fmt::format("{}:{}: {}: {}", file.string(), line, wrong, remedy));
 }
 
-TomlTable read_toml(const std::filesystem::path& file) {
+std::string read_toml_text(const std::filesystem::path& file) {
   InputFile input(file);
   if (input.size() > kMostBytes) {
     fail_line(file, 1, fmt::format("the file has {} bytes, more than 1 MB", input.size()),
               "give the scene, a short text that names its meshes");
   }
-  const std::string text = input.read_rest();
+  return input.read_rest();
+}
+
+TomlTable parse_toml(const std::filesystem::path& file, std::string_view text) {
   check_lines(text, file);
-  const toml::parse_result parsed = toml::parse(std::string_view(text));
+  const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     fail_line(file, parsed.error().source().begin.line, parsed.error().description(),
               "write it in TOML 1.0");
   }
   return Conversion(file).table(parsed.table(), 0);
+}
+
+TomlTable read_toml(const std::filesystem::path& file) {
+  return parse_toml(file, read_toml_text(file));
 }
 
 }  // namespace ist

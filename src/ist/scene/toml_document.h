@@ -38,6 +38,12 @@ struct TomlEntry {
   TomlValue value;
 };
 
+/// Reads the text of a TOML file of at most 1 MB. Throws kFileUnreadable; kInputInvalid for more.
+[[nodiscard]] std::string read_toml_text(const std::filesystem::path& file);
+
+/// Parses the text of a file, as read_toml() does.
+[[nodiscard]] TomlTable parse_toml(const std::filesystem::path& file, std::string_view text);
+
 /// Reads a TOML 1.0 file: UTF-8, with or without a byte order mark, lines ended by \n or \r\n. At
 /// most 1 MB, 1000 bytes a line and 8 nested values. Throws kFileUnreadable; kInputInvalid for any
 /// other content.

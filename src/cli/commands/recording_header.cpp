@@ -1,0 +1,101 @@
+#include "cli/commands/recording_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/commit.h"
+#include "cli/source_file.h"
+#include "ist/base/error.h"
+
+namespace ist::cli {
+namespace {
+
+// 1 had no header.
+constexpr int kFormat = 2;
+
+nlohmann::ordered_json json_of_body(const SceneBody& body, const Simulation& simulation,
+                                    std::size_t number, bool held) {
+  nlohmann::ordered_json line{{"name", std::string(simulation.body_name(number))},
+                              {"file", nullptr},
+                              {"hash", nullptr},
+                              {"held", held}};
+  if (const auto* file = std::get_if<std::filesystem::path>(&body.source)) {
+    const MeshSource source = source_of(*file);
+    line["file"] = source.name;
+    if (source.hash != 0) line["hash"] = fmt::format("{:016x}", source.hash);
+  }
+  return line;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorCode::kInputInvalid, fmt::format("{}:1: {}", file.string(), what));
+}
+
+// The first line, from 1, in which two texts differ.
+std::size_t line_of_difference(const std::string& a, const std::string& b) {
+  const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
+  return 1 + static_cast<std::size_t>(std::count(a.begin(), end, '\n'));
+}
+
+}  // namespace
+
+RecordingHeader::RecordingHeader(const Scene& scene, const Simulation& simulation)
+    : line_{{"recording", kFormat}, {"ist", IST_VERSION},
+            {"commit", IST_COMMIT}, {"dt", simulation.dt()},
+            {"unit", scene.unit},   {"bodies", nlohmann::ordered_json::array()},
+            {"scene", scene.text}} {
+  std::size_t number = 0;
+  for (const SceneBody& body : scene.fixed) {
+    line_["bodies"].push_back(json_of_body(body, simulation, number++, false));
+  }
+  for (const SceneBody& body : scene.held) {
+    line_["bodies"].push_back(json_of_body(body, simulation, number++, true));
+  }
+}
+
+std::vector<std::string> RecordingHeader::body_names() const {
+  std::vector<std::string> names;
+  for (const auto& body : line_.at("bodies")) names.push_back(body.at("name").get<std::string>());
+  return names;
+}
+
+void RecordingHeader::check(const nlohmann::json& recorded,
+                            const std::filesystem::path& file) const {
+  const auto format = recorded.find("recording");
+  if (format == recorded.end() || !format->is_number_integer()) {
+    refuse(file,
+           "no header of a recording: give a file that --record wrote as JSON lines, with version "
+           "0.2 or later");
+  }
+  if (*format != kFormat) {
+    refuse(file, fmt::format("a recording of format {}, and this version replays {}: replay it "
+                             "with the version that recorded it",
+                             format->dump(), kFormat));
+  }
+  const auto scene = recorded.find("scene");
+  if (scene == recorded.end() || !scene->is_string()) refuse(file, "no text 'scene': record again");
+  const auto text = scene->get<std::string>();
+  const auto own = line_.at("scene").get<std::string>();
+  if (text != own) {
+    refuse(file, fmt::format("it was recorded with another scene, which differs from line {} on: "
+                             "give that scene, which the recording holds as 'scene'",
+                             line_of_difference(text, own)));
+  }
+  const auto bodies = recorded.find("bodies");
+  if (bodies == recorded.end() || !bodies->is_array() || bodies->size() != line_["bodies"].size()) {
+    refuse(file, "no array 'bodies' of the scene's: record again");
+  }
+  for (std::size_t i = 0; i < bodies->size(); ++i) {
+    const auto& body = line_.at("bodies")[i];
+    const nlohmann::json& then = (*bodies)[i];
+    const auto hash = then.is_object() ? then.find("hash") : then.end();
+    if (hash != then.end() && *hash == nlohmann::json(body.at("hash"))) continue;
+    refuse(file,
+           fmt::format("the file of '{}', {}, is not the one that was recorded: give that one",
+                       body.at("name").get<std::string>(), body.at("file").dump()));
+  }
+}
+
+}  // namespace ist::cli

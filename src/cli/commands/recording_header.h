@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "ist/haptics/simulation.h"
+#include "ist/scene.h"
+
+namespace ist::cli {
+
+/// The first line of a recording: the format's version, the program's, the scene's text, the time
+/// step and the bodies with the hashes of their files.
+class RecordingHeader {
+ public:
+  /// Reads the bodies' files for their hashes. Throws kFileUnreadable.
+  RecordingHeader(const Scene& scene, const Simulation& simulation);
+
+  /// The line, without its end.
+  [[nodiscard]] std::string line() const { return line_.dump(); }
+  /// The names of the bodies, by their numbers.
+  [[nodiscard]] std::vector<std::string> body_names() const;
+  /// The length of a tick, s.
+  [[nodiscard]] double dt() const { return line_.at("dt").get<double>(); }
+
+  /// Checks the header of a recording that this scene is to replay. Throws kInputInvalid, naming
+  /// `file` and a remedy, for a line that is no header, another version of the format, another
+  /// scene, and bodies whose files have changed.
+  void check(const nlohmann::json& recorded, const std::filesystem::path& file) const;
+
+ private:
+  nlohmann::ordered_json line_;
+};
+
+}  // namespace ist::cli
