@@ -70,7 +70,7 @@ found=$(grep -rnE '\b[Ll]ikewise\b|\b(is|are|was|were) none\b|\bso many\b|\b[Tt]
 found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth|[dD]ive|run_hurried|run_until|run_within|widen|StepParts' src simd --include='*.h' --include='*.cpp' || true)
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
-[ "$headers" -le 32 ] || breach "$headers headers are installed: 32 are the most"
+[ "$headers" -le 33 ] || breach "$headers headers are installed: 33 are the most"
 long=$(find src simd tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
 [ -z "$long" ] || breach "longer than 400 lines: $long"
 exit $failed

@@ -2,6 +2,7 @@
 
 #include "ist/capi/ist_measure.h"
 #include "ist/capi/ist_servo.h"
+#include "ist/capi/ist_world.h"
 
 #define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
 #define AT(type, member, place) \
@@ -259,6 +260,59 @@ AT(ist_row, area, 64);
 AT(ist_row, force, 72);
 AT(ist_row, torque, 96);
 
+SIZE(ist_world_options, 40);
+AT(ist_world_options, struct_size, 0);
+AT(ist_world_options, query, 8);
+AT(ist_world_options, reach, 16);
+AT(ist_world_options, most_near, 24);
+AT(ist_world_options, max_memory, 32);
+
+SIZE(ist_body_pair, 8);
+AT(ist_body_pair, a, 0);
+AT(ist_body_pair, b, 4);
+
+SIZE(ist_world_info, 24);
+AT(ist_world_info, struct_size, 0);
+AT(ist_world_info, bytes, 8);
+AT(ist_world_info, bodies, 16);
+
+SIZE(ist_world_pair, 96);
+AT(ist_world_pair, a, 0);
+AT(ist_world_pair, b, 4);
+AT(ist_world_pair, status, 8);
+AT(ist_world_pair, answer, 12);
+AT(ist_world_pair, complete, 16);
+AT(ist_world_pair, truncated, 20);
+AT(ist_world_pair, distance_lower, 24);
+AT(ist_world_pair, distance_upper, 32);
+AT(ist_world_pair, found, 40);
+AT(ist_world_pair, first, 48);
+AT(ist_world_pair, written, 56);
+AT(ist_world_pair, contacts, 64);
+AT(ist_world_pair, resolution, 72);
+AT(ist_world_pair, narrowest, 80);
+AT(ist_world_pair, sphere_tests, 88);
+
+SIZE(ist_world_result, 40);
+AT(ist_world_result, struct_size, 0);
+AT(ist_world_result, near_pairs, 8);
+AT(ist_world_result, written, 16);
+AT(ist_world_result, sphere_tests, 24);
+AT(ist_world_result, complete, 32);
+AT(ist_world_result, truncated, 36);
+
+SIZE(ist_least_distance, 56);
+AT(ist_least_distance, struct_size, 0);
+AT(ist_least_distance, lower, 8);
+AT(ist_least_distance, upper, 16);
+AT(ist_least_distance, sphere_tests, 24);
+AT(ist_least_distance, complete, 32);
+AT(ist_least_distance, pose_missing, 36);
+AT(ist_least_distance, nearest_known, 40);
+AT(ist_least_distance, a, 44);
+AT(ist_least_distance, b, 48);
+AT(ist_least_distance, reserved, 52);
+
 IS(IST_ASK_INTERSECTS, 1);
 IS(IST_ASK_LEAF_PAIRS, 2);
 IS(IST_ASK_DISTANCE, 4);
@@ -317,6 +371,7 @@ IS(IST_ANSWER_NEAR, 2);
 IS(IST_ANSWER_YES, 3);
 IS(IST_UNIT_M, 1);
 IS(IST_UNIT_MM, 2);
+IS(IST_MOST_BODIES, 4096);
 IS(IST_CLOSED, 0);
 IS(IST_FIXED_NOT_CLOSED, 1);
 IS(IST_MOVING_NOT_CLOSED, 2);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capi/c_bodies.h"
+#include "ist/capi/ist_world.h"
 #include "query/quiet/allocations.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -21,6 +22,7 @@ struct Bodies {
   ist_query* query = c_query(c_tree(icosphere(2, 1), 0.15));
   ist_query* freed = c_query(c_tree(icosphere(1, 1), 0.5));
   ist_servo* servo = nullptr;
+  ist_world* world = nullptr;
   std::vector<ist_leaf_pair> leaf_pairs = std::vector<ist_leaf_pair>(1 << 12);
   std::vector<ist_contact> contacts = std::vector<ist_contact>(32);
   std::vector<ist_triangle_pair> triangle_pairs = std::vector<ist_triangle_pair>(1 << 12);
@@ -31,10 +33,19 @@ struct Bodies {
     const std::string file = folder.write("scene.toml", kSmallScene).string();
     EXPECT_EQ(name(ist_servo_open_scene(file.c_str(), &options, &servo)), "ok");
     EXPECT_EQ(name(ist_query_free(freed)), "ok");
+    EXPECT_EQ(name(ist_world_create(nullptr, &world)), "ok");
+    ist_tree* tree = c_tree(icosphere(2, 1), 0.15);
+    for (std::uint32_t i = 0, body = 0; i < 3; ++i) {
+      EXPECT_EQ(name(ist_world_add(world, tree, c_shift(1.8 * i, 0, 0).data(), nullptr, &body)),
+                "ok");
+    }
+    EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+    EXPECT_EQ(name(ist_world_prepare(world, nullptr, 0)), "ok");
   }
   ~Bodies() {
     EXPECT_EQ(name(ist_query_free(query)), "ok");
     EXPECT_EQ(name(ist_servo_free(servo)), "ok");
+    EXPECT_EQ(name(ist_world_free(world)), "ok");
   }
 };
 
@@ -52,6 +63,38 @@ struct Asked {
            triangle_pairs > 100 && force > 0.1;
   }
 };
+
+// Every function of a world that is for real time, at a pose that may be invalid.
+void ask_world(Bodies& bodies, const double* at, bool bad, const ist_budget* limits,
+               Asked& seen) noexcept {
+  ist_world_pair pairs[4];
+  auto result = sized<ist_world_result>();
+  auto least = sized<ist_least_distance>();
+  auto sums = sized<ist_contact_sums>();
+  auto info = sized<ist_world_info>();
+  std::uint64_t count = 0;
+  double pose[16];
+  ist_world* world = bodies.world;
+  seen.status(ist_world_set_pose(world, 1, at), bad ? IST_POSE_INVALID : IST_OK);
+  seen.status(ist_world_get_pose(world, 0, 1, pose), bad ? IST_POSE_INVALID : IST_OK);
+  seen.status(ist_world_near_pairs(world, pairs, 4, &result), IST_OK);
+  seen.status(ist_world_intersects(world, limits, pairs, 4, &result), IST_OK);
+  seen.status(ist_world_contacts(world, nullptr, pairs, 4, &result), IST_OK);
+  seen.status(ist_world_get_contacts(world, 0, 1, bodies.contacts.data(), 32, &sums, &count),
+              bad ? IST_NOT_PREPARED : IST_OK);
+  seen.contacts += count;
+  seen.status(ist_world_leaf_pairs(world, limits, bodies.leaf_pairs.data(),
+                                   bodies.leaf_pairs.size(), pairs, 4, &result),
+              IST_OK);
+  seen.status(ist_world_triangle_pairs(world, limits, bodies.triangle_pairs.data(),
+                                       bodies.triangle_pairs.size(), pairs, 4, &result),
+              IST_OK);
+  seen.status(ist_world_distances(world, 0.01, limits, pairs, 4, &result), IST_OK);
+  seen.status(ist_world_distance(world, 0.01, limits, &least), IST_OK);
+  seen.status(ist_world_set_pose(world, 7, at), IST_ARGUMENT_INVALID);
+  seen.status(ist_world_forget(world), IST_OK);
+  seen.status(ist_world_get_info(world, &info), IST_OK);
+}
 
 Asked ask_all(Bodies& bodies) noexcept {
   Asked seen;
@@ -74,6 +117,7 @@ Asked ask_all(Bodies& bodies) noexcept {
     budget.nanoseconds = i % 2 == 0 ? 0 : 20'000;
     const double* at = pose.data();
     for (const ist_budget* limits : std::array<const ist_budget*, 2>{nullptr, &budget}) {
+      ask_world(bodies, at, bad, limits, seen);
       seen.status(ist_query_leaf_pairs(bodies.query, at, limits, bodies.leaf_pairs.data(),
                                        bodies.leaf_pairs.size(), &result),
                   wanted);

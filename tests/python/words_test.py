@@ -12,7 +12,7 @@ import unittest
 import support  # noqa: F401  which ends the run where numpy is missing
 
 import ist
-from ist import _measures, _mesh, _query, _tree
+from ist import _measures, _mesh, _query, _tree, _world
 
 PACKAGE = pathlib.Path(ist.__file__).parent
 USE = """
@@ -30,6 +30,12 @@ low: float = query.distance(np.eye(4), 0.1).lower
 rows = query.rows(np.eye(4)[None], want=["intersects", "penetration"], progress=lambda part: None)
 force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))
+world = ist.World(reach=0.5)
+body: int = world.add(tree, np.eye(4), name="jaw")
+world.prepare([(0, body)])
+found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
+of_first = found.leaf_pairs_of(found.pairs[0])
+least: Optional[float] = world.distance(0.1).upper
 with ist.Servo("scene.toml", unit="m") as servo:
     tick = servo.tick(None, out=np.empty((2, 3)))
     z: float = float(tick.force[2])
@@ -40,7 +46,7 @@ MISUSE = 'import ist\nist.Query(1, 2)\nist.Query(ist.load("a"), ist.load("b"), s
 class Words(unittest.TestCase):
     def test_examples_of_docstrings(self):
         tried = 0
-        for module in (ist, _measures, _mesh, _query, _tree):
+        for module in (ist, _measures, _mesh, _query, _tree, _world):
             result = doctest.testmod(module)
             self.assertEqual(result.failed, 0, module.__name__)
             tried += result.attempted

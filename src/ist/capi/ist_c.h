@@ -6,14 +6,14 @@
  * IST for C, and for any language that calls C: collision queries between two rigid meshes, on a
  * 64-bit processor.
  *
- * Handles. A mesh, a tree, a query and a servo (ist_servo.h) are opaque handles, not addresses. One
- * function creates each kind, and its ist_..._free releases it. A call with a handle that was freed
- * (until 2^32 later ones have used its slot), has another kind or never existed returns an error
- * code. At most 65,536 handles live at a time.
+ * Handles. A mesh, a tree, a query, a servo (ist_servo.h) and a world (ist_world.h) are opaque
+ * handles, not addresses. One function creates each kind, and its ist_..._free releases it. A call
+ * with a handle that was freed (until 2^32 later ones have used its slot), has another kind or
+ * never existed returns an error code. At most 65,536 handles live at a time.
  *
  * Threads. Any thread may call any function. Meshes and trees are immutable; any number of threads
- * may share them. A query or a servo serves one call at a time; a second, simultaneous call returns
- * IST_HANDLE_BUSY. An object that is freed during a call lives until the call returns.
+ * may share them. A query, a servo or a world serves one call at a time; a second, simultaneous
+ * call returns IST_HANDLE_BUSY. An object that is freed during a call lives until the call returns.
  *
  * Errors. Functions that can fail return an ist_status: IST_OK or an error code. After an error,
  * ist_last_error_message() gives the calling thread's cause and remedy. No C++ exception leaves the

@@ -18,9 +18,6 @@ static_assert(sizeof(ist_triangle_pair) == sizeof(TrianglePair) &&
               offsetof(ist_triangle_pair, fixed) == offsetof(TrianglePair, fixed) &&
               offsetof(ist_triangle_pair, moving) == offsetof(TrianglePair, moving));
 
-constexpr std::int32_t answer_of(Answer answer) {
-  return static_cast<std::int32_t>(answer) + IST_ANSWER_NO;
-}
 static_assert(static_cast<int>(Found::kFresh) == IST_FOUND_FRESH &&
               static_cast<int>(Found::kKept) == IST_FOUND_KEPT &&
               static_cast<int>(Found::kClear) == IST_FOUND_CLEAR);
@@ -43,27 +40,6 @@ ist_query_result result_of(const QueryResult& found) {
   result.resolution = found.resolution;
   result.found = static_cast<std::int32_t>(found.found);
   return result;
-}
-
-ist_contact contact_of(const Contact& contact) {
-  ist_contact out;
-  copy(contact.position, out.position);
-  copy(contact.normal, out.normal);
-  out.depth = contact.depth;
-  out.weight = contact.weight;
-  return out;
-}
-
-ist_contact_sums sums_of(const ContactSums& sums) {
-  ist_contact_sums out{};
-  out.pairs = sums.pairs;
-  out.weight = sums.weight;
-  copy(sums.pressure.force, out.pressure_force);
-  copy(sums.pressure.torque, out.pressure_torque);
-  copy(sums.spring.force, out.spring_force);
-  copy(sums.spring.torque, out.spring_torque);
-  copy(sums.about, out.about);
-  return out;
 }
 
 // Clears each struct that can be cleared, even if the other one is invalid.

@@ -9,11 +9,6 @@ constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 26;
 constexpr std::int64_t kMostContacts = 4096;
 constexpr double kMostPushDistance = 2;
 
-struct Options {
-  QueryOptions query;
-  std::optional<ManifoldOptions> manifold = ManifoldOptions{};  // empty: no contacts
-};
-
 ist_status check_query_options(const Call& call, const ist_query_options& known) {
   if (!are_spheres(known.spheres)) {
     return call.fail(IST_ARGUMENT_INVALID, "options->spheres is {}: pass one of IST_SPHERES_...",
@@ -52,7 +47,21 @@ ist_status check_query_options(const Call& call, const ist_query_options& known)
   return IST_OK;
 }
 
-ist_status read_query_options(const Call& call, const ist_query_options& given, Options& options) {
+ist_query_info query_info_of(const QueryObject& query) {
+  ist_query_info info{};
+  info.bytes = query.query.bytes() + (query.manifold ? query.manifold->bytes() : 0);
+  info.contacts = query.max_contacts;
+  info.spheres = spheres_of(query.query.policy());
+  info.workers = query.query.workers();
+  info.has_triangles = query.query.has_triangles();
+  std::strncpy(info.target, query.query.target(), sizeof(info.target) - 1);
+  return info;
+}
+
+}  // namespace
+
+ist_status read_query_options(const Call& call, const ist_query_options& given,
+                              CQueryOptions& options) {
   ist_query_options known;
   if (const ist_status wrong = read_sized(call, "options", given, known)) return wrong;
   if (const ist_status wrong = check_query_options(call, known)) return wrong;
@@ -76,18 +85,6 @@ ist_status read_query_options(const Call& call, const ist_query_options& given, 
   return IST_OK;
 }
 
-ist_query_info query_info_of(const QueryObject& query) {
-  ist_query_info info{};
-  info.bytes = query.query.bytes() + (query.manifold ? query.manifold->bytes() : 0);
-  info.contacts = query.max_contacts;
-  info.spheres = spheres_of(query.query.policy());
-  info.workers = query.query.workers();
-  info.has_triangles = query.query.has_triangles();
-  std::strncpy(info.target, query.query.target(), sizeof(info.target) - 1);
-  return info;
-}
-
-}  // namespace
 }  // namespace ist::capi
 
 using namespace ist::capi;
@@ -97,7 +94,7 @@ ist_status ist_query_create(const ist_tree* fixed, const ist_tree* moving,
   return guarded(__func__, [&](const Call& call) -> ist_status {
     if (const ist_status missing = call.need({{"query", query}})) return missing;
     *query = nullptr;
-    Options asked;
+    CQueryOptions asked;
     if (options != nullptr) {
       if (const ist_status wrong = read_query_options(call, *options, asked)) return wrong;
     }

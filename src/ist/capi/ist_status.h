@@ -50,7 +50,7 @@ enum {
   IST_OUT_OF_MEMORY = 9,          /**< the system has no memory left */
   IST_SYSTEM_ERROR = 10,          /**< the operating system refused a request */
   IST_INTERNAL_ERROR = 11,        /**< a bug in this library */
-  IST_NOT_PREPARED = 12,          /**< the query was created without contacts */
+  IST_NOT_PREPARED = 12,          /**< the query has no contacts, or the world no memory yet */
   IST_SERVO_FAULT = 13,           /**< a force was not a number: the output is zero */
   IST_CANCELLED = 14,             /**< the caller ended the call */
   IST_FILE_UNREADABLE = 101,      /**< the file cannot be opened or read */

@@ -14,6 +14,27 @@ void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept {
   std::copy_n(from.data(), 3, to);
 }
 
+ist_contact contact_of(const Contact& contact) noexcept {
+  ist_contact out;
+  copy(contact.position, out.position);
+  copy(contact.normal, out.normal);
+  out.depth = contact.depth;
+  out.weight = contact.weight;
+  return out;
+}
+
+ist_contact_sums sums_of(const ContactSums& sums) noexcept {
+  ist_contact_sums out{};
+  out.pairs = sums.pairs;
+  out.weight = sums.weight;
+  copy(sums.pressure.force, out.pressure_force);
+  copy(sums.pressure.torque, out.pressure_torque);
+  copy(sums.spring.force, out.spring_force);
+  copy(sums.spring.torque, out.spring_torque);
+  copy(sums.about, out.about);
+  return out;
+}
+
 ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget) {
   if (given == nullptr) return IST_OK;
   ist_budget known;

@@ -11,7 +11,8 @@
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
 
-/// The objects of handles, except Servo (ist_c_servo.cpp), and what the functions on them share.
+/// The objects of handles, except Servo (ist_c_servo.cpp) and WorldObject (world/), and what the
+/// functions on them share.
 namespace ist::capi {
 
 struct Mesh {
@@ -79,6 +80,14 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
   return static_cast<SpherePolicy>(spheres - IST_SPHERES_SIMPLE);
 }
 
+/// Converts an answer to its IST_ANSWER_...
+[[nodiscard]] constexpr std::int32_t answer_of(Answer answer) noexcept {
+  return static_cast<std::int32_t>(answer) + IST_ANSWER_NO;
+}
+/// Converts a contact, and sums.
+[[nodiscard]] ist_contact contact_of(const Contact& contact) noexcept;
+[[nodiscard]] ist_contact_sums sums_of(const ContactSums& sums) noexcept;
+
 /// Converts 16 numbers in column-major order, without a check.
 [[nodiscard]] Eigen::Isometry3d to_isometry(const double pose[16]) noexcept;
 
@@ -86,6 +95,15 @@ void copy(const Eigen::Vector3d& from, double (&to)[3]) noexcept;
 
 /// Converts a caller's budget; NULL leaves the default, which has no limit.
 [[nodiscard]] ist_status read_budget(const Call& call, const ist_budget* given, Budget& budget);
+
+/// The options of a query, and of its contacts.
+struct CQueryOptions {
+  QueryOptions query;
+  std::optional<ManifoldOptions> manifold = ManifoldOptions{};  // empty: no contacts
+};
+/// Converts a caller's options of a query (ist_c_query.cpp).
+[[nodiscard]] ist_status read_query_options(const Call& call, const ist_query_options& given,
+                                            CQueryOptions& options);
 
 /// Stores the message of a query that was created without contacts.
 ist_status not_prepared(const Call& call);

@@ -18,19 +18,34 @@ from ._answers import (
     Distance,
     FirstContact,
     LeafPairs,
+    LeastDistance,
     Occlusion,
     Penetration,
     ServoTick,
     TrianglePairs,
+    WorldLeafPairs,
+    WorldPairs,
+    WorldTrianglePairs,
 )
-from ._errors import BusyError, Error, FileError, FreedError, InputError, MemoryLimitError
+from ._errors import (
+    NOT_PREPARED,
+    POSE_INVALID,
+    TRIANGLES_MISSING,
+    BusyError,
+    Error,
+    FileError,
+    FreedError,
+    InputError,
+    MemoryLimitError,
+)
 from ._library import LIBRARY as _LIBRARY
 from ._measures import distance_map, signed_distance
 from ._mesh import jaws, read_mesh
 from ._query import Query
-from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR
+from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
 from ._servo import Servo
 from ._tree import Tree, build, load
+from ._world import World
 
 __version__ = _LIBRARY.ist_version_string().decode()
 

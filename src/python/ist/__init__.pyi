@@ -25,6 +25,10 @@ CONTACT: np.dtype[np.void]
 SURFACE_DISTANCE: np.dtype[np.void]
 CONTACT_REGION: np.dtype[np.void]
 ROW: np.dtype[np.void]
+WORLD_PAIR: np.dtype[np.void]
+NOT_PREPARED: int
+TRIANGLES_MISSING: int
+POSE_INVALID: int
 NO_TRIANGLE: int
 UNKNOWN: int
 NO: int
@@ -282,6 +286,96 @@ class Query:
     def forget(self) -> None: ...
     def free(self) -> None: ...
     def __enter__(self) -> Query: ...
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None: ...
+
+class WorldPairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+
+class WorldLeafPairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+    leaf_pairs: Records
+    def leaf_pairs_of(self, row: Any) -> Records: ...
+
+class WorldTrianglePairs(NamedTuple):
+    pairs: Records
+    count: int  # type: ignore[assignment]  # not the method of tuples
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+    triangle_pairs: Records
+    def triangle_pairs_of(self, row: Any) -> Records: ...
+
+class LeastDistance(NamedTuple):
+    lower: float
+    upper: float
+    complete: bool
+    nearest: Optional[Tuple[int, int]]
+    pose_missing: bool
+    sphere_tests: int
+
+class World:
+    def __init__(
+        self,
+        *,
+        spheres: Spheres = "default",
+        contacts: int = 32,
+        push_distance: float = 2.0,
+        front_pairs: int = 0,
+        frontier_pairs: int = 0,
+        target: Optional[str] = None,
+        reach: float = 0.0,
+        most_near: int = 4096,
+        max_memory: int = 4 << 30,
+    ) -> None: ...
+    @property
+    def bodies(self) -> Tuple[Tree, ...]: ...
+    @property
+    def names(self) -> Tuple[str, ...]: ...
+    @property
+    def nbytes(self) -> int: ...
+    def add(self, tree: Tree, pose: Optional[ArrayLike] = None, name: Optional[str] = None) -> int: ...
+    def ignore(self, a: int, b: int) -> None: ...
+    def bytes_needed(self, pairs: Optional[ArrayLike] = None) -> int: ...
+    def prepare(self, pairs: Optional[ArrayLike] = None) -> None: ...
+    def set_pose(self, body: int, pose: ArrayLike) -> None: ...
+    def pose_of(self, a: int, b: int) -> F8: ...
+    def near_pairs(self, *, out: Optional[Records] = None) -> WorldPairs: ...
+    def intersects(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldPairs: ...
+    def contacts(self, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0) -> WorldPairs: ...
+    def contacts_of(self, a: int, b: int, *, out: Optional[Records] = None) -> Contacts: ...
+    def distances(
+        self, tolerance: float = 0.0, *, out: Optional[Records] = None, tests: int = 0, seconds: float = 0.0
+    ) -> WorldPairs: ...
+    def leaf_pairs(
+        self,
+        *,
+        into: Optional[Records] = None,
+        out: Optional[Records] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> WorldLeafPairs: ...
+    def triangle_pairs(
+        self,
+        *,
+        into: Optional[Records] = None,
+        out: Optional[Records] = None,
+        tests: int = 0,
+        seconds: float = 0.0,
+    ) -> WorldTrianglePairs: ...
+    def distance(self, tolerance: float = 0.0, *, tests: int = 0, seconds: float = 0.0) -> LeastDistance: ...
+    def forget(self) -> None: ...
+    def free(self) -> None: ...
+    def __enter__(self) -> World: ...
     def __exit__(
         self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None: ...

@@ -56,6 +56,57 @@ class TrianglePairs(NamedTuple):
     sphere_tests: int
 
 
+class WorldPairs(NamedTuple):
+    """One row for each pair of bodies of a world that is near, sorted; all other pairs are apart."""
+
+    pairs: np.ndarray  # WORLD_PAIR
+    count: int  # all pairs that are near, in the array or not
+    complete: bool  # every near pair was asked, and its answer is complete
+    truncated: bool  # True: the array, or the room of the world, was too short
+    sphere_tests: int
+
+
+class WorldLeafPairs(NamedTuple):
+    """The rows of WorldPairs, and the leaf pairs of all of them."""
+
+    pairs: np.ndarray  # WORLD_PAIR
+    count: int
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+    leaf_pairs: np.ndarray  # LEAF_PAIR
+
+    def leaf_pairs_of(self, row):
+        """The leaf pairs of one row of `pairs`."""
+        return self.leaf_pairs[row["first"] : row["first"] + row["written"]]
+
+
+class WorldTrianglePairs(NamedTuple):
+    """The rows of WorldPairs, and the pairs of triangles of all of them."""
+
+    pairs: np.ndarray  # WORLD_PAIR
+    count: int
+    complete: bool
+    truncated: bool
+    sphere_tests: int
+    triangle_pairs: np.ndarray  # TRIANGLE_PAIR
+
+    def triangle_pairs_of(self, row):
+        """The pairs of triangles of one row of `pairs`."""
+        return self.triangle_pairs[row["first"] : row["first"] + row["written"]]
+
+
+class LeastDistance(NamedTuple):
+    """The least distance between any two bodies of a world, mesh units: it lies between `lower` and `upper`."""
+
+    lower: float
+    upper: float
+    complete: bool  # the interval is no wider than the tolerance, and counts all pairs
+    nearest: Optional[Tuple[int, int]]  # the bodies with the least upper end; None where no pair counts
+    pose_missing: bool  # True: a body has no valid pose, and the interval is that of the others
+    sphere_tests: int
+
+
 class Penetration(NamedTuple):
     """How deep the deepest point of either surface lies inside the other body, mesh units."""
 

@@ -23,13 +23,14 @@ class MemoryLimitError(Error, MemoryError):
 
 
 class BusyError(Error, RuntimeError):
-    """Another thread is using the query or the servo."""
+    """Another thread is using the query, the servo or the world."""
 
 
 class FreedError(Error, RuntimeError):
     """The object was freed."""
 
 
+NOT_PREPARED, TRIANGLES_MISSING, POSE_INVALID = 12, 118, 120
 FREED, BUSY, OUT_OF_MEMORY, CANCELLED, FILE_UNREADABLE, FILE_UNWRITABLE, MEMORY_LIMIT = 6, 7, 9, 14, 101, 102, 112
 KINDS = {
     4: FreedError,

@@ -32,6 +32,25 @@ _leaf_pairs, _contacts, _distance = LIBRARY.ist_query_leaf_pairs, LIBRARY.ist_qu
 _intersects, _triangle_pairs = LIBRARY.ist_query_intersects, LIBRARY.ist_query_triangle_pairs
 
 
+def options_of(spheres, workers, contacts, push_distance, front_pairs, target):
+    """Returns the library's options of a query, checked."""
+    if workers not in (1, 2):
+        refuse(f"workers is {workers!r}: pass 1 or 2")
+    if contacts == 0 or contacts < -1:
+        refuse(f"contacts is {contacts!r}: pass a number of contacts, or -1 for none")
+    push = number_of(push_distance, "push_distance")
+    if not 0 <= push <= 2:
+        refuse(f"push_distance is {push}: pass a number from 0 to 2, mean voxel sizes")
+    return QueryOptions(
+        spheres=spheres_number(spheres),
+        workers=workers,
+        contacts=-1 if contacts == -1 else count_of(contacts, "contacts", 4096),
+        target=None if target is None else str(target).encode(),
+        push_distance=-1 if push == 0 else push,
+        front_pairs=count_of(front_pairs, "front_pairs"),
+    )
+
+
 class Query(Lone):
     """Asks where two bodies are near each other, intersect and push each other, and how far apart they are.
 
@@ -70,21 +89,7 @@ class Query(Lone):
     ):
         for tree, name in ((fixed, "fixed"), (moving, "moving")):
             need_tree(tree, name)
-        if workers not in (1, 2):
-            refuse(f"workers is {workers!r}: pass 1 or 2")
-        if contacts == 0 or contacts < -1:
-            refuse(f"contacts is {contacts!r}: pass a number of contacts, or -1 for none")
-        push = number_of(push_distance, "push_distance")
-        if not 0 <= push <= 2:
-            refuse(f"push_distance is {push}: pass a number from 0 to 2, mean voxel sizes")
-        options = QueryOptions(
-            spheres=spheres_number(spheres),
-            workers=workers,
-            contacts=-1 if contacts == -1 else count_of(contacts, "contacts", 4096),
-            target=None if target is None else str(target).encode(),
-            push_distance=-1 if push == 0 else push,
-            front_pairs=count_of(front_pairs, "front_pairs"),
-        )
+        options = options_of(spheres, workers, contacts, push_distance, front_pairs, target)
         out = Out()
         check(LIBRARY.ist_query_create(fixed._need(), moving._need(), addressof(options), out.address))
         super().__init__(out.handle)

@@ -42,6 +42,25 @@ ROW = np.dtype(
         ("torque", "f8", 3),
     ]
 )
+WORLD_PAIR = np.dtype(
+    [
+        ("a", "u4"),
+        ("b", "u4"),
+        ("status", "i4"),
+        ("answer", "i4"),
+        ("complete", "i4"),
+        ("truncated", "i4"),
+        ("distance_lower", "f8"),
+        ("distance_upper", "f8"),
+        ("found", "u8"),
+        ("first", "u8"),
+        ("written", "u8"),
+        ("contacts", "u8"),
+        ("resolution", "f8"),
+        ("narrowest", "f8"),
+        ("sphere_tests", "u8"),
+    ]
+)
 CONTACT_SUMS = np.dtype(
     [
         ("struct_size", "u8"),
@@ -307,4 +326,44 @@ class ServoInfo(Sized):
         ("held", c_uint64),
         ("faults", c_uint64),
         ("late", c_uint64),
+    ]
+
+
+class WorldOptions(Sized):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("query", POINTER(QueryOptions)),
+        ("reach", c_double),
+        ("most_near", c_uint64),
+        ("max_memory", c_uint64),
+    ]
+
+
+class WorldInfo(Sized):
+    _fields_ = [("struct_size", c_size_t), ("bytes", c_uint64), ("bodies", c_uint64)]
+
+
+class WorldResult(Sized):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("near_pairs", c_uint64),
+        ("written", c_uint64),
+        ("sphere_tests", c_uint64),
+        ("complete", c_int32),
+        ("truncated", c_int32),
+    ]
+
+
+class LeastDistanceResult(Sized):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("lower", c_double),
+        ("upper", c_double),
+        ("sphere_tests", c_uint64),
+        ("complete", c_int32),
+        ("pose_missing", c_int32),
+        ("nearest_known", c_int32),
+        ("a", c_uint32),
+        ("b", c_uint32),
+        ("reserved", c_int32),
     ]

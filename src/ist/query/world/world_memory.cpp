@@ -85,7 +85,7 @@ std::vector<BodyPair> WorldState::all_pairs() const {
 }
 
 std::size_t WorldState::room_for(std::size_t prepared) const noexcept {
-  return std::min(table.size(), prepared + options.most_near);
+  return std::min(table.size(), std::max<std::size_t>(prepared + options.most_near, 1));
 }
 
 std::uint64_t WorldState::bytes_of(BodyPair pair) const {

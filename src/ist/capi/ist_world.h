@@ -1,0 +1,197 @@
+#ifndef IST_CAPI_IST_WORLD_H
+#define IST_CAPI_IST_WORLD_H
+
+/**
+ * @file
+ * Worlds: many bodies at poses, and the answers of all pairs that are near each other. The
+ * conventions of ist_c.h apply. A pose of a body maps its mesh coordinates to the world's; all
+ * bodies share a unit. A world serves one call at a time, as a query does.
+ */
+
+#include "ist/capi/ist_c.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Bodies at poses, and the queries of their pairs. */
+typedef struct ist_world ist_world;
+
+/** The most bodies of a world. */
+#define IST_MOST_BODIES 4096u
+
+/** What a world asks, and the memory that it may reserve. */
+typedef struct ist_world_options {
+  size_t struct_size;             /**< the size of this struct, bytes */
+  const ist_query_options* query; /**< of each pair's query; may be NULL; workers: 1. With contacts
+                                     -1 a pair has the sums alone */
+  double reach;                   /**< pairs whose root bounds are no farther apart are near too */
+  uint64_t most_near;  /**< most pairs of an answer beyond those prepared; default 4096, to 2^26 */
+  uint64_t max_memory; /**< memory limit of queries, contacts and answers, bytes; default 4 GiB */
+} ist_world_options;
+
+/** Creates a world without bodies. `options` may be NULL. Errors: IST_ARGUMENT_INVALID,
+ * IST_TARGET_MISSING. */
+IST_C_API ist_status ist_world_create(const ist_world_options* options,
+                                      ist_world** world) IST_NOEXCEPT;
+
+/** Adds a body; `body` takes its number, from 0 in the order of adding. `pose` may be NULL: where
+ * the mesh is; `name`, for messages, too. The tree may be freed afterwards. The world is not
+ * prepared then. Errors: IST_POLICY_MISSING, IST_POSE_INVALID; IST_ARGUMENT_INVALID beyond
+ * IST_MOST_BODIES. */
+IST_C_API ist_status ist_world_add(ist_world* world, const ist_tree* tree, const double pose[16],
+                                   const char* name, uint32_t* body) IST_NOEXCEPT;
+
+/** Never looks at a pair of bodies again, and frees its memory. Errors: IST_ARGUMENT_INVALID for a
+ * body that is not there. */
+IST_C_API ist_status ist_world_ignore(ist_world* world, uint32_t a, uint32_t b) IST_NOEXCEPT;
+
+/** Two bodies, in either order. */
+typedef struct ist_body_pair {
+  uint32_t a, /**< a body */
+      b;      /**< another one */
+} ist_body_pair;
+
+/** Gives the bytes that ist_world_prepare takes in all for `count` pairs, or with `pairs` NULL for
+ * all pairs that are not ignored. Errors: IST_ARGUMENT_INVALID. Cost: 10 us per pair. */
+IST_C_API ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pair* pairs,
+                                            size_t count, uint64_t* bytes) IST_NOEXCEPT;
+
+/** Reserves a query and contacts for `count` pairs, or with `pairs` NULL for all pairs that are not
+ * ignored, and the room for answers. Pairs that had them and are among these keep them; others
+ * lose them. Errors: IST_MEMORY_LIMIT, with the pair that is too much in the message;
+ * IST_OUT_OF_MEMORY, IST_ARGUMENT_INVALID; the world is then as it was. Cost: 0.1 to 1 ms per pair.
+ */
+IST_C_API ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs,
+                                       size_t count) IST_NOEXCEPT;
+
+/** The size of a world. */
+typedef struct ist_world_info {
+  size_t struct_size; /**< the size of this struct, bytes */
+  uint64_t bytes;     /**< memory reserved for queries, contacts and answers */
+  uint64_t bodies;    /**< bodies added */
+} ist_world_info;
+
+/** Gives the size of a world. [real time] */
+IST_C_API ist_status ist_world_get_info(ist_world* world, ist_world_info* info) IST_NOEXCEPT;
+
+/** Moves a body. IST_POSE_INVALID: the pairs of this body have that status until its next pose.
+ * Errors: IST_ARGUMENT_INVALID for a body that is not there. [real time] */
+IST_C_API ist_status ist_world_set_pose(ist_world* world, uint32_t body,
+                                        const double pose[16]) IST_NOEXCEPT;
+
+/** Gives the pose at which a pair is asked, from coordinates of `b` to those of `a`: a query of the
+ * two trees at this pose has the pair's answers. Errors: IST_POSE_INVALID where one has no valid
+ * pose. [real time] */
+IST_C_API ist_status ist_world_get_pose(ist_world* world, uint32_t a, uint32_t b,
+                                        double pose[16]) IST_NOEXCEPT;
+
+/** The answer of a pair of bodies that are near each other; lengths in mesh units. Members that a
+ * function does not name are zero. */
+typedef struct ist_world_pair {
+  uint32_t a,            /**< the body added first, which is the fixed one */
+      b;                 /**< the other body, the moving one */
+  ist_status status;     /**< IST_OK; IST_NOT_PREPARED, IST_POSE_INVALID, IST_TRIANGLES_MISSING */
+  int32_t answer;        /**< IST_ANSWER_...: of ist_world_intersects */
+  int32_t complete;      /**< 1: no budget ended the search; of a distance: it is narrow enough */
+  int32_t truncated;     /**< 1: the array of leaf pairs or triangles was too short for all */
+  double distance_lower, /**< the surfaces are no nearer, as far as this call tells */
+      distance_upper;    /**< and no farther apart */
+  uint64_t found;        /**< leaf pairs; of ist_world_triangle_pairs pairs of triangles */
+  uint64_t first;        /**< the place of the pair's first element in that array */
+  uint64_t written;      /**< valid elements there */
+  uint64_t contacts;     /**< of ist_world_contacts, for ist_world_get_contacts */
+  double resolution;     /**< greatest distance between the surfaces in a leaf pair; 0 unknown */
+  double narrowest;      /**< of distances: no tolerance below this width can be reached */
+  uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
+} ist_world_pair;
+
+/** The answer of a world: one element for each pair that is near, sorted by `a` and then by `b`.
+ * All other pairs are apart, by more than the reach. */
+typedef struct ist_world_result {
+  size_t struct_size;    /**< the size of this struct, bytes */
+  uint64_t near_pairs;   /**< all pairs that are near, in the array or not */
+  uint64_t written;      /**< valid elements of the array */
+  uint64_t sphere_tests; /**< of all pairs */
+  int32_t complete;      /**< 1: every near pair was asked, and its answer is complete */
+  int32_t truncated;     /**< 1: the array, or the room of the world, was too short for all pairs */
+} ist_world_result;
+
+/** Lists the pairs that are near, with the distance of their root bounds, and asks none. `pairs`
+ * may be NULL where `capacity` is 0. This and the functions below depend on the poses of now alone.
+ * Errors: IST_NOT_PREPARED before ist_world_prepare. Cost: 20 ns per body and 0.5 us per near pair.
+ * [real time] */
+IST_C_API ist_status ist_world_near_pairs(ist_world* world, ist_world_pair* pairs, size_t capacity,
+                                          ist_world_result* result) IST_NOEXCEPT;
+
+/** Decides of each near pair whether the bodies intersect. `budget` may be NULL; it is one for the
+ * whole call: pairs are asked in their order until it is spent. [real time] */
+IST_C_API ist_status ist_world_intersects(ist_world* world, const ist_budget* budget,
+                                          ist_world_pair* pairs, size_t capacity,
+                                          ist_world_result* result) IST_NOEXCEPT;
+
+/** Finds the contacts of each near pair, in the world's memory. [real time] */
+IST_C_API ist_status ist_world_contacts(ist_world* world, const ist_budget* budget,
+                                        ist_world_pair* pairs, size_t capacity,
+                                        ist_world_result* result) IST_NOEXCEPT;
+
+/** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_contacts;
+ * `count` takes the number of all. Coordinates are those of the body added first. `contacts` may be
+ * NULL where `capacity` is 0; `sums` may be NULL. Errors: IST_NOT_PREPARED where that call did not
+ * ask the pair. [real time] */
+IST_C_API ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b,
+                                            ist_contact* contacts, size_t capacity,
+                                            ist_contact_sums* sums, uint64_t* count) IST_NOEXCEPT;
+
+/** Finds the leaf pairs of each near pair: `leaf_pairs`, of `leaf_capacity` elements, takes those
+ * of one pair after the other. [real time] */
+IST_C_API ist_status ist_world_leaf_pairs(ist_world* world, const ist_budget* budget,
+                                          ist_leaf_pair* leaf_pairs, size_t leaf_capacity,
+                                          ist_world_pair* pairs, size_t capacity,
+                                          ist_world_result* result) IST_NOEXCEPT;
+
+/** Finds the pairs of triangles that intersect, of each near pair, in the same way. [real time] */
+IST_C_API ist_status ist_world_triangle_pairs(ist_world* world, const ist_budget* budget,
+                                              ist_triangle_pair* triangles,
+                                              size_t triangle_capacity, ist_world_pair* pairs,
+                                              size_t capacity,
+                                              ist_world_result* result) IST_NOEXCEPT;
+
+/** Bounds the distance of each near pair by an interval no wider than `tolerance`. Errors:
+ * IST_ARGUMENT_INVALID. [real time] */
+IST_C_API ist_status ist_world_distances(ist_world* world, double tolerance,
+                                         const ist_budget* budget, ist_world_pair* pairs,
+                                         size_t capacity, ist_world_result* result) IST_NOEXCEPT;
+
+/** The least distance between any two bodies of a world; lengths in mesh units. */
+typedef struct ist_least_distance {
+  size_t struct_size;    /**< the size of this struct, bytes */
+  double lower,          /**< no two bodies are nearer */
+      upper;             /**< and two are no farther apart; both DBL_MAX where no pair counts */
+  uint64_t sphere_tests; /**< of all pairs */
+  int32_t complete;     /**< 1: the interval is no wider than the tolerance, and counts all pairs */
+  int32_t pose_missing; /**< 1: a body has no valid pose; the interval is that of the others */
+  int32_t nearest_known; /**< 1: `a` and `b` have the least upper end */
+  uint32_t a,            /**< the nearest pair's body that was added first */
+      b;                 /**< and the other one */
+  int32_t reserved;      /**< zero */
+} ist_least_distance;
+
+/** Bounds the least distance of all pairs that are not ignored, near or not, by an interval no
+ * wider than `tolerance`. Pairs that are not prepared count with their roots. Errors:
+ * IST_ARGUMENT_INVALID, IST_NOT_PREPARED. [real time] */
+IST_C_API ist_status ist_world_distance(ist_world* world, double tolerance,
+                                        const ist_budget* budget,
+                                        ist_least_distance* result) IST_NOEXCEPT;
+
+/** Forgets what earlier poses left behind in the queries. [real time] */
+IST_C_API ist_status ist_world_forget(ist_world* world) IST_NOEXCEPT;
+
+/** Frees a world. */
+IST_C_API ist_status ist_world_free(ist_world* world) IST_NOEXCEPT;
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* IST_CAPI_IST_WORLD_H */

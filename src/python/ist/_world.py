@@ -1,0 +1,284 @@
+"""Worlds: many bodies at poses, and the answers of all pairs that are near each other."""
+
+from ctypes import addressof, c_uint32, c_uint64, pointer
+
+import numpy as np
+
+from ._answers import Contacts, LeastDistance, WorldLeafPairs, WorldPairs, WorldTrianglePairs
+from ._arrays import address, budget_of, by_columns, count_of, number_of, place_of, pose_of
+from ._errors import check, error_of, refuse
+from ._handle import Lone, Out
+from ._library import LIBRARY
+from ._query import options_of
+from ._records import (
+    CONTACT,
+    CONTACT_SUMS,
+    LEAF_PAIR,
+    TRIANGLE_PAIR,
+    WORLD_PAIR,
+    ContactSums,
+    LeastDistanceResult,
+    WorldInfo,
+    WorldOptions,
+    WorldResult,
+)
+from ._tree import need_tree
+
+_intersects, _contacts, _leaf_pairs = LIBRARY.ist_world_intersects, LIBRARY.ist_world_contacts, LIBRARY.ist_world_leaf_pairs
+_triangle_pairs, _distances, _near = LIBRARY.ist_world_triangle_pairs, LIBRARY.ist_world_distances, LIBRARY.ist_world_near_pairs
+
+
+class World(Lone):
+    """Bodies with poses: asks all pairs of them that are near each other what a Query asks of two.
+
+    A pose is (4, 4) float64, row by row, and maps a body's coordinates to the world's. Bodies are numbers, from 0 in the order
+    of add(). An answer has one row of WORLD_PAIR for each pair that is near, sorted: its `status` is 0, or NOT_PREPARED or
+    POSE_INVALID; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed one. `tests` and
+    `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
+
+    reach: pairs whose root bounds are no farther apart are near too, mesh units. most_near: rows beyond those of prepared pairs.
+    max_memory: bytes. All else as of Query, of each pair; contacts=-1: the sums alone.
+
+    >>> import ist, numpy as np
+    >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
+    >>> world = ist.World()
+    >>> a, b = world.add(upper, name="upper"), world.add(lower, name="lower")
+    >>> world.prepare()
+    >>> row = world.intersects().pairs[0]
+    >>> int(row["a"]), int(row["b"]), bool(row["answer"] == ist.YES)
+    (0, 1, True)
+    >>> pose = np.eye(4)
+    >>> pose[2, 3] = -1.5                                   # the lower jaw goes down by 1.5 mm
+    >>> world.set_pose(b, pose)
+    >>> least = world.distance(tolerance=0.01)
+    >>> least.nearest, least.upper - least.lower <= 0.01
+    ((0, 1), True)
+    """
+
+    _free = LIBRARY.ist_world_free
+
+    def __init__(
+        self,
+        *,
+        spheres="default",
+        contacts=32,
+        push_distance=2.0,
+        front_pairs=0,
+        frontier_pairs=0,
+        target=None,
+        reach=0.0,
+        most_near=4096,
+        max_memory=4 << 30,
+    ):
+        query = options_of(spheres, 1, contacts, push_distance, front_pairs, target)
+        query.frontier_pairs = count_of(frontier_pairs, "frontier_pairs")
+        options = WorldOptions(
+            query=pointer(query),
+            reach=number_of(reach, "reach"),
+            most_near=count_of(most_near, "most_near", least=1),
+            max_memory=count_of(max_memory, "max_memory", least=1),
+        )
+        out = Out()
+        check(LIBRARY.ist_world_create(addressof(options), out.address))
+        super().__init__(out.handle)
+        self._contacts = 0 if contacts == -1 else contacts
+        self._trees, self._names = [], []
+        self._prepared, self._most_near = 0, options.most_near
+        self._found = WorldResult()
+        self._found_at = addressof(self._found)
+        self._least = LeastDistanceResult()
+        self._sums = ContactSums()
+
+    bodies = property(lambda self: tuple(self._trees), doc="The trees of the bodies, by their numbers.")
+    names = property(lambda self: tuple(self._names), doc="The names of the bodies, by their numbers.")
+
+    @property
+    def nbytes(self):
+        """Memory reserved for queries, contacts and answers, bytes."""
+        info = WorldInfo()
+        self._call(LIBRARY.ist_world_get_info, addressof(info))
+        return info.bytes
+
+    # Calls a function of the library with the handle.
+    def _call(self, function, *arguments):
+        handle = self._enter()
+        try:
+            check(function(handle, *arguments))
+        finally:
+            self._lock.release()
+
+    def add(self, tree, pose=None, name=None):
+        """Adds a body, where the mesh is unless a pose is given, and returns its number. prepare() has to follow."""
+        need_tree(tree, "tree")
+        at = pose_of(pose)
+        body = c_uint32()
+        name = f"body {len(self._trees)}" if name is None else str(name)
+        self._call(LIBRARY.ist_world_add, tree._need(), address(at), name.encode(), addressof(body))
+        self._trees.append(tree)
+        self._names.append(name)
+        return body.value
+
+    def ignore(self, a, b):
+        """Never looks at a pair of bodies again, and frees its memory."""
+        self._call(LIBRARY.ist_world_ignore, self._body(a, "a"), self._body(b, "b"))
+
+    def bytes_needed(self, pairs=None):
+        """The bytes that prepare(pairs) takes in all."""
+        some, place, count = self._pairs(pairs)
+        needed = c_uint64()
+        self._call(LIBRARY.ist_world_bytes_needed, place, count, addressof(needed))
+        return needed.value
+
+    def prepare(self, pairs=None):
+        """Reserves a query for each of these pairs of bodies, (N, 2); without them, for all that are not ignored.
+
+        Pairs that had one and are among them keep it, with what it knows; others lose it. Raises MemoryLimitError, which names
+        the pair that was too much; the world is then as it was.
+        """
+        some, place, count = self._pairs(pairs)
+        self._call(LIBRARY.ist_world_prepare, place, count)
+        self._prepared = self._all_pairs() if pairs is None else count
+
+    def set_pose(self, body, pose):
+        """Moves a body. Raises InputError for a pose that is no rigid motion: the pairs of the body then have the status
+        POSE_INVALID until its next pose."""
+        at = pose_of(pose)
+        self._call(LIBRARY.ist_world_set_pose, self._body(body, "body"), address(at))
+
+    def pose_of(self, a, b):
+        """The pose at which a pair is asked: (4, 4), from coordinates of b to those of a. A Query of the two at this pose
+        has the pair's answers."""
+        columns = np.empty((4, 4))
+        self._call(LIBRARY.ist_world_get_pose, self._body(a, "a"), self._body(b, "b"), address(columns))
+        return by_columns(columns)
+
+    def near_pairs(self, *, out=None):
+        """The pairs that are near, with the distance of their root bounds; none is asked."""
+        return self._ask(out, 0, 0, lambda handle, _, at, room: _near(handle, at, room, self._found_at))
+
+    def intersects(self, *, out=None, tests=0, seconds=0.0):
+        """Of each pair that is near, whether the bodies intersect: `answer` is NO, NEAR or YES."""
+        return self._ask(
+            out, tests, seconds, lambda handle, limit, at, room: _intersects(handle, limit, at, room, self._found_at)
+        )
+
+    def contacts(self, *, out=None, tests=0, seconds=0.0):
+        """Finds the contacts of each pair that is near, for contacts_of()."""
+        return self._ask(
+            out, tests, seconds, lambda handle, limit, at, room: _contacts(handle, limit, at, room, self._found_at)
+        )
+
+    def contacts_of(self, a, b, *, out=None):
+        """The contacts of a pair, and its sums, from the last contacts(); coordinates of the body added first.
+
+        out: an array of CONTACT that is filled. Raises InputError where contacts() did not ask the pair.
+        """
+        if out is None:
+            out = np.empty(self._contacts, CONTACT)
+        count, place = c_uint64(), place_of(out, CONTACT)
+        a, b, sums = self._body(a, "a"), self._body(b, "b"), self._sums
+        self._call(LIBRARY.ist_world_get_contacts, a, b, place, len(out), addressof(sums), addressof(count))
+        return Contacts(
+            out[: min(count.value, len(out))],
+            count.value,
+            True,
+            sums.pairs,
+            sums.weight,
+            0,
+            np.frombuffer(bytearray(sums), CONTACT_SUMS),
+        )
+
+    def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):
+        """Of each pair that is near the distance, an interval no wider than the tolerance."""
+        width = number_of(tolerance, "tolerance")
+        return self._ask(
+            out, tests, seconds, lambda handle, limit, at, room: _distances(handle, width, limit, at, room, self._found_at)
+        )
+
+    def leaf_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
+        """Of each pair that is near all pairs of voxels whose bounds overlap: `leaf_pairs_of(row)` of the answer has them.
+
+        into: an array of LEAF_PAIR that is filled, those of one pair of bodies after the other; by default one of 65,536.
+        """
+        return WorldLeafPairs(*self._list(LEAF_PAIR, _leaf_pairs, into, out, tests, seconds))
+
+    def triangle_pairs(self, *, into=None, out=None, tests=0, seconds=0.0):
+        """Of each pair that is near all pairs of triangles with a common point. `into`: as leaf_pairs(), of TRIANGLE_PAIR."""
+        return WorldTrianglePairs(*self._list(TRIANGLE_PAIR, _triangle_pairs, into, out, tests, seconds))
+
+    def _list(self, dtype, function, into, out, tests, seconds):
+        if into is None:
+            into = np.empty(1 << 16, dtype)
+        place, length = place_of(into, dtype), len(into)
+        found = self._ask(
+            out,
+            tests,
+            seconds,
+            lambda handle, limit, at, room: function(handle, limit, place, length, at, room, self._found_at),
+        )
+        return (*found, into)
+
+    # Asks with room for all rows that an answer can have.
+    def _ask(self, out, tests, seconds, ask):
+        handle = self._enter()
+        try:
+            budget, limit = budget_of(tests, seconds)
+            found = self._found
+            if out is None:
+                out = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
+            status = ask(handle, limit, place_of(out, WORLD_PAIR), len(out))
+            if status:
+                raise error_of(status)
+            return WorldPairs(
+                out[: found.written], found.near_pairs, found.complete == 1, found.truncated == 1, found.sphere_tests
+            )
+        finally:
+            self._lock.release()
+
+    def distance(self, tolerance=0.0, *, tests=0, seconds=0.0):
+        """The least distance of all pairs, near or not: an interval no wider than the tolerance."""
+        handle = self._enter()
+        try:
+            budget, limit = budget_of(tests, seconds)
+            least = self._least
+            check(LIBRARY.ist_world_distance(handle, number_of(tolerance, "tolerance"), limit, addressof(least)))
+            nearest = (least.a, least.b) if least.nearest_known else None
+            return LeastDistance(
+                least.lower, least.upper, least.complete == 1, nearest, least.pose_missing == 1, least.sphere_tests
+            )
+        finally:
+            self._lock.release()
+
+    def forget(self):
+        """Forgets what earlier poses left behind in the queries."""
+        self._call(LIBRARY.ist_world_forget)
+
+    def _all_pairs(self):
+        return len(self._trees) * (len(self._trees) - 1) // 2
+
+    @staticmethod
+    def _body(number, what):
+        return count_of(number, what, 0xFFFFFFFF)
+
+    # The pairs of a caller, with their place and number; NULL for all.
+    @staticmethod
+    def _pairs(pairs):
+        if pairs is None:
+            return None, None, 0
+        some = np.asarray(pairs)
+        if some.size == 0:
+            some = np.empty((0, 2), np.uint32)
+        if some.dtype.kind not in "iu" or some.ndim != 2 or some.shape[1] != 2:
+            refuse(f"pairs is {some.dtype}, {some.shape}: pass whole numbers, (N, 2)")
+        if (some < 0).any() or (some > 0xFFFFFFFF).any():
+            refuse("pairs has a number that no body has: pass numbers that add() returned")
+        numbers = np.ascontiguousarray(some, dtype=np.uint32)
+        count = len(numbers)
+        if count == 0:
+            numbers = np.zeros((1, 2), np.uint32)  # some place, since NULL means all
+        return numbers, address(numbers), count
+
+    def __repr__(self):
+        if self._handle is None:
+            return "<ist.World, freed>"
+        return f"<ist.World of {len(self._trees)} bodies>"

@@ -1,0 +1,343 @@
+// Worlds through the C interface: the answers of C++, and what is misused.
+
+#include "ist/query/world/world.h"
+
+#include <gtest/gtest.h>
+
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include "capi/c_bodies.h"
+#include "ist/capi/ist_world.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+constexpr std::size_t kRoom = 16;
+
+Eigen::Isometry3d isometry(const std::array<double, 16>& pose) {
+  Eigen::Isometry3d made;
+  std::copy(pose.begin(), pose.end(), made.matrix().data());
+  return made;
+}
+
+// Four bodies: a ball, a box that it meets, a ball near both, and a plate far away without
+// triangles; the same in C and in C++.
+class CWorld : public ::testing::Test {
+ protected:
+  CWorld() {
+    auto options = sized<ist_world_options>();
+    auto query = sized<ist_query_options>();
+    query.frontier_pairs = 1 << 10;
+    query.push_distance = -1;
+    options.query = &query;
+    options.reach = 0.25;
+    EXPECT_EQ(name(ist_world_create(&options, &world_)), "ok") << ist_last_error_message();
+    WorldOptions same;
+    same.query.frontier_pairs = 1 << 10;
+    same.manifold.least_depth = 0;
+    same.reach = 0.25;
+    cpp_.emplace(same);
+    const TriangleMesh meshes[] = {icosphere(2, 1), box({0, 0, 0}, {2, 2, 2}), icosphere(2, 1),
+                                   box({0, 0, 0}, {4, 4, 1})};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const bool triangles = k < 3;
+      ist_tree* tree = c_tree(meshes[k], 0.2, triangles);
+      std::uint32_t body = 77;
+      EXPECT_EQ(name(ist_world_add(world_, tree, poses_[k].data(), names_[k], &body)), "ok");
+      EXPECT_EQ(body, k);
+      if (k == 0) tree_ = tree;
+      if (k > 0) {
+        EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+      }
+      const SphereTree same_tree =
+          build_tree(meshes[k], {.voxel_size = 0.2, .keep_triangles = triangles});
+      cpp_->add(same_tree, isometry(poses_[k]), names_[k]);
+    }
+  }
+  ~CWorld() override {
+    EXPECT_EQ(name(ist_tree_free(tree_)), "ok");
+    EXPECT_EQ(name(ist_world_free(world_)), "ok");
+  }
+
+  const std::array<double, 16> poses_[4] = {c_shift(0, 0, 0), c_shift(0.5, 0, 0),
+                                            c_shift(1.9, 0.5, 1), c_shift(0, 50, 0)};
+  const char* const names_[4] = {"ball", "box", "other ball", "plate"};
+  ist_tree* tree_ = nullptr;
+  ist_world* world_ = nullptr;
+  std::optional<World> cpp_;
+  ist_world_pair pairs_[kRoom] = {};
+  ist_world_result result_ = sized<ist_world_result>();
+};
+
+void expect_same(const ist_world_pair& pair, const NearPair& expected) {
+  EXPECT_EQ(pair.a, expected.bodies.a);
+  EXPECT_EQ(pair.b, expected.bodies.b);
+}
+
+TEST_F(CWorld, GivesTheAnswersOfCpp) {
+  std::uint64_t bytes = 0;
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &bytes)), "ok");
+  EXPECT_EQ(bytes, cpp_->bytes_needed());
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  cpp_->prepare();
+  auto info = sized<ist_world_info>();
+  ASSERT_EQ(name(ist_world_get_info(world_, &info)), "ok");
+  EXPECT_EQ(info.bytes, bytes);
+  EXPECT_EQ(info.bodies, 4u);
+
+  const auto found = cpp_->intersects();
+  ASSERT_EQ(found.pairs.size(), 3u);
+  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  EXPECT_EQ(result_.near_pairs, 3u);
+  EXPECT_EQ(result_.written, 3u);
+  EXPECT_EQ(result_.sphere_tests, found.sphere_tests);
+  EXPECT_TRUE(result_.complete == 1 && result_.truncated == 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    expect_same(pairs_[k], found.pairs[k]);
+    EXPECT_EQ(pairs_[k].status, IST_OK);
+    EXPECT_EQ(pairs_[k].answer, static_cast<int>(found.pairs[k].result.answer) + IST_ANSWER_NO);
+    EXPECT_EQ(pairs_[k].distance_upper, found.pairs[k].roots.upper);
+  }
+  EXPECT_EQ(pairs_[0].answer, IST_ANSWER_YES);
+  EXPECT_EQ(pairs_[1].answer, IST_ANSWER_NO);
+
+  std::vector<ist_leaf_pair> leaves(1 << 12);
+  std::vector<LeafPair> expected(1 << 12);
+  const auto listed = cpp_->leaf_pairs(expected);
+  ASSERT_EQ(name(ist_world_leaf_pairs(world_, nullptr, leaves.data(), leaves.size(), pairs_, kRoom,
+                                      &result_)),
+            "ok");
+  std::uint64_t first = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(pairs_[k].found, listed.pairs[k].result.leaf_pairs);
+    EXPECT_EQ(pairs_[k].written, pairs_[k].found);
+    EXPECT_EQ(pairs_[k].first, first);
+    EXPECT_EQ(pairs_[k].resolution, listed.pairs[k].result.resolution);
+    first += pairs_[k].written;
+  }
+  ASSERT_GT(first, 10u);
+  EXPECT_EQ(std::memcmp(leaves.data(), expected.data(), first * sizeof(LeafPair)), 0);
+
+  std::vector<ist_triangle_pair> triangles(1 << 12);
+  std::vector<TrianglePair> meeting(1 << 12);
+  const auto met = cpp_->triangle_pairs(meeting);
+  ASSERT_EQ(name(ist_world_triangle_pairs(world_, nullptr, triangles.data(), triangles.size(),
+                                          pairs_, kRoom, &result_)),
+            "ok");
+  ASSERT_GT(pairs_[0].written, 10u);
+  EXPECT_EQ(pairs_[0].found, met.pairs[0].result.triangle_pairs);
+  EXPECT_EQ(std::memcmp(triangles.data(), meeting.data(), pairs_[0].found * sizeof(TrianglePair)),
+            0);
+
+  const auto apart = cpp_->distances(0.01);
+  ASSERT_EQ(name(ist_world_distances(world_, 0.01, nullptr, pairs_, kRoom, &result_)), "ok");
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(pairs_[k].distance_lower, apart.pairs[k].result.distance.lower);
+    EXPECT_EQ(pairs_[k].distance_upper, apart.pairs[k].result.distance.upper);
+    EXPECT_EQ(pairs_[k].narrowest, apart.pairs[k].result.narrowest);
+    EXPECT_EQ(pairs_[k].complete, 1);
+  }
+
+  auto least = sized<ist_least_distance>();
+  const WorldDistance nearest = cpp_->distance(0.01);
+  ASSERT_EQ(name(ist_world_distance(world_, 0.01, nullptr, &least)), "ok");
+  EXPECT_EQ(least.lower, nearest.distance.lower);
+  EXPECT_EQ(least.upper, nearest.distance.upper);
+  EXPECT_EQ(least.nearest_known, 1);
+  EXPECT_EQ(least.a, nearest.nearest->a);
+  EXPECT_EQ(least.b, nearest.nearest->b);
+  EXPECT_EQ(least.complete, 1);
+  EXPECT_EQ(least.pose_missing, 0);
+  EXPECT_EQ(name(ist_world_forget(world_)), "ok");
+}
+
+TEST_F(CWorld, GivesTheContactsOfCpp) {
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  cpp_->prepare();
+  const auto felt = cpp_->contacts();
+  std::uint64_t count = 0;
+  EXPECT_EQ(name(ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, &count)),
+            "not-prepared");  // nobody asked
+  ASSERT_EQ(name(ist_world_contacts(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  EXPECT_EQ(pairs_[0].found, felt.pairs[0].result.leaf_pairs);
+  EXPECT_EQ(pairs_[0].contacts, felt.pairs[0].manifold->points().size());
+  ist_contact contacts[32];
+  auto sums = sized<ist_contact_sums>();
+  ASSERT_EQ(name(ist_world_get_contacts(world_, 1, 0, contacts, 2, &sums, &count)), "ok");
+  EXPECT_EQ(count, pairs_[0].contacts);
+  ASSERT_GT(count, 2u);
+  EXPECT_EQ(contacts[1].depth, felt.pairs[0].manifold->points()[1].depth);
+  EXPECT_EQ(sums.weight, felt.pairs[0].manifold->sums().weight);
+  EXPECT_EQ(sums.spring_force[0], felt.pairs[0].manifold->sums().spring.force[0]);
+  EXPECT_EQ(name(ist_world_get_contacts(world_, 0, 3, nullptr, 0, nullptr, &count)),
+            "not-prepared");  // it is apart
+  EXPECT_EQ(count, 0u);
+}
+
+TEST_F(CWorld, MovesBodiesAndTellsTheirPoses) {
+  ASSERT_EQ(name(ist_world_prepare(world_, nullptr, 0)), "ok");
+  EXPECT_EQ(name(ist_world_set_pose(world_, 1, c_shift(0, 30, 0).data())), "ok");
+  double pose[16];
+  ASSERT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "ok");
+  EXPECT_EQ(pose[13], 30);
+  EXPECT_EQ(pose[15], 1);
+  ASSERT_EQ(name(ist_world_near_pairs(world_, pairs_, kRoom, &result_)), "ok");
+  EXPECT_EQ(result_.near_pairs, 1u);
+  std::array<double, 16> bad = c_shift(0, 0, 0);
+  bad[3] = NAN;
+  EXPECT_EQ(name(ist_world_set_pose(world_, 1, bad.data())), "pose-invalid");
+  EXPECT_EQ(name(ist_world_get_pose(world_, 0, 1, pose)), "pose-invalid");
+  EXPECT_EQ(pose[15], 0);
+  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  ASSERT_EQ(result_.written, 4u);
+  EXPECT_EQ(result_.complete, 0);
+  for (std::uint64_t k = 0; k < 4; ++k) {
+    const bool of_1 = pairs_[k].a == 1 || pairs_[k].b == 1;
+    EXPECT_EQ(pairs_[k].status, of_1 ? IST_POSE_INVALID : IST_OK);
+    EXPECT_EQ(pairs_[k].answer == IST_ANSWER_UNKNOWN, of_1);
+  }
+  auto least = sized<ist_least_distance>();
+  ASSERT_EQ(name(ist_world_distance(world_, 0.01, nullptr, &least)), "ok");
+  EXPECT_EQ(least.pose_missing, 1);
+  EXPECT_EQ(least.complete, 0);
+  EXPECT_GT(least.lower, 0);
+}
+
+TEST_F(CWorld, PreparesSomePairs) {
+  const ist_body_pair some[] = {{1, 0}};
+  std::uint64_t one = 0, all = 0;
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, some, 1, &one)), "ok");
+  ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &all)), "ok");
+  EXPECT_LT(one, all);
+  EXPECT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "not-prepared");
+  ASSERT_EQ(name(ist_world_prepare(world_, some, 1)), "ok");
+  EXPECT_EQ(name(ist_world_ignore(world_, 2, 0)), "ok");
+  auto budget = sized<ist_budget>();
+  budget.tests = 1'000'000;
+  ASSERT_EQ(name(ist_world_intersects(world_, &budget, pairs_, 1, &result_)), "ok");
+  EXPECT_EQ(result_.near_pairs, 2u);
+  EXPECT_EQ(result_.written, 1u);
+  EXPECT_EQ(result_.truncated, 1);
+  ASSERT_EQ(name(ist_world_intersects(world_, &budget, pairs_, kRoom, &result_)), "ok");
+  EXPECT_EQ(pairs_[0].status, IST_OK);
+  EXPECT_EQ(pairs_[1].status, IST_NOT_PREPARED);
+  // Some pairs, of which there are none: only the room for answers.
+  ASSERT_EQ(name(ist_world_prepare(world_, some, 0)), "ok");
+  ASSERT_EQ(name(ist_world_intersects(world_, nullptr, pairs_, kRoom, &result_)), "ok");
+  EXPECT_EQ(pairs_[0].status, IST_NOT_PREPARED);
+}
+
+TEST_F(CWorld, TellsWhatIsMisused) {
+  const auto expect = [](ist_status status, const char* code, const char* part) {
+    EXPECT_EQ(name(status), code);
+    EXPECT_NE(std::strstr(ist_last_error_message(), part), nullptr) << ist_last_error_message();
+  };
+  auto options = sized<ist_world_options>();
+  ist_world* none = nullptr;
+  options.reach = -1;
+  expect(ist_world_create(&options, &none), "argument-invalid", "reach");
+  options = sized<ist_world_options>();
+  auto query = sized<ist_query_options>();
+  options.query = &query;
+  query.workers = 2;
+  expect(ist_world_create(&options, &none), "argument-invalid", "workers is 2");
+  query.workers = 5;
+  expect(ist_world_create(&options, &none), "argument-invalid", "workers is 5");
+  options.struct_size = 9;
+  expect(ist_world_create(&options, &none), "struct-size", "struct_size");
+  std::uint32_t body = 0;
+  std::array<double, 16> bad = c_shift(0, 0, 0);
+  bad[0] = 3;
+  expect(ist_world_add(world_, tree_, bad.data(), "bent", &body), "pose-invalid", "'bent'");
+  expect(ist_world_ignore(world_, 0, 4), "argument-invalid", "body 4");
+  expect(ist_world_set_pose(world_, 4, c_shift(0, 0, 0).data()), "argument-invalid", "number");
+  double pose[16];
+  expect(ist_world_get_pose(world_, 4, 0, pose), "argument-invalid", "number");
+  expect(ist_world_distances(world_, -1, nullptr, pairs_, kRoom, &result_), "argument-invalid",
+         "tolerance");
+  options = sized<ist_world_options>();
+  options.max_memory = 1'000'000;
+  ASSERT_EQ(name(ist_world_create(&options, &none)), "ok");
+  for (const char* const each : {"first", "second"}) {
+    ASSERT_EQ(name(ist_world_add(none, tree_, nullptr, each, &body)), "ok");
+  }
+  expect(ist_world_prepare(none, nullptr, 0), "memory-limit", "'first' and 'second'");
+  EXPECT_EQ(name(ist_world_free(none)), "ok");
+}
+
+// Every pointer that must not be NULL, and every function with handles that are none.
+TEST_F(CWorld, TellsOfPointersAndHandles) {
+  ist_world* none = nullptr;
+  std::uint32_t body = 0;
+  std::uint64_t bytes = 0;
+  double pose[16] = {};
+  auto info = sized<ist_world_info>();
+  auto least = sized<ist_least_distance>();
+  const auto is_null = [](const char* argument, ist_status status) {
+    EXPECT_EQ(name(status), "null-argument");
+    const std::string message = ist_last_error_message();
+    EXPECT_NE(message.find(std::string(": ") + argument + " is NULL"), std::string::npos)
+        << argument << " in: " << message;
+  };
+  is_null("world", ist_world_create(nullptr, nullptr));
+  is_null("tree", ist_world_add(world_, nullptr, nullptr, nullptr, &body));
+  is_null("body", ist_world_add(world_, tree_, nullptr, nullptr, nullptr));
+  is_null("bytes", ist_world_bytes_needed(world_, nullptr, 0, nullptr));
+  is_null("pairs", ist_world_bytes_needed(world_, nullptr, 2, &bytes));
+  is_null("pairs", ist_world_prepare(world_, nullptr, 2));
+  is_null("info", ist_world_get_info(world_, nullptr));
+  is_null("pose", ist_world_set_pose(world_, 0, nullptr));
+  is_null("pose", ist_world_get_pose(world_, 0, 1, nullptr));
+  is_null("pairs", ist_world_near_pairs(world_, nullptr, 1, &result_));
+  is_null("result", ist_world_near_pairs(world_, pairs_, kRoom, nullptr));
+  is_null("result", ist_world_intersects(world_, nullptr, pairs_, kRoom, nullptr));
+  is_null("result", ist_world_contacts(world_, nullptr, pairs_, kRoom, nullptr));
+  is_null("count", ist_world_get_contacts(world_, 0, 1, nullptr, 0, nullptr, nullptr));
+  is_null("contacts", ist_world_get_contacts(world_, 0, 1, nullptr, 1, nullptr, &bytes));
+  is_null("leaf_pairs", ist_world_leaf_pairs(world_, nullptr, nullptr, 1, pairs_, 1, &result_));
+  is_null("triangles", ist_world_triangle_pairs(world_, nullptr, nullptr, 1, pairs_, 1, &result_));
+  is_null("result", ist_world_distance(world_, 1, nullptr, nullptr));
+
+  const std::vector<std::function<ist_status(ist_world*)>> takers = {
+      [&](ist_world* w) { return ist_world_add(w, tree_, nullptr, nullptr, &body); },
+      [&](ist_world* w) { return ist_world_ignore(w, 0, 1); },
+      [&](ist_world* w) { return ist_world_bytes_needed(w, nullptr, 0, &bytes); },
+      [&](ist_world* w) { return ist_world_prepare(w, nullptr, 0); },
+      [&](ist_world* w) { return ist_world_get_info(w, &info); },
+      [&](ist_world* w) { return ist_world_set_pose(w, 0, poses_[0].data()); },
+      [&](ist_world* w) { return ist_world_get_pose(w, 0, 1, pose); },
+      [&](ist_world* w) { return ist_world_near_pairs(w, pairs_, kRoom, &result_); },
+      [&](ist_world* w) { return ist_world_intersects(w, nullptr, pairs_, kRoom, &result_); },
+      [&](ist_world* w) { return ist_world_contacts(w, nullptr, pairs_, kRoom, &result_); },
+      [&](ist_world* w) { return ist_world_get_contacts(w, 0, 1, nullptr, 0, nullptr, &bytes); },
+      [&](ist_world* w) {
+        return ist_world_leaf_pairs(w, nullptr, nullptr, 0, pairs_, kRoom, &result_);
+      },
+      [&](ist_world* w) {
+        return ist_world_triangle_pairs(w, nullptr, nullptr, 0, pairs_, kRoom, &result_);
+      },
+      [&](ist_world* w) { return ist_world_distances(w, 1, nullptr, pairs_, kRoom, &result_); },
+      [&](ist_world* w) { return ist_world_distance(w, 1, nullptr, &least); },
+      [&](ist_world* w) { return ist_world_forget(w); },
+  };
+  ist_world* freed = nullptr;
+  ASSERT_EQ(name(ist_world_create(nullptr, &freed)), "ok");
+  ASSERT_EQ(name(ist_world_free(freed)), "ok");
+  for (std::size_t k = 0; k < takers.size(); ++k) {
+    EXPECT_EQ(name(takers[k](nullptr)), "null-argument") << k;
+    EXPECT_EQ(name(takers[k](freed)), "handle-freed") << k;
+    EXPECT_EQ(name(takers[k](reinterpret_cast<ist_world*>(tree_))), "handle-kind") << k;
+    EXPECT_EQ(name(takers[k](reinterpret_cast<ist_world*>(&pairs_))), "not-a-handle") << k;
+  }
+  EXPECT_EQ(name(ist_world_free(freed)), "handle-freed");
+  EXPECT_EQ(name(ist_world_free(nullptr)), "ok");
+  EXPECT_EQ(none, nullptr);
+}
+
+}  // namespace
+}  // namespace ist::test

@@ -1,0 +1,168 @@
+"""Worlds: the answers of queries at the poses of their pairs, and bad input."""
+
+import threading
+import unittest
+
+import numpy as np
+from support import box, pose_of
+
+import ist
+
+
+def shift(*by):
+    return pose_of([0, 0, 1], 0, by)
+
+
+class Worlds(unittest.TestCase):
+    """Three boxes in a row, each in the next, turned; and one far away."""
+
+    def setUp(self):
+        self.trees = [ist.build(box([-1, -1, -1], [1, 1, 1 + 0.1 * k]), voxel_size=0.25) for k in range(4)]
+        self.poses = [pose_of([0.3, 1, 0.2], 0.4 * k, [1.6 * k, 0.2, 0]) for k in range(3)] + [shift(0, 60, 0)]
+        self.world = ist.World(reach=0.1)
+        for k, (tree, pose) in enumerate(zip(self.trees, self.poses)):
+            self.assertEqual(self.world.add(tree, pose, f"box {k}"), k)
+
+    def query(self, row):
+        return ist.Query(self.trees[row["a"]], self.trees[row["b"]])
+
+    def test_answers_are_those_of_queries(self):
+        self.world.prepare()
+        touch, leaves, met = self.world.intersects(), self.world.leaf_pairs(), self.world.triangle_pairs()
+        felt, apart = self.world.contacts(), self.world.distances(0.01)
+        self.assertTrue(touch.complete and not touch.truncated)
+        self.assertEqual([(row["a"], row["b"]) for row in touch.pairs], [(0, 1), (0, 2), (1, 2)])
+        for k, row in enumerate(touch.pairs):
+            query, pose = self.query(row), self.world.pose_of(row["a"], row["b"])
+            expected = np.linalg.inv(self.poses[row["a"]]) @ self.poses[row["b"]]
+            np.testing.assert_allclose(pose, expected, atol=1e-12)
+            self.assertEqual(row["status"], 0)
+            self.assertEqual({ist.YES: True, ist.NO: False, ist.NEAR: None}[row["answer"]], query.intersects(pose))
+            self.assertEqual(leaves.leaf_pairs_of(leaves.pairs[k]).tolist(), query.leaf_pairs(pose).pairs.tolist())
+            self.assertEqual(met.triangle_pairs_of(met.pairs[k]).tolist(), query.triangle_pairs(pose).pairs.tolist())
+            contacts, wanted = self.world.contacts_of(row["b"], row["a"]), query.contacts(pose)
+            self.assertEqual(contacts.contacts.tobytes(), wanted.contacts.tobytes())
+            self.assertEqual(contacts.sums.tobytes(), wanted.sums.tobytes())
+            self.assertEqual(felt.pairs[k]["contacts"], len(wanted.contacts))
+            distance = query.distance(pose, 0.01)
+            self.assertLessEqual(apart.pairs[k]["distance_lower"], distance.upper)
+            self.assertGreaterEqual(apart.pairs[k]["distance_upper"], distance.lower)
+        self.assertEqual(touch.pairs["answer"].tolist(), [ist.YES, ist.NO, ist.YES])
+        self.assertGreater(leaves.pairs["found"].sum(), 100)
+
+    def test_least_distance(self):
+        self.world.prepare()
+        self.assertEqual(self.world.distance(0.01)[:4], (0, 0, True, (0, 1)))
+        self.world.set_pose(1, shift(0, 30, 0))
+        least = self.world.distance(0.001)
+        self.assertEqual(least.nearest, (0, 2))
+        query = self.query({"a": 0, "b": 2})
+        wanted = query.distance(self.world.pose_of(0, 2), 0.001)
+        self.assertLessEqual(abs(least.lower - wanted.lower), 0.002)
+        self.assertLessEqual(least.upper - least.lower, 0.001)
+        self.assertFalse(self.world.distance(0.0, tests=1).complete)
+
+    def test_a_pose_that_is_none(self):
+        self.world.prepare()
+        with self.assertRaises(ist.InputError) as raised:
+            self.world.set_pose(1, np.full((4, 4), np.nan))
+        self.assertEqual(raised.exception.code, ist.POSE_INVALID)
+        found = self.world.intersects()
+        self.assertFalse(found.complete)
+        of_1 = (found.pairs["a"] == 1) | (found.pairs["b"] == 1)
+        self.assertEqual(of_1.sum(), 3)
+        self.assertTrue((found.pairs["status"][of_1] == ist.POSE_INVALID).all())
+        self.assertTrue((found.pairs["status"][~of_1] == 0).all())
+        self.assertTrue(self.world.distance(0.01).pose_missing)
+
+    def test_memory(self):
+        self.assertEqual(self.world.nbytes, 0)
+        some = self.world.bytes_needed([(0, 1)])
+        self.assertLess(some, self.world.bytes_needed())
+        self.world.ignore(0, 2)
+        self.world.prepare(np.array([[1, 0]]))
+        self.assertEqual(self.world.nbytes, some)
+        found = self.world.intersects()
+        self.assertEqual(found.pairs["status"].tolist(), [0, ist.NOT_PREPARED])
+        self.assertEqual(found.pairs["answer"].tolist(), [ist.YES, ist.UNKNOWN])
+        self.world.prepare([])
+        self.assertEqual(self.world.near_pairs().count, 2)
+        self.assertEqual(self.world.intersects().pairs["status"].tolist(), [ist.NOT_PREPARED] * 2)
+        small = ist.World(max_memory=1_000_000)
+        for k in range(2):
+            small.add(self.trees[k], name=f"box {k}")
+        with self.assertRaises(ist.MemoryLimitError) as raised:
+            small.prepare()
+        self.assertIn("'box 0' and 'box 1'", str(raised.exception))
+
+    def test_arrays_are_filled_in_place(self):
+        self.world.prepare()
+        rows, leaves = np.zeros(2, ist.WORLD_PAIR), np.zeros(10, ist.LEAF_PAIR)
+        found = self.world.leaf_pairs(into=leaves, out=rows)
+        self.assertIs(found.pairs.base, rows)
+        self.assertTrue(found.truncated and found.count == 3 and len(found.pairs) == 2)
+        self.assertEqual(rows["written"].tolist(), [10, 0])
+        self.assertEqual(rows["truncated"].tolist(), [1, 1 if rows["found"][1] else 0])
+        self.assertEqual(len(self.world.contacts(out=rows).pairs), 2)
+        contacts = np.zeros(1, ist.CONTACT)
+        self.assertEqual(len(self.world.contacts_of(0, 1, out=contacts).contacts), 1)
+
+    def test_bodies_have_names_and_trees(self):
+        self.assertEqual(self.world.bodies, tuple(self.trees))
+        self.assertEqual(self.world.names, ("box 0", "box 1", "box 2", "box 3"))
+        self.assertEqual(repr(self.world), "<ist.World of 4 bodies>")
+        self.world.free()
+        self.assertEqual(repr(self.world), "<ist.World, freed>")
+        with self.assertRaises(ist.FreedError):
+            self.world.intersects()
+
+    def test_misuse(self):
+        def refuses(words, call, *arguments, **options):
+            with self.assertRaises(ist.InputError) as raised:
+                call(*arguments, **options)
+            for word in words:
+                self.assertIn(word, str(raised.exception))
+
+        refuses(["prepared", "ist_world_prepare"], self.world.intersects)
+        with self.assertRaises(TypeError):
+            self.world.add(7)
+        refuses(["pose", "(4, 4)"], self.world.add, self.trees[0], np.eye(3))
+        refuses(["body 9"], self.world.ignore, 0, 9)
+        refuses(["'box 1'"], self.world.ignore, 1, 1)
+        refuses(["a is -1"], self.world.ignore, -1, 1)
+        refuses(["pairs", "(N, 2)"], self.world.prepare, [[0, 1, 2]])
+        refuses(["pairs", "(N, 2)"], self.world.prepare, [[0.5, 1]])
+        refuses(["pairs"], self.world.prepare, [[0, -1]])
+        refuses(["body 5"], self.world.prepare, [[0, 5]])
+        refuses(["reach"], ist.World, reach=-1)
+        refuses(["contacts"], ist.World, contacts=0)
+        refuses(["most_near"], ist.World, most_near=0)
+        self.world.prepare()
+        refuses(["number"], self.world.set_pose, 8, np.eye(4))
+        refuses(["out"], self.world.intersects, out=np.zeros(3))
+        refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.TRIANGLE_PAIR))
+        refuses(["tolerance"], self.world.distance, -1)
+        refuses(["tolerance"], self.world.distances, np.nan)
+        refuses(["ist_world_contacts"], self.world.contacts_of, 0, 3)
+        with self.assertRaises(TypeError):
+            self.world.__reduce__()
+
+    def test_a_second_thread_is_refused(self):
+        self.world.prepare()
+        seen = []
+
+        def ask():
+            try:
+                self.world.intersects()
+            except ist.BusyError as error:
+                seen.append(error)
+
+        with self.world._lock:
+            thread = threading.Thread(target=ask)
+            thread.start()
+            thread.join()
+        self.assertEqual(len(seen), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
