@@ -145,7 +145,7 @@ AT(ist_servo_options, sphere_tests, 24);
 AT(ist_servo_options, max_memory, 32);
 AT(ist_servo_options, progress, 40);
 
-SIZE(ist_servo_info, 176);
+SIZE(ist_servo_info, 184);
 AT(ist_servo_info, struct_size, 0);
 AT(ist_servo_info, tick_seconds, 8);
 AT(ist_servo_info, tool, 16);
@@ -153,6 +153,14 @@ AT(ist_servo_info, ticks, 144);
 AT(ist_servo_info, held, 152);
 AT(ist_servo_info, faults, 160);
 AT(ist_servo_info, late, 168);
+AT(ist_servo_info, bodies, 176);
+
+SIZE(ist_servo_body, 152);
+AT(ist_servo_body, struct_size, 0);
+AT(ist_servo_body, name, 8);
+AT(ist_servo_body, held, 16);
+AT(ist_servo_body, reserved, 20);
+AT(ist_servo_body, pose, 24);
 
 SIZE(ist_progress, 24);
 AT(ist_progress, struct_size, 0);
@@ -337,6 +345,7 @@ IS(IST_INTERNAL_ERROR, 11);
 IS(IST_NOT_PREPARED, 12);
 IS(IST_SERVO_FAULT, 13);
 IS(IST_CANCELLED, 14);
+IS(IST_CHANGE_REFUSED, 15);
 IS(IST_FILE_UNREADABLE, 101);
 IS(IST_FILE_UNWRITABLE, 102);
 IS(IST_NOT_A_MESH, 103);

@@ -158,5 +158,78 @@ TEST_F(CServo, TellsWhatBuildingWarnedOf) {
   EXPECT_EQ(name(ist_servo_free(servo)), "ok");
 }
 
+// A plate, a ball of radius 4 that the hand holds, and a piece beside it that it may take.
+std::string text_of_bodies() {
+  std::string text = scene_text();
+  const auto replace = [&](const std::string& part, const std::string& by) {
+    text.replace(text.find(part), part.size(), by);
+  };
+  replace("[fixed]", "[[fixed]]\nname = \"plate\"");
+  replace("[held]", R"([[fixed]]
+name = "piece"
+shape = "box"
+size = [4, 4, 4]
+voxel_size = 1
+translation = [9, 0, 8]
+attachable = true
+[held]
+name = "tool")");
+  return text;
+}
+
+ist_servo_body body_of(ist_servo* servo, std::size_t index) {
+  auto body = sized<ist_servo_body>();
+  EXPECT_EQ(name(ist_servo_get_body(servo, index, &body)), "ok") << ist_last_error_message();
+  return body;
+}
+
+TEST_F(CServo, TakesAndReleasesBodies) {
+  ist_servo* servo = open(IST_UNIT_MM, text_of_bodies());
+  ASSERT_EQ(info_of(servo).bodies, 3u);
+  EXPECT_STREQ(body_of(servo, 0).name, "plate");
+  EXPECT_STREQ(body_of(servo, 1).name, "piece");
+  EXPECT_EQ(body_of(servo, 1).held, 0);
+  EXPECT_EQ(body_of(servo, 2).held, 1);
+  EXPECT_EQ(body_of(servo, 1).pose[12], 9);
+  EXPECT_EQ(body_of(servo, 1).pose[14], 8);
+
+  const auto refused = [&](ist_status status, const char* by, const char* what) {
+    EXPECT_EQ(name(status), by);
+    EXPECT_NE(std::string(ist_last_error_message()).find(what), std::string::npos)
+        << ist_last_error_message();
+  };
+  refused(ist_servo_attach(servo, "plate"), "change-refused", "attachable = true");
+  refused(ist_servo_release(servo, "piece"), "change-refused", "there already");
+  refused(ist_servo_attach(servo, "peace"), "argument-invalid", "no body called peace");
+  refused(ist_servo_attach(servo, nullptr), "null-argument", "body");
+  auto beyond = sized<ist_servo_body>();
+  refused(ist_servo_get_body(servo, 3, &beyond), "argument-invalid", "3 bodies");
+
+  // Along x to the piece, and pressed on it.
+  double pose[16], force[3], torque[3];
+  std::copy_n(info_of(servo).tool, 16, pose);
+  const double start = pose[12];
+  for (int tick = 0; tick < 600; ++tick) {
+    pose[12] = start + std::min(5.0, 0.01 * tick);
+    ASSERT_EQ(name(ist_servo_on_tick(servo, pose, force, torque)), "ok");
+  }
+  EXPECT_LT(force[0], -0.2);
+  refused(ist_servo_attach(servo, "piece"), "change-refused", "something touches piece");
+  for (int tick = 0; tick < 600; ++tick) {
+    pose[12] = start + std::max(1.0, 5 - 0.01 * tick);
+    ASSERT_EQ(name(ist_servo_on_tick(servo, pose, force, torque)), "ok");
+  }
+  ASSERT_EQ(name(ist_servo_attach(servo, "piece")), "ok") << ist_last_error_message();
+  EXPECT_EQ(body_of(servo, 1).held, 1);
+  pose[13] += 2;
+  for (int tick = 0; tick < 600; ++tick) {
+    ASSERT_EQ(name(ist_servo_on_tick(servo, pose, force, torque)), "ok");
+  }
+  EXPECT_NEAR(body_of(servo, 1).pose[13], 2, 1e-3) << "it goes with the tool";
+  ASSERT_EQ(name(ist_servo_release(servo, "piece")), "ok");
+  EXPECT_EQ(body_of(servo, 1).held, 0);
+  EXPECT_EQ(ist_servo_free(servo), IST_OK);
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -331,6 +331,39 @@ stiffness = 1000
                 self.assertEqual(out.tolist(), np.zeros((2, 3)).tolist())
         self.assertGreater(forces[0][0, 2], 0.05)
 
+    BODIES = SCENE.replace("[held]", """[[fixed]]
+name = "piece"
+shape = "box"
+size = [2, 2, 2]
+voxel_size = 0.5
+translation = [0, 4, 5]
+attachable = true
+[held]
+name = "tool\"""").replace("[fixed]\nshape", "[[fixed]]\nname = \"plate\"\nshape")
+
+    def test_a_hand_takes_and_releases_bodies(self):
+        with ist.Servo(self.scene(self.BODIES), sphere_tests=100_000) as servo:
+            self.assertEqual([(body.name, body.held) for body in servo.bodies], [("plate", False), ("piece", False), ("tool", True)])
+            np.testing.assert_allclose(servo.bodies[1].pose[:3, 3], [0, 4, 5], atol=1e-9)
+            up = servo.tool.copy()
+            up[2, 3] += 1
+            for _ in range(100):
+                servo.tick(up)
+            servo.attach("piece")
+            self.assertTrue(servo.bodies[1].held)
+            self.refuses(ist.ChangeRefused, "there already", servo.attach, "piece")
+            self.refuses(ist.ChangeRefused, "attachable", servo.attach, "plate")
+            self.refuses(ist.InputError, "no body called peace", servo.attach, "peace")
+            self.refuses(ist.InputError, "name of a body", servo.release, 3)
+            up[2, 3] += 0.5
+            for _ in range(400):
+                servo.tick(up)
+            np.testing.assert_allclose(servo.bodies[1].pose[:3, 3], [0, 4, 5.5], atol=1e-3)  # it moved with the tool
+            servo.release("piece")
+            self.refuses(ist.ChangeRefused, "there already", servo.release, "piece")
+            self.assertFalse(servo.bodies[1].held)
+        self.refuses(ist.FreedError, "freed", servo.attach, "piece")
+
     def test_bad_scenes(self):
         self.refuses(ist.InputError, "scene.toml:3", ist.Servo, self.scene(self.SCENE.replace('"box"', '"bax"')))
         self.refuses(ist.FileError, "missing.toml", ist.Servo, "missing.toml")

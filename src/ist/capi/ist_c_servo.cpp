@@ -75,7 +75,49 @@ ist_servo_info servo_info_of(const Servo& servo) {
   info.held = counts.held;
   info.faults = counts.faults;
   info.late = counts.late;
+  info.bodies = servo.scene.simulation->bodies();
   return info;
+}
+
+ist_status refusal_of(const Call& call, const char* body, ist::ChangeStatus status) {
+  switch (status) {
+    case ist::ChangeStatus::kDone:
+      return IST_OK;
+    case ist::ChangeStatus::kUnknownBody:
+      return call.fail(IST_ARGUMENT_INVALID, "there is no body called {}: pass a name of the scene",
+                       body);
+    case ist::ChangeStatus::kFixedForGood:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "{} stays where it is: write attachable = true in its table of the scene, "
+                       "which follows no script",
+                       body);
+    case ist::ChangeStatus::kAlreadyThere:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "{} is there already: attach fixed bodies, release held ones", body);
+    case ist::ChangeStatus::kTouching:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "something touches {}, or a body in the hand: move them apart first", body);
+    case ist::ChangeStatus::kUnfinished:
+      return call.fail(IST_CHANGE_REFUSED,
+                       "the time or the tests of a tick did not suffice for {}: try again, or give "
+                       "the options of the servo more",
+                       body);
+  }
+  return call.fail(IST_INTERNAL_ERROR, "a status without a message");
+}
+
+using Change = ist::ChangeStatus (ServoCallback::*)(std::size_t) noexcept;
+
+ist_status change_servo(const char* function, ist_servo* servo, const char* body, Change change) {
+  return guarded(function, [&](const Call& call) -> ist_status {
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    if (const ist_status missing = call.need({{"body", body}})) return missing;
+    const Simulation& simulation = *held->scene.simulation;
+    std::size_t number = 0;
+    while (number < simulation.bodies() && simulation.body_name(number) != body) ++number;
+    return refusal_of(call, body, (held->callback.*change)(number));
+  });
 }
 
 }  // namespace
@@ -146,6 +188,35 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
         "a force was not a number: the output is zero, and forces return gradually; report "
         "the scene if this repeats");
   });
+}
+
+ist_status ist_servo_get_body(ist_servo* servo, size_t index, ist_servo_body* body) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status wrong = clear_sized(call, "body", body)) return wrong;
+    const Held<Servo> held(call, "servo", servo);
+    if (held.status() != IST_OK) return held.status();
+    const ist::Simulation& simulation = *held->scene.simulation;
+    if (index >= simulation.bodies()) {
+      return call.fail(IST_ARGUMENT_INVALID, "index is {}, and the scene has {} bodies", index,
+                       simulation.bodies());
+    }
+    ist_servo_body found{};
+    found.name = simulation.body_name(index).data();
+    found.held = simulation.is_held(index) ? 1 : 0;
+    Eigen::Isometry3d pose = simulation.body_pose(index).isometry();
+    pose.translation() /= held->callback.unit();
+    std::copy_n(pose.data(), 16, found.pose);
+    write_sized(found, *body);
+    return IST_OK;
+  });
+}
+
+ist_status ist_servo_attach(ist_servo* servo, const char* body) IST_NOEXCEPT {
+  return change_servo(__func__, servo, body, &ist::ServoCallback::attach);
+}
+
+ist_status ist_servo_release(ist_servo* servo, const char* body) IST_NOEXCEPT {
+  return change_servo(__func__, servo, body, &ist::ServoCallback::release);
 }
 
 ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT {

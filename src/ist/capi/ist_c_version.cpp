@@ -7,11 +7,23 @@
 namespace {
 
 // The codes that no ErrorCode has, from IST_OK on.
-constexpr const char* kNames[] = {
-    "ok",           "null-argument",  "struct-size",  "argument-invalid", "not-a-handle",
-    "handle-kind",  "handle-freed",   "handle-busy",  "too-many-handles", "out-of-memory",
-    "system-error", "internal-error", "not-prepared", "servo-fault",      "cancelled"};
-static_assert(IST_OK == 0 && std::size(kNames) == IST_CANCELLED + 1);
+constexpr const char* kNames[] = {"ok",
+                                  "null-argument",
+                                  "struct-size",
+                                  "argument-invalid",
+                                  "not-a-handle",
+                                  "handle-kind",
+                                  "handle-freed",
+                                  "handle-busy",
+                                  "too-many-handles",
+                                  "out-of-memory",
+                                  "system-error",
+                                  "internal-error",
+                                  "not-prepared",
+                                  "servo-fault",
+                                  "cancelled",
+                                  "change-refused"};
+static_assert(IST_OK == 0 && std::size(kNames) == IST_CHANGE_REFUSED + 1);
 
 }  // namespace
 

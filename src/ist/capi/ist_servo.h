@@ -7,8 +7,8 @@
  * and torque for the hand. The conventions of ist_c.h apply.
  *
  * The caller chooses metres or millimetres for poses. Forces are in N and torques in N m about the
- * tool's origin, both along the scene's axes. The tool's frame has the held mesh's axes; its origin
- * is the root cube's centre of the held body. Poses map the tool's frame to the scene.
+ * tool's origin, both along the scene's axes. The tool's frame has the axes of the first held mesh;
+ * its origin is the root cube's centre of that body. Poses map the tool's frame to the scene.
  */
 
 #include "ist/capi/ist_c.h"
@@ -34,7 +34,7 @@ typedef struct ist_servo_options {
   double query_time_fraction; /**< fraction of a tick for queries, from 0 to 1; default 0.7 */
   uint64_t sphere_tests; /**< tests per query of a tick, instead of a time limit: the same forces in
                             every run; 0: the time limit applies */
-  uint64_t max_memory;   /**< memory limit of each tree, bytes; default 4 GiB */
+  uint64_t max_memory;   /**< memory limit of each tree, and of all queries, bytes; default 4 GiB */
   const ist_progress* progress; /**< follows the construction; may be NULL */
 } ist_servo_options;
 
@@ -62,6 +62,7 @@ typedef struct ist_servo_info {
   uint64_t held;   /**< ticks with too little time for all contacts: the tool did not move */
   uint64_t faults; /**< ticks with an error: the force was zero */
   uint64_t late;   /**< ticks that took longer than tick_seconds */
+  size_t bodies;   /**< bodies of the scene: the fixed ones, then the held ones */
 } ist_servo_info;
 
 /** Gives the state of a servo. [real time] */
@@ -78,6 +79,32 @@ IST_C_API ist_status ist_servo_get_info(ist_servo* servo, ist_servo_info* info) 
  * [real time] */
 IST_C_API ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double force[3],
                                        double torque[3]) IST_NOEXCEPT;
+
+/** A body of a servo's scene. */
+typedef struct ist_servo_body {
+  size_t struct_size; /**< the size of this struct, bytes */
+  const char* name;   /**< lives as long as the servo */
+  int32_t held;       /**< 1: in the hand; 0: fixed */
+  int32_t reserved;   /**< zero */
+  double pose[16];    /**< maps the mesh, in the poses' unit, to the scene, after the last tick */
+} ist_servo_body;
+
+/** Gives the body number `index`, from 0.
+ * Errors: IST_ARGUMENT_INVALID for an index beyond the last body. [real time] */
+IST_C_API ist_status ist_servo_get_body(ist_servo* servo, size_t index,
+                                        ist_servo_body* body) IST_NOEXCEPT;
+
+/** Takes a fixed body into the hand, where it is: from the next tick on it moves with the tool. The
+ * body is `attachable` in the scene. Call it between two ticks; its queries have as much time or as
+ * many tests as those of a tick.
+ * Errors: IST_CHANGE_REFUSED while anything touches the body or one in the hand, if it is held
+ * already, is not attachable or follows a script, or if the time did not suffice; the message says
+ * which. IST_ARGUMENT_INVALID for a name of no body. [real time] */
+IST_C_API ist_status ist_servo_attach(ist_servo* servo, const char* body) IST_NOEXCEPT;
+
+/** Leaves a held body where it is, as a fixed one, whatever touches it.
+ * Errors: as ist_servo_attach, but for what touches. [real time] */
+IST_C_API ist_status ist_servo_release(ist_servo* servo, const char* body) IST_NOEXCEPT;
 
 /** Frees a servo. The caller must then command zero force to the device. */
 IST_C_API ist_status ist_servo_free(ist_servo* servo) IST_NOEXCEPT;

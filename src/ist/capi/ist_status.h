@@ -36,7 +36,7 @@ IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
 /** The result of a call. The numbers never change. */
 typedef int32_t ist_status;
 
-/** The codes of an ist_status: 1 to 14 of the C interface, from 101 those of the library. */
+/** The codes of an ist_status: 1 to 15 of the C interface, from 101 those of the library. */
 enum {
   IST_OK = 0,                     /**< the call did what it was asked */
   IST_NULL_ARGUMENT = 1,          /**< a required pointer is NULL */
@@ -53,6 +53,7 @@ enum {
   IST_NOT_PREPARED = 12,          /**< the query has no contacts, or the world no memory yet */
   IST_SERVO_FAULT = 13,           /**< a force was not a number: the output is zero */
   IST_CANCELLED = 14,             /**< the caller ended the call */
+  IST_CHANGE_REFUSED = 15,        /**< the hand may not take or release the body now */
   IST_FILE_UNREADABLE = 101,      /**< the file cannot be opened or read */
   IST_FILE_UNWRITABLE = 102,      /**< the file cannot be created, written or renamed */
   IST_NOT_A_MESH = 103,           /**< the content is no mesh format */

@@ -41,6 +41,26 @@ ServoCallback::ServoCallback(Simulation& simulation, const ServoCallbackOptions&
   query_time_ = seconds(options.query_time_fraction * simulation.dt());
 }
 
+Budget ServoCallback::budget_from(Clock::time_point begin) const noexcept {
+  Budget budget;
+  if (options_.sphere_tests) {
+    budget.tests = *options_.sphere_tests;
+  } else {
+    budget.deadline = begin + query_time_;
+  }
+  return budget;
+}
+
+ChangeStatus ServoCallback::attach(std::size_t body) noexcept {
+  const Budget budget = budget_from(Clock::now());
+  return simulation_.attach(body, {budget, budget});
+}
+
+ChangeStatus ServoCallback::release(std::size_t body) noexcept {
+  const Budget budget = budget_from(Clock::now());
+  return simulation_.release(body, {budget, budget});
+}
+
 ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
                                  std::span<double, 3> torque) noexcept {
   const ScopedFloatEnvironment environment;
@@ -49,12 +69,7 @@ ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<dou
   device.matrix() = Eigen::Map<const Eigen::Matrix4d>(pose.data());
   device.translation() *= options_.unit;
 
-  Budget budget;
-  if (options_.sphere_tests) {
-    budget.tests = *options_.sphere_tests;
-  } else {
-    budget.deadline = begin + query_time_;
-  }
+  const Budget budget = budget_from(begin);
   const Tick tick = simulation_.tick(Placement::from(device), {budget, budget});
   std::copy_n(tick.wrench.data(), 3, force.begin());
   std::copy_n(tick.wrench.data() + 3, 3, torque.begin());

@@ -68,6 +68,11 @@ class IST_API ServoCallback {
   ServoTick on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
                     std::span<double, 3> torque) noexcept;
 
+  /// As Simulation::attach(), with the limits of a tick. Between ticks.
+  [[nodiscard]] ChangeStatus attach(std::size_t body) noexcept;
+  /// As Simulation::release(), with the limits of a tick. Between ticks.
+  [[nodiscard]] ChangeStatus release(std::size_t body) noexcept;
+
   /// Counts a tick as a fault, for a caller that has no valid pose. Set the force to zero; it
   /// returns through the soft start.
   void fault() noexcept;
@@ -75,10 +80,14 @@ class IST_API ServoCallback {
   /// The tool's pose in the poses' unit: before the first tick the start pose for the device, later
   /// the pose to draw, which stays outside the fixed body.
   [[nodiscard]] Pose tool() const noexcept;
+  /// Metres in the poses' unit.
+  [[nodiscard]] double unit() const noexcept { return options_.unit; }
   /// The counts so far.
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
 
  private:
+  [[nodiscard]] Budget budget_from(Budget::Clock::time_point begin) const noexcept;
+
   Simulation& simulation_;
   ServoCallbackOptions options_;
   std::chrono::nanoseconds period_, query_time_;

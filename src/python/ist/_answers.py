@@ -155,6 +155,14 @@ class Occlusion(NamedTuple):
     moving: BodyOcclusion
 
 
+class ServoBody(NamedTuple):
+    """A body of a servo's scene."""
+
+    name: str
+    held: bool  # in the hand
+    pose: np.ndarray  # (4, 4), maps the mesh to the scene after the last tick
+
+
 class ServoTick(NamedTuple):
     """The output of a tick for the hand, along the scene's axes."""
 

@@ -26,6 +26,10 @@ class BusyError(Error, RuntimeError):
     """Another thread is using the query, the servo or the world."""
 
 
+class ChangeRefused(Error, RuntimeError):
+    """The hand may not take or release the body now."""
+
+
 class FreedError(Error, RuntimeError):
     """The object was freed."""
 
@@ -42,6 +46,7 @@ KINDS = {
     11: Error,
     13: Error,
     CANCELLED: Error,
+    15: ChangeRefused,
     FILE_UNREADABLE: FileError,
     FILE_UNWRITABLE: FileError,
     MEMORY_LIMIT: MemoryLimitError,

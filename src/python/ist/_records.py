@@ -326,6 +326,17 @@ class ServoInfo(Sized):
         ("held", c_uint64),
         ("faults", c_uint64),
         ("late", c_uint64),
+        ("bodies", c_size_t),
+    ]
+
+
+class ServoBodyInfo(Sized):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("name", ctypes.c_char_p),
+        ("held", c_int32),
+        ("reserved", c_int32),
+        ("pose", c_double * 16),
     ]
 
 

@@ -4,14 +4,14 @@ from ctypes import addressof
 
 import numpy as np
 
-from ._answers import ServoTick
+from ._answers import ServoBody, ServoTick
 from ._arrays import address, by_columns, count_of, floats, number_of, place_of
 from ._errors import check, error_of, refuse
 from ._follow import Follower
 from ._handle import Lone, Out
 from ._library import LIBRARY
 from ._mesh import path_bytes
-from ._records import ServoInfo, ServoOptions
+from ._records import ServoBodyInfo, ServoInfo, ServoOptions
 
 UNITS = {"m": 1, "mm": 2}
 
@@ -20,9 +20,9 @@ class Servo(Lone):
     """A simulated scene: each tick takes the pose of the device and gives the force and the torque for the hand.
 
     For tests and figures: Python keeps no hard deadlines. A pose is (4, 4), row by row, and maps the tool's frame to the
-    scene; its translation is in `unit`. The tool's frame has the axes of the held body's mesh and its origin in the middle of
-    that body's grid (Tree.origin), and not at the mesh's origin: begin with `tool`, and move that. sphere_tests: the limit of each tick's query, for the same forces in every run; 0:
-    the limit is query_time_fraction of a tick.
+    scene; its translation is in `unit`. The tool's frame has the axes of the first held body's mesh and its origin in the
+    middle of that body's grid (Tree.origin), and not at the mesh's origin: begin with `tool`, and move that. sphere_tests: the
+    limit of each tick's query, for the same forces in every run; 0: the limit is query_time_fraction of a tick.
     """
 
     _free = LIBRARY.ist_servo_free
@@ -67,6 +67,37 @@ class Servo(Lone):
             return ServoTick(out[0], out[1])
         finally:
             self._lock.release()
+
+    def attach(self, body):
+        """Takes a fixed body, by its name, into the hand, where it is. ChangeRefused while anything touches it or the hand."""
+        self._change(LIBRARY.ist_servo_attach, body)
+
+    def release(self, body):
+        """Leaves a held body, by its name, where it is, as a fixed one."""
+        self._change(LIBRARY.ist_servo_release, body)
+
+    def _change(self, function, body):
+        if not isinstance(body, str):
+            refuse(f"body is {body!r}: pass the name of a body of the scene")
+        handle = self._enter()
+        try:
+            check(function(handle, body.encode()))
+        finally:
+            self._lock.release()
+
+    @property
+    def bodies(self):
+        """The bodies of the scene: each with name, whether the hand holds it, and the pose, (4, 4), of its mesh."""
+        count, found, handle = self._info().bodies, [], self._enter()
+        try:
+            for index in range(count):
+                body = ServoBodyInfo()
+                check(LIBRARY.ist_servo_get_body(handle, index, addressof(body)))
+                pose = np.array(body.pose).reshape(4, 4).T.copy()
+                found.append(ServoBody(body.name.decode("utf-8", "replace"), bool(body.held), pose))
+        finally:
+            self._lock.release()
+        return tuple(found)
 
     def _info(self):
         handle = self._enter()
