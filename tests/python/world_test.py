@@ -140,7 +140,7 @@ class Worlds(unittest.TestCase):
         self.world.prepare()
         refuses(["number"], self.world.set_pose, 8, np.eye(4))
         refuses(["out"], self.world.intersects, out=np.zeros(3))
-        refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.TRIANGLE_PAIR))
+        refuses(["out"], self.world.leaf_pairs, into=np.zeros(3, ist.CONTACT))
         refuses(["tolerance"], self.world.distance, -1)
         refuses(["tolerance"], self.world.distances, np.nan)
         refuses(["ist_world_contacts"], self.world.contacts_of, 0, 3)
