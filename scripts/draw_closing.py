@@ -59,7 +59,7 @@ def draw(ticks, period, unit, output):
         axes.margins(x=0)
         axes.spines[["top", "right"]].set_visible(False)
         axes.fill_between(times, 0, 1, where=touching, transform=axes.get_xaxis_transform(), color="0.94", linewidth=0, zorder=0)
-    felt.text(times[touching.index(True)], 0.97, " the jaws touch", transform=felt.get_xaxis_transform(), va="top", color="0.4")
+    felt.text(times[touching.index(True)], 0.97, " bodies touch", transform=felt.get_xaxis_transform(), va="top", color="0.4")
     figure.tight_layout()
     output.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(output, metadata={"Date": None})

@@ -75,6 +75,28 @@ TEST(ShippedScene, ClosesTwoJawsWithAllEffects) {
   EXPECT_EQ(scene.seconds, plan.back().time);
 }
 
+// A mandible on a splint: free at the start, and all four fixed bodies may be touched.
+TEST(ShippedScene, ClosesAMandibleOnASplint) {
+  const Scene scene = shipped("splint");
+  ASSERT_EQ(scene.fixed.size(), 4u);
+  EXPECT_EQ(std::get<BuiltInShape>(scene.fixed[1].source).kind, BuiltInShape::Kind::kSplint);
+  EXPECT_EQ(scene.held.front().translation.z(),
+            -std::get<BuiltInShape>(scene.fixed[1].source).opening);
+  Scene coarse = scene;
+  for (auto* bodies : {&coarse.fixed, &coarse.held}) {
+    for (SceneBody& body : *bodies) body.voxel_size = 0.8;
+  }
+  const BuiltScene built = build_scene(coarse);
+  EXPECT_TRUE(built.warnings.empty()) << built.warnings.front();
+  double most = 0;
+  while (!built.device->done()) {
+    const Tick tick = built.simulation->tick(built.device->read());
+    built.device->write(tick.wrench, built.simulation->dt());
+    most = std::max(most, -tick.wrench[2]);
+  }
+  EXPECT_GT(most, 0.5) << "N: the splint is hardly felt";
+}
+
 TEST(ShippedScene, ClosesTheHumanPair) {
   const auto folder = data_dir();
   if (!std::filesystem::is_regular_file(folder / "human_mandible.stl") ||

@@ -121,10 +121,13 @@ class IST_API Simulation {
 
   /// Takes a fixed body into the hand, where it is. Refused while anything touches it or a body in
   /// the hand. Between ticks; cost: two queries of each pair that is concerned.
+  /// @param body   by its number
   /// @param budget limits these queries
   [[nodiscard]] ChangeStatus attach(std::size_t body, const TickBudget& budget = {}) noexcept;
   /// Leaves a held body where it is, as a fixed one, whatever touches it. The hand may be empty
   /// then. Between ticks; cost as of attach().
+  /// @param body   by its number
+  /// @param budget limits the queries
   [[nodiscard]] ChangeStatus release(std::size_t body, const TickBudget& budget = {}) noexcept;
 
   /// The changes that the scene planned and ticks have tried so far.

@@ -39,7 +39,7 @@ LoadedBody load_body(const Scene& scene, const SceneBody& body, bool held, std::
   loaded.held = held;
   loaded.table = std::move(table);
   if (const auto* shape = std::get_if<BuiltInShape>(&body.source)) {
-    loaded.name = fmt::format("the {} shape", loaded.table);
+    loaded.name = fmt::format("the {} shape", body.name);
     take_mesh(loaded, make_shape(*shape), *body.voxel_size, scene);
   } else {
     const auto& file = std::get<std::filesystem::path>(body.source);

@@ -29,8 +29,9 @@ struct ToolContact {
 
 /// The contact points of one pair of bodies: a fixed one, and one that the hand holds.
 struct ContactPair {
-  std::size_t number;      ///< of the pair, the same in every tick
-  std::size_t begin, end;  ///< its points, of ToolContacts::points()
+  std::size_t number;  ///< of the pair, the same in every tick
+  std::size_t begin,   ///< of its points, in ToolContacts::points()
+      end;             ///< behind the last of them
   /// The motion of the fixed body in this tick, about the tool's origin; zero while it rests.
   Vector6 drift = Vector6::Zero();
 };
