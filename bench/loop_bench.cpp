@@ -1,22 +1,27 @@
 // How late the ticks of the 1 kHz loop begin and how long they take, idle and beside a noisy
 // neighbour, and how late this machine wakes a thread that has nothing else to do: the loop's own
 // clock and a plain sleep. The whole distribution: quantiles, and how many times were no longer
-// than each of a row of times.
+// than each of a row of times. And what several bodies cost in a tick.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "ist/haptics/bodies/pair_queries.h"
 #include "ist/haptics/real_time.h"
 #include "ist/haptics/tick_clock.h"
+#include "ist/haptics/tool.h"
 #include "ist/scene.h"
 #include "support/bodies.h"
 #include "support/effort.h"
+#include "support/latencies.h"
 #include "support/noisy_neighbour.h"
+#include "support/stopwatch.h"
 
 namespace ist::bench {
 namespace {
@@ -156,6 +161,116 @@ void bare_sleep(benchmark::State& state, bool real_time, bool noisy) {
   });
 }
 
+// The shipped scene of a mandible that closes on a splint: four fixed bodies, each of which has a
+// query with the held one.
+class SplintPairs {
+ public:
+  SplintPairs() : scene_(read_scene(scene_file("splint.toml"))), built_(build_scene(scene_)) {
+    std::vector<BodyPart> parts;
+    for (std::size_t i = 0; i < built_.trees.size(); ++i) {
+      const bool held = i == scene_.fixed.size();
+      const SceneBody& body = held ? scene_.held.front() : scene_.fixed[i];
+      const SphereTree& tree = *built_.trees[i].contact;
+      parts.push_back({body.name,
+                       {body.rotation, scene_.unit * body.translation},
+                       tree.origin(),
+                       scene_.unit * surface_radius(tree),
+                       held});
+    }
+    const std::size_t held = scene_.fixed.size();
+    const SceneBody& mandible = scene_.held.front();
+    const Placement home{
+        mandible.rotation,
+        scene_.unit * (mandible.rotation * built_.trees[held].contact->origin() +
+                       mandible.translation)};
+    bodies_ = Bodies(scene_.unit, home, std::move(parts));
+    for (std::size_t fixed = 0; fixed < held; ++fixed) {
+      together_.add({fixed, held}, query(fixed, held));
+      singly_.push_back(query(fixed, held));
+    }
+  }
+
+  // The tool's poses in the ticks of a run without a clock.
+  [[nodiscard]] std::vector<Placement> poses() const {
+    std::vector<Placement> poses;
+    while (!built_.device->done()) {
+      const Tick tick = built_.simulation->tick(built_.device->read());
+      built_.device->write(tick.wrench, built_.simulation->dt());
+      poses.push_back(tick.tool);
+    }
+    return poses;
+  }
+  std::uint64_t ask_together(const Placement& tool) {
+    return together_.find(bodies_, tool, {}, contacts_)->leaf_pairs;
+  }
+  std::uint64_t ask_one_by_one(const Placement& tool) {
+    std::uint64_t found = 0;
+    for (std::size_t i = 0; i < singly_.size(); ++i) {
+      alone_.clear();
+      found += singly_[i]->find(tool, {}, alone_, 0).leaf_pairs;
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] std::unique_ptr<ToolContactQuery> query(std::size_t fixed, std::size_t held) const {
+    return std::make_unique<ToolContactQuery>(
+        *built_.trees[fixed].contact, *built_.trees[held].contact, bodies_.frames(fixed, held),
+        ToolContactOptions{.policy = SpherePolicy::kSlab, .least_depth = -0.25});
+  }
+
+  Scene scene_;
+  BuiltScene built_;
+  Bodies bodies_;
+  PairQueries together_;
+  std::vector<std::unique_ptr<ToolContactQuery>> singly_;
+  ToolContacts contacts_{4}, alone_;
+};
+
+// The queries of a tick with four fixed bodies, against the same pairs asked one by one, in turns.
+void several_bodies(benchmark::State& state) {
+  SplintPairs pairs;
+  Latencies together, one_by_one, apart;
+  std::uint64_t found = 0;
+  for (auto _ : state) {
+    const std::vector<Placement> poses = pairs.poses();
+    const std::size_t step = quick() ? 40 : 1;
+    bool first = true;
+    for (std::size_t i = 0; i < poses.size(); i += step, first = !first) {
+      std::uint64_t all = 0, sum = 0;
+      double in_all = 0;
+      const auto ask_all = [&] {
+        const Stopwatch watch;
+        all = pairs.ask_together(poses[i]);
+        in_all = watch.microseconds();
+      };
+      if (first) ask_all();
+      const Stopwatch watch;
+      sum = pairs.ask_one_by_one(poses[i]);
+      const double singly = watch.microseconds();
+      if (!first) ask_all();
+      if (all != sum) {
+        state.SkipWithError("all pairs together are not the sum of each");
+        return;
+      }
+      found += all;
+      together.add(in_all);
+      one_by_one.add(singly);
+      if (all == 0) apart.add(in_all / 4);
+    }
+  }
+  if (found == 0 || apart.size() == 0) {
+    state.SkipWithError("nothing is near, or all always is");
+    return;
+  }
+  together.report(state, "together_");
+  one_by_one.report(state, "one_by_one_");
+  apart.report(state, "apart_");
+  state.counters["ratio"] = together.quantile(0.5) / one_by_one.quantile(0.5);
+  state.counters["ticks"] = static_cast<double>(together.size());
+  state.counters["ticks_apart"] = static_cast<double>(apart.size());
+}
+
 void add(const char* name, bool noisy, const std::function<void(benchmark::State&, bool)>& run) {
   benchmark::RegisterBenchmark(fmt::format("{}/{}", name, noisy ? "noisy" : "idle").c_str(),
                                [=](benchmark::State& state) { run(state, noisy); })
@@ -166,6 +281,9 @@ void add(const char* name, bool noisy, const std::function<void(benchmark::State
 
 const int kRegistered = [] {
   using State = benchmark::State;
+  benchmark::RegisterBenchmark("bodies/splint", several_bodies)
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(1);
   for (const bool noisy : {false, true}) {
     add("loop/1", noisy, [](State& state, bool beside) { loop(state, 1, beside); });
     add("loop/2", noisy, [](State& state, bool beside) { loop(state, 2, beside); });

@@ -83,10 +83,10 @@ void FrictionEffect::advance(const EffectInput& input, const Vector6& motion) no
   // A pair that was not asked, as its bodies are held both, has lost its grip.
   std::size_t next = 0;
   for (const ContactPair& pair : input.contacts.pairs()) {
-    for (; next < pair.number; ++next) grips_[next] = {};
+    for (; next < pair.number; ++next) grips_[next].lose();
     advance(grips_[next++], input, pair, motion);
   }
-  for (; next < grips_.size(); ++next) grips_[next] = {};
+  for (; next < grips_.size(); ++next) grips_[next].lose();
 }
 
 void FrictionEffect::advance(Grip& grip, const EffectInput& input, const ContactPair& pair,
@@ -94,7 +94,7 @@ void FrictionEffect::advance(Grip& grip, const EffectInput& input, const Contact
   const std::span<const ToolContact> points = input.contacts.points(pair);
   const double force = normal_force(points, motion - pair.drift);
   if (!(force > 0)) {
-    grip = {};
+    grip.lose();
     return;
   }
   const Placement tool = input.tool.moved(motion);
@@ -108,7 +108,7 @@ void FrictionEffect::advance(Grip& grip, const EffectInput& input, const Contact
 }
 
 void FrictionEffect::reset() noexcept {
-  for (Grip& grip : grips_) grip = {};
+  for (Grip& grip : grips_) grip.lose();
 }
 
 }  // namespace ist

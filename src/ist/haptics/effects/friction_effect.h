@@ -67,6 +67,10 @@ class FrictionEffect final : public Effect {
   struct Grip {
     std::optional<Placement> anchor = {};
     bool sliding = false;
+    void lose() noexcept {
+      anchor.reset();
+      sliding = false;
+    }
   };
 
   // The largest tangential force, N.
