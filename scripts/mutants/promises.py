@@ -23,7 +23,7 @@ MUTANTS = [
              "  if (mailbox.load(std::memory_order_relaxed) != kPolling || job.busy()) return false;\n")],
            ["workers_test ResidentWorkerThread.AcceptsEveryOfferWhileItIsAwake"]),
     Mutant("force-of-a-part", "a force is made of the contacts that were found before a budget ended the query",
-           [(HAPTICS + "tool_contact_query.cpp", "if (result.status != QueryStatus::kDone || !result.complete) return result;",
+           [(HAPTICS + "bodies/tool_contact_query.cpp", "if (result.status != QueryStatus::kDone || !result.complete) return result;",
              "if (result.status != QueryStatus::kDone) return result;")],
            ["haptics_test ToolContactQuery.KeepsWhatItKnew*:Pressing.KeepsWhatItKnew*"]),
     Mutant("query-takes-a-lock", "a query holds a mutex, which nobody contends",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "haptics/bodies/press_energy.h"
 #include "haptics/human_pair.h"
 #include "ist/haptics/stability_border.h"
 #include "support/data_dir.h"
@@ -78,31 +79,6 @@ class Stillness {
   double least_ = 1e300, most_ = 0;
 };
 
-// A press gives the hand no energy, but for what encoders feign: as in PressResult.
-class Energy {
- public:
-  Energy(const std::string& name, const CouplingSettings& coupling)
-      : energy_("long runs", "energy returned by a press" + name, "J"), coupling_(coupling) {}
-
-  // `returned` is what the hand got in a tick in which something was touched; it went `way`.
-  void touched(double returned, const Vector6& way) {
-    returned_ += returned;
-    allowance_ += (0.5 * coupling_.stiffness + coupling_.damping / kPeriod) * kResolution *
-                      way.head<3>().norm() +
-                  (0.5 * coupling_.angular_stiffness + coupling_.angular_damping / kPeriod) *
-                      kAngularResolution * way.tail<3>().norm();
-  }
-  void press_ends() {
-    energy_.sample(std::max(0.0, returned_), allowance_);
-    returned_ = allowance_ = 0;
-  }
-
- private:
-  StabilityCase energy_;
-  CouplingSettings coupling_;
-  double returned_ = 0, allowance_ = 0;
-};
-
 // `give`: the surfaces come apart when the tool is moved so far out, m. The springs of a contact
 // begin a margin before surfaces meet, and give way by what they bear.
 void press_for(double voxel_size, double give, int count) {
@@ -114,7 +90,7 @@ void press_for(double voxel_size, double give, int count) {
   const std::string name = ", voxels of " + std::to_string(voxel_size);
   Steadiness steadiness(name);
   Stillness stillness(name);
-  Energy energy(name, coupling);
+  PressEnergy energy(name, coupling);
   int looked = 0;
   for (int i = 0; i < count; ++i) {
     for (int ticks = 0; ticks < kPressTicks; ++ticks) {

@@ -29,7 +29,7 @@ Placement start_of(const Wall& wall) {
   return {Eigen::Matrix3d::Identity(), kMillimetre * wall.held->origin()};
 }
 
-HandSettings hand_of(const Wall& wall, const PressSettings& settings) {
+HandSettings hand_against(const Wall& wall, const PressSettings& settings) {
   HandSettings hand{};
   hand.mechanics = {.damping = wall.turns ? kDamping : settings.damping,
                     .angular_damping = wall.turns ? settings.damping : kAngularDamping,
@@ -116,7 +116,7 @@ Wall tip_wall() {
 PressResult press(const Wall& wall, const PressSettings& settings) {
   const double period = 1 / settings.rate;
   const double damping = std::abs(settings.coupling_damping);
-  HandDevice device(hand_of(wall, settings));
+  HandDevice device(hand_against(wall, settings));
   Simulation simulation = simulation_of(wall, settings);
 
   PressResult result{};

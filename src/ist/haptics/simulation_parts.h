@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "ist/haptics/bodies/bodies.h"
+#include "ist/haptics/bodies/hand_bodies.h"
 #include "ist/haptics/bodies/pair_queries.h"
 #include "ist/haptics/effects/effect.h"
 #include "ist/haptics/simulation.h"

@@ -10,7 +10,7 @@ void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const Trian
   const double voxel = std::min(fixed.voxel_size(), held.voxel_size());
   voxel_ = pairs_.empty() ? voxel : std::min(voxel_, voxel);
   farthest_ = std::max(farthest_, 2 * (fixed.bounding_radius() + held.bounding_radius()));
-  pairs_.push_back({Query(fixed, held), std::nullopt, pose, axis});
+  pairs_.push_back({Query(fixed, held), std::nullopt, {pose.linear(), pose.translation()}, axis});
   if (fixed_mesh != nullptr && held_mesh != nullptr) {
     pairs_.back().inside.emplace(*fixed_mesh, *held_mesh);
   }
@@ -19,7 +19,7 @@ void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const Trian
 std::optional<FreeStart::Flaw> FreeStart::flaw(double distance) noexcept {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
-    Eigen::Isometry3d pose = pair.pose;
+    Eigen::Isometry3d pose = pair.pose.isometry();
     pose.translation() += distance * pair.axis;
     if (const IntersectionResult found = pair.query.intersects(pose);
         found.status != QueryStatus::kDone || found.answer != Answer::kNo) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "ist/haptics/placement.h"
 #include "ist/mesh/mesh.h"
 #include "ist/query/query.h"
 
@@ -41,7 +42,7 @@ class FreeStart {
   struct Pair {
     Query query;
     std::optional<InsideTest> inside;
-    Eigen::Isometry3d pose;
+    Placement pose;  // maps held to fixed mesh coordinates, mesh units
     Eigen::Vector3d axis;
   };
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "ist/haptics/bodies/bodies.h"
+#include "ist/haptics/bodies/hand_bodies.h"
 #include "ist/haptics/bodies/pair_queries.h"
 #include "ist/scene/load_body.h"
 #include "ist/scene/make_effects.h"

@@ -121,6 +121,7 @@ TEST_F(Corner, PermutingBodiesPermutesTheAnswer) {
     Setting other = setting(order);
     ToolContacts found = contacts_for(other.queries);
     ASSERT_TRUE(other.queries.find(other.bodies, tool, {}, found)->complete);
+    ASSERT_EQ(found.pairs().size(), order.size());
     EXPECT_NEAR((found.spring - expected.spring).norm(), 0, 1e-15);
     EXPECT_NEAR(found.count, expected.count, 1e-12);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -150,6 +151,22 @@ TEST_F(Corner, ABudgetIsDividedByWhatEachPairNeeds) {
   const auto stopped = all.queries.find(all.bodies, tool, budget, contacts);
   EXPECT_FALSE(stopped->complete);
   EXPECT_LE(stopped->sphere_tests, budget.tests + 3) << "the roots are always tested";
+}
+
+// The others are apart, and have their answer.
+TEST_F(Corner, OnePairThatIsStoppedLeavesTheAnswerIncomplete) {
+  for (const std::size_t deep : {0u, 1u, 2u}) {
+    Setting all = setting({0, 1, 2});
+    Vector3d depth(-8, -8, -8);
+    depth[static_cast<Eigen::Index>(deep)] = 0.3;
+    ToolContacts contacts = contacts_for(all.queries);
+    ASSERT_TRUE(all.queries.find(all.bodies, pressed(depth), {}, contacts)->complete);
+    Budget few;
+    few.tests = 20;
+    EXPECT_FALSE(all.queries.find(all.bodies, pressed(depth), few, contacts)->complete);
+    EXPECT_EQ(contacts.pairs().size(), 2u);
+    EXPECT_EQ(contacts.count, 0);
+  }
 }
 
 TEST_F(Corner, ADeadlineThatIsPastEndsEveryPair) {

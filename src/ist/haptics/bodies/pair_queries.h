@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "ist/haptics/bodies/bodies.h"
+#include "ist/haptics/bodies/hand_bodies.h"
 #include "ist/haptics/bodies/tool_contact_query.h"
 
 namespace ist {
