@@ -15,6 +15,7 @@
 #include "ist/scene/scene_lines.h"
 #include "ist/scene/scene_pairs.h"
 #include "ist/scene/scene_parts.h"
+#include "ist/scene/scene_queries.h"
 
 namespace ist {
 namespace {
@@ -48,12 +49,8 @@ class Builder {
   void place_bodies();
   void place_tool();
   void build_simulation();
-  void build_queries(detail::SimulationParts& parts);
-  [[nodiscard]] std::unique_ptr<ToolContactQuery> contact_query(const HandPair& pair) const;
-  [[nodiscard]] std::unique_ptr<ToolContactQuery> proximity_query(const HandPair& pair) const;
   void warn_of(const BorderLimit& limit, const char* key, const char* unit);
   [[nodiscard]] BodyHome home_of(const LoadedBody& body) const;
-  [[nodiscard]] std::string label_of(const char* what, const HandPair& pair) const;
   [[nodiscard]] std::vector<Waypoint> plan() const;
   [[nodiscard]] std::unique_ptr<Device> make_device() const;
 
@@ -78,13 +75,6 @@ BodyHome Builder::home_of(const LoadedBody& body) const {
   const SceneBody& named = *body.named;
   return {{named.rotation, scene_.unit * (named.rotation * body.origin + named.translation)},
           body.origin};
-}
-
-// "contact points", or of several pairs "contact points, splint – mandible".
-std::string Builder::label_of(const char* what, const HandPair& pair) const {
-  if (pairs_.size() == 1) return what;
-  return fmt::format("{}, {} – {}", what, bodies_[pair.fixed].named->name,
-                     bodies_[pair.held].named->name);
 }
 
 bool needs_outside(const EffectNeeds& needs) {
@@ -234,71 +224,6 @@ void Builder::warn_of(const BorderLimit& limit, const char* key, const char* uni
                   key, limit.asked, unit, limit.largest, limit.used));
 }
 
-std::unique_ptr<ToolContactQuery> Builder::contact_query(const HandPair& pair) const {
-  const SphereTree &fixed = *built_.trees[pair.fixed].contact,
-                   &held = *built_.trees[pair.held].contact;
-  const SpherePolicy policy =
-      std::min(bodies_[pair.fixed].named->spheres.value_or(fixed.tightest()),
-               bodies_[pair.held].named->spheres.value_or(held.tightest()));
-  return std::make_unique<ToolContactQuery>(
-      fixed, held, placed_.frames(pair.fixed, pair.held),
-      ToolContactOptions{
-          .policy = policy,
-          .least_depth = -scene_.contact.value_or(ContactSettings()).margin,
-          .workers = scene_.workers,
-          .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * period_))});
-}
-
-std::unique_ptr<ToolContactQuery> Builder::proximity_query(const HandPair& pair) const {
-  return std::make_unique<ToolContactQuery>(
-      *built_.trees[pair.fixed].near, *built_.trees[pair.held].coarse,
-      placed_.frames(pair.fixed, pair.held),
-      ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
-}
-
-void Builder::build_queries(detail::SimulationParts& parts) {
-  const PlanReach reach(plan(), start_);
-  std::uint64_t bytes = 0;
-  // Refuses the query that is one too many.
-  const auto add = [&](PairQueries& queries, const HandPair& pair,
-                       std::unique_ptr<ToolContactQuery> query) {
-    bytes += query->bytes();
-    if (bytes > max_memory_) {
-      const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
-      fail_at(scene_, fixed.table,
-              fmt::format("the queries up to that of {} and {} take {:.0f} MB, and {:.0f} MB are "
-                          "allowed: allow more with --max-memory, or take bodies out",
-                          fixed.named->name, held.named->name, 1e-6 * static_cast<double>(bytes),
-                          1e-6 * static_cast<double>(max_memory_)));
-    }
-    queries.add(pair, std::move(query));
-  };
-  for (const HandPair& pair : pairs_) {
-    const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
-    const bool lasts =
-        fixed.named->script.empty() && !fixed.named->attachable && !held.named->attachable;
-    if (pairs_.size() > 1 && lasts && needs_.contacts() && reach.keeps_apart(placed_, pair)) {
-      const char* why = "their roots stay apart wherever the plan leads";
-      notes_.skip(label_of("contact points", pair), why);
-      parts.contacts.add_far(pair);
-      continue;
-    }
-    if (needs_.contacts()) {
-      const std::string why = fmt::format("for effects at contacts; up to {} leaf pairs are kept",
-                                          ToolContactOptions().front_pairs);
-      add(parts.contacts, pair,
-          notes_.make(label_of("contact points", pair), why, [&] { return contact_query(pair); }));
-    }
-    if (needs_.proximity) {
-      add(parts.proximity, pair,
-          notes_.make(label_of("proximity query", pair), "for effects.proximity",
-                      [&] { return proximity_query(pair); }));
-    }
-  }
-  if (!needs_.contacts()) notes_.skip("contact points", "no effect needs them");
-  if (!needs_.proximity) notes_.skip("proximity query", "no effect needs it");
-}
-
 void Builder::build_simulation() {
   built_.device = make_device();
   const ClampedCoupling coupling =
@@ -314,7 +239,8 @@ void Builder::build_simulation() {
                                 .max_step = max_step_,
                                 .start = start_,
                                 .dt = period_};
-  build_queries(parts);
+  build_queries({scene_, bodies_, built_.trees, placed_, pairs_, period_}, needs_,
+                PlanReach(plan(), start_), max_memory_, notes_, parts);
   for (const SceneChange& change : scene_.changes) {
     const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const LoadedBody& each) {
       return each.named->name == change.body;
