@@ -39,7 +39,7 @@ MUTANTS = [
            [(FRICTION, "const Grip& grip = grips_[pair.number];", "const Grip& grip = grips_[0];")],
            ["haptics_test PairFriction.Pulls*", "haptics_test TwoPlates.*"]),
     Mutant("grip-outlives-its-pair", "a pair of two held bodies keeps its anchor",
-           [(FRICTION, "    for (; next < pair.number; ++next) grips_[next] = {};\n",
+           [(FRICTION, "    for (; next < pair.number; ++next) grips_[next].lose();\n",
              "    next = pair.number;\n")], ["haptics_test PairFriction.OfAPair*"]),
     Mutant("script-does-not-wait", "a body goes on by its script while the tool is held",
            [(SIMULATION, "  set_time(last_complete.time);\n", "  set_time(time + dt);\n")],
