@@ -34,7 +34,7 @@ const char* ist_version_string(void) IST_NOEXCEPT { return IST_VERSION; }
 const char* ist_status_name(ist_status status) IST_NOEXCEPT {
   const auto code = ist::capi::error_code_of(status);
   if (code) return ist::to_string(*code);
-  return status >= IST_OK && status <= IST_CANCELLED ? kNames[status] : "unknown";
+  return status >= IST_OK && status <= IST_CHANGE_REFUSED ? kNames[status] : "unknown";
 }
 
 const char* ist_last_error_message(void) IST_NOEXCEPT { return ist::capi::last_error(); }
