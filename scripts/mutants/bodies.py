@@ -17,7 +17,7 @@ MUTANTS = [
            ["haptics_test UnfinishedPair.*", "haptics_test Corner.OnePair*"]),
     Mutant("whole-budget-for-the-first", "a budget is not divided among the pairs",
            [(PAIRS, "  return std::max(rest - later, rest * (own / (own + later)));",
-             "  return rest + 0 * (own + later);")], ["haptics_test Corner.OnePair*"]),
+             "  return rest + 0 * (own + later);")], ["haptics_test Corner.TheFirstPair*"]),
     Mutant("far-pairs-never-meet", "pairs without a query hold no tool, wherever they are",
            [(PAIRS, "if (!(bodies.gap(pair.fixed, pair.held, tool) > 0)) all.complete = false;",
              "if (!(bodies.gap(pair.fixed, pair.held, tool) > -1e9)) all.complete = false;")],

@@ -30,7 +30,8 @@ class Corner : public ::testing::Test {
     Bodies bodies;
     PairQueries queries;
   };
-  [[nodiscard]] Setting setting(const std::vector<std::size_t>& order) const {
+  [[nodiscard]] Setting setting(const std::vector<std::size_t>& order,
+                                const ToolContactOptions& options = kOptions) const {
     std::vector<BodyPart> parts;
     for (const std::size_t i : order) {
       parts.push_back({std::to_string(i), Placement(), boxes_[i].origin(), radius_of(boxes_[i])});
@@ -40,7 +41,7 @@ class Corner : public ::testing::Test {
     for (std::size_t i = 0; i < order.size(); ++i) {
       made.queries.add({i, order.size()},
                        std::make_unique<ToolContactQuery>(
-                           boxes_[order[i]], ball_, made.bodies.frames(i, order.size()), kOptions));
+                           boxes_[order[i]], ball_, made.bodies.frames(i, order.size()), options));
     }
     return made;
   }
@@ -151,6 +152,22 @@ TEST_F(Corner, ABudgetIsDividedByWhatEachPairNeeds) {
   const auto stopped = all.queries.find(all.bodies, tool, budget, contacts);
   EXPECT_FALSE(stopped->complete);
   EXPECT_LE(stopped->sphere_tests, budget.tests + 3) << "the roots are always tested";
+}
+
+// Where little is missing the first pair goes without it, and those behind it have what they need.
+// Without fronts a pose takes the same tests each time.
+TEST_F(Corner, TheFirstPairLeavesWhatTheOthersNeed) {
+  Setting all = setting({0, 1, 2}, {.policy = SpherePolicy::kSlab, .front_pairs = 0});
+  const Placement tool = pressed({1.2, -0.3, -0.3});
+  ToolContacts contacts = contacts_for(all.queries);
+  const auto needed = all.queries.find(all.bodies, tool, {}, contacts);
+  ASSERT_TRUE(needed->complete);
+  Budget budget;
+  budget.tests = needed->sphere_tests - 2;
+  EXPECT_FALSE(all.queries.find(all.bodies, tool, budget, contacts)->complete);
+  ASSERT_EQ(contacts.pairs().size(), 2u);
+  EXPECT_EQ(contacts.pairs()[0].number, 1u);
+  EXPECT_EQ(contacts.pairs()[1].number, 2u);
 }
 
 // The others are apart, and have their answer.
