@@ -163,12 +163,19 @@ TEST(ToolContactQuery, KeepsWhatItKnewWhereTheAnswerIsNotComplete) {
   ToolContacts contacts;
   ASSERT_TRUE(query.find(scenery.tool(pressed(0.3)), {}, contacts).complete);
   const ToolContacts before = contacts;
-  Budget none;
-  none.tests = 10;
-  EXPECT_FALSE(query.find(scenery.tool(pressed(0.5)), none, contacts).complete);
-  EXPECT_EQ(contacts.spring, before.spring);
-  EXPECT_EQ(contacts.count, before.count);
-  EXPECT_EQ(contacts.points().size(), before.points().size());
+  ToolContacts of_another;
+  ToolContactQuery other(block(), ball(), scenery.frames, {SpherePolicy::kSlab});
+  const std::uint64_t needed = other.find(scenery.tool(pressed(0.5)), {}, of_another).sphere_tests;
+  for (const std::uint64_t tests : {std::uint64_t{10}, needed / 2, needed - 1}) {
+    ToolContactQuery stopped(block(), ball(), scenery.frames, {SpherePolicy::kSlab});
+    Budget few;
+    few.tests = tests;
+    EXPECT_FALSE(stopped.find(scenery.tool(pressed(0.5)), few, contacts).complete);
+    EXPECT_EQ(contacts.spring, before.spring) << tests;
+    EXPECT_EQ(contacts.count, before.count) << tests;
+    EXPECT_EQ(contacts.points().size(), before.points().size()) << tests;
+    EXPECT_EQ(contacts.pairs().size(), before.pairs().size()) << tests;
+  }
   contacts.clear();
   EXPECT_TRUE(query.find(scenery.tool(pressed(-2)), {}, contacts).complete);
   EXPECT_EQ(contacts.count, 0);
