@@ -179,11 +179,10 @@ class SplintPairs {
     }
     const std::size_t held = scene_.fixed.size();
     const SceneBody& mandible = scene_.held.front();
-    const Placement home{
-        mandible.rotation,
-        scene_.unit * (mandible.rotation * built_.trees[held].contact->origin() +
-                       mandible.translation)};
-    bodies_ = Bodies(scene_.unit, home, std::move(parts));
+    const Placement home{mandible.rotation,
+                         scene_.unit * (mandible.rotation * built_.trees[held].contact->origin() +
+                                        mandible.translation)};
+    bodies_ = HandBodies(scene_.unit, home, std::move(parts));
     for (std::size_t fixed = 0; fixed < held; ++fixed) {
       together_.add({fixed, held}, query(fixed, held));
       singly_.push_back(query(fixed, held));
@@ -221,7 +220,7 @@ class SplintPairs {
 
   Scene scene_;
   BuiltScene built_;
-  Bodies bodies_;
+  HandBodies bodies_;
   PairQueries together_;
   std::vector<std::unique_ptr<ToolContactQuery>> singly_;
   ToolContacts contacts_{4}, alone_;

@@ -129,6 +129,17 @@ TEST_F(SeveralBodies, ThatThePlanReachesHaveTheirQuery) {
   EXPECT_TRUE(note_of(scene, "contact points, far – tool").built);
 }
 
+// A body that brakes the tool from afar is not out of reach.
+TEST_F(SeveralBodies, ThatBrakeFromAfarHaveTheirQuery) {
+  const auto with_proximity = [](const char* distance) {
+    return std::string(kBodies) + "[effects.proximity]\ndistance = " + distance + "\n";
+  };
+  EXPECT_FALSE(note_of(built(with_proximity("4")), "contact points, far – tool").built);
+  const BuiltScene scene = built(with_proximity("200"));
+  EXPECT_TRUE(note_of(scene, "contact points, far – tool").built);
+  EXPECT_TRUE(note_of(scene, "proximity query, far – tool").built);
+}
+
 // The hand feels what is under the tool, whichever body it is.
 TEST_F(SeveralBodies, AreFeltByTheHand) {
   const BuiltScene scene = built(kBodies);

@@ -193,7 +193,7 @@ void add_run(CLI::App& app) {
   }
   for (CLI::Option* of_the_clock : {allow_missed, cpu}) of_the_clock->excludes(unpaced);
   for (CLI::Option* of_a_loop : {seconds, allow_missed, unpaced, cpu}) replay->excludes(of_a_loop);
-  add_max_memory(*command, options->max_memory);
+  add_max_memory(*command, options->max_memory, "each tree, and for all queries together");
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(
       *command,

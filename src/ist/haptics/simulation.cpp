@@ -42,9 +42,9 @@ void detail::add_two_bodies(SimulationParts& parts, const BodyFrames& frames, do
                             std::unique_ptr<ToolContactQuery> contacts,
                             std::unique_ptr<ToolContactQuery> proximity) {
   const Placement home{Eigen::Matrix3d::Identity(), frames.unit * frames.tool_origin};
-  parts.bodies = Bodies(frames.unit, home,
-                        {{"fixed", frames.fixed, Eigen::Vector3d::Zero(), 0},
-                         {"held", Placement(), frames.tool_origin, radius, /*held=*/true}});
+  parts.bodies = HandBodies(frames.unit, home,
+                            {{"fixed", frames.fixed, Eigen::Vector3d::Zero(), 0},
+                             {"held", Placement(), frames.tool_origin, radius, /*held=*/true}});
   if (contacts) parts.contacts.add({0, 1}, std::move(contacts));
   if (proximity) parts.proximity.add({0, 1}, std::move(proximity));
 }
@@ -60,10 +60,9 @@ struct detail::SimulationState {
   explicit SimulationState(SimulationParts parts);
 
   [[nodiscard]] bool query_contacts(const TickBudget& budget, Tick& tick) noexcept;
-  [[nodiscard]] bool query_changed(const TickBudget& budget) noexcept;
   [[nodiscard]] std::optional<HandChange> next_change(const TickBudget& budget) noexcept;
-  [[nodiscard]] ChangeStatus attach(std::size_t body, const TickBudget& budget) noexcept;
-  [[nodiscard]] ChangeStatus release(std::size_t body, const TickBudget& budget) noexcept;
+  [[nodiscard]] ChangeStatus change(std::size_t body, bool attach,
+                                    const TickBudget& budget) noexcept;
   [[nodiscard]] std::optional<Vector6> move(const VirtualCoupling::Stretch& stretch) noexcept;
   void go_back() noexcept;
   void set_time(double time) noexcept;
@@ -73,7 +72,7 @@ struct detail::SimulationState {
     return {last_complete.tool, last_complete.contacts, last_complete.proximity, dt};
   }
 
-  Bodies bodies;
+  HandBodies bodies;
   PairQueries contacts, proximity;
   std::vector<PlannedChange> changes;
   std::vector<HandChange> tried;  // those of `changes`; its memory is reserved
@@ -161,22 +160,23 @@ void detail::SimulationState::go_back() noexcept {
   set_time(last_complete.time);
 }
 
-// Finds the contacts after a body was attached or released; the tool has not moved.
-bool detail::SimulationState::query_changed(const TickBudget& budget) noexcept {
-  place();
-  return is_complete(contacts.find(bodies, tool_pose, budget.contacts, candidate.contacts));
-}
-
-ChangeStatus detail::SimulationState::attach(std::size_t body, const TickBudget& budget) noexcept {
+// Attaches or releases a body, after the contacts at the tool's pose are complete, and finds those
+// of the bodies' new pairs. Where that does not come to an end, or an attached body would touch,
+// all is as it was.
+ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
+                                             const TickBudget& budget) noexcept {
   if (body >= bodies.size()) return ChangeStatus::kUnknownBody;
   if (!bodies.is_attachable(body)) return ChangeStatus::kFixedForGood;
-  if (bodies.is_held(body)) return ChangeStatus::kAlreadyThere;
+  if (bodies.is_held(body) == attach) return ChangeStatus::kAlreadyThere;
   Tick before;
   if (!query_contacts(budget, before)) return ChangeStatus::kUnfinished;
-  if (last_complete.contacts.count > 0) return ChangeStatus::kTouching;
-  bodies.attach(body, tool_pose);
-  const bool known = query_changed(budget);
-  if (known && candidate.contacts.count == 0) {
+  if (attach && last_complete.contacts.count > 0) return ChangeStatus::kTouching;
+  attach ? bodies.attach(body, tool_pose) : bodies.release(body, tool_pose);
+  place();
+  const bool known =
+      is_complete(contacts.find(bodies, tool_pose, budget.contacts, candidate.contacts));
+  const bool touches = attach && candidate.contacts.count > 0;
+  if (known && !touches) {
     std::swap(last_complete.contacts, candidate.contacts);
     tool.set_radius(bodies.held_radius());
     return ChangeStatus::kDone;
@@ -186,30 +186,12 @@ ChangeStatus detail::SimulationState::attach(std::size_t body, const TickBudget&
   return known ? ChangeStatus::kTouching : ChangeStatus::kUnfinished;
 }
 
-ChangeStatus detail::SimulationState::release(std::size_t body, const TickBudget& budget) noexcept {
-  if (body >= bodies.size()) return ChangeStatus::kUnknownBody;
-  if (!bodies.is_attachable(body)) return ChangeStatus::kFixedForGood;
-  if (!bodies.is_held(body)) return ChangeStatus::kAlreadyThere;
-  Tick before;
-  if (!query_contacts(budget, before)) return ChangeStatus::kUnfinished;
-  bodies.release(body, tool_pose);
-  if (query_changed(budget)) {
-    std::swap(last_complete.contacts, candidate.contacts);
-    tool.set_radius(bodies.held_radius());
-    return ChangeStatus::kDone;
-  }
-  bodies.undo(body);
-  place();
-  return ChangeStatus::kUnfinished;
-}
-
 // Makes the change that is due, one a tick.
 std::optional<HandChange> detail::SimulationState::next_change(const TickBudget& budget) noexcept {
   if (tried.size() == changes.size()) return std::nullopt;
-  const PlannedChange& change = changes[tried.size()];
-  if (!(static_cast<double>(ticks) * dt >= change.time)) return std::nullopt;
-  tried.push_back({change.time, change.body, change.attach,
-                   change.attach ? attach(change.body, budget) : release(change.body, budget)});
+  const PlannedChange& next = changes[tried.size()];
+  if (!(static_cast<double>(ticks) * dt >= next.time)) return std::nullopt;
+  tried.push_back({next.time, next.body, next.attach, change(next.body, next.attach, budget)});
   return tried.back();
 }
 
@@ -273,11 +255,11 @@ std::size_t Simulation::bytes() const noexcept {
 
 ChangeStatus Simulation::attach(std::size_t body, const TickBudget& budget) noexcept {
   const ScopedFloatEnvironment environment;
-  return state_->attach(body, budget);
+  return state_->change(body, /*attach=*/true, budget);
 }
 ChangeStatus Simulation::release(std::size_t body, const TickBudget& budget) noexcept {
   const ScopedFloatEnvironment environment;
-  return state_->release(body, budget);
+  return state_->change(body, /*attach=*/false, budget);
 }
 
 std::span<const HandChange> Simulation::changes() const noexcept { return state_->tried; }

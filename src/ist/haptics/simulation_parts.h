@@ -20,7 +20,7 @@ struct PlannedChange {
 
 /// The parts of a Simulation.
 struct SimulationParts {
-  Bodies bodies = {};
+  HandBodies bodies = {};
   PairQueries contacts = {},                ///< empty if no effect needs contacts
       proximity = {};                       ///< empty if no effect needs proximity
   std::vector<PlannedChange> changes = {};  ///< by ascending time

@@ -32,7 +32,7 @@ namespace ist {
 
 /// Returns whether two balls, in one frame, are more than `pad` apart, in double. By >, so that a
 /// NaN keeps the pair.
-[[nodiscard]] inline bool are_apart(const Ball& a, const Ball& b, double pad) noexcept {
+[[nodiscard]] inline bool may_touch(const Ball& a, const Ball& b, double pad) noexcept {
   const Eigen::Vector3d apart = difference(b.centre, a.centre);
   const double radius_sum = (a.radius + b.radius) + pad;
   return dot_in_order(apart, apart) > radius_sum * radius_sum;

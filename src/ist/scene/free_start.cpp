@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace ist {
+namespace {
+
+// All pairs have a query at once, beside those of the loop: these are small, and slower by a tenth.
+QueryOptions small_query() {
+  QueryOptions options;
+  options.frontier_pairs = 1 << 12;
+  return options;
+}
+
+}  // namespace
 
 void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const TriangleMesh* fixed_mesh,
                     const TriangleMesh* held_mesh, const Eigen::Isometry3d& pose,
@@ -10,7 +20,8 @@ void FreeStart::add(const SphereTree& fixed, const SphereTree& held, const Trian
   const double voxel = std::min(fixed.voxel_size(), held.voxel_size());
   voxel_ = pairs_.empty() ? voxel : std::min(voxel_, voxel);
   farthest_ = std::max(farthest_, 2 * (fixed.bounding_radius() + held.bounding_radius()));
-  pairs_.push_back({Query(fixed, held), std::nullopt, {pose.linear(), pose.translation()}, axis});
+  pairs_.push_back(
+      {Query(fixed, held, small_query()), std::nullopt, {pose.linear(), pose.translation()}, axis});
   if (fixed_mesh != nullptr && held_mesh != nullptr) {
     pairs_.back().inside.emplace(*fixed_mesh, *held_mesh);
   }

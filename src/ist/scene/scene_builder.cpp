@@ -64,7 +64,7 @@ class Builder {
   std::vector<LoadedBody> bodies_;
   std::vector<HandPair> pairs_;
   BodyHome home_;
-  Bodies placed_;
+  HandBodies placed_;
   double max_step_ = Tool::kNoLimit;  // of the held surfaces in a tick, m
   Placement start_;
   std::vector<std::unique_ptr<Effect>> effects_;
@@ -135,7 +135,7 @@ void Builder::place_bodies() {
     parts.push_back(std::move(part));
   }
   if (max_step_ < Tool::kNoLimit) max_step_ -= script_step;
-  placed_ = Bodies(scene_.unit, home_.pose, std::move(parts));
+  placed_ = HandBodies(scene_.unit, home_.pose, std::move(parts));
   placed_.set_time(0, period_);
 }
 
@@ -159,7 +159,7 @@ void Builder::place_tool() {
   FreeStart start;
   std::vector<HandPair> asked;
   for (const HandPair& pair : pairs_) {
-    if (!placed_.are_apart(pair.fixed, pair.held)) continue;
+    if (!placed_.may_touch(pair.fixed, pair.held)) continue;
     const LoadedBody &fixed = bodies_[pair.fixed], &held = bodies_[pair.held];
     const BodyFrames frames = placed_.frames(pair.fixed, pair.held);
     start.add(*built_.trees[pair.fixed].contact, *built_.trees[pair.held].contact, fixed.mesh.get(),

@@ -45,10 +45,10 @@ PlanReach::PlanReach(const std::vector<Waypoint>& plan, const Placement& start) 
   extent_ = length(box.diagonal());
 }
 
-bool PlanReach::keeps_apart(const Bodies& bodies, const HandPair& pair) const {
+bool PlanReach::keeps_apart(const HandBodies& bodies, const HandPair& pair, double distance) const {
   if (poses_.empty()) return false;
   const auto [centre, radius] = bodies.ball(pair.fixed);
-  const double reach = radius + bodies.held_radius() + extent_;
+  const double reach = radius + bodies.held_radius() + extent_ + distance;
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     if (distance_from_leg(centre, poses_[i - 1].translation, poses_[i].translation) <= reach) {
       return false;

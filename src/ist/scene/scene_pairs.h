@@ -21,10 +21,11 @@ class PlanReach {
   /// @param start of the tool
   PlanReach(const std::vector<Waypoint>& plan, const Placement& start);
 
-  /// Whether the balls round two bodies stay apart wherever the plan leads, if the tool lags no
-  /// farther behind the device than the plan is long. Both rest but for the tool's motion: neither
-  /// has a script or is attachable.
-  [[nodiscard]] bool keeps_apart(const Bodies& bodies, const HandPair& pair) const;
+  /// Whether the balls round two bodies stay farther apart than `distance`, m, wherever the plan
+  /// leads, if the tool lags no farther behind the device than the plan is long. Both rest but for
+  /// the tool's motion: neither has a script or is attachable.
+  [[nodiscard]] bool keeps_apart(const HandBodies& bodies, const HandPair& pair,
+                                 double distance) const;
 
  private:
   std::vector<Placement> poses_;

@@ -60,11 +60,15 @@ void build_queries(const PlacedBodies& of, const EffectNeeds& needs, const PlanR
     }
     queries.add(pair, std::move(query));
   };
+  // A body brakes the tool from this distance on: proximity voxels reach as far as the scene says,
+  // and the leaves' cubes have a diagonal of less than that distance on either side.
+  const double near = needs.proximity && of.scene.proximity ? 3 * of.scene.proximity->distance : 0;
   for (const HandPair& pair : of.pairs) {
     const LoadedBody &fixed = of.bodies[pair.fixed], &held = of.bodies[pair.held];
     const bool lasts =
         fixed.named->script.empty() && !fixed.named->attachable && !held.named->attachable;
-    if (of.pairs.size() > 1 && lasts && needs.contacts() && reach.keeps_apart(of.placed, pair)) {
+    if (of.pairs.size() > 1 && lasts && needs.contacts() &&
+        reach.keeps_apart(of.placed, pair, near)) {
       const char* why = "their roots stay apart wherever the plan leads";
       notes.skip(label_of(of, "contact points", pair), why);
       parts.contacts.add_far(pair);

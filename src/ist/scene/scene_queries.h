@@ -15,7 +15,7 @@ struct PlacedBodies {
   const Scene& scene;
   const std::vector<LoadedBody>& bodies;
   const std::vector<BodyTrees>& trees;
-  const Bodies& placed;
+  const HandBodies& placed;
   const std::vector<HandPair>& pairs;
   double period;  ///< of a tick, s
 };

@@ -19,26 +19,27 @@ Vector3d at(const Placement& place, const Vector3d& point) {
 }
 
 // A fixed body, two held ones, and one that the hand may take.
-Bodies four_bodies(Random& random, const Placement& home) {
-  return Bodies(kMesh, home,
-                {{"fixed", random_place(random), random.point(-5, 5), 0.01},
-                 {"loose", random_place(random), random.point(-5, 5), 0.01, false, true},
-                 {"first",
-                  {home.rotation, home.translation - home.rotation * Vector3d(1e-3, 2e-3, 3e-3)},
-                  {1, 2, 3},
-                  0.02,
-                  true},
-                 {"second", random_place(random), random.point(-5, 5), 0.01, true, true}});
+HandBodies four_bodies(Random& random, const Placement& home) {
+  return HandBodies(
+      kMesh, home,
+      {{"fixed", random_place(random), random.point(-5, 5), 0.01},
+       {"loose", random_place(random), random.point(-5, 5), 0.01, false, true},
+       {"first",
+        {home.rotation, home.translation - home.rotation * Vector3d(1e-3, 2e-3, 3e-3)},
+        {1, 2, 3},
+        0.02,
+        true},
+       {"second", random_place(random), random.point(-5, 5), 0.01, true, true}});
 }
 
 double difference(const Placement& a, const Placement& b) {
   return (a.rotation - b.rotation).norm() + (a.translation - b.translation).norm();
 }
 
-TEST(Bodies, HeldOnesMoveAsOneWithTheTool) {
+TEST(HandBodies, HeldOnesMoveAsOneWithTheTool) {
   Random random(5);
   const Placement home = random_place(random);
-  const Bodies bodies = four_bodies(random, home);
+  const HandBodies bodies = four_bodies(random, home);
   const Placement first = bodies.place(2, home), second = bodies.place(3, home);
   EXPECT_LT((at(first, {1, 2, 3}) - home.translation).norm(), 1e-15) << "the tool's origin";
   for (int i = 0; i < 20; ++i) {
@@ -54,10 +55,10 @@ TEST(Bodies, HeldOnesMoveAsOneWithTheTool) {
 }
 
 // The query's pose, by both bodies' places in the scene.
-TEST(Bodies, FramesMapHeldToFixedMeshes) {
+TEST(HandBodies, FramesMapHeldToFixedMeshes) {
   Random random(6);
   const Placement home = random_place(random);
-  const Bodies bodies = four_bodies(random, home);
+  const HandBodies bodies = four_bodies(random, home);
   for (int i = 0; i < 20; ++i) {
     const Placement tool = random_place(random);
     for (const std::size_t held : {2u, 3u}) {
@@ -70,13 +71,13 @@ TEST(Bodies, FramesMapHeldToFixedMeshes) {
   }
 }
 
-TEST(Bodies, StayWhereTheyAreWhenTheHandTakesAndReleasesThem) {
+TEST(HandBodies, StayWhereTheyAreWhenTheHandTakesAndReleasesThem) {
   Random random(7);
   const Placement home = random_place(random);
-  Bodies bodies = four_bodies(random, home);
+  HandBodies bodies = four_bodies(random, home);
   const Placement tool = random_place(random), before = bodies.place(1, tool);
   bodies.attach(1, tool);
-  EXPECT_TRUE(bodies.is_held(1) && bodies.are_apart(0, 1));
+  EXPECT_TRUE(bodies.is_held(1) && bodies.may_touch(0, 1));
   EXPECT_LT(difference(bodies.place(1, tool), before), 1e-15);
   const Placement there = random_place(random), carried = bodies.place(1, there);
   EXPECT_GT(difference(carried, before), 1e-3);
@@ -85,10 +86,10 @@ TEST(Bodies, StayWhereTheyAreWhenTheHandTakesAndReleasesThem) {
   EXPECT_LT(difference(bodies.place(1, home), carried), 1e-15) << "whatever the tool does";
 }
 
-TEST(Bodies, TakenBackAChangeLeavesNoTrace) {
+TEST(HandBodies, TakenBackAChangeLeavesNoTrace) {
   Random random(8);
   const Placement home = random_place(random);
-  Bodies bodies = four_bodies(random, home);
+  HandBodies bodies = four_bodies(random, home);
   const Placement before = bodies.place(1, home);
   bodies.attach(1, random_place(random));
   bodies.undo(1);
@@ -96,16 +97,16 @@ TEST(Bodies, TakenBackAChangeLeavesNoTrace) {
   EXPECT_EQ(bodies.place(1, home).translation, before.translation);
 }
 
-TEST(Bodies, TheHeldRadiusBoundsEveryHeldBall) {
+TEST(HandBodies, TheHeldRadiusBoundsEveryHeldBall) {
   Random random(9);
   const Placement home = random_place(random);
-  Bodies bodies = four_bodies(random, home);
+  HandBodies bodies = four_bodies(random, home);
   const Placement tool = random_place(random);
   bodies.attach(1, tool);
   for (const std::size_t held : {1u, 2u, 3u}) {
     // The farthest point of the ball, seen from the tool's origin.
     const double gap = bodies.gap(0, held, tool);
-    const Bodies::Ball fixed = bodies.ball(0);
+    const HandBodies::Ball fixed = bodies.ball(0);
     const double centres = gap + fixed.radius + (held == 2 ? 0.02 : 0.01);
     EXPECT_LE((fixed.centre - tool.translation).norm() - centres, bodies.held_radius());
   }
@@ -117,14 +118,14 @@ TEST(Bodies, TheHeldRadiusBoundsEveryHeldBall) {
 }
 
 // A point that moves with the body goes where the drift says, to second order.
-TEST(Bodies, DriftIsTheMotionOfAScriptInAStep) {
+TEST(HandBodies, DriftIsTheMotionOfAScriptInAStep) {
   Random random(10);
   const Placement from = random_place(random);
   Vector6 way;
   way << 0.01, -0.02, 0.005, 0.3, 0.1, -0.2;
-  Bodies bodies(kMesh, {},
-                {{"driven", from, Vector3d::Zero(), 0.01, false, false,
-                  Plan({{0, from}, {1, from.moved(way)}})}});
+  HandBodies bodies(kMesh, {},
+                    {{"driven", from, Vector3d::Zero(), 0.01, false, false,
+                      Plan({{0, from}, {1, from.moved(way)}})}});
   const Placement tool = random_place(random);
   for (const double time : {0.0, 0.4, 0.998}) {
     bodies.set_time(time, 1e-3);

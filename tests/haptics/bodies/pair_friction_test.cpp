@@ -44,13 +44,14 @@ class TwoPlates : public ::testing::Test {
     const Placement moved{Eigen::Matrix3d::Identity(), 1e-3 * Vector3d(0, 0.02, 0)};
     BodyPart side{.name = "side", .place = {}, .centre = side_.origin(), .radius = 0.04};
     side.script = Plan({{0, {}}, {0.5, {}}, {0.7, moved}});
-    detail::SimulationParts parts{.bodies = Bodies(1e-3, start_,
-                                                   {{"floor", {}, floor_.origin(), 0.04},
-                                                    std::move(side),
-                                                    {"ball", home, ball_.origin(), 0.006, true}}),
-                                  .max_step = 5e-4,
-                                  .start = start_,
-                                  .dt = 1e-3};
+    detail::SimulationParts parts{
+        .bodies = HandBodies(1e-3, start_,
+                             {{"floor", {}, floor_.origin(), 0.04},
+                              std::move(side),
+                              {"ball", home, ball_.origin(), 0.006, true}}),
+        .max_step = 5e-4,
+        .start = start_,
+        .dt = 1e-3};
     for (const std::size_t fixed : {0u, 1u}) {
       parts.contacts.add({fixed, 2},
                          std::make_unique<ToolContactQuery>(

@@ -27,7 +27,7 @@ class Corner : public ::testing::Test {
  protected:
   // The boxes in an order; the ball is the last body.
   struct Setting {
-    Bodies bodies;
+    HandBodies bodies;
     PairQueries queries;
   };
   [[nodiscard]] Setting setting(const std::vector<std::size_t>& order,
@@ -37,7 +37,7 @@ class Corner : public ::testing::Test {
       parts.push_back({std::to_string(i), Placement(), boxes_[i].origin(), radius_of(boxes_[i])});
     }
     parts.push_back({"ball", Placement(), ball_.origin(), radius_of(ball_), true});
-    Setting made{Bodies(kMillimetre, home(), std::move(parts)), PairQueries()};
+    Setting made{HandBodies(kMillimetre, home(), std::move(parts)), PairQueries()};
     for (std::size_t i = 0; i < order.size(); ++i) {
       made.queries.add({i, order.size()},
                        std::make_unique<ToolContactQuery>(
@@ -186,6 +186,19 @@ TEST_F(Corner, OnePairThatIsStoppedLeavesTheAnswerIncomplete) {
   }
 }
 
+// A limit beyond what a double tells apart is divided too, and none of it is lost.
+TEST_F(Corner, AnyLimitMayBeDivided) {
+  Setting all = setting({0, 1, 2});
+  ToolContacts contacts = contacts_for(all.queries);
+  for (const std::uint64_t tests : {std::uint64_t{1} << 54, ~std::uint64_t{0} - 1}) {
+    Budget budget;
+    budget.tests = tests;
+    budget.deadline = Budget::Clock::time_point::max() - std::chrono::nanoseconds(1);
+    EXPECT_TRUE(all.queries.find(all.bodies, pressed({0.3, 0.2, 0.35}), budget, contacts)->complete)
+        << tests;
+  }
+}
+
 TEST_F(Corner, ADeadlineThatIsPastEndsEveryPair) {
   Setting all = setting({0, 1, 2});
   ToolContacts contacts = contacts_for(all.queries);
@@ -213,7 +226,7 @@ TEST_F(Corner, APairThatWasNotExpectedToMeetHoldsTheTool) {
 TEST_F(Corner, WithoutPairsThereIsNoAnswer) {
   PairQueries none;
   ToolContacts contacts;
-  EXPECT_FALSE(none.find(Bodies(), Placement(), {}, contacts));
+  EXPECT_FALSE(none.find(HandBodies(), Placement(), {}, contacts));
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace ist {
 
-Bodies::Bodies(double unit, const Placement& home, std::vector<BodyPart> parts) : unit_(unit) {
+HandBodies::HandBodies(double unit, const Placement& home, std::vector<BodyPart> parts)
+    : unit_(unit) {
   bool is_first = true;
   for (BodyPart& part : parts) {
     Body body{.name = std::move(part.name),
@@ -25,14 +26,14 @@ Bodies::Bodies(double unit, const Placement& home, std::vector<BodyPart> parts) 
   }
 }
 
-void Bodies::take(Body& body, const Placement& tool) const noexcept {
+void HandBodies::take(Body& body, const Placement& tool) const noexcept {
   const Eigen::Matrix3d to_tool = tool.rotation.transpose();
   body.turn = to_tool * body.place.rotation;
   body.origin =
       body.turn.transpose() * (to_tool * ((tool.translation - body.place.translation) / unit_));
 }
 
-Placement Bodies::place(std::size_t body, const Placement& tool) const noexcept {
+Placement HandBodies::place(std::size_t body, const Placement& tool) const noexcept {
   const Body& of = bodies_[body];
   if (!of.held) return of.place;
   const Eigen::Matrix3d rotation = tool.rotation * of.turn;
@@ -40,22 +41,22 @@ Placement Bodies::place(std::size_t body, const Placement& tool) const noexcept 
 }
 
 // From the tool's origin to the middle of a held body, tool axes, m.
-Eigen::Vector3d Bodies::arm(const Body& held) const noexcept {
+Eigen::Vector3d HandBodies::arm(const Body& held) const noexcept {
   return unit_ * (held.turn * (held.centre - held.origin));
 }
 
-Bodies::Ball Bodies::ball(std::size_t fixed) const noexcept {
+HandBodies::Ball HandBodies::ball(std::size_t fixed) const noexcept {
   const Body& body = bodies_[fixed];
   return {body.place.rotation * (unit_ * body.centre) + body.place.translation, body.radius};
 }
 
-double Bodies::gap(std::size_t fixed, std::size_t held, const Placement& tool) const noexcept {
+double HandBodies::gap(std::size_t fixed, std::size_t held, const Placement& tool) const noexcept {
   const auto [centre, radius] = ball(fixed);
   const Eigen::Vector3d to = tool.rotation * arm(bodies_[held]) + tool.translation;
   return std::sqrt((to - centre).squaredNorm()) - (radius + bodies_[held].radius);
 }
 
-double Bodies::held_radius() const noexcept {
+double HandBodies::held_radius() const noexcept {
   double radius = 0;
   for (const Body& body : bodies_) {
     if (body.held) radius = std::max(radius, std::sqrt(arm(body).squaredNorm()) + body.radius);
@@ -63,17 +64,17 @@ double Bodies::held_radius() const noexcept {
   return radius;
 }
 
-void Bodies::attach(std::size_t body, const Placement& tool) noexcept {
+void HandBodies::attach(std::size_t body, const Placement& tool) noexcept {
   take(bodies_[body], tool);
   bodies_[body].held = true;
 }
 
-void Bodies::release(std::size_t body, const Placement& tool) noexcept {
+void HandBodies::release(std::size_t body, const Placement& tool) noexcept {
   bodies_[body].place = bodies_[body].next = place(body, tool);
   bodies_[body].held = false;
 }
 
-void Bodies::set_time(double time, double step) noexcept {
+void HandBodies::set_time(double time, double step) noexcept {
   for (Body& body : bodies_) {
     if (!body.script) continue;
     body.place = body.script->at(time).pose;
@@ -81,7 +82,7 @@ void Bodies::set_time(double time, double step) noexcept {
   }
 }
 
-Vector6 Bodies::drift(std::size_t fixed, const Placement& tool) const noexcept {
+Vector6 HandBodies::drift(std::size_t fixed, const Placement& tool) const noexcept {
   const Body& body = bodies_[fixed];
   const bool rests =
       body.next.rotation == body.place.rotation && body.next.translation == body.place.translation;

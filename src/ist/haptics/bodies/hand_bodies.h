@@ -26,13 +26,13 @@ struct BodyPart {
 
 /// The bodies of a simulation: which of them the hand holds, and where each is. Held bodies move as
 /// one with the tool. Its frame is that of the first held body: the mesh's axes, and its centre.
-class Bodies {
+class HandBodies {
  public:
   /// Nothing fixed, and a tool that is a point.
-  Bodies() = default;
+  HandBodies() = default;
   /// @param unit metres in a mesh unit
   /// @param home the tool's pose at which the held parts are at their places
-  Bodies(double unit, const Placement& home, std::vector<BodyPart> parts);
+  HandBodies(double unit, const Placement& home, std::vector<BodyPart> parts);
 
   [[nodiscard]] std::size_t size() const noexcept { return bodies_.size(); }
   [[nodiscard]] const std::string& name(std::size_t body) const noexcept {
@@ -43,7 +43,7 @@ class Bodies {
     return bodies_[body].attachable;
   }
   /// Whether the one body is fixed and the other held, so that they may push each other.
-  [[nodiscard]] bool are_apart(std::size_t fixed, std::size_t held) const noexcept {
+  [[nodiscard]] bool may_touch(std::size_t fixed, std::size_t held) const noexcept {
     return !bodies_[fixed].held && bodies_[held].held;
   }
   /// The frames of a fixed and a held body.

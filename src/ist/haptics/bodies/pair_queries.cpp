@@ -32,6 +32,14 @@ double share(double rest, double own, double later) noexcept {
   return std::max(rest - later, rest * (own / (own + later)));
 }
 
+// The same of a whole number. What is left of it may be more than a double tells apart.
+template <typename Count>
+Count part_of(Count rest, double own, double later) noexcept {
+  const auto all = static_cast<double>(rest);
+  const double part = share(all, own, later);
+  return part < all ? static_cast<Count>(part) : rest;
+}
+
 }  // namespace
 
 void PairQueries::add(const HandPair& pair, std::unique_ptr<ToolContactQuery> query) {
@@ -44,7 +52,7 @@ std::size_t PairQueries::bytes() const noexcept {
   return bytes;
 }
 
-void PairQueries::place(const Bodies& bodies) noexcept {
+void PairQueries::place(const HandBodies& bodies) noexcept {
   for (Pair& pair : pairs_) {
     pair.query->place(bodies.frames(pair.bodies.fixed, pair.bodies.held));
   }
@@ -60,7 +68,7 @@ QueryResult PairQueries::ask(Pair& pair, const Placement& tool, const Budget& bu
   return result;
 }
 
-std::optional<QueryResult> PairQueries::find(const Bodies& bodies, const Placement& tool,
+std::optional<QueryResult> PairQueries::find(const HandBodies& bodies, const Placement& tool,
                                              const Budget& budget,
                                              ToolContacts& contacts) noexcept {
   contacts.clear();
@@ -69,14 +77,14 @@ std::optional<QueryResult> PairQueries::find(const Bodies& bodies, const Placeme
   std::size_t asked = 0;
   Need later{0, 0};
   for (const Pair& pair : pairs_) {
-    if (!bodies.are_apart(pair.bodies.fixed, pair.bodies.held)) continue;
+    if (!bodies.may_touch(pair.bodies.fixed, pair.bodies.held)) continue;
     ++asked;
     later.tests += pair.need.tests;
     later.nanoseconds += pair.need.nanoseconds;
   }
   Budget rest = budget;
   for (Pair& pair : pairs_) {
-    if (!bodies.are_apart(pair.bodies.fixed, pair.bodies.held)) continue;
+    if (!bodies.may_touch(pair.bodies.fixed, pair.bodies.held)) continue;
     if (asked == 1) {  // nothing to divide: no look at the clock
       join(all, ask(pair, tool, rest, contacts));
       break;
@@ -85,15 +93,14 @@ std::optional<QueryResult> PairQueries::find(const Bodies& bodies, const Placeme
     later.nanoseconds -= pair.need.nanoseconds;
     Budget part = rest;
     if (rest.has_tests()) {
-      part.tests = static_cast<std::uint64_t>(
-          share(static_cast<double>(rest.tests), pair.need.tests, later.tests));
+      part.tests = part_of(rest.tests, pair.need.tests, later.tests);
     }
     Clock::time_point begin{};
     if (rest.has_deadline()) {
       begin = rest.now();
-      const auto left = static_cast<double>(nanoseconds(rest.deadline - begin).count());
-      part.deadline = begin + nanoseconds(static_cast<nanoseconds::rep>(
-                                  share(left, pair.need.nanoseconds, later.nanoseconds)));
+      const nanoseconds left = rest.deadline - begin;
+      part.deadline =
+          begin + nanoseconds(part_of(left.count(), pair.need.nanoseconds, later.nanoseconds));
     }
     const QueryResult result = ask(pair, tool, part, contacts);
     if (rest.has_tests()) rest.tests -= std::min(rest.tests, result.sphere_tests);
@@ -104,13 +111,13 @@ std::optional<QueryResult> PairQueries::find(const Bodies& bodies, const Placeme
     join(all, result);
   }
   for (const HandPair& pair : far_) {
-    if (!bodies.are_apart(pair.fixed, pair.held)) continue;
+    if (!bodies.may_touch(pair.fixed, pair.held)) continue;
     if (!(bodies.gap(pair.fixed, pair.held, tool) > 0)) all.complete = false;
   }
   return all;
 }
 
-void PairQueries::note_drift(const Bodies& bodies, const Placement& tool,
+void PairQueries::note_drift(const HandBodies& bodies, const Placement& tool,
                              ToolContacts& contacts) const noexcept {
   for (ContactPair& pair : contacts.pairs()) {
     pair.drift = bodies.drift(pairs_[pair.number].bodies.fixed, tool);

@@ -35,7 +35,7 @@ class PairQueries {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
   /// Says where the bodies are, after some of them were moved, attached or released.
-  void place(const Bodies& bodies) noexcept;
+  void place(const HandBodies& bodies) noexcept;
 
   /// Finds all contacts at a pose of the tool. Empty if there are no pairs.
   ///
@@ -44,11 +44,11 @@ class PairQueries {
   /// largest, and `found` is the way of the costliest pair. The budget is divided among the pairs:
   /// each may spend what those behind it did not need when they were asked last, and no less than
   /// its part by such needs.
-  [[nodiscard]] std::optional<QueryResult> find(const Bodies& bodies, const Placement& tool,
+  [[nodiscard]] std::optional<QueryResult> find(const HandBodies& bodies, const Placement& tool,
                                                 const Budget& budget,
                                                 ToolContacts& contacts) noexcept;
   /// Notes in `contacts` how the fixed bodies move in the step to come.
-  void note_drift(const Bodies& bodies, const Placement& tool,
+  void note_drift(const HandBodies& bodies, const Placement& tool,
                   ToolContacts& contacts) const noexcept;
 
  private:

@@ -148,7 +148,7 @@ class Descent {
   [[nodiscard]] bool overlap(const Node& a, const Node& b) noexcept {
     ++tests_;
     const Pads& pads = a.level == 0 && b.level == 0 ? leaf_ : inner_;
-    if (are_apart(a.ball, b.ball, pads.ball)) return false;
+    if (may_touch(a.ball, b.ball, pads.ball)) return false;
     if constexpr (kSlabs) {
       const Eigen::Vector3d apart = b.ball.centre - a.ball.centre;
       return !(beyond(a.slab, apart, b.ball.radius + pads.fixed_slab) ||

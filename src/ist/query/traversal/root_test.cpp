@@ -31,7 +31,7 @@ RootTest test_roots(const SphereTree& fixed, const SphereTree& moving, SpherePol
   // What the float tests may keep must not end here.
   const double inner_pad = inner_ball_pad(bounding_radii, farthest, margin);
   // Far apart, one coordinate decides, because the square of the distance overflows.
-  test.overlap = !(farthest > bounding_radii + inner_pad) && !are_apart(a, b, inner_pad);
+  test.overlap = !(farthest > bounding_radii + inner_pad) && !may_touch(a, b, inner_pad);
   const Eigen::Vector3d apart = difference(b.centre, a.centre);
   const double radius_sum = (a.radius + b.radius) + test.pad;
   const double largest = apart.cwiseAbs().maxCoeff();

@@ -10,12 +10,11 @@ namespace {
 using detail::WorldState;
 using detail::WorldUse;
 
-// Asks all pairs that are near, in order.
-template <class Pair, class Ask>
-WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& budget,
-                          Ask ask) noexcept {
+// Begins an answer with the pairs that are near. Its status is other than kDone where there is
+// none.
+template <class Pair>
+WorldAnswer<Pair> begin_answer(WorldState& s, const WorldUse& use) noexcept {
   WorldAnswer<Pair> all;
-  const WorldUse use(s);
   if (!use || !s.ready) {
     all.status = use ? QueryStatus::kNotPrepared : QueryStatus::kBusy;
     all.complete = false;
@@ -26,6 +25,17 @@ WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& b
   all.near_pairs = near.count();
   all.truncated = near.count() > near.size();
   all.complete = !all.truncated;
+  return all;
+}
+
+// Asks all pairs that are near, in order.
+template <class Pair, class Ask>
+WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& budget,
+                          Ask ask) noexcept {
+  const WorldUse use(s);
+  WorldAnswer<Pair> all = begin_answer<Pair>(s, use);
+  if (all.status != QueryStatus::kDone) return all;
+  const NearSet& near = s.answers.near;
   for (std::size_t k = 0; k < near.size(); ++k) {
     const PairAtPose& at = near[k];
     Pair& pair = out[k];
@@ -48,19 +58,11 @@ WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& b
 WorldAnswer<NearPair> World::near_pairs() noexcept {
   const ScopedFloatEnvironment environment;
   WorldState& s = *state_;
-  WorldAnswer<NearPair> all;
   const WorldUse use(s);
-  if (!use || !s.ready) {
-    all.status = use ? QueryStatus::kNotPrepared : QueryStatus::kBusy;
-    all.complete = false;
-    return all;
-  }
-  s.find_near();
+  WorldAnswer<NearPair> all = begin_answer<NearPair>(s, use);
+  if (all.status != QueryStatus::kDone) return all;
   const NearSet& near = s.answers.near;
   for (std::size_t k = 0; k < near.size(); ++k) s.answers.pairs[k] = near[k].near;
-  all.near_pairs = near.count();
-  all.truncated = near.count() > near.size();
-  all.complete = !all.truncated;
   all.sphere_tests = near.size();
   all.pairs = {s.answers.pairs.data(), near.size()};
   return all;
