@@ -17,7 +17,7 @@
 namespace ist::test {
 namespace {
 
-constexpr double kVoxel = 0.07;
+constexpr double kVoxelSize = 0.07;
 
 // Without triangles, leaves alone decide: the answer may stay open, and a small tolerance out of
 // reach.
@@ -136,9 +136,9 @@ TEST(CGeometry, HasTheOrderOfAnswers) {
   EXPECT_EQ(name(ist_mesh_free(c)), "ok");
 
   BuildOptions options;
-  options.voxel_size = kVoxel;
+  options.voxel_size = kVoxelSize;
   const SphereTree tree = build_tree(mesh, options);
-  ist_tree* c_built = c_tree(mesh, kVoxel);
+  ist_tree* c_built = c_tree(mesh, kVoxelSize);
   const std::vector<Ball> cubes = level_spheres(tree, SpherePolicy::kSimple, 0);
   std::vector<double> centres(3 * cubes.size() + 3, 7);
   ASSERT_EQ(name(ist_tree_copy_leaf_centres(c_built, centres.data(), cubes.size() + 1)), "ok");

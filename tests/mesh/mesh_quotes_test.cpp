@@ -22,7 +22,7 @@ namespace {
 
 using test::replaced;
 
-const TriangleMesh kOne = test::triangle({1, 0, 0}, {0, 2, 0}, {0, 0, 3});
+const TriangleMesh kSmallMesh = test::triangle({1, 0, 0}, {0, 2, 0}, {0, 0, 3});
 
 // The message, from the first byte behind the file's name.
 std::string message(std::string_view bytes) {
@@ -43,14 +43,14 @@ struct Quoting {
 TEST(MeshQuotes, AreOfPrintableCharacters) {
   const std::string bad("\x1B[31m\0_\x7F", 8), json = "\\u001b[31m\\u0000_\x7F";
   const std::string word = "\x9B_\x7F";  // control characters up to the blank end a word
-  const std::string xml = test::threemf_model(kOne), stl = test::as_text_stl(kOne),
-                    off = test::as_off(kOne), ply = test::as_text_ply(kOne),
-                    gltf = test::as_gltf(kOne);
+  const std::string xml = test::threemf_model(kSmallMesh), stl = test::as_text_stl(kOne),
+                    off = test::as_off(kSmallMesh), ply = test::as_text_ply(kOne),
+                    gltf = test::as_gltf(kSmallMesh);
   const auto model = [&](const std::string& from, const std::string& to) {
     return test::as_3mf(replaced(xml, from, to));
   };
   const std::vector<Quoting> cases = {
-      {"in another file, '?[31m?_?', and only", test::gltf_json(kOne, json)},
+      {"in another file, '?[31m?_?', and only", test::gltf_json(kSmallMesh, json)},
       {"glTF ?[31m?_? is not supported; ", replaced(gltf, "\"2.0\"", "\"" + json + "\"")},
       {"\" is no whole number; ", replaced(gltf, "[0]", "[\"" + json + "\"]")},
       {"\"] is not supported; ",
@@ -85,13 +85,13 @@ TEST(MeshQuotes, AreOfPrintableCharacters) {
 TEST(MeshQuotes, EndBetweenTwoCharacters) {
   std::string umlauts;
   for (int i = 0; i < 60; ++i) umlauts += "ä";
-  const std::string got = message(test::gltf_json(kOne, "x" + umlauts));
+  const std::string got = message(test::gltf_json(kSmallMesh, "x" + umlauts));
   EXPECT_NE(got.find("'x" + umlauts.substr(0, 78) + "'"), got.npos) << got;
 }
 
 // The text of a JSON value is made by a function that calls itself for each level.
 TEST(MeshQuotes, OfADeepValueCostNoStack) {
-  const std::string plain = test::as_gltf(kOne), deep(200'000, '['), closed(200'000, ']');
+  const std::string plain = test::as_gltf(kSmallMesh), deep(200'000, '['), closed(200'000, ']');
   EXPECT_TRUE(message(replaced(plain, "{\"mesh\":0}", "{\"mesh\":" + deep + closed + "}"))
                   .starts_with("node 0: a nested array is no whole number; "));
   EXPECT_TRUE(message(replaced(plain, "{\"asset\"",

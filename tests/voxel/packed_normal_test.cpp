@@ -5,15 +5,13 @@
 #include <Eigen/Geometry>
 
 #include "support/random.h"
+#include "voxel/angles.h"
 
 namespace ist {
 namespace {
 
 using Eigen::Vector3d;
-
-double angle_in_degrees(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * (180 / 3.141592653589793);
-}
+using test::angle_in_degrees;
 
 Vector3d stored(const Vector3d& normal) { return PackedNormal(normal, 1).direction(); }
 

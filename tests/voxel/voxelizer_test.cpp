@@ -10,11 +10,13 @@
 #include "support/errors.h"
 #include "support/random.h"
 #include "support/shapes.h"
+#include "voxel/angles.h"
 
 namespace ist {
 namespace {
 
 using Eigen::Vector3d;
+using test::angle_in_degrees;
 
 std::vector<std::uint32_t> words(const VoxelSet& set) {
   std::vector<std::uint32_t> words;
@@ -26,10 +28,6 @@ Vector3d centre(const Lattice& lattice, std::uint64_t code) {
   const Cell cell = morton_decode(code);
   return Vector3d(lattice.corner.data()) +
          lattice.voxel_size * Vector3d(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5);
-}
-
-double angle_in_degrees(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * (180 / 3.141592653589793);
 }
 
 TEST(Voxelizer, IsTheSameForAnyNumberOfThreads) {

@@ -29,6 +29,13 @@ ist_status Call::store(ist_status status, std::string_view text) const noexcept 
   return status;
 }
 
+ist_status Call::store_formatted(ist_status status, fmt::string_view text,
+                                 fmt::format_args args) const {
+  char buffer[kLastErrorBytes];
+  const auto end = fmt::vformat_to_n(buffer, kLastErrorBytes, text, args).out;
+  return store(status, {buffer, static_cast<std::size_t>(end - buffer)});
+}
+
 ist_status Call::fail_by_exception() const noexcept {
   constexpr const char* kNoMemory = "not enough memory: request less, or free unused objects";
   try {

@@ -5,9 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <iterator>
 #include <string_view>
-#include <utility>
 
 #include "ist/capi/ist_c.h"
 
@@ -29,11 +27,9 @@ class Call {
   ist_status store(ist_status status, std::string_view text) const noexcept;
   /// Stores a formatted text, as store() does.
   template <typename... Args>
-  ist_status fail(ist_status status, fmt::format_string<Args...> text, Args&&... args) const {
-    char buffer[kLastErrorBytes];
-    const auto end =
-        fmt::format_to_n(buffer, kLastErrorBytes, text, std::forward<Args>(args)...).out;
-    return store(status, {buffer, static_cast<std::size_t>(end - buffer)});
+  ist_status fail(ist_status status, fmt::format_string<const Args&...> text,
+                  const Args&... args) const {
+    return store_formatted(status, text, fmt::make_format_args(args...));
   }
 
   /// A required pointer and its name.
@@ -65,6 +61,9 @@ class Call {
   [[nodiscard]] ist_status fail_by_exception() const noexcept;
 
  private:
+  // Not a template: one formatter serves the whole interface.
+  ist_status store_formatted(ist_status status, fmt::string_view text, fmt::format_args args) const;
+
   const char* function_;
 };
 

@@ -32,7 +32,7 @@ HandBodies four_bodies(Random& random, const Placement& home) {
        {"second", random_place(random), random.point(-5, 5), 0.01, true, true}});
 }
 
-double difference(const Placement& a, const Placement& b) {
+double placement_difference(const Placement& a, const Placement& b) {
   return (a.rotation - b.rotation).norm() + (a.translation - b.translation).norm();
 }
 
@@ -49,7 +49,8 @@ TEST(HandBodies, HeldOnesMoveAsOneWithTheTool) {
       const Placement now = bodies.place(static_cast<std::size_t>(body), tool);
       const Placement expected{turn * before.rotation,
                                turn * (before.translation - home.translation) + tool.translation};
-      EXPECT_LT(difference(now, expected), 1e-14) << bodies.name(static_cast<std::size_t>(body));
+      EXPECT_LT(placement_difference(now, expected), 1e-14)
+          << bodies.name(static_cast<std::size_t>(body));
     }
   }
 }
@@ -78,12 +79,13 @@ TEST(HandBodies, StayWhereTheyAreWhenTheHandTakesAndReleasesThem) {
   const Placement tool = random_place(random), before = bodies.place(1, tool);
   bodies.attach(1, tool);
   EXPECT_TRUE(bodies.is_held(1) && bodies.may_touch(0, 1));
-  EXPECT_LT(difference(bodies.place(1, tool), before), 1e-15);
+  EXPECT_LT(placement_difference(bodies.place(1, tool), before), 1e-15);
   const Placement there = random_place(random), carried = bodies.place(1, there);
-  EXPECT_GT(difference(carried, before), 1e-3);
+  EXPECT_GT(placement_difference(carried, before), 1e-3);
   bodies.release(1, there);
   EXPECT_FALSE(bodies.is_held(1));
-  EXPECT_LT(difference(bodies.place(1, home), carried), 1e-15) << "whatever the tool does";
+  EXPECT_LT(placement_difference(bodies.place(1, home), carried), 1e-15)
+      << "whatever the tool does";
 }
 
 TEST(HandBodies, TakenBackAChangeLeavesNoTrace) {
