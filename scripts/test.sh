@@ -4,12 +4,13 @@
 # UndefinedBehaviorSanitizer; golden answers by clang, for ARM64 and in WebAssembly; then all,
 # optimised with assertions.
 #
-#   scripts/test.sh          every test, 30 to 60 minutes from nothing built on two cores
-#   scripts/test.sh --long   then golden answers by more compilers and optimisations, a program built
-#                            for ARM64 from the package, the wheel and the sdist, every room and test under the sanitizers, hard
-#                            cases with 20 times the samples, ten million queries of real jaws, an
-#                            hour of simulated pressing, threads for longer, CloudCompare's distances,
-#                            the add-on in Blender, and each fuzzer for a minute; 90 minutes more
+#   scripts/test.sh          every test, 20 to 40 minutes from nothing built on two cores
+#   scripts/test.sh --long   then the packages and the circuit's synthesis, golden answers by more
+#                            compilers and optimisations, a program built for ARM64 from the package,
+#                            every room and test under the sanitizers, hard cases with 20 times the
+#                            samples, ten million queries of real jaws, an hour of simulated pressing,
+#                            threads for longer, CloudCompare's distances, the add-on in Blender, and
+#                            each fuzzer for a minute; two hours more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -20,7 +21,7 @@ long=false
 case ${1:-} in
   "") ;;
   --long) long=true ;;
-  -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
 setup=(--oracles --python --docs --cross)
@@ -54,7 +55,7 @@ for preset in clang14 arm64 wasm; do run "$preset -DIST_WITH_LOOP=OFF" golden_te
 run test all -LE '^long$'
 $long || exit 0
 
-echo "== the Python packages, and platforms that are refused"
+echo "== packages, the circuit by more tools, and platforms that are refused"
 ctest --preset test -L '^long$'
 # Benchmarks are compiled by nothing else.
 scripts/setup.sh --peers

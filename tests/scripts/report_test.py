@@ -5,7 +5,8 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-from report.curves import between, crossings, power  # noqa: E402  after its folder is known
+from report import bodies  # noqa: E402  after its folder is known
+from report.curves import between, crossings, power  # noqa: E402
 from report.peer_answers import Answers  # noqa: E402
 from report.peers_elsewhere import ELSEWHERE, absent, native_fcl  # noqa: E402
 from report.peers_otherwise import asked_in  # noqa: E402
@@ -36,6 +37,29 @@ class Curves(unittest.TestCase):
     def test_a_lead_within_the_noise_is_none(self):
         self.assertEqual(crossings([0, 1, 2], [1, 1.02, 1], [2, 1, 2]), [])
         self.assertEqual(len(crossings([0, 1, 2], [1, 1.2, 1], [2, 1, 2])), 2)
+
+
+class Bodies(unittest.TestCase):
+    """Four bodies within what is promised, and a hundred at rest that take longer."""
+
+    def setUp(self):
+        times = {f"{kind}{quantile}_us": 10 for kind in ("", "one_by_one_", "together_", "apart_") for quantile in ("p50", "p99")}
+        self.results = Results("nowhere")
+        self.results._read["loop_bench"] = {"benchmarks": [
+            {"name": "bodies/splint/iterations:1", "ticks": 100, "ticks_apart": 10, "ratio": 1.1, **times, "apart_p50_us": 0.5}]}
+        self.results._read["world_bench"] = {"benchmarks": [
+            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, **times},
+            {"name": "world/hundred_at_rest/real_time", "real_time": 25},
+            {"name": "world/a_pair_apart/real_time", "real_time": 0.3}]}
+        self.text = "\n".join(bodies.chapter(self.results, None))
+
+    def test_a_promise_that_holds_is_said_plainly(self):
+        self.assertIn("\nTogether they take 1.1 times the pairs one by one: at most 1.15 was promised.", self.text)
+        self.assertIn("\nA pair that is apart takes 0.5 µs: at most 2 was promised.", self.text)
+
+    def test_one_that_does_not_is_bold_in_words_and_in_the_table(self):
+        self.assertIn("**`contacts` of the world takes 1.2 times its queries; at most 1.15 was promised.**", self.text)
+        self.assertIn("| 100 bodies, none near, at rest | **25** | 20 |", self.text)
 
 
 class Peers(unittest.TestCase):
