@@ -12,7 +12,8 @@ elseif(CMAKE_SYSTEM_NAME STREQUAL Linux AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x8
   set(platform linux)
 else()
   message(FATAL_ERROR "IST runs on x86-64 and ARM64 Linux and in WebAssembly (scripts/toolchains), and "
-                      "was asked to build for ${CMAKE_SYSTEM_PROCESSOR} ${CMAKE_SYSTEM_NAME}")
+                      "was asked to build for ${CMAKE_SYSTEM_PROCESSOR} ${CMAKE_SYSTEM_NAME} with pointers of "
+                      "${CMAKE_SIZEOF_VOID_P} bytes (8 are needed)")
 endif()
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang)$" OR
    (CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12) OR

@@ -33,5 +33,5 @@ def chapter(_results, _pictures):
         "",
         f"Compiled by {context['compiler']}, `{context['flags']}`: the build of the tests, with its assertions. "
         "`within_20000_tests` ends by its budget. "
-        "`gap`, `touches` and `collide_exact` ask about triangles: their tests compare clusters of triangles, and cost more.",
+        "`distance`, `intersects` and `triangle_pairs` ask about triangles: their tests compare clusters of triangles, and cost more.",
     ]

@@ -66,28 +66,28 @@ void count_all() {
   for (const ist::SpherePolicy policy : ist::kSpherePolicies) {
     options.policy = policy;
     ist::Query query(fixed, moving, options);
-    count("collide/" + std::string(to_string(policy)) + "/closed",
+    count("leaf_pairs/" + std::string(to_string(policy)) + "/closed",
           [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs)); });
   }
   options.policy = ist::SpherePolicy::kSlab;
   ist::Query query(fixed, moving, options);
   ist::ContactManifold points(fixed, moving, query.policy());
-  count("collide/slab/near", [&] { return answer_of(query.leaf_pairs(near, leaf_pairs)); });
-  count("collide/slab/within_20000_tests",
+  count("leaf_pairs/slab/near", [&] { return answer_of(query.leaf_pairs(near, leaf_pairs)); });
+  count("leaf_pairs/slab/within_20000_tests",
         [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs, {.tests = 20'000})); });
-  count("contact_points/closed", [&] { return answer_of(query.contacts(closed, points)); });
+  count("contacts/closed", [&] { return answer_of(query.contacts(closed, points)); });
   // Each is a fresh answer.
-  count("gap/apart", [&] {
+  count("distance/apart", [&] {
     query.forget();
     const ist::DistanceResult result = query.distance(apart, 0.01);
     return Answer{result.distance.lower > 0 ? 1U : 0U, result.sphere_tests};
   });
-  count("touches/near", [&] {  // where leaves touch and triangles do not
+  count("intersects/near", [&] {  // where leaves touch and triangles do not
     query.forget();
     const ist::IntersectionResult result = query.intersects(near);
     return Answer{result.answer == ist::Answer::kYes ? 1U : 0U, result.sphere_tests};
   });
-  count("collide_exact/closed", [&] {
+  count("triangle_pairs/closed", [&] {
     const ist::TrianglePairsResult result = query.triangle_pairs(closed, pairs);
     return Answer{result.triangle_pairs, result.sphere_tests};
   });

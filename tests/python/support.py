@@ -11,7 +11,7 @@ try:
     import numpy as np
 except ImportError:
     print("numpy is missing: scripts/setup.sh --python")
-    sys.exit(77)
+    sys.exit(1 if os.environ.get("IST_REQUIRE_ALL") == "1" else 77)
 
 import ist
 

@@ -50,6 +50,14 @@ class Refusals(unittest.TestCase):
         said = self.refused(*COMPILER, "-DCMAKE_SYSTEM_NAME=FreeBSD", "-DCMAKE_SYSTEM_PROCESSOR=x86_64")
         self.assertIn("was asked to build for x86_64 FreeBSD", said)
 
+    def test_pointers_of_32_bits(self):
+        said = self.refused(*COMPILER, "-DCMAKE_CXX_COMPILER_FORCED=1", "-DCMAKE_SIZEOF_VOID_P=4")
+        self.assertIn("was asked to build for x86_64 Linux with pointers of 4 bytes (8 are needed)", said)
+
+    def test_tests_on_another_processor(self):
+        said = self.refused(*COMPILER, "-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64", "-DIST_TESTS=ON")
+        self.assertIn("The tests run on x86-64, and CMAKE_SYSTEM_PROCESSOR is aarch64: set IST_TESTS=OFF and IST_GOLDEN=ON", said)
+
     def test_an_old_compiler(self):
         said = self.refused(*COMPILER, "-DCMAKE_CXX_COMPILER_FORCED=1", "-DCMAKE_SIZEOF_VOID_P=8",
                             "-DCMAKE_CXX_COMPILER_ID_RUN=1", "-DCMAKE_CXX_COMPILER_ID=GNU", "-DCMAKE_CXX_COMPILER_VERSION=11.4.0")
