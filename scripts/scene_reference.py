@@ -60,6 +60,9 @@ def written(page, keys):
             table = "body." if "fixed" in names else f"{names[0]}." if names else ""
         elif found := re.match(r"\| `([\w.]+)` \| (.*?) \|", line):
             path = table + found[1]
+            if not lines[at - 1].startswith("|"):
+                wrong.append(f"line {at + 1}: the row of {path} has no table above it")
+                continue
             if path not in keys:
                 wrong.append(f"line {at + 1}: no reader asks for {path}")
                 continue

@@ -258,6 +258,36 @@ release = "piece"
   EXPECT_EQ(lines[32], R"({"tick":30,"release":"piece","status":"done"})");
   ist_well(run(scene, {"--replay", first, "--record", again}));
   EXPECT_TRUE(without_times(file_content(again)) == without_times(file_content(first)));
+
+  // Where a deadline ended the query of a change, its replay ends too.
+  const std::string late = write("late.jsonl", replaced(file_content(first), lines[11],
+                                                        replaced(lines[11], "done", "unfinished")));
+  ist_well(run(scene, {"--replay", late, "--record", again}));
+  EXPECT_EQ(lines_of(file_content(again))[11],
+            R"({"tick":10,"attach":"piece","status":"unfinished"})");
+  const std::string none =
+      write("none.jsonl", replaced(file_content(first), ",\"status\":\"done\"}", "}"));
+  const CommandResult refused = ist(run(scene, {"--replay", none}));
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(says(refused.err, "none.jsonl:12: a change without a text 'status'")) << refused.err;
+}
+
+TEST_F(RunRecord, ReplayRefusesAnotherScript) {
+  const std::string begin = "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.05,0,0,";
+  write("rail.csv", begin + "0.5,1,0,0,0\n");
+  const std::string scene = write("rail.toml", replaced(file_content(shipped("press")), "[fixed]\n",
+                                                        "[fixed]\nscript = \"rail.csv\"\n"));
+  const std::string file = path("ticks.jsonl");
+  ist_well(run(scene, {"--unpaced", "--seconds", "0.01", "--record", file}));
+  const auto header = nlohmann::json::parse(lines_of(file_content(file))[0]);
+  EXPECT_EQ(header["bodies"][0]["script"], "rail.csv");
+  EXPECT_TRUE(header["bodies"][1]["script"].is_null());
+  ist_well(run(scene, {"--replay", file}));
+  write("rail.csv", begin + "0.4,1,0,0,0\n");
+  const CommandResult result = ist(run(scene, {"--replay", file}));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(says(result.err, ":1: the script of 'fixed', \"rail.csv\", is not the one"))
+      << result.err;
 }
 
 TEST_F(RunRecord, AFullDiskEndsTheRun) {

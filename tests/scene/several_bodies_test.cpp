@@ -192,6 +192,12 @@ TEST_F(SeveralBodies, WithWrongChangesAreRefused) {
   expect_refused("release = \"piece\"", "carry = \"piece\"", 41, "has no 'attach'", "give");
 }
 
+// Nothing would tell whether the body that the hand takes is free.
+TEST_F(SeveralBodies, ForTheHandNeedContacts) {
+  expect_refused("[effects.contact]", "[effects.gravity]\nmass = 0.1", 13,
+                 "whether anything touches piece is not known", "[effects.contact]");
+}
+
 TEST_F(SeveralBodies, ThatAreNotFreeNameThePair) {
   expect_refused("translation = [0, 10, 8]", "translation = [0, 2, 8]", 20,
                  "piece and tool intersect", "open = ");
@@ -213,6 +219,11 @@ TEST_F(SeveralBodies, MayFollowAScript) {
       replaced(kBodies, "name = \"far\"\n", "name = \"far\"\nscript = \"rail.csv\"\n");
   const BuiltScene scene = built(text);
   EXPECT_TRUE(note_of(scene, "contact points, far – tool").built) << "it may come near";
+  const auto taken = error_of(
+      [&] { static_cast<void>(built(replaced(text, "attach = \"piece\"", "attach = \"far\""))); });
+  ASSERT_TRUE(taken);
+  EXPECT_NE(std::string(taken->what()).find(":41: far follows a script"), std::string::npos)
+      << taken->what();
   for (int i = 0; i < 250; ++i) {
     static_cast<void>(scene.simulation->tick(scene.device->read()));
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "cli/commit.h"
 #include "cli/source_file.h"
@@ -15,17 +16,25 @@ namespace {
 // 1 had no header.
 constexpr int kFormat = 2;
 
+void add_file(nlohmann::ordered_json& line, const char* name, const char* hash,
+              const std::filesystem::path& file) {
+  const MeshSource source = source_of(file);
+  line[name] = source.name;
+  if (source.hash != 0) line[hash] = fmt::format("{:016x}", source.hash);
+}
+
 nlohmann::ordered_json json_of_body(const SceneBody& body, const Simulation& simulation,
                                     std::size_t number, bool held) {
   nlohmann::ordered_json line{{"name", std::string(simulation.body_name(number))},
                               {"file", nullptr},
                               {"hash", nullptr},
+                              {"script", nullptr},
+                              {"script_hash", nullptr},
                               {"held", held}};
   if (const auto* file = std::get_if<std::filesystem::path>(&body.source)) {
-    const MeshSource source = source_of(*file);
-    line["file"] = source.name;
-    if (source.hash != 0) line["hash"] = fmt::format("{:016x}", source.hash);
+    add_file(line, "file", "hash", *file);
   }
+  if (!body.script_file.empty()) add_file(line, "script", "script_hash", body.script_file);
   return line;
 }
 
@@ -90,11 +99,14 @@ void RecordingHeader::check(const nlohmann::json& recorded,
   for (std::size_t i = 0; i < bodies->size(); ++i) {
     const auto& body = line_.at("bodies")[i];
     const nlohmann::json& then = (*bodies)[i];
-    const auto hash = then.is_object() ? then.find("hash") : then.end();
-    if (hash != then.end() && *hash == nlohmann::json(body.at("hash"))) continue;
-    refuse(file,
-           fmt::format("the file of '{}', {}, is not the one that was recorded: give that one",
-                       body.at("name").get<std::string>(), body.at("file").dump()));
+    for (const auto& [name, hash, what] :
+         {std::tuple("file", "hash", "file"), std::tuple("script", "script_hash", "script")}) {
+      if (then.is_object() && then.contains(hash) && then.at(hash) == nlohmann::json(body.at(hash)))
+        continue;
+      refuse(file,
+             fmt::format("the {} of '{}', {}, is not the one that was recorded: give that one",
+                         what, body.at("name").get<std::string>(), body.at(name).dump()));
+    }
   }
 }
 

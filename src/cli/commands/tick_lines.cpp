@@ -126,16 +126,24 @@ std::optional<std::string> TickReader::next_line(const std::atomic<bool>& stop) 
 }
 
 std::optional<RecordedTick> TickReader::next(const std::atomic<bool>& stop) {
+  RecordedTick tick{};
   nlohmann::json line;
-  do {
+  for (;;) {
     const std::optional<std::string> text = next_line(stop);
     if (!text) return std::nullopt;
     line = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
     if (!line.is_object()) refuse("not a JSON object");
-    if (line_ == 1) header_.check(line, lines_.path());
-    // The scene plans its changes itself.
-  } while (line_ == 1 || line.contains("attach") || line.contains("release"));
-  RecordedTick tick{};
+    if (line_ == 1) {
+      header_.check(line, lines_.path());
+    } else if (line.contains("attach") || line.contains("release")) {
+      // The scene plans its changes itself; a deadline may have ended the query of one.
+      const auto status = line.find("status");
+      if (status == line.end() || !status->is_string()) refuse("a change without a text 'status'");
+      if (*status == to_string(ChangeStatus::kUnfinished)) tick.budget.change.tests = 0;
+    } else {
+      break;
+    }
+  }
   const auto value = [&](const char* key) -> const nlohmann::json& {
     const auto found = line.find(key);
     if (found == line.end()) refuse(fmt::format("no key '{}'", key));

@@ -53,12 +53,12 @@ Budget ServoCallback::budget_from(Clock::time_point begin) const noexcept {
 
 ChangeStatus ServoCallback::attach(std::size_t body) noexcept {
   const Budget budget = budget_from(Clock::now());
-  return simulation_.attach(body, {budget, budget});
+  return simulation_.attach(body, {budget, budget, budget});
 }
 
 ChangeStatus ServoCallback::release(std::size_t body) noexcept {
   const Budget budget = budget_from(Clock::now());
-  return simulation_.release(body, {budget, budget});
+  return simulation_.release(body, {budget, budget, budget});
 }
 
 ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<double, 3> force,
@@ -70,7 +70,7 @@ ServoTick ServoCallback::on_tick(std::span<const double, 16> pose, std::span<dou
   device.translation() *= options_.unit;
 
   const Budget budget = budget_from(begin);
-  const Tick tick = simulation_.tick(Placement::from(device), {budget, budget});
+  const Tick tick = simulation_.tick(Placement::from(device), {budget, budget, budget});
   std::copy_n(tick.wrench.data(), 3, force.begin());
   std::copy_n(tick.wrench.data() + 3, 3, torque.begin());
 

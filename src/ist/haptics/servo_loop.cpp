@@ -65,7 +65,7 @@ class Loop {
   [[nodiscard]] TickBudget budget() noexcept {
     TickBudget budget;
     if (options_.paced) {
-      budget.contacts.deadline = budget.proximity.deadline =
+      budget.contacts.deadline = budget.proximity.deadline = budget.change.deadline =
           clock_.release() +
           nanoseconds(static_cast<nanoseconds::rep>(options_.query_time_fraction *
                                                     static_cast<double>(period_.count())));

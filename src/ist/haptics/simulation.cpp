@@ -60,9 +60,11 @@ struct detail::SimulationState {
   explicit SimulationState(SimulationParts parts);
 
   [[nodiscard]] bool query_contacts(const TickBudget& budget, Tick& tick) noexcept;
-  [[nodiscard]] std::optional<HandChange> next_change(const TickBudget& budget) noexcept;
-  [[nodiscard]] ChangeStatus change(std::size_t body, bool attach,
-                                    const TickBudget& budget) noexcept;
+  [[nodiscard]] std::optional<HandChange> next_change(const Budget& budget) noexcept;
+  [[nodiscard]] ChangeStatus allowed(std::size_t body, bool attach) const noexcept;
+  [[nodiscard]] ChangeStatus change(std::size_t body, bool attach, const Budget& budget) noexcept;
+  [[nodiscard]] ChangeStatus change_now(std::size_t body, bool attach,
+                                        const TickBudget& budget) noexcept;
   [[nodiscard]] std::optional<Vector6> move(const VirtualCoupling::Stretch& stretch) noexcept;
   void go_back() noexcept;
   void set_time(double time) noexcept;
@@ -160,24 +162,31 @@ void detail::SimulationState::go_back() noexcept {
   set_time(last_complete.time);
 }
 
-// Attaches or releases a body, after the contacts at the tool's pose are complete, and finds those
-// of the bodies' new pairs. Where that does not come to an end, or an attached body would touch,
-// all is as it was.
-ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
-                                             const TickBudget& budget) noexcept {
+// Whether a body may be attached or released, as to the bodies alone.
+ChangeStatus detail::SimulationState::allowed(std::size_t body, bool attach) const noexcept {
   if (body >= bodies.size()) return ChangeStatus::kUnknownBody;
   if (!bodies.is_attachable(body)) return ChangeStatus::kFixedForGood;
   if (bodies.is_held(body) == attach) return ChangeStatus::kAlreadyThere;
-  Tick before;
-  if (!query_contacts(budget, before)) return ChangeStatus::kUnfinished;
+  return ChangeStatus::kDone;
+}
+
+// Attaches or releases a body where the contacts at the tool's pose are known, and finds those of
+// the bodies' new pairs. Where that does not come to an end, or an attached body would touch, all
+// is as it was.
+ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
+                                             const Budget& budget) noexcept {
+  if (const ChangeStatus status = allowed(body, attach); status != ChangeStatus::kDone) {
+    return status;
+  }
   if (attach && last_complete.contacts.count > 0) return ChangeStatus::kTouching;
   attach ? bodies.attach(body, tool_pose) : bodies.release(body, tool_pose);
   place();
-  const bool known =
-      is_complete(contacts.find(bodies, tool_pose, budget.contacts, candidate.contacts));
+  const bool known = is_complete(contacts.find(bodies, tool_pose, budget, candidate.contacts));
   const bool touches = attach && candidate.contacts.count > 0;
   if (known && !touches) {
+    if (bodies.has_scripts()) contacts.note_drift(bodies, tool_pose, candidate.contacts);
     std::swap(last_complete.contacts, candidate.contacts);
+    last_complete.proximity.clear();  // its points are of other pairs; the next tick has new ones
     tool.set_radius(bodies.held_radius());
     return ChangeStatus::kDone;
   }
@@ -186,8 +195,19 @@ ChangeStatus detail::SimulationState::change(std::size_t body, bool attach,
   return known ? ChangeStatus::kTouching : ChangeStatus::kUnfinished;
 }
 
-// Makes the change that is due, one a tick.
-std::optional<HandChange> detail::SimulationState::next_change(const TickBudget& budget) noexcept {
+// The same between ticks: the tool has moved since its last contacts.
+ChangeStatus detail::SimulationState::change_now(std::size_t body, bool attach,
+                                                 const TickBudget& budget) noexcept {
+  if (const ChangeStatus status = allowed(body, attach); status != ChangeStatus::kDone) {
+    return status;
+  }
+  Tick now;
+  if (!query_contacts(budget, now)) return ChangeStatus::kUnfinished;
+  return change(body, attach, budget.change);
+}
+
+// Makes the change that is due, one a tick, in a tick whose contacts are known.
+std::optional<HandChange> detail::SimulationState::next_change(const Budget& budget) noexcept {
   if (tried.size() == changes.size()) return std::nullopt;
   const PlannedChange& next = changes[tried.size()];
   if (!(static_cast<double>(ticks) * dt >= next.time)) return std::nullopt;
@@ -220,10 +240,9 @@ Tick Simulation::tick(const std::optional<Placement>& device, const TickBudget& 
   Tick tick;
   tick.device = device.value_or(state.device.value_or(state.tool_pose));
   const std::uint64_t faults = state.limiter.faults();
-  tick.change = state.next_change(budget);
-  ++state.ticks;
   tick.held = !state.query_contacts(budget, tick);
-  if (tick.held) state.go_back();
+  tick.held ? state.go_back() : void(tick.change = state.next_change(budget.change));
+  ++state.ticks;
   tick.leaf_pairs = state.last_complete.contacts.count;
 
   if (!device) {
@@ -255,11 +274,11 @@ std::size_t Simulation::bytes() const noexcept {
 
 ChangeStatus Simulation::attach(std::size_t body, const TickBudget& budget) noexcept {
   const ScopedFloatEnvironment environment;
-  return state_->change(body, /*attach=*/true, budget);
+  return state_->change_now(body, /*attach=*/true, budget);
 }
 ChangeStatus Simulation::release(std::size_t body, const TickBudget& budget) noexcept {
   const ScopedFloatEnvironment environment;
-  return state_->change(body, /*attach=*/false, budget);
+  return state_->change_now(body, /*attach=*/false, budget);
 }
 
 std::span<const HandChange> Simulation::changes() const noexcept { return state_->tried; }

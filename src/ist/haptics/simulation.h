@@ -41,7 +41,8 @@ struct SafetySettings {
 /// The budgets of a tick's queries, which run one after the other.
 struct TickBudget {
   Budget contacts = {},  ///< of the contacts
-      proximity = {};    ///< of the proximity points
+      proximity = {},    ///< of the proximity points
+      change = {};       ///< of the contacts of the bodies as a change leaves them
 };
 
 /// Whether a body was attached or released, or why not.

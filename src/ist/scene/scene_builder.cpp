@@ -46,6 +46,7 @@ class Builder {
  private:
   void choose_effects();
   void warn_of_unknown_outside(const LoadedBody& body);
+  void refuse_to_take(bool outside_is_known) const;
   void place_bodies();
   void place_tool();
   void build_simulation();
@@ -104,6 +105,24 @@ void Builder::choose_effects() {
     if (outside_is_known || !needs_outside(effect->needs())) effects_.push_back(std::move(effect));
   }
   needs_ = needs_of(effects_);
+  if (!needs_.contacts()) refuse_to_take(outside_is_known);
+}
+
+// Without contacts nothing would tell whether a body that the hand takes is free.
+void Builder::refuse_to_take(bool outside_is_known) const {
+  const auto refuse = [&](const char* key, const std::vector<SceneBody>& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (!bodies[i].attachable) continue;
+      fail_at(scene_, path_of_body(key, i, bodies.size()) + ".attachable",
+              fmt::format("whether anything touches {} is not known: {}", bodies[i].name,
+                          outside_is_known
+                              ? "add the table [effects.contact]"
+                              : "give closed meshes, or set trust_normals = true where the "
+                                "normals of one that is open point outward"));
+    }
+  };
+  refuse("fixed", scene_.fixed);
+  refuse("held", scene_.held);
 }
 
 // Puts the bodies at their places, and bounds the tool's step by the least voxel, so that nothing

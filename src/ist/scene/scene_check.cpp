@@ -82,12 +82,13 @@ void check_bodies(const Check& check, const Scene& scene) {
 // Follows who holds what from change to change.
 void check_changes(const Scene& scene) {
   std::map<std::string, bool> held;
-  std::set<std::string> attachable;
+  std::set<std::string> attachable, scripted;
   for (const SceneBody& body : scene.fixed) held[body.name] = false;
   for (const SceneBody& body : scene.held) held[body.name] = true;
   for (const auto* bodies : {&scene.fixed, &scene.held}) {
     for (const SceneBody& body : *bodies) {
       if (body.attachable) attachable.insert(body.name);
+      if (!body.script.empty()) scripted.insert(body.name);
     }
   }
   double before = 0;
@@ -100,6 +101,12 @@ void check_changes(const Scene& scene) {
       fail_at(scene, key,
               fmt::format("there is no body called {}: the bodies are {}", change.body,
                           fmt::join(names_of(held), ", ")));
+    }
+    if (scripted.contains(change.body)) {
+      fail_at(
+          scene, key,
+          fmt::format("{} follows a script, so the hand cannot take it: take out one of the two",
+                      change.body));
     }
     if (!attachable.contains(change.body)) {
       fail_at(
