@@ -26,6 +26,8 @@ from report.figures import here, machine_state, stamp  # noqa: E402  after its f
 from report.runner import fixed_loop  # noqa: E402
 
 CALLS, POSES, ROUNDS = 4000, 20_000, 7
+# What was promised: a call takes so much more, µs, and rows reach so much of C's poses a second.
+MOST_MORE, LEAST_SHARE = 3, 0.95
 # The lower jaw far below, where a call is nearly nothing, and about to touch.
 HEIGHTS = {-500.0: "far apart", -1.5: "near"}
 
@@ -78,16 +80,26 @@ def main():
         rounds = [(in_c(program, trees), in_python(query)) for _ in range(ROUNDS)]
         context |= {"load_after": os.getloadavg()[0], "loop_after": fixed_loop()}
     lines = ["| call with `out=` | bodies | C, µs | Python, µs | more, µs |", "|---|---|---|---|---|"]
+    dearest = 0
     for height, name in itertools.product(HEIGHTS, ("intersects", "leaf_pairs", "contacts")):
         key = f"{name}_at_{height:.1f}"
         c, python = (statistics.median(each[i][key] for each in rounds) / 1e3 for i in (0, 1))
         more = statistics.median(each[1][key] - each[0][key] for each in rounds) / 1e3
-        lines.append(f"| `{name}` | {HEIGHTS[height]} | {c:.2f} | {python:.2f} | {more:.2f} |")
+        lines.append(f"| `{name}` | {HEIGHTS[height]} | {c:.2f} | {python:.2f} | {bold(more, more > MOST_MORE, '.2f')} |")
+        dearest = max(dearest, more)
     c, python = (statistics.median(each[i]["rows"] for each in rounds) for i in (0, 1))
     share = statistics.median(each[1]["rows"] / each[0]["rows"] for each in rounds)
-    lines += ["", f"`rows` on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: {100 * share:.0f} %.", ""]
+    lines += ["", f"A call was to take {MOST_MORE} µs more than in C at most. "
+              + (f"**Up to {dearest:.1f} µs more were measured.**" if dearest > MOST_MORE else "It does."), "",
+              f"`rows` on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: "
+              f"{bold(100 * share, share < LEAST_SHARE, '.0f')} % (promised: {100 * LEAST_SHARE:.0f}).", ""]
     lines.append(stamp(*here(), "calls.py", machine_state(context)))
     show("\n".join(lines) + "\n")
+
+
+def bold(value, is_missed, digits):
+    """A number, bold where it misses what was promised."""
+    return f"**{value:{digits}}**" if is_missed else f"{value:{digits}}"
 
 
 def show(text):
