@@ -9,6 +9,7 @@
 #include "ist/measure/occlusion.h"
 #include "ist/measure/penetration.h"
 #include "ist/models/models.h"
+#include "listener.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -209,6 +210,26 @@ TEST_F(CMeasure, OcclusionIsThatOfCppInArraysOfTheCaller) {
   EXPECT_EQ(name(ist_query_occlusion(query_, pose.data(), nullptr, nullptr, nullptr, nullptr,
                                      nullptr, &moving)),
             "null-argument");
+}
+
+TEST_F(CMeasure, EndsMidwayToo) {
+  const std::vector<double> points(3 * 200'000, 0.5);
+  std::vector<ist_surface_distance> found(200'000);
+  expect_ends_midway([&](const ist_progress* progress) {
+    found[0].triangle = 77;
+    return ist_tree_signed_distance(fixed_, points.data(), found.size(), 9, progress, found.data());
+  });
+  EXPECT_EQ(found[0].triangle, 77U);
+
+  const auto pose = down_by(0, 0, 5.7);
+  auto options = sized<ist_occlusion_options>();
+  options.longest_edge = 0.03;
+  auto fixed = sized<ist_occlusion>(), moving = sized<ist_occlusion>();
+  expect_ends_midway([&](const ist_progress* progress) {
+    return ist_query_occlusion(query_, pose.data(), &options, progress, nullptr, nullptr, &fixed,
+                               &moving);
+  });
+  EXPECT_EQ(fixed.vertices, 0U);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "ist/base/parallel.h"
 #include "ist/capi/ist_measure.h"
 #include "ist/measure/pose_rows.h"
+#include "listener.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -217,6 +218,19 @@ TEST_F(CRows, EndWhereTheCallerSaysSoAndLeaveTheArray) {
   EXPECT_EQ(name(ist_query_rows(query_, at.data(), 50, &options_, found.data())), "ok");
   EXPECT_GE(caller.reports, 6);
   EXPECT_NE(found[0].leaf_pairs, 77U);
+}
+
+TEST_F(CRows, EndMidwayToo) {
+  const std::vector<double> at = poses(1500);
+  std::vector<ist_row> found(1500), before;
+  expect_ends_midway([&](const ist_progress* progress) {
+    options_.progress = progress;
+    before.assign(1500, {});
+    before[0].leaf_pairs = before[1499].leaf_pairs = 77;
+    found = before;
+    return ist_query_rows(query_, at.data(), 1500, &options_, found.data());
+  });
+  EXPECT_EQ(std::memcmp(found.data(), before.data(), found.size() * sizeof(ist_row)), 0);
 }
 
 TEST_F(CRows, OfBadOptionsAreRefused) {

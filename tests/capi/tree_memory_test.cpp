@@ -6,12 +6,12 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <thread>
 #include <vector>
 
 #include "c_bodies.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
+#include "listener.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
 
@@ -123,23 +123,6 @@ TEST(CJaw, IsThatOfCpp) {
   EXPECT_EQ(name(ist_jaw_create(2, 1, &mesh)), "argument-invalid");
   EXPECT_EQ(mesh, nullptr);
 }
-
-// Counts the reports of a call, and ends it at one of them.
-struct Listener {
-  int stop_at = 0;  // 0: never
-  int reports = 0;
-  double last = 0;
-  std::thread::id thread = std::this_thread::get_id();
-
-  static std::int32_t hear(void* user, double part) {
-    auto& self = *static_cast<Listener*>(user);
-    EXPECT_EQ(std::this_thread::get_id(), self.thread);
-    EXPECT_GE(part, 0);
-    EXPECT_LE(part, 1);
-    self.last = part;
-    return ++self.reports == self.stop_at ? 1 : 0;
-  }
-};
 
 TEST(CBuild, IsFollowedOnTheCallersThreadAndEndsWhereItSaysSo) {
   ist_mesh* mesh = nullptr;

@@ -290,6 +290,7 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
   is_null("bytes", ist_world_bytes_needed(world_, nullptr, 0, nullptr));
   is_null("pairs", ist_world_bytes_needed(world_, nullptr, 2, &bytes));
   is_null("pairs", ist_world_prepare(world_, nullptr, 2));
+  is_null("pairs", ist_world_prepare_with_progress(world_, nullptr, 2, nullptr));
   is_null("info", ist_world_get_info(world_, nullptr));
   is_null("pose", ist_world_set_pose(world_, 0, nullptr));
   is_null("pose", ist_world_get_pose(world_, 0, 1, nullptr));
@@ -308,6 +309,7 @@ TEST_F(CWorld, TellsOfPointersAndHandles) {
       [&](ist_world* w) { return ist_world_ignore(w, 0, 1); },
       [&](ist_world* w) { return ist_world_bytes_needed(w, nullptr, 0, &bytes); },
       [&](ist_world* w) { return ist_world_prepare(w, nullptr, 0); },
+      [&](ist_world* w) { return ist_world_prepare_with_progress(w, nullptr, 0, nullptr); },
       [&](ist_world* w) { return ist_world_get_info(w, &info); },
       [&](ist_world* w) { return ist_world_set_pose(w, 0, poses_[0].data()); },
       [&](ist_world* w) { return ist_world_get_pose(w, 0, 1, pose); },

@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 import guards
+import names
 import pages
 import snippets
 
@@ -99,6 +100,13 @@ class Snippets(unittest.TestCase):
         self.assertEqual(self.reads(note + block("cpp", with_stub))["compiled"], 1)
         self.refuses(note + block("cpp", with_stub.replace("setLocalPos", "setPlace")), "line 2", "setPlace")
         self.refuses(note + block("c", with_stub), "line 2", "only cpp")
+
+
+class Names(unittest.TestCase):
+    def test_names_that_are_not_there(self):
+        known = names.known()
+        self.assertEqual(names.unknown("a\nb `IST_ERROR_HANDLE` and IST_OK\n", known), [(2, "IST_ERROR_HANDLE")])
+        self.assertEqual(names.unknown("IST_OK, IST_MOST_BODIES, IST_API, -D IST_WITH_TBB=OFF, IST_LIBRARY=a.so\n", known), [])
 
 
 class Guards(unittest.TestCase):

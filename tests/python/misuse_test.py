@@ -6,7 +6,7 @@ import pickle
 import unittest
 
 import numpy as np
-from support import BOX_FACES, box, folder, pose_of
+from support import BOX_FACES, Refusals, box, folder, pose_of, unaligned
 
 import ist
 
@@ -14,18 +14,7 @@ VERTICES, FACES = box([0, 0, 0], [2, 2, 2])
 EYE = np.eye(4)
 
 
-class Misuse(unittest.TestCase):
-    def refuses(self, kind, words, call, *arguments, **options):
-        with self.assertRaises(kind) as raised:
-            call(*arguments, **options)
-        text = str(raised.exception)
-        for word in [words] if isinstance(words, str) else words:
-            self.assertIn(word, text)
-        if isinstance(raised.exception, ist.Error):
-            self.assertGreater(raised.exception.code, 0)
-            self.assertNotIn(raised.exception.name, ("", "unknown"))
-        return raised.exception
-
+class Misuse(Refusals):
     def setUp(self):
         self.tree = ist.build((VERTICES, FACES), 0.5)
         self.query = ist.Query(self.tree, self.tree)
@@ -158,7 +147,8 @@ class Trees(Misuse):
 class Queries(Misuse):
     def test_poses(self):
         verbs = [self.query.intersects, self.query.leaf_pairs, self.query.contacts, self.query.distance, self.query.triangle_pairs,
-                 self.query.occlusion, lambda pose: self.query.penetration(pose, 0.1),
+                 self.query.occlusion, lambda pose: ist.occlusion(self.tree, self.tree, pose),
+                 lambda pose: ist.distance_map(self.tree, self.tree, pose), lambda pose: self.query.penetration(pose, 0.1),
                  lambda pose: self.query.first_contact(pose, EYE, 0.1), lambda pose: self.query.first_contact(EYE, pose, 0.1)]
         mirrored, scaled, nan, row = EYE.copy(), 2 * EYE, EYE.copy(), EYE.copy()
         mirrored[0, 0], nan[1, 3], row[3, 0] = -1, np.nan, 1
@@ -177,6 +167,20 @@ class Queries(Misuse):
         for other in (pose.tolist(), np.asfortranarray(pose), pose.astype(">f8"), np.stack([pose, pose])[1], pose.astype(object)):
             self.assertEqual(self.query.distance(other, 1e-6)[:2], expected[:2])
         self.assertIs(self.query.intersects(np.eye(4, dtype=int)), True)
+
+    def test_arrays_that_are_not_aligned_are_copied(self):
+        from ist._arrays import floats, indices
+
+        pose = pose_of([0, 0, 1], 0.5, [1.9, 0.2, 0.1])
+        points, faces = unaligned(VERTICES), unaligned(FACES.astype(np.uint32))
+        self.assertFalse(points.flags.aligned or faces.flags.aligned)
+        for taken, given in ((floats(points, (None, 3), "points"), points), (indices(faces, "faces"), faces)):
+            self.assertTrue(taken.flags.aligned and taken.flags.c_contiguous)
+            np.testing.assert_array_equal(taken, given)
+        self.assertIs(floats(VERTICES, (None, 3), "points"), VERTICES)
+        self.assertEqual(self.query.distance(unaligned(pose), 1e-6)[:2], self.query.distance(pose, 1e-6)[:2])
+        for vertices in (points, unaligned(VERTICES.astype(np.float32))):
+            self.assertEqual(ist.build((vertices, faces), 0.5).to_bytes(), self.tree.to_bytes())
 
     def test_a_question_asked_twice_has_one_time_limit(self):
         from ist._arrays import budget_of
@@ -237,7 +241,10 @@ class Queries(Misuse):
         self.refuses(ist.InputError, "workers", make, tree, tree, workers=3)
         self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=0)
         self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=5000)
-        self.refuses(ist.InputError, "push_distance", make, tree, tree, push_distance=3)
+        for contacts in (-2, 1.5, "many", None):
+            self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=contacts)
+        for push in (3, -1, np.nan, np.inf, "far", None):
+            self.refuses(ist.InputError, "push_distance", make, tree, tree, push_distance=push)
         self.refuses(ist.InputError, "front_pairs", make, tree, tree, front_pairs=-1)
         self.refuses(ist.InputError, "spheres", make, tree, tree, spheres="round")
         self.assertEqual(self.refuses(ist.InputError, "", make, tree, tree, target="abacus").name, "target-missing")
@@ -264,113 +271,14 @@ class Queries(Misuse):
         self.refuses(ist.InputError, "points", ist.signed_distance, self.tree, [[0, 0]])
         self.refuses(ist.InputError, "", ist.signed_distance, self.tree, [[0, 0, np.nan]])
         self.refuses(ist.InputError, "reach", ist.signed_distance, self.tree, [[0, 0, 0]], reach=-1)
+        for reach in (-1, 0, np.nan, "far", None):
+            self.refuses(ist.InputError, "reach", ist.distance_map, self.tree, self.tree, reach=reach)
+        corners, wrong = len(VERTICES), np.empty(len(VERTICES), ist.SURFACE_DISTANCE)
+        wrong.setflags(write=False)
+        for out in (np.empty(corners + 1, ist.SURFACE_DISTANCE), np.empty(corners, ist.LEAF_PAIR), [1, 2], "text", wrong,
+                    np.empty(2 * corners, ist.SURFACE_DISTANCE)[::2]):
+            self.refuses(ist.InputError, "out", ist.distance_map, self.tree, self.tree, out=out)
         self.refuses(TypeError, "last", self.query.penetration, EYE, 0.1, last=(1, 2))
-
-
-class Servos(Misuse):
-    SCENE = """unit = "mm"
-[fixed]
-shape = "box"
-size = [10, 10, 4]
-voxel_size = 0.5
-[held]
-shape = "sphere"
-radius = 2
-voxel_size = 0.5
-translation = [0, 0, 4.5]
-[device]
-kind = "null"
-[effects.contact]
-stiffness = 1000
-"""
-
-    def scene(self, text):
-        name = os.path.join(folder(self), "scene.toml")
-        with open(name, "w", encoding="utf-8") as file:
-            file.write(text)
-        return name
-
-    def test_a_tick_and_its_faults(self):
-        with ist.Servo(self.scene(self.SCENE), sphere_tests=100_000) as servo:
-            start = servo.tool
-            np.testing.assert_allclose(start[:3, :3], np.eye(3), atol=1e-9)
-            deep = start.copy()
-            deep[2, 3] -= 1.5
-            for _ in range(400):
-                felt = servo.tick(deep)
-            self.assertGreater(felt.force[2], 0.05)  # pushed out of the box
-            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty(6))
-            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty((2, 3), np.float32))
-            self.refuses(ist.InputError, "out", servo.tick, deep, out=np.empty((3, 2)).T)
-            self.refuses(ist.InputError, "out", servo.tick, deep, out=[[0, 0, 0], [0, 0, 0]])
-            self.refuses(ist.InputError, "pose", servo.tick, 2 * np.eye(4))
-            self.refuses(ist.InputError, "pose", servo.tick, np.eye(3))
-            self.refuses(ist.InputError, "pose", servo.tick, None)
-            self.assertEqual((servo.faults, servo.ticks), (2, 402))
-            self.assertEqual(servo.tick_seconds, 0.001)
-            self.assertIsInstance(servo.warnings, tuple)
-        self.refuses(ist.FreedError, "freed", servo.tick, start)
-
-    def test_a_tick_fills_what_it_is_given(self):
-        scene, forces = self.scene(self.SCENE), []
-        for out in (None, np.full((2, 3), 7.0)):
-            with ist.Servo(scene, sphere_tests=100_000) as servo:
-                deep = servo.tool.copy()
-                deep[2, 3] -= 1.5
-                before = servo.tick(deep, out=out)
-                for _ in range(399):
-                    felt = servo.tick(deep, out=out)
-                forces.append(np.array(felt))
-                if out is None:
-                    self.assertFalse(np.shares_memory(before.force, felt.force))
-                    continue
-                self.assertTrue(np.shares_memory(felt.force, out) and np.shares_memory(felt.torque, out))
-                self.assertEqual(out.tobytes(), forces[0].tobytes())
-                with self.assertRaises(ist.InputError):
-                    servo.tick(None, out=out)
-                self.assertEqual(out.tolist(), np.zeros((2, 3)).tolist())
-        self.assertGreater(forces[0][0, 2], 0.05)
-
-    BODIES = SCENE.replace("[held]", """[[fixed]]
-name = "piece"
-shape = "box"
-size = [2, 2, 2]
-voxel_size = 0.5
-translation = [0, 4, 5]
-attachable = true
-[held]
-name = "tool\"""").replace("[fixed]\nshape", "[[fixed]]\nname = \"plate\"\nshape")
-
-    def test_a_hand_takes_and_releases_bodies(self):
-        with ist.Servo(self.scene(self.BODIES), sphere_tests=100_000) as servo:
-            self.assertEqual([(body.name, body.held) for body in servo.bodies], [("plate", False), ("piece", False), ("tool", True)])
-            np.testing.assert_allclose(servo.bodies[1].pose[:3, 3], [0, 4, 5], atol=1e-9)
-            up = servo.tool.copy()
-            up[2, 3] += 1
-            for _ in range(100):
-                servo.tick(up)
-            servo.attach("piece")
-            self.assertTrue(servo.bodies[1].held)
-            self.refuses(ist.ChangeRefused, "there already", servo.attach, "piece")
-            self.refuses(ist.ChangeRefused, "attachable", servo.attach, "plate")
-            self.refuses(ist.InputError, "no body called peace", servo.attach, "peace")
-            self.refuses(ist.InputError, "name of a body", servo.release, 3)
-            up[2, 3] += 0.5
-            for _ in range(400):
-                servo.tick(up)
-            np.testing.assert_allclose(servo.bodies[1].pose[:3, 3], [0, 4, 5.5], atol=1e-3)  # it moved with the tool
-            servo.release("piece")
-            self.refuses(ist.ChangeRefused, "there already", servo.release, "piece")
-            self.assertFalse(servo.bodies[1].held)
-        self.refuses(ist.FreedError, "freed", servo.attach, "piece")
-
-    def test_bad_scenes(self):
-        self.refuses(ist.InputError, "scene.toml:3", ist.Servo, self.scene(self.SCENE.replace('"box"', '"bax"')))
-        self.refuses(ist.FileError, "missing.toml", ist.Servo, "missing.toml")
-        name = self.scene(self.SCENE)
-        self.refuses(ist.InputError, "unit", ist.Servo, name, unit="inch")
-        self.refuses(ist.InputError, "query_time_fraction", ist.Servo, name, query_time_fraction=2)
-        self.refuses(ist.InputError, "sphere_tests", ist.Servo, name, sphere_tests=-5)
 
 
 if __name__ == "__main__":

@@ -67,6 +67,28 @@ class Jaws(unittest.TestCase):
         cls.query = ist.Query(cls.upper, cls.lower)
 
 
+class Refusals(unittest.TestCase):
+    """Asks for an exception, and for words in it."""
+
+    def refuses(self, kind, words, call, *arguments, **options):
+        with self.assertRaises(kind) as raised:
+            call(*arguments, **options)
+        text = str(raised.exception)
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, text)
+        if isinstance(raised.exception, ist.Error):
+            self.assertGreater(raised.exception.code, 0)
+            self.assertNotIn(raised.exception.name, ("", "unknown"))
+        return raised.exception
+
+
+def unaligned(array):
+    """A copy of an array that begins one byte beyond where its numbers may begin."""
+    memory = np.zeros(array.nbytes + 1, np.uint8)
+    memory[1:] = np.frombuffer(array.tobytes(), np.uint8)
+    return memory[1:].view(array.dtype).reshape(array.shape)
+
+
 def command_lines(*arguments):
     """What the command prints as JSON, without its header."""
     done = subprocess.run([os.environ["IST_COMMAND"], *map(str, arguments)], capture_output=True, text=True, check=True)

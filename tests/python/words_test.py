@@ -32,7 +32,7 @@ force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))
 world = ist.World(reach=0.5)
 body: int = world.add(tree, np.eye(4), name="jaw")
-world.prepare([(0, body)])
+world.prepare([(0, body)], progress=lambda part: None)
 found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
 of_first = found.leaf_pairs_of(found.pairs[0])
 least: Optional[float] = world.distance(0.1).upper
@@ -64,9 +64,24 @@ class Words(unittest.TestCase):
                     self.assertTrue(value.__doc__, f"{name}.{member}")
 
     def test_every_docstring_with_a_pose_says_which_way_it_goes(self):
-        for each in (ist.Query, *(getattr(ist.Query, name) for name in ("intersects", "leaf_pairs", "contacts", "distance",
-                     "triangle_pairs", "penetration", "first_contact", "rows", "occlusion"))):
-            self.assertIn("p_fixed = pose @ p_moving", each.__doc__, each)
+        frames = {"Query": "p_fixed = pose @ p_moving", "World": "p_world = pose @ p_body", "Servo": "p_scene = pose @ p_tool",
+                  "occlusion": "p_fixed = pose @ p_moving", "distance_map": "p_other = pose @ p_body"}
+        takers = {}
+        for name in ist.__all__:
+            each = getattr(ist, name)
+            if inspect.isclass(each):
+                takers.update((f"{name}.{member}", value) for member, value in vars(each).items()
+                              if inspect.isfunction(value) and not member.startswith("_"))
+            elif inspect.isfunction(each):
+                takers[name] = each
+        takers = {name: each for name, each in takers.items()
+                  if not {"pose", "poses", "start", "stop"}.isdisjoint(inspect.signature(each).parameters)}
+        self.assertEqual({name.split(".")[0] for name in takers}, set(frames))
+        self.assertGreaterEqual(len(takers), 14)
+        for name, each in takers.items():
+            self.assertIn(frames[name.split(".")[0]], each.__doc__, name)
+        for name in ("Query", "World", "Servo"):
+            self.assertIn(frames[name], getattr(ist, name).__doc__, name)
 
 
 class Stub(unittest.TestCase):

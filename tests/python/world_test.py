@@ -4,7 +4,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import box, pose_of
+from support import Refusals, box, pose_of
 
 import ist
 
@@ -13,7 +13,11 @@ def shift(*by):
     return pose_of([0, 0, 1], 0, by)
 
 
-class Worlds(unittest.TestCase):
+class Ended(Exception):
+    pass
+
+
+class Worlds(Refusals):
     """Three boxes in a row, each in the next, turned; and one far away."""
 
     def setUp(self):
@@ -43,12 +47,51 @@ class Worlds(unittest.TestCase):
             contacts, wanted = self.world.contacts_of(row["b"], row["a"]), query.contacts(pose)
             self.assertEqual(contacts.contacts.tobytes(), wanted.contacts.tobytes())
             self.assertEqual(contacts.sums.tobytes(), wanted.sums.tobytes())
+            self.assertEqual((contacts.complete, contacts.leaf_pairs), (True, wanted.leaf_pairs))
+            self.assertEqual(contacts.sphere_tests, felt.pairs[k]["sphere_tests"])
+            self.assertGreater(contacts.sphere_tests, 0)
             self.assertEqual(felt.pairs[k]["contacts"], len(wanted.contacts))
             distance = query.distance(pose, 0.01)
             self.assertLessEqual(apart.pairs[k]["distance_lower"], distance.upper)
             self.assertGreaterEqual(apart.pairs[k]["distance_upper"], distance.lower)
         self.assertEqual(touch.pairs["answer"].tolist(), [ist.YES, ist.NO, ist.YES])
         self.assertGreater(leaves.pairs["found"].sum(), 100)
+
+    def test_contacts_that_a_limit_ended_say_so(self):
+        self.world.prepare()
+        whole, all_of = self.world.contacts().pairs, self.world.contacts_of(0, 1)
+        for out in (None, np.zeros(3, ist.WORLD_PAIR), np.zeros(1, ist.WORLD_PAIR)):
+            row = self.world.contacts(tests=int(whole["sphere_tests"][0]) // 2, out=out).pairs[0]
+            found = self.world.contacts_of(1, 0)
+            self.assertEqual((row["complete"], found.complete), (0, False))
+            self.assertEqual((row["sphere_tests"], row["found"]), (found.sphere_tests, found.leaf_pairs))
+            self.assertLess(found.leaf_pairs, all_of.leaf_pairs)
+            self.assertLess(found.area, all_of.area)
+        # Also of a pair that `out` had no room for, and whatever the caller does to its rows.
+        out = np.zeros(1, ist.WORLD_PAIR)
+        self.world.contacts(tests=int(whole["sphere_tests"].sum()) - 2, out=out)
+        out["complete"], out["sphere_tests"] = 0, 7
+        self.assertTrue(self.world.contacts_of(0, 1).complete)
+        self.assertEqual(self.world.contacts_of(0, 1).sphere_tests, whole["sphere_tests"][0])
+        self.assertFalse(self.world.contacts_of(1, 2).complete)
+
+    def test_a_preparation_that_is_ended_leaves_the_world(self):
+        def ends(part):
+            raise Ended(part)
+
+        self.world.prepare([(0, 1)])
+        self.world.contacts()
+        before, contacts = self.world.nbytes, self.world.contacts_of(0, 1)
+        for ended in (ends, lambda part: self.world.near_pairs()):  # of which the second gets a BusyError
+            with self.assertRaises(Ended if ended is ends else ist.BusyError):
+                self.world.prepare(progress=ended)
+            self.assertEqual(self.world.nbytes, before)
+            self.assertEqual(self.world.contacts_of(0, 1).contacts.tobytes(), contacts.contacts.tobytes())
+            self.assertEqual(self.world.intersects().pairs["status"].tolist(), [0, ist.NOT_PREPARED, ist.NOT_PREPARED])
+        parts = []
+        self.world.prepare(progress=parts.append)
+        self.assertEqual(parts[0], 0)
+        self.assertEqual(self.world.intersects().pairs["status"].tolist(), [0, 0, 0])
 
     def test_least_distance(self):
         self.world.prepare()
@@ -118,10 +161,7 @@ class Worlds(unittest.TestCase):
 
     def test_misuse(self):
         def refuses(words, call, *arguments, **options):
-            with self.assertRaises(ist.InputError) as raised:
-                call(*arguments, **options)
-            for word in words:
-                self.assertIn(word, str(raised.exception))
+            self.refuses(ist.InputError, words, call, *arguments, **options)
 
         refuses(["prepared", "ist_world_prepare"], self.world.intersects)
         with self.assertRaises(TypeError):
@@ -146,6 +186,62 @@ class Worlds(unittest.TestCase):
         refuses(["ist_world_contacts"], self.world.contacts_of, 0, 3)
         with self.assertRaises(TypeError):
             self.world.__reduce__()
+
+    def test_every_verb_refuses_bad_poses(self):
+        no_motions = [np.full((4, 4), bad) for bad in (0, np.nan, np.inf)] + [2 * np.eye(4), shift(1, 2, 3).T, -np.eye(4)]
+        no_matrices = [np.eye(3), np.eye(4)[None], 5, "pose", [[1, 2], [3]], np.eye(4).astype(complex), [[10**400] * 4] * 4]
+        self.world.prepare()
+        for verb in (lambda pose: self.world.add(self.trees[0], pose), lambda pose: self.world.set_pose(1, pose)):
+            for pose in no_motions:
+                self.assertEqual(self.refuses(ist.InputError, "", verb, pose).name, "pose-invalid")
+            for pose in no_matrices:
+                self.refuses(ist.InputError, "pose", verb, pose)
+        self.assertEqual(len(self.world.bodies), 4)
+        self.world.set_pose(1, self.poses[1])
+        self.assertTrue(self.world.intersects().complete)  # and goes on
+
+    def test_every_verb_refuses_bad_numbers_and_arrays(self):
+        self.world.prepare()
+        world = self.world
+        of_pairs = (world.intersects, world.contacts, world.distances, world.leaf_pairs, world.triangle_pairs)
+        for verb in (*of_pairs, world.distance):
+            for tests in (-1, 2**64, 1.5, "many", None):
+                self.refuses(ist.InputError, "tests", verb, tests=tests)
+            for seconds in (-1, np.nan, "soon", None):
+                self.refuses(ist.InputError, "seconds", verb, seconds=seconds)
+        wrong = [np.zeros(4, ist.LEAF_PAIR), np.zeros((4, 1), ist.WORLD_PAIR), np.zeros(8, ist.WORLD_PAIR)[::2], [1], "text", 7]
+        frozen = np.zeros(4, ist.WORLD_PAIR)
+        frozen.setflags(write=False)
+        for verb in (*of_pairs, world.near_pairs):
+            for out in (*wrong, frozen):
+                self.refuses(ist.InputError, "out", verb, out=out)
+        for verb in (world.leaf_pairs, world.triangle_pairs):
+            for into in (*wrong[1:], np.zeros(4, ist.CONTACT), frozen):
+                self.refuses(ist.InputError, "out", verb, into=into)
+        world.contacts()
+        for out in (*wrong, frozen, np.zeros(4, ist.WORLD_PAIR), np.zeros(65, "u1")[1:].view(ist.CONTACT)):
+            self.refuses(ist.InputError, "out", world.contacts_of, 0, 1, out=out)
+        for body in (-1, 2**32, 1.5, "upper", None, 9):
+            for call in (lambda: world.set_pose(body, np.eye(4)), lambda: world.pose_of(0, body), lambda: world.ignore(body, 0),
+                         lambda: world.contacts_of(0, body), lambda: world.prepare([(0, body)])):
+                self.refuses(ist.InputError, "", call)
+        for pairs in ([[0, 1], [2]], "pairs", 5, [[[0, 1]]], [(0, 0)]):
+            self.refuses(ist.InputError, "", world.prepare, pairs)
+            self.refuses(ist.InputError, "", world.bytes_needed, pairs)
+        for tolerance in (-1, np.nan, "fine", None):
+            self.refuses(ist.InputError, "tolerance", world.distance, tolerance)
+            self.refuses(ist.InputError, "tolerance", world.distances, tolerance)
+        self.assertTrue(world.contacts_of(0, 1).complete)  # and goes on
+
+    def test_bad_options(self):
+        bad = {"reach": (-1, np.nan, np.inf, "far", None), "max_memory": (-1, 0, 2**64, 1.5, "much", None),
+               "most_near": (-1, 0, 2**64, 1.5, 1 << 40), "contacts": (0, -2, 5000, 1.5, "many", None),
+               "push_distance": (-1, np.nan, 3, "far"), "front_pairs": (-1, 2**64, "many"), "spheres": ("round", 3),
+               "frontier_pairs": (-1, 2**64, "many"), "target": ("abacus", "\ud800")}
+        for option, values in bad.items():
+            for value in values:
+                self.refuses(ist.InputError, "" if option == "target" else option, ist.World, **{option: value})
+        self.assertEqual(ist.World().add(self.trees[0], name="\ud800"), 0)
 
     def test_a_second_thread_is_refused(self):
         self.world.prepare()

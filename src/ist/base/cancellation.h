@@ -19,8 +19,8 @@ class ScopedCancellation {
 };
 
 /// Throws kCancelled where this thread was asked to end. Readers and writers of files call it at
-/// each face and each 4 MiB, those of trees in memory at each array, and a check of a mesh between
-/// its parts. Cost: 2 ns.
+/// each face and each 4 MiB, those of trees in memory at each array, a check of a mesh between its
+/// parts, and a world that is prepared at each pair. Cost: 2 ns.
 void cancellation_point();
 
 }  // namespace ist

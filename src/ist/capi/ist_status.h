@@ -45,7 +45,7 @@ enum {
   IST_NOT_A_HANDLE = 4,           /**< the library never created this handle */
   IST_HANDLE_KIND = 5,            /**< a handle of another kind */
   IST_HANDLE_FREED = 6,           /**< the handle was freed before */
-  IST_HANDLE_BUSY = 7,            /**< another thread is using the query or servo */
+  IST_HANDLE_BUSY = 7,            /**< another thread is using the query, servo or world */
   IST_TOO_MANY_HANDLES = 8,       /**< 65,536 handles live */
   IST_OUT_OF_MEMORY = 9,          /**< the system has no memory left */
   IST_SYSTEM_ERROR = 10,          /**< the operating system refused a request */
@@ -86,7 +86,7 @@ typedef struct ist_progress {
   /** Is called when the call begins, and at least every 0.05 s, with the part that is done, 0 to 1
    * as far as that is known. Returns 0 to go on; any other number ends the call with IST_CANCELLED,
    * and nothing is made. It must return: no longjmp, no exception. It may call the library, but not
-   * with the query or servo of the call. */
+   * with the query, servo or world of the call. */
   int32_t (*report)(void* user, double part);
   void* user; /**< handed to `report`; never read */
 } ist_progress;

@@ -65,6 +65,12 @@ IST_C_API ist_status ist_world_bytes_needed(ist_world* world, const ist_body_pai
 IST_C_API ist_status ist_world_prepare(ist_world* world, const ist_body_pair* pairs,
                                        size_t count) IST_NOEXCEPT;
 
+/** As ist_world_prepare, followed by the caller's function; `progress` may be NULL. Errors:
+ * IST_CANCELLED too, and the world is then as it was. */
+IST_C_API ist_status ist_world_prepare_with_progress(ist_world* world, const ist_body_pair* pairs,
+                                                     size_t count,
+                                                     const ist_progress* progress) IST_NOEXCEPT;
+
 /** The size of a world. */
 typedef struct ist_world_info {
   size_t struct_size; /**< the size of this struct, bytes */
@@ -130,15 +136,18 @@ IST_C_API ist_status ist_world_intersects(ist_world* world, const ist_budget* bu
                                           ist_world_pair* pairs, size_t capacity,
                                           ist_world_result* result) IST_NOEXCEPT;
 
-/** Finds the contacts of each near pair, in the world's memory. [real time] */
+/** Finds the contacts of each near pair, in the world's memory. The sums of a pair make a force
+ * only where its `complete` is 1. [real time] */
 IST_C_API ist_status ist_world_contacts(ist_world* world, const ist_budget* budget,
                                         ist_world_pair* pairs, size_t capacity,
                                         ist_world_result* result) IST_NOEXCEPT;
 
 /** Copies the first `capacity` contacts of a pair, and its sums, from the last ist_world_contacts;
- * `count` takes the number of all. Coordinates are those of the body added first. `contacts` may be
- * NULL where `capacity` is 0; `sums` may be NULL. Errors: IST_NOT_PREPARED where that call did not
- * ask the pair. [real time] */
+ * `count` takes the number of all. Read the pair's ist_world_pair of that call first: it alone
+ * tells whether the answer is complete. Where its `complete` is 0, a budget ended the search,
+ * contacts and sums are those of a part of the leaf pairs, and no force. Coordinates are those of
+ * the body added first. `contacts` may be NULL where `capacity` is 0; `sums` may be NULL. Errors:
+ * IST_NOT_PREPARED where that call did not ask the pair. [real time] */
 IST_C_API ist_status ist_world_get_contacts(ist_world* world, uint32_t a, uint32_t b,
                                             ist_contact* contacts, size_t capacity,
                                             ist_contact_sums* sums, uint64_t* count) IST_NOEXCEPT;

@@ -56,7 +56,7 @@ UNKNOWN, NO, NEAR, YES = range(4)
 
 
 def occlusion(fixed, moving, pose=None, **options):
-    """Measures the occlusion of two trees, as Query.occlusion() does, by a query of its own."""
+    """Measures the occlusion of two trees, as Query.occlusion() does, by a query of its own. p_fixed = pose @ p_moving."""
     with Query(fixed, moving, contacts=-1) as query:
         return query.occlusion(pose, **options)
 

@@ -15,13 +15,14 @@ def address(array):
     return array.ctypes.data
 
 
-def floats(values, shape, what):
-    """Returns an array of float64 in C order, of a shape in which None stands for any length; no copy where it is one."""
+def floats(values, shape, what, dtype=np.float64):
+    """Returns an array of floats, in C order and aligned, of a shape in which None stands for any length; no copy where it is
+    one."""
     try:
         array = np.asarray(values)
         if array.dtype.kind not in "fiubO":
             raise TypeError(f"the dtype is {array.dtype}")
-        array = np.asarray(array, dtype=np.float64, order="C")
+        array = np.require(array, dtype, ["C", "A"])
     except (TypeError, ValueError, OverflowError) as error:
         refuse(f"{what}: {error}: pass numbers")
     if array.ndim != len(shape) or any(wanted not in (None, got) for wanted, got in zip(shape, array.shape)):
@@ -41,7 +42,7 @@ def pose_of(pose, what="pose"):
 
 
 def indices(values, what):
-    """Returns an array of uint32, (N, 3). Numbers that no index can be are refused with their place."""
+    """Returns an array of uint32, (N, 3), in C order and aligned. Numbers that no index can be are refused with their place."""
     try:
         array = np.asarray(values)
     except ValueError as error:  # rows of different lengths
@@ -57,7 +58,7 @@ def indices(values, what):
         if wrong.any():
             row = int(np.argmax(wrong.any(axis=1)))
             refuse(f"{what}[{row}] is {array[row].tolist()}: pass indices from 0 to 2**32 - 1")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    return np.require(array, np.uint32, ["C", "A"])
 
 
 def count_of(value, what, most=2**64 - 1, least=0):

@@ -64,7 +64,7 @@ PROTOTYPES = {
     "ist_world_add": (c_int32, [c_void_p, c_void_p, c_void_p, c_char_p, c_void_p]),
     "ist_world_ignore": (c_int32, [c_void_p, c_uint32, c_uint32]),
     "ist_world_bytes_needed": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p]),
-    "ist_world_prepare": (c_int32, [c_void_p, c_void_p, c_size_t]),
+    "ist_world_prepare_with_progress": (c_int32, [c_void_p, c_void_p, c_size_t, c_void_p]),
     "ist_world_get_info": (c_int32, [c_void_p, c_void_p]),
     "ist_world_set_pose": (c_int32, [c_void_p, c_uint32, c_void_p]),
     "ist_world_get_pose": (c_int32, [c_void_p, c_uint32, c_uint32, c_void_p]),

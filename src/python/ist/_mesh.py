@@ -101,10 +101,8 @@ def handle_of(mesh, progress=None):
     vertices, faces = arrays_of(mesh)
     triangles = indices(faces, "faces")
     single = isinstance(vertices, np.ndarray) and vertices.dtype == np.float32
-    if single and vertices.ndim == 2 and vertices.shape[1] == 3:
-        points, create = np.ascontiguousarray(vertices), LIBRARY.ist_mesh_create_float
-    else:
-        points, create = floats(vertices, (None, 3), "vertices"), LIBRARY.ist_mesh_create
+    points = floats(vertices, (None, 3), "vertices", np.float32 if single else np.float64)
+    create = LIBRARY.ist_mesh_create_float if single else LIBRARY.ist_mesh_create
     return made(create, address(points), len(points), address(triangles), len(triangles))
 
 

@@ -36,16 +36,17 @@ def options_of(spheres, workers, contacts, push_distance, front_pairs, target):
     """Returns the library's options of a query, checked."""
     if workers not in (1, 2):
         refuse(f"workers is {workers!r}: pass 1 or 2")
-    if contacts == 0 or contacts < -1:
-        refuse(f"contacts is {contacts!r}: pass a number of contacts, or -1 for none")
+    if contacts == 0:
+        refuse("contacts is 0: pass a number of contacts, or -1 for none")
+    most = -1 if contacts == -1 else count_of(contacts, "contacts", 4096)
     push = number_of(push_distance, "push_distance")
     if not 0 <= push <= 2:
         refuse(f"push_distance is {push}: pass a number from 0 to 2, mean voxel sizes")
     return QueryOptions(
         spheres=spheres_number(spheres),
         workers=workers,
-        contacts=-1 if contacts == -1 else count_of(contacts, "contacts", 4096),
-        target=None if target is None else str(target).encode(),
+        contacts=most,
+        target=None if target is None else str(target).encode("utf-8", "replace"),
         push_distance=-1 if push == 0 else push,
         front_pairs=count_of(front_pairs, "front_pairs"),
     )

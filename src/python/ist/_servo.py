@@ -20,9 +20,10 @@ class Servo(Lone):
     """A simulated scene: each tick takes the pose of the device and gives the force and the torque for the hand.
 
     For tests and figures: Python keeps no hard deadlines. A pose is (4, 4), row by row, and maps the tool's frame to the
-    scene; its translation is in `unit`. The tool's frame has the axes of the first held body's mesh and its origin in the
-    middle of that body's grid (Tree.origin), and not at the mesh's origin: begin with `tool`, and move that. sphere_tests: the
-    limit of each tick's query, for the same forces in every run; 0: the limit is query_time_fraction of a tick.
+    scene: p_scene = pose @ p_tool. Its translation is in `unit`. The tool's frame has the axes of the first held body's mesh
+    and its origin in the middle of that body's grid (Tree.origin), and not at the mesh's origin: begin with `tool`, and move
+    that. sphere_tests: the limit of each tick's query, for the same forces in every run; 0: the limit is query_time_fraction of
+    a tick.
     """
 
     _free = LIBRARY.ist_servo_free
@@ -49,9 +50,10 @@ class Servo(Lone):
             follower.finish(status)
 
     def tick(self, pose, *, out=None):
-        """Computes one tick. None for the pose: the device did not say where it is, which is a fault. Raises after a fault,
-        and the next forces come back gradually. out: an array of float64, (2, 3), that is filled; force and torque are its
-        rows.
+        """Computes one tick. p_scene = pose @ p_tool, its translation in `unit`.
+
+        None for the pose: the device did not say where it is, which is a fault. Raises after a fault, and the next forces come
+        back gradually. out: an array of float64, (2, 3), that is filled; force and torque are its rows.
         """
         handle = self._enter()
         try:
@@ -81,7 +83,7 @@ class Servo(Lone):
             refuse(f"body is {body!r}: pass the name of a body of the scene")
         handle = self._enter()
         try:
-            check(function(handle, body.encode()))
+            check(function(handle, body.encode("utf-8", "replace")))
         finally:
             self._lock.release()
 

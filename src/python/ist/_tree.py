@@ -74,7 +74,11 @@ class Tree(Handle):
         return self._kept("leaf_centres", copy)
 
     def save(self, path, *, progress=None):
-        """Writes the tree's file, whole or not at all. progress: called meanwhile; what it raises ends it. Raises FileError."""
+        """Writes the tree's file, whole or not at all. Raises FileError.
+
+        progress: called meanwhile; what it raises ends it, and is raised here. Where that comes while the finished file waits for
+        the disk, it is too late: the new file is there all the same.
+        """
         with Follower(progress) as follower:
             follower.finish(
                 LIBRARY.ist_tree_save_with_progress(self._need(), path_bytes(path, "path"), follower.address)

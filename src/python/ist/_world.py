@@ -7,6 +7,7 @@ import numpy as np
 from ._answers import Contacts, LeastDistance, WorldLeafPairs, WorldPairs, WorldTrianglePairs
 from ._arrays import address, budget_of, by_columns, count_of, number_of, place_of, pose_of
 from ._errors import check, error_of, refuse
+from ._follow import Follower
 from ._handle import Lone, Out
 from ._library import LIBRARY
 from ._query import options_of
@@ -31,10 +32,10 @@ _triangle_pairs, _distances, _near = LIBRARY.ist_world_triangle_pairs, LIBRARY.i
 class World(Lone):
     """Bodies with poses: asks all pairs of them that are near each other what a Query asks of two.
 
-    A pose is (4, 4) float64, row by row, and maps a body's coordinates to the world's. Bodies are numbers, from 0 in the order
-    of add(). An answer has one row of WORLD_PAIR for each pair that is near, sorted: its `status` is 0, or NOT_PREPARED or
-    POSE_INVALID; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed one. `tests` and
-    `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
+    A pose is (4, 4) float64, row by row, and maps a body's mesh to the world: p_world = pose @ p_body. Bodies are numbers, from
+    0 in the order of add(). An answer has one row of WORLD_PAIR for each pair that is near, sorted: its `status` is 0, or
+    NOT_PREPARED or POSE_INVALID; all other pairs are apart, by more than `reach`. Of a pair the body added first is the fixed
+    one. `tests` and `seconds` limit a whole call. A world belongs to one thread at a time: another one gets a BusyError.
 
     reach: pairs whose root bounds are no farther apart are near too, mesh units. most_near: rows beyond those of prepared pairs.
     max_memory: bytes. All else as of Query, of each pair; contacts=-1: the sums alone.
@@ -81,13 +82,13 @@ class World(Lone):
         out = Out()
         check(LIBRARY.ist_world_create(addressof(options), out.address))
         super().__init__(out.handle)
-        self._contacts = 0 if contacts == -1 else contacts
+        self._contacts = max(query.contacts, 0)
         self._trees, self._names = [], []
         self._prepared, self._most_near = 0, options.most_near
         self._found = WorldResult()
         self._found_at = addressof(self._found)
         self._least = LeastDistanceResult()
-        self._sums = ContactSums()
+        self._felt = np.empty(0, WORLD_PAIR)  # the rows of the last contacts()
 
     bodies = property(lambda self: tuple(self._trees), doc="The trees of the bodies, by their numbers.")
     names = property(lambda self: tuple(self._names), doc="The names of the bodies, by their numbers.")
@@ -108,14 +109,21 @@ class World(Lone):
             self._lock.release()
 
     def add(self, tree, pose=None, name=None):
-        """Adds a body, where the mesh is unless a pose is given, and returns its number. prepare() has to follow."""
+        """Adds a body and returns its number. prepare() has to follow.
+
+        p_world = pose @ p_body; without a pose the body is where its mesh is.
+        """
         need_tree(tree, "tree")
         at = pose_of(pose)
         body = c_uint32()
-        name = f"body {len(self._trees)}" if name is None else str(name)
-        self._call(LIBRARY.ist_world_add, tree._need(), address(at), name.encode(), addressof(body))
-        self._trees.append(tree)
-        self._names.append(name)
+        handle = self._enter()
+        try:
+            name = f"body {len(self._trees)}" if name is None else str(name)
+            check(LIBRARY.ist_world_add(handle, tree._need(), address(at), name.encode("utf-8", "replace"), addressof(body)))
+            self._trees.append(tree)
+            self._names.append(name)
+        finally:
+            self._lock.release()
         return body.value
 
     def ignore(self, a, b):
@@ -129,25 +137,36 @@ class World(Lone):
         self._call(LIBRARY.ist_world_bytes_needed, place, count, addressof(needed))
         return needed.value
 
-    def prepare(self, pairs=None):
+    def prepare(self, pairs=None, *, progress=None):
         """Reserves a query for each of these pairs of bodies, (N, 2); without them, for all that are not ignored.
 
         Pairs that had one and are among them keep it, with what it knows; others lose it. Raises MemoryLimitError, which names
-        the pair that was too much; the world is then as it was.
+        the pair that was too much; the world is then as it was. progress: called with the part of the pairs that is done; what
+        it raises ends the call, and leaves the world as it was unless all pairs were done.
         """
         some, place, count = self._pairs(pairs)
-        self._call(LIBRARY.ist_world_prepare, place, count)
-        self._prepared = self._all_pairs() if pairs is None else count
+        handle = self._enter()
+        try:
+            with Follower(progress) as follower:
+                status = LIBRARY.ist_world_prepare_with_progress(handle, place, count, follower.address)
+                if status == 0:  # whatever finish() raises
+                    self._prepared = self._all_pairs() if pairs is None else count
+                follower.finish(status)
+        finally:
+            self._lock.release()
 
     def set_pose(self, body, pose):
-        """Moves a body. Raises InputError for a pose that is no rigid motion: the pairs of the body then have the status
-        POSE_INVALID until its next pose."""
+        """Moves a body. p_world = pose @ p_body.
+
+        Raises InputError for a pose that is no rigid motion: the pairs of the body then have the status POSE_INVALID until its
+        next pose.
+        """
         at = pose_of(pose)
         self._call(LIBRARY.ist_world_set_pose, self._body(body, "body"), address(at))
 
     def pose_of(self, a, b):
-        """The pose at which a pair is asked: (4, 4), from coordinates of b to those of a. A Query of the two at this pose
-        has the pair's answers."""
+        """The pose at which a pair is asked, (4, 4): p_a = pose @ p_b. A Query of the two at this pose has the pair's
+        answers."""
         columns = np.empty((4, 4))
         self._call(LIBRARY.ist_world_get_pose, self._body(a, "a"), self._body(b, "b"), address(columns))
         return by_columns(columns)
@@ -165,26 +184,39 @@ class World(Lone):
     def contacts(self, *, out=None, tests=0, seconds=0.0):
         """Finds the contacts of each pair that is near, for contacts_of()."""
         return self._ask(
-            out, tests, seconds, lambda handle, limit, at, room: _contacts(handle, limit, at, room, self._found_at)
+            out,
+            tests,
+            seconds,
+            lambda handle, limit, at, room: _contacts(handle, limit, at, room, self._found_at),
+            keep=True,
         )
 
     def contacts_of(self, a, b, *, out=None):
         """The contacts of a pair, and its sums, from the last contacts(); coordinates of the body added first.
 
-        out: an array of CONTACT that is filled. Raises InputError where contacts() did not ask the pair.
+        `complete` is that of the pair's row: where a limit ended its search, there is no force. out: an array of CONTACT that
+        is filled. Raises InputError where contacts() did not ask the pair.
         """
         if out is None:
             out = np.empty(self._contacts, CONTACT)
-        count, place = c_uint64(), place_of(out, CONTACT)
-        a, b, sums = self._body(a, "a"), self._body(b, "b"), self._sums
-        self._call(LIBRARY.ist_world_get_contacts, a, b, place, len(out), addressof(sums), addressof(count))
+        a, b = self._body(a, "a"), self._body(b, "b")
+        count, sums, place = c_uint64(), ContactSums(), place_of(out, CONTACT)
+        handle = self._enter()
+        try:
+            check(LIBRARY.ist_world_get_contacts(handle, a, b, place, len(out), addressof(sums), addressof(count)))
+            rows = self._felt[(self._felt["a"] == min(a, b)) & (self._felt["b"] == max(a, b))]
+        finally:
+            self._lock.release()
+        if len(rows) == 0:
+            refuse("the last contacts() was interrupted: call it again")
+        row = rows[0]
         return Contacts(
             out[: min(count.value, len(out))],
             count.value,
-            True,
-            sums.pairs,
+            bool(row["complete"] == 1),
+            int(row["found"]),
             sums.weight,
-            0,
+            int(row["sphere_tests"]),
             np.frombuffer(bytearray(sums), CONTACT_SUMS),
         )
 
@@ -218,19 +250,30 @@ class World(Lone):
         )
         return (*found, into)
 
-    # Asks with room for all rows that an answer can have.
-    def _ask(self, out, tests, seconds, ask):
+    # Asks with room for all rows that an answer can have. keep: the rows of all pairs stay here, whatever `out` has room for.
+    def _ask(self, out, tests, seconds, ask, keep=False):
         handle = self._enter()
         try:
             budget, limit = budget_of(tests, seconds)
-            found = self._found
-            if out is None:
-                out = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
-            status = ask(handle, limit, place_of(out, WORLD_PAIR), len(out))
+            found, rows = self._found, out
+            place = None if out is None else place_of(out, WORLD_PAIR)
+            if out is None or keep:
+                rows = np.empty(min(self._all_pairs(), self._prepared + self._most_near), WORLD_PAIR)
+                place = address(rows)
+            if keep:
+                self._felt = rows[:0]
+            status = ask(handle, limit, place, len(rows))
             if status:
                 raise error_of(status)
+            truncated = found.truncated == 1
+            if keep:
+                self._felt = rows[: found.written].copy()
+                if out is not None:
+                    given = min(len(out), found.written)
+                    out[:given] = rows[:given]
+                    rows, found.written, truncated = out, given, given < found.near_pairs
             return WorldPairs(
-                out[: found.written], found.near_pairs, found.complete == 1, found.truncated == 1, found.sphere_tests
+                rows[: found.written], found.near_pairs, found.complete == 1, truncated, found.sphere_tests
             )
         finally:
             self._lock.release()
@@ -265,7 +308,10 @@ class World(Lone):
     def _pairs(pairs):
         if pairs is None:
             return None, None, 0
-        some = np.asarray(pairs)
+        try:
+            some = np.asarray(pairs)
+        except ValueError as error:  # rows of different lengths
+            refuse(f"pairs: {error}: pass whole numbers, (N, 2)")
         if some.size == 0:
             some = np.empty((0, 2), np.uint32)
         if some.dtype.kind not in "iu" or some.ndim != 2 or some.shape[1] != 2:

@@ -122,6 +122,34 @@ TEST_F(WorldMemory, OfAPairThatIsPreparedAgainIsKept) {
   EXPECT_EQ(world.near_pairs().pairs[0].status, QueryStatus::kNotPrepared);
 }
 
+TEST_F(WorldMemory, IsAsItWasWhereItsCallerEndsThePreparation) {
+  World world = world_of_trees(small_world());
+  const BodyPair some[] = {{0, 1}};
+  world.prepare(some);
+  const Query* const kept = world.query(0, 1);
+  const std::uint64_t bytes = world.bytes();
+  int asked = 0, last = 0;
+  const Proceed proceed = [&](double part) {
+    EXPECT_EQ(part, asked / 3.0);
+    return asked++ != last;
+  };
+  for (last = 0; last < 3; ++last) {
+    asked = 0;
+    EXPECT_EQ(error_name([&] { world.prepare(std::nullopt, proceed); }), "cancelled");
+    EXPECT_EQ(asked, last + 1);
+    EXPECT_EQ(world.query(0, 1), kept);
+    EXPECT_EQ(world.query(0, 2), nullptr);
+    EXPECT_EQ(world.bytes(), bytes);
+  }
+  asked = 0;
+  world.prepare(std::nullopt, proceed);
+  EXPECT_EQ(asked, 3);
+  EXPECT_NE(world.query(1, 2), nullptr);
+  world.prepare(some, {});
+  EXPECT_EQ(world.query(0, 1), kept);
+  EXPECT_EQ(world.query(1, 2), nullptr);
+}
+
 TEST_F(WorldMemory, OutlivesTheTreesAndMoves) {
   World first = [] {
     World world(small_world());

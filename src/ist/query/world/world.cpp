@@ -94,11 +94,15 @@ std::uint64_t World::bytes_needed(std::span<const BodyPair> pairs) const {
 
 void World::prepare() {
   const ScopedFloatEnvironment environment;
-  state_->prepare(state_->all_pairs());
+  state_->prepare(state_->all_pairs(), {});
 }
 void World::prepare(std::span<const BodyPair> pairs) {
   const ScopedFloatEnvironment environment;
-  state_->prepare(state_->checked(pairs));
+  state_->prepare(state_->checked(pairs), {});
+}
+void World::prepare(std::optional<std::span<const BodyPair>> pairs, const Proceed& proceed) {
+  const ScopedFloatEnvironment environment;
+  state_->prepare(pairs ? state_->checked(*pairs) : state_->all_pairs(), proceed);
 }
 
 QueryStatus World::set_pose(BodyIndex body, const Eigen::Isometry3d& pose) noexcept {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "ist/base/api.h"
+#include "ist/base/progress.h"
 #include "ist/query/manifold.h"
 #include "ist/query/query.h"
 #include "ist/query/results.h"
@@ -178,6 +179,12 @@ class IST_API World {
   /// knows; those that are not lose it, once all others are there. Throws kArgumentInvalid too, for
   /// a pair that is ignored, or of bodies that are not there.
   void prepare(std::span<const BodyPair> pairs);
+  /// Does so for some pairs, or for all without them, and can be followed and ended.
+  ///
+  /// @param pairs   as above; nothing: all that are not ignored
+  /// @param proceed asked before each pair; where it says no, kCancelled is thrown, and the world
+  ///                is as it was
+  void prepare(std::optional<std::span<const BodyPair>> pairs, const Proceed& proceed);
 
   /// Moves a body. Returns kInvalidPose where `pose` is no rigid motion: the pairs of this body
   /// then have that status until its next pose. kNoSuchBody, or kBusy, change nothing.

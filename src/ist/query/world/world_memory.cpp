@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "ist/base/cancellation.h"
 #include "ist/base/error.h"
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_state.h"
@@ -104,6 +105,7 @@ std::uint64_t WorldState::bytes_for(std::span<const BodyPair> pairs, std::uint64
   }
   PairBytes bytes_of(options);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    cancellation_point();
     const Body &a = bodies[pairs[k].a], &b = bodies[pairs[k].b];
     const std::uint64_t bytes = bytes_of.of(a.tree, b.tree);
     sum += bytes;
@@ -118,11 +120,14 @@ std::uint64_t WorldState::bytes_for(std::span<const BodyPair> pairs, std::uint64
   return sum;
 }
 
-void WorldState::prepare(std::span<const BodyPair> pairs) {
+void WorldState::prepare(std::span<const BodyPair> pairs, const Proceed& proceed) {
   static_cast<void>(bytes_for(pairs, options.max_memory));
   // All that may fail comes first.
   std::vector<std::unique_ptr<PairMemory>> next(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (proceed && !proceed(static_cast<double>(k) / static_cast<double>(pairs.size()))) {
+      throw Error(ErrorCode::kCancelled, "world: prepare() was ended by its caller");
+    }
     const auto [a, b] = pairs[k];
     if (table[pairs[k]] != PairTable::kNoQuery) continue;
     next[k] = std::make_unique<PairMemory>(pairs[k], bodies[a], bodies[b], options);

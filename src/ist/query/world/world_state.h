@@ -70,7 +70,8 @@ struct WorldState {
   /// Returns the bytes that prepare() takes for these pairs. Throws kMemoryLimit beyond `limit`,
   /// naming the pair that was too much.
   [[nodiscard]] std::uint64_t bytes_for(std::span<const BodyPair> pairs, std::uint64_t limit) const;
-  void prepare(std::span<const BodyPair> pairs);
+  /// `proceed` may be empty.
+  void prepare(std::span<const BodyPair> pairs, const Proceed& proceed);
 
   void move(BodyIndex body, const Eigen::Isometry3d& pose) noexcept;
   [[nodiscard]] bool is_there(BodyIndex body) const noexcept { return body < bodies.size(); }
