@@ -57,4 +57,7 @@ MUTANTS = [
            [(WORLD + "near_set.cpp", "void NearSet::clear() noexcept {\n  pairs_.clear();\n",
              "void NearSet::clear() noexcept {\n  pairs_.clear();\n  pairs_.shrink_to_fit();\n  pairs_.reserve(room_);\n")],
            ["quiet_test Allocations.AWorldMakesNone"]),
+    Mutant("least-distance-as-the-caller-rounds", "the least distance of a world is computed in the caller's arithmetic",
+           [(WORLD + "world_distance.cpp", "  const ScopedFloatEnvironment environment;\n", "")],
+           ["stability_test *FloatEnvironmentOfAWorld*"]),
 ]

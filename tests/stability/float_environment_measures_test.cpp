@@ -6,6 +6,7 @@
 
 #include "ist/base/pose.h"
 #include "ist/measure.h"
+#include "ist/measure/pose_rows.h"
 #include "ist/models/models.h"
 #include "ist/scene.h"
 #include "stability/float_environment_case.h"
@@ -62,6 +63,7 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoShape) {
     record.add(make_icosphere(2, 0.7 * unit_).vertices);
     record.add(make_cylinder(5, 0.7 * unit_, 0.3 * unit_).vertices);
     record.add(make_box({-0.1 * unit_, 0, 0}, {0.3 * unit_, unit_, unit_}).vertices);
+    record.add(make_fossa(3, 0.7 * unit_, 0.1 * unit_).vertices);
     BuiltInShape shape;
     shape.kind = BuiltInShape::Kind::kCylinder;
     shape.radius = 0.7 * unit_;
@@ -70,9 +72,20 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoShape) {
   });
 }
 
-TEST_P(FloatEnvironmentOfAMeasure, ChangesNoJaw) {
+// Of one unit, so asked once.
+class FloatEnvironmentOfAJaw : public FloatEnvironmentOfTheCaller {};
+
+INSTANTIATE_TEST_SUITE_P(Once, FloatEnvironmentOfAJaw, ::testing::Values(1.0),
+                         [](const auto&) { return std::string("one"); });
+
+TEST_P(FloatEnvironmentOfAJaw, ChangesNoJaw) {
   changes_nothing("make_jaw", 1'000'000,
                   [](Record& record) { record.add(make_jaw(Jaw::kLower, 7).vertices); });
+}
+
+TEST_P(FloatEnvironmentOfAJaw, ChangesNoSplint) {
+  changes_nothing("make_splint", 100'000,
+                  [](Record& record) { record.add(make_splint(3, 5.3).vertices); });
 }
 
 TEST_P(FloatEnvironmentOfAMeasure, ChangesNoPlaceOfATree) {
@@ -141,6 +154,45 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoFirstContact) {
     record.add(found.distance);
     record.add(found.distances);
   });
+}
+
+// All questions at several poses, and how much of them is done before the first and the second
+// slice of them.
+TEST_P(FloatEnvironmentOfAMeasure, ChangesNoRow) {
+  const std::vector<Eigen::Isometry3d> poses = {pose(0),   pose(0.5), pose(0.9), pose(1.5),
+                                                pose(1.7), pose(2),   pose(3)};
+  const RowQuestions questions{.intersects = true,
+                               .leaf_pairs = true,
+                               .distance = true,
+                               .contacts = true,
+                               .penetration = true,
+                               .tolerance = 0.01 * unit_};
+  for (const std::size_t threads : {1U, 2U}) {
+    changes_nothing("answer_rows", 500, [&](Record& record) {
+      Query query(fixed_, moving_);
+      std::vector<PoseRow> rows(poses.size());
+      std::vector<double> parts;
+      EXPECT_TRUE(answer_rows(
+          {query, {}, {}}, poses, questions, threads,
+          [&](std::size_t i, const PoseRow& row) { rows[i] = row; },
+          [&](double part) {
+            parts.push_back(part);
+            return true;
+          }));
+      for (const PoseRow& row : rows) {
+        record.add(row.intersects->answer);
+        record.add(row.leaf_pairs->leaf_pairs);
+        record.add(row.distance->distance);
+        record.add(row.contacts->sphere_tests);
+        record.add(row.sums.weight);
+        record.add(row.sums.spring.torque);
+        record.add(row.penetration->lower);
+        record.add(row.penetration->upper);
+      }
+      parts.resize(threads == 1 ? 2 : 1);
+      record.add(parts);
+    });
+  }
 }
 
 TEST_P(FloatEnvironmentOfAMeasure, ChangesNoOcclusion) {

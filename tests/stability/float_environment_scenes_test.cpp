@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,36 @@ TEST_P(FloatEnvironmentOfAScene, ChangesNoTick) {
       add(record, tick.device);
       add(record, tick.tool);
       add(record, tick.wrench);
+    }
+  });
+}
+
+// Each tick from the record of one that was made before, and two without a pose or a test.
+TEST_P(FloatEnvironmentOfAScene, ChangesNoTickThatIsReplayed) {
+  std::vector<RecordedTick> recorded;
+  {
+    const BuiltScene built = build_scene(read_scene(file_));
+    for (std::uint64_t number = 0; number < 40; ++number) {
+      const std::optional<Placement> device = built.device->read();
+      const Tick tick = built.simulation->tick(device);
+      built.device->write(tick.wrench, built.simulation->dt());
+      recorded.push_back({.tick = number, .device = device});
+    }
+  }
+  recorded[31].device.reset();
+  recorded[35].budget.contacts.tests = 0;
+  changes_nothing("replay", 5000, [&](Record& record) {
+    const BuiltScene built = build_scene(read_scene(file_));
+    for (const RecordedTick& tick : recorded) {
+      const TickRecord replayed = replay(tick, *built.simulation);
+      record.add(replayed.tick);
+      record.add(replayed.dt);
+      for (const double number : replayed.device) record.add(number);
+      for (const double number : replayed.tool) record.add(number);
+      for (const double number : replayed.wrench) record.add(number);
+      record.add(replayed.held);
+      record.add(replayed.leaf_pairs);
+      if (replayed.contacts) record.add(replayed.contacts->sphere_tests);
     }
   });
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "ist/mesh/mesh.h"
 #include "query/exact/exact_tree.h"
@@ -170,7 +172,7 @@ TEST(GapsOfTwoVoxelSizes, Intersect) {
   }
 }
 
-// Two jaws of one patient, in voxels of 1.6 mm, and of 3.2 mm.
+// Two jaws of one patient, in voxels of 1.6 mm.
 TEST(MotionOfRealJaws, ChangesNoFasterThanItsRates) {
   const auto upper = data_dir() / "human_maxilla.stl", lower = data_dir() / "human_mandible.stl";
   if (!std::filesystem::exists(upper)) IST_SKIP(upper << " is not there");
@@ -184,15 +186,29 @@ TEST(MotionOfRealJaws, ChangesNoFasterThanItsRates) {
     MotionCases cases("real jaws", policy);
     EXPECT_GT(sweep_all(fixed, moving, policy, from, down, 60, samples(10), cases), 1u);
   }
+}
 
-  const Body coarse_fixed(maxilla, 3.2), coarse_moving(mandible, 3.2);
-  Query query(fixed.exact, moving.exact);
+// The same jaws: the distances were found by three other libraries, which agree.
+TEST(GapsOfTwoVoxelSizes, OfRealJawsIntersect) {
+  const auto truth_file = data_dir() / "truth_human.json";
+  if (!std::filesystem::exists(truth_file)) IST_SKIP(truth_file << " is not there");
+  constexpr double kTruthError = 1e-5;  // mm
+  const TriangleMesh maxilla = read_mesh(data_dir() / "human_maxilla.stl"),
+                     mandible = read_mesh(data_dir() / "human_mandible.stl");
   std::vector<TwoSizes::At> poses;
-  for (const double t : {0.0, 1.35, 2.5, 20.0}) {
-    const Isometry3d pose = shift(t * down) * from;
-    const DistanceInterval gap = query.distance(pose, 0).distance;
-    poses.push_back({pose, 0.5 * (gap.lower + gap.upper), gap.upper - gap.lower});
+  int apart = 0;
+  for (const nlohmann::json& item : nlohmann::json::parse(std::ifstream(truth_file))) {
+    const auto numbers = item["pose"].get<std::vector<double>>();
+    Isometry3d pose;
+    std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+    const auto distance = item["distance"].get<double>();
+    poses.push_back({pose, distance, kTruthError});
+    apart += distance > 0 ? 1 : 0;
   }
+  ASSERT_EQ(poses.size(), 12u);
+  EXPECT_EQ(apart, 6);
+  const Body fixed(maxilla, 1.6), moving(mandible, 1.6);
+  const Body coarse_fixed(maxilla, 3.2), coarse_moving(mandible, 3.2);
   TwoSizes("real jaws").check({&fixed, &coarse_fixed}, {&moving, &coarse_moving}, poses);
 }
 

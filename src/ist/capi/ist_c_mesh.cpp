@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "ist/base/float_environment.h"
 #include "ist/capi/objects.h"
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
@@ -56,6 +57,7 @@ ist_status create(const char* function, const MeshArrays<Number>& arrays, ist_me
     if (const ist_status missing = call.need({{"mesh", out}})) return missing;
     *out = nullptr;
     if (const ist_status wrong = check_counts(call, arrays)) return wrong;
+    const ScopedFloatEnvironment environment;  // a denormal float is a normal double
     auto mesh = std::make_unique<Mesh>();
     mesh->mesh.vertices.resize(arrays.vertex_count);
     std::copy_n(arrays.vertices, 3 * arrays.vertex_count,

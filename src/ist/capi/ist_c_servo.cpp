@@ -2,6 +2,7 @@
 #include <memory>
 #include <variant>
 
+#include "ist/base/float_environment.h"
 #include "ist/capi/follower.h"
 #include "ist/capi/ist_servo.h"
 #include "ist/capi/objects.h"
@@ -200,6 +201,7 @@ ist_status ist_servo_get_body(ist_servo* servo, size_t index, ist_servo_body* bo
       return call.fail(IST_ARGUMENT_INVALID, "index is {}, and the scene has {} bodies", index,
                        simulation.bodies());
     }
+    const ist::ScopedFloatEnvironment environment;
     ist_servo_body found{};
     found.name = simulation.body_name(index).data();
     found.held = simulation.is_held(index) ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
 #include "ist/base/pose.h"
 #include "ist/measure/require.h"
@@ -108,6 +109,7 @@ bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> pos
                  const RowQuestions& questions, std::size_t threads,
                  const std::function<void(std::size_t, const PoseRow&)>& give,
                  const Proceed& proceed) {
+  const ScopedFloatEnvironment environment;
   require_tolerance(questions.tolerance);
   if (questions.penetration) {
     require_triangles(search.query.fixed(), "the fixed body");
