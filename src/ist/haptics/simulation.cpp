@@ -241,7 +241,11 @@ Tick Simulation::tick(const std::optional<Placement>& device, const TickBudget& 
   tick.device = device.value_or(state.device.value_or(state.tool_pose));
   const std::uint64_t faults = state.limiter.faults();
   tick.held = !state.query_contacts(budget, tick);
-  tick.held ? state.go_back() : void(tick.change = state.next_change(budget.change));
+  if (tick.held) {
+    state.go_back();
+  } else {
+    tick.change = state.next_change(budget.change);
+  }
   ++state.ticks;
   tick.leaf_pairs = state.last_complete.contacts.count;
 

@@ -173,7 +173,7 @@ class IST_API World {
 
   /// Reserves a query and a manifold for each pair that is not ignored, and the room for answers.
   /// Throws kMemoryLimit before anything is reserved, naming the pair that is too much; and what
-  /// the constructors of both throw: then the world is as it was. Cost: some 0.1 to 1 ms a pair.
+  /// the constructors of both throw: then the world is as it was. Cost: 0.1 to 4 ms a pair.
   void prepare();
   /// Does so for these pairs alone. Pairs that have a query and are among them keep it with what it
   /// knows; those that are not lose it, once all others are there. Throws kArgumentInvalid too, for
