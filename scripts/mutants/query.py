@@ -2,6 +2,10 @@
 
 from .mutant import Mutant, SEARCH_POSE, LANES, BOUNDS_INL, MEASURE_INL, PAIR_ROWS_INL, SHARED, TANGENCY, KERNELS, GUARANTEE
 
+RULES = "src/ist/query/query_rules.h"
+RESOLUTION = "return 2 * (fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)) + result.pad;"
+RESOLUTIONS = ["query_test Engines/Resolution*:ResolutionOfContacts*"]
+
 MUTANTS = [
     # The tests of a query.
     Mutant("ball-pad-dropped", "the sum of two radii lacks the pad for float rounding",
@@ -106,4 +110,12 @@ MUTANTS = [
     Mutant("row-torn", "an unfinished row counts as two",
            [("simd/step.h", "--frontier.group_count;\n  return frontier.group_count == 0 ? 0",
              "return frontier.group_count == 0 ? 0")], ["search_test *Within*:*Advance*"]),
+
+    # What a result tells of its pairs.
+    Mutant("resolution-of-two-radii", "the resolution is the distance of two centres, not of two surfaces",
+           [(RULES, RESOLUTION, RESOLUTION.replace("2 * (", "("))], RESOLUTIONS),
+    Mutant("resolution-of-the-smaller-body", "the resolution goes by the smaller body's leaves alone",
+           [(RULES, RESOLUTION, RESOLUTION.replace("2 * (", "4 * std::min(").replace(" + moving", ", moving"))], RESOLUTIONS),
+    Mutant("resolution-without-the-margin", "the resolution lacks the margin that was asked for",
+           [(RULES, RESOLUTION, RESOLUTION.replace(" + result.pad", " + 0 * result.pad"))], RESOLUTIONS),
 ]

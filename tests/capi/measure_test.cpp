@@ -213,9 +213,10 @@ TEST_F(CMeasure, OcclusionIsThatOfCppInArraysOfTheCaller) {
 }
 
 TEST_F(CMeasure, EndsMidwayToo) {
-  const std::vector<double> points(3 * 200'000, 0.5);
-  std::vector<ist_surface_distance> found(200'000);
-  expect_ends_midway([&](const ist_progress* progress) {
+  std::vector<ist_surface_distance> found;
+  expect_ends_midway([&](std::size_t work, const ist_progress* progress) {
+    const std::vector<double> points(3 * 50'000 * work, 0.5);
+    found.resize(50'000 * work);
     found[0].triangle = 77;
     return ist_tree_signed_distance(fixed_, points.data(), found.size(), 9, progress, found.data());
   });
@@ -223,9 +224,10 @@ TEST_F(CMeasure, EndsMidwayToo) {
 
   const auto pose = down_by(0, 0, 5.7);
   auto options = sized<ist_occlusion_options>();
-  options.longest_edge = 0.03;
   auto fixed = sized<ist_occlusion>(), moving = sized<ist_occlusion>();
-  expect_ends_midway([&](const ist_progress* progress) {
+  expect_ends_midway([&](std::size_t work, const ist_progress* progress) {
+    options.longest_edge =
+        0.05 / std::sqrt(static_cast<double>(work));  // as many times the triangles
     return ist_query_occlusion(query_, pose.data(), &options, progress, nullptr, nullptr, &fixed,
                                &moving);
   });

@@ -221,14 +221,14 @@ TEST_F(CRows, EndWhereTheCallerSaysSoAndLeaveTheArray) {
 }
 
 TEST_F(CRows, EndMidwayToo) {
-  const std::vector<double> at = poses(1500);
-  std::vector<ist_row> found(1500), before;
-  expect_ends_midway([&](const ist_progress* progress) {
+  std::vector<ist_row> found, before;
+  expect_ends_midway([&](std::size_t work, const ist_progress* progress) {
+    const std::vector<double> at = poses(400 * work);
     options_.progress = progress;
-    before.assign(1500, {});
-    before[0].leaf_pairs = before[1499].leaf_pairs = 77;
+    before.assign(400 * work, {});
+    before.front().leaf_pairs = before.back().leaf_pairs = 77;
     found = before;
-    return ist_query_rows(query_, at.data(), 1500, &options_, found.data());
+    return ist_query_rows(query_, at.data(), found.size(), &options_, found.data());
   });
   EXPECT_EQ(std::memcmp(found.data(), before.data(), found.size() * sizeof(ist_row)), 0);
 }

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "ist/base/error.h"
 #include "ist/measure/signed_distance.h"
@@ -75,6 +79,89 @@ TEST_P(SplintModel, KeepsItsDistanceFromBothArchesWhichComeOffAlongZ) {
           query.distance(lowered(jaw == Jaw::kUpper ? -off : kSplintOpening + off), 0).distance;
       EXPECT_GE(distance.lower, 0.2 - 1e-9) << off;
       EXPECT_TRUE(off > 0 || distance.upper < 0.22) << distance.upper;
+    }
+  }
+}
+
+// A wall's run in the occlusal plane, with the splint at its left.
+struct Wall {
+  Eigen::Vector2d from, to;
+
+  [[nodiscard]] Eigen::Vector2d along() const { return to - from; }
+  [[nodiscard]] double length() const { return along().norm(); }
+};
+
+// The outline from above, of the triangles that stand upright: once round, cut at its corners.
+std::vector<std::vector<Wall>> walls_of(const TriangleMesh& mesh) {
+  std::map<std::pair<double, double>, Wall> walls;  // by where they begin
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d p = mesh.vertices[a], u = mesh.vertices[b] - p, v = mesh.vertices[c] - p;
+    const Eigen::Vector3d normal = u.cross(v);
+    if (normal.z() != 0) continue;
+    // Two of its corners are above each other.
+    Wall wall{p.head<2>(), (p + (u.head<2>().isZero(0) ? v : u)).head<2>()};
+    if (wall.along().dot(Eigen::Vector2d(-normal.y(), normal.x())) < 0) {
+      std::swap(wall.from, wall.to);
+    }
+    walls.try_emplace({wall.from.x(), wall.from.y()}, wall);
+  }
+  std::vector<Wall> round;
+  for (Wall wall = walls.begin()->second; round.size() < walls.size();) {
+    round.push_back(wall);
+    wall = walls.at({wall.to.x(), wall.to.y()});
+  }
+  const auto turns = [](const Wall& a, const Wall& b) {
+    return a.along().dot(b.along()) < 0.5 * a.length() * b.length();
+  };
+  std::size_t first = 0;
+  while (!turns(round[(first + round.size() - 1) % round.size()], round[first])) ++first;
+  std::rotate(round.begin(), round.begin() + static_cast<std::ptrdiff_t>(first), round.end());
+  std::vector<std::vector<Wall>> parts;
+  for (std::size_t i = 0; i < round.size(); ++i) {
+    if (i == 0 || turns(round[i - 1], round[i])) parts.emplace_back();
+    parts.back().push_back(round[i]);
+  }
+  return parts;
+}
+
+double length_of(const std::vector<Wall>& walls) {
+  double sum = 0;
+  for (const Wall& wall : walls) sum += wall.length();
+  return sum;
+}
+
+// How far it is from the middle of a wall, square to it and inwards, to the walls across; infinity
+// where none is there.
+double width_at(const Wall& here, const std::vector<Wall>& across) {
+  const Eigen::Vector2d middle = (here.from + here.to) / 2;
+  const Eigen::Vector2d inwards(-here.along().y() / here.length(),
+                                here.along().x() / here.length());
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Wall& wall : across) {
+    Eigen::Matrix2d system;
+    system << inwards, -wall.along();
+    const Eigen::Vector2d found = system.inverse() * (wall.from - middle);  // width; part of wall
+    if (found[0] > 0 && found[1] >= 0 && found[1] <= 1) nearest = std::min(nearest, found[0]);
+  }
+  return nearest;
+}
+
+// Square to its walls, from the middle of each. A side is a curve of chords, which run inside it by
+// up to 0.0007 mm.
+TEST_P(SplintModel, IsOfOneWidthAllAlongTheArch) {
+  constexpr double kWidth = 10.5, kChord = 0.001;
+  std::vector<std::vector<Wall>> parts = walls_of(mesh_);
+  ASSERT_EQ(parts.size(), 4u) << "two sides and two ends";
+  std::sort(parts.begin(), parts.end(),
+            [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
+  EXPECT_NEAR(length_of(parts[0]), kWidth, kChord);
+  EXPECT_NEAR(length_of(parts[1]), kWidth, kChord);
+  EXPECT_GT(length_of(parts[2]), 90) << "it does not go from molar to molar";
+  for (const std::size_t side : {2u, 3u}) {
+    ASSERT_GT(parts[side].size(), 200u);
+    for (const Wall& wall : parts[side]) {
+      const double width = width_at(wall, parts[5 - side]);
+      ASSERT_LE(std::abs(width - kWidth), kChord) << wall.from.transpose();
     }
   }
 }

@@ -5,6 +5,7 @@
 #include "ist/base/error.h"
 #include "scene/scene_case.h"
 #include "support/errors.h"
+#include "support/largest_allocation.h"
 
 namespace ist::test {
 namespace {
@@ -204,12 +205,17 @@ TEST_F(SeveralBodies, ThatAreNotFreeNameThePair) {
 }
 
 TEST_F(SeveralBodies, BeyondTheMemoryNameThePair) {
-  const auto error =
-      error_of([&] { static_cast<void>(build_scene(scene_of(kBodies), {}, 60'000'000)); });
+  const Scene scene = scene_of(kBodies);
+  std::optional<Error> error;
+  const std::size_t peak = peak_allocation(
+      [&] { error = error_of([&] { static_cast<void>(build_scene(scene, {}, 60'000'000)); }); });
   ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
   const std::string said = error->what();
-  EXPECT_NE(said.find("the queries up to that of piece and tool take"), std::string::npos) << said;
-  EXPECT_NE(said.find("--max-memory"), std::string::npos) << said;
+  const std::string place = (dir_.path() / "scene.toml:7: ").string();
+  EXPECT_TRUE(said.starts_with(place + "the queries up to that of piece and tool take")) << said;
+  EXPECT_TRUE(said.ends_with("allow more with --max-memory, or take bodies out")) << said;
+  EXPECT_LT(peak, 8'000'000u) << "a query was made";
 }
 
 // A script of a fixed body: read from its file, with its flaws at their line.

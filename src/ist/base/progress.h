@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <utility>
 
 #include "ist/base/error.h"
 
@@ -22,9 +23,17 @@ class Progress {
     total_.store(total, std::memory_order_relaxed);
     stage_.store(name, std::memory_order_relaxed);
     stages_.fetch_add(1, std::memory_order_relaxed);
+    if (watcher_) watcher_();
   }
   /// Counts `done` more items of the stage. Any building thread may call it.
-  void add(std::uint64_t done) noexcept { done_.fetch_add(done, std::memory_order_relaxed); }
+  void add(std::uint64_t done) noexcept {
+    done_.fetch_add(done, std::memory_order_relaxed);
+    if (watcher_) watcher_();
+  }
+
+  /// Calls `watcher` at each step, on the thread that makes it: for a program without a thread of
+  /// its own to look with. To be set before the build; it must not throw.
+  void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
 
   /// Asks the build to end: it throws kCancelled soon.
   void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
@@ -53,6 +62,7 @@ class Progress {
   std::atomic<std::uint64_t> done_{0}, total_{0};
   std::atomic<unsigned> stages_{0};
   std::atomic<bool> stopped_{false};
+  std::function<void()> watcher_;
 };
 
 }  // namespace ist

@@ -35,11 +35,11 @@ IST_API TriangleMesh make_jaw(Jaw jaw, std::uint64_t seed);
 /// @param seed    of both jaws
 /// @param opening mm
 ///
-/// A horseshoe of 10.5 mm along the dental arch, from molar to molar. Its upper face is a height
-/// over the occlusal plane, and so is its lower one: teeth leave imprints, and either arch comes
-/// free along z. Its surface is at least 0.2 mm from either jaw's. Where no tooth is near it ends
-/// 1.5 mm beyond the occlusal plane of either arch. It is thinnest between canines; with an opening
-/// of 5 mm, 1.5 mm or more for each seed up to 200.
+/// A horseshoe, 10.5 mm wide all along the dental arch, from molar to molar. Its upper face is a
+/// height over the occlusal plane, and so is its lower one: teeth leave imprints, and either arch
+/// comes free along z. Its surface is at least 0.2 mm from either jaw's. Where no tooth is near it
+/// ends 1.5 mm beyond the occlusal plane of either arch. It is thinnest between canines; with an
+/// opening of 5 mm, 1.5 mm or more for each seed up to 200.
 ///
 /// Closed, of genus 0, facing outward, of 33,520 triangles. Coordinates are floats held as doubles;
 /// the same bytes on every machine. Cost: some 0.2 s, part of it on all cores.

@@ -58,15 +58,17 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                   const QueryOptions& options) {
   const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
-  std::size_t bytes = Search::bytes_for(plan, options.frontier_pairs) +
-                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  std::size_t bytes =
+      (one_or_two(options.workers) == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                                        : Search::bytes_for(plan, options.frontier_pairs)) +
+      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
   if (options.front_pairs > 0) {
     const std::size_t pairs = within_limit("front_pairs", options.front_pairs);
     bytes += CoherentSearch::bytes_for(
         plan, {options.frontier_pairs, pairs, options.workers, options.period});
   }
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += ExactSearch::bytes_for(fixed, moving);
+    bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
   }
   return bytes;
 }

@@ -28,7 +28,7 @@ struct QueryState {
   QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
              const QueryOptions& options, const ScopedFloatEnvironment& environment);
 
-  /// Returns the bytes that the memory of a query with one worker takes. Throws as the constructor.
+  /// Returns the bytes that the memory of a query takes. Throws as the constructor.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                              const QueryOptions& options);
   /// Returns the bounds of a query of two trees.

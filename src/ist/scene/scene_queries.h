@@ -22,8 +22,8 @@ struct PlacedBodies {
 
 /// Gives `parts` a query for each pair that may meet, as the effects need it, and the other pairs
 /// as far ones.
-/// @param max_memory bytes, for all queries together: the one that is too much throws kInputInvalid
-///                   (fail_at), which names its pair
+/// @param max_memory bytes, for all queries together: before any is made, the one that is too much
+///                   throws kInputInvalid (fail_at), which names its pair
 void build_queries(const PlacedBodies& of, const EffectNeeds& needs, const PlanReach& reach,
                    std::uint64_t max_memory, BuildNotes& notes, detail::SimulationParts& parts);
 

@@ -207,5 +207,20 @@ TEST(ToolContactQuery, TellsAClearanceWhereNothingIsTouched) {
   EXPECT_GT(lowest, 0);
 }
 
+// By trees with triangles and without, and with a front or none.
+TEST(ToolContactQuery, TellsItsMemoryBeforeItIsReserved) {
+  const SphereTree plain = tree_of(icosphere(3, kRadius), 12);
+  for (const SphereTree* held : {&ball(), &plain}) {
+    for (const int workers : {1, 2}) {
+      for (const std::size_t front_pairs : {0u, 4097u}) {
+        const ToolContactOptions options{
+            .policy = SpherePolicy::kTight, .workers = workers, .front_pairs = front_pairs};
+        const ToolContactQuery query(block(), *held, {kUnit, {}, held->origin()}, options);
+        EXPECT_EQ(ToolContactQuery::bytes_for(block(), *held, options), query.bytes());
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -166,7 +166,7 @@ TEST_F(SharedDeadlineThread, EndsTheSearchAtTheFirstLookAfterIt) {
   std::vector<LeafPair> out(1 << 20);
   int shared = 0;
   const auto give_up = Clock::now() + 300s;
-  for (int round = 0; round < 10 || (shared < 20 && Clock::now() < give_up); ++round) {
+  for (int round = 0; round < 3 || (shared < 20 && Clock::now() < give_up); ++round) {
     shared +=
         ends([&](const Budget& budget) { return query.leaf_pairs(scene_.pose, out, budget); });
     shared +=

@@ -2,11 +2,26 @@
 
 #include <algorithm>
 
+#include "ist/query/contacts/contact_reducer.h"
+#include "ist/query/query_state.h"
+
 namespace ist {
 namespace {
 
 // The most whole leaf pairs that have their full stiffness each (ToolContact::stiffness_fraction).
 constexpr double kFullPairs = 10;
+
+QueryOptions of_query(const ToolContactOptions& options) {
+  return {.policy = options.policy,
+          .workers = options.workers,
+          .period = options.period,
+          .front_pairs = options.front_pairs};
+}
+
+ManifoldOptions of_manifold(const ToolContactOptions& options) {
+  return {
+      .points = ToolContacts::kMost, .least_depth = options.least_depth, .margin = options.margin};
+}
 
 }  // namespace
 
@@ -28,16 +43,15 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
                                    const BodyFrames& frames, const ToolContactOptions& options)
     : frames_(frames),
       area_(fixed.voxel_size() * held.voxel_size()),
-      query_(fixed, held,
-             {.policy = options.policy,
-              .workers = options.workers,
-              .period = options.period,
-              .front_pairs = options.front_pairs}),
+      query_(fixed, held, of_query(options)),
       least_depth_(options.least_depth * 0.5 * (fixed.voxel_size() + held.voxel_size())),
-      manifold_(fixed, held, options.policy,
-                {.points = ToolContacts::kMost,
-                 .least_depth = options.least_depth,
-                 .margin = options.margin}) {}
+      manifold_(fixed, held, options.policy, of_manifold(options)) {}
+
+std::size_t ToolContactQuery::bytes_for(const SphereTree& fixed, const SphereTree& held,
+                                        const ToolContactOptions& options) {
+  return detail::QueryState::bytes_for(fixed, held, of_query(options)) +
+         detail::ContactReducer::bytes_for(fixed, held, of_manifold(options));
+}
 
 QueryResult ToolContactQuery::find(const Placement& tool, const Budget& budget,
                                    ToolContacts& contacts, std::size_t number) noexcept {

@@ -46,6 +46,10 @@ class ToolContactQuery {
   /// Says where the bodies are from now on.
   void place(const BodyFrames& frames) noexcept { frames_ = frames; }
   [[nodiscard]] std::size_t bytes() const noexcept { return query_.bytes() + manifold_.bytes(); }
+  /// Returns the bytes that a query of these trees reserves: what bytes() is of it. Throws as Query
+  /// and ContactManifold do, for an option out of range.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& held,
+                                             const ToolContactOptions& options);
 
  private:
   void add_to(ToolContacts& contacts, const Placement& tool) const noexcept;

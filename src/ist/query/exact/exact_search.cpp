@@ -186,10 +186,13 @@ std::size_t ExactSearch::bytes() const noexcept {
   return search_.bytes() + list_.bytes() + memory_.bytes() + (shared_ ? shared_->bytes() : 0);
 }
 
-std::size_t ExactSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving) noexcept {
-  return ClusterSearch::bytes_for(fixed.parts().triangles->clusters,
-                                  moving.parts().triangles->clusters) +
-         kSorted * sizeof(TrianglePair) + FoundMemory::bytes_reserved();
+std::size_t ExactSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                   int workers) noexcept {
+  const TriangleClusters &of_fixed = fixed.parts().triangles->clusters,
+                         &of_moving = moving.parts().triangles->clusters;
+  return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
+         FoundMemory::bytes_reserved() +
+         (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
 }
 
 }  // namespace ist

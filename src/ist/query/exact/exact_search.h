@@ -82,9 +82,9 @@ class ExactSearch {
     return shared_ ? shared_->sharing() : Sharing{};
   }
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// Returns the bytes that a search of these trees reserves, with one worker.
-  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed,
-                                             const SphereTree& moving) noexcept;
+  /// Returns the bytes that a search of these trees reserves, with one worker or two.
+  [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
+                                             int workers) noexcept;
 
  private:
   struct Witness {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kFewestNodes = 192, kMostNodes = 1 << 16;
 constexpr std::size_t kMostTasks = 1 << 13;
 // The pairs of nodes of a chunk: some 5 µs of work.
-constexpr std::size_t kChunkNodes = 16;
+constexpr std::size_t kChunkNodes = 16, kMostChunks = kMostNodes / kChunkNodes;
 constexpr std::size_t kFoundPairs = 1 << 18;
 
 }  // namespace
@@ -49,7 +49,7 @@ SharedPairs::SharedPairs(const TriangleClusters& fixed, const TriangleClusters& 
       period_(period),
       nodes_(kMostNodes + kClusterWidth),
       tasks_(kMostTasks),
-      chunk_ends_(kMostNodes / kChunkNodes),
+      chunk_ends_(kMostChunks),
       queue_(chunk_ends_.size()),
       helper_(fixed, moving, kernels),
       found_{std::vector<TrianglePair>(kFoundPairs)},
@@ -159,6 +159,14 @@ std::size_t SharedPairs::bytes() const noexcept {
          nodes_.size() * sizeof(std::uint32_t) + tasks_.size() * sizeof(Task) +
          chunk_ends_.size() * sizeof(std::size_t) + parts_.size() * sizeof(Part) +
          queue_.capacity() * sizeof(std::uint64_t);
+}
+
+std::size_t SharedPairs::bytes_for(const TriangleClusters& fixed,
+                                   const TriangleClusters& moving) noexcept {
+  return ClusterSearch::bytes_for(fixed, moving) + FoundMemory::bytes_reserved() +
+         kFoundPairs * sizeof(TrianglePair) + (kMostNodes + kClusterWidth) * sizeof(std::uint32_t) +
+         kMostTasks * sizeof(Task) +
+         kMostChunks * (sizeof(std::size_t) + sizeof(Part) + sizeof(std::uint64_t));
 }
 
 }  // namespace ist

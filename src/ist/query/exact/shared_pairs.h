@@ -35,6 +35,9 @@ class SharedPairs {
 
   [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that it reserves for these clusters: what bytes() is of it.
+  [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
+                                             const TriangleClusters& moving) noexcept;
 
  private:
   // The worker's result for a chunk.

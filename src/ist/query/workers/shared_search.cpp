@@ -13,6 +13,8 @@ constexpr std::size_t kFewestPairs = 512, kMostPairs = 64 * kFewestPairs;
 // on each other, or one node overlaps many, it can take far longer; if it is the worker's last, it
 // is dropped after some patience.
 constexpr std::size_t kChunkPairs = 24;
+constexpr std::size_t kMostChunks = kMostPairs / kChunkPairs + 1;
+constexpr std::size_t kShared = kMostPairs + kFrontierSpare;
 constexpr std::size_t kFoundPairs = 1 << 18, kFoundLeaves = 1 << 15;
 
 }  // namespace
@@ -24,14 +26,14 @@ SharedSearch::SharedSearch(const SearchPlan& plan, const Kernels& kernels, std::
       caller_(plan, kernels, pairs),
       helper_(plan, kernels, pairs),
       period_(period),
-      queue_(kMostPairs / kChunkPairs + 1),
+      queue_(kMostChunks),
       parts_(queue_.capacity()),
       found_(kFoundPairs),
       adder_(std::make_unique<ContactAdder>()),
       found_leaves_(kFoundLeaves),
       job_([](void* self) noexcept { static_cast<SharedSearch*>(self)->help(); }, this) {
-  shared_.groups.resize(kMostPairs + kFrontierSpare);
-  shared_.moving.resize(kMostPairs + kFrontierSpare);
+  shared_.groups.resize(kShared);
+  shared_.moving.resize(kShared);
   shared_.chunk_ends.resize(queue_.capacity());
 }
 
@@ -234,6 +236,13 @@ std::size_t SharedSearch::bytes() const noexcept {
          shared_.moving.size() * sizeof(std::uint32_t) + parts_.size() * sizeof(Part) +
          shared_.chunk_ends.size() * sizeof(std::size_t) +
          queue_.capacity() * sizeof(std::uint64_t);
+}
+
+std::size_t SharedSearch::bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept {
+  return 2 * Search::bytes_for(plan, pairs) + kFoundPairs * sizeof(LeafPair) +
+         sizeof(ContactAdder) + kFoundLeaves * sizeof(LeafSum) +
+         kShared * (sizeof(SearchGroup) + sizeof(std::uint32_t)) +
+         kMostChunks * (sizeof(Part) + sizeof(std::size_t) + sizeof(std::uint64_t));
 }
 
 }  // namespace ist

@@ -52,6 +52,8 @@ class SharedSearch {
   [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
 
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// Returns the bytes that a search reserves: what bytes() is of it.
+  [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept;
 
  private:
   struct Part {  // the worker's result for a chunk
