@@ -27,6 +27,8 @@ found=$(grep -rnE '#include "(cli|advise)/' src/verify src/hardware; grep -rnE '
 [ -z "$found" ] || breach "tools know the library, not each other: $found"
 found=$(grep -rnE '#include "(cli|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
 [ -z "$found" ] || breach "the library sees no tool: $found"
+found=$(grep -rnE '#include "viewer/' src simd | grep -v '^src/viewer/' || true)
+[ -z "$found" ] || breach "the page stands behind all others: $found"
 found=$(grep -rnE '#include "ist/' src/hardware | grep -vE '"ist/(base|mesh|voxel|tree|hardware)/' || true)
 [ -z "$found" ] || breach "hardware includes more than base, mesh, voxel and tree: $found"
 found=$(grep -rnE '#include "simd/[a-z_]+-inl\.h"' src || true)
@@ -45,9 +47,9 @@ only "GMP, an oracle of tests," '#include [<"]gmp' 'none' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/tree/tree_stream|hardware/xxh64)\.(h|cpp)' "src simd"
 only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/threemf/zip_entry\.cpp' "src simd"
 only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/png_image\.cpp' "src simd"
-only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|ist/mesh/format/gltf_(file|reader)\.(h|cpp))' src
+only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|viewer/engine/.*|ist/mesh/format/gltf_(file|reader)\.(h|cpp))' src
 only "the command line" '#include [<"]CLI/' 'src/cli/.*' src
-only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|examples/[a-z_]+\.cpp|ist/base/platform/thread_ranges\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp))' src
+only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|examples/[a-z_]+\.cpp|ist/base/platform/thread_ranges\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp)|viewer/engine/exports\.cpp)' "src --include=*.h --include=*.cpp"
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 only "a sum whose order depends on the platform's vectors (base/ordered_vector.h has one order)" '\.(dot|norm|squaredNorm|normalized|normalize|stableNorm|inverse)\(' 'none' "src/ist/base src/ist/mesh src/ist/voxel src/ist/tree src/ist/query src/ist/measure simd"
 only "what a processor or a system decides" '__x86_64__|__aarch64__|__linux__|_mm_|prctl' 'src/ist/base/platform/.*' "src/ist simd"
@@ -59,7 +61,7 @@ found=$(grep -rnE '^ +(const )?Eigen::(Isometry3|Affine3|Projective3|Transform|M
 
 twice=$(find src simd -name '*.h' -o -name '*.cpp' | xargs -n1 basename | sort | uniq -d | grep -vx 'servo_loop\.cpp' || true)
 [ -z "$twice" ] || breach "two sources or headers share a name: $twice"
-wide=$(find src simd -name '*.h' -o -name '*.cpp' | sed 's/\.[a-z]*$//' | sort -u | xargs -n1 dirname | sort | uniq -c | awk '$1 > 20 {print $2 " has " $1 " units"}')
+wide=$(find src simd -name node_modules -prune -o \( -name '*.h' -o -name '*.cpp' -o -name '*.js' \) -print | sed 's/\.[a-z]*$//' | sort -u | xargs -n1 dirname | sort | uniq -c | awk '$1 > 20 {print $2 " has " $1 " units"}')
 [ -z "$wide" ] || breach "a folder of over 20 units (a header and its source are one) is several rooms: $wide"
 # Sentences: subject, verb, object; the field's nouns (docs/glossary.md).
 found=$(grep -rnE '\b[Ll]ikewise\b|\bis none\b|/// What\b' src simd --include='*.h' --include='*.cpp' --include='*.md' || true)
@@ -71,6 +73,6 @@ found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|Touc
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
 [ "$headers" -le 33 ] || breach "$headers headers are installed: 33 are the most"
-long=$(find src simd tests bench -name '*.h' -o -name '*.cpp' | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
+long=$(find src simd tests bench -name node_modules -prune -o \( -name '*.h' -o -name '*.cpp' -o -name '*.js' -o -name '*.mjs' \) -print | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')
 [ -z "$long" ] || breach "longer than 400 lines: $long"
 exit $failed

@@ -13,6 +13,8 @@
 #   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
 #   scripts/setup.sh --blender   also Blender, in which its add-on is tested
+#   scripts/setup.sh --viewer    also what makes and tests the page. It takes the commands node (18 or
+#                                later) and npm as they are there, and Debian's where they are not
 #   scripts/setup.sh --cross     also what builds and runs for ARM64 and WebAssembly, and clang 16; only
 #                                then the architecture arm64 is added to this machine's
 set -euo pipefail
@@ -41,14 +43,29 @@ for argument in "$@"; do
     --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
     --blender) packages+=(blender) ;;
+    --viewer)
+      packages+=(emscripten googletest chromium)
+      command -v node >/dev/null || packages+=(nodejs)
+      command -v npm >/dev/null || packages+=(npm)
+      viewer=true
+      ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done
 
 # A package may be installed for several architectures.
 native=$(dpkg --print-architecture)
+# A node from elsewhere may be too old for the page's packages.
+oldest_node=18
+check_node() {
+  local version
+  version=$(node --version | sed 's/^v//; s/\..*//')
+  [ "$version" -ge $oldest_node ] && return
+  echo "setup: node is of version $version, and the page needs $oldest_node: take Debian's, by apt-get install nodejs" >&2
+  exit 1
+}
 missing=()
 for package in "${packages[@]}"; do
   architecture=${package#*:}
@@ -57,6 +74,7 @@ for package in "${packages[@]}"; do
     grep -qE "^($architecture|all) installed$" || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
+  [ -z "${viewer:-}" ] || check_node
   echo "setup: everything is installed"
   exit 0
 fi
@@ -75,4 +93,5 @@ if [[ ${missing[*]} == *:arm64* ]]; then "${as_root[@]}" dpkg --add-architecture
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
   "${missing[@]}" >/dev/null
+[ -z "${viewer:-}" ] || check_node
 echo "setup: done"

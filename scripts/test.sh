@@ -2,7 +2,7 @@
 # Sets up, builds as users do, and runs every test: what users build, with its own tests; what has
 # threads under ThreadSanitizer; what reads files and what runs in vectors under AddressSanitizer and
 # UndefinedBehaviorSanitizer; golden answers by clang, for ARM64 and in WebAssembly; then all,
-# optimised with assertions.
+# optimised with assertions, the page in a browser among them.
 #
 #   scripts/test.sh          all but what takes long, 30 to 60 minutes from nothing built on two cores
 #   scripts/test.sh --long   then the packages and the circuit's synthesis, golden answers by more
@@ -24,7 +24,7 @@ case ${1:-} in
   -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=(--oracles --python --docs --cross)
+setup=(--oracles --python --docs --cross --viewer)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
 ! $long || setup+=(--cloudcompare --blender)
 scripts/setup.sh "${setup[@]}"
@@ -49,10 +49,13 @@ run "release -DIST_TESTS=ON" "golden_test base_test mesh_test tree_test query_te
   -L '^(golden|base|mesh|tree|query|search)_test$' -E 'RealPairs\.HaveTheTriangles'
 threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test workers_test coherent_test"
 run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
-# What reads what a caller gives, and what runs in vectors; all rooms are watched in the long run.
-run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^House$|NearTouching/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
+# What reads what a caller gives, and what runs in vectors; all rooms, and the policies that share code
+# with `table` and `slab`, are watched in the long run.
+run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^House$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
 # The rooms that the golden answers come from; the long run compiles all rooms.
 for preset in clang14 arm64 wasm; do run "$preset -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; done
+echo "== the page"
+scripts/viewer.sh
 run test all -LE '^long$'
 $long || exit 0
 

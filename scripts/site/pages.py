@@ -13,6 +13,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PAGE = '<div id="the-page"></div>'
 LINK = re.compile(r"\]\(([^)#\s]+)[^)\s]*\)")
 
 
@@ -28,6 +29,20 @@ def linked_files(first):
             text = re.sub(r"(?ms:^ *```.*?^ *```$)|`[^`\n]*`", "", file.read_text())
             ahead += [(file.parent / target).resolve() for target in LINK.findall(text) if ":" not in target]
     return found
+
+
+def show_page(site):
+    """Puts the page with the engine in it, where scripts/viewer.sh made it, into the page about it."""
+    made, about = ROOT / "build/viewer/ist.html", site / "docs/viewer.html"
+    if not made.exists():
+        print("pages: docs/viewer.html is without the page itself: scripts/viewer.sh makes that", file=sys.stderr)
+        return
+    shutil.copyfile(made, site / "docs/page.html")
+    shown = '<iframe src="page.html" title="The page" style="width:100%;height:48rem;border:1px solid #999"></iframe>'
+    html = about.read_text()
+    if PAGE not in html:
+        raise SystemExit(f"pages: {about} has no place for the page: {PAGE}")
+    about.write_text(html.replace(PAGE, shown))
 
 
 def main(folder):
@@ -47,6 +62,7 @@ def main(folder):
         return ran.returncode
     for sitemap in (folder / "site").glob("sitemap.xml*"):  # of addresses, which nobody knows
         sitemap.unlink()
+    show_page(folder / "site")
     if (folder / "reference/html").exists():
         shutil.copytree(folder / "reference/html", folder / "site/reference")
     print(f"pages: {len(list(pages.rglob('*.md')))} pages, without a warning")

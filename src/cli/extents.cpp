@@ -11,6 +11,8 @@
 namespace ist::cli {
 namespace {
 
+constexpr double kVoxels = 500;  // of a body's largest extent, where nobody says
+
 // How numbers that belong together are written: with the same decimals.
 struct Spelling {
   // For `digits` significant digits of `largest`, or for whole numbers; with an exponent where
@@ -50,12 +52,15 @@ Eigen::AlignedBox3d box_of(const SphereTree& tree) {
 
 double largest_extent(const Eigen::AlignedBox3d& box) { return box.sizes().maxCoeff(); }
 
+double rounded_voxel_size(double extent) {
+  return std::stod(fmt::format("{:.3g}", extent / kVoxels));
+}
+
 double default_voxel_size(double extent, const std::string& of) {
-  constexpr double kVoxels = 500;
-  const std::string size = fmt::format("{:.3g}", extent / kVoxels);
-  std::fprintf(stderr, "voxel size %s: 1/%.0f of %s; --voxel-size names another\n", size.c_str(),
-               kVoxels, of.c_str());
-  return std::stod(size);
+  const double size = rounded_voxel_size(extent);
+  std::fprintf(stderr, "voxel size %s: 1/%.0f of %s; --voxel-size names another\n",
+               fmt::format("{:.3g}", size).c_str(), kVoxels, of.c_str());
+  return size;
 }
 
 std::string number_text(double number) { return Spelling(number, 4)(number); }

@@ -18,8 +18,11 @@ namespace ist::cli {
 /// Returns the largest side of a box.
 [[nodiscard]] double largest_extent(const Eigen::AlignedBox3d& box);
 
-/// Returns 1/500 of `extent`, to three significant digits, for bodies without a --voxel-size, and
-/// says so on stderr. `of` names the extent: "the largest extent".
+/// Returns 1/500 of `extent`, to three significant digits: the voxel size where none is given.
+[[nodiscard]] double rounded_voxel_size(double extent);
+
+/// Returns the same, for bodies without a --voxel-size, and says so on stderr. `of` names the
+/// extent: "the largest extent".
 [[nodiscard]] double default_voxel_size(double extent, const std::string& of);
 
 /// Returns a number for people, to four significant digits or to whole ones.

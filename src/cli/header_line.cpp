@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/commit.h"
 #include "cli/source_file.h"
 
@@ -12,32 +10,42 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json line_of(const std::string& subcommand, const NamedFiles& files) {
+NamedSources read(const NamedFiles& files) {
+  NamedSources sources;
+  for (const auto& [name, file] : files) sources.emplace_back(name, source_of(file));
+  return sources;
+}
+
+}  // namespace
+
+ordered_json header_line(const std::string& subcommand, const NamedSources& files) {
   ordered_json line{{"ist", IST_VERSION}, {"commit", IST_COMMIT}, {"subcommand", subcommand}};
-  for (const auto& [name, file] : files) {
-    const MeshSource source = source_of(file);
+  for (const auto& [name, source] : files) {
     line[name] = {{"file", source.name}, {"hash", nullptr}};
     if (source.hash != 0) line[name]["hash"] = fmt::format("{:016x}", source.hash);
   }
   return line;
 }
 
-}  // namespace
+ordered_json header_line(const std::string& subcommand, const NamedSources& files,
+                         const Bodies& bodies, const std::optional<TakenUnit>& unit) {
+  const auto or_null = [](const std::optional<double>& size) {
+    return size ? ordered_json(*size) : ordered_json(nullptr);
+  };
+  ordered_json line = header_line(subcommand, files);
+  line["unit"] = unit ? ordered_json(unit->name) : json_of(bodies.unit());
+  if (unit) line["unit_assumed"] = unit->assumed;
+  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
+  return line;
+}
 
 void print_header(const std::string& subcommand, const NamedFiles& files) {
-  fmt::print("{}\n", line_of(subcommand, files).dump());
+  fmt::print("{}\n", header_line(subcommand, read(files)).dump());
 }
 
 void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
                   const std::optional<TakenUnit>& unit) {
-  const auto or_null = [](const std::optional<double>& size) {
-    return size ? ordered_json(*size) : ordered_json(nullptr);
-  };
-  ordered_json line = line_of(subcommand, files);
-  line["unit"] = unit ? ordered_json(unit->name) : json_of(bodies.unit());
-  if (unit) line["unit_assumed"] = unit->assumed;
-  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
-  fmt::print("{}\n", line.dump());
+  fmt::print("{}\n", header_line(subcommand, read(files), bodies, unit).dump());
 }
 
 }  // namespace ist::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,9 +20,19 @@ struct TakenUnit {
   bool assumed;
 };
 
-/// Prints the first line of --json: version, commit, subcommand, and of each file its base name and
-/// its hash (XXH3 of 64 bits; null for what is no regular file); of bodies, their unit, or the
+/// The same files, after they were read.
+using NamedSources = std::vector<std::pair<std::string, MeshSource>>;
+
+/// Returns the first line of --json: version, commit, subcommand, and of each file its base name
+/// and its hash (XXH3 of 64 bits; null for what is no regular file); of bodies, their unit, or the
 /// one taken, and their voxel sizes, null where they got none.
+[[nodiscard]] nlohmann::ordered_json header_line(const std::string& subcommand,
+                                                 const NamedSources& files);
+[[nodiscard]] nlohmann::ordered_json header_line(const std::string& subcommand,
+                                                 const NamedSources& files, const Bodies& bodies,
+                                                 const std::optional<TakenUnit>& unit = {});
+
+/// Prints that line. Reads the files for their hashes.
 void print_header(const std::string& subcommand, const NamedFiles& files);
 void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
                   const std::optional<TakenUnit>& unit = {});

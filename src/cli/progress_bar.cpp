@@ -5,7 +5,6 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -62,17 +61,6 @@ void show(const Progress& progress, const std::stop_token& end) {
 ProgressBar::ProgressBar() {
   if (isatty(STDERR_FILENO) == 0) return;
   thread_ = std::jthread([this](const std::stop_token& end) { show(*this, end); });
-}
-
-Proceed shown_by(ProgressBar& progress, const char* stage) {
-  constexpr double kSteps = 1000;
-  progress.begin_stage(stage, static_cast<std::uint64_t>(kSteps));
-  return [&progress, told = std::uint64_t{0}](double part) mutable {
-    const std::uint64_t done = std::max(told, static_cast<std::uint64_t>(kSteps * part));
-    progress.add(done - told);
-    told = done;
-    return true;
-  };
 }
 
 void abandon_progress_bar() noexcept {

@@ -16,10 +16,6 @@ class ProgressBar : public Progress {
   std::jthread thread_;
 };
 
-/// Begins a stage of a measure, and returns what the measure tells its progress. `progress` must
-/// outlive it.
-[[nodiscard]] Proceed shown_by(ProgressBar& progress, const char* stage);
-
 /// Clears the line of a visible bar before the process ends by a signal, unless the terminal takes
 /// no output now; waits at most 0.1 s. A thread that draws then waits for ever. Takes a lock, so no
 /// signal handler may call it.

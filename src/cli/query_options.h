@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/answers/examiner.h"
-#include "cli/bodies.h"
 #include "cli/engine.h"
+#include "cli/load_bodies.h"
 
 namespace ist::cli {
 

@@ -103,6 +103,8 @@ class Packages(Installed, Pages):
                         "libist_hardware.so", "libist_hardware.so.0", "libist_hardware.so.V", "pkgconfig/ist.pc")),
                     "share/bash-completion/completions/ist",
                     *(f"share/doc/{name}/copyright" for name in ("ist", "libist-dev", "libist0"))]
+        # The page, where scripts/viewer.sh made it.
+        expected += ["share/ist/page.html"] if (SOURCE / "build/viewer/ist.html").exists() else []
         # The build type names the targets' files; Documents and ManPages have the others.
         apart = r"ist_targets(-\w+)?\.cmake$|^share/man/man1/|^share/doc/ist/(?!copyright)"
         rest = [file for file in rest if not re.search(apart, file)]

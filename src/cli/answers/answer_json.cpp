@@ -1,6 +1,6 @@
-#include <fmt/format.h>
+#include "cli/answers/answer_json.h"
 
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
 
 #include "cli/answers/answer_lines.h"
 
@@ -24,8 +24,10 @@ ordered_json triple(const std::optional<Eigen::Vector3d>& point) {
   return point ? ordered_json{(*point)[0], (*point)[1], (*point)[2]} : ordered_json(nullptr);
 }
 
-ordered_json line_of(std::size_t index, const PoseAnswer& answer, const Engine& engine,
-                     const EngineAnswer& timed, const Bodies& bodies) {
+}  // namespace
+
+ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engine& engine,
+                         const EngineAnswer& timed, const Bodies& bodies) {
   const Findings& found = answer.findings;
   const QueryResult& result = timed.result;
   const auto lower = [](const std::optional<DistanceInterval>& interval) {
@@ -66,13 +68,12 @@ ordered_json line_of(std::size_t index, const PoseAnswer& answer, const Engine& 
   return line;
 }
 
-}  // namespace
-
 void print_answer_lines(const Engines& engines, const Bodies& bodies,
                         const std::vector<PoseAnswer>& answers) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      const ordered_json line = line_of(i, answers[i], engines[e], answers[i].engines[e], bodies);
+      const ordered_json line =
+          answer_line(i, answers[i], engines[e], answers[i].engines[e], bodies);
       fmt::print("{}\n", line.dump());
     }
   }

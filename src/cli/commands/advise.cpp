@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "advise/calibration.h"
-#include "cli/bodies.h"
 #include "cli/commands/advise_report.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/engine.h"
 #include "cli/header_line.h"
+#include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/extents.h"
 #include "cli/header_line.h"
+#include "cli/load_bodies.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
 #include "ist/tree/sphere_tree.h"

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/engine.h"
 #include "cli/extents.h"
 #include "cli/header_line.h"
+#include "cli/load_bodies.h"
 #include "cli/occlusion/bite_maker.h"
 #include "cli/occlusion/bite_tables.h"
 #include "cli/refusals.h"
@@ -141,7 +141,8 @@ void print_bite_of(const TriangleMesh& upper, const TriangleMesh& lower,
   questions.unit = LengthUnit::kMillimetre;
   questions.preset = &presets().front();
   fmt::print("\nTheir bite at dz = {} mm:\n", kDown);
-  print_bite(make_bite(bodies, {}, pose, questions), {});
+  Progress unseen;  // a fifth of a second
+  print_bite(make_bite(bodies, {}, pose, questions, unseen), {});
   if (keep.empty()) {
     fmt::print("\nTry next: ist demo --keep .    (writes the two jaws; then it names more)\n");
     return;

@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "cli/bodies.h"
 #include "cli/extents.h"
+#include "cli/load_bodies.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::cli {

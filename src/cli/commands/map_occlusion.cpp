@@ -10,7 +10,6 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/formats/format.h"
@@ -18,12 +17,16 @@
 #include "cli/formats/ply_writer.h"
 #include "cli/formats/vtp_writer.h"
 #include "cli/header_line.h"
+#include "cli/load_bodies.h"
 #include "cli/occlusion/bite_html.h"
 #include "cli/occlusion/bite_json.h"
 #include "cli/occlusion/bite_maker.h"
 #include "cli/occlusion/bite_surfaces.h"
 #include "cli/occlusion/bite_tables.h"
+#include "cli/page/page_blocks.h"
+#include "cli/page/page_file.h"
 #include "cli/poses/pose_options.h"
+#include "cli/progress_bar.h"
 #include "cli/query_run.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
@@ -135,11 +138,22 @@ void write(const Bite& bite, const Output& output, BiteSelection selection) {
     }
     case FileFormat::kCsv:
       return write_bite_csv(bite, *output.file);
-    case FileFormat::kJson:
-      return write_bite_json(bite, *output.file);
     default:
-      return write_bite_html(bite, *output.file);
+      return write_bite_json(bite, *output.file);
   }
+}
+
+// Writes the page with the engine in it where there is one that shows all that was asked, else the
+// plain report, and says why.
+void write_report(const Bodies& bodies, const Bite& bite, const BiteQuestions& questions,
+                  OutputFile& file) {
+  const std::optional<std::filesystem::path> page = find_page();
+  if (page && page_shows(questions)) {
+    return write_page(*page, bite_block(bodies, bite, questions), file);
+  }
+  fmt::print(stderr, "{}: the plain report, for {}\n", file.target().string(),
+             page ? "the page knows no sides, labels and scanner bands" : kHowToGetPage);
+  write_bite_html(bite, file);
 }
 
 BiteSources sources_of(const Bodies& bodies, const BodyFiles& files) {
@@ -157,13 +171,22 @@ void run(const OcclusionArguments& options) {
   const Eigen::Isometry3d pose = options.pose.poses_named().front();
   const Bodies bodies = load_bodies(options.files);
   if (!options.json) echo_pose(options.pose, pose);
-  const Bite bite = make_bite(bodies, sources_of(bodies, options.files), pose, questions);
+  const Bite bite = [&] {
+    ProgressBar progress;
+    return make_bite(bodies, sources_of(bodies, options.files), pose, questions, progress);
+  }();
   BiteSelection selection;
   if (!options.side.empty()) {
     selection.side = options.side == "fixed" ? BiteSide::kFixed : BiteSide::kMoving;
   }
   if (options.open) selection.open = *options.open * bite.units_per_mm;
-  for (const Output& output : outputs) write(bite, output, selection);
+  for (const Output& output : outputs) {
+    if (output.format == FileFormat::kHtml) {
+      write_report(bodies, bite, questions, *output.file);
+    } else {
+      write(bite, output, selection);
+    }
+  }
   std::vector<OutputFile*> files;
   for (const Output& output : outputs) files.push_back(output.file.get());
   OutputFile::commit_all(files);
@@ -254,7 +277,8 @@ void add_occlusion(CLI::App& app) {
   command
       ->add_option("-o,--output", options->outputs,
                    "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-                   "Blender), .glb (browsers), .csv (a row a region), .json, .html (a report); "
+                   "Blender), .glb (browsers), .csv (a row a region), .json, .html (a page to look "
+                   "at and ask on, or a report); "
                    "may be given again")
       ->type_name("FILE");
   add_measure_options(*command, *options);

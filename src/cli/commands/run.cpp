@@ -7,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "cli/bodies.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/run_report.h"
 #include "cli/commands/tick_lines.h"
@@ -16,6 +15,7 @@
 #include "cli/exit_code.h"
 #include "cli/header_line.h"
 #include "cli/interruption.h"
+#include "cli/load_bodies.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
 #include "cli/terminal.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "cli/extents.h"
-#include "cli/progress_bar.h"
+#include "cli/measure_progress.h"
 #include "cli/refusals.h"
 #include "cli/version.h"
 #include "ist/base/error.h"
@@ -137,7 +137,7 @@ std::vector<std::string> checks_of(const Bite& bite) {
 }  // namespace
 
 Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Isometry3d& pose,
-               const BiteQuestions& questions) {
+               const BiteQuestions& questions, Progress& progress) {
   require_triangles(bodies);
   Bite bite;
   bite.made_by = version_words();
@@ -165,7 +165,6 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   const ToothLabels labels_fixed = labels_of(bodies.fixed, questions.labels_fixed);
   const ToothLabels labels_moving = labels_of(bodies.moving, questions.labels_moving);
 
-  ProgressBar progress;
   OcclusionOptions options = options_of(bite);
   options.proceed = shown_by(progress, "measuring the occlusion");
   const Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});

@@ -7,6 +7,7 @@
 #include "cli/bodies.h"
 #include "cli/occlusion/bite.h"
 #include "cli/occlusion/sides.h"
+#include "ist/base/progress.h"
 
 namespace ist::cli {
 
@@ -28,10 +29,11 @@ struct BiteSources {
   MeshSource fixed, moving;
 };
 
-/// Measures an occlusion under a progress bar. `bodies` must outlive the bite. Throws
+/// Measures an occlusion, and tells `progress` of it. `bodies` must outlive the bite. Throws
 /// kTrianglesMissing, kInputInvalid for labels, and CLI::ValidationError for sides and for a unit
 /// that contradicts the trees'.
 [[nodiscard]] Bite make_bite(const Bodies& bodies, const BiteSources& sources,
-                             const Eigen::Isometry3d& pose, const BiteQuestions& questions);
+                             const Eigen::Isometry3d& pose, const BiteQuestions& questions,
+                             Progress& progress);
 
 }  // namespace ist::cli

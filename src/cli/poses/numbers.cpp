@@ -1,8 +1,9 @@
 #include "cli/poses/numbers.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "ist/base/platform/from_chars.h"
 
 namespace ist::cli {
 
@@ -14,7 +15,7 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
     std::string_view word = text.substr(at, end - at);
     if (word.starts_with('+')) word.remove_prefix(1);
     double number = 0;
-    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const auto [rest, error] = from_chars(word, number);
     if (error != std::errc() || rest != word.data() + word.size() || !std::isfinite(number)) {
       return std::nullopt;
     }

@@ -27,7 +27,7 @@ bool is_control(char c) {
 // Blank lines are well at the end alone.
 std::vector<int> labels_of_lines(const std::filesystem::path& file, ToothNumbers system) {
   const std::string content = text_of(file);
-  if (std::ranges::any_of(content, is_control)) {
+  if (std::any_of(content.begin(), content.end(), is_control)) {
     refuse_labels(file, "it is no text: write one whole number a line");
   }
   std::vector<int> numbers;

@@ -111,7 +111,8 @@ ToothLabels labels_of_obj(const std::filesystem::path& file, ToothNumbers number
   (void)read_obj(content, name);
   for (const Naming& naming : {Naming{"g", "group"}, {"o", "object"}}) {
     ToothLabels labels = NameReader(content, name, numbers).labels_by(naming);
-    if (std::ranges::any_of(labels, [](int label) { return label != 0; })) return labels;
+    if (std::any_of(labels.begin(), labels.end(), [](int label) { return label != 0; }))
+      return labels;
   }
   refuse_labels(file, "no group or object is named by a tooth's number, such as 16 or tooth_16");
 }

@@ -13,7 +13,8 @@ namespace {
 
 bool is_label(const PlyProperty& property) {
   std::string name(property.name);
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return name.find("label") != name.npos || name.find("tooth") != name.npos;
 }
 

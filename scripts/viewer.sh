@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Makes the page: one HTML file with the engine in it, which opens from a disk or a mail, without a
+# server: build/viewer/ist.html. The engine is WebAssembly, in build/wasm/viewer.
+#
+#   scripts/viewer.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+case ${1:-} in
+  "") ;;
+  -h | --help) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) echo "viewer: unknown option $1; see --help" >&2; exit 2 ;;
+esac
+scripts/setup.sh --viewer
+mkdir -p build/viewer
+log=build/viewer/build.log
+logged() { "$@" >"$log" 2>&1 || { cat "$log"; exit 1; }; }
+logged cmake --preset wasm -DIST_WITH_LOOP=OFF
+logged cmake --build --preset wasm --target ist_page_engine -- -j"$(nproc)"
+# Packages by their lock file, in build/ and not among the sources.
+packages=build/viewer/packages
+if ! cmp -s src/viewer/package-lock.json "$packages/package-lock.json"; then
+  mkdir -p "$packages"
+  cp src/viewer/package.json src/viewer/package-lock.json "$packages"
+  logged npm ci --prefix "$packages" --no-audit --no-fund || { rm "$packages/package-lock.json"; exit 1; }
+fi
+ln -sfn "$PWD/$packages/node_modules" src/viewer/node_modules
+logged node src/viewer/node_modules/typescript/bin/tsc -p src/viewer
+node src/viewer/bundle.mjs --engine build/wasm/viewer --output build/viewer/ist.html
+echo "viewer: open build/viewer/ist.html"

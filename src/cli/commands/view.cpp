@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "cli/commands/commands.h"
+#include "cli/common_options.h"
+#include "cli/formats/format.h"
+#include "cli/load_bodies.h"
+#include "cli/page/page_blocks.h"
+#include "cli/page/page_file.h"
+#include "cli/page/recording_block.h"
+#include "cli/poses/pose_options.h"
+#include "cli/refusals.h"
+#include "ist/base/files.h"
+
+namespace ist::cli {
+namespace {
+
+struct ViewArguments {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path output, scene;
+  PoseOptions pose;
+  std::uint64_t max_memory = BuildOptions{}.max_memory;
+};
+
+std::string name_of(const SphereTree& tree, const std::filesystem::path& file) {
+  return tree.source().name.empty() ? file.filename().string() : tree.source().name;
+}
+
+nlohmann::ordered_json block_of_bodies(const ViewArguments& options) {
+  const Eigen::Isometry3d pose = options.pose.poses_named().front();
+  BodyFiles files;
+  files.fixed = options.files.front();
+  files.moving = options.files.back();
+  files.voxels = BodyFiles::Voxels::kNone;  // the page makes its own
+  files.max_memory = options.max_memory;
+  const Bodies bodies = load_bodies(files);
+  require_triangles(bodies);
+  const bool both = options.files.size() == 2;
+  return bodies_block(bodies.fixed, name_of(bodies.fixed, files.fixed),
+                      both ? &bodies.moving : nullptr, name_of(bodies.moving, files.moving), pose);
+}
+
+nlohmann::ordered_json block_of(const ViewArguments& options) {
+  if (!is_recording(options.files.front())) {
+    refuse_if(!options.scene.empty(), "--scene", "goes with a recording");
+    refuse_if(options.files.size() == 1 && options.pose.is_named(), "--move",
+              "a pose is of the second body: name two files");
+    return block_of_bodies(options);
+  }
+  refuse_if(options.files.size() > 1, options.files.back().string(),
+            "a recording holds all bodies of its scene: name that by --scene");
+  refuse_if(options.pose.is_named(), "--move", "a recording has its own poses");
+  return recording_block(options.files.front(), options.scene, options.max_memory);
+}
+
+void run(const ViewArguments& options) {
+  static_cast<void>(format_by_ending("-o", options.output, std::array{FileFormat::kHtml}));
+  for (const std::filesystem::path& file : options.files) {
+    refuse_to_overwrite(options.output, {file, options.scene, options.pose.matrix});
+  }
+  const std::optional<std::filesystem::path> page = find_page();
+  if (!page) throw std::runtime_error(kHowToGetPage);
+  refuse_to_overwrite(options.output, {*page});
+  OutputFile file(options.output);
+  write_page(*page, block_of(options), file);
+  file.commit();
+  fmt::print(stderr, "wrote {}: open it in a browser\n", options.output.string());
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "view", "Write a page that shows bodies, or plays a recording, in any browser");
+  const auto options = std::make_shared<ViewArguments>();
+  command
+      ->add_option("FILES", options->files,
+                   "a recording of 'ist run --record'; or the mesh or tree of a body that stays, "
+                   "and of one that is moved")
+      ->type_name("FILE")
+      ->expected(1, 2)
+      ->required();
+  command->add_option("-o,--output", options->output, "the page, which ends in .html")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--scene", options->scene,
+                   "the scene that a recording is of, for its bodies; else the page shows frames "
+                   "and forces alone")
+      ->type_name("FILE");
+  add_max_memory(*command, options->max_memory, "each tree, and for all queries together");
+  add_pose_options(*command, options->pose, Poses::kOne);
+  add_example(*command,
+              "The page holds the engine and all data, asks no server, and can be mailed.\n"
+              "Examples: ist view upper.stl lower.stl -o jaws.html\n"
+              "          ist view ticks.jsonl --scene scene.toml -o run.html");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace ist::cli

@@ -1,0 +1,111 @@
+#include "viewer/engine/bite_reply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cli/formats/glb_writer.h"
+#include "cli/occlusion/bite_json.h"
+#include "cli/occlusion/bite_maker.h"
+#include "cli/occlusion/bite_surfaces.h"
+#include "cli/occlusion/map_colours.h"
+#include "cli/occlusion/open_book.h"
+#include "ist/base/error.h"
+#include "ist/base/files.h"
+
+namespace ist::viewer {
+namespace {
+
+using cli::Colour;
+using nlohmann::ordered_json;
+
+constexpr double kBookGap = 10;  // millimetres
+
+cli::Bite bite_of(const cli::Bodies& bodies, const Asked& asked, Progress& progress) {
+  cli::BiteQuestions questions;
+  const std::string preset = asked.text("preset");
+  const auto found = std::find_if(cli::presets().begin(), cli::presets().end(),
+                                  [&](const cli::Preset& each) { return each.name == preset; });
+  if (found == cli::presets().end()) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("preset: no preset has the name {}", preset));
+  }
+  questions.preset = &*found;
+  questions.reach = asked.number("reach");
+  if (!(questions.reach > 0) || questions.reach < 1e-3 * found->micrometres.back()) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("reach: give at least the preset's largest limit, {:g} µm",
+                            found->micrometres.back()));
+  }
+  if (bodies.unit() == LengthUnit::kUnknown) questions.unit = asked.unit();
+  questions.sides.frame = asked.text_or_none("frame");
+  return cli::make_bite(bodies, {bodies.fixed.source(), bodies.moving.source()}, asked.pose("pose"),
+                        questions, progress);
+}
+
+std::string web_colour(const Colour& colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
+}
+
+ordered_json numbers_of(const Eigen::Isometry3d& pose) {
+  ordered_json numbers = ordered_json::array();
+  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix().data()[i]);
+  return numbers;
+}
+
+ordered_json side_of(const cli::BiteBody& body, const Eigen::Isometry3d& placing,
+                     std::span<const cli::MapBand> bands, Reply& reply) {
+  std::vector<float> distances;
+  std::vector<std::uint8_t> colours;
+  for (const SurfaceDistance& one : body.surface.vertices) {
+    distances.push_back(static_cast<float>(one.distance));
+    const Colour colour = cli::map_colour(one.distance, bands);
+    colours.insert(colours.end(), colour.begin(), colour.end());
+  }
+  return {{"distances", reply.array(std::move(distances))},
+          {"colours", reply.array(std::move(colours))},
+          {"place", numbers_of(placing * body.to_fixed)}};
+}
+
+}  // namespace
+
+void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress, Reply& reply) {
+  const cli::Bite bite = bite_of(bodies, asked, progress);
+  const std::vector<cli::MapBand> bands = cli::map_bands(bite);
+  reply.json["bite"] = cli::json_of(bite);
+  reply.json["bands"] = ordered_json::array();
+  for (const cli::MapBand& band : bands) {
+    ordered_json line{{"from", nullptr},
+                      {"to", band.to},
+                      {"colour", web_colour(band.colour)},
+                      {"words", band.words},
+                      {"below_scan_error", band.below_scan_error}};
+    if (std::isfinite(band.from)) line["from"] = band.from;
+    reply.json["bands"].push_back(line);
+  }
+  reply.json["bare"] = web_colour(cli::kBareSurface);
+  const cli::OpenedBook book = cli::opened(bite, kBookGap * bite.units_per_mm);
+  reply.json["fixed"] = side_of(bite.fixed, book.fixed, bands, reply);
+  reply.json["moving"] = side_of(bite.moving, book.moving, bands, reply);
+}
+
+std::vector<std::uint8_t> coloured_glb(const cli::Bodies& bodies, const Asked& asked,
+                                       Progress& progress) {
+  const cli::Bite bite = bite_of(bodies, asked, progress);
+  std::vector<cli::NamedPolyData> surfaces = cli::bite_surfaces(bite, {});
+  for (cli::NamedPolyData& body : surfaces) {
+    body.data.normals = cli::vertex_normals(body.data);
+    body.data.point_arrays.clear();
+  }
+  const std::filesystem::path file = "page.glb";
+  cli::write_glb(surfaces, 1e-3 / bite.units_per_mm, file);
+  InputFile input(file);
+  std::vector<std::uint8_t> bytes(std::filesystem::file_size(file));
+  bytes.resize(input.read(bytes.data(), bytes.size()));
+  std::filesystem::remove(file);
+  return bytes;
+}
+
+}  // namespace ist::viewer

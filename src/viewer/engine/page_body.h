@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ist/base/progress.h"
+#include "ist/mesh/mesh.h"
+#include "ist/tree/sphere_tree.h"
+#include "viewer/engine/reply.h"
+
+namespace ist::viewer {
+
+/// A body of the page: a mesh, or a tree that was read, and the tree that was made of it last.
+class PageBody {
+ public:
+  /// Reads a mesh or a tree, and checks it. Throws as read_mesh() and read_tree() do.
+  /// @param unit of a mesh, and of a tree that was told none
+  PageBody(const std::filesystem::path& file, LengthUnit unit);
+
+  /// Whether it holds triangles, of which a tree can be made.
+  [[nodiscard]] bool rebuilds() const noexcept { return mesh_.has_value(); }
+  [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
+  [[nodiscard]] double extent() const noexcept { return extent_; }
+  /// The tree of the last build(), or the one that was read.
+  [[nodiscard]] const std::optional<SphereTree>& tree() const noexcept { return tree_; }
+
+  /// The tree that `ist occlusion` takes, whose answers need triangles alone: as it was read, or of
+  /// one voxel as large as the mesh. Made at its first use.
+  [[nodiscard]] const SphereTree& whole();
+
+  /// Makes the tree anew, where there are triangles. The tree before stays where this throws, as
+  /// build_tree() does.
+  void build(double voxel_size, Progress& progress);
+
+  /// Describes the body as it was read: BodyFacts of page/protocol.js.
+  [[nodiscard]] nlohmann::ordered_json facts(Reply& reply) const;
+  /// Describes its tree: TreeFacts. Precondition: tree().
+  [[nodiscard]] nlohmann::ordered_json tree_facts() const;
+
+ private:
+  [[nodiscard]] BuildOptions options(double voxel_size) const;
+
+  std::string name_;
+  MeshSource source_;
+  std::optional<TriangleMesh> mesh_;
+  std::optional<SphereTree> tree_, whole_;
+  nlohmann::ordered_json info_;
+  std::vector<std::string> warnings_;
+  double extent_ = 0, milliseconds_ = 0;
+};
+
+}  // namespace ist::viewer

@@ -1,0 +1,106 @@
+#include "viewer/engine/pair.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "cli/answers/answer_json.h"
+#include "cli/header_line.h"
+
+namespace ist::viewer {
+namespace {
+
+// A browser's clock steps by 0.1 ms.
+constexpr int kTogether = 20;
+constexpr std::size_t kGroups = 9;
+constexpr std::chrono::milliseconds kLongest{400};
+
+// A distance that a person sees, of the smaller body's extent.
+constexpr double kSeen = 1e-3;
+
+double median_time(cli::Engine& engine, const Eigen::Isometry3d& pose) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> groups;
+  const auto begin = Clock::now();
+  while (groups.size() < kGroups && (groups.empty() || Clock::now() - begin < kLongest)) {
+    const auto group = Clock::now();
+    for (int i = 0; i < kTogether; ++i) static_cast<void>(engine.ask(pose));
+    const std::chrono::duration<double, std::micro> time = Clock::now() - group;
+    groups.push_back(time.count() / kTogether);
+  }
+  const auto middle = groups.begin() + static_cast<std::ptrdiff_t>(groups.size() / 2);
+  std::nth_element(groups.begin(), middle, groups.end());
+  return *middle;
+}
+
+nlohmann::ordered_json triple(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+nlohmann::ordered_json contacts_of(const ContactManifold& manifold, double stiffness,
+                                   Reply& reply) {
+  std::vector<double> positions, normals, depths, weights;
+  for (const Contact& contact : manifold.points()) {
+    positions.insert(positions.end(), contact.position.begin(), contact.position.end());
+    normals.insert(normals.end(), contact.normal.begin(), contact.normal.end());
+    depths.push_back(contact.depth);
+    weights.push_back(contact.weight);
+  }
+  const Wrench wrench = manifold.wrench(stiffness);
+  return {{"positions", reply.array(std::move(positions))},
+          {"normals", reply.array(std::move(normals))},
+          {"depths", reply.array(std::move(depths))},
+          {"weights", reply.array(std::move(weights))},
+          {"force", triple(wrench.force)},
+          {"torque", triple(wrench.torque)},
+          {"about", triple(manifold.sums().about)}};
+}
+
+}  // namespace
+
+Pair::Pair(const cli::Bodies& bodies)
+    : bodies_(bodies),
+      examiner_(bodies_, {}, {}),
+      query_(bodies_.fixed, bodies_.moving, {.policy = bodies_.policy}),
+      manifold_(bodies_.fixed, bodies_.moving, bodies_.policy, {.least_depth = 0}) {
+  engines_.emplace_back(cli::kEngineNames.front(), bodies_.fixed, bodies_.moving,
+                        cli::EngineOptions{.policy = bodies_.policy});
+}
+
+nlohmann::ordered_json Pair::collide(const Eigen::Isometry3d& pose) {
+  cli::Engine& engine = engines_.front();
+  cli::PoseAnswer answer{pose, {}, examiner_.at(pose), {}};
+  const cli::Engine::Answer given = engine.ask(pose);
+  answer.engines.push_back({given.result, {given.microseconds}});
+  return {{"header",
+           cli::header_line(
+               "collide", {{"fixed", bodies_.fixed.source()}, {"moving", bodies_.moving.source()}},
+               bodies_)},
+          {"line", cli::answer_line(0, answer, engine, answer.engines.front(), bodies_)},
+          {"microseconds", median_time(engine, pose)}};
+}
+
+void Pair::tick(const Eigen::Isometry3d& pose, double stiffness, Reply& reply) {
+  const IntersectionResult touch = query_.intersects(pose);
+  const DistanceResult distance = query_.distance(pose, kSeen * bodies_.extent());
+  const QueryResult pairs = query_.contacts(pose, manifold_);
+  reply.json = {
+      {"touch", to_string(touch.answer)},          {"distance_lower", distance.distance.lower},
+      {"distance_upper", distance.distance.upper}, {"leaf_pairs", pairs.leaf_pairs},
+      {"sphere_tests", pairs.sphere_tests},        {"resolution", pairs.resolution}};
+  reply.json["contacts"] = contacts_of(manifold_, stiffness, reply);
+}
+
+Pair& Pairs::of(std::optional<SpherePolicy> policy) {
+  const SpherePolicy wanted = policy.value_or(bodies_.policy);
+  bodies_.fixed.require(wanted, "the fixed body");
+  bodies_.moving.require(wanted, "the moving body");
+  std::optional<Pair>& pair = pairs_[static_cast<std::size_t>(wanted)];
+  if (!pair) {
+    cli::Bodies bodies = bodies_;
+    bodies.policy = wanted;
+    pair.emplace(bodies);
+  }
+  return *pair;
+}
+
+}  // namespace ist::viewer

@@ -1,0 +1,227 @@
+#include "viewer/engine/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "cli/extents.h"
+#include "ist/base/error.h"
+#include "ist/measure/first_contact.h"
+#include "ist/models/models.h"
+#include "viewer/engine/bite_reply.h"
+#include "viewer/engine/level_reply.h"
+
+namespace ist::viewer {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::kArgumentInvalid, what);
+}
+
+constexpr const char* name_of(Role role) { return role == Role::kFixed ? "fixed" : "moving"; }
+
+// A folder of its own for each body: both files may have one name.
+std::filesystem::path file_of(Role role, const std::string& name) {
+  return std::filesystem::path(name_of(role)) / name;
+}
+
+std::vector<std::uint8_t> bytes_of(const std::vector<std::byte>& bytes) {
+  std::vector<std::uint8_t> numbers(bytes.size());
+  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return numbers;
+}
+
+int level_of(const Asked& asked) {
+  return static_cast<int>(std::min<std::uint64_t>(asked.count("level"), 64));
+}
+
+}  // namespace
+
+Reply Session::answer(const std::string& question, const Asked& asked, Progress& progress) {
+  Reply reply;
+  if (question == "tick") {
+    pairs().of(asked.policy()).tick(asked.pose("pose"), asked.number("stiffness"), reply);
+  } else if (question == "collide") {
+    reply.json = pairs().of(asked.policy()).collide(asked.pose("pose"));
+  } else if (question == "occlusion") {
+    fill_bite(whole(), asked, progress, reply);
+  } else if (question == "save_glb") {
+    reply.json["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
+  } else if (question == "make_jaws") {
+    return make_jaws(asked);
+  } else if (question == "open") {
+    return open(asked);
+  } else if (question == "build") {
+    return build(asked, progress);
+  } else if (question == "first_contact") {
+    return first_contact(asked, progress);
+  } else if (question == "level") {
+    return level(asked);
+  } else if (question == "touched") {
+    return touched(asked);
+  } else if (question == "fronts") {
+    return fronts(asked);
+  } else if (question == "front") {
+    return front(asked);
+  } else if (question == "save_body") {
+    return save_body(asked);
+  } else {
+    refuse(fmt::format("{}: the engine has no such question", question));
+  }
+  return reply;
+}
+
+PageBody& Session::present(Role role) {
+  std::optional<PageBody>& found = body(role);
+  if (!found) refuse(fmt::format("there is no {} body: open a file for it", name_of(role)));
+  return *found;
+}
+
+Pairs& Session::pairs() {
+  if (!pairs_) refuse("the trees are not built: build them first");
+  return *pairs_;
+}
+
+cli::Bodies Session::whole() {
+  PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
+  const SphereTree &one = fixed.whole(), &other = moving.whole();
+  return {one, other, std::min(one.tightest(), other.tightest())};
+}
+
+Reply Session::make_jaws(const Asked& asked) {
+  const std::uint64_t seed = asked.count("seed");
+  const std::filesystem::path upper = file_of(Role::kFixed, "upper_jaw.stl"),
+                              lower = file_of(Role::kMoving, "lower_jaw.stl");
+  // By way of files, as `ist demo --keep` writes them: the command's answers for those are these.
+  write_stl(make_jaw(Jaw::kUpper, seed), upper);
+  write_stl(make_jaw(Jaw::kLower, seed), lower);
+  fixed_.emplace(upper, LengthUnit::kUnknown);
+  moving_.emplace(lower, LengthUnit::kUnknown);
+  std::filesystem::remove(upper);
+  std::filesystem::remove(lower);
+  pairs_.reset();
+  recorded_.reset();
+  Reply reply;
+  reply.json["fixed"] = fixed_->facts(reply);
+  reply.json["moving"] = moving_->facts(reply);
+  return reply;
+}
+
+Reply Session::open(const Asked& asked) {
+  const Role role = asked.role();
+  PageBody read(file_of(role, asked.text("name")), asked.unit());
+  body(role) = std::move(read);
+  pairs_.reset();
+  recorded_.reset();
+  Reply reply;
+  reply.json = body(role)->facts(reply);
+  return reply;
+}
+
+Reply Session::build(const Asked& asked, Progress& progress) {
+  PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
+  const double extent = std::min(fixed.extent(), moving.extent());
+  const double voxel_size =
+      asked.number_or_none("voxel_size").value_or(cli::rounded_voxel_size(extent));
+  for (PageBody* each : {&fixed, &moving}) each->build(voxel_size, progress);
+  cli::Bodies bodies{*fixed.tree(), *moving.tree(),
+                     std::min(fixed.tree()->tightest(), moving.tree()->tightest())};
+  bodies.fixed_voxel_size = bodies.fixed.voxel_size();
+  bodies.moving_voxel_size = bodies.moving.voxel_size();
+  pairs_.emplace(std::move(bodies));
+  static_cast<void>(pairs_->of({}));  // so that the first frame of a drag has it
+  recorded_.reset();
+  Reply reply;
+  reply.json = {{"fixed", fixed.tree_facts()}, {"moving", moving.tree_facts()}};
+  reply.json["policies"] = nlohmann::ordered_json::array();
+  for (const SpherePolicy policy : kSpherePolicies) {
+    if (policy <= pairs_->bodies().policy) reply.json["policies"].push_back(to_string(policy));
+  }
+  return reply;
+}
+
+Reply Session::first_contact(const Asked& asked, Progress& progress) {
+  progress.begin_stage("looking for the first contact", 0);
+  const Motion motion = Motion::between(asked.pose("from"), asked.pose("to"));
+  const FirstContact found =
+      ist::first_contact(pairs().of({}).query(), motion, asked.number("tolerance"));
+  const Eigen::Isometry3d pose = motion.at(found.upper);
+  Reply reply;
+  reply.json = {{"status", to_string(found.status)},
+                {"lower", found.lower},
+                {"upper", found.upper},
+                {"pose", nlohmann::ordered_json::array()}};
+  for (Eigen::Index i = 0; i < 16; ++i) reply.json["pose"].push_back(pose.matrix().data()[i]);
+  return reply;
+}
+
+Reply Session::level(const Asked& asked) {
+  const cli::Bodies& bodies = pairs().bodies();
+  Reply reply;
+  fill_level(asked.role() == Role::kFixed ? bodies.fixed : bodies.moving,
+             asked.policy().value_or(bodies.policy), level_of(asked), reply);
+  return reply;
+}
+
+Reply Session::touched(const Asked& asked) {
+  const cli::Bodies& bodies = pairs().bodies();
+  const int level = level_of(asked);
+  const SearchLevels last{std::min(level, bodies.fixed.depth()),
+                          std::min(level, bodies.moving.depth())};
+  const std::vector<StepFront> fronts =
+      record_fronts(bodies.fixed, bodies.moving, asked.policy().value_or(bodies.policy),
+                    asked.pose("pose"), last);
+  const StepFront none, &at = fronts.empty() ? none : fronts.back();
+  Reply reply;
+  reply.json["fixed"] = reply.array(nodes_in(at.fixed));
+  reply.json["moving"] = reply.array(nodes_in(at.moving));
+  return reply;
+}
+
+const std::vector<StepFront>& Session::recorded(const Asked& asked) {
+  const cli::Bodies& bodies = pairs().bodies();
+  const SpherePolicy policy = asked.policy().value_or(bodies.policy);
+  const Eigen::Isometry3d pose = asked.pose("pose");
+  if (!recorded_ || recorded_->policy != policy || recorded_->pose.matrix() != pose.matrix()) {
+    recorded_ = {pose, policy, record_fronts(bodies.fixed, bodies.moving, policy, pose)};
+  }
+  return recorded_->fronts;
+}
+
+Reply Session::fronts(const Asked& asked) {
+  Reply reply;
+  reply.json["steps"] = nlohmann::ordered_json::array();
+  for (const StepFront& front : recorded(asked)) {
+    reply.json["steps"].push_back({{"fixed_level", front.fixed_level},
+                                   {"moving_level", front.moving_level},
+                                   {"tests", front.tests},
+                                   {"pairs", front.pairs}});
+  }
+  return reply;
+}
+
+Reply Session::front(const Asked& asked) {
+  const std::vector<StepFront>& fronts = recorded(asked);
+  const std::uint64_t step = asked.count("step");
+  if (step >= fronts.size()) {
+    refuse(fmt::format("step {}: the query has {} steps", step, fronts.size()));
+  }
+  const StepFront& front = fronts[step];
+  Reply reply;
+  reply.json = {{"fixed_level", front.fixed_level}, {"moving_level", front.moving_level}};
+  reply.json["fixed"] = reply.array(front.fixed);
+  reply.json["moving"] = reply.array(front.moving);
+  return reply;
+}
+
+Reply Session::save_body(const Asked& asked) {
+  const PageBody& saved = present(asked.role());
+  if (!saved.tree()) refuse("the tree is not built: build it first");
+  Reply reply;
+  reply.json["bytes"] = reply.array(bytes_of(tree_to_bytes(*saved.tree())));
+  return reply;
+}
+
+}  // namespace ist::viewer

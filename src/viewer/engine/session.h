@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ist/base/progress.h"
+#include "viewer/engine/asked.h"
+#include "viewer/engine/fronts.h"
+#include "viewer/engine/page_body.h"
+#include "viewer/engine/pair.h"
+#include "viewer/engine/reply.h"
+
+namespace ist::viewer {
+
+/// The page's two bodies, and the answers to all questions of page/protocol.js. Files lie in
+/// folders of their own in memory, `fixed` and `moving` below the working folder.
+class Session {
+ public:
+  /// Answers a question by its name. Throws kArgumentInvalid for an unknown name, and for
+  /// members that are missing; and the errors of the functions that answer.
+  [[nodiscard]] Reply answer(const std::string& question, const Asked& asked, Progress& progress);
+
+ private:
+  struct Recorded {
+    Eigen::Isometry3d pose;
+    SpherePolicy policy;
+    std::vector<StepFront> fronts;
+  };
+
+  [[nodiscard]] Reply make_jaws(const Asked& asked);
+  [[nodiscard]] Reply open(const Asked& asked);
+  [[nodiscard]] Reply build(const Asked& asked, Progress& progress);
+  [[nodiscard]] Reply first_contact(const Asked& asked, Progress& progress);
+  [[nodiscard]] Reply level(const Asked& asked);
+  [[nodiscard]] Reply touched(const Asked& asked);
+  [[nodiscard]] Reply fronts(const Asked& asked);
+  [[nodiscard]] Reply front(const Asked& asked);
+  [[nodiscard]] Reply save_body(const Asked& asked);
+
+  [[nodiscard]] std::optional<PageBody>& body(Role role) {
+    return role == Role::kFixed ? fixed_ : moving_;
+  }
+  /// The body of that role. Throws kArgumentInvalid where the page has none.
+  [[nodiscard]] PageBody& present(Role role);
+  /// The queries of both trees. Throws kArgumentInvalid before build().
+  [[nodiscard]] Pairs& pairs();
+  /// Both bodies as `ist occlusion` takes them.
+  [[nodiscard]] cli::Bodies whole();
+  [[nodiscard]] const std::vector<StepFront>& recorded(const Asked& asked);
+
+  std::optional<PageBody> fixed_, moving_;
+  std::optional<Pairs> pairs_;
+  std::optional<Recorded> recorded_;  // the fronts that were asked for last
+};
+
+}  // namespace ist::viewer

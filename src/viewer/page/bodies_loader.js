@@ -1,0 +1,132 @@
+/**
+ * Gives the engine its two bodies and their trees, and keeps what it takes to give them again to
+ * another engine: the built-in jaws' seed, the files, and the voxel size.
+ */
+
+import {faultText} from './engine/engine_client.js';
+import {identity} from './pose.js';
+import {bytesWords, short} from './words.js';
+
+/** @typedef {import('./context.js').Store} Store */
+/** @typedef {import('./context.js').Context} Context */
+/** @typedef {import('./protocol.js').Role} Role */
+/** @typedef {import('./protocol.js').Pose} Pose */
+/** @typedef {import('./protocol.js').Unit} Unit */
+/** @typedef {import('./protocol.js').BodyFacts} BodyFacts */
+/** @typedef {import('./engine/engine_client.js').EngineClient['ask']} Ask */
+
+/** @typedef {{role: Role, name: string, content: Blob, unit?: Unit}} BodyFile */
+/**
+ * @typedef {object} BodiesLoader  each promise gives whether it was done; a sentence was said if not
+ * @property {(seed: number) => Promise<boolean>} makeJaws
+ * @property {(file: BodyFile) => Promise<boolean>} open  of one role; trees are not built by it
+ * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
+ * @property {(files: BodyFile[], pose?: Pose) => Promise<boolean>} replace  opens, poses and builds
+ * @property {(ask: Ask) => Promise<void>} restore
+ */
+
+// The engine has 4 GiB, which hold the file, its mesh and its tree.
+const mostBytes = 1e9;
+// Of the smaller body's extent: 0.4 mm of a jaw, which answers in time for every frame.
+const firstVoxel = 1 / 275;
+// Bodies whose sizes differ by more are of different units.
+const farApart = 50;
+
+/**
+ * @param {Pick<Context, 'store' | 'say'> & {ask: Ask}} context
+ * @returns {BodiesLoader}
+ */
+export function makeBodiesLoader({store, say, ask}) {
+  /** @type {{seed: number | null, files: Partial<Record<Role, BodyFile>>, voxelSize: number | null, built: boolean}} */
+  const kept = {seed: null, files: {}, voxelSize: null, built: false};
+
+  /** @param {Promise<void>} done */
+  const said = async (done) => {
+    try {
+      await done;
+      return true;
+    } catch (error) {
+      const text = faultText(error);
+      if (text) say(text, 'error');
+      return false;
+    }
+  };
+
+  /** @param {number} seed */
+  async function makeJaws(seed) {
+    const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
+    Object.assign(kept, {seed, files: {}, built: false});
+    store.set({bodies, jaws: seed, seed, trees: null, tick: null, answer: null, bite: null, unit: null});
+  }
+
+  /** @param {BodyFile} file */
+  async function open(file) {
+    if (file.content.size > mostBytes) {
+      throw new Error(`${file.name} has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
+          'make its mesh coarser, or ask the command, ist, which has no such limit.');
+    }
+    const bytes = await file.content.arrayBuffer();
+    const facts = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
+    kept.files[file.role] = file;
+    kept.built = false;
+    if (kept.files.fixed && kept.files.moving) kept.seed = null;
+    const bodies = {...store.get().bodies, [file.role]: facts};
+    store.set({bodies, jaws: null, trees: null, tick: null, answer: null, bite: null, unit: file.unit ?? null});
+    for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
+    compare(bodies);
+  }
+
+  /** @param {{fixed: BodyFacts | null, moving: BodyFacts | null}} bodies */
+  function compare({fixed, moving}) {
+    if (!fixed || !moving) return;
+    const [small, large] = fixed.extent < moving.extent ? [fixed, moving] : [moving, fixed];
+    if (large.extent > farApart * small.extent) {
+      say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres. ` +
+          'Both must be in one unit; nothing is converted.', 'warning');
+    }
+  }
+
+  /** @param {number} [wanted] */
+  async function build(wanted) {
+    const {fixed, moving} = store.get().bodies;
+    if (!fixed || !moving) return;
+    const voxelSize = wanted ?? Number((firstVoxel * Math.min(fixed.extent, moving.extent)).toPrecision(2));
+    try {
+      const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
+      Object.assign(kept, {voxelSize, built: true});
+      const {policy} = store.get();
+      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, bite: null});
+    } catch (error) {
+      const text = faultText(error);
+      // The trees of before still answer, and are what the panels show.
+      if (text === null) return;
+      const trees = store.get().trees === null ? 'There are no trees yet' : 'The trees of before are kept';
+      throw new Error(`${text.replace(/\.$/, '')}. ${trees}: choose another voxel size.`);
+    }
+  }
+
+  /**
+   * @param {BodyFile[]} files
+   * @param {Pose} pose
+   */
+  async function replace(files, pose) {
+    for (const file of files) await open(file);
+    store.set({pose, home: pose, dragging: false});
+    await build();
+  }
+
+  return {
+    makeJaws: (seed) => said(makeJaws(seed)),
+    open: (file) => said(open(file)),
+    build: (voxelSize) => said(build(voxelSize)),
+    replace: (files, pose = [...identity]) => said(replace(files, pose)),
+    async restore(again) {
+      const {seed, files, voxelSize, built} = kept;
+      if (seed !== null) await again('make_jaws', {seed});
+      for (const file of Object.values(files)) {
+        await again('open', {role: file.role, name: file.name, bytes: await file.content.arrayBuffer(), unit: file.unit});
+      }
+      if (built) await again('build', {voxel_size: voxelSize});
+    },
+  };
+}

@@ -1,0 +1,105 @@
+/**
+ * Keeps the answers at the pose: touch, distance, contacts and force with every frame; the command's
+ * whole answer, with the depth, and the map when the pose has come to rest.
+ */
+
+import {faultText} from './engine/engine_client.js';
+import {millimetresIn} from './words.js';
+
+/** @typedef {import('./context.js').Context} Context */
+/** @typedef {import('./context.js').State} State */
+
+// A hand that pauses for less is still dragging.
+const rest = 250;
+
+/**
+ * @param {Pick<Context, 'engine' | 'store' | 'say'>} context
+ * @returns {{settled: () => boolean}}  whether every answer is of this pose
+ */
+export function followPose({engine, store, say}) {
+  /** @type {number | undefined} */
+  let waiting;
+  let asking = 0;
+
+  /** @param {Promise<void>} done */
+  const counted = async (done) => {
+    asking += 1;
+    try {
+      await done;
+    } catch (error) {
+      const text = faultText(error);
+      if (text) say(text, 'error');
+    } finally {
+      asking -= 1;
+    }
+  };
+
+  async function tick() {
+    const {pose, policy, stiffness, trees} = store.get();
+    if (!trees) return;
+    const found = await engine.ask('tick', {pose, policy: policy ?? undefined, stiffness: stiffness * perUnit(store.get())},
+        {latest: true, first: true});
+    if (store.get().trees === trees) store.set({tick: found});
+  }
+
+  async function answer() {
+    const {pose, policy, trees} = store.get();
+    if (!trees) return;
+    const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true});
+    if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
+  }
+
+  async function map() {
+    const state = store.get();
+    const {pose, trees} = state;
+    if (!trees || !state.wantsMap || !measurable(state)) return;
+    const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
+    if (store.get().trees === trees) store.set({bite: {...bite, pose}});
+  }
+
+  const atRest = () => {
+    waiting = undefined;
+    const {dragging, pose, policy, trees, answer: last, bite, wantsMap} = store.get();
+    if (dragging || !trees) return;
+    if (!last || last.pose !== pose || last.policy !== policy) counted(answer());
+    if (wantsMap && bite?.pose !== pose) counted(map());
+  };
+  const later = () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(atRest, rest);
+  };
+
+  store.subscribe(['pose', 'policy', 'stiffness', 'trees', 'unit'], () => counted(tick()));
+  store.subscribe(['pose', 'policy', 'trees', 'dragging', 'wantsMap'], later);
+  store.subscribe(['preset', 'reach', 'unit', 'frame'], () => {
+    store.set({bite: null});
+    later();
+  });
+  return {settled: () => waiting === undefined && asking === 0};
+}
+
+/** @param {Readonly<State>} state */
+export function biteQuestion({pose, preset, reach, unit, frame}) {
+  return {pose, preset, reach, unit: unit ?? undefined, frame};
+}
+
+/**
+ * @param {Readonly<State>} state
+ * @returns {boolean} whether both bodies hold the triangles that a map is measured on
+ */
+export function measurable({bodies}) {
+  return Boolean(bodies.fixed?.rebuilds && bodies.moving?.rebuilds);
+}
+
+/**
+ * @param {Readonly<State>} state
+ * @returns {string | null} of both bodies; null: assumed to be millimetres
+ */
+export function unitOf({bodies, unit}) {
+  return bodies.fixed?.unit ?? bodies.moving?.unit ?? unit;
+}
+
+/** @param {Readonly<State>} state */
+function perUnit(state) {
+  return millimetresIn(unitOf(state)) ** 3;
+}

@@ -1,0 +1,130 @@
+/** Wires the page: state, engine, picture, panels; then opens what the page came with. */
+
+import {openAbout} from './about.js';
+import {makeBodiesLoader} from './bodies_loader.js';
+import {readDataBlock} from './data_block.js';
+import {faultText, makeEngineClient} from './engine/engine_client.js';
+import {startEngine, unpackEngine} from './engine/engine_start.js';
+import {followPose} from './follow.js';
+import {readFragment, writeFragment} from './state/fragment.js';
+import {listenToKeys} from './keyboard.js';
+import {openDropped, openFirst} from './open_first.js';
+import {makeAccuracyPanel} from './panels/accuracy.js';
+import {makeBodiesPanel} from './panels/bodies.js';
+import {makeContactsPanel} from './panels/contacts.js';
+import {makeOcclusionPanel} from './panels/occlusion.js';
+import {makePosePanel} from './panels/pose.js';
+import {makeRecordingPanel} from './panels/recording.js';
+import {makeSavePanel} from './panels/save.js';
+import {makeTreePanel} from './panels/tree.js';
+import {identity, translation} from './pose.js';
+import {makePoseHistory} from './state/pose_history.js';
+import {makeReadout} from './readout.js';
+import {makeStore} from './state/store.js';
+import {exposeTestSurface} from './test_surface.js';
+import {followTheme} from './theme.js';
+import {element} from './ui/element.js';
+import {takeDrops} from './ui/file_drop.js';
+import {makeMessages} from './ui/messages.js';
+import {makeProgress} from './ui/progress.js';
+import {makeTabs} from './ui/tabs.js';
+import {canDraw, makeNoStage} from './view/no_stage.js';
+import {makeStage} from './view/stage.js';
+
+// Just apart, so that a little closing shows what there is to see.
+const startShift = [0, 0, -1.5];
+
+/** @param {string} id */
+function byId(id) {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no element ${id}`);
+  return found;
+}
+
+/** @returns {import('./context.js').State} */
+function firstState() {
+  return {
+    bodies: {fixed: null, moving: null}, jaws: null, trees: null, pose: translation(startShift), home: [...identity], dragging: false,
+    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, bite: null, preset: 'scan', reach: 2, unit: null,
+    frame: '', wantsMap: false, book: false, theme: null, panel: 'pose', seed: 1,
+  };
+}
+
+/** The page is painted before its picture and its engine take the processor; one that is not seen waits no longer. */
+function painted() {
+  return new Promise((resolve) => {
+    new PerformanceObserver(resolve).observe({type: 'paint', buffered: true});
+    setTimeout(resolve, 300);
+  });
+}
+
+async function main() {
+  const {dataset} = document.documentElement;
+  dataset.state = 'busy';
+  await painted();
+  const say = makeMessages(byId('messages'));
+  const store = makeStore(firstState());
+  const stage = canDraw() ? makeStage(byId('surface')) : makeNoStage(byId('surface'));
+  if (!stage.drawn) {
+    byId('surface').append(element('p', {class: 'no-drawing'}, 'This browser draws nothing in 3D: it has no WebGL2, or it is switched off. All numbers are here; for the picture use another browser, or switch hardware acceleration on.'));
+  }
+  followTheme(store, stage, byId('theme'));
+  const texts = await unpackEngine();
+
+  const engine = makeEngineClient({
+    start: () => startEngine(texts),
+    progress: makeProgress(byId('progress'), () => engine.cancel()),
+    restore: (ask) => loader.restore(ask),
+    onLost: (error) => {
+      dataset.state = 'failed';
+      say(`${faultText(error)} Load the page again; if that does not help, use a browser from 2023 or later.`, 'error');
+    },
+  });
+  const loader = makeBodiesLoader({store, say, ask: engine.ask});
+  const history = makePoseHistory(store);
+  const context = {engine, store, stage, loader, history, say};
+  const recording = makeRecordingPanel(context);
+  const panels = [
+    makeBodiesPanel(context), makePosePanel(context), makeAccuracyPanel(context), makeTreePanel(context),
+    makeContactsPanel(context), makeOcclusionPanel(context), recording, makeSavePanel(context),
+  ];
+  const show = makeTabs(byId('tabs'), byId('panels'), panels, (panel) => store.set({panel}));
+  const {settled} = followPose(context);
+  makeReadout(byId('readout'), store);
+  listenToKeys(context);
+  byId('about').addEventListener('click', () => openAbout(engine));
+
+  store.subscribe(['bodies'], ({bodies}) => {
+    stage.setBody('fixed', bodies.fixed);
+    stage.setBody('moving', bodies.moving);
+    byId('subject').textContent = bodies.fixed && bodies.moving ? `${bodies.fixed.name} and ${bodies.moving.name}` : 'where two bodies touch';
+  });
+  store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
+  store.subscribe(['panel'], ({panel}) => show(panel));
+  store.subscribe(['panel', 'pose', 'dragging', 'voxelSize', 'policy', 'preset', 'theme', 'seed'], (state) => {
+    if (!state.dragging) window.history.replaceState(null, '', writeFragment(state));
+  });
+  takeDrops(document.body, async (files) => {
+    const recorded = files.find((file) => /\.(jsonl|json|csv)$/i.test(file.name));
+    store.set({panel: recorded ? 'recording' : 'bodies'});
+    if (recorded) await recording.openFile(recorded);
+    const meshes = files.filter((file) => file !== recorded);
+    for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
+  });
+  let opened = false;
+  exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress});
+
+  const {change, problems} = readFragment(location.hash, panels.map((panel) => panel.id));
+  const {data, problem} = readDataBlock(byId('ist-data').textContent ?? 'null');
+  for (const each of [...problems, ...problem ? [problem] : [], ...data?.missing ?? []]) say(each, 'warning');
+  store.set(change);
+  show(store.get().panel);
+  stage.setPose(store.get().pose);
+  await openFirst(context, data, change, recording.open);
+  opened = true;
+}
+
+main().catch((error) => {
+  document.documentElement.dataset.state = 'failed';
+  makeMessages(byId('messages'))(`${faultText(error)}`, 'error');
+});

@@ -1,0 +1,83 @@
+/** Opens what the page came with: the data of a command, or else the built-in jaws. */
+
+import {openRecordingData, fileOf} from './recording/open_recording.js';
+import {faultText} from './engine/engine_client.js';
+import {identity} from './pose.js';
+
+/** @typedef {import('./context.js').Context} Context */
+/** @typedef {import('./context.js').State} State */
+/** @typedef {import('./data_block.js').DataBlock} DataBlock */
+/** @typedef {import('./recording/open_recording.js').Opened} Opened */
+
+/**
+ * @param {Context} context
+ * @param {DataBlock | null} data
+ * @param {Partial<State>} asked  by the address, which comes before the data
+ * @param {(opened: Opened) => void} onRecording
+ */
+export async function openFirst(context, data, asked, onRecording) {
+  const {store, loader, stage, history, say} = context;
+  let opened = false;
+  try {
+    opened = data !== null && await openData(context, data, asked, onRecording);
+  } catch (error) {
+    say(`${faultText(error)} The built-in jaws are shown instead.`, 'error');
+  }
+  if (!opened) {
+    if (!await loader.makeJaws(store.get().seed)) return;
+    stage.frameAll();
+    if (!await loader.build(asked.voxelSize ?? undefined)) await loader.build();
+  }
+  history.forget();
+}
+
+/**
+ * @param {Context} context
+ * @param {DataBlock} data
+ * @param {Partial<State>} asked
+ * @param {(opened: Opened) => void} onRecording
+ * @returns {Promise<boolean>} whether the data could be opened
+ */
+async function openData(context, data, asked, onRecording) {
+  const {store, loader, stage} = context;
+  if (data.kind === 'recording') {
+    onRecording(await openRecordingData(data, context));
+    store.set({panel: asked.panel ?? 'recording'});
+    return true;
+  }
+  if (data.occlusion) {
+    const {preset, reach, unit, frame} = data.occlusion;
+    store.set({preset: asked.preset ?? preset, reach, frame: frame ?? '', panel: asked.panel ?? 'occlusion'});
+    for (const body of data.bodies) {
+      if (!await loader.open({...fileOf(body), unit})) return false;
+    }
+  } else {
+    for (const body of data.bodies) {
+      if (!await loader.open(fileOf(body))) return false;
+    }
+    store.set({panel: asked.panel ?? 'bodies'});
+  }
+  const pose = data.pose ?? [...identity];
+  store.set({pose: asked.pose ?? pose, home: pose, dragging: false});
+  stage.frameAll();
+  await loader.build(asked.voxelSize ?? undefined);
+  return true;
+}
+
+/**
+ * Opens a mesh that was dropped on the page.
+ * @param {Context} context
+ * @param {File} file
+ * @param {number} at  among the files that were dropped together
+ * @param {number} of  how many those are
+ */
+export async function openDropped({store, loader, stage, history}, file, at, of) {
+  // Of two the first is fixed; one alone takes the place of the body that moves.
+  const role = of > 1 && at === 0 ? 'fixed' : 'moving';
+  if (!await loader.open({role, name: file.name, content: file})) return;
+  if (at < of - 1) return;
+  store.set({pose: store.get().home, dragging: false});
+  history.forget();
+  await loader.build();
+  stage.frameAll();
+}

@@ -1,0 +1,97 @@
+/** The two bodies: the built-in jaws, or files, and what is known of them. */
+
+import {button, numberField, select} from '../ui/controls.js';
+import {element} from '../ui/element.js';
+import {fileField} from '../ui/file_drop.js';
+import {bytesWords, count, infoSentences, short, unitWord} from '../words.js';
+import {facts} from '../ui/table.js';
+import {unitOf} from '../follow.js';
+
+/** @typedef {import('../context.js').State} State */
+/** @typedef {import('../protocol.js').Role} Role */
+/** @typedef {import('../protocol.js').Unit} Unit */
+/** @typedef {import('../protocol.js').TreeFacts} TreeFacts */
+
+const endings = '.stl,.ply,.obj,.ist';
+/** @type {Role[]} */
+const roles = ['fixed', 'moving'];
+const titles = {fixed: 'Fixed body', moving: 'Moving body'};
+
+/** @type {import('../context.js').MakePanel} */
+export function makeBodiesPanel({store, loader, stage, history}) {
+  let seed = store.get().seed;
+  /** @type {Unit | ''} */
+  let unit = '';
+  /**
+   * @param {Role} role
+   * @param {File} file
+   */
+  const open = async (role, file) => {
+    const opened = await loader.open({role, name: file.name, content: file, unit: unit || undefined});
+    if (opened) await settle();
+  };
+  const settle = async () => {
+    const pose = store.get().home;
+    store.set({pose, dragging: false});
+    history.forget();
+    await loader.build();
+    stage.frameAll();
+  };
+  const parts = {fixed: element('section'), moving: element('section')};
+  const panel = element('div', {},
+      element('h2', {}, 'Bodies'),
+      element('p', {}, 'Nothing that you open leaves this page: the engine is in it.'),
+      element('div', {class: 'row'},
+          numberField({label: 'Built-in jaws, number', value: seed, min: 0, max: 999_999_999, step: 1, onChange: (value) => { seed = value; }}).element,
+          button('Make these jaws', async () => {
+            if (await loader.makeJaws(seed)) await settle();
+          })),
+      select({
+        label: 'Unit of the files you open',
+        value: unit,
+        choices: [
+          {value: '', words: 'as the file says, else millimetres'}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'},
+          {value: 'inch', words: 'inches'}, {value: 'µm', words: 'micrometres'},
+        ],
+        onChange: (value) => { unit = /** @type {Unit | ''} */ (value); },
+      }).element,
+      ...roles.map((role) => element('section', {class: `body ${role}`},
+          element('h3', {}, titles[role]), parts[role],
+          fileField(`Open another (${endings.replaceAll(',', ' ')})`, endings, (file) => open(role, file)))));
+
+  const fill = (/** @type {Readonly<State>} */ state) => {
+    for (const role of roles) parts[role].replaceChildren(...bodyLines(state, role));
+  };
+  store.subscribe(['bodies', 'trees', 'unit'], fill);
+  fill(store.get());
+  return {id: 'bodies', title: 'Bodies', element: panel, shown: () => {}, hidden: () => {}};
+}
+
+/**
+ * @param {Readonly<State>} state
+ * @param {Role} role
+ */
+function bodyLines(state, role) {
+  const body = state.bodies[role];
+  if (!body) return [element('p', {}, 'There is none yet.')];
+  const lines = [
+    element('p', {}, element('strong', {}, body.name)),
+    ...infoSentences({unit: body.unit, ...body.info}).map((sentence) => element('p', {}, sentence)),
+    ...body.warnings.map((warning) => element('p', {class: 'warned'}, `${warning}.`)),
+  ];
+  return state.trees ? [...lines, treeFacts(state.trees[role], unitWord(unitOf(state)))] : lines;
+}
+
+/**
+ * @param {TreeFacts} tree
+ * @param {string} unit
+ */
+function treeFacts(tree, unit) {
+  return facts([
+    ['Voxel size', `${short(tree.voxel_size)} ${unit}`],
+    ['Leaves', count(tree.leaves)],
+    ['Levels', String(tree.depth + 1)],
+    ['Tree', bytesWords(tree.bytes)],
+    ['Built in', tree.milliseconds > 0 ? `${short(tree.milliseconds / 1000, 2)} s` : 'read from the file'],
+  ]);
+}

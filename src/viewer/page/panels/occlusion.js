@@ -1,0 +1,89 @@
+/** The occlusion map: both bodies by their distance from each other, its legend, and its regions. */
+
+import {measurable, unitOf} from '../follow.js';
+import {checkbox, select, slider} from '../ui/controls.js';
+import {element} from '../ui/element.js';
+import {unitWord} from '../words.js';
+import {makeMapView} from '../view/map_view.js';
+import {areaFacts, legend, regionTable} from './occlusion_words.js';
+
+/** @typedef {import('../protocol.js').Unit} Unit */
+
+const presets = [
+  {value: 'scan', words: 'scan: 0 and 100 µm (scans, Beck 2023)'},
+  {value: 'owens', words: 'owens: 50 and 350 µm (silicone bites, Owens 2002)'},
+  {value: 'biteeye', words: 'biteeye: 9 to 149 µm (silicone bites, BiteEye 2022)'},
+  {value: 'paper', words: 'paper: 200 µm (articulating paper, Rovira-Lastra 2026)'},
+  {value: 'stl', words: 'stl: 100 to 400 µm (scans, Rovira-Lastra 2026)'},
+  {value: 'shim', words: 'shim: 10 µm (shim stock holds)'},
+];
+
+/** @type {import('../context.js').MakePanel} */
+export function makeOcclusionPanel({store, stage}) {
+  const view = makeMapView(stage, store);
+  const preset = select({label: 'Preset', value: store.get().preset, choices: presets, onChange: (value) => store.set({preset: value})});
+  const reach = slider({
+    label: 'Reach of the search', min: 0.5, max: 5, step: 0.5, value: store.get().reach,
+    words: (value) => `${value} mm`, onInput: () => {}, onChange: (value) => store.set({reach: value}),
+  });
+  const unit = select({
+    label: 'Unit of the meshes', value: '',
+    choices: [{value: '', words: 'millimetres, assumed'}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'}, {value: 'inch', words: 'inches'}, {value: 'µm', words: 'micrometres'}],
+    onChange: (value) => store.set({unit: value === '' ? null : /** @type {Unit} */ (value)}),
+  });
+  const frame = select({
+    label: 'Patient frame', value: store.get().frame,
+    choices: [{value: '', words: 'not known: sides are +x and −x'}, {value: 'lps', words: 'LPS: +x is left'}, {value: 'ras', words: 'RAS: +x is right'}],
+    onChange: (value) => store.set({frame: value}),
+  });
+  // Closed, the bodies hide the surfaces that face each other.
+  let opens = true;
+  const book = checkbox('Open both bodies like a book', opens, (on) => {
+    opens = on;
+    store.set({book: on});
+  });
+  const state = element('p', {class: 'map-state', 'aria-live': 'polite'});
+  const answer = element('div'), caveat = element('p', {class: 'caveat'});
+  const panel = element('div', {},
+      element('h2', {}, 'Occlusion map'),
+      element('p', {}, 'Each vertex by its signed distance from the other body: negative inside. The presets are published limits, and none is a clinical recommendation.'),
+      preset.element, book.element, state, answer, caveat,
+      element('details', {}, element('summary', {}, 'Reach, unit and sides'), reach.element, unit.element, frame.element));
+
+  const fill = () => {
+    const now = store.get();
+    const {bite} = now;
+    unit.element.hidden = Boolean(now.bodies.fixed?.unit ?? now.bodies.moving?.unit);
+    preset.set(now.preset);
+    const stale = bite !== null && bite.pose !== now.pose;
+    state.textContent = !now.trees ? 'The map comes when the trees are built.' :
+      !measurable(now) ? 'A map needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.' :
+        stale ? 'Grey: the map of another pose. It is made again where the pose rests.' :
+          bite ? 'The map is of this pose.' : 'The map is being made.';
+    answer.classList.toggle('stale', stale);
+  };
+  const fillBite = () => {
+    const {bite} = store.get();
+    const word = unitWord(unitOf(store.get()));
+    caveat.textContent = bite ? bite.bite.caveat : '';
+    answer.replaceChildren(...(bite ? [
+      legend(bite, word), areaFacts(bite.bite, word),
+      regionTable(bite.bite, 'fixed', word, view.flyTo), regionTable(bite.bite, 'moving', word, view.flyTo),
+    ] : []));
+    fill();
+  };
+  store.subscribe(['bite', 'bodies'], fillBite);
+  store.subscribe(['pose', 'trees', 'preset', 'book', 'unit'], fill);
+  return {
+    id: 'occlusion', title: 'Occlusion', element: panel,
+    shown() {
+      store.set({wantsMap: true, book: opens});
+      view.show(true);
+      fillBite();
+    },
+    hidden() {
+      store.set({wantsMap: false, book: false});
+      view.show(false);
+    },
+  };
+}

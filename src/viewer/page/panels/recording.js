@@ -1,0 +1,240 @@
+/** A recording of `ist run`: it plays, with force, contacts and distance over time. */
+
+import {faultText} from '../engine/engine_client.js';
+import {placeAt, relative} from '../recording/placed_bodies.js';
+import {openRecordingFile} from '../recording/open_recording.js';
+import {indexAt, makePlayback} from '../recording/playback.js';
+import {identity} from '../pose.js';
+import {button, select, slider} from '../ui/controls.js';
+import {element} from '../ui/element.js';
+import {fileField} from '../ui/file_drop.js';
+import {plot} from '../ui/plot.js';
+import {facts} from '../ui/table.js';
+import {count, short, unitWord} from '../words.js';
+import {unitOf} from '../follow.js';
+import {makePlayerView} from '../view/player_view.js';
+
+/** @typedef {import('../context.js').Context} Context */
+/** @typedef {import('../context.js').Panel} Panel */
+/** @typedef {import('../recording/open_recording.js').Opened} Opened */
+/** @typedef {import('../recording/playback.js').Playback} Playback */
+/** @typedef {import('../protocol.js').Pose} Pose */
+
+const distancesAsked = 150;
+const speeds = ['0.05', '0.1', '0.25', '0.5', '1', '2'];
+// Of frames that stand alone, metres become the picture's millimetres.
+const frameScale = 1e3;
+// A spring of some hundred N/m draws the tool by fractions of a millimetre, which nobody sees.
+const handApart = 10;
+
+/**
+ * @param {Context} context
+ * @returns {Panel & {open: (opened: Opened) => void, openFile: (file: File) => Promise<void>, progress: () => {tick: number, last: number} | null}}
+ */
+export function makeRecordingPanel(context) {
+  const {store, stage, engine, say} = context;
+  const view = makePlayerView(stage);
+  /** @type {Opened | null} */
+  let opened = null;
+  /** @type {Playback | null} */
+  let playback = null;
+  let seen = false;
+
+  const play = button('Play', () => playback?.toggle(), {primary: true});
+  const scrub = slider({label: 'Tick', min: 0, max: 1, step: 1, value: 0, words: tickWords, onInput: (at) => {
+    playback?.pause();
+    playback?.jump(at);
+  }});
+  const speed = select({label: 'Speed', value: '1', choices: speeds.map((value) => ({value, words: `${value} ×`})), onChange: (value) => playback?.setSpeed(Number(value))});
+  const pick = (/** @type {number} */ time) => opened && playback?.jump(indexAt(opened.recording.ticks, time));
+  const time = {xLabel: 'time, s', lines: true, onPick: pick};
+  const plots = {
+    force: plot({...time, label: 'Force on the hand over time', yLabel: 'force, N'}),
+    contacts: plot({...time, label: 'Leaf pairs over time', yLabel: 'leaf pairs'}),
+    distance: plot({...time, label: 'Distance over time', yLabel: 'distance'}),
+  };
+  let apart = handApart;
+  const apartSlider = slider({label: 'Hand drawn away from the tool', min: 1, max: 50, step: 1, value: apart, words: (value) => value === 1 ? 'as it is' : `${value} times as far`, onInput: (value) => {
+    apart = value;
+    playback?.jump(playback.at());
+  }});
+  const now = element('div'), head = element('p');
+  const player = element('div', {hidden: true},
+      head, element('div', {class: 'row'}, play, button('Back a tick', () => step(-1)), button('On a tick', () => step(1))),
+      scrub.element, speed.element, apartSlider.element, now,
+      element('h3', {}, 'Force on the hand'), plots.force.element,
+      element('h3', {}, 'Leaf pairs'), plots.contacts.element,
+      element('h3', {}, 'Distance, asked here'), plots.distance.element,
+      element('p', {class: 'quiet'}, 'Short strokes on the time axis are late ticks. The body in its own colour is the tool, the faint pink one is where the hand draws it to.'));
+  const panel = element('div', {},
+      element('h2', {}, 'Recording'),
+      element('p', {}, 'Plays what ist run SCENE --record run.jsonl wrote: how a hand moved one body against the other, and what it felt.'),
+      fileField('Open a recording (.jsonl)', '.jsonl,.json,.csv,.txt', (file) => openFile(file)), player);
+
+  /** @param {number} at */
+  function tickWords(at) {
+    const tick = opened?.recording.ticks[at];
+    return tick ? `${count(tick.tick)}, ${tick.time.toFixed(3)} s` : '–';
+  }
+  /** @param {number} by */
+  const step = (by) => {
+    playback?.pause();
+    playback?.jump(playback.at() + by);
+  };
+
+  /** @param {File} file */
+  async function openFile(file) {
+    try {
+      open(await openRecordingFile(await file.text(), context));
+    } catch (error) {
+      const text = faultText(error);
+      if (text) say(`${file.name}: ${text}`, 'error');
+    }
+  }
+
+  /** @param {Opened} next */
+  function open(next) {
+    playback?.pause();
+    opened = next;
+    const {recording: {ticks, header, dt}, scene} = next;
+    player.hidden = false;
+    head.textContent = `${count(ticks.length)} ticks of ${short(dt * 1e6)} µs by ist ${header.ist}: ${header.bodies.map((/** @type {any} */ body) => body.file ?? body.name).join(', ')}.`;
+    scrub.range(0, ticks.length - 1);
+    playback = makePlayback(ticks, show);
+    const late = {name: 'late ticks', colour: 'var(--series-2)', ticks: true, points: ticks.filter((tick) => tick.late).map((tick) => /** @type {[number, number]} */ ([tick.time, 0]))};
+    plots.force.set([{name: 'force', colour: 'var(--series-1)', points: ticks.map((tick) => [tick.time, tick.force])}, late]);
+    plots.contacts.set([{name: 'leaf pairs', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.contacts ?? NaN])}, late]);
+    plots.distance.set([]);
+    arrange();
+    playback.jump(0);
+    if (scene) askDistances().catch((error) => {
+      const text = faultText(error);
+      if (text) say(text, 'error');
+    });
+  }
+
+  function arrange() {
+    if (!opened || !seen) {
+      view.clear();
+      for (const role of roles) stage.fade(role, 1);
+      return;
+    }
+    const {scene, recording: {ticks}} = opened;
+    if (scene) {
+      const {moving} = store.get().bodies;
+      view.set(moving, scene.others.map((other) => other.facts), moving?.extent ?? 1);
+      stage.frameAll();
+      return;
+    }
+    for (const role of roles) stage.fade(role, 0);
+    const path = ticks.flatMap(({tool}) => [12, 13, 14].map((axis) => tool[axis] * frameScale));
+    const middle = [0, 1, 2].map((axis) => path.reduce((sum, value, at) => at % 3 === axis ? sum + value : sum, 0) / ticks.length);
+    const size = Math.max(1, ...path.map((value, at) => Math.abs(value - middle[at % 3])));
+    view.set(null, [], 8 * size);
+    view.setPath(path);
+    stage.flyTo(middle, [0.4, 1, 0.3], 5 * size);
+  }
+
+  /** @param {number} at */
+  const poseAt = (at) => {
+    if (!opened?.scene) return null;
+    const {scene, recording: {ticks}} = opened;
+    const {tool, device} = ticks[at];
+    const fixed = placeAt(scene.spans[scene.fixed], at, tool);
+    const place = (/** @type {number} */ body, /** @type {Pose} */ frame) => relative(fixed, placeAt(scene.spans[body], at, frame), scene.metresPerUnit);
+    return {
+      tool: place(scene.moving, tool),
+      hand: device && awayFrom(place(scene.moving, tool), place(scene.moving, device), apart),
+      others: scene.others.map(({index}) => place(index, tool)),
+    };
+  };
+
+  /**
+   * @param {number} at
+   * @param {boolean} playing
+   */
+  function show(at, playing) {
+    if (!opened) return;
+    const tick = opened.recording.ticks[at];
+    play.textContent = playing ? 'Pause' : 'Play';
+    scrub.set(at);
+    for (const each of Object.values(plots)) each.mark(tick.time);
+    now.replaceChildren(tickFacts(tick, handAway(tick)));
+    if (!seen) return;
+    const poses = poseAt(at);
+    if (poses) {
+      view.placeBodies(poses.hand, poses.others);
+      store.set({pose: poses.tool, dragging: playing});
+    } else {
+      view.placeFrames(scaled(tick.tool), tick.device && scaled(tick.device));
+    }
+  }
+
+  /** @param {import('../recording/recording.js').Tick} tick */
+  const handAway = ({tool, device: hand}) => hand && Math.hypot(...[12, 13, 14].map((at) => hand[at] - tool[at]));
+
+  async function askDistances() {
+    const mine = opened;
+    if (!mine) return;
+    const {ticks} = mine.recording;
+    const unit = unitWord(unitOf(store.get()));
+    const every = Math.max(1, Math.floor(ticks.length / distancesAsked));
+    /** @type {[number, number][]} */
+    const lower = [];
+    for (let at = 0; at < ticks.length; at += every) {
+      const poses = poseAt(at);
+      if (!poses || opened !== mine) return;
+      const {distance_lower: distance} = await engine.ask('tick', {pose: poses.tool, stiffness: 0});
+      lower.push([ticks[at].time, distance]);
+      if (lower.length % 25 === 0 || at + every >= ticks.length) plots.distance.set([{name: `distance, ${unit}`, colour: 'var(--series-4)', points: [...lower]}]);
+    }
+    if (playback) plots.distance.mark(ticks[playback.at()].time);
+  }
+
+  return {
+    id: 'recording', title: 'Recording', element: panel, open, openFile,
+    progress: () => opened && playback && {tick: opened.recording.ticks[playback.at()].tick, last: opened.recording.ticks[opened.recording.ticks.length - 1].tick},
+    shown() {
+      seen = true;
+      arrange();
+      if (playback) playback.jump(playback.at());
+    },
+    hidden() {
+      playback?.pause();
+      seen = false;
+      arrange();
+    },
+  };
+}
+
+const roles = /** @type {const} */ (['fixed', 'moving']);
+
+/** @param {Pose} pose */
+function scaled(pose) {
+  return [...identity].map((_, at) => at >= 12 && at < 15 ? pose[at] * frameScale : pose[at]);
+}
+
+/**
+ * @param {Pose} tool
+ * @param {Pose} hand
+ * @param {number} times
+ * @returns {Pose} the hand's, shifted away from the tool
+ */
+function awayFrom(tool, hand, times) {
+  return hand.map((value, at) => at >= 12 && at < 15 ? tool[at] + times * (value - tool[at]) : value);
+}
+
+/**
+ * @param {import('../recording/recording.js').Tick} tick
+ * @param {number | null} away  metres from the tool to the hand
+ */
+function tickFacts(tick, away) {
+  const notes = [tick.late && 'late', tick.held && 'an answer was incomplete', tick.fault && 'the device gave no pose'].filter(Boolean);
+  return facts([
+    ['Force', `${short(tick.force, 3)} N`],
+    ['Torque', `${short(1000 * tick.torque, 3)} N mm`],
+    ['Hand to tool', away === null ? 'not known' : `${short(1000 * away, 3)} mm`],
+    ['Leaf pairs', tick.contacts === null ? 'not known' : count(tick.contacts)],
+    ['Took', `${short(tick.microseconds, 3)} µs${notes.length ? ` (${notes.join(', ')})` : ''}`],
+  ]);
+}

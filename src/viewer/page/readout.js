@@ -1,0 +1,66 @@
+/** Below the picture, whatever panel is shown: the slider that closes the bodies, and the answers at the pose. */
+
+import {middleOf} from './body_box.js';
+import {unitOf} from './follow.js';
+import {moved, toSixNumbers} from './pose.js';
+import {slider} from './ui/controls.js';
+import {element} from './ui/element.js';
+import {count, interval, short, unitWord} from './words.js';
+
+/** @typedef {import('./context.js').Store} Store */
+
+const touchWords = {yes: 'they touch', no: 'apart', near: 'near: voxels alone are known'};
+
+/**
+ * @param {HTMLElement} place
+ * @param {Store} store
+ */
+export function makeReadout(place, store) {
+  const shiftOf = (/** @type {import('./protocol.js').Pose} */ pose) => toSixNumbers(pose, middleOf(store.get().bodies.moving)).shift[2];
+  const position = () => shiftOf(store.get().pose) - shiftOf(store.get().home);
+  const closing = slider({
+    label: 'Close along z', min: -5, max: 0, value: 0,
+    words: (value) => `${short(value, 3)} ${unitWord(unitOf(store.get()))}`,
+    onInput: (value) => store.set({pose: moved(store.get().pose, [0, 0, value - position()]), dragging: true}),
+    onChange: () => store.set({dragging: false}),
+  });
+  const touch = cell('Touch'), distance = cell('Distance'), depth = cell('Depth'), force = cell('Force'), contacts = cell('Contacts');
+  place.append(closing.element, element('dl', {class: 'readout'},
+      ...[touch, distance, depth, force, contacts].map((each) => each.element)));
+
+  const fill = () => {
+    const state = store.get();
+    const {tick, answer, pose, bodies} = state;
+    const unit = unitWord(unitOf(state));
+    const span = closingSpan(bodies.moving?.extent ?? 110);
+    closing.range(-span, 0);
+    closing.set(position());
+    touch.set(tick ? touchWords[/** @type {keyof typeof touchWords} */ (tick.touch)] ?? tick.touch : '…');
+    touch.element.dataset.touch = tick?.touch ?? '';
+    // The rested answer's interval is the narrower one.
+    const known = answer?.pose === pose ? answer.line : tick;
+    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…');
+    depth.set(answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…');
+    depth.element.classList.toggle('stale', answer?.pose !== pose);
+    force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
+    contacts.set(tick ? count(tick.contacts.depths.length) : '…');
+  };
+  store.subscribe(['tick', 'answer', 'pose', 'home', 'bodies', 'unit'], fill);
+  fill();
+}
+
+/**
+ * @param {number} extent
+ * @returns {number} how far the slider opens: 5 of a jaw's 110, a round number for any body
+ */
+export function closingSpan(extent) {
+  const rough = extent * 5 / 110;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  return power * ([1, 2, 5, 10].find((each) => each * power >= rough * 0.7) ?? 10);
+}
+
+/** @param {string} name */
+function cell(name) {
+  const value = element('dd');
+  return {element: element('div', {}, element('dt', {}, name), value), set: (/** @type {string} */ to) => { value.textContent = to; }};
+}

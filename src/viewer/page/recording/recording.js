@@ -1,0 +1,142 @@
+/** A recording of `ist run`, read from its JSON lines (docs/recording-format.md). */
+
+import {identity} from '../pose.js';
+
+/** @typedef {import('../protocol.js').Pose} Pose */
+/** @typedef {import('../protocol.js').Line} Line */
+
+/**
+ * @typedef {object} Recording
+ * @property {Line} header
+ * @property {number} dt          s
+ * @property {Tick[]} ticks
+ * @property {Change[]} changes
+ * @property {string | null} cutOff  a sentence, where the last line is not whole
+ */
+/**
+ * @typedef {object} Tick
+ * @property {number} tick
+ * @property {number} time        s, from the recording's first tick on
+ * @property {Pose | null} device metres
+ * @property {Pose} tool          metres
+ * @property {number[]} wrench    N, N m
+ * @property {number} force       N
+ * @property {number} torque      N m
+ * @property {number | null} contacts  leaf pairs
+ * @property {boolean} late       ticks before it are missing, or it ended after its period
+ * @property {boolean} held       an answer was incomplete
+ * @property {boolean} fault
+ * @property {number} microseconds
+ */
+/** @typedef {{before: number, body: string, kind: 'attach' | 'release', status: string}} Change  `before`: index of the tick that it precedes */
+
+const version = 2;
+
+/**
+ * @param {string} text
+ * @returns {Recording} throws an Error whose text is for people
+ */
+export function parseRecording(text) {
+  const lines = text.split('\n').filter((line) => line.trim() !== '');
+  if (lines.length === 0) throw new Error('The recording is empty: run ist run SCENE --record run.jsonl again.');
+  if (!lines[0].trimStart().startsWith('{')) {
+    throw new Error(/^tick,/.test(lines[0]) ?
+      'This recording is CSV, which does not say of what it is: record JSON lines, ist run SCENE --record run.jsonl.' :
+      'This is no recording of ist run: its first line is no JSON. Record one by ist run SCENE --record run.jsonl.');
+  }
+  const header = parsed(lines[0], 1);
+  if (header.recording === undefined) {
+    throw new Error('tick' in header ?
+      'This recording is of version 1, which has no header: record the scene again with this version of ist.' :
+      'This is no recording of ist run: its first line has no recording version. Record one by ist run SCENE --record run.jsonl.');
+  }
+  if (header.recording !== version) {
+    throw new Error(`This recording is of version ${header.recording}, and the page reads version ${version}: ` +
+        (header.recording > version ? 'open it in a page of the version of ist that wrote it.' : 'record the scene again with this version of ist.'));
+  }
+  /** @type {Tick[]} */
+  const ticks = [];
+  /** @type {Change[]} */
+  const changes = [];
+  let cutOff = null;
+  for (let at = 1; at < lines.length; at++) {
+    let line;
+    try {
+      line = parsed(lines[at], at + 1);
+    } catch (error) {
+      if (at < lines.length - 1) throw error;
+      cutOff = `The recording is cut off in line ${at + 1}: it is shown up to the tick before.`;
+      break;
+    }
+    const change = changeOf(line, ticks.length);
+    if (change) changes.push(change);
+    else ticks.push(tickOf(line, at + 1, ticks));
+  }
+  if (ticks.length === 0) throw new Error('The recording has a header, but no ticks: run the scene for longer.');
+  return {header, dt: header.dt, ticks, changes, cutOff};
+}
+
+/**
+ * @param {number[]} row  a position, and a rotation column by column
+ * @returns {Pose}
+ */
+export function poseOfRow([x, y, z, ...turn]) {
+  return [turn[0], turn[1], turn[2], 0, turn[3], turn[4], turn[5], 0, turn[6], turn[7], turn[8], 0, x, y, z, 1];
+}
+
+/**
+ * @param {string} line
+ * @param {number} number
+ * @returns {Line}
+ */
+function parsed(line, number) {
+  try {
+    const value = JSON.parse(line);
+    if (value !== null && typeof value === 'object') return value;
+  } catch {
+    // Named below, as what is JSON but no object.
+  }
+  throw new Error(`Line ${number} of the recording is damaged: record the scene again, or take the line out.`);
+}
+
+/**
+ * @param {Line} line
+ * @param {number} before
+ * @returns {Change | null}
+ */
+function changeOf(line, before) {
+  if ('attach' in line) return {before, body: line.attach, kind: 'attach', status: line.status};
+  if ('release' in line) return {before, body: line.release, kind: 'release', status: line.status};
+  return null;
+}
+
+/**
+ * @param {Line} line
+ * @param {number} number
+ * @param {Tick[]} before
+ * @returns {Tick}
+ */
+function tickOf(line, number, before) {
+  const previous = before[before.length - 1];
+  const row = (/** @type {unknown} */ value) => Array.isArray(value) && value.length === 12 && value.every(Number.isFinite);
+  if (!Number.isInteger(line.tick) || !(line.dt > 0) || !Array.isArray(line.wrench) || line.wrench.length !== 6 ||
+      (line.tool !== null && !row(line.tool)) || (line.device !== null && !row(line.device))) {
+    throw new Error(`Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null) and wrench (6 numbers). Record the scene again.`);
+  }
+  const wrench = line.wrench.map((/** @type {unknown} */ value) => typeof value === 'number' ? value : 0);
+  const first = before.length ? before[0].tick : line.tick;
+  return {
+    tick: line.tick,
+    time: (line.tick - first) * line.dt,
+    device: line.device && poseOfRow(line.device),
+    tool: line.tool ? poseOfRow(line.tool) : previous?.tool ?? [...identity],
+    wrench,
+    force: Math.hypot(wrench[0], wrench[1], wrench[2]),
+    torque: Math.hypot(wrench[3], wrench[4], wrench[5]),
+    contacts: line.contacts ?? null,
+    late: (previous !== undefined && line.tick > previous.tick + 1) || (line.late_microseconds ?? 0) + (line.microseconds ?? 0) > line.dt * 1e6,
+    held: line.held === true,
+    fault: line.fault === true,
+    microseconds: line.microseconds ?? NaN,
+  };
+}

@@ -1,0 +1,28 @@
+/** A line of text in the scene, which always faces the viewer. */
+
+import * as THREE from 'three';
+
+/**
+ * @param {string} text
+ * @param {number} height  mesh units
+ * @returns {THREE.Sprite}
+ */
+export function makeLabel(text, height) {
+  const canvas = document.createElement('canvas');
+  [canvas.width, canvas.height] = [512, 96];
+  const pen = canvas.getContext('2d');
+  if (pen) {
+    pen.font = '600 64px sans-serif';
+    pen.textAlign = 'center';
+    pen.textBaseline = 'middle';
+    pen.lineWidth = 10;
+    pen.strokeStyle = 'white';
+    pen.strokeText(text, 256, 48);
+    pen.fillStyle = '#222';
+    pen.fillText(text, 256, 48);
+  }
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
+  sprite.scale.set(height * 512 / 96, height, 1);
+  sprite.renderOrder = 5;
+  return sprite;
+}

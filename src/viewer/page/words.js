@@ -1,0 +1,86 @@
+/** Numbers as words for people. What is saved has all digits; what is read has few. */
+
+/** @typedef {import('./protocol.js').Line} Line */
+
+const units = {mm: 'mm', m: 'm', inch: 'in', 'µm': 'µm', um: 'µm', cm: 'cm'};
+const millimetres = {mm: 1, m: 1000, inch: 25.4, 'µm': 1e-3, um: 1e-3, cm: 10};
+
+/**
+ * @param {number} value
+ * @param {number} [digits]  that count
+ * @returns {string}
+ */
+export function short(value, digits = 4) {
+  if (!Number.isFinite(value)) return value > 0 ? 'infinite' : '–';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(2).replace('e+', 'e').replace('-', '−');
+  const rounded = Number(value.toPrecision(digits));
+  return (size >= 1000 ? Math.round(value).toLocaleString('en-US') : String(rounded)).replace('-', '−');
+}
+
+/** @param {number} value */
+export function count(value) {
+  return Math.round(value).toLocaleString('en-US');
+}
+
+/**
+ * @param {string | null | undefined} unit  of a body; none: millimetres are assumed
+ * @returns {string}
+ */
+export function unitWord(unit) {
+  return units[/** @type {keyof typeof units} */ (unit ?? 'mm')] ?? 'units';
+}
+
+/**
+ * @param {string | null | undefined} unit
+ * @returns {number}
+ */
+export function millimetresIn(unit) {
+  return millimetres[/** @type {keyof typeof millimetres} */ (unit ?? 'mm')] ?? 1;
+}
+
+/**
+ * @param {number | null} lower
+ * @param {number | null} upper
+ * @param {string} unit
+ */
+export function interval(lower, upper, unit) {
+  if (lower === null || upper === null || lower === undefined || upper === undefined) return 'not known';
+  if (lower === upper) return `${short(lower)} ${unit}`;
+  return `${short(lower)} to ${short(upper)} ${unit}`;
+}
+
+/** @param {number} bytes */
+export function bytesWords(bytes) {
+  if (bytes < 1e3) return `${bytes} bytes`;
+  return bytes < 1e6 ? `${short(bytes / 1e3, 3)} kB` : `${short(bytes / 1e6, 3)} MB`;
+}
+
+/**
+ * What `ist info` says of a body, in sentences.
+ * @param {Line} info
+ * @returns {string[]}
+ */
+export function infoSentences(info) {
+  const sentences = [];
+  if (info.kind === 'tree') {
+    sentences.push(`A tree of ${count(info.voxels)} voxels of ${short(info.voxel_size)}, ` + (info.triangles ?
+      'which keeps its triangles: the page builds its own.' : 'without triangles: touch is known to voxels alone, and it cannot be built again.'));
+  } else {
+    const parts = info.components === 1 ? '1 component' : `${count(info.components)} components`;
+    sentences.push(`A mesh of ${count(info.triangles)} triangles and ${count(info.vertices)} vertices, ${parts}.`);
+  }
+  if (Array.isArray(info.extent)) {
+    const named = info.unit ? ` ${unitWord(info.unit)}` : '';
+    sentences.push(`Extent ${info.extent.map((/** @type {number} */ side) => short(side)).join(' × ')}${named}` +
+        (info.unit ? '.' : '; the file names no unit, so millimetres are assumed.'));
+  }
+  if (typeof info.closed === 'boolean') {
+    const wound = info.consistent === false ? 'not wound consistently' : 'wound consistently';
+    const border = typeof info.boundary_edges === 'number' ? ` (${count(info.boundary_edges)} border edges)` : '';
+    const volume = typeof info.volume === 'number' ? `, volume ${short(info.volume)}` : '';
+    sentences.push(info.closed ? `Closed, ${wound}${volume}.` : `Open${border}, ${wound}: its inside is assumed from the winding.`);
+  }
+  return sentences;
+}

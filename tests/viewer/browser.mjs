@@ -1,0 +1,122 @@
+// The page in Chromium, as people open it: from a file, without a server.
+//
+//   IST_PAGE      the page, build/viewer/ist.html
+//   IST_COMMAND   the ist command of the same sources
+//   IST_CHROMIUM  the browser; by default /usr/bin/chromium
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {createRequire} from 'node:module';
+import {pathToFileURL} from 'node:url';
+
+const require = createRequire(new URL('../../src/viewer/package.json', import.meta.url));
+const {chromium} = require('playwright-core');
+export const axeFile = require.resolve('axe-core/axe.min.js');
+
+// SwiftShader draws where there is no GPU; the rest keeps the browser from asking its maker.
+const switches = [
+  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+  '--disable-background-networking', '--no-first-run',
+];
+const patience = 60_000;
+
+/** The nearest that the built-in jaws come is at 0; below it they open. */
+export const closedBy = (dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1];
+
+export function startBrowser() {
+  return chromium.launch({executablePath: process.env.IST_CHROMIUM ?? '/usr/bin/chromium', args: switches});
+}
+
+/**
+ * Opens the page in a window of its own, and gathers what no page may do.
+ * @param {import('playwright-core').Browser} browser
+ * @param {string} fragment  with its #, or nothing
+ * @param {{file?: string, window?: object, before?: () => void}} options  `before` runs in the page first
+ */
+export async function openPage(browser, fragment = '', {file = process.env.IST_PAGE, window = {}, before} = {}) {
+  const context = await browser.newContext({viewport: {width: 1200, height: 800}, ...window});
+  context.setDefaultTimeout(patience);
+  const page = await context.newPage();
+  const faults = [], requests = [];
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type()) && !isDrawingTalk(message.text())) faults.push(message.text());
+  });
+  page.on('pageerror', (error) => faults.push(String(error)));
+  context.on('request', (request) => requests.push(request.url()));
+  if (before) await page.addInitScript(before);
+  await page.goto(pathToFileURL(file).href + fragment);
+  return {page, faults, requests, close: () => context.close()};
+}
+
+// What Chromium says of its own drawing, whatever page draws.
+function isDrawingTalk(text) {
+  return /GPU stall due to ReadPixels|Automatic fallback to software WebGL/.test(text);
+}
+
+/** Asserts that nothing went wrong and nothing left the page, and closes its window. */
+export async function closePage({faults, requests, close}) {
+  await close();
+  assert.deepEqual(faults, []);
+  assert.deepEqual(requests.filter((address) => !/^(file|blob|data):/.test(address)), []);
+}
+
+/** Waits until each answer is of the pose and the trees that are shown, or there are no trees to ask. */
+export async function ready(page) {
+  const state = await page.waitForFunction(() => {
+    const {state} = document.documentElement.dataset;
+    const answered = window.ist && (window.ist.answer() !== null || window.ist.state().trees === null);
+    return (state === 'failed' || (state === 'ready' && answered)) && state;
+  });
+  assert.equal(await state.jsonValue(), 'ready', (await messages(page)).join(' '));
+}
+
+/** The sentences that the page says now. */
+export function messages(page) {
+  return page.locator('#messages .message p').allTextContents();
+}
+
+/** Waits for a sentence, and gives it. */
+export async function message(page, pattern) {
+  const found = page.locator('#messages .message p').filter({hasText: pattern}).first();
+  await found.waitFor();
+  return found.textContent();
+}
+
+export async function showPanel(page, title) {
+  await page.getByRole('tab', {name: title, exact: true}).click();
+}
+
+/** Gives the page a pose as people paste one. */
+export async function setPose(page, pose) {
+  await showPanel(page, 'Pose');
+  await page.getByLabel(/^Matrix/).fill(pose.join(' '));
+  await page.getByRole('button', {name: 'Take this matrix'}).click();
+  await page.waitForFunction((wanted) => window.ist.state().pose.every((value, at) => value === wanted[at]), pose);
+  await ready(page);
+}
+
+/** The lines of `ist collide --json`, as the page holds them. */
+export function answer(page) {
+  return page.evaluate(() => window.ist.answer());
+}
+
+/** What a person reads below the picture: Touch, Distance, Depth, Force, Contacts. */
+export function readout(page) {
+  return page.evaluate(() => Object.fromEntries([...document.querySelectorAll('#readout dt')]
+      .map((name) => [name.textContent, name.nextElementSibling.textContent])));
+}
+
+/** An answer without the keys that are a machine's. */
+export function answerOf({target, microseconds_min, microseconds_median, ...line}) {
+  return line;
+}
+
+/** Runs the command in a folder, and gives what it prints. */
+export function ist(folder, ...words) {
+  return execFileSync(process.env.IST_COMMAND, words,
+      {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28});
+}
+
+export function linesOf(text) {
+  return text.trimEnd().split('\n').map((line) => JSON.parse(line));
+}

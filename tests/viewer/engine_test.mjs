@@ -1,0 +1,207 @@
+// The page's answers are the command's, bit for bit: node runs the page's engine, and the command
+// answers the same questions about the same files.
+//
+//   IST_ENGINE   folder of engine.js and engine.wasm
+//   IST_COMMAND  the ist command of the same sources
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+
+import {startEngine} from './engine.mjs';
+
+const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
+const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
+const shifts = [-5, -2, -1.5, -0.6, 0];
+const poses = shifts.map((dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1]);
+let engine;
+
+function ist(...words) {
+  return execFileSync(process.env.IST_COMMAND, words,
+      {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28});
+}
+const linesOf = (text) => text.trimEnd().split('\n').map((line) => JSON.parse(line));
+
+// The page and the command may be built at different commits.
+function withoutCommit({commit, ...rest}) {
+  assert.match(commit, /^(unknown|[0-9a-f]{8,}\+?)$/);
+  return rest;
+}
+
+// Keys that are a machine's, not an answer's.
+function answerOf(line) {
+  const {target, microseconds_min, microseconds_median, ...answer} = line;
+  assert.equal(typeof target, 'string');
+  assert.ok(microseconds_min >= 0 && microseconds_median >= 0);
+  return answer;
+}
+
+before(async () => {
+  ist('demo', '--voxel-size', '2', '--keep', '.');
+  writeFileSync(path.join(folder, 'poses.json'), JSON.stringify(poses.map((pose) => ({pose}))));
+  engine = await startEngine(process.env.IST_ENGINE);
+});
+after(() => rmSync(folder, {recursive: true}));
+
+test('says its version and its instruction set', () => {
+  assert.match(engine.about.version, /^ist \d+\.\d+\.\d+, commit /);
+  assert.ok(engine.about.target.startsWith('simd128'), engine.about.target);
+});
+
+test('refuses questions before there are bodies, and unknown ones', () => {
+  assert.throws(() => engine.ask('collide', {pose: poses[0]}), {code: 'argument-invalid'});
+  assert.throws(() => engine.ask('build', {voxel_size: 1}), /fixed body/);
+  assert.throws(() => engine.ask('dance', {}), /dance/);
+});
+
+test('describes the built-in jaws as the command describes their files', () => {
+  const bodies = engine.ask('make_jaws', {seed: 1});
+  for (const [role, file] of [['fixed', upper], ['moving', lower]]) {
+    assert.deepEqual(bodies[role].info, linesOf(ist('info', file, '--json'))[1]);
+    assert.equal(bodies[role].triangles.length, 3 * bodies[role].info.triangles);
+    assert.equal(bodies[role].positions.length, 3 * bodies[role].info.vertices);
+  }
+});
+
+for (const size of [2, 0.8, 0.4]) {
+  test(`answers at five poses as the command does, voxels of ${size} mm`, () => {
+    engine.ask('make_jaws', {seed: 1});
+    const trees = engine.ask('build', {voxel_size: size});
+    assert.deepEqual(trees.policies, ['simple', 'table', 'tight', 'slab']);
+    const [header, ...lines] = linesOf(ist('collide', upper, lower, '--voxel-size', `${size}`,
+        '--poses', 'poses.json', '--json'));
+    assert.equal(lines.length, poses.length);
+    poses.forEach((pose, i) => {
+      const answer = engine.ask('collide', {pose});
+      assert.deepEqual(withoutCommit(answer.header), withoutCommit(header));
+      assert.deepEqual(answerOf(answer.line), answerOf({...lines[i], index: 0}));
+      assert.ok(answer.microseconds > 0);
+    });
+    for (const policy of ['simple', 'table', 'tight']) {
+      const [, line] = linesOf(ist('collide', upper, lower, '--voxel-size', `${size}`, '--move',
+          '0,0,-0.6', '--spheres', policy, '--json'));
+      assert.deepEqual(answerOf(engine.ask('collide', {pose: poses[3], policy}).line), answerOf(line));
+    }
+  });
+}
+
+test('saves the tree that the command builds, and reads it', () => {
+  ist('build', lower, '-o', 'lower.ist', '--voxel-size', '0.8');
+  engine.ask('make_jaws', {seed: 1});
+  engine.ask('build', {voxel_size: 0.8});
+  const bytes = readFileSync(path.join(folder, 'lower.ist'));
+  assert.ok(bytes.equals(engine.ask('save_body', {role: 'moving'}).bytes));
+  const read = engine.open('moving', 'lower.ist', bytes);
+  // The times of its levels are a machine's, and its memory depends on how long an address is.
+  const told = (info) => ({...info, memory: 0, levels: info.levels.map(({milliseconds, ...level}) => level)});
+  assert.deepEqual(told(read.info), told(linesOf(ist('info', 'lower.ist', '--json'))[1]));
+  assert.equal(read.rebuilds, true);
+});
+
+test('follows each stage of a build', () => {
+  engine.ask('make_jaws', {seed: 2});
+  engine.stages.clear();
+  engine.ask('build', {voxel_size: 0.8});
+  assert.ok(engine.stages.size >= 3, [...engine.stages].join());
+});
+
+test('maps the occlusion as the command does', () => {
+  engine.ask('make_jaws', {seed: 1});
+  engine.ask('build', {voxel_size: 0.8});
+  const asked = {pose: poses[3], preset: 'scan', reach: 2, unit: 'mm', frame: 'lps'};
+  const map = engine.ask('occlusion', asked);
+  const words = ['occlusion', upper, lower, '--move', '0,0,-0.6', '--unit', 'mm', '--frame', 'lps'];
+  assert.deepEqual(withoutCommit(map.bite), withoutCommit(linesOf(ist(...words, '--json'))[1]));
+  assert.equal(map.fixed.distances.length, map.bite.fixed.vertices);
+  assert.equal(map.moving.colours.length, 3 * map.bite.moving.vertices);
+  ist(...words, '-o', 'bite.glb');
+  assert.ok(readFileSync(path.join(folder, 'bite.glb')).equals(engine.ask('save_glb', asked).bytes));
+  assert.throws(() => engine.ask('occlusion', {...asked, preset: 'none'}), {code: 'argument-invalid'});
+  assert.throws(() => engine.ask('occlusion', {...asked, reach: 0.01}), /reach/);
+});
+
+test('ticks as the query answers', () => {
+  engine.ask('make_jaws', {seed: 1});
+  engine.ask('build', {voxel_size: 0.8});
+  for (const pose of poses) {
+    const {line} = engine.ask('collide', {pose});
+    const tick = engine.ask('tick', {pose, stiffness: 1});
+    assert.equal(tick.touch, line.touch);
+    assert.ok(tick.distance_lower <= line.distance_upper && line.distance_lower <= tick.distance_upper);
+    assert.equal(tick.contacts.depths.length * 3, tick.contacts.positions.length);
+    if (line.touch === 'no') continue;
+    const twice = engine.ask('tick', {pose, stiffness: 2});
+    twice.contacts.force.forEach((force, axis) => assert.equal(force, 2 * tick.contacts.force[axis]));
+    assert.ok(tick.contacts.force[2] < 0, 'the lower jaw is pushed down');
+  }
+});
+
+test('steps through a query front by front, down to its leaf pairs', () => {
+  for (const [voxels, other] of [[0.8, null], [0.8, 1.6]]) {
+    engine.ask('make_jaws', {seed: 1});
+    engine.ask('build', {voxel_size: other ?? voxels});
+    if (other !== null) {  // a coarse tree beside a fine one
+      const coarse = engine.ask('save_body', {role: 'moving'}).bytes;
+      ist('build', lower, '-o', 'coarse.ist', '--voxel-size', `${other}`, '--no-triangles');
+      engine.ask('build', {voxel_size: voxels});
+      engine.open('moving', 'coarse.ist', readFileSync(path.join(folder, 'coarse.ist')));
+      assert.ok(coarse.length > 0);
+      engine.ask('build', {voxel_size: voxels});
+    }
+    for (const policy of ['simple', 'table', 'tight', 'slab']) {
+      const {line} = engine.ask('collide', {pose: poses[3], policy});
+      const {steps} = engine.ask('fronts', {pose: poses[3], policy});
+      assert.equal(steps.at(-1).pairs, line.leaf_pairs);
+      assert.equal(steps.reduce((sum, step) => sum + step.tests, 1), line.sphere_tests);
+      const front = engine.ask('front', {pose: poses[3], policy, step: steps.length - 1});
+      assert.equal(front.fixed.length, line.leaf_pairs);
+      assert.equal(front.fixed_level + front.moving_level, 0);
+      const touched = engine.ask('touched', {pose: poses[3], policy, level: 0});
+      assert.deepEqual([...touched.moving], [...new Set(front.moving)].sort((a, b) => a - b));
+      const level = engine.ask('level', {role: 'moving', policy, level: 2});
+      const inner = engine.ask('touched', {pose: poses[3], policy, level: 2});
+      assert.ok(inner.moving.at(-1) < level.radii.length);
+      assert.equal(level.normals?.length, policy === 'slab' ? level.centres.length : undefined);
+      const before = steps.findIndex((step) => step.moving_level === 2 && step.fixed_level === 2);
+      if (before < 0) continue;
+      const at = engine.ask('front', {pose: poses[3], policy, step: before});
+      assert.deepEqual([...inner.moving], [...new Set(at.moving)].sort((a, b) => a - b));
+    }
+  }
+  assert.throws(() => engine.ask('front', {pose: poses[3], policy: 'slab', step: 99}), /steps/);
+  assert.throws(() => engine.ask('level', {role: 'fixed', policy: 'slab', level: 60}), /levels/);
+});
+
+test('finds the first contact as the command does', () => {
+  engine.ask('make_jaws', {seed: 1});
+  engine.ask('build', {voxel_size: 0.8});
+  const found = engine.ask('first_contact', {from: poses[0], to: poses[4], tolerance: 1e-3});
+  assert.equal(found.status, 'contact');
+  assert.equal(engine.ask('tick', {pose: found.pose, stiffness: 1}).touch, 'yes');
+  assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
+});
+
+test('refuses bad files with the command\'s sentence, and goes on', () => {
+  engine.ask('make_jaws', {seed: 1});
+  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated'],
+    ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), undefined],
+    ['empty.ply', Buffer.alloc(0), undefined],
+    ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only'],
+    ['tree.ist', Buffer.from('ISTTREE1 nothing'), undefined]];
+  for (const [name, bytes, code] of bad) {
+    assert.throws(() => engine.open('fixed', name, bytes), (error) => {
+      assert.ok(error.message.includes(name), error.message);
+      if (code !== undefined) assert.equal(error.code, code);
+      return true;
+    });
+  }
+  for (const pose of [[1], Array(16).fill(null), [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]]) {
+    engine.ask('build', {voxel_size: 2});
+    assert.throws(() => engine.ask('tick', {pose, stiffness: 1}), /pose/);
+  }
+  assert.throws(() => engine.ask('build', {voxel_size: 1e-4}), {code: /memory-limit|voxel-size-too-small/});
+  assert.equal(engine.ask('tick', {pose: poses[4], stiffness: 1}).touch, 'yes');
+});

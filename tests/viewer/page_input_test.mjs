@@ -1,0 +1,228 @@
+// What people give the page: files, an address, and the data that a command wrote into it. What is
+// bad gets a sentence, and the page goes on.
+
+import assert from 'node:assert/strict';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+
+import {answer, answerOf, closePage, closedBy, ist, linesOf, message, messages, openPage, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+
+const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
+const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
+const coarse = '#voxel=2&panel=bodies';
+let browser;
+
+before(async () => {
+  ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true});
+});
+
+const fileOf = (name, buffer) => ({name, mimeType: 'application/octet-stream', buffer: Buffer.from(buffer)});
+const field = (page, role) => page.locator(`.body.${role} input[type=file]`);
+
+/** A binary STL file whose every number is scaled. */
+function scaled(name, factor) {
+  const bytes = Buffer.from(readFileSync(path.join(folder, name)));
+  for (let at = 84; at + 50 <= bytes.length; at += 50) {
+    for (let k = 3; k < 12; k++) bytes.writeFloatLE(bytes.readFloatLE(at + 4 * k) * factor, at + 4 * k);
+  }
+  return bytes;
+}
+
+test('says what is wrong with each bad file, and keeps the bodies that it has', async () => {
+  const bad = [
+    ['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000)],
+    ['empty.ply', ''],
+    ['numbers.obj', 'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n'],
+    ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'],
+    ['tree.ist', 'ISTTREE1 nothing'],
+    ['jaw.step', 'ISO-10303-21;'],
+    ['<script>fault()<!--.stl', 'solid nothing\nendsolid nothing\n'],
+  ];
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  const before = await answer(page);
+  for (const [name, content] of bad) {
+    await field(page, 'moving').setInputFiles(fileOf(name, content));
+    const text = await message(page, name);
+    assert.match(text, /: .+/, text);
+  }
+  await ready(page);
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(before.line));
+  await setPose(page, closedBy(-0.6));
+  const [, line] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '2', '--move', '0,0,-0.6', '--json'));
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(line));
+  await closePage(opened);
+});
+
+test('opens files that are chosen as the command opens them', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  const small = scaled(lower, 0.5), large = scaled(upper, 0.5);
+  writeFileSync(path.join(folder, 'small.stl'), small);
+  writeFileSync(path.join(folder, 'large.stl'), large);
+  await field(page, 'fixed').setInputFiles(fileOf('large.stl', large));
+  await page.waitForFunction(() => window.ist.state().bodies.fixed.name === 'large.stl');
+  await field(page, 'moving').setInputFiles(fileOf('small.stl', small));
+  await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'small.stl');
+  await page.waitForFunction(() => window.ist.state().trees !== null);
+  await ready(page);
+  const found = await answer(page);
+  const [header, line] = linesOf(ist(folder, 'collide', 'large.stl', 'small.stl', '--voxel-size',
+      `${found.line.voxel_size[0]}`, '--json'));
+  assert.deepEqual(answerOf(found.line), answerOf(line));
+  assert.deepEqual({...found.header, commit: ''}, {...header, commit: ''});
+  await closePage(opened);
+});
+
+test('takes two meshes that are dropped together, the first as fixed', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  const names = ['first.stl', 'second.stl'];
+  const contents = [scaled(upper, 0.25), scaled(lower, 0.25)].map((bytes) => bytes.toString('base64'));
+  await page.evaluate(({names, contents}) => {
+    const dropped = new DataTransfer();
+    contents.forEach((text, at) => {
+      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+      dropped.items.add(new File([bytes], names[at]));
+    });
+    document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
+  }, {names, contents});
+  await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'second.stl' && window.ist.state().trees !== null);
+  await ready(page);
+  assert.equal(await page.evaluate(() => window.ist.state().bodies.fixed.name), 'first.stl');
+  await closePage(opened);
+});
+
+test('warns where one body is in metres', async () => {
+  const opened = await openPage(browser, coarse);
+  await ready(opened.page);
+  await field(opened.page, 'moving').setInputFiles(fileOf('metres.stl', scaled(lower, 1e-3)));
+  await message(opened.page, /in metres/);
+  await ready(opened.page);
+  await closePage(opened);
+});
+
+test('comes back to what its address says', async () => {
+  const opened = await openPage(browser, '#voxel=0.8&policy=tight&panel=accuracy');
+  const {page} = opened;
+  await ready(page);
+  await setPose(page, closedBy(-0.3));
+  const {line} = await answer(page);
+  assert.equal(line.spheres, 'tight');
+  const again = await openPage(browser, new URL(page.url()).hash);
+  await ready(again.page);
+  assert.deepEqual(answerOf((await answer(again.page)).line), answerOf(line));
+  assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Pose');
+  await closePage(again);
+  await closePage(opened);
+});
+
+test('starts with its defaults where the address is wrong, and says so', async () => {
+  const wrong = [
+    ['pose', '1,0,0'], ['pose', Array(16).fill('nan').join()], ['pose', '2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1'],
+    ['voxel', '-1'], ['voxel', 'many'], ['policy', 'round'], ['panel', 'none'],
+  ];
+  for (const [name, value] of wrong) {
+    const opened = await openPage(browser, `#${name}=${value}`);
+    assert.match(await message(opened.page, `The address gives ${name}=`), /starts without it/);
+    await closePage(opened);
+  }
+  const opened = await openPage(browser, '#pose=1,2&voxel=x&panel=%3Cb%3E&%E0%A4%A');
+  await ready(opened.page);
+  const {line} = await answer(opened.page);
+  assert.equal(line.voxel_size[0], 0.4);
+  assert.equal((await messages(opened.page)).length, 3);
+  await closePage(opened);
+});
+
+test('tries a voxel size that does not fit, says why, and goes on with its own', async () => {
+  const opened = await openPage(browser, '#voxel=0.0001');
+  await message(opened.page, /choose another voxel size/);
+  await ready(opened.page);
+  assert.equal((await answer(opened.page)).line.voxel_size[0], 0.4);
+  await closePage(opened);
+});
+
+/** The page with data in it, as the command writes it. */
+function pageWith(data) {
+  const text = typeof data === 'string' ? data : JSON.stringify(data).replaceAll('<', '\\u003c');
+  const html = readFileSync(process.env.IST_PAGE, 'utf8');
+  const parts = html.split('<script type="application/json" id="ist-data">null</script>');
+  assert.equal(parts.length, 2);
+  const file = path.join(folder, 'with_data.html');
+  writeFileSync(file, parts.join(`<script type="application/json" id="ist-data">${text}</script>`));
+  return file;
+}
+
+test('shows the bodies of the data in it, whatever their names', async () => {
+  const voxels = ['--voxel-size', '0.8'];
+  ist(folder, 'build', upper, '-o', 'upper.ist', ...voxels);
+  ist(folder, 'build', lower, '-o', 'lower.ist', ...voxels);
+  const tree = (file) => readFileSync(path.join(folder, file)).toString('base64');
+  const file = pageWith({
+    format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: closedBy(-0.6), missing: ['</script><b>One</b> is not here.'],
+    bodies: [
+      {role: 'fixed', name: '</script><script>fault()</script>.stl', tree: tree('upper.ist')},
+      {role: 'moving', name: lower, tree: tree('lower.ist')},
+    ],
+  });
+  const opened = await openPage(browser, '#voxel=0.8', {file});
+  await ready(opened.page);
+  await message(opened.page, '</script><b>One</b> is not here.');
+  await showPanel(opened.page, 'Bodies');
+  assert.match(await opened.page.locator('.body.fixed').textContent(), /<.script><script>fault/);
+  const [, line] = linesOf(ist(folder, 'collide', 'upper.ist', 'lower.ist', '--move', '0,0,-0.6', '--json'));
+  assert.deepEqual(answerOf((await answer(opened.page)).line), answerOf(line));
+  await closePage(opened);
+});
+
+test('shows the built-in jaws where the data in it is newer, damaged or of no tree', async () => {
+  const body = (role) => ({role, name: 'a.ist', tree: Buffer.from('ISTTREE1 nothing').toString('base64')});
+  const bad = [
+    [{format: 2, made_by: 'ist 9.9.9', kind: 'bodies', bodies: []}, /newer version \(ist 9\.9\.9\)/],
+    ['{"format": 1, "made_by": "ist', /cut off or damaged/],
+    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [{role: 'fixed', name: 'a', tree: '*'}]}, /damaged/],
+    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /a\.ist/],
+    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: Array(16).fill(null), bodies: [body('fixed'), body('moving')]}, /pose/],
+  ];
+  for (const [data, sentence] of bad) {
+    const opened = await openPage(browser, '#voxel=2', {file: pageWith(data)});
+    await message(opened.page, sentence);
+    await ready(opened.page);
+    assert.equal((await answer(opened.page)).header.fixed.file, upper);
+    await closePage(opened);
+  }
+});
+
+test('refuses recordings of another version, and what is none', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=recording');
+  const {page} = opened;
+  await ready(page);
+  const header = {recording: 99, ist: '9.9.9', dt: 0.001, bodies: []};
+  const bad = [
+    ['newer.jsonl', `${JSON.stringify(header)}\n`, /newer\.jsonl: .*version 99/],
+    ['none.jsonl', 'no json\n', /none\.jsonl: /],
+    ['empty.jsonl', '', /empty\.jsonl: /],
+    ['ticks.csv', 'tick,dt\n1,2\n', /ticks\.csv: .*CSV/],
+    ['number.jsonl', '7\n', /number\.jsonl: /],
+    ['null.jsonl', 'null\n', /null\.jsonl: /],
+    ['poor.jsonl', `${JSON.stringify({...header, recording: 2})}\n{"tick": 1}\n`, /poor\.jsonl: .*no tick/],
+    ['bodiless.jsonl', '{"recording": 2}\n', /bodiless\.jsonl: /],
+  ];
+  for (const [name, text, sentence] of bad) {
+    await page.getByLabel('Open a recording').setInputFiles(fileOf(name, text));
+    await message(page, sentence);
+  }
+  await ready(page);
+  await closePage(opened);
+});
