@@ -1,18 +1,23 @@
-// Takes the picture of the page that README shows: the built-in jaws where they bite, with the map.
+// Takes the picture of the page that README shows, the built-in jaws where they bite, with the map; or
+// the pictures of the canvas that tests/viewer/page_picture_test.mjs compares.
 //
 //   node scripts/draw_page.mjs docs/pictures/page.png
+//   node scripts/draw_page.mjs tests/viewer/pictures
 //
 // scripts/viewer.sh makes the page and brings what is needed.
 
+import {writeFileSync} from 'node:fs';
+import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 process.env.IST_PAGE ??= fileURLToPath(new URL('../build/viewer/ist.html', import.meta.url));
 const {closePage, openPage, startBrowser} = await import('../tests/viewer/browser.mjs');
+const {openView, pictureOf, views} = await import('../tests/viewer/pictures.mjs');
 
 const [output] = process.argv.slice(2);
-if (output === undefined) throw new Error('name the picture: node scripts/draw_page.mjs OUTPUT.png');
-const browser = await startBrowser();
-try {
+if (output === undefined) throw new Error('name the picture, or the folder of all that tests compare: node scripts/draw_page.mjs OUTPUT');
+
+async function drawPage() {
   const opened = await openPage(browser, '#pose=1,0,0,0,0,1,0,0,0,0,1,0,0,0,-0.6,1&panel=occlusion&preset=stl',
       {window: {viewport: {width: 1100, height: 640}}});
   await opened.page.waitForFunction(() => document.documentElement.dataset.state === 'ready');
@@ -20,6 +25,19 @@ try {
   await opened.page.waitForTimeout(1000);  // the last frame
   await opened.page.screenshot({path: output});
   await closePage(opened);
+}
+
+async function drawViews() {
+  for (const view of views) {
+    const opened = await openView(browser, view);
+    writeFileSync(path.join(output, `${view.name}.png`), await pictureOf(opened.page));
+    await closePage(opened);
+  }
+}
+
+const browser = await startBrowser();
+try {
+  await (output.endsWith('.png') ? drawPage() : drawViews());
 } finally {
   await browser.close();
 }

@@ -7,6 +7,7 @@
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import {createRequire} from 'node:module';
+import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 const require = createRequire(new URL('../../src/viewer/package.json', import.meta.url));
@@ -31,7 +32,7 @@ export function startBrowser() {
  * Opens the page in a window of its own, and gathers what no page may do.
  * @param {import('playwright-core').Browser} browser
  * @param {string} fragment  with its #, or nothing
- * @param {{file?: string, window?: object, before?: () => void}} options  `before` runs in the page first
+ * @param {{file?: string, window?: object, before?: (() => void) | {content: string}}} options  `before` runs in the page first
  */
 export async function openPage(browser, fragment = '', {file = process.env.IST_PAGE, window = {}, before} = {}) {
   const context = await browser.newContext({viewport: {width: 1200, height: 800}, ...window});
@@ -46,6 +47,19 @@ export async function openPage(browser, fragment = '', {file = process.env.IST_P
   if (before) await page.addInitScript(before);
   await page.goto(pathToFileURL(file).href + fragment);
   return {page, faults, requests, close: () => context.close()};
+}
+
+/** For `before`: a script that runs in each Worker of the page before the Worker's own. */
+export function inWorker(script) {
+  const wrap = (script) => {
+    const {Blob} = window;
+    window.Blob = class extends Blob {
+      constructor(parts, options) {
+        super(options?.type === 'text/javascript' ? [script, ...parts] : parts, options);
+      }
+    };
+  };
+  return {content: `(${wrap})(${JSON.stringify(script)});`};
 }
 
 // What Chromium says of its own drawing, whatever page draws.
@@ -114,7 +128,7 @@ export function answerOf({target, microseconds_min, microseconds_median, ...line
 /** Runs the command in a folder, and gives what it prints. */
 export function ist(folder, ...words) {
   return execFileSync(process.env.IST_COMMAND, words,
-      {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28});
+      {cwd: folder, env: {...process.env, IST_PAGE: path.resolve(process.env.IST_PAGE)}, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28});
 }
 
 export function linesOf(text) {

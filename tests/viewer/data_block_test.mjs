@@ -34,7 +34,8 @@ test('damaged blocks are refused, with what is wrong', () => {
   assert.match(readDataBlock('{"format"').problem, /cut off/);
   for (const [block, wrong] of [
     [{...bite, kind: 'x'}, /its kind/], [{...bite, bodies: 3}, /no bodies/], [{...bite, bodies: [body('fixed')]}, /no moving body/],
-    [{...bite, pose: [1, 2]}, /pose is none/], [{...bite, occlusion: undefined}, /no preset/], [{...bite, bodies: [{role: 'left'}]}, /no role/],
+    [{...bite, pose: [1, 2]}, /pose is none/], [{...bite, pose: [NaN, ...identity.slice(1)]}, /pose is none/],
+    [{...bite, occlusion: {preset: 'scan', reach: NaN}}, /no preset or reach/], [{...bite, occlusion: undefined}, /no preset/], [{...bite, bodies: [{role: 'left'}]}, /no role/],
     [{...recording, metres_per_unit: 0}, /unit is missing/], [{...recording, recording: 1}, /no recording/],
     [{...recording, bodies: [body('fixed')]}, /pose of body 0/], ['text', /no known format/],
   ]) {

@@ -184,6 +184,35 @@ test('finds the first contact as the command does', () => {
   assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
 });
 
+test('says so where memory ends while a tree is built, and keeps the trees before', async () => {
+  const small = await startEngine(process.env.IST_ENGINE);
+  const {grow} = WebAssembly.Memory.prototype;
+  let bytes = 0, most = Infinity;
+  WebAssembly.Memory.prototype.grow = function(pages) {
+    if (this.buffer.byteLength + pages * 65536 > most) throw new RangeError('Maximum memory size exceeded');
+    const before = grow.call(this, pages);
+    bytes = this.buffer.byteLength;
+    return before;
+  };
+  try {
+    small.ask('make_jaws', {seed: 1});
+    small.ask('build', {voxel_size: 0.8});
+    const {line} = small.ask('collide', {pose: poses[3]});
+    const tree = Buffer.from(small.ask('save_body', {role: 'fixed'}).bytes);
+    // It ends at the first body, and after it.
+    for (const more of [0, 5e6, 15e6]) {
+      most = bytes + more;
+      assert.throws(() => small.ask('build', {voxel_size: 0.3}), {code: 'memory-limit', message: /memory is full/});
+      assert.deepEqual(answerOf(small.ask('collide', {pose: poses[3]}).line), answerOf(line));
+      assert.ok(tree.equals(small.ask('save_body', {role: 'fixed'}).bytes), 'the tree is the one that answers');
+    }
+    small.ask('build', {voxel_size: 1});
+    assert.equal(small.ask('collide', {pose: poses[3]}).line.voxel_size[0], 1);
+  } finally {
+    WebAssembly.Memory.prototype.grow = grow;
+  }
+});
+
 test('refuses bad files with the command\'s sentence, and goes on', () => {
   engine.ask('make_jaws', {seed: 1});
   const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated'],

@@ -2,12 +2,12 @@
 // bad gets a sentence, and the page goes on.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, messages, openPage, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, messages, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
@@ -112,6 +112,100 @@ test('warns where one body is in metres', async () => {
   await closePage(opened);
 });
 
+test('asks for the unit where both bodies are in metres, and takes it', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  await field(page, 'fixed').setInputFiles(fileOf('upper.stl', scaled(upper, 1e-3)));
+  await message(page, /upper\.stl is .* times as|times as large as upper\.stl/);
+  await field(page, 'moving').setInputFiles(fileOf('lower.stl', scaled(lower, 1e-3)));
+  assert.match(await message(page, /^lower\.stl/), /no unit is known.*If these are metres, choose metres/);
+  await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'lower.stl' && window.ist.state().trees !== null);
+  await ready(page);
+  await page.getByLabel('Unit of the files you open').selectOption('m');
+  while ((await messages(page)).length > 0) await page.getByRole('button', {name: 'Close this message'}).first().click();
+  await field(page, 'fixed').setInputFiles(fileOf('upper.stl', scaled(upper, 1e-3)));
+  await field(page, 'moving').setInputFiles(fileOf('lower.stl', scaled(lower, 1e-3)));
+  await page.waitForFunction(() => window.ist.state().bodies.moving.unit === 'm' && window.ist.state().trees !== null);
+  await ready(page);
+  assert.deepEqual(await messages(page), []);
+  assert.match((await readout(page)).Distance, / m$/);
+  await closePage(opened);
+});
+
+test('refuses files that no page can hold, and goes on', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  const mesh = path.join(folder, 'large.ply'), recording = path.join(folder, 'large.jsonl');
+  for (const [file, bytes] of [[mesh, 1.2e9], [recording, 6e8]]) {
+    writeFileSync(file, '');
+    truncateSync(file, bytes);  // takes no place on the disk
+  }
+  await field(page, 'moving').setInputFiles(mesh);
+  assert.match(await message(page, /^large\.ply: it has 1,200 MB/), /make its mesh coarser/);
+  await showPanel(page, 'Recording');
+  await page.getByLabel('Open a recording').setInputFiles(recording);
+  assert.match(await message(page, /^large\.jsonl: It has 600 MB/), /record fewer --seconds/);
+  await setPose(page, closedBy(0));
+  assert.equal((await answer(page)).line.touch, 'yes');
+  await closePage(opened);
+});
+
+test('says so where memory ends while bodies are built, and builds the next ones', async () => {
+  const mostBytes = 110e6;  // voxels of 0.8 mm need 100 MB, of 0.2 mm over 200
+  const opened = await openPage(browser, '#voxel=0.8&panel=accuracy', {before: inWorker(`
+    const {grow} = WebAssembly.Memory.prototype;
+    WebAssembly.Memory.prototype.grow = function(pages) {
+      if (this.buffer.byteLength + pages * 65536 > ${mostBytes}) throw new RangeError('Maximum memory size exceeded');
+      return grow.call(this, pages);
+    };`)});
+  const {page} = opened;
+  await ready(page);
+  const before = await answer(page);
+  const voxels = page.getByRole('slider', {name: 'Voxel size'});
+  await voxels.press('Home');
+  assert.match(await message(page, /memory is full/), /The trees of before are kept: choose another voxel size/);
+  await ready(page);
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(before.line));
+  await voxels.press('End');
+  await page.waitForFunction(() => window.ist.state().voxelSize === 2);
+  await ready(page);
+  const [, line] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '2', '--move', '0,0,-1.5', '--json'));
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(line));
+  await closePage(opened);
+});
+
+test('goes on where the engine itself ends', async () => {
+  const opened = await openPage(browser, coarse, {before: inWorker(`addEventListener('message', ({data}) => {
+    if (data.question === 'open' && data.asked.name === 'fatal.stl') Float32Array.prototype.slice = () => { throw new RangeError('Array buffer allocation failed'); };
+  });`)});
+  const {page} = opened;
+  await ready(page);
+  const before = await answer(page);
+  await field(page, 'moving').setInputFiles(fileOf('fatal.stl', readFileSync(path.join(folder, lower))));
+  await message(page, /memory is full/);
+  await ready(page);
+  await setPose(page, closedBy(-0.6));
+  await setPose(page, before.line.pose);
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(before.line));
+  await closePage(opened);
+});
+
+test('maps bodies that are out of reach of each other, where every distance is unknown', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=occlusion&pose=${closedBy(-80)}`);
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  const {unknown, vertices} = await page.evaluate(() => {
+    const {bite} = window.ist.state();
+    return {unknown: bite.fixed.distances.filter(Number.isNaN).length, vertices: bite.bite.fixed.vertices};
+  });
+  assert.equal(unknown, vertices);
+  assert.doesNotMatch(await page.getByRole('tabpanel', {name: 'Occlusion'}).textContent(), /NaN|null|undefined|Infinity/);
+  await closePage(opened);
+});
+
 test('comes back to what its address says', async () => {
   const opened = await openPage(browser, '#voxel=0.8&policy=tight&panel=accuracy');
   const {page} = opened;
@@ -173,26 +267,31 @@ test('shows the bodies of the data in it, whatever their names', async () => {
     format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: closedBy(-0.6), missing: ['</script><b>One</b> is not here.'],
     bodies: [
       {role: 'fixed', name: '</script><script>fault()</script>.stl', tree: tree('upper.ist')},
-      {role: 'moving', name: lower, tree: tree('lower.ist')},
+      {role: 'moving', name: 'scans/of $& today/lower.stl', tree: tree('lower.ist')},
     ],
   });
   const opened = await openPage(browser, '#voxel=0.8', {file});
   await ready(opened.page);
   await message(opened.page, '</script><b>One</b> is not here.');
   await showPanel(opened.page, 'Bodies');
-  assert.match(await opened.page.locator('.body.fixed').textContent(), /<.script><script>fault/);
+  for (const [role, name] of [['fixed', '</script><script>fault()</script>.stl'], ['moving', 'scans/of $& today/lower.stl']]) {
+    assert.equal(await opened.page.locator(`.body.${role} strong`).textContent(), name);
+  }
+  assert.match(await opened.page.locator('#subject').textContent(), /^<.script>.* and scans.of \$& today.lower\.stl$/);
   const [, line] = linesOf(ist(folder, 'collide', 'upper.ist', 'lower.ist', '--move', '0,0,-0.6', '--json'));
   assert.deepEqual(answerOf((await answer(opened.page)).line), answerOf(line));
   await closePage(opened);
 });
 
 test('shows the built-in jaws where the data in it is newer, damaged or of no tree', async () => {
-  const body = (role) => ({role, name: 'a.ist', tree: Buffer.from('ISTTREE1 nothing').toString('base64')});
+  const body = (role) => ({role, name: 'a/of $&b.ist', tree: Buffer.from('ISTTREE1 nothing').toString('base64')});
   const bad = [
     [{format: 2, made_by: 'ist 9.9.9', kind: 'bodies', bodies: []}, /newer version \(ist 9\.9\.9\)/],
     ['{"format": 1, "made_by": "ist', /cut off or damaged/],
     [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [{role: 'fixed', name: 'a', tree: '*'}]}, /damaged/],
-    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /a\.ist/],
+    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /^a\/of \$&b\.ist: /],
+    [{format: 1, made_by: 'ist 0.1.0', kind: 'bite', occlusion: {preset: 'scan', reach: NaN}, bodies: [body('fixed'), body('moving')]}, /no preset or reach/],
+    ['{"format": 1, "made_by": "ist 0.1.0", "kind": "bite", "pose": [NaN], "bodies": []}', /damaged/],
     [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: Array(16).fill(null), bodies: [body('fixed'), body('moving')]}, /pose/],
   ];
   for (const [data, sentence] of bad) {

@@ -7,6 +7,7 @@ import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
+import {interval} from '../../src/viewer/page/words.js';
 import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, startBrowser} from './browser.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
@@ -110,6 +111,22 @@ test('follows a drag of the closing slider until the contacts change', async () 
   await closePage(opened);
 });
 
+test('shows at rest what the command answers, not what a frame of a drag knows', async () => {
+  const opened = await openPage(browser, '#voxel=0.8');
+  const {page} = opened;
+  await ready(page);
+  for (const dz of [-1.5, -4]) {
+    await setPose(page, closedBy(dz));
+    const [, line] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '0.8', '--move', `0,0,${dz}`, '--json'));
+    const {tick} = await page.evaluate(() => ({tick: {lower: window.ist.state().tick.distance_lower, upper: window.ist.state().tick.distance_upper}}));
+    assert.notDeepEqual(tick, {lower: line.distance_lower, upper: line.distance_upper});
+    assert.equal((await readout(page)).Distance, interval(line.distance_lower, line.distance_upper, 'mm'));
+    const title = await page.locator('#readout dd').nth(1).getAttribute('title');
+    assert.equal(title, `${line.distance_lower} to ${line.distance_upper}`);
+  }
+  await closePage(opened);
+});
+
 test('finds the first contact from the pose that is shown', async () => {
   const opened = await openPage(browser, '#panel=pose&voxel=0.8');
   const {page} = opened;
@@ -133,7 +150,7 @@ test('goes on as before where a build is cancelled', async () => {
   await voxels.focus();
   await page.keyboard.press('Home');  // the smallest
   await page.getByRole('button', {name: 'Cancel'}).click();
-  await page.waitForFunction(() => document.getElementById('progress').hidden);
+  await page.getByRole('button', {name: 'Cancel'}).waitFor({state: 'hidden'});
   await ready(page);
   const after = await answer(page);
   assert.deepEqual(answerOf(after.line), answerOf(before.line));

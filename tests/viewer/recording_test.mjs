@@ -4,7 +4,7 @@ import {test} from 'node:test';
 import {identity, multiply, transformed, translation} from '../../src/viewer/page/pose.js';
 import {placeAt, relative, spansOf} from '../../src/viewer/page/recording/placed_bodies.js';
 import {indexAt} from '../../src/viewer/page/recording/playback.js';
-import {parseRecording, poseOfRow} from '../../src/viewer/page/recording/recording.js';
+import {parseRecording, poseOfRow, recordingSteps} from '../../src/viewer/page/recording/recording.js';
 import {placedByScene, sceneBodies} from '../../src/viewer/page/recording/scene_bodies.js';
 
 const header = {recording: 2, ist: '0.1.0', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
@@ -52,6 +52,22 @@ test('what is no recording of this version is refused, with what to do', () => {
   assert.throws(() => parseRecording(text(header)), /no ticks/);
   assert.throws(() => parseRecording(text(header, '{"tick": 0', tick(1))), /Line 2 .*damaged/);
   assert.throws(() => parseRecording(text(header, tick(0), tick(1, {tool: [1, 2]}))), /Line 3 .*no tick/);
+});
+
+test('blank lines are passed over, and counted', () => {
+  const {ticks} = parseRecording(`\n${text(header)}\n\n${text(tick(0), tick(1))}\n \n`);
+  assert.equal(ticks.length, 2);
+  assert.throws(() => parseRecording(`\n${text(header)}\n${text(tick(0))}{"tick"\n${text(tick(1))}`), /Line 5 /);
+});
+
+test('a long one is read by steps, and tells how far it is', () => {
+  const whole = text(header, ...Array.from({length: 3000}, (_, at) => tick(at)));
+  const parts = [];
+  const steps = recordingSteps(whole);
+  let step = steps.next();
+  for (; !step.done; step = steps.next()) parts.push(step.value);
+  assert.ok(parts.length >= 10 && parts.every((part, at) => part > (parts[at - 1] ?? 0) && part < 1), parts.join());
+  assert.deepEqual(step.value, parseRecording(whole));
 });
 
 test('a recording that is cut off plays to there', () => {

@@ -7,6 +7,7 @@ import {wrenchAtMiddle} from '../../src/viewer/page/wrench.js';
 test('numbers are short, and tell their size', () => {
   assert.deepEqual([0, 1.38654, -0.6, 12345.6, 1e-7, 2e9, NaN].map((value) => short(value)), ['0', '1.387', '−0.6', '12,346', '1.00e−7', '2.00e9', '–']);
   assert.equal(interval(0.2840, 0.2949, 'mm'), '0.284 to 0.2949 mm');
+  assert.equal(interval(0.28400001, 0.28400004, 'mm'), '0.284 mm');
   assert.equal(interval(null, null, 'mm'), 'not known');
 });
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <utility>
 
 #include "cli/answers/body_json.h"
 #include "cli/commands/level_geometry.h"
@@ -81,13 +82,19 @@ const SphereTree& PageBody::whole() {
   return *whole_;
 }
 
-void PageBody::build(double voxel_size, Progress& progress) {
-  if (!rebuilds()) return;
+PageBody::Built PageBody::built(double voxel_size, Progress& progress) const {
+  if (!rebuilds()) return {*tree_, milliseconds_};
   BuildReport report;
-  tree_ = build_tree(*mesh_, options(voxel_size), &report, &progress);
-  milliseconds_ = std::accumulate(
+  SphereTree tree = build_tree(*mesh_, options(voxel_size), &report, &progress);
+  const double milliseconds = std::accumulate(
       report.stages.begin(), report.stages.end(), 0.0,
       [](double sum, const BuildReport::Stage& stage) { return sum + stage.milliseconds; });
+  return {std::move(tree), milliseconds};
+}
+
+void PageBody::take(Built built) {
+  tree_ = std::move(built.tree);
+  milliseconds_ = built.milliseconds;
 }
 
 nlohmann::ordered_json PageBody::facts(Reply& reply) const {

@@ -12,7 +12,7 @@
 
 namespace ist::viewer {
 
-/// A body of the page: a mesh, or a tree that was read, and the tree that was made of it last.
+/// A body of the page: a mesh, or a tree that was read, and the tree that was taken last.
 class PageBody {
  public:
   /// Reads a mesh or a tree, and checks it. Throws as read_mesh() and read_tree() do.
@@ -23,16 +23,22 @@ class PageBody {
   [[nodiscard]] bool rebuilds() const noexcept { return mesh_.has_value(); }
   [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
   [[nodiscard]] double extent() const noexcept { return extent_; }
-  /// The tree of the last build(), or the one that was read.
+  /// The tree of the last take(), or the one that was read.
   [[nodiscard]] const std::optional<SphereTree>& tree() const noexcept { return tree_; }
 
   /// The tree that `ist occlusion` takes, whose answers need triangles alone: as it was read, or of
   /// one voxel as large as the mesh. Made at its first use.
   [[nodiscard]] const SphereTree& whole();
 
-  /// Makes the tree anew, where there are triangles. The tree before stays where this throws, as
+  struct Built {
+    SphereTree tree;
+    double milliseconds;
+  };
+  /// Makes a tree of the triangles; where there are none, gives the one that was read. Throws as
   /// build_tree() does.
-  void build(double voxel_size, Progress& progress);
+  [[nodiscard]] Built built(double voxel_size, Progress& progress) const;
+  /// Takes the tree as its own.
+  void take(Built built);
 
   /// Describes the body as it was read: BodyFacts of page/protocol.js.
   [[nodiscard]] nlohmann::ordered_json facts(Reply& reply) const;

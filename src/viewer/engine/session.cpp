@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "cli/extents.h"
 #include "ist/base/error.h"
@@ -125,13 +126,17 @@ Reply Session::build(const Asked& asked, Progress& progress) {
   const double extent = std::min(fixed.extent(), moving.extent());
   const double voxel_size =
       asked.number_or_none("voxel_size").value_or(cli::rounded_voxel_size(extent));
-  for (PageBody* each : {&fixed, &moving}) each->build(voxel_size, progress);
-  cli::Bodies bodies{*fixed.tree(), *moving.tree(),
-                     std::min(fixed.tree()->tightest(), moving.tree()->tightest())};
+  PageBody::Built one = fixed.built(voxel_size, progress),
+                  other = moving.built(voxel_size, progress);
+  cli::Bodies bodies{one.tree, other.tree, std::min(one.tree.tightest(), other.tree.tightest())};
   bodies.fixed_voxel_size = bodies.fixed.voxel_size();
   bodies.moving_voxel_size = bodies.moving.voxel_size();
-  pairs_.emplace(std::move(bodies));
-  static_cast<void>(pairs_->of({}));  // so that the first frame of a drag has it
+  auto pairs = std::make_unique<Pairs>(std::move(bodies));
+  static_cast<void>(pairs->of({}));  // so that the first frame of a drag has it
+  // Memory may have ended before here: what was before is whole until all that is new is there.
+  fixed.take(std::move(one));
+  moving.take(std::move(other));
+  pairs_ = std::move(pairs);
   recorded_.reset();
   Reply reply;
   reply.json = {{"fixed", fixed.tree_facts()}, {"moving", moving.tree_facts()}};

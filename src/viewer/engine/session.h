@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,7 +51,7 @@ class Session {
   [[nodiscard]] const std::vector<StepFront>& recorded(const Asked& asked);
 
   std::optional<PageBody> fixed_, moving_;
-  std::optional<Pairs> pairs_;
+  std::unique_ptr<Pairs> pairs_;
   std::optional<Recorded> recorded_;  // the fronts that were asked for last
 };
 

@@ -62,28 +62,40 @@ export function makeBodiesLoader({store, say, ask}) {
   /** @param {BodyFile} file */
   async function open(file) {
     if (file.content.size > mostBytes) {
-      throw new Error(`${file.name} has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
+      throw new Error(`${file.name}: it has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
           'make its mesh coarser, or ask the command, ist, which has no such limit.');
     }
-    const bytes = await file.content.arrayBuffer();
-    const facts = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
+    const bytes = await bytesOf(file);
+    const read = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
+    // The engine keeps it under a name that is a file's.
+    const facts = {...read, name: file.name};
     kept.files[file.role] = file;
     kept.built = false;
     if (kept.files.fixed && kept.files.moving) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
     store.set({bodies, jaws: null, trees: null, tick: null, answer: null, bite: null, unit: file.unit ?? null});
     for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
-    compare(bodies);
+    if (!compare(bodies)) suspect(facts);
   }
 
-  /** @param {{fixed: BodyFacts | null, moving: BodyFacts | null}} bodies */
+  /**
+   * @param {{fixed: BodyFacts | null, moving: BodyFacts | null}} bodies
+   * @returns {boolean} whether a warning was said
+   */
   function compare({fixed, moving}) {
-    if (!fixed || !moving) return;
+    if (!fixed || !moving) return false;
     const [small, large] = fixed.extent < moving.extent ? [fixed, moving] : [moving, fixed];
-    if (large.extent > farApart * small.extent) {
-      say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres. ` +
-          'Both must be in one unit; nothing is converted.', 'warning');
-    }
+    if (large.extent <= farApart * small.extent) return false;
+    say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres. ` +
+        'Both must be in one unit; nothing is converted.', 'warning');
+    return true;
+  }
+
+  /** @param {BodyFacts} body */
+  function suspect({name, unit, extent}) {
+    if (unit !== null || extent >= 1) return;
+    say(`${name} is ${short(extent)} long, and no unit is known of it, so millimetres are assumed. If these are metres, ` +
+        'choose metres as the unit of the files you open, and open it again.', 'warning');
   }
 
   /** @param {number} [wanted] */
@@ -124,9 +136,21 @@ export function makeBodiesLoader({store, say, ask}) {
       const {seed, files, voxelSize, built} = kept;
       if (seed !== null) await again('make_jaws', {seed});
       for (const file of Object.values(files)) {
-        await again('open', {role: file.role, name: file.name, bytes: await file.content.arrayBuffer(), unit: file.unit});
+        await again('open', {role: file.role, name: file.name, bytes: await bytesOf(file), unit: file.unit});
       }
       if (built) await again('build', {voxel_size: voxelSize});
     },
   };
+}
+
+/**
+ * @param {BodyFile} file
+ * @returns {Promise<ArrayBuffer>}
+ */
+async function bytesOf({name, content}) {
+  try {
+    return await content.arrayBuffer();
+  } catch (error) {
+    throw new Error(`${name}: the browser cannot read it (${faultText(error)}). It may have changed since you chose it, or memory is short: choose it again.`);
+  }
 }

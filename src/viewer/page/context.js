@@ -58,6 +58,7 @@
  * @property {import('./bodies_loader.js').BodiesLoader} loader
  * @property {import('./state/pose_history.js').PoseHistory} history
  * @property {(text: string, kind?: 'note' | 'warning' | 'error') => void} say
+ * @property {import('./recording/read_recording.js').ReadRecording} readRecording
  */
 
 /**

@@ -3,7 +3,7 @@
  * whole answer, with the depth, and the map when the pose has come to rest.
  */
 
-import {faultText} from './engine/engine_client.js';
+import {EngineError, faultText} from './engine/engine_client.js';
 import {millimetresIn} from './words.js';
 
 /** @typedef {import('./context.js').Context} Context */
@@ -23,12 +23,14 @@ export function followPose({engine, store, say}) {
 
   /** @param {Promise<void>} done */
   const counted = async (done) => {
+    const {trees} = store.get();
     asking += 1;
     try {
       await done;
     } catch (error) {
       const text = faultText(error);
-      if (text) say(text, 'error');
+      // Of trees that went while it waited, nobody wants to know.
+      if (text && store.get().trees === trees) say(text, 'error');
     } finally {
       asking -= 1;
     }
@@ -53,8 +55,14 @@ export function followPose({engine, store, say}) {
     const state = store.get();
     const {pose, trees} = state;
     if (!trees || !state.wantsMap || !measurable(state)) return;
-    const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
-    if (store.get().trees === trees) store.set({bite: {...bite, pose}});
+    try {
+      const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
+      if (store.get().trees === trees) store.set({bite: {...bite, pose}});
+    } catch (error) {
+      // Whoever cancels a map wants no other, until they ask for it.
+      if (error instanceof EngineError && error.code === 'cancelled') store.set({wantsMap: false});
+      throw error;
+    }
   }
 
   const atRest = () => {

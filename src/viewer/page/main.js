@@ -20,6 +20,7 @@ import {makeTreePanel} from './panels/tree.js';
 import {identity, translation} from './pose.js';
 import {makePoseHistory} from './state/pose_history.js';
 import {makeReadout} from './readout.js';
+import {makeReadRecording} from './recording/read_recording.js';
 import {makeStore} from './state/store.js';
 import {exposeTestSurface} from './test_surface.js';
 import {followTheme} from './theme.js';
@@ -71,9 +72,10 @@ async function main() {
   followTheme(store, stage, byId('theme'));
   const texts = await unpackEngine();
 
+  const makeBar = (/** @type {() => void} */ onCancel) => makeProgress(byId('progress'), onCancel);
   const engine = makeEngineClient({
     start: () => startEngine(texts),
-    progress: makeProgress(byId('progress'), () => engine.cancel()),
+    progress: makeBar(() => engine.cancel()),
     restore: (ask) => loader.restore(ask),
     onLost: (error) => {
       dataset.state = 'failed';
@@ -82,7 +84,7 @@ async function main() {
   });
   const loader = makeBodiesLoader({store, say, ask: engine.ask});
   const history = makePoseHistory(store);
-  const context = {engine, store, stage, loader, history, say};
+  const context = {engine, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
   const recording = makeRecordingPanel(context);
   const panels = [
     makeBodiesPanel(context), makePosePanel(context), makeAccuracyPanel(context), makeTreePanel(context),
@@ -112,7 +114,7 @@ async function main() {
     for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
   });
   let opened = false;
-  exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress});
+  exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
 
   const {change, problems} = readFragment(location.hash, panels.map((panel) => panel.id));
   const {data, problem} = readDataBlock(byId('ist-data').textContent ?? 'null');

@@ -21,7 +21,8 @@ export async function openFirst(context, data, asked, onRecording) {
   try {
     opened = data !== null && await openData(context, data, asked, onRecording);
   } catch (error) {
-    say(`${faultText(error)} The built-in jaws are shown instead.`, 'error');
+    const text = faultText(error);
+    if (text) say(`${text} The built-in jaws are shown instead.`, 'error');
   }
   if (!opened) {
     if (!await loader.makeJaws(store.get().seed)) return;

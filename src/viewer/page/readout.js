@@ -30,22 +30,23 @@ export function makeReadout(place, store) {
 
   const fill = () => {
     const state = store.get();
-    const {tick, answer, pose, bodies} = state;
+    const {tick, answer, pose, policy, bodies} = state;
     const unit = unitWord(unitOf(state));
     const span = closingSpan(bodies.moving?.extent ?? 110);
     closing.range(-span, 0);
     closing.set(position());
-    touch.set(tick ? touchWords[/** @type {keyof typeof touchWords} */ (tick.touch)] ?? tick.touch : '…');
-    touch.element.dataset.touch = tick?.touch ?? '';
-    // The rested answer's interval is the narrower one.
-    const known = answer?.pose === pose ? answer.line : tick;
-    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…');
-    depth.set(answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…');
-    depth.element.classList.toggle('stale', answer?.pose !== pose);
+    // A tick's distance is only as close as a person sees; at rest all is the command's.
+    const rested = answer?.pose === pose && answer.policy === policy;
+    const known = rested ? answer.line : tick;
+    touch.set(known ? touchWords[/** @type {keyof typeof touchWords} */ (known.touch)] ?? known.touch : '…');
+    touch.element.dataset.touch = known?.touch ?? '';
+    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…', rested ? inFull(answer.line, 'distance') : '');
+    depth.set(answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…', rested ? inFull(answer.line, 'depth') : '');
+    depth.element.classList.toggle('stale', !rested);
     force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
     contacts.set(tick ? count(tick.contacts.depths.length) : '…');
   };
-  store.subscribe(['tick', 'answer', 'pose', 'home', 'bodies', 'unit'], fill);
+  store.subscribe(['tick', 'answer', 'pose', 'policy', 'home', 'bodies', 'unit'], fill);
   fill();
 }
 
@@ -59,8 +60,24 @@ export function closingSpan(extent) {
   return power * ([1, 2, 5, 10].find((each) => each * power >= rough * 0.7) ?? 10);
 }
 
+/**
+ * @param {import('./protocol.js').Line} line
+ * @param {string} name
+ * @returns {string} both ends with all digits, as `ist collide --json` prints them
+ */
+function inFull(line, name) {
+  const [lower, upper] = [line[`${name}_lower`], line[`${name}_upper`]];
+  return lower === null || upper === null || lower === undefined ? '' : `${lower} to ${upper}`;
+}
+
 /** @param {string} name */
 function cell(name) {
   const value = element('dd');
-  return {element: element('div', {}, element('dt', {}, name), value), set: (/** @type {string} */ to) => { value.textContent = to; }};
+  return {
+    element: element('div', {}, element('dt', {}, name), value),
+    set: (/** @type {string} */ to, title = '') => {
+      value.textContent = to;
+      value.title = title;
+    },
+  };
 }

@@ -11,6 +11,7 @@
  * @property {() => {count: number, p50: number, p99: number, max: number}} tickTimes  ms, by the Worker
  * @property {() => number | null} heap          bytes of the engine's memory
  * @property {() => {tick: number, last: number} | null} playback
+ * @property {() => Promise<Blob>} picture  PNG of the canvas alone
  */
 
 /** @typedef {import('./context.js').Store} Store */
@@ -23,8 +24,9 @@
  * @param {() => boolean} parts.settled
  * @param {() => boolean} parts.opened   whether what the page came with is opened
  * @param {TestSurface['playback']} parts.playback
+ * @param {TestSurface['picture']} parts.picture
  */
-export function exposeTestSurface({store, engine, settled, opened, playback}) {
+export function exposeTestSurface({store, engine, settled, opened, playback, picture}) {
   /** @type {TestSurface} */
   const surface = {
     state: store.get,
@@ -42,7 +44,7 @@ export function exposeTestSurface({store, engine, settled, opened, playback}) {
       return {count: times.length, p50: at(0.5), p99: at(0.99), max: at(1)};
     },
     heap: () => engine.figures().heap,
-    playback,
+    playback, picture,
   };
   Object.assign(window, {ist: Object.freeze(surface)});
   const {dataset} = document.documentElement;

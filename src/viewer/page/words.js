@@ -47,8 +47,8 @@ export function millimetresIn(unit) {
  */
 export function interval(lower, upper, unit) {
   if (lower === null || upper === null || lower === undefined || upper === undefined) return 'not known';
-  if (lower === upper) return `${short(lower)} ${unit}`;
-  return `${short(lower)} to ${short(upper)} ${unit}`;
+  const [from, to] = [short(lower), short(upper)];
+  return from === to ? `${from} ${unit}` : `${from} to ${to} ${unit}`;
 }
 
 /** @param {number} bytes */

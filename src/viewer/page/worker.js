@@ -9,7 +9,7 @@
 /**
  * @typedef {object} Engine
  * @property {{buffer: ArrayBuffer}} HEAPU8
- * @property {{writeFile(path: string, bytes: Uint8Array): void, unlink(path: string): void}} FS
+ * @property {{writeFile(path: string, bytes: Uint8Array, how: {canOwn: boolean}): void, unlink(path: string): void}} FS
  * @property {(name: string, result: 'string', kinds: string[], values: string[]) => string} ccall
  * @property {(stage: string, part: number) => void} progress
  */
@@ -18,6 +18,8 @@
 const arrayKinds = {Float32Array, Float64Array, Uint32Array, Uint8Array};
 // A page draws 60 times a second; more is not told.
 const leastBetween = 50;
+
+const fullText = 'the page\'s memory is full: take larger voxels or a coarser mesh, or use the command';
 
 /** @type {Engine | undefined} */
 let engine;
@@ -59,6 +61,14 @@ function fileOf(asked) {
   return {name, path: `${asked.role === 'fixed' ? 'fixed' : 'moving'}/${name}`};
 }
 
+/**
+ * @param {unknown} error
+ * @returns {boolean} whether the browser gave no memory
+ */
+function isShortOfMemory(error) {
+  return error instanceof RangeError ? /alloc|length/i.test(error.message) : /out of memory|OOM/i.test(String(error));
+}
+
 /** @param {ToWorker} message */
 function answer({id, question, asked}) {
   const running = /** @type {Engine} */ (engine);
@@ -73,11 +83,13 @@ function answer({id, question, asked}) {
   /** @type {any} */
   let sent = asked;
   let path = '';
+  // The engine names the file by its path, and people know it by its name.
+  const asNamed = (/** @type {string} */ text) => path ? text.split(path).join(/** @type {any} */ (asked).name) : text;
   try {
     if (question === 'open') {
       const file = fileOf(asked);
       path = file.path;
-      running.FS.writeFile(path, new Uint8Array(/** @type {any} */ (asked).bytes));
+      running.FS.writeFile(path, new Uint8Array(/** @type {any} */ (asked).bytes), {canOwn: true});
       sent = {...asked, name: file.name, bytes: undefined};
     }
     const text = running.ccall('ist_page_answer', 'string', ['string', 'string'],
@@ -85,13 +97,14 @@ function answer({id, question, asked}) {
     const reply = JSON.parse(text);
     /** @type {ArrayBuffer[]} */
     const moved = [];
-    const message = reply.error ? {id, error: reply.error} :
+    const message = reply.error ? {id, error: {code: reply.error.code, text: asNamed(reply.error.text)}} :
       {id, answer: withArrays(reply.answer, moved), milliseconds: performance.now() - begun,
         heap: running.HEAPU8.buffer.byteLength};
     postMessage(message, {transfer: moved});
   } catch (error) {
     // The engine itself ended: only a new one can go on.
-    postMessage({id, error: {code: 'engine-ended', text: `the engine ended: ${error}`}});
+    const text = isShortOfMemory(error) ? fullText : `the engine ended: ${error}`;
+    postMessage({id, error: {code: 'engine-ended', text: asNamed(text)}});
   } finally {
     if (path) running.FS.unlink(path);
   }

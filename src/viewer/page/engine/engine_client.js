@@ -17,7 +17,7 @@
  * @typedef {object} EngineClient
  * @property {<Name extends keyof Questions>(name: Name, asked: Questions[Name][0], options?: AskOptions) => Promise<Questions[Name][1]>} ask
  *   rejects with an EngineError
- * @property {() => void} cancel   ends what is asked now
+ * @property {() => void} cancel   ends what is asked now, and what waits of the same name; all else is asked after it
  * @property {() => boolean} busy
  * @property {() => EngineFigures} figures
  */
@@ -56,9 +56,8 @@ export class EngineError extends Error {
  */
 export function faultText(error) {
   if (error instanceof EngineError && (error.code === 'replaced' || error.code === 'cancelled')) return null;
-  // The engine keeps each body's file in a folder of its own, which people did not choose.
-  const text = (error instanceof Error ? error.message : String(error)).replace(/^(fixed|moving)\//, '');
-  const beginsWithFile = /^\S+\.\w+:/.test(text);
+  const text = error instanceof Error ? error.message : String(error);
+  const beginsWithFile = /^[^:]+\.\w+:/.test(text);
   return beginsWithFile ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
@@ -190,9 +189,10 @@ export function makeEngineClient({start, progress, restore, onLost}) {
   return {
     ask,
     cancel() {
-      const lost = [...running ? [running] : [], ...queue];
-      if (lost.length === 0 || restoring) return;
-      queue = [];
+      if (running === null || restoring) return;
+      const {name} = running;
+      const lost = [running, ...queue.filter((each) => each.name === name)];
+      queue = queue.filter((each) => each.name !== name);
       running = null;
       restart();
       for (const each of lost) each.reject(new EngineError('cancelled', 'cancelled'));

@@ -1,7 +1,7 @@
 /** The occlusion map: both bodies by their distance from each other, its legend, and its regions. */
 
 import {measurable, unitOf} from '../follow.js';
-import {checkbox, select, slider} from '../ui/controls.js';
+import {button, checkbox, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {unitWord} from '../words.js';
 import {makeMapView} from '../view/map_view.js';
@@ -37,17 +37,18 @@ export function makeOcclusionPanel({store, stage}) {
     onChange: (value) => store.set({frame: value}),
   });
   // Closed, the bodies hide the surfaces that face each other.
-  let opens = true;
+  let opens = true, seen = false;
   const book = checkbox('Open both bodies like a book', opens, (on) => {
     opens = on;
     store.set({book: on});
   });
   const state = element('p', {class: 'map-state', 'aria-live': 'polite'});
+  const again = button('Make the map', () => store.set({wantsMap: true}));
   const answer = element('div'), caveat = element('p', {class: 'caveat'});
   const panel = element('div', {},
       element('h2', {}, 'Occlusion map'),
       element('p', {}, 'Each vertex by its signed distance from the other body: negative inside. The presets are published limits, and none is a clinical recommendation.'),
-      preset.element, book.element, state, answer, caveat,
+      preset.element, book.element, state, again, answer, caveat,
       element('details', {}, element('summary', {}, 'Reach, unit and sides'), reach.element, unit.element, frame.element));
 
   const fill = () => {
@@ -56,8 +57,11 @@ export function makeOcclusionPanel({store, stage}) {
     unit.element.hidden = Boolean(now.bodies.fixed?.unit ?? now.bodies.moving?.unit);
     preset.set(now.preset);
     const stale = bite !== null && bite.pose !== now.pose;
+    const possible = now.trees !== null && measurable(now), cancelled = possible && seen && !now.wantsMap;
+    again.hidden = !cancelled;
     state.textContent = !now.trees ? 'The map comes when the trees are built.' :
       !measurable(now) ? 'A map needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.' :
+        cancelled && (stale || !bite) ? 'The map was cancelled.' :
         stale ? 'Grey: the map of another pose. It is made again where the pose rests.' :
           bite ? 'The map is of this pose.' : 'The map is being made.';
     answer.classList.toggle('stale', stale);
@@ -73,15 +77,17 @@ export function makeOcclusionPanel({store, stage}) {
     fill();
   };
   store.subscribe(['bite', 'bodies'], fillBite);
-  store.subscribe(['pose', 'trees', 'preset', 'book', 'unit'], fill);
+  store.subscribe(['pose', 'trees', 'preset', 'book', 'unit', 'wantsMap'], fill);
   return {
     id: 'occlusion', title: 'Occlusion', element: panel,
     shown() {
+      seen = true;
       store.set({wantsMap: true, book: opens});
       view.show(true);
       fillBite();
     },
     hidden() {
+      seen = false;
       store.set({wantsMap: false, book: false});
       view.show(false);
     },

@@ -85,7 +85,7 @@ export function makeRecordingPanel(context) {
   /** @param {File} file */
   async function openFile(file) {
     try {
-      open(await openRecordingFile(await file.text(), context));
+      open(await openRecordingFile(file, file.name, context));
     } catch (error) {
       const text = faultText(error);
       if (text) say(`${file.name}: ${text}`, 'error');
@@ -106,7 +106,6 @@ export function makeRecordingPanel(context) {
     plots.contacts.set([{name: 'leaf pairs', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.contacts ?? NaN])}, late]);
     plots.distance.set([]);
     arrange();
-    playback.jump(0);
     if (scene) askDistances().catch((error) => {
       const text = faultText(error);
       if (text) say(text, 'error');
@@ -115,6 +114,7 @@ export function makeRecordingPanel(context) {
 
   function arrange() {
     if (!opened || !seen) {
+      playback?.jump(playback.at());
       view.clear();
       for (const role of roles) stage.fade(role, 1);
       return;
@@ -123,6 +123,7 @@ export function makeRecordingPanel(context) {
     if (scene) {
       const {moving} = store.get().bodies;
       view.set(moving, scene.others.map((other) => other.facts), moving?.extent ?? 1);
+      playback?.jump(playback.at());
       stage.frameAll();
       return;
     }
@@ -132,6 +133,7 @@ export function makeRecordingPanel(context) {
     const size = Math.max(1, ...path.map((value, at) => Math.abs(value - middle[at % 3])));
     view.set(null, [], 8 * size);
     view.setPath(path);
+    playback?.jump(playback.at());
     stage.flyTo(middle, [0.4, 1, 0.3], 5 * size);
   }
 
@@ -197,7 +199,6 @@ export function makeRecordingPanel(context) {
     shown() {
       seen = true;
       arrange();
-      if (playback) playback.jump(playback.at());
     },
     hidden() {
       playback?.pause();

@@ -1,7 +1,6 @@
 /** Opens a recording: its ticks, and its bodies as far as they are known. */
 
 import {fromBase64} from '../data_block.js';
-import {parseRecording} from './recording.js';
 import {placedByScene, sceneBodies} from './scene_bodies.js';
 import {relative, spansOf} from './placed_bodies.js';
 
@@ -28,12 +27,13 @@ import {relative, spansOf} from './placed_bodies.js';
  */
 
 /**
- * @param {string} text
- * @param {Pick<Context, 'loader' | 'store' | 'say'>} context
+ * @param {string | Blob} content
+ * @param {string} name
+ * @param {Pick<Context, 'loader' | 'store' | 'say' | 'readRecording'>} context
  * @returns {Promise<Opened>}
  */
-export async function openRecordingFile(text, {loader, store, say}) {
-  const recording = parseRecording(text);
+export async function openRecordingFile(content, name, {loader, store, say, readRecording}) {
+  const recording = await readRecording(content, name);
   if (recording.cutOff) say(recording.cutOff, 'warning');
   const {header} = recording;
   const scene = sceneBodies(header);
@@ -60,13 +60,14 @@ export async function openRecordingFile(text, {loader, store, say}) {
 
 /**
  * @param {DataBlock} data  of kind recording
- * @param {Pick<Context, 'loader' | 'store' | 'say'>} context
+ * @param {Pick<Context, 'loader' | 'store' | 'say' | 'readRecording'>} context
  * @returns {Promise<Opened>}
  */
-export async function openRecordingData(data, {loader, store, say}) {
-  const text = data.recording ?? '';
-  if (data.bodies.length === 0) return openRecordingFile(text, {loader, store, say});
-  const recording = parseRecording(text);
+export async function openRecordingData(data, context) {
+  const {loader, store, say, readRecording} = context;
+  const text = data.recording ?? '', name = 'the recording';
+  if (data.bodies.length === 0) return openRecordingFile(text, name, context);
+  const recording = await readRecording(text, name);
   if (recording.cutOff) say(recording.cutOff, 'warning');
   const fixed = data.bodies.findIndex((body) => body.role === 'fixed');
   const moving = data.bodies.findIndex((body) => body.role === 'moving');

@@ -31,20 +31,82 @@ import {identity} from '../pose.js';
 /** @typedef {{before: number, body: string, kind: 'attach' | 'release', status: string}} Change  `before`: index of the tick that it precedes */
 
 const version = 2;
+// A step takes less than a frame does.
+const linesAStep = 32;
 
 /**
  * @param {string} text
  * @returns {Recording} throws an Error whose text is for people
  */
 export function parseRecording(text) {
-  const lines = text.split('\n').filter((line) => line.trim() !== '');
-  if (lines.length === 0) throw new Error('The recording is empty: run ist run SCENE --record run.jsonl again.');
-  if (!lines[0].trimStart().startsWith('{')) {
-    throw new Error(/^tick,/.test(lines[0]) ?
+  const steps = recordingSteps(text);
+  for (;;) {
+    const {done, value} = steps.next();
+    if (done) return value;
+  }
+}
+
+/**
+ * Reads a recording by steps of some lines, so that a page can draw between them.
+ * @param {string} text
+ * @returns {Generator<number, Recording, void>} yields the part that is read; throws an Error whose
+ *   text is for people
+ */
+export function* recordingSteps(text) {
+  const lines = linesOf(text);
+  const first = lines.next().value;
+  if (!first) throw new Error('The recording is empty: run ist run SCENE --record run.jsonl again.');
+  const header = headerOf(first.line, first.number);
+  /** @type {Tick[]} */
+  const ticks = [];
+  /** @type {Change[]} */
+  const changes = [];
+  let cutOff = null;
+  for (const {line: written, number, end} of lines) {
+    let line;
+    try {
+      line = parsed(written, number);
+    } catch (error) {
+      if (text.slice(end).trim() !== '') throw error;
+      cutOff = `The recording is cut off in line ${number}: it is shown up to the tick before.`;
+      break;
+    }
+    const change = changeOf(line, ticks.length);
+    if (change) changes.push(change);
+    else ticks.push(tickOf(line, number, ticks));
+    if (number % linesAStep === 0) yield end / text.length;
+  }
+  if (ticks.length === 0) throw new Error('The recording has a header, but no ticks: run the scene for longer.');
+  return {header, dt: header.dt, ticks, changes, cutOff};
+}
+
+/**
+ * @param {string} text
+ * @returns {Generator<{line: string, number: number, end: number}, undefined, void>} those that are not blank
+ */
+function* linesOf(text) {
+  let number = 0;
+  for (let begin = 0; begin < text.length;) {
+    const found = text.indexOf('\n', begin), end = found < 0 ? text.length : found + 1;
+    const line = text.slice(begin, end);
+    number += 1;
+    if (line.trim() !== '') yield {line, number, end};
+    begin = end;
+  }
+}
+
+/**
+ * @param {string} line
+ * @param {number} number
+ * @returns {Line}
+ */
+function headerOf(line, number) {
+  if (!line.trimStart().startsWith('{')) {
+    throw new Error(/^tick,/.test(line) ?
       'This recording is CSV, which does not say of what it is: record JSON lines, ist run SCENE --record run.jsonl.' :
       'This is no recording of ist run: its first line is no JSON. Record one by ist run SCENE --record run.jsonl.');
   }
-  const header = parsed(lines[0], 1);
+  const header = parsed(line, number);
   if (header.recording === undefined) {
     throw new Error('tick' in header ?
       'This recording is of version 1, which has no header: record the scene again with this version of ist.' :
@@ -54,26 +116,7 @@ export function parseRecording(text) {
     throw new Error(`This recording is of version ${header.recording}, and the page reads version ${version}: ` +
         (header.recording > version ? 'open it in a page of the version of ist that wrote it.' : 'record the scene again with this version of ist.'));
   }
-  /** @type {Tick[]} */
-  const ticks = [];
-  /** @type {Change[]} */
-  const changes = [];
-  let cutOff = null;
-  for (let at = 1; at < lines.length; at++) {
-    let line;
-    try {
-      line = parsed(lines[at], at + 1);
-    } catch (error) {
-      if (at < lines.length - 1) throw error;
-      cutOff = `The recording is cut off in line ${at + 1}: it is shown up to the tick before.`;
-      break;
-    }
-    const change = changeOf(line, ticks.length);
-    if (change) changes.push(change);
-    else ticks.push(tickOf(line, at + 1, ticks));
-  }
-  if (ticks.length === 0) throw new Error('The recording has a header, but no ticks: run the scene for longer.');
-  return {header, dt: header.dt, ticks, changes, cutOff};
+  return header;
 }
 
 /**

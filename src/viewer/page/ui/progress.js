@@ -1,6 +1,6 @@
-/** The bar of a long question, with the button that ends it. */
+/** The bar of a long step, with the button that ends it. */
 
-import {element} from './element.js';
+import {element, newId} from './element.js';
 
 // What takes less long shows no bar, which would only flicker.
 const patience = 300;
@@ -13,15 +13,17 @@ const patience = 300;
  */
 
 /**
- * @param {HTMLElement} place
+ * @param {HTMLElement} place  of all bars
  * @param {() => void} onCancel
  * @returns {Progress}
  */
 export function makeProgress(place, onCancel) {
-  const words = element('span', {id: 'progress-words'});
-  const bar = element('progress', {max: 1, 'aria-labelledby': 'progress-words'});
+  const id = newId('doing');
+  const words = element('span', {id});
+  const bar = element('progress', {max: 1, 'aria-labelledby': id});
   const cancel = element('button', {type: 'button', onclick: onCancel}, 'Cancel');
-  place.append(words, bar, cancel);
+  const shown = element('div', {hidden: true}, words, bar, cancel);
+  place.append(shown);
   let doing = '';
   /** @type {number | undefined} */
   let waiting;
@@ -32,7 +34,7 @@ export function makeProgress(place, onCancel) {
       bar.removeAttribute('value');
       cancel.hidden = !cancellable;
       clearTimeout(waiting);
-      waiting = setTimeout(() => { place.hidden = false; }, patience);
+      waiting = setTimeout(() => { shown.hidden = false; }, patience);
     },
     advance(stage, part) {
       words.textContent = stage ? `${doing}: ${stage}` : doing;
@@ -41,7 +43,7 @@ export function makeProgress(place, onCancel) {
     },
     end() {
       clearTimeout(waiting);
-      place.hidden = true;
+      shown.hidden = true;
     },
   };
 }

@@ -1,0 +1,128 @@
+// Every long step has a bar and a button that ends it: the page then is as it was, and goes on.
+
+import assert from 'node:assert/strict';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+
+import {answer, answerOf, closePage, ist, inWorker, openPage, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+
+const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
+const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
+let browser;
+
+before(async () => {
+  ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true});
+});
+
+// The engine takes a minute for these, whatever machine it runs on.
+const slowly = inWorker(`addEventListener('message', ({data: {question, asked}}) => {
+  const long = question === 'first_contact' || question === 'save_glb' || question === 'save_body' || asked?.name === 'slow.stl' ||
+      asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens');
+  for (const begun = performance.now(); long && performance.now() - begun < 60_000;);
+});`);
+
+const panelsOf = {
+  'Making the built-in jaws': ['Bodies', async (page) => {
+    await page.getByLabel('Built-in jaws, number').fill('5');
+    await page.getByRole('button', {name: 'Make these jaws'}).click();
+  }],
+  'Reading slow.stl': ['Bodies', (page) => page.locator('.body.moving input[type=file]')
+      .setInputFiles({name: 'slow.stl', mimeType: 'model/stl', buffer: readFileSync(path.join(folder, lower))})],
+  'Building both trees': ['Accuracy', (page) => page.getByRole('slider', {name: 'Voxel size'}).press('Home')],
+  'Looking for the first contact': ['Pose', (page) => page.getByRole('button', {name: 'First contact'}).click()],
+  'Measuring the distances': ['Occlusion', (page) => page.getByLabel('Preset').selectOption('owens')],
+  'Writing both bodies as GLB': ['Save', (page) => page.getByRole('button', {name: 'Both bodies', exact: true}).click()],
+  'Writing the tree of the moving': ['Save', (page) => page.getByRole('button', {name: 'Moving tree', exact: true}).click()],
+};
+
+/** Waits for the bar of a step, and presses its button. */
+async function cancel(page, words) {
+  const bar = page.locator('#progress > div').filter({hasText: words});
+  await bar.getByRole('progressbar').waitFor();
+  await bar.getByRole('button', {name: 'Cancel'}).click();
+  await bar.waitFor({state: 'hidden'});
+}
+
+for (const [words, [panel, begin]] of Object.entries(panelsOf)) {
+  test(`ends on request: ${words}`, async () => {
+    const opened = await openPage(browser, '#voxel=2', {before: slowly});
+    const {page} = opened;
+    await ready(page);
+    const before = await answer(page);
+    await showPanel(page, panel);
+    await ready(page);
+    await begin(page);
+    await cancel(page, words);
+    await ready(page);
+    const after = await answer(page);
+    assert.deepEqual(after.header, before.header);
+    assert.deepEqual(answerOf(after.line), answerOf(before.line));
+    // The new engine has what the old one had.
+    await setPose(page, turned);
+    const {line} = await answer(page);
+    assert.deepEqual(line.pose, turned);
+    assert.equal(line.voxel_size[0], 2);
+    await closePage(opened);
+  });
+}
+
+test('makes a map that was cancelled where it is asked for, and answers meanwhile', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=occlusion', {before: slowly});
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  await page.getByLabel('Preset').selectOption('owens');
+  await page.getByText('Measuring the distances').waitFor();
+  // These questions wait for the map, and are not lost with it.
+  await page.getByRole('slider', {name: 'Close along z'}).press('End');
+  await cancel(page, 'Measuring the distances');
+  await page.getByText('The map was cancelled.').waitFor();
+  await ready(page);
+  const {line} = await answer(page);
+  assert.ok(Math.abs(line.pose[14]) < 1e-9 && line.touch === 'yes', JSON.stringify(line));
+  await page.getByLabel('Preset').selectOption('stl');
+  await page.getByRole('button', {name: 'Make the map'}).click();
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  assert.equal(await page.evaluate(() => window.ist.bite().preset.name), 'stl');
+  await closePage(opened);
+});
+
+test('draws while it reads a recording, and ends that too', async () => {
+  const row = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1];
+  const header = {recording: 2, ist: '0.1.0', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
+  const tick = (number) => ({tick: number, dt: 0.001, device: row, tool: row, wrench: [0, 0, 0, 0, 0, 0]});
+  const text = (ticks) => [header, ...Array.from({length: ticks}, (_, at) => tick(at))].map((line) => `${JSON.stringify(line)}\n`).join('');
+  const opened = await openPage(browser, '#voxel=2&panel=recording', {before: () => {
+    // A tick takes a millisecond to read, as many would.
+    const {parse} = JSON;
+    JSON.parse = (line, ...more) => {
+      for (const begun = performance.now(); line.startsWith('{"tick":') && performance.now() - begun < 1;);
+      return parse(line, ...more);
+    };
+  }});
+  const {page} = opened;
+  await ready(page);
+  const file = (name, ticks) => ({name, mimeType: 'text/plain', buffer: Buffer.from(text(ticks))});
+  const field = page.getByLabel('Open a recording');
+  await field.setInputFiles(file('long.jsonl', 40_000));
+  const bar = page.getByRole('progressbar');
+  await bar.waitFor();
+  const part = () => bar.evaluate((each) => each.value);
+  await page.waitForFunction(() => [...document.querySelectorAll('progress')].some(({value}) => value > 0));
+  const early = await part();
+  await page.waitForFunction((early) => [...document.querySelectorAll('progress')].some(({value}) => value > early), early);
+  await cancel(page, 'Reading long.jsonl');
+  assert.equal(await page.evaluate(() => window.ist.playback()), null);
+  await field.setInputFiles(file('short.jsonl', 10));
+  await page.getByText('10 ticks of').waitFor();
+  await ready(page);
+  await closePage(opened);
+});
