@@ -87,6 +87,7 @@ test('makes a map that was cancelled where it is asked for, and answers meanwhil
   await ready(page);
   const {line} = await answer(page);
   assert.ok(Math.abs(line.pose[14]) < 1e-9 && line.touch === 'yes', JSON.stringify(line));
+  assert.equal(await page.evaluate(() => window.ist.state().tick.touch), 'yes');
   await page.getByLabel('Preset').selectOption('stl');
   await page.getByRole('button', {name: 'Make the map'}).click();
   await page.getByText('The map is of this pose.').waitFor();
