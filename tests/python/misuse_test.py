@@ -182,17 +182,50 @@ class Queries(Misuse):
         for vertices in (points, unaligned(VERTICES.astype(np.float32))):
             self.assertEqual(ist.build((vertices, faces), 0.5).to_bytes(), self.tree.to_bytes())
 
+    def test_arrays_begin_where_they_say(self):
+        from ist._arrays import address, asked, behind_the_head
+
+        class Named(np.ndarray):
+            pass
+
+        grown = np.empty(5, ist.CONTACT)
+        grown.resize(5000, refcheck=False)
+        for array in (VERTICES, VERTICES[3:, 1:], VERTICES.T, np.empty(0), np.empty(7, ist.ROW)[2:], grown, np.array(1.5), VERTICES.view(Named),
+                      np.frombuffer(b"12345678", "u1"), np.memmap(os.path.join(folder(self), "map"), float, "w+", shape=9)):
+            self.assertEqual(address(array), array.ctypes.data)
+            self.assertEqual(asked(array), array.ctypes.data)
+        self.assertIs(address, behind_the_head)  # by Debian's Python
+
+    def test_members_are_read_from_their_structs(self):
+        from ist import _records as records
+
+        for read, struct, names in (
+            (records.read_leaf_pairs, records.QueryResult, "leaf_pairs written sphere_tests complete truncated level "
+             "distance_known distance_lower distance_upper resolution"),
+            (records.read_contacts, records.QueryResult, "leaf_pairs contacts written sphere_tests complete"),
+            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete narrowest"),
+            (records.read_triangle_pairs, records.TrianglePairsResult, "pairs written sphere_tests truncated complete"),
+        ):
+            flags = ("complete", "truncated", "distance_known")
+            for value in (0, 1):
+                members = {name: value if name in flags else 3 + i for i, name in enumerate(names.split())}
+                found = read(struct(**members))
+                self.assertEqual(found, tuple(members.values()))
+                for name, each in zip(members, found):
+                    self.assertEqual(type(each) is bool, name in flags, name)
+
     def test_a_question_asked_twice_has_one_time_limit(self):
         from ist._arrays import budget_of
+        from ist._records import QueryResult
 
-        budget, _ = budget_of(0, 60.0)
-        given = []
+        budget, limit = budget_of(0, 60.0)
+        given, found = [], QueryResult(leaf_pairs=10_000)
 
-        def ask(_, room):
-            given.append((room, budget.nanoseconds))
+        def ask(_query, _pose, _limit, _place, length, _found):
+            given.append((length.value, budget.nanoseconds))
             return 0
 
-        array = self.query._room(ist.LEAF_PAIR, None, budget, ask, lambda: 10_000)
+        array = self.query._room(ist.LEAF_PAIR, None, budget, ask, limit, found, "leaf_pairs")
         self.assertEqual(len(array), 10_000)
         (few, whole), (enough, rest) = given
         self.assertEqual((few, enough, whole), (4096, 10_000, 60_000_000_000))

@@ -3,6 +3,7 @@
 import ctypes
 import math
 import operator
+import sys
 
 import numpy as np
 
@@ -10,9 +11,29 @@ from ._errors import refuse
 from ._records import Budget
 
 
-def address(array):
-    """Returns where an array's data begin."""
+_pointer = ctypes.c_void_p.from_address
+_HEAD = object.__basicsize__
+
+
+def asked(array):
+    """Returns where an array's data begin, as the array says."""
     return array.ctypes.data
+
+
+# CPython's objects lie at their id. The first member of an array, behind its head, is where its data begin: programs that are
+# compiled for NumPy read it there too. That takes a tenth of the time.
+def behind_the_head(array):
+    """Returns where an array's data begin, by the place of this number in memory."""
+    return _pointer(id(array) + _HEAD).value
+
+
+def _choose():
+    arrays = (np.zeros(3), np.zeros((2, 5), np.uint8)[:, 1:])
+    here = sys.implementation.name == "cpython" and all(behind_the_head(array) == asked(array) for array in arrays)
+    return behind_the_head if here else asked
+
+
+address = _choose()
 
 
 def floats(values, shape, what, dtype=np.float64):
@@ -86,20 +107,20 @@ def number_of(value, what):
 def place_of(out, dtype, length=None):
     """Returns where an array for answers begins, checked: of the dtype, in C order, one-dimensional, writeable, of a length, and
     aligned as the library's structs are."""
-    if not isinstance(out, np.ndarray) or out.dtype != dtype:
+    if not isinstance(out, np.ndarray) or (out.dtype is not dtype and out.dtype != dtype):
         refuse(f"out is {getattr(out, 'dtype', type(out).__name__)}: pass an array of the dtype {dtype}")
     if out.ndim != 1 or not out.flags.carray:
         refuse("out has to be one-dimensional, contiguous and writeable: make it by numpy.empty")
     if length is not None and len(out) != length:
         refuse(f"out has {len(out)} elements: pass {length}")
-    place = out.ctypes.data
+    place = address(out)
     if place % 8 != 0:
         refuse("out does not begin at a multiple of 8 bytes: make it by numpy.empty")
     return place
 
 
 def budget_of(tests, seconds):
-    """Returns a Budget and its address, or (None, None) without limits."""
+    """Returns a Budget and a reference to it for the library, or (None, None) without limits."""
     if tests == 0 and seconds == 0:
         return None, None
     limit = number_of(seconds, "seconds")
@@ -107,4 +128,4 @@ def budget_of(tests, seconds):
         refuse(f"seconds is {limit}: pass a number of at least 0")
     nanoseconds = 0 if limit == 0 or limit > 1e9 else max(1, int(limit * 1e9))
     budget = Budget(tests=count_of(tests, "tests"), nanoseconds=nanoseconds)
-    return budget, ctypes.addressof(budget)
+    return budget, ctypes.byref(budget)
