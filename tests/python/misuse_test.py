@@ -4,6 +4,7 @@ import copy
 import os
 import pickle
 import unittest
+import warnings
 
 import numpy as np
 from support import BOX_FACES, Refusals, box, folder, pose_of, unaligned
@@ -195,6 +196,42 @@ class Queries(Misuse):
             self.assertEqual(address(array), array.ctypes.data)
             self.assertEqual(asked(array), array.ctypes.data)
         self.assertIs(address, behind_the_head)  # by Debian's Python
+
+    def test_an_array_that_was_good_is_looked_at_again(self):
+        from ist._arrays import Room
+
+        room, out = Room(ist.LEAF_PAIR), np.empty(6, ist.LEAF_PAIR)
+
+        def takes(array):
+            room.take(array)
+            self.assertEqual((room.place.value, room.length.value), (array.ctypes.data, len(array)))
+
+        def spoiled(spoil, array=None):
+            array = np.empty(6, ist.LEAF_PAIR) if array is None else array
+            takes(array)
+            takes(array)
+            spoil(array)
+            self.refuses(ist.InputError, "out", room.take, array)
+
+        for length in (6, 6, 9, 0, 6):
+            takes(np.empty(length, ist.LEAF_PAIR))  # most of them at the id of the one before
+        takes(out)
+        takes(out)
+        for length in (6000, 6, 100_000):
+            out.resize(length, refcheck=False)
+            takes(out)
+        spoiled(lambda array: array.setflags(write=False))
+        spoiled(lambda array: setattr(array, "dtype", "u8"))
+        spoiled(lambda array: setattr(array, "dtype", ist.TRIANGLE_PAIR.newbyteorder()))
+        spoiled(lambda array: setattr(array, "shape", (6, 1)))
+        spoiled(lambda array: setattr(array, "shape", (2, 3)))
+        memory = np.zeros(200, "u1")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # NumPy advises against it
+            spoiled(lambda array: setattr(array, "data", memory[4 + -memory.ctypes.data % 8 :].data[:48]))
+        takes(out)
+        self.refuses(ist.InputError, "out", room.take, out.tolist())
+        takes(np.empty(6, ist.LEAF_PAIR).view(np.recarray))
 
     def test_members_are_read_from_their_structs(self):
         from ist import _records as records

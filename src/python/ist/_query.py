@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _measures
 from ._answers import Contacts, Distance, LeafPairs, TrianglePairs, made
-from ._arrays import address, budget_of, count_of, floats, number_of, place_of
+from ._arrays import Room, address, budget_of, count_of, floats, number_of
 from ._errors import check, error_of, refuse
 from ._handle import Lone, Out
 from ._library import LIBRARY, bare
@@ -106,7 +106,8 @@ class Query(Lone):
         pose = (c_double * 16)()
         self._by_row = np.frombuffer(pose).reshape(4, 4).T  # the library's numbers, row by row
         self._pose = byref(pose)
-        self._place, self._length, self._tolerance = c_void_p(), c_size_t(), c_double()
+        self._pairs, self._points, self._triangles = Room(LEAF_PAIR), Room(CONTACT), Room(TRIANGLE_PAIR)
+        self._tolerance = c_double()
         self._found, self._sums, self._answer = QueryResult(), ContactSums(), c_int32()
         self._apart, self._met = DistanceResult(), TrianglePairsResult()
         self._found_at, self._sums_at, self._answer_at = byref(self._found), byref(self._sums), byref(self._answer)
@@ -157,8 +158,9 @@ class Query(Lone):
             if out is None:
                 out = self._room(LEAF_PAIR, most, budget, _leaf_pairs, limit, self._found, "leaf_pairs")
             else:
-                place, length = self._take(out, LEAF_PAIR)
-                status = _leaf_pairs(self._self, self._pose, limit, place, length, self._found_at)
+                room = self._pairs
+                room.take(out)
+                status = _leaf_pairs(self._self, self._pose, limit, room.place, room.length, self._found_at)
                 if status:
                     raise error_of(status)
             count, written, tested, complete, truncated, level, known, lower, upper, resolution = read_leaf_pairs(self._found)
@@ -174,20 +176,15 @@ class Query(Lone):
             if out is None:
                 out = self._room(TRIANGLE_PAIR, most, budget, _triangle_pairs, limit, self._met, "pairs")
             else:
-                place, length = self._take(out, TRIANGLE_PAIR)
-                status = _triangle_pairs(self._self, self._pose, limit, place, length, self._met_at)
+                room = self._triangles
+                room.take(out)
+                status = _triangle_pairs(self._self, self._pose, limit, room.place, room.length, self._met_at)
                 if status:
                     raise error_of(status)
             count, written, tested, truncated, complete = read_triangle_pairs(self._met)
             return made(TrianglePairs, (out[:written], count, complete, truncated, tested))
         finally:
             self._lock.release()
-
-    # Notes where an array for answers is, and how long it is, in two arguments of bare functions.
-    def _take(self, out, dtype):
-        place, length = self._place, self._length
-        place.value, length.value = place_of(out, dtype), len(out)
-        return place, length
 
     # Asks once with some room, and again where there was too little: the member `count` of the result says how much it takes.
     def _room(self, dtype, most, budget, ask, limit, found, count):
@@ -220,8 +217,9 @@ class Query(Lone):
         try:
             if out is None:
                 out = np.empty(self._info.contacts, CONTACT)
-            place, length = self._take(out, CONTACT)
-            status = _contacts(self._self, self._pose, limit, place, length, self._sums_at, self._found_at)
+            room = self._points
+            room.take(out)
+            status = _contacts(self._self, self._pose, limit, room.place, room.length, self._sums_at, self._found_at)
             if status:
                 raise error_of(status)
             leaf_pairs, count, written, tested, complete = read_contacts(self._found)
