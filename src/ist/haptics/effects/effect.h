@@ -48,7 +48,7 @@ struct ContactPair {
 struct SpringRates {
   double force = 0,  ///< N of a contact with a stiffness of 1 N/m, per metre: no unit
       torque = 0,    ///< N m of such a contact, per metre: m
-      lever = 0,     ///< from the tool's origin to no point that counts it is farther, m
+      lever = 0,     ///< no point that counts is farther from the tool's origin, m
       rounding = 0;  ///< of the kernels, as a motion, m
 };
 
