@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Counts the instructions of ten fixed queries with callgrind, and compares them with those that
-# perf/query_instructions.json keeps: a count that is over 1 % more or less fails. Counts do not
-# depend on load, so this notices what no clock would.
+# Counts the instructions of ten fixed queries, and of ticks of two scenes with one fixed body, with
+# callgrind, and compares them with those that perf/query_instructions.json keeps: a count that is
+# over 1 % more or less fails. Counts do not depend on load, so this notices what no clock would.
 #
 # Counted is what the tests run on, preset test with its assertions, one worker on AVX2. Where
 # compiler or flags are not those of the counts that are kept, or valgrind or AVX2 is missing, nothing

@@ -1,21 +1,16 @@
-// Asks ten fixed queries of the built-in jaws, one worker on AVX2, for callgrind to count: see
-// scripts/query_instructions.sh, which runs this. Prints compiler and flags, then a line a query:
-// its name, what it found and how many pairs of spheres it tested. Exits with 77 where the
-// processor has no AVX2.
-//
-// Callgrind counts only between START and STOP, and all else runs several times as fast. Each query
-// is asked once before, so that neither the linker's work nor a first allocation counts.
+// Asks ten fixed queries of the built-in jaws, one worker on AVX2, and makes ticks of two scenes,
+// for callgrind to count: see scripts/query_instructions.sh, which runs this. Prints compiler and
+// flags, then a line a query: its name, what it found and how many pairs of spheres it tested.
+// Exits with 77 where the processor has no AVX2.
 #include <fmt/format.h>
-#include <valgrind/callgrind.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <exception>
-#include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "instructions/counted.h"
+#include "instructions/counted_ticks.h"
 #include "ist/models/models.h"
 #include "ist/query/query.h"
 #include "ist/tree/sphere_tree.h"
@@ -28,20 +23,8 @@ constexpr double kVoxelSize = 0.8;  // mm
 constexpr const char* kTarget = "avx2";
 constexpr int kSkipped = 77;
 
-struct Answer {
-  std::uint64_t found, sphere_tests;
-  friend bool operator==(const Answer&, const Answer&) = default;
-};
-
-void count(const std::string& name, const std::function<Answer()>& query) {
-  const Answer before = query();
-  CALLGRIND_START_INSTRUMENTATION;
-  const Answer answer = query();
-  CALLGRIND_STOP_INSTRUMENTATION;
-  CALLGRIND_DUMP_STATS_AT(name.c_str());
-  if (answer != before) throw std::runtime_error(name + " was asked twice, and answers differ");
-  fmt::print("{} {} {}\n", name, answer.found, answer.sphere_tests);
-}
+using ist::test::Answer;
+using ist::test::count;
 
 ist::SphereTree jaw(ist::Jaw which) {
   ist::BuildOptions options;
@@ -104,6 +87,7 @@ int main() try {
   }
   fmt::print("compiler: {}\nflags: {}\n", IST_COMPILER, IST_FLAGS);
   count_all();
+  ist::test::count_ticks();
 } catch (const std::exception& error) {
   fmt::print(stderr, "{}\n", error.what());
   return 1;

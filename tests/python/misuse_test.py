@@ -4,6 +4,7 @@ import copy
 import os
 import pickle
 import unittest
+import warnings
 
 import numpy as np
 from support import BOX_FACES, Refusals, box, folder, pose_of, unaligned
@@ -182,17 +183,86 @@ class Queries(Misuse):
         for vertices in (points, unaligned(VERTICES.astype(np.float32))):
             self.assertEqual(ist.build((vertices, faces), 0.5).to_bytes(), self.tree.to_bytes())
 
+    def test_arrays_begin_where_they_say(self):
+        from ist._arrays import address, asked, behind_the_head
+
+        class Named(np.ndarray):
+            pass
+
+        grown = np.empty(5, ist.CONTACT)
+        grown.resize(5000, refcheck=False)
+        for array in (VERTICES, VERTICES[3:, 1:], VERTICES.T, np.empty(0), np.empty(7, ist.ROW)[2:], grown, np.array(1.5), VERTICES.view(Named),
+                      np.frombuffer(b"12345678", "u1"), np.memmap(os.path.join(folder(self), "map"), float, "w+", shape=9)):
+            self.assertEqual(address(array), array.ctypes.data)
+            self.assertEqual(asked(array), array.ctypes.data)
+        self.assertIs(address, behind_the_head)  # by Debian's Python
+
+    def test_an_array_that_was_good_is_looked_at_again(self):
+        from ist._arrays import Room
+
+        room, out = Room(ist.LEAF_PAIR), np.empty(6, ist.LEAF_PAIR)
+
+        def takes(array):
+            room.take(array)
+            self.assertEqual((room.place.value, room.length.value), (array.ctypes.data, len(array)))
+
+        def spoiled(spoil, array=None):
+            array = np.empty(6, ist.LEAF_PAIR) if array is None else array
+            takes(array)
+            takes(array)
+            spoil(array)
+            self.refuses(ist.InputError, "out", room.take, array)
+
+        for length in (6, 6, 9, 0, 6):
+            takes(np.empty(length, ist.LEAF_PAIR))  # most of them at the id of the one before
+        takes(out)
+        takes(out)
+        for length in (6000, 6, 100_000):
+            out.resize(length, refcheck=False)
+            takes(out)
+        spoiled(lambda array: array.setflags(write=False))
+        spoiled(lambda array: setattr(array, "dtype", "u8"))
+        spoiled(lambda array: setattr(array, "dtype", ist.TRIANGLE_PAIR.newbyteorder()))
+        spoiled(lambda array: setattr(array, "shape", (6, 1)))
+        spoiled(lambda array: setattr(array, "shape", (2, 3)))
+        memory = np.zeros(200, "u1")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # NumPy advises against it
+            spoiled(lambda array: setattr(array, "data", memory[4 + -memory.ctypes.data % 8 :].data[:48]))
+        takes(out)
+        self.refuses(ist.InputError, "out", room.take, out.tolist())
+        takes(np.empty(6, ist.LEAF_PAIR).view(np.recarray))
+
+    def test_members_are_read_from_their_structs(self):
+        from ist import _records as records
+
+        for read, struct, names in (
+            (records.read_leaf_pairs, records.QueryResult, "leaf_pairs written sphere_tests complete truncated level "
+             "distance_known distance_lower distance_upper resolution"),
+            (records.read_contacts, records.QueryResult, "leaf_pairs contacts written sphere_tests complete"),
+            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete narrowest"),
+            (records.read_triangle_pairs, records.TrianglePairsResult, "pairs written sphere_tests truncated complete"),
+        ):
+            flags = ("complete", "truncated", "distance_known")
+            for value in (0, 1):
+                members = {name: value if name in flags else 3 + i for i, name in enumerate(names.split())}
+                found = read(struct(**members))
+                self.assertEqual(found, tuple(members.values()))
+                for name, each in zip(members, found):
+                    self.assertEqual(type(each) is bool, name in flags, name)
+
     def test_a_question_asked_twice_has_one_time_limit(self):
         from ist._arrays import budget_of
+        from ist._records import QueryResult
 
-        budget, _ = budget_of(0, 60.0)
-        given = []
+        budget, limit = budget_of(0, 60.0)
+        given, found = [], QueryResult(leaf_pairs=10_000)
 
-        def ask(_, room):
-            given.append((room, budget.nanoseconds))
+        def ask(_query, _pose, _limit, _place, length, _found):
+            given.append((length.value, budget.nanoseconds))
             return 0
 
-        array = self.query._room(ist.LEAF_PAIR, None, budget, ask, lambda: 10_000)
+        array = self.query._room(ist.LEAF_PAIR, None, budget, ask, limit, found, "leaf_pairs")
         self.assertEqual(len(array), 10_000)
         (few, whole), (enough, rest) = given
         self.assertEqual((few, enough, whole), (4096, 10_000, 60_000_000_000))

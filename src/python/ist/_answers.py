@@ -4,6 +4,8 @@ from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 
+made = tuple.__new__  # made(LeafPairs, members): an answer, in half the time of LeafPairs(*members)
+
 
 class LeafPairs(NamedTuple):
     """Pairs of voxels whose bounds overlap, sorted by fixed and then by moving voxel."""

@@ -3,6 +3,8 @@
 import ctypes
 import math
 import operator
+import struct
+import sys
 
 import numpy as np
 
@@ -10,9 +12,40 @@ from ._errors import refuse
 from ._records import Budget
 
 
-def address(array):
-    """Returns where an array's data begin."""
+_pointer = ctypes.c_void_p.from_address
+_HEAD = object.__basicsize__
+_FIELDS = struct.Struct("PiPPPPi")  # data, dimensions, lengths, strides, base, dtype, flags
+_fields = (ctypes.c_char * _FIELDS.size).from_address
+
+
+def asked(array):
+    """Returns where an array's data begin, as the array says."""
     return array.ctypes.data
+
+
+# CPython's objects lie at their id, and behind its head an array has fields that programs compiled for NumPy read there too. The
+# first one is where its data begin: to read it takes a tenth of the time.
+def behind_the_head(array):
+    """Returns where an array's data begin, by the place of this number in memory."""
+    return _pointer(id(array) + _HEAD).value
+
+
+def _are_behind_the_head():
+    if sys.implementation.name != "cpython":
+        return False
+    arrays = [np.zeros(3), np.zeros((2, 5), np.uint8)[:, 1:], np.zeros(9, np.int16)]
+    arrays[2].setflags(write=False)
+    for array in arrays:
+        data, dimensions, _, _, base, dtype, flags = _FIELDS.unpack(_fields(id(array) + _HEAD).raw)
+        if (data, dimensions, dtype, flags) != (asked(array), array.ndim, id(array.dtype), array.flags.num):
+            return False
+        if base != (0 if array.base is None else id(array.base)):
+            return False
+    return True
+
+
+_CAN_READ = _are_behind_the_head()
+address = behind_the_head if _CAN_READ else asked
 
 
 def floats(values, shape, what, dtype=np.float64):
@@ -86,20 +119,44 @@ def number_of(value, what):
 def place_of(out, dtype, length=None):
     """Returns where an array for answers begins, checked: of the dtype, in C order, one-dimensional, writeable, of a length, and
     aligned as the library's structs are."""
-    if not isinstance(out, np.ndarray) or out.dtype != dtype:
+    if not isinstance(out, np.ndarray) or (out.dtype is not dtype and out.dtype != dtype):
         refuse(f"out is {getattr(out, 'dtype', type(out).__name__)}: pass an array of the dtype {dtype}")
     if out.ndim != 1 or not out.flags.carray:
         refuse("out has to be one-dimensional, contiguous and writeable: make it by numpy.empty")
     if length is not None and len(out) != length:
         refuse(f"out has {len(out)} elements: pass {length}")
-    place = out.ctypes.data
+    place = address(out)
     if place % 8 != 0:
         refuse("out does not begin at a multiple of 8 bytes: make it by numpy.empty")
     return place
 
 
+class Room:
+    """Where the caller's arrays for answers are, in arguments for bare functions."""
+
+    def __init__(self, dtype):
+        self.place, self.length = ctypes.c_void_p(), ctypes.c_size_t()
+        self._dtype = dtype
+        self._id = self._length = 0
+        self._seen, self._now = b"", None
+
+    # Whatever changes in an array, or another one at its id, changes its fields or its length. So an array that has those of the
+    # last call was checked there. None is kept alive for that.
+    def take(self, out):
+        """Notes an array that is good for answers; refuses any other."""
+        if id(out) == self._id and type(out) is np.ndarray and self._now.raw == self._seen and len(out) == self._length:
+            return
+        self._id = 0
+        self.place.value = place_of(out, self._dtype)
+        self._length = self.length.value = len(out)
+        if _CAN_READ and out.dtype is self._dtype:
+            self._now = _fields(id(out) + _HEAD)
+            self._seen = self._now.raw
+            self._id = id(out)
+
+
 def budget_of(tests, seconds):
-    """Returns a Budget and its address, or (None, None) without limits."""
+    """Returns a Budget and a reference to it for the library, or (None, None) without limits."""
     if tests == 0 and seconds == 0:
         return None, None
     limit = number_of(seconds, "seconds")
@@ -107,4 +164,4 @@ def budget_of(tests, seconds):
         refuse(f"seconds is {limit}: pass a number of at least 0")
     nanoseconds = 0 if limit == 0 or limit > 1e9 else max(1, int(limit * 1e9))
     budget = Budget(tests=count_of(tests, "tests"), nanoseconds=nanoseconds)
-    return budget, ctypes.addressof(budget)
+    return budget, ctypes.byref(budget)

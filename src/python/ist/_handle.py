@@ -44,7 +44,7 @@ class Lone(Handle):
 
     def _enter(self):
         """Returns the handle, for one call, which has to end with self._lock.release()."""
-        if not self._lock.acquire(blocking=False):
+        if not self._lock.acquire(False):
             raise error_of(BUSY, f"this {type(self).__name__} is answering another call: make one for each thread")
         if self._handle is None:
             self._lock.release()

@@ -1,18 +1,17 @@
 """Queries: two trees, and the memory of their answers."""
 
-import ctypes
 import time
 
-from ctypes import addressof
+from ctypes import addressof, byref, c_double, c_int32, c_size_t, c_void_p
 
 import numpy as np
 
 from . import _measures
-from ._answers import Contacts, Distance, LeafPairs, TrianglePairs
-from ._arrays import address, budget_of, count_of, floats, number_of, place_of
+from ._answers import Contacts, Distance, LeafPairs, TrianglePairs, made
+from ._arrays import Room, address, budget_of, count_of, floats, number_of
 from ._errors import check, error_of, refuse
 from ._handle import Lone, Out
-from ._library import LIBRARY
+from ._library import LIBRARY, bare
 from ._records import (
     CONTACT,
     CONTACT_SUMS,
@@ -24,12 +23,17 @@ from ._records import (
     QueryOptions,
     QueryResult,
     TrianglePairsResult,
+    read_contacts,
+    read_distance,
+    read_leaf_pairs,
+    read_triangle_pairs,
 )
 from ._tree import SPHERES, need_tree, spheres_number
 
+_FLOAT64 = np.dtype(np.float64)
 _ANSWERS = (None, False, None, True)  # IST_ANSWER_UNKNOWN, NO, NEAR, YES
-_leaf_pairs, _contacts, _distance = LIBRARY.ist_query_leaf_pairs, LIBRARY.ist_query_contacts, LIBRARY.ist_query_distance
-_intersects, _triangle_pairs = LIBRARY.ist_query_intersects, LIBRARY.ist_query_triangle_pairs
+_intersects, _leaf_pairs, _contacts = bare("ist_query_intersects"), bare("ist_query_leaf_pairs"), bare("ist_query_contacts")
+_distance, _triangle_pairs = bare("ist_query_distance"), bare("ist_query_triangle_pairs")
 
 
 def options_of(spheres, workers, contacts, push_distance, front_pairs, target):
@@ -97,20 +101,17 @@ class Query(Lone):
         self.fixed, self.moving = fixed, moving
         self._info = QueryInfo()
         check(LIBRARY.ist_query_get_info(self._handle, addressof(self._info)))
-        # Arguments that every call needs are made once.
-        self._pose = np.eye(4)
-        self._pose_at = address(self._pose)
-        self._by_row = self._pose.T  # the same numbers, row by row
-        self._found = QueryResult()
-        self._found_at = addressof(self._found)
-        self._sums = ContactSums()
-        self._sums_at = addressof(self._sums)
-        self._answer = ctypes.c_int32()
-        self._answer_at = addressof(self._answer)
-        self._apart = DistanceResult()
-        self._apart_at = addressof(self._apart)
-        self._met = TrianglePairsResult()
-        self._met_at = addressof(self._met)
+        # Arguments that every call needs are made once, as bare functions take them.
+        self._self = c_void_p(self._handle)
+        pose = (c_double * 16)()
+        self._by_row = np.frombuffer(pose).reshape(4, 4).T  # the library's numbers, row by row
+        self._pose = byref(pose)
+        self._pairs, self._points, self._triangles = Room(LEAF_PAIR), Room(CONTACT), Room(TRIANGLE_PAIR)
+        self._tolerance = c_double()
+        self._found, self._sums, self._answer = QueryResult(), ContactSums(), c_int32()
+        self._apart, self._met = DistanceResult(), TrianglePairsResult()
+        self._found_at, self._sums_at, self._answer_at = byref(self._found), byref(self._sums), byref(self._answer)
+        self._apart_at, self._met_at = byref(self._apart), byref(self._met)
 
     spheres = property(lambda self: SPHERES[self._info.spheres], doc="The bounds in use.")
     target = property(lambda self: self._info.target.decode(), doc="The instruction set in use.")
@@ -118,12 +119,18 @@ class Query(Lone):
     has_triangles = property(lambda self: bool(self._info.has_triangles), doc="Whether both trees have triangles.")
     nbytes = property(lambda self: self._info.bytes, doc="Memory reserved, bytes.")
 
-    # Copies a pose to the place that calls read it from.
-    def _take(self, pose):
-        if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype == np.float64:
-            self._by_row[...] = pose
-        else:
-            self._by_row[...] = floats(pose, (4, 4), "pose")
+    # Begins a call, which has to end with self._lock.release(): notes the pose, and returns what budget_of() does.
+    def _begin(self, pose, tests, seconds):
+        self._enter()
+        try:
+            if type(pose) is np.ndarray and pose.dtype is _FLOAT64 and pose.shape == (4, 4):
+                self._by_row[...] = pose
+            else:
+                self._by_row[...] = floats(pose, (4, 4), "pose")
+            return (None, None) if tests == 0 and seconds == 0 else budget_of(tests, seconds)
+        except BaseException:
+            self._lock.release()
+            raise
 
     def intersects(self, pose, *, tests=0, seconds=0.0):
         """Whether the bodies intersect: exact where both trees have triangles.
@@ -131,11 +138,9 @@ class Query(Lone):
         None: voxels overlap, and there are no triangles to ask, or a limit ended the search. False also where one body lies
         inside the other. p_fixed = pose @ p_moving.
         """
-        handle = self._enter()
+        budget, limit = self._begin(pose, tests, seconds)
         try:
-            self._take(pose)
-            budget, limit = budget_of(tests, seconds)
-            status = _intersects(handle, self._pose_at, limit, self._answer_at)
+            status = _intersects(self._self, self._pose, limit, self._answer_at)
             if status:
                 raise error_of(status)
             return _ANSWERS[self._answer.value]
@@ -148,65 +153,51 @@ class Query(Lone):
         out: an array of LEAF_PAIR that is filled; `pairs` is a view of it. Without it the answer holds all pairs, or the
         first `most` of them.
         """
-        handle = self._enter()
+        budget, limit = self._begin(pose, tests, seconds)
         try:
-            self._take(pose)
-            budget, limit = budget_of(tests, seconds)
-            found = self._found
             if out is None:
-                out = self._room(LEAF_PAIR, most, budget, lambda at, room: _leaf_pairs(
-                    handle, self._pose_at, limit, at, room, self._found_at), lambda: found.leaf_pairs)
+                out = self._room(LEAF_PAIR, most, budget, _leaf_pairs, limit, self._found, "leaf_pairs")
             else:
-                status = _leaf_pairs(handle, self._pose_at, limit, place_of(out, LEAF_PAIR), len(out), self._found_at)
+                room = self._pairs
+                room.take(out)
+                status = _leaf_pairs(self._self, self._pose, limit, room.place, room.length, self._found_at)
                 if status:
                     raise error_of(status)
-            distance = (found.distance_lower, found.distance_upper) if found.distance_known else None
-            return LeafPairs(
-                out[: found.written],
-                found.leaf_pairs,
-                found.complete == 1,
-                found.truncated == 1,
-                found.level,
-                distance,
-                found.resolution,
-                found.sphere_tests,
-            )
+            count, written, tested, complete, truncated, level, known, lower, upper, resolution = read_leaf_pairs(self._found)
+            distance = (lower, upper) if known else None
+            return made(LeafPairs, (out[:written], count, complete, truncated, level, distance, resolution, tested))
         finally:
             self._lock.release()
 
     def triangle_pairs(self, pose, *, out=None, most=None, tests=0, seconds=0.0):
         """All pairs of triangles with a common point, exactly. p_fixed = pose @ p_moving. `out`, `most`: as leaf_pairs()."""
-        handle = self._enter()
+        budget, limit = self._begin(pose, tests, seconds)
         try:
-            self._take(pose)
-            budget, limit = budget_of(tests, seconds)
-            found = self._met
             if out is None:
-                out = self._room(TRIANGLE_PAIR, most, budget, lambda at, room: _triangle_pairs(
-                    handle, self._pose_at, limit, at, room, self._met_at), lambda: found.pairs)
+                out = self._room(TRIANGLE_PAIR, most, budget, _triangle_pairs, limit, self._met, "pairs")
             else:
-                place = place_of(out, TRIANGLE_PAIR)
-                status = _triangle_pairs(handle, self._pose_at, limit, place, len(out), self._met_at)
+                room = self._triangles
+                room.take(out)
+                status = _triangle_pairs(self._self, self._pose, limit, room.place, room.length, self._met_at)
                 if status:
                     raise error_of(status)
-            return TrianglePairs(
-                out[: found.written], found.pairs, found.complete == 1, found.truncated == 1, found.sphere_tests
-            )
+            count, written, tested, truncated, complete = read_triangle_pairs(self._met)
+            return made(TrianglePairs, (out[:written], count, complete, truncated, tested))
         finally:
             self._lock.release()
 
-    # Asks once with some room, and again where there was too little.
-    def _room(self, dtype, most, budget, ask, count):
+    # Asks once with some room, and again where there was too little: the member `count` of the result says how much it takes.
+    def _room(self, dtype, most, budget, ask, limit, found, count):
         room = 4096 if most is None else count_of(most, "most")
         end = time.monotonic_ns() + budget.nanoseconds if budget is not None and budget.nanoseconds > 0 else None
         while True:
             array = np.empty(room, dtype)
-            status = ask(address(array), room)
+            status = ask(self._self, self._pose, limit, c_void_p(address(array)), c_size_t(room), byref(found))
             if status:
                 raise error_of(status)
-            if most is not None or count() <= room:
+            if most is not None or getattr(found, count) <= room:
                 return array
-            room = count()
+            room = getattr(found, count)
             if end is not None:  # the time is that of the whole call
                 budget.nanoseconds = max(1, end - time.monotonic_ns())
 
@@ -222,27 +213,18 @@ class Query(Lone):
         >>> bool(force[2] < 0)                                     # the lower jaw is pushed down
         True
         """
-        handle = self._enter()
+        budget, limit = self._begin(pose, tests, seconds)
         try:
-            self._take(pose)
-            budget, limit = budget_of(tests, seconds)
             if out is None:
                 out = np.empty(self._info.contacts, CONTACT)
-            found, sums = self._found, self._sums
-            status = _contacts(
-                handle, self._pose_at, limit, place_of(out, CONTACT), len(out), self._sums_at, self._found_at
-            )
+            room = self._points
+            room.take(out)
+            status = _contacts(self._self, self._pose, limit, room.place, room.length, self._sums_at, self._found_at)
             if status:
                 raise error_of(status)
-            return Contacts(
-                out[: found.written],
-                found.contacts,
-                found.complete == 1,
-                found.leaf_pairs,
-                sums.weight,
-                found.sphere_tests,
-                np.frombuffer(bytearray(sums), CONTACT_SUMS),
-            )
+            leaf_pairs, count, written, tested, complete = read_contacts(self._found)
+            sums = np.frombuffer(bytearray(self._sums), CONTACT_SUMS)
+            return made(Contacts, (out[:written], count, complete, leaf_pairs, self._sums.weight, tested, sums))
         finally:
             self._lock.release()
 
@@ -251,15 +233,14 @@ class Query(Lone):
 
         A body wholly inside another has a positive distance.
         """
-        handle = self._enter()
+        budget, limit = self._begin(pose, tests, seconds)
         try:
-            self._take(pose)
-            budget, limit = budget_of(tests, seconds)
-            status = _distance(handle, self._pose_at, number_of(tolerance, "tolerance"), limit, self._apart_at)
+            self._tolerance.value = number_of(tolerance, "tolerance")
+            status = _distance(self._self, self._pose, self._tolerance, limit, self._apart_at)
             if status:
                 raise error_of(status)
-            apart = self._apart
-            return Distance(apart.lower, apart.upper, apart.complete == 1, apart.narrowest, apart.sphere_tests)
+            lower, upper, tested, complete, narrowest = read_distance(self._apart)
+            return made(Distance, (lower, upper, complete, narrowest, tested))
         finally:
             self._lock.release()
 

@@ -1,6 +1,8 @@
 """The library's structs: as dtypes where they are elements of arrays, as ctypes where they are options and results."""
 
 import ctypes
+import struct
+import sys
 
 from ctypes import POINTER, c_double, c_int32, c_int64, c_size_t, c_uint32, c_uint64, c_void_p
 
@@ -378,3 +380,15 @@ class LeastDistanceResult(Sized):
         ("b", c_uint32),
         ("reserved", c_int32),
     ]
+
+
+# Members of a struct, read at once. A flag is a c_int32 of 0 or 1, of which one byte is read as a bool.
+_FLAG = "?3x" if sys.byteorder == "little" else "3x?"
+# leaf_pairs, written, sphere_tests, complete, truncated, level, distance_known, distance_lower, distance_upper, resolution
+read_leaf_pairs = struct.Struct(f"=8xQ8xQQ{_FLAG}{_FLAG}i{_FLAG}ddd").unpack_from
+# leaf_pairs, contacts, written, sphere_tests, complete
+read_contacts = struct.Struct(f"=8xQQQQ{_FLAG}").unpack_from
+# lower, upper, sphere_tests, complete, narrowest
+read_distance = struct.Struct(f"=8xddQ{_FLAG}4xd").unpack_from
+# pairs, written, sphere_tests, truncated, complete
+read_triangle_pairs = struct.Struct(f"=8xQQQ{_FLAG}{_FLAG}").unpack_from

@@ -80,7 +80,7 @@ TEST_F(Corner, AllPairsTogetherAreTheSumOfEach) {
     ASSERT_TRUE(result && result->complete);
     ASSERT_EQ(together.pairs().size(), 3u);
     Vector6 spring = Vector6::Zero();
-    double count = 0, nearest = 1e9;
+    double count = 0, nearest = 1e9, force_rate = 0, torque_rate = 0;
     std::uint64_t leaf_pairs = 0, tests = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       Setting one = setting({k});
@@ -89,6 +89,8 @@ TEST_F(Corner, AllPairsTogetherAreTheSumOfEach) {
       ASSERT_TRUE(single && single->complete);
       spring += alone.spring;
       count += alone.count;
+      force_rate += alone.rates.force;
+      torque_rate += alone.rates.torque;
       leaf_pairs += single->leaf_pairs;
       tests += single->sphere_tests;
       nearest = std::min(nearest, single->distance->lower);
@@ -105,9 +107,52 @@ TEST_F(Corner, AllPairsTogetherAreTheSumOfEach) {
     }
     EXPECT_EQ(together.spring, spring);
     EXPECT_EQ(together.count, count);
+    EXPECT_EQ(together.rates.force, force_rate);
+    EXPECT_EQ(together.rates.torque, torque_rate);
     EXPECT_EQ(result->leaf_pairs, leaf_pairs);
     EXPECT_EQ(result->distance->lower, nearest);
   }
+}
+
+// The ball slides, sinks and turns about its own centre and about points beside it, pressed on one
+// box or on all: by steps that are much longer than rounding, and by steps of a few microns.
+TEST_F(Corner, SpringsOfAllPairsChangeNoFasterThanTheirRates) {
+  Setting all = setting({0, 1, 2});
+  Random random(7);
+  double force = 0, torque = 0;  // the steepest, in parts of the bound
+  for (int i = 0; i < 60; ++i) {
+    Vector3d depth = random.point(0, 0.4);
+    if (i % 3 != 0) depth[i % 3] = -3;  // apart from one box, and once from the last
+    const double step = kMillimetre * (i % 2 == 0 ? 0.05 : 0.005);
+    const Vector3d along = step * random.direction();
+    const Vector3d turn = i % 4 == 0 ? Vector3d(Vector3d::Zero()) : random.direction();
+    Placement tool = pressed(depth);
+    ToolContacts before = contacts_for(all.queries), after = before;
+    ASSERT_TRUE(all.queries.find(all.bodies, tool, {}, before)->complete);
+    for (int k = 0; k < 5; ++k) {
+      Vector6 motion;
+      const double angle = before.rates.lever > 0 ? step / before.rates.lever : 0;
+      motion << along, angle * turn;
+      tool = tool.moved(motion);
+      ASSERT_TRUE(all.queries.find(all.bodies, tool, {}, after)->complete);
+      const double way = motion.head<3>().norm() +
+                         std::max(before.rates.lever, after.rates.lever) * motion.tail<3>().norm() +
+                         std::max(before.rates.rounding, after.rates.rounding);
+      const Vector6 change = after.spring - before.spring;
+      const double most = (before.rates.force + after.rates.force) * way;
+      const double most_torque = (before.rates.torque + after.rates.torque) * way;
+      EXPECT_LE(change.head<3>().norm(), most);
+      EXPECT_LE(change.tail<3>().norm(), most_torque);
+      if (most > 0) force = std::max(force, change.head<3>().norm() / most);
+      if (most_torque > 0) torque = std::max(torque, change.tail<3>().norm() / most_torque);
+      std::swap(before, after);
+    }
+    EXPECT_GT(before.rates.force, 0);
+  }
+  // A sum's pairs never change all the same way at once: its bound is as far from what happens as
+  // that of one pair of bodies (Policies/Lipschitz, loads).
+  EXPECT_GT(force, 1e-3);
+  EXPECT_GT(torque, 2e-4);
 }
 
 // A permutation of the bodies permutes the pairs; sums differ by their rounding alone.

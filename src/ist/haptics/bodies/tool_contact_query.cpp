@@ -1,6 +1,7 @@
 #include "ist/haptics/bodies/tool_contact_query.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/query_state.h"
@@ -10,6 +11,8 @@ namespace {
 
 // The most whole leaf pairs that have their full stiffness each (ToolContact::stiffness_fraction).
 constexpr double kFullPairs = 10;
+// Of ContactRates.
+constexpr double kRounding = 0x1p-16;
 
 QueryOptions of_query(const ToolContactOptions& options) {
   return {.policy = options.policy,
@@ -43,8 +46,11 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
                                    const BodyFrames& frames, const ToolContactOptions& options)
     : frames_(frames),
       area_(fixed.voxel_size() * held.voxel_size()),
+      size_(0.5 * (fixed.voxel_size() + held.voxel_size())),
+      fixed_radius_(fixed.bounding_radius()),
+      held_origin_(held.origin()),
       query_(fixed, held, of_query(options)),
-      least_depth_(options.least_depth * 0.5 * (fixed.voxel_size() + held.voxel_size())),
+      least_depth_(options.least_depth * size_),
       manifold_(fixed, held, options.policy, of_manifold(options)) {}
 
 std::size_t ToolContactQuery::bytes_for(const SphereTree& fixed, const SphereTree& held,
@@ -75,12 +81,31 @@ void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) con
   contacts.spring.head<3>() += force;
   contacts.spring.tail<3>() +=
       turn * ((fraction * frames_.unit * frames_.unit) * sums.spring.torque) + arm.cross(force);
+  add_rates(contacts.rates, fraction);
 
   for (const Contact& point : manifold_.points()) {
     contacts.add({frames_.to_scene(point.position) - tool.translation, turn * point.normal,
                   frames_.unit * std::max(0.0, point.depth - least_depth_),
                   fraction * point.weight});
   }
+}
+
+// The terms of a leaf pair are those of the manifold's rates, divided by the number of whole pairs
+// that share the stiffness, which changes too; a torque turns about the tool's origin.
+void ToolContactQuery::add_rates(SpringRates& rates, double fraction) const noexcept {
+  const ContactRates& of_pair = manifold_.rates();
+  const double from_origin = std::sqrt((held_origin_ - frames_.tool_origin).squaredNorm());
+  const double lever = from_origin + of_pair.lever;
+  const double greatest = 3 * size_;  // depth of a spring
+  const double force = of_pair.spring_force + greatest * of_pair.weight;
+  const double pairs = fraction * static_cast<double>(manifold_.sums().pairs);
+  rates.force += pairs * force;
+  rates.torque += pairs * frames_.unit * (lever * force + 1.5 * greatest * area_);
+  rates.lever = std::max(rates.lever, frames_.unit * lever);
+  // Torques are rounded about the fixed frame's origin, which may be farther than the tool's.
+  const double reach = fixed_radius_ + of_pair.lever;
+  const double rounding = kRounding * reach * (1 + 2 * reach / lever);
+  rates.rounding = std::max(rates.rounding, frames_.unit * rounding);
 }
 
 }  // namespace ist

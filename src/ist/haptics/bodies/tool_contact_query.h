@@ -53,9 +53,13 @@ class ToolContactQuery {
 
  private:
   void add_to(ToolContacts& contacts, const Placement& tool) const noexcept;
+  void add_rates(SpringRates& rates, double fraction) const noexcept;
 
   BodyFrames frames_;
-  double area_;  // of a whole leaf pair, mesh units squared
+  double area_;                  // of a whole leaf pair, mesh units squared
+  double size_;                  // the mean of the two voxel sizes, mesh units
+  double fixed_radius_;          // bounds the fixed body round its frame's origin, mesh units
+  Eigen::Vector3d held_origin_;  // of the held tree's frame, held mesh coordinates
   Query query_;
   double least_depth_;  // mesh units
   ContactManifold manifold_;

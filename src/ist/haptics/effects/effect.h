@@ -36,6 +36,22 @@ struct ContactPair {
   Vector6 drift = Vector6::Zero();
 };
 
+/// How fast ToolContacts::spring can change while every fixed body rests: the Lipschitz constants
+/// of all leaf pairs, summed over all pairs of bodies. From one pose of the tool to another
+///
+///     |change of the force|  <= (force before + force after) · motion
+///     |change of the torque| <= (torque before + torque after) · motion
+///     motion = |displacement of the tool's origin| + lever · |angle in radians| + rounding
+///
+/// with the greater lever and rounding of the two poses. docs/guarantees.md, Rates of the contact
+/// sums, derives them.
+struct SpringRates {
+  double force = 0,  ///< N of a contact with a stiffness of 1 N/m, per metre: no unit
+      torque = 0,    ///< N m of such a contact, per metre: m
+      lever = 0,     ///< no point that counts is farther from the tool's origin, m
+      rounding = 0;  ///< of the kernels, as a motion, m
+};
+
 /// All contacts of the tool at one pose, pair by pair of bodies.
 class ToolContacts {
  public:
@@ -51,6 +67,8 @@ class ToolContacts {
   /// The sum over all leaf pairs, none merged, of stiffness_fraction · depth · normal, and its
   /// torque: the wrench of a contact with a stiffness of 1 N/m.
   Vector6 spring = Vector6::Zero();
+  /// How fast that can change.
+  SpringRates rates;
   /// The number of leaf pairs, by weight.
   double count = 0;
 
@@ -67,6 +85,7 @@ class ToolContacts {
   /// Leaves no contact.
   void clear() noexcept {
     spring.setZero();
+    rates = {};
     count = 0;
     points_.clear();
     pairs_.clear();
