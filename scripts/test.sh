@@ -51,7 +51,7 @@ threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test
 run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
 # What reads what a caller gives, and what runs in vectors; all rooms, and the policies that share code
 # with `table` and `slab`, are watched in the long run.
-run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^House$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
+run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
 # The rooms that the golden answers come from; the long run compiles all rooms.
 for preset in clang14 arm64 wasm; do run "$preset -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; done
 echo "== the page"
@@ -68,7 +68,7 @@ cmake --build --preset bench -- -j"$jobs" >build/bench.log || { cat build/bench.
 scripts/golden_table.py --check
 scripts/arm64_package.sh
 run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
-run sanitize-all all -E '^(House|Report|HardwareReport|MutantsStillApply)$|^(Package|Docs)\.'
+run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare)$|^(Package|Docs|Viewer)\.'
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 more() {  # preset, times the samples, program, filter
   echo "== $3 $4, preset $1, $2 times the samples"

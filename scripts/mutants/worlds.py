@@ -41,7 +41,7 @@ MUTANTS = [
            [(WORLD + "world_state.cpp", "  return rest;\n", "  return rest < 0 ? rest : kLargestDistance;\n")],
            ["world_test WorldDistance.*"]),
     Mutant("memory-asked-too-late", "the bytes that a query is to take leave out the window of its streams",
-           [("src/ist/query/query_state.cpp", " +\n                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);", ";")],
+           [("src/ist/query/query_state.cpp", " +\n      (kWindow + kLeafPairSpare) * sizeof(LeafPair);", ";")],
            ["world_test WorldMemory.*"]),
     Mutant("world-without-a-limit", "the limit of memory is not looked at for pairs",
            [(WORLD + "world_memory.cpp", "    if (sum <= limit) continue;\n", "    if (sum > 0) continue;\n")],

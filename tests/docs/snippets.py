@@ -24,6 +24,7 @@ PYTHON = "/usr/bin/python3"
 C_COMPILERS = ("gcc", "clang-14")
 STUBS = pathlib.Path(__file__).resolve().parent / "stubs"
 PACKAGE = STUBS.parents[2] / "src/python"  # where the package `ist` is
+VIEW = STUBS.parents[2] / "build/viewer/ist.html"  # the page that `ist view` fills
 LANGUAGES = ("", "sh", "python", "cpp", "c", "toml", "csv", "json", "cmake")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 
@@ -96,7 +97,7 @@ class Reader:
         self.name, self.folder, self.prefix, self.compiler = name, folder, prefix, compiler
         libraries = next(prefix.rglob("pkgconfig/ist.pc")).parent.parent
         self.environment = dict(os.environ, PATH=f"{prefix}/bin:{os.environ['PATH']}", LD_LIBRARY_PATH=str(libraries),
-                                PKG_CONFIG_PATH=str(libraries / "pkgconfig"), PYTHONPATH=str(PACKAGE),
+                                PKG_CONFIG_PATH=str(libraries / "pkgconfig"), PYTHONPATH=str(PACKAGE), IST_PAGE=str(VIEW),
                                 IST_LIBRARY=str(libraries / "libist.so"), MPLBACKEND="Agg", PYTHONDONTWRITEBYTECODE="1")
         self.session = None  # of the page's Python, from its first block on
         self.printed = None  # of the last block, until it is compared
@@ -236,6 +237,8 @@ def main():
     missing = [f"{tool} is not installed: scripts/setup.sh does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
                if shutil.which(tool) is None]
     missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles --python installs it" for name in missing_modules(page)]
+    if not VIEW.exists() and any(block.language == "sh" and "ist view " in block.text for block in page.blocks):
+        missing.append(f"{VIEW} is not there: run scripts/viewer.sh")
     if missing:
         print(f"snippets: skipped: {'; '.join(missing)}", file=sys.stderr)
         return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
