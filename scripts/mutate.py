@@ -133,8 +133,10 @@ def commit():
 
 
 def date_of(name):
-    return subprocess.run(["git", "-C", ROOT, "show", "-s", "--format=%cs", name.rstrip("+")], capture_output=True, text=True,
-                          check=True).stdout.strip()
+    """The day of a commit; of one that this history does not have, as after a rebase, no day is known."""
+    shown = subprocess.run(["git", "-C", ROOT, "show", "-s", "--format=%cs", name.rstrip("+")], capture_output=True, text=True,
+                           check=False)
+    return shown.stdout.strip() if shown.returncode == 0 else "an unknown day"
 
 
 def write_table(found):
