@@ -9,8 +9,8 @@
 
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/poses/pose_options.h"
 #include "cli/measure_progress.h"
+#include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/query_options.h"
 #include "cli/query_run.h"
