@@ -86,7 +86,7 @@ MUTANTS = [
     Mutant("later-signal-waits-for-nothing", "a later signal does not let a recording be closed",
            [("src/cli/interruption.cpp", "return shared.holds == 0;", "return shared.holds >= 0;")], ["cli_test RunLaterSignal*"]),
     Mutant("later-signal-waits-for-the-loop", "a later signal waits until the loop has ended",
-           [("src/cli/commands/tick_recorder.cpp", "state == State::kCompleting || stop_.hurried();",
+           [("src/cli/recordings/tick_recorder.cpp", "state == State::kCompleting || stop_.hurried();",
              "state == State::kCompleting;")], ["cli_test RunLaterSignal*"]),
     Mutant("quit-leaves-files", "SIGQUIT ends the command without removing its files",
            [("src/cli/interruption.cpp", "{SIGINT, SIGTERM, SIGHUP, SIGQUIT}", "{SIGINT, SIGTERM, SIGHUP}")],

@@ -46,6 +46,7 @@ std::unique_ptr<CLI::App> make_app() {
   add_occlusion(*app);
   add_run(*app);
   add_view(*app);
+  add_sweep(*app);
   add_advise(*app);
   add_bench(*app);
   add_table(*app);

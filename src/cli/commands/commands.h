@@ -16,6 +16,7 @@ void add_approach(CLI::App& app);
 void add_occlusion(CLI::App& app);
 void add_run(CLI::App& app);
 void add_view(CLI::App& app);
+void add_sweep(CLI::App& app);
 void add_advise(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_table(CLI::App& app);

@@ -9,8 +9,8 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/run_report.h"
-#include "cli/commands/tick_lines.h"
-#include "cli/commands/tick_recorder.h"
+#include "cli/recordings/tick_lines.h"
+#include "cli/recordings/tick_recorder.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
 #include "cli/header_line.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "cli/commands/recording_header.h"
+#include "cli/recordings/recording_header.h"
 #include "cli/extents.h"
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"

@@ -72,6 +72,27 @@ std::size_t InputFile::read(void* data, std::size_t bytes) {
   return bytes - left;
 }
 
+void InputFile::read_at(std::uint64_t offset, void* data, std::size_t bytes) const {
+  char* next = static_cast<char*>(data);
+  auto at = static_cast<off_t>(offset);
+  while (bytes > 0) {
+    cancellation_point();
+    const ssize_t got = ::pread(descriptor_, next, std::min(bytes, kAtOnce), at);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(std::strerror(errno));
+    if (got == 0) fail("it ends too early");
+    next += got;
+    at += got;
+    bytes -= static_cast<std::size_t>(got);
+  }
+}
+
+std::int64_t InputFile::written_at() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail(std::strerror(errno));
+  return status.st_mtim.tv_sec * std::int64_t{1'000'000'000} + status.st_mtim.tv_nsec;
+}
+
 std::string InputFile::read_rest() {
   std::string bytes;
   std::size_t filled = 0, ask = size_ + 1;

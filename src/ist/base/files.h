@@ -26,6 +26,13 @@ class InputFile {
   /// Reads up to `bytes` bytes, fewer only at the end of the file. Returns the number read.
   std::size_t read(void* data, std::size_t bytes);
 
+  /// Reads exactly `bytes` bytes from `offset` on, whatever was read before; a file that is shorter
+  /// by now cannot be read. Any number of threads may call it at a time.
+  void read_at(std::uint64_t offset, void* data, std::size_t bytes) const;
+
+  /// Returns when the file was last written, ns since 1970, as the system says.
+  [[nodiscard]] std::int64_t written_at() const;
+
   /// Reads the rest of the file at its current length, which may differ from size().
   [[nodiscard]] std::string read_rest();
 

@@ -167,11 +167,14 @@ Eigen::Matrix3d TableReader::rotation(std::string_view key) {
 std::uint64_t TableReader::whole_number(std::string_view key, const NumberRange& range,
                                         std::uint64_t otherwise) {
   note(key, "a whole number, " + range.values(), range.unit, fmt::format("{}", otherwise));
-  if (!has(key)) return otherwise;
-  const auto* integer = std::get_if<std::int64_t>(&find(key)->content);
-  if (integer == nullptr || !range.holds(static_cast<double>(*integer))) {
-    fail_value(key, "a whole number, " + range.values());
-  }
+  return has(key) ? whole_number(key, range) : otherwise;
+}
+
+std::uint64_t TableReader::whole_number(std::string_view key, const NumberRange& range) {
+  const std::string what = "a whole number, " + range.values();
+  note(key, what, range.unit);
+  const auto* integer = std::get_if<std::int64_t>(&required(key, what).content);
+  if (integer == nullptr || !range.holds(static_cast<double>(*integer))) fail_value(key, what);
   return static_cast<std::uint64_t>(*integer);
 }
 
@@ -189,6 +192,19 @@ std::string TableReader::text(std::string_view key, std::string_view what) {
   // The system would end a name at a byte of 0.
   if (text == nullptr || text->find('\0') != std::string::npos) fail_value(key, what);
   return *text;
+}
+
+std::vector<std::string> TableReader::texts(std::string_view key, std::string_view what) {
+  note(key, std::string(what));
+  const auto* items = std::get_if<std::vector<TomlValue>>(&required(key, what).content);
+  if (items == nullptr || items->empty()) fail_value(key, what);
+  std::vector<std::string> texts;
+  for (const TomlValue& item : *items) {
+    const auto* text = std::get_if<std::string>(&item.content);
+    if (text == nullptr) fail_value(key, what);
+    texts.push_back(*text);
+  }
+  return texts;
 }
 
 TableReader TableReader::table(std::string_view key) {

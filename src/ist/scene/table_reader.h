@@ -51,9 +51,13 @@ class TableReader {
   [[nodiscard]] Eigen::Matrix3d rotation(std::string_view key);
   [[nodiscard]] std::uint64_t whole_number(std::string_view key, const NumberRange& range,
                                            std::uint64_t otherwise);
+  /// A whole number that is required.
+  [[nodiscard]] std::uint64_t whole_number(std::string_view key, const NumberRange& range);
   [[nodiscard]] bool flag(std::string_view key, bool otherwise);
   /// A text. `what` describes it in messages.
   [[nodiscard]] std::string text(std::string_view key, std::string_view what);
+  /// An array of at least one text.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key, std::string_view what);
   /// The value of a name by `find`, which returns an optional. `names` lists the known names.
   template <typename Find>
   [[nodiscard]] auto choice(std::string_view key, const Find& find, std::string_view names) {

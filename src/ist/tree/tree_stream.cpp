@@ -1,8 +1,6 @@
 #include "ist/tree/tree_stream.h"
 
 #include <fmt/format.h>
-#define XXH_INLINE_ALL  // so the library needs the header alone
-#include <xxhash.h>
 
 #include <algorithm>
 #include <bit>
@@ -30,17 +28,6 @@ struct Preamble {
 static_assert(sizeof(Preamble) == 32 && std::is_trivially_copyable_v<Preamble>);
 
 }  // namespace
-
-struct Checksum::State {
-  XXH3_state_t xxh3;
-};
-
-Checksum::Checksum() : state_(std::make_unique<State>()) { XXH3_64bits_reset(&state_->xxh3); }
-Checksum::~Checksum() = default;
-void Checksum::add(const void* data, std::size_t bytes) {
-  XXH3_64bits_update(&state_->xxh3, data, bytes);
-}
-std::uint64_t Checksum::value() const { return XXH3_64bits_digest(&state_->xxh3); }
 
 TreeWriter::TreeWriter(const std::filesystem::path& file) : file_(file) {
   const Preamble later;

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "ist/base/checksum.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 
@@ -20,19 +21,6 @@ namespace ist {
 /// The first bytes of a tree file.
 inline constexpr std::array<unsigned char, 8> kTreeFileMagic = {0x89, 'I',  'S',  'T',
                                                                 0x0D, 0x0A, 0x1A, 0x0A};
-
-/// Computes the XXH3-64 of all bytes added.
-class Checksum {
- public:
-  Checksum();
-  ~Checksum();
-  void add(const void* data, std::size_t bytes);
-  [[nodiscard]] std::uint64_t value() const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
 
 /// Writes a tree file, to a disk or to memory: its preamble, then values and arrays in their memory
 /// layout. Throws kFileUnwritable.

@@ -10,7 +10,7 @@
 namespace ist::capi {
 
 /// The kind of the object of a handle.
-enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo, kWorld };
+enum class HandleKind : std::uint8_t { kMesh = 1, kTree, kQuery, kServo, kWorld, kSweep };
 
 /// Whether any number of threads may use an object at a time, or one.
 enum class HandleUse : std::uint8_t { kShared, kAlone };

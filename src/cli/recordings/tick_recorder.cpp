@@ -1,4 +1,4 @@
-#include "cli/commands/tick_recorder.h"
+#include "cli/recordings/tick_recorder.h"
 
 #include <chrono>
 #include <exception>

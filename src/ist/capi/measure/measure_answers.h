@@ -2,15 +2,11 @@
 
 #include "ist/capi/follower.h"
 #include "ist/capi/ist_measure.h"
-#include "ist/measure/penetration.h"
 #include "ist/measure/signed_distance.h"
 
 /// Conversions that the functions of ist_measure.h share.
 namespace ist::capi {
 
 [[nodiscard]] ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept;
-
-/// Returns IST_CLOSED, or which body has no certain inside.
-[[nodiscard]] std::int32_t not_closed_of(const Penetration& found) noexcept;
 
 }  // namespace ist::capi

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "ist/capi/ist_measure.h"
-#include "ist/capi/measure_answers.h"
+#include "ist/capi/measure/measure_answers.h"
 #include "ist/capi/objects.h"
 #include "ist/measure/occlusion.h"
 

@@ -6,7 +6,7 @@
 #include <future>
 #include <optional>
 
-#include "cli/commands/tick_lines.h"
+#include "cli/recordings/tick_lines.h"
 #include "cli/interruption.h"
 #include "ist/haptics/recording.h"
 

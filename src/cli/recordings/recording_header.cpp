@@ -1,4 +1,4 @@
-#include "cli/commands/recording_header.h"
+#include "cli/recordings/recording_header.h"
 
 #include <fmt/format.h>
 

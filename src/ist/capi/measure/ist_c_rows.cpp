@@ -1,12 +1,11 @@
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "ist/capi/follower.h"
 #include "ist/capi/ist_measure.h"
-#include "ist/capi/measure_answers.h"
 #include "ist/capi/objects.h"
 #include "ist/measure/pose_rows.h"
+#include "ist/measure/row_numbers.h"
 
 namespace ist::capi {
 namespace {
@@ -55,48 +54,21 @@ ist_status read_rows_options(const Call& call, const ist_rows_options& given, Ro
   return read_follower(call, known.progress, asked.follower);
 }
 
-ist_row row_of(const PoseRow& found, double stiffness) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+ist_row row_of(const RowNumbers& numbers) noexcept {
   ist_row row{};
-  row.distance_lower = row.distance_upper = row.depth_lower = row.depth_upper = kNone;
-  if (found.status != QueryStatus::kDone) {
-    row.status = IST_POSE_INVALID;
-    return row;
-  }
-  bool complete = true;
-  const auto count = [&](const auto& answer) {
-    complete = complete && answer.complete;
-    row.sphere_tests += answer.sphere_tests;
-  };
-  if (found.intersects) {
-    count(*found.intersects);
-    row.intersects = static_cast<std::int32_t>(found.intersects->answer) + IST_ANSWER_NO;
-  }
-  if (found.leaf_pairs) {
-    count(*found.leaf_pairs);
-    row.leaf_pairs = found.leaf_pairs->leaf_pairs;
-  }
-  if (found.distance) {
-    count(*found.distance);
-    row.distance_lower = found.distance->distance.lower;
-    row.distance_upper = found.distance->distance.upper;
-  }
-  if (found.contacts) {
-    count(*found.contacts);
-    if (!found.leaf_pairs) row.leaf_pairs = found.contacts->leaf_pairs;
-    row.area = found.sums.weight;
-    copy(stiffness * found.sums.spring.force, row.force);
-    copy(stiffness * found.sums.spring.torque, row.torque);
-  }
-  if (found.penetration) {
-    complete = complete && found.penetration->complete;
-    row.not_closed = not_closed_of(*found.penetration);
-    if (row.not_closed == IST_CLOSED) {
-      row.depth_lower = found.penetration->lower;
-      row.depth_upper = found.penetration->upper;
-    }
-  }
-  row.complete = complete;
+  row.status = numbers.pose_is_valid ? IST_OK : IST_POSE_INVALID;
+  row.intersects = numbers.intersects;
+  row.complete = numbers.complete;
+  row.not_closed = numbers.not_closed;
+  row.leaf_pairs = numbers.leaf_pairs;
+  row.sphere_tests = numbers.sphere_tests;
+  row.distance_lower = numbers.distance_lower;
+  row.distance_upper = numbers.distance_upper;
+  row.depth_lower = numbers.depth_lower;
+  row.depth_upper = numbers.depth_upper;
+  row.area = numbers.area;
+  copy(numbers.force, row.force);
+  copy(numbers.torque, row.torque);
   return row;
 }
 
@@ -126,7 +98,7 @@ ist_status ist_query_rows(ist_query* query, const double* poses, size_t count,
       ist::answer_rows(
           {held->query, further, held->contact_options}, at, asked.questions, asked.threads,
           [&](std::size_t index, const ist::PoseRow& row) {
-            made[index] = row_of(row, asked.stiffness);
+            made[index] = row_of(ist::numbers_of(row, asked.stiffness));
           },
           proceed);
     });

@@ -2,10 +2,11 @@
 #include <vector>
 
 #include "ist/capi/ist_measure.h"
-#include "ist/capi/measure_answers.h"
+#include "ist/capi/measure/measure_answers.h"
 #include "ist/capi/objects.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/penetration.h"
+#include "ist/measure/row_numbers.h"
 #include "ist/measure/signed_distance.h"
 
 namespace ist::capi {
@@ -20,7 +21,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.of_moving = found.of_moving;
   out.triangle = found.triangle;
   out.complete = found.complete;
-  out.not_closed = not_closed_of(found);
+  out.not_closed = not_closed_code(found);
   out.narrowest = found.narrowest;
   out.points = found.points;
   return out;
@@ -68,12 +69,6 @@ Motion motion_of(const ist_motion& given) {
 
 }  // namespace
 
-std::int32_t not_closed_of(const Penetration& found) noexcept {
-  return found.status == Penetration::Status::kFixedNotClosed    ? IST_FIXED_NOT_CLOSED
-         : found.status == Penetration::Status::kMovingNotClosed ? IST_MOVING_NOT_CLOSED
-                                                                 : IST_CLOSED;
-}
-
 ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept {
   ist_surface_distance out;
   out.distance = found.distance;
@@ -82,6 +77,7 @@ ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept 
   out.is_signed = found.is_signed;
   return out;
 }
+static_assert(IST_CLOSED == 0 && IST_FIXED_NOT_CLOSED == 1 && IST_MOVING_NOT_CLOSED == 2);
 static_assert(SurfaceDistance::kNoTriangle == IST_NO_TRIANGLE);
 
 }  // namespace ist::capi

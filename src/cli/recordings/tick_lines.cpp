@@ -1,4 +1,4 @@
-#include "cli/commands/tick_lines.h"
+#include "cli/recordings/tick_lines.h"
 
 #include <fmt/format.h>
 

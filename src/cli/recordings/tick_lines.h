@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands/recording_header.h"
+#include "cli/recordings/recording_header.h"
 #include "cli/line_reader.h"
 #include "ist/base/files.h"
 #include "ist/haptics/recording.h"

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace ist {
+
+/// Computes the XXH3-64 of all bytes added.
+class Checksum {
+ public:
+  Checksum();
+  ~Checksum();
+  void add(const void* data, std::size_t bytes);
+  [[nodiscard]] std::uint64_t value() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Computes the XXH3-128 of all bytes added, for which no two different files are known by chance.
+class ContentHash {
+ public:
+  ContentHash();
+  ~ContentHash();
+  void add(const void* data, std::size_t bytes);
+  /// Returns 32 hexadecimal digits, as the program xxhsum -H2 prints them.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ist

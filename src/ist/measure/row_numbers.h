@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+
+#include "ist/measure/pose_rows.h"
+
+namespace ist {
+
+/// The answers at one pose as numbers, for tables. A number is 0, and an interval NaN, where it was
+/// not asked for, or the pose is invalid.
+struct RowNumbers {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  bool pose_is_valid = true;
+  /// 0: unknown, or not asked; 1: no; 2: near; 3: yes
+  std::int32_t intersects = 0;
+  bool complete = false;        ///< every search ended and every tolerance was reached
+  std::int32_t not_closed = 0;  ///< 0: both bodies are; 1: the fixed one is not; 2: the moving one
+  std::uint64_t leaf_pairs = 0;
+  std::uint64_t sphere_tests = 0;  ///< of all searches, those of a depth excepted
+  double distance_lower = kNone, distance_upper = kNone;
+  double depth_lower = kNone, depth_upper = kNone;
+  double area = 0;  ///< mesh units²
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(),
+                  torque = Eigen::Vector3d::Zero();  ///< of springs of `stiffness`
+};
+
+/// Returns the numbers of a row.
+/// @param stiffness of springs, N/mm³ where meshes are in mm
+[[nodiscard]] RowNumbers numbers_of(const PoseRow& row, double stiffness);
+
+/// Returns the code of `not_closed` for a depth.
+[[nodiscard]] std::int32_t not_closed_code(const Penetration& found) noexcept;
+
+}  // namespace ist
