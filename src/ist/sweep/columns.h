@@ -22,8 +22,7 @@ struct Column {
   std::size_t offset;
 };
 
-/// The columns of a sweep's rows: `index`, `status`, `complete`, then those of the questions asked.
-/// Rows are packed: no byte lies between two values.
+/// The columns of a table. Its rows are packed: no byte lies between two values.
 struct RowLayout {
   std::vector<Column> columns;
   std::size_t bytes = 0;  ///< of a row
