@@ -1,6 +1,7 @@
 // Writes tables as Parquet into a folder, and beside each its packed rows, NAME.rows. tables.json
 // says which columns, rows and row groups each has: for parquet_test.mjs.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ist/base/files.h"

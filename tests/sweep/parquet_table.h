@@ -11,7 +11,7 @@
 
 namespace ist::test {
 
-/// What a Parquet file holds, by the format's specification.
+/// The content of a Parquet file, by the specification of the format.
 struct ParquetTable {
   std::vector<Column> columns;           // offset: 0
   std::vector<std::string> values;       // of each column, one after the other
