@@ -56,6 +56,8 @@ run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_tes
 for preset in clang14 arm64 wasm; do run "$preset -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; done
 echo "== the page"
 scripts/viewer.sh
+echo "== readers of tables"
+scripts/sweep_readers.sh
 run test all -LE '^long$'
 $long || exit 0
 

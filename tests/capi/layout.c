@@ -2,6 +2,7 @@
 
 #include "ist/capi/ist_measure.h"
 #include "ist/capi/ist_servo.h"
+#include "ist/capi/ist_sweep.h"
 #include "ist/capi/ist_world.h"
 
 #define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
@@ -391,3 +392,43 @@ IS(IST_FIRST_GRAZING, 3);
 IS(IST_FIRST_TOUCHES_AT_START, 4);
 IS(IST_FIRST_INSIDE_AT_START, 5);
 IS(IST_FIRST_STOPPED, 6);
+
+SIZE(ist_sweep_info, 88);
+AT(ist_sweep_info, struct_size, 0);
+AT(ist_sweep_info, rows, 8);
+AT(ist_sweep_info, rows_per_part, 16);
+AT(ist_sweep_info, parts, 24);
+AT(ist_sweep_info, row_bytes, 32);
+AT(ist_sweep_info, columns, 40);
+AT(ist_sweep_info, hash, 48);
+
+SIZE(ist_sweep_column, 48);
+AT(ist_sweep_column, struct_size, 0);
+AT(ist_sweep_column, name, 8);
+AT(ist_sweep_column, type, 32);
+AT(ist_sweep_column, reserved, 36);
+AT(ist_sweep_column, offset, 40);
+
+SIZE(ist_sweep_part, 40);
+AT(ist_sweep_part, struct_size, 0);
+AT(ist_sweep_part, state, 8);
+AT(ist_sweep_part, starts, 12);
+AT(ist_sweep_part, rows, 16);
+AT(ist_sweep_part, seconds, 24);
+AT(ist_sweep_part, made, 32);
+AT(ist_sweep_part, reserved, 36);
+
+SIZE(ist_sweep_merge_result, 40);
+AT(ist_sweep_merge_result, struct_size, 0);
+AT(ist_sweep_merge_result, rows, 8);
+AT(ist_sweep_merge_result, missing, 16);
+AT(ist_sweep_merge_result, given_up, 24);
+AT(ist_sweep_merge_result, reserved, 32);
+
+IS(IST_COLUMN_UINT64, 1);
+IS(IST_COLUMN_INT32, 2);
+IS(IST_COLUMN_FLOAT64, 3);
+IS(IST_PART_MISSING, 1);
+IS(IST_PART_DONE, 2);
+IS(IST_PART_GIVEN_UP, 3);
+IS(IST_PART_DAMAGED, 4);

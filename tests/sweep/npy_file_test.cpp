@@ -72,7 +72,8 @@ class NpyPosesTest : public ::testing::Test {
     return NpyPoses(folder_.write("poses.npy", bytes));
   }
   void expect_refused(const std::string& bytes, const std::string& said) const {
-    const auto error = error_of([&] { static_cast<void>(NpyPoses(folder_.write("p.npy", bytes))); });
+    const auto error =
+        error_of([&] { static_cast<void>(NpyPoses(folder_.write("p.npy", bytes))); });
     ASSERT_TRUE(error) << "it is taken for sound: " << said;
     EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
     EXPECT_NE(std::string(error->what()).find(said), std::string::npos) << error->what();
@@ -140,7 +141,8 @@ TEST_F(NpyPosesTest, NoPoseIsSound) {
 }
 
 TEST_F(NpyPosesTest, AFileThatIsWrittenMeanwhileIsNoticed) {
-  const std::filesystem::path file = folder_.write("poses.npy", npy(kSound, bytes_of(counting(32))));
+  const std::filesystem::path file =
+      folder_.write("poses.npy", npy(kSound, bytes_of(counting(32))));
   const NpyPoses poses(file);
   EXPECT_EQ(error_name([&] { poses.require_unchanged(); }), "none");
   // In place, as an editor or numpy's memmap does.

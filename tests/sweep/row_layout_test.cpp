@@ -26,10 +26,9 @@ TEST(RowLayout, HasTheColumnsOfTheQuestions) {
             (Names{"index", "status", "complete", "intersects", "sphere_tests"}));
   EXPECT_EQ(names_of(layout_of({.leaf_pairs = true})),
             (Names{"index", "status", "complete", "sphere_tests", "leaf_pairs"}));
-  EXPECT_EQ(
-      names_of(layout_of({.distance = true, .penetration = true})),
-      (Names{"index", "status", "complete", "not_closed", "sphere_tests", "distance_lower",
-             "distance_upper", "depth_lower", "depth_upper"}));
+  EXPECT_EQ(names_of(layout_of({.distance = true, .penetration = true})),
+            (Names{"index", "status", "complete", "not_closed", "sphere_tests", "distance_lower",
+                   "distance_upper", "depth_lower", "depth_upper"}));
   EXPECT_EQ(names_of(layout_of({.contacts = true})),
             (Names{"index", "status", "complete", "sphere_tests", "leaf_pairs", "area", "force_x",
                    "force_y", "force_z", "torque_x", "torque_y", "torque_z"}));
@@ -62,13 +61,23 @@ TEST(RowLayout, HoldsEachNumberInItsColumn) {
   const RowLayout layout = layout_of(questions);
   std::vector<std::byte> row(layout.bytes);
   write_row(questions, std::uint64_t{1} << 40, numbers, row);
-  const std::map<std::string, double> known = {
-      {"index", 1099511627776.0}, {"status", 0},           {"complete", 1},
-      {"intersects", 3},          {"not_closed", 2},       {"sphere_tests", 12},
-      {"leaf_pairs", 11},         {"distance_lower", .25}, {"distance_upper", .5},
-      {"depth_lower", .75},       {"area", 13},            {"force_x", 1},
-      {"force_y", 2},             {"force_z", 3},          {"torque_x", 4},
-      {"torque_y", 5},            {"torque_z", -0.0}};
+  const std::map<std::string, double> known = {{"index", 1099511627776.0},
+                                               {"status", 0},
+                                               {"complete", 1},
+                                               {"intersects", 3},
+                                               {"not_closed", 2},
+                                               {"sphere_tests", 12},
+                                               {"leaf_pairs", 11},
+                                               {"distance_lower", .25},
+                                               {"distance_upper", .5},
+                                               {"depth_lower", .75},
+                                               {"area", 13},
+                                               {"force_x", 1},
+                                               {"force_y", 2},
+                                               {"force_z", 3},
+                                               {"torque_x", 4},
+                                               {"torque_y", 5},
+                                               {"torque_z", -0.0}};
   const auto value = [&]<typename T>(const Column& column, T number) {
     std::memcpy(&number, row.data() + column.offset, sizeof(number));
     return static_cast<double>(number);

@@ -48,8 +48,8 @@ tests = 1000)")
 
 TEST_F(SweepFileTest, AcceptsTheTreesOwnHash) {
   const std::string hash = hash_of_file(dir_.path() / "moving.ist");
-  const Sweep sound = sweep_with("tree = \"moving.ist\"",
-                                 "tree = \"moving.ist\"\nhash = \"" + hash + "\"");
+  const Sweep sound =
+      sweep_with("tree = \"moving.ist\"", "tree = \"moving.ist\"\nhash = \"" + hash + "\"");
   EXPECT_EQ(sound.identity().hash, sweep().identity().hash);
 }
 
@@ -65,7 +65,8 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
       {"tolerance", "tolerence", 2, "'tolerence' in the file is unknown", "'tolerance'"},
       {"[\"intersects\"", "[\"intersect\"", 1, "\"intersect\"", "\"intersects\""},
       {"[\"intersects\", \"distance\", \"contacts\"]", "[]", 1, "an array of 0", "some of"},
-      {"answers = [\"intersects\", \"distance\", \"contacts\"]\n", "", 1, "no 'answers'", "some of"},
+      {"answers = [\"intersects\", \"distance\", \"contacts\"]\n", "", 1, "no 'answers'",
+       "some of"},
       {"tolerance = 0.01", "tolerance = -1", 2, "-1", "from 0"},
       {"tolerance = 0.01", "tolerance = nan", 2, "nan", "from 0"},
       {"tolerance = 0.01", "spheres = \"round\"", 2, "round", "\"slab\""},
@@ -87,19 +88,26 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
       {"turns_within = [10, 20, 30]", "about = [0, 0, 0]", 13, "'about'", "known here"},
       {"[poses.box]", "[poses]\nfile = \"p.npy\"\n[poses.box]", 8, "more than one", "[poses.box]"},
       {"[poses.box]", "[poses]\n[other]", 8, "none", "[[poses.axes]]"},
-      {"[poses.box]", "[poses]\n[[poses.axes]]\nmove = [0, 0, 1]\nturn = [1, 0, 0]\nfrom = 0\n"
-                      "to = 1\ncount = 2\n[poses.boxes]", 11, "both", "give one"},
+      {"[poses.box]",
+       "[poses]\n[[poses.axes]]\nmove = [0, 0, 1]\nturn = [1, 0, 0]\nfrom = 0\n"
+       "to = 1\ncount = 2\n[poses.boxes]",
+       11, "both", "give one"},
       {"[poses.box]", "[[poses.axes]]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 8, "neither",
        "give one"},
-      {"[poses.box]", "[[poses.axes]]\nmove = [0, 0, 0]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]",
-       9, "no length", "[0, 0, 1]"},
-      {"[poses.box]", "[[poses.axes]]\nturn = [0, 0, 1]\nfrom = 0\nto = 361\ncount = 2\n[poses.boxes]",
-       11, "361", "degrees"},
-      {"[poses.box]", "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 1000000\n"
-                      "[[poses.axes]]\nmove = [0, 1, 0]\nfrom = 0\nto = 1\ncount = 1000001\n"
-                      "[poses.boxes]", 17, "more than 1000000000000", "coarser"},
-      {"[poses.box]", "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 0\n[poses.boxes]",
-       12, "0", "from 1"},
+      {"[poses.box]",
+       "[[poses.axes]]\nmove = [0, 0, 0]\nfrom = 0\nto = 1\ncount = 2\n[poses.boxes]", 9,
+       "no length", "[0, 0, 1]"},
+      {"[poses.box]",
+       "[[poses.axes]]\nturn = [0, 0, 1]\nfrom = 0\nto = 361\ncount = 2\n[poses.boxes]", 11, "361",
+       "degrees"},
+      {"[poses.box]",
+       "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 1000000\n"
+       "[[poses.axes]]\nmove = [0, 1, 0]\nfrom = 0\nto = 1\ncount = 1000001\n"
+       "[poses.boxes]",
+       17, "more than 1000000000000", "coarser"},
+      {"[poses.box]",
+       "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 0\n[poses.boxes]", 12, "0",
+       "from 1"},
       {"count = 10", "count = 4000001", 3, "more than 1000000 parts", "rows_per_part = 5"},
   };
   for (const BadSweep& bad : all) {
