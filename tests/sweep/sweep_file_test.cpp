@@ -107,7 +107,7 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
        17, "more than 1000000000000", "coarser"},
       {"[poses.box]",
        "[[poses.axes]]\nmove = [0, 0, 1]\nfrom = 0\nto = 1\ncount = 0\n[poses.boxes]", 12, "0",
-       "from 1"},
+       "1 to"},
       {"count = 10", "count = 4000001", 3, "more than 1000000 parts", "rows_per_part = 5"},
   };
   for (const BadSweep& bad : all) {
