@@ -80,6 +80,12 @@ TEST_F(SweepParts, TheirBytesDependOnNoThread) {
     EXPECT_EQ(one.look(part).checksum, two.look(part).checksum);
   }
   EXPECT_EQ(rows_in(one, 1, job.layout()).size(), 1001 * job.layout().bytes);
+  const std::string rows = rows_in(one, 0, job.layout());
+  for (std::uint64_t row = 0; row < 9000; ++row) {
+    std::uint64_t index = 0;
+    std::memcpy(&index, rows.data() + row * job.layout().bytes, sizeof(index));
+    ASSERT_EQ(index, row);
+  }
 }
 
 TEST_F(SweepParts, AreCutByTheSweepFileAlone) {
