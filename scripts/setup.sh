@@ -9,6 +9,8 @@
 #   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
 #   scripts/setup.sh --oracles   also what reads and measures again what the command writes
 #   scripts/setup.sh --python    also what makes and tests the Python package
+#   scripts/setup.sh --sweep     also what runs sweeps on other engines: dask, GNU parallel
+#   scripts/setup.sh --slurm     also Slurm, which the tests run on one node of their own
 #   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
 #   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
@@ -39,6 +41,8 @@ for argument in "$@"; do
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
     --python) packages+=(python3-numpy python3-setuptools python3-wheel python3-build python3-venv python3-pip
       mypy python3-matplotlib python3-meshio python3-vtk9) ;;
+    --sweep) packages+=(python3-numpy python3-dask python3-distributed parallel) ;;
+    --slurm) packages+=(slurm-wlm munge) ;;
     --docs) packages+=(doxygen mkdocs) ;;
     --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
@@ -50,7 +54,7 @@ for argument in "$@"; do
       viewer=true
       ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,21s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

@@ -30,8 +30,8 @@ WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
 
 
 def missing_modules(page):
-    """The modules of others that the page's Python imports, and PYTHON does not have."""
-    named = {name for block in page.blocks if block.language == "python"
+    """The modules of others that the page's Python imports, where it is run, and PYTHON does not have."""
+    named = {name for block in page.blocks if block.language == "python" and not block.says("not run")
              for name in re.findall(r"(?m)^(?:import|from) (\w+)", block.text)} - {"ist"}
     return [name for name in sorted(named)
             if subprocess.run([PYTHON, "-c", f"import {name}"], stderr=subprocess.DEVNULL, check=False).returncode != 0]

@@ -12,14 +12,15 @@ import unittest
 import support  # noqa: F401  which ends the run where numpy is missing
 
 import ist
-from ist import _measures, _mesh, _query, _tree, _world
+from ist import _measures, _mesh, _query, _sweep, _tree, _world
 
 PACKAGE = pathlib.Path(ist.__file__).parent
 USE = """
 import pathlib
-from typing import Optional
+from typing import List, Optional
 import numpy as np
 import ist
+import ist.dask
 
 upper, lower = (ist.build(mesh, voxel_size=0.8) for mesh in ist.jaws(seed=1))
 query = ist.Query(upper, lower, workers=2, spheres="tight")
@@ -36,6 +37,11 @@ world.prepare([(0, body)], progress=lambda part: None)
 found = world.leaf_pairs(out=np.empty(4, ist.WORLD_PAIR))
 of_first = found.leaf_pairs_of(found.pairs[0])
 least: Optional[float] = world.distance(0.1).upper
+sweep = ist.Sweep("job.toml", pathlib.Path("out"), progress=lambda part: None)
+outcomes = [sweep.run(part, threads=2).outcome for part in sweep.parts]
+lacking: List[int] = sweep.merge().missing + sweep.status(verify=True).given_up
+done: int = len(ist.dask.run(sweep, client=None, threads=2).done)
+file: pathlib.Path = sweep.folder / "rows.npy"
 with ist.Servo("scene.toml", unit="m") as servo:
     tick = servo.tick(None, out=np.empty((2, 3)))
     z: float = float(tick.force[2])
@@ -46,7 +52,7 @@ MISUSE = 'import ist\nist.Query(1, 2)\nist.Query(ist.load("a"), ist.load("b"), s
 class Words(unittest.TestCase):
     def test_examples_of_docstrings(self):
         tried = 0
-        for module in (ist, _measures, _mesh, _query, _tree, _world):
+        for module in (ist, _measures, _mesh, _query, _sweep, _tree, _world):
             result = doctest.testmod(module)
             self.assertEqual(result.failed, 0, module.__name__)
             tried += result.attempted

@@ -23,6 +23,9 @@ from ._answers import (
     Penetration,
     ServoBody,
     ServoTick,
+    SweepPart,
+    SweepStatus,
+    SweepTable,
     TrianglePairs,
     WorldLeafPairs,
     WorldPairs,
@@ -46,6 +49,7 @@ from ._mesh import jaws, read_mesh
 from ._query import Query
 from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR
 from ._servo import Servo
+from ._sweep import Sweep
 from ._tree import Tree, build, load
 from ._world import World
 

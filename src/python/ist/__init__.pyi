@@ -2,8 +2,9 @@
 habit. A pose is (4, 4) float64, row by row, and maps the moving body to the fixed one: p_fixed = pose @ p_moving."""
 
 from os import PathLike
+from pathlib import Path as _AbsolutePath
 from types import TracebackType
-from typing import Any, Callable, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Type, Union
+from typing import Any, Callable, List, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Type, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -441,6 +442,54 @@ class Servo:
     def release(self, body: str) -> None: ...
     def free(self) -> None: ...
     def __enter__(self) -> Servo: ...
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None: ...
+
+class SweepPart(NamedTuple):
+    part: int
+    outcome: Literal["made", "there", "given up"]
+    rows: int
+    seconds: float
+
+class SweepTable(NamedTuple):
+    rows: int
+    missing: List[int]
+    given_up: List[int]
+
+class SweepStatus(NamedTuple):
+    done: List[int]
+    missing: List[int]
+    given_up: List[int]
+    damaged: List[int]
+    seconds: float
+
+class Sweep:
+    def __init__(self, path: Path, folder: Optional[Path] = None, *, progress: Optional[Follow] = None) -> None: ...
+    @property
+    def path(self) -> _AbsolutePath: ...
+    @property
+    def folder(self) -> _AbsolutePath: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def rows_per_part(self) -> int: ...
+    @property
+    def parts(self) -> range: ...
+    @property
+    def hash(self) -> str: ...
+    @property
+    def columns(self) -> np.dtype[np.void]: ...
+    def poses(self, first: int, count: int) -> F8: ...
+    def run(
+        self, part: int, folder: Optional[Path] = None, *, threads: int = 0, progress: Optional[Follow] = None
+    ) -> SweepPart: ...
+    def merge(self, folder: Optional[Path] = None, *, progress: Optional[Follow] = None) -> SweepTable: ...
+    def status(
+        self, folder: Optional[Path] = None, *, verify: bool = False, progress: Optional[Follow] = None
+    ) -> SweepStatus: ...
+    def free(self) -> None: ...
+    def __enter__(self) -> Sweep: ...
     def __exit__(
         self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None: ...

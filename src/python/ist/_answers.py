@@ -1,6 +1,6 @@
 """The answers of a query."""
 
-from typing import NamedTuple, Optional, Tuple
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -170,3 +170,30 @@ class ServoTick(NamedTuple):
 
     force: np.ndarray  # (3,), N
     torque: np.ndarray  # (3,), N m, about the tool's origin
+
+
+class SweepPart(NamedTuple):
+    """How Sweep.run() ended."""
+
+    part: int
+    outcome: str  # "made"; "there": it was there before; "given up": begun and lost three times, and not tried again
+    rows: int
+    seconds: float  # that making it took, also where it was there; NaN where unknown
+
+
+class SweepTable(NamedTuple):
+    """How Sweep.merge() ended: with a table of all rows, or with the parts that lack."""
+
+    rows: int  # of the table; 0 where a part lacks, and nothing was written
+    missing: List[int]  # parts that nobody has made yet
+    given_up: List[int]  # parts that were begun and lost three times
+
+
+class SweepStatus(NamedTuple):
+    """The parts of a sweep by how they stand in its folder."""
+
+    done: List[int]
+    missing: List[int]  # nobody has made them yet, or somebody is making them
+    given_up: List[int]  # begun and lost three times: not tried again
+    damaged: List[int]  # their files are not those that were written
+    seconds: float  # that making all that are done took

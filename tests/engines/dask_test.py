@@ -1,0 +1,77 @@
+"""A sweep on two processes of dask, one of which is killed in the middle of a part."""
+
+import ast
+import inspect
+import pathlib
+import threading
+import unittest
+
+from support import kill_in_the_middle_of_a_part, make_job, sha256, sha256_by_one_process, skip
+
+try:
+    from distributed import Client, LocalCluster
+except ImportError as missing:
+    skip(f"{missing}; scripts/setup.sh --sweep installs it, for /usr/bin/python3")
+
+import ist
+import ist.dask
+
+
+class Dask(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cluster = LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+        cls.addClassCleanup(cluster.close)
+        cls.client = Client(cluster)
+        cls.addClassCleanup(cls.client.close)
+
+    def test_a_worker_is_killed_and_the_table_is_that_of_one_process(self):
+        sweep, killed, shares = make_job(16_000, 1000), [], []
+        before = set(self.client.run(lambda dask_worker: dask_worker.id))
+
+        def kill():
+            killed.append(kill_in_the_middle_of_a_part(sweep.folder))
+
+        killer = threading.Thread(target=kill)
+        killer.start()
+        status = ist.dask.run(sweep, self.client, progress=shares.append)
+        killer.join()
+        self.assertEqual(len(killed), 1, "no worker died")
+        self.assertEqual(status[:4], (list(sweep.parts), [], [], []))
+        self.assertEqual(sweep.merge().rows, sweep.rows)
+        self.assertEqual(sha256(sweep.folder), sha256_by_one_process(sweep))
+        self.assertEqual((shares[-1], len(shares)), (1, len(sweep.parts)))
+        self.assertEqual(len(before), 2)
+        self.assertNotEqual(set(self.client.run(lambda dask_worker: dask_worker.id)), before)
+
+    def test_what_is_there_is_not_made_again(self):
+        sweep, shares = make_job(40, 10), []
+        sweep.run(2)
+        self.assertEqual(ist.dask.run(sweep, self.client, threads=2, progress=shares.append).done, [0, 1, 2, 3])
+        self.assertEqual(len(shares), 3)
+        self.assertEqual(ist.dask.run(sweep, self.client, progress=shares.append).done, [0, 1, 2, 3])
+        self.assertEqual(len(shares), 3)
+
+    def test_an_error_comes_out(self):
+        sweep = make_job(40, 10)
+        sweep.path.write_text(sweep.path.read_text().replace("seed = 7", "seed = 8"))
+        with self.assertRaisesRegex(ist.InputError, "another sweep"):
+            ist.dask.run(sweep, self.client, retries=1)
+        self.assertFalse(sweep.folder.exists())
+
+        def enough(done):
+            raise TimeoutError("that is enough")
+
+        sweep = make_job(40, 10)
+        with self.assertRaisesRegex(TimeoutError, "enough"):
+            ist.dask.run(sweep, self.client, progress=enough)
+        self.assertEqual(ist.dask.run(sweep, self.client).done, [0, 1, 2, 3])
+
+    def test_the_stub_has_its_parameters(self):
+        stub = ast.parse(pathlib.Path(ist.dask.__file__).with_suffix(".pyi").read_text())
+        said = next(each for each in stub.body if isinstance(each, ast.FunctionDef))
+        self.assertEqual([each.arg for each in said.args.args], list(inspect.signature(ist.dask.run).parameters))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,124 @@
+"""What the tests of engines share: a sweep whose parts take a while, its table by one process, and a kill in the middle of a part."""
+
+import hashlib
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCE = HERE.parents[1]
+
+
+def skip(reason):
+    """Ends a test program as skipped; as failed with IST_REQUIRE_ALL=1."""
+    print(f"skipped: {reason}", file=sys.stderr)
+    sys.exit(1 if os.environ.get("IST_REQUIRE_ALL") == "1" else 77)
+
+
+try:
+    import numpy as np  # noqa: F401  which ist needs
+except ImportError as missing:
+    skip(f"{missing}; scripts/setup.sh --sweep installs it, for /usr/bin/python3")
+
+import ist  # noqa: E402  after numpy, which may be missing
+
+# Rigid motions about the closed bite. A part of 1000 takes half a second.
+JOB = """answers = ["intersects", "distance"]
+tolerance = 0.002
+rows_per_part = {rows_per_part}
+[fixed]
+tree = "upper.ist"
+[moving]
+tree = "lower.ist"
+[poses.box]
+seed = 7
+count = {count}
+from = {low}
+to = {high}
+turns_within = [3, 3, 3]
+"""
+
+
+def make_job(count, rows_per_part, low=(-1, -1, -3), high=(1, 1, 0)):
+    """A folder with job.toml and its trees, removed when the program ends, and the sweep."""
+    made = tempfile.TemporaryDirectory()
+    folder = pathlib.Path(made.name)
+    for name, jaw in zip(("upper", "lower"), ist.jaws()):
+        ist.build(jaw, voxel_size=0.8).save(folder / f"{name}.ist")
+    job = folder / "job.toml"
+    job.write_text(JOB.format(count=count, rows_per_part=rows_per_part, low=list(low), high=list(high)))
+    sweep = ist.Sweep(job, folder / "out")
+    sweep.kept = made  # with the sweep
+    return sweep
+
+
+def command(*arguments):
+    """Runs `ist` and returns what it prints. A failure is an exception with what it said."""
+    ran = subprocess.run([os.environ["IST_COMMAND"], *map(str, arguments)], capture_output=True, text=True, check=False)
+    if ran.returncode != 0:
+        raise AssertionError(f"ist {arguments} ended with {ran.returncode}: {ran.stdout}{ran.stderr}")
+    return ran.stdout
+
+
+def path_with_command():
+    """The environment in which a script finds `ist`."""
+    return dict(os.environ, PATH=f"{pathlib.Path(os.environ['IST_COMMAND']).parent}:{os.environ['PATH']}")
+
+
+def sha256(folder):
+    return hashlib.sha256((pathlib.Path(folder) / "rows.npy").read_bytes()).hexdigest()
+
+
+def sha256_by_one_process(sweep):
+    """The SHA-256 of the table that this process makes alone, elsewhere."""
+    folder = sweep.path.with_name("alone")
+    for part in sweep.parts:
+        sweep.run(part, folder)
+    assert sweep.merge(folder).rows == sweep.rows
+    return sha256(folder)
+
+
+def part_that(process, folder):
+    """The part of a folder that a process is making: it holds the part's mark open. None: no part."""
+    try:
+        links = [os.readlink(f"/proc/{process}/fd/{each}") for each in os.listdir(f"/proc/{process}/fd")]
+    except OSError:  # it ended, or belongs to somebody else
+        return None
+    found = [re.fullmatch(re.escape(str(folder)) + r"/part-(\d+)\.start-\d", link) for link in links]
+    return next((int(each[1]) for each in found if each), None)
+
+
+def alive(process):
+    """Whether a process is there, and more than what its parent has yet to hear of."""
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def kill_in_the_middle_of_a_part(folder, seconds=60):
+    """Waits until a process makes a part of the folder, and kills it. Returns the process and the part, which is not there.
+
+    Raises AssertionError where no process could be killed so.
+    """
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        for process in (int(each) for each in os.listdir("/proc") if each.isdigit() and int(each) != os.getpid()):
+            if part_that(process, folder) is None:
+                continue
+            os.kill(process, signal.SIGSTOP)
+            part = part_that(process, folder)
+            if part is None or (folder / f"part-{part:06}.npy").exists():  # it came to an end meanwhile
+                os.kill(process, signal.SIGCONT)
+                continue
+            os.kill(process, signal.SIGKILL)
+            while alive(process):
+                time.sleep(0.005)
+            return process, part
+        time.sleep(0.01)
+    raise AssertionError(f"no process could be killed in the middle of a part of {folder}")

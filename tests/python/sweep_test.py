@@ -1,0 +1,464 @@
+"""Sweeps from Python: poses against numpy's own Philox, rows against Query.rows, parts, the merged table, and misuse."""
+
+import copy
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import numpy as np
+import unittest
+from support import Refusals, box, turn
+
+import ist
+
+ANSWERS = ("intersects", "leaf_pairs", "distance", "contacts", "penetration")
+BODIES = '[fixed]\ntree = "upper.ist"\n[moving]\ntree = "lower.ist"\n'
+BOX = """[poses.box]
+seed = {seed}
+count = {count}
+from = [-1.5, -1, -3.25]
+to = [1, 1.75, 0.1]
+"""
+ABOUT = np.array([3.0, -20.0, 7.5])
+GRID = """[[poses.axes]]
+turn = [1, 2, -2]
+about = [3, -20, 7.5]
+from = -4
+to = 3
+count = 3
+[[poses.axes]]
+move = [0, 0, 1]
+from = -3
+to = 0.3
+count = 4
+[[poses.axes]]
+move = [0, -2, 0]
+from = 0
+to = 1
+count = 2
+"""
+
+
+def box_poses(seed, count):
+    return BOX.format(seed=seed, count=count)
+
+
+class Moved:
+    """The oracle: pose i of a box, by numpy's generator."""
+
+    def __init__(self, seed, index):
+        self.random = np.random.Generator(np.random.Philox(key=seed, counter=[0, index, 0, 0])).random
+        low, high = np.array([-1.5, -1, -3.25]), np.array([1, 1.75, 0.1])
+        self.move = low + np.array([self.random() for _ in range(3)]) * (high - low)
+
+    def pose(self, quaternion=(1, 0, 0, 0)):
+        w, *v = np.array(quaternion) / np.linalg.norm(quaternion)
+        x, y, z = v
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        pose = np.eye(4)
+        pose[:3, :3] = np.eye(3) + 2 * w * cross + 2 * cross @ cross
+        pose[:3, 3] = ABOUT - pose[:3, :3] @ ABOUT + self.move
+        return pose
+
+    def within(self, degrees):
+        w = (2 * np.array([self.random() for _ in range(3)]) - 1) * np.radians(degrees)
+        return self.pose([1, *(w / 2)])
+
+    def disc(self):
+        while True:
+            x, y = 2 * self.random() - 1, 2 * self.random() - 1
+            if 0 < x * x + y * y < 1:
+                return x, y, x * x + y * y
+
+    def any(self):
+        (x, y, s), (z, w, t) = self.disc(), self.disc()
+        return self.pose([x, y, z * np.sqrt((1 - s) / t), w * np.sqrt((1 - s) / t)])
+
+
+class Sweeps(Refusals):
+    """Two boxes, one with a roof, as trees in a folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        made = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(made.cleanup)
+        cls.place = pathlib.Path(made.name)
+        cls.upper = ist.build(box([-2, -2, 0], [2, 2, 1.5]), 0.25)
+        cls.lower = ist.build(box([-1, -1.5, -2], [1.2, 1, 0]), 0.25)
+        cls.upper.save(cls.place / "upper.ist")
+        cls.lower.save(cls.place / "lower.ist")
+        cls.jobs = 0
+
+    def job(self, poses, answers=("intersects",), settings="rows_per_part = 10", bodies=BODIES):
+        """A sweep of a file, and of a folder, that no other test uses."""
+        type(self).jobs += 1
+        file = self.place / f"{self.jobs}.toml"
+        file.write_text(f"answers = {list(answers)}\n{settings}\n{bodies}{poses}")
+        return ist.Sweep(file)
+
+
+class Poses(Sweeps):
+    def test_a_box_moves_as_numpys_philox_says_bit_for_bit(self):
+        for seed in (0, 7, 2**40 + 3, 2**63 - 1):
+            found = self.job(box_poses(seed, 50)).poses(0, 50)
+            self.assertEqual((found.shape, found.dtype, found.flags.c_contiguous), ((50, 4, 4), np.float64, True))
+            expected = np.tile(np.eye(4), (50, 1, 1))
+            expected[:, :3, 3] = [Moved(seed, index).move for index in range(50)]
+            self.assertEqual(found.tobytes(), expected.tobytes())
+
+    def test_a_box_turns_within(self):
+        found = self.job(box_poses(7, 60) + f"turns_within = [3, 0, 45]\nabout = {ABOUT.tolist()}\n").poses(0, 60)
+        np.testing.assert_allclose(found, [Moved(7, index).within([3, 0, 45]) for index in range(60)], atol=1e-13)
+        self.assertGreater(np.ptp(found[:, 0, 1]), 0.3)
+
+    def test_a_box_turns_any_way(self):
+        found = self.job(box_poses(8, 60) + f'turns = "any"\nabout = {ABOUT.tolist()}\n').poses(0, 60)
+        np.testing.assert_allclose(found, [Moved(8, index).any() for index in range(60)], atol=1e-13)
+        self.assertLess(found[:, 0, 0].min(), -0.5)
+
+    def test_a_grid_moves_by_its_last_axis_first(self):
+        sweep = self.job(GRID)
+        found, expected = sweep.poses(0, sweep.rows), []
+        for angle in (-4, -0.5, 3):
+            for z in (-3, -3 + 3.3 / 3, -3 + 3.3 * 2 / 3, 0.3):
+                for y in (0, -1):
+                    pose = np.eye(4)
+                    pose[:3, :3] = turn([1, 2, -2], np.radians(angle))
+                    pose[:3, 3] = pose[:3, :3] @ [0, y, z] + ABOUT - pose[:3, :3] @ ABOUT
+                    expected.append(pose)
+        np.testing.assert_allclose(found, expected, atol=1e-13)
+
+    def test_a_grid_of_moves_is_exact(self):
+        found = self.job(GRID[GRID.index("[[poses.axes]]\nmove"):]).poses(0, 8)
+        z = [-3 + (0.3 - -3) * (step / 3) for step in range(3)] + [0.3]
+        np.testing.assert_array_equal(found[:, 2, 3], np.repeat(z, 2))
+        np.testing.assert_array_equal(found[:, 1, 3], [0, -1] * 4)
+
+    def test_a_file_has_them_row_by_row(self):
+        poses = np.array([Moved(3, index).any() for index in range(30)])
+        np.save(self.place / "poses.npy", poses)
+        sweep = self.job('[poses]\nfile = "poses.npy"\n')
+        self.assertEqual(sweep.rows, 30)
+        self.assertEqual(sweep.poses(0, 30).tobytes(), poses.tobytes())
+        self.assertEqual(sweep.poses(11, 7).tobytes(), poses[11:18].tobytes())
+
+    def test_they_are_the_same_in_every_order(self):
+        for text in (box_poses(5, 40) + 'turns = "any"\n', GRID):
+            sweep = self.job(text)
+            whole = sweep.poses(0, sweep.rows)
+            for first, count in ((0, 0), (3, 1), (17, 7), (sweep.rows - 2, 2), (sweep.rows, 0)):
+                self.assertEqual(sweep.poses(first, count).tobytes(), whole[first : first + count].tobytes())
+
+
+class Rows(Sweeps):
+    def test_columns_are_those_of_the_answers(self):
+        first = [("index", "<u8"), ("status", "<i4"), ("complete", "<i4")]
+        self.assertEqual(self.job(GRID, ["intersects"]).columns, np.dtype([*first, ("intersects", "<i4"), ("sphere_tests", "<u8")]))
+        of_all = self.job(GRID, ANSWERS).columns
+        self.assertEqual(of_all.itemsize, sum(of_all[name].itemsize for name in of_all.names))
+        self.assertEqual(set(of_all.names) - {"index"}, self.names_of_row())
+
+    @staticmethod
+    def names_of_row():
+        vectors = {f"{vector}_{axis}" for vector in ("force", "torque") for axis in "xyz"}
+        return set(ist.ROW.names) - {"force", "torque"} | vectors
+
+    def same_as_single_rows(self, table, sweep, **options):
+        """Compares a table, column by column and bit by bit, with what Query.rows says of the same poses."""
+        rows = ist.Query(self.upper, self.lower).rows(sweep.poses(0, sweep.rows), **options)
+        self.assertEqual(table.dtype, sweep.columns)
+        np.testing.assert_array_equal(table["index"], np.arange(sweep.rows))
+        for name in set(table.dtype.names) - {"index"}:
+            vector, _, axis = name.rpartition("_")
+            expected = rows[vector][:, "xyz".index(axis)] if vector in ("force", "torque") else rows[name]
+            self.assertEqual(table[name].tobytes(), expected.tobytes(), name)
+        return rows
+
+    def test_each_is_that_of_a_query(self):
+        sweep = self.job(box_poses(11, 64) + "turns_within = [20, 20, 20]\n", ANSWERS, "rows_per_part = 25\ntolerance = 0.01\nstiffness = 2.5")
+        for part in sweep.parts:
+            sweep.run(part)
+        self.assertEqual(sweep.merge(), (64, [], []))
+        rows = self.same_as_single_rows(np.load(sweep.folder / "rows.npy"), sweep, want=ANSWERS, tolerance=0.01, stiffness=2.5)
+        self.assertEqual(set(rows["intersects"]), {ist.YES, ist.NO})
+        self.assertTrue((rows["force"] != 0).any() and (rows["depth_lower"] > 0).any())
+
+    def test_a_limit_and_spheres_are_heard(self):
+        settings = 'rows_per_part = 64\ntests = 40\nspheres = "simple"'
+        sweep = self.job(box_poses(12, 64), ["distance"], settings)
+        sweep.run(0)
+        table = np.load(sweep.folder / "part-000000.npy")
+        rows = ist.Query(self.upper, self.lower, spheres="simple").rows(sweep.poses(0, 64), want=["distance"], tests=40)
+        self.assertEqual(table["distance_lower"].tobytes(), rows["distance_lower"].tobytes())
+        self.assertEqual(set(table["complete"]), set(rows["complete"]))
+        self.assertIn(0, table["complete"])
+
+    def test_a_pose_that_is_no_motion_is_a_status(self):
+        poses = np.tile(np.eye(4), (5, 1, 1))
+        poses[2] *= 2
+        np.save(self.place / "bad.npy", poses)
+        sweep = self.job('[poses]\nfile = "bad.npy"\n')
+        sweep.run(0)
+        self.assertEqual(np.load(sweep.folder / "part-000000.npy")["status"].tolist(), [0, 0, ist.POSE_INVALID, 0, 0])
+
+
+class Parts(Sweeps):
+    def test_sizes(self):
+        sweep = self.job(box_poses(1, 45))
+        self.assertEqual((sweep.rows, sweep.rows_per_part, sweep.parts), (45, 10, range(5)))
+        self.assertRegex(sweep.hash, "^[0-9a-f]{32}$")
+        self.assertEqual(sweep.folder, sweep.path.with_suffix(".sweep"))
+        self.assertFalse(sweep.folder.exists())
+        self.assertIn("45 rows in 5 parts", repr(sweep))
+        self.assertEqual(self.job(box_poses(1, 0)).parts, range(0))
+
+    def test_the_hash_names_the_rows(self):
+        hashes = [self.job(*each).hash for each in ((box_poses(1, 45),), (box_poses(2, 45),), (box_poses(1, 46),), (GRID,),
+                                                    (box_poses(1, 45), ("distance",)), (box_poses(1, 45), ("intersects",), "tests = 9"))]
+        self.assertEqual(len(set(hashes)), len(hashes))
+        self.assertEqual(self.job(box_poses(1, 45)).hash, hashes[0])
+
+    def test_parts_are_made_once_in_any_order_and_merge(self):
+        sweep = self.job(box_poses(2, 45) + "turns_within = [9, 9, 9]\n", ("intersects", "distance"))
+        self.assertEqual(sweep.status(), ([], [0, 1, 2, 3, 4], [], [], 0.0))
+        for part in (4, 1):
+            made = sweep.run(part)
+            self.assertEqual(made[:3], (part, "made", 5 if part == 4 else 10))
+            self.assertGreater(made.seconds, 0)
+            self.assertEqual(sweep.run(part), (part, "there", made.rows, made.seconds))
+        self.assertEqual(sweep.merge(), (0, [0, 2, 3], []))
+        self.assertFalse((sweep.folder / "rows.npy").exists())
+        status = sweep.status(verify=True)
+        self.assertEqual(status[:4], ([1, 4], [0, 2, 3], [], []))
+        self.assertAlmostEqual(status.seconds, sum(sweep.run(part).seconds for part in (1, 4)))
+        for part in (3, 0, 2):
+            sweep.run(part)
+        self.assertEqual(sweep.merge(), (45, [], []))
+        parts = [np.load(sweep.folder / f"part-{part:06}.npy") for part in sweep.parts]
+        self.assertEqual([len(part) for part in parts], [10, 10, 10, 10, 5])
+        self.assertEqual(np.load(sweep.folder / "rows.npy").tobytes(), np.concatenate(parts).tobytes())
+        self.assertTrue({"manifest.json", "rows.parquet"} <= set(os.listdir(sweep.folder)))
+
+    def test_every_number_of_threads_makes_the_same_bytes(self):
+        sweep = self.job(box_poses(3, 600), ANSWERS, "rows_per_part = 600\ntolerance = 0.01")
+        made = []
+        for threads in (1, 2, 0):
+            folder = self.place / f"by {threads}"
+            self.assertEqual(sweep.run(0, folder, threads=threads).outcome, "made")
+            made.append((folder / "part-000000.npy").read_bytes())
+        self.assertEqual(made, made[:1] * 3)
+
+    def test_threads_share_a_sweep(self):
+        sweep = self.job(box_poses(4, 400), ("distance",), "rows_per_part = 20\ntolerance = 0.001")
+        outcomes = []
+
+        def run(parts):
+            for part in parts:
+                outcomes.append(sweep.run(part, threads=1).outcome)
+
+        threads = [threading.Thread(target=run, args=[sweep.parts[k::4]]) for k in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(outcomes, ["made"] * 20)
+        self.assertEqual(sweep.merge(), (400, [], []))
+        alone = sweep.folder.with_suffix(".alone")
+        for part in sweep.parts:
+            sweep.run(part, alone)
+        sweep.merge(alone)
+        self.assertEqual((sweep.folder / "rows.npy").read_bytes(), (alone / "rows.npy").read_bytes())
+
+    def test_a_pickle_is_opened_anywhere(self):
+        sweep = self.job(box_poses(6, 20))
+        expected = [self.run_alone(sweep, part) for part in sweep.parts]
+        before = os.getcwd()
+        os.chdir(self.place)
+        try:
+            named = ist.Sweep(sweep.path.name, "here")
+        finally:
+            os.chdir(before)
+        self.assertEqual((named.path, named.folder), (sweep.path, self.place / "here"))
+        for other in (pickle.loads(pickle.dumps(named)), copy.copy(named), copy.deepcopy(named)):
+            self.assertEqual((other.hash, other.path, other.folder), (sweep.hash, sweep.path, self.place / "here"))
+            other.run(1)
+        self.assertEqual((self.place / "here/part-000001.npy").read_bytes(), expected[1])
+
+    @staticmethod
+    def run_alone(sweep, part):
+        """The bytes of a part that a process of its own makes."""
+        program = f"import pickle, sys; pickle.loads(sys.stdin.buffer.read()).run({part})"
+        subprocess.run([sys.executable, "-B", "-c", program], input=pickle.dumps(sweep), check=True)
+        return (sweep.folder / f"part-{part:06}.npy").read_bytes()
+
+    def test_a_part_that_was_lost_three_times_is_given_up(self):
+        sweep = self.job(box_poses(9, 30))
+        sweep.run(1)
+        program = ("import ist, sys, time\n"
+                   f"ist.Sweep({str(sweep.path)!r}).run(0, progress=lambda done: (print('begun', flush=True), time.sleep(60)))")
+        for start in (1, 2, 3):
+            process = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE)
+            self.assertEqual(process.stdout.readline(), b"begun\n")
+            self.assertEqual(sweep.status().missing, [0, 2])
+            with self.assertRaisesRegex(ist.InputError, "making this part"):
+                sweep.run(0)
+            process.kill()
+            process.communicate()
+        self.assertEqual(sweep.status()[:4], ([1], [2], [0], []))
+        self.assertEqual(sweep.run(0)[:2], (0, "given up"))
+        sweep.run(2)
+        self.assertEqual(sweep.merge(), (0, [], [0]))
+        for mark in sweep.folder.glob("part-000000.start-*"):
+            mark.unlink()
+        self.assertEqual(sweep.run(0)[:2], (0, "made"))
+        self.assertEqual(sweep.merge().rows, 30)
+
+
+class Ended(Exception):
+    pass
+
+
+class Follow(Sweeps):
+    def long(self):
+        return self.job(box_poses(10, 30_000), ("distance",), "rows_per_part = 30000\ntolerance = 0.0001")
+
+    def test_parts_and_merges_are_followed(self):
+        sweep, shares = self.long(), []
+        began = time.monotonic()
+        sweep.run(0, progress=shares.append)
+        self.assertGreater(len(shares), 4 * (time.monotonic() - began))
+        self.assertEqual(shares, sorted(shares))
+        self.assertTrue(0 <= shares[0] < shares[-1] <= 1)
+        calls = []
+        sweep.merge(progress=calls.append)
+        sweep.status(progress=calls.append)
+        ist.Sweep(sweep.path, progress=calls.append)
+        self.assertGreaterEqual(len(calls), 3)
+        self.assertTrue(all(0 <= each <= 1 for each in calls))
+
+    def test_an_exception_ends_the_call_and_leaves_nothing(self):
+        sweep = self.long()
+
+        def end(kind):
+            def progress(done):
+                raise kind
+            return progress
+
+        for kind in (Ended, KeyboardInterrupt, SystemExit):
+            self.assertRaises(kind, sweep.run, 0, progress=end(kind))
+            self.assertRaises(kind, ist.Sweep, sweep.path, progress=end(kind))
+            self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
+        small = self.job(box_poses(10, 10))
+        small.run(0)
+        before = sorted(os.listdir(small.folder))
+        self.assertRaises(Ended, small.merge, progress=end(Ended))
+        self.assertRaises(Ended, small.status, progress=end(Ended))
+        self.assertEqual(sorted(os.listdir(small.folder)), before)
+        self.assertEqual(small.merge().rows, 10)
+
+    def test_ctrl_c(self):
+        sweep = self.long()
+        sweep.path.write_text(sweep.path.read_text().replace("30000", "3000000"))
+        program = (f"import ist\nsweep = ist.Sweep({str(sweep.path)!r})\nprint('ready', flush=True)\n"
+                   "try:\n    sweep.run(0)\nexcept KeyboardInterrupt:\n    print('interrupted', sweep.status().missing)\n")
+        process = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        time.sleep(0.4)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+        self.assertEqual((out, err, process.returncode), ("interrupted [0]\n", "", 0))
+        self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
+
+
+class Misuse(Sweeps):
+    def test_numbers(self):
+        sweep = self.job(box_poses(1, 20))
+        for part in (-1, 2**64, 0.5, "one", None):
+            self.refuses(ist.InputError, "part", sweep.run, part)
+        self.refuses(ist.InputError, "part", sweep.run, 2)
+        for threads in (-1, 1025, 1.5, None):
+            self.refuses(ist.InputError, "threads", sweep.run, 0, threads=threads)
+        for first, count in ((-1, 1), (21, 0), (0, 21), (19, 2), (0, -1), ("a", 1), (0, 0.5), (2**64, 0)):
+            self.refuses(ist.InputError, "", sweep.poses, first, count)
+        for call in (lambda: sweep.run(0, progress=3), lambda: sweep.merge(progress=3), lambda: ist.Sweep(sweep.path, progress=3)):
+            self.refuses(TypeError, "progress", call)
+        self.assertFalse(sweep.folder.exists())
+
+    def test_files(self):
+        self.refuses(ist.FileError, "missing.toml", ist.Sweep, self.place / "missing.toml")
+        self.refuses(ist.InputError, "zero", ist.Sweep, "a\0b.toml")
+        self.refuses(ist.InputError, "zero", ist.Sweep, self.job(GRID).path, "a\0b")
+        self.refuses(TypeError, "", ist.Sweep, 5)
+        self.refuses(ist.InputError, [".toml:", "answers", "touch"], self.job, GRID, ["touch"])
+        self.refuses(ist.FileError, "nobody.ist", self.job, GRID, bodies=BODIES.replace("lower", "nobody"))
+        self.refuses(ist.InputError, ["hash", "changed"], self.job, GRID, bodies=BODIES.replace("[moving]", f'hash = "{"0" * 32}"\n[moving]'))
+        self.refuses(ist.InputError, "poses", self.job, "")
+
+    def test_folders(self):
+        sweep, other = self.job(box_poses(1, 20)), self.job(box_poses(2, 20))
+        sweep.run(0)
+        for call in (lambda: other.run(0, sweep.folder), lambda: other.merge(sweep.folder), lambda: other.status(sweep.folder)):
+            self.refuses(ist.InputError, "sweep", call)
+        self.assertEqual(sweep.status()[:2], ([0], [1]))
+        empty = self.place / "empty"
+        empty.mkdir()
+        self.assertEqual(sweep.status(empty).missing, [0, 1])
+        self.assertEqual(sweep.run(1, empty).outcome, "made")
+        file = self.place / "no folder"
+        file.write_text("")
+        self.refuses(ist.Error, "no folder", sweep.run, 0, file)
+
+    def test_a_damaged_part_is_found(self):
+        sweep = self.job(box_poses(3, 30))
+        for part in sweep.parts:
+            sweep.run(part)
+        first, second = sweep.folder / "part-000000.npy", sweep.folder / "part-000001.npy"
+        content = bytearray(first.read_bytes())
+        content[-1] ^= 1
+        first.write_bytes(content)
+        self.assertEqual(sweep.status().damaged, [])
+        self.assertEqual(sweep.status(verify=True)[:4], ([1, 2], [], [], [0]))
+        self.refuses(ist.InputError, "part-000000.npy", sweep.merge)
+        first.unlink()
+        second.write_bytes(second.read_bytes()[:-1])
+        self.assertEqual(sweep.status()[:4], ([2], [0], [], [1]))
+        self.refuses(ist.InputError, "part-000001.npy", sweep.run, 1)
+        second.unlink()
+        self.assertEqual([sweep.run(part).outcome for part in (0, 1)], ["made", "made"])
+        self.assertEqual(sweep.merge().rows, 30)
+
+    def test_a_tree_that_changed(self):
+        ist.build(box([0, 0, 0], [1, 1, 1]), 0.5).save(self.place / "changes.ist")
+        sweep = self.job(box_poses(1, 20), bodies=BODIES.replace("lower", "changes"))
+        ist.build(box([0, 0, 0], [1, 1, 2]), 0.5).save(self.place / "changes.ist")
+        self.refuses(ist.InputError, ["changes.ist", "changed"], sweep.run, 0)
+        self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
+
+    def test_freed(self):
+        with self.job(box_poses(1, 20)) as sweep:
+            sweep.run(0)
+        sweep.free()
+        for call in (lambda: sweep.run(1), sweep.merge, sweep.status, lambda: sweep.poses(0, 1)):
+            self.refuses(ist.FreedError, "freed", call)
+        self.assertEqual(repr(sweep), "<ist.Sweep, freed>")
+        self.assertEqual((sweep.rows, sweep.parts), (20, range(2)))
+
+    def test_a_sweep_may_be_freed_while_it_runs(self):
+        sweep, begun = self.job(box_poses(10, 20_000), ("distance",), "tolerance = 0.0001"), threading.Event()
+        outcomes = []
+        thread = threading.Thread(target=lambda: outcomes.append(sweep.run(0, progress=lambda done: begun.set())))
+        thread.start()
+        self.assertTrue(begun.wait(10))
+        sweep.free()
+        thread.join()
+        self.assertEqual(outcomes[0][:3], (0, "made", 20_000))
+
+
+if __name__ == "__main__":
+    unittest.main()
