@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import time
 
-PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "scancel")
+PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scancel", "squeue", "scontrol")
 # A job whose command was killed (128 + 9) is requeued, as one whose node failed.
 CONFIGURATION = """
 ClusterName=one
@@ -89,8 +89,11 @@ class OneNodeSlurm:
         return self
 
     def __exit__(self, *_):
-        if len(self.daemons) > 1:
-            self.try_to("scancel", "--full", "--signal=KILL", f"--user={getpass.getuser()}")
+        if len(self.daemons) == 3:  # after a failure jobs may run
+            self.try_to("scancel", f"--user={getpass.getuser()}")
+            end = time.monotonic() + 20
+            while time.monotonic() < end and self.try_to("squeue", "--noheader").stdout:
+                time.sleep(0.2)
         for daemon in reversed(self.daemons):
             daemon.terminate()
             try:
