@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import os
 import pathlib
 import threading
 import unittest
@@ -25,27 +26,40 @@ class Dask(unittest.TestCase):
         cls.client = Client(cluster)
         cls.addClassCleanup(cls.client.close)
 
-    def test_a_worker_is_killed_and_the_table_is_that_of_one_process(self):
-        sweep, killed, shares = make_job(16_000, 1000), [], []
-        before = set(self.client.run(lambda dask_worker: dask_worker.id))
+    def workers(self):
+        return set(self.client.run(os.getpid).values())
+
+    def makes_all_although_a_worker_is_killed(self, sweep):
+        workers, killed, shares = self.workers(), [], []
 
         def kill():
-            killed.append(kill_in_the_middle_of_a_part(sweep.folder))
+            killed.append(kill_in_the_middle_of_a_part(sweep.folder)[0])
 
         killer = threading.Thread(target=kill)
         killer.start()
         status = ist.dask.run(sweep, self.client, progress=shares.append)
         killer.join()
         self.assertEqual(len(killed), 1, "no worker died")
+        self.assertIn(killed[0], workers)
+        self.assertNotIn(killed[0], self.workers())
         self.assertEqual(status[:4], (list(sweep.parts), [], [], []))
         self.assertEqual(sweep.merge().rows, sweep.rows)
         self.assertEqual(sha256(sweep.folder), sha256_by_one_process(sweep))
-        self.assertEqual((shares[-1], len(shares)), (1, len(sweep.parts)))
-        self.assertEqual(len(before), 2)
-        self.assertNotEqual(set(self.client.run(lambda dask_worker: dask_worker.id)), before)
+        self.assertEqual((shares, shares[-1], len(shares)), (sorted(shares), 1, len(sweep.parts)))
+
+    def test_a_worker_is_killed_and_the_table_is_that_of_one_process(self):
+        self.makes_all_although_a_worker_is_killed(make_job(self, 16_000, 1000))
+
+    def test_tasks_that_dask_gives_up_are_tried_again(self):
+        def allow(failures):
+            self.client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", failures))
+
+        allow(0)  # a killed worker's tasks end with KilledWorker
+        self.addCleanup(allow, 3)
+        self.makes_all_although_a_worker_is_killed(make_job(self, 8000, 1000))
 
     def test_what_is_there_is_not_made_again(self):
-        sweep, shares = make_job(40, 10), []
+        sweep, shares = make_job(self, 40, 10), []
         sweep.run(2)
         self.assertEqual(ist.dask.run(sweep, self.client, threads=2, progress=shares.append).done, [0, 1, 2, 3])
         self.assertEqual(len(shares), 3)
@@ -53,7 +67,7 @@ class Dask(unittest.TestCase):
         self.assertEqual(len(shares), 3)
 
     def test_an_error_comes_out(self):
-        sweep = make_job(40, 10)
+        sweep = make_job(self, 40, 10)
         sweep.path.write_text(sweep.path.read_text().replace("seed = 7", "seed = 8"))
         with self.assertRaisesRegex(ist.InputError, "another sweep"):
             ist.dask.run(sweep, self.client, retries=1)
@@ -62,7 +76,7 @@ class Dask(unittest.TestCase):
         def enough(done):
             raise TimeoutError("that is enough")
 
-        sweep = make_job(40, 10)
+        sweep = make_job(self, 40, 10)
         with self.assertRaisesRegex(TimeoutError, "enough"):
             ist.dask.run(sweep, self.client, progress=enough)
         self.assertEqual(ist.dask.run(sweep, self.client).done, [0, 1, 2, 3])

@@ -20,7 +20,7 @@ class Memory(unittest.TestCase):
         return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024 / MEGABYTE
 
     def test_a_million_poses_far_apart(self):
-        sweep = make_job(1_000_000, 100_000, low=(1000, -500, -500), high=(2000, 500, 500))
+        sweep = make_job(self, 1_000_000, 100_000, low=(1000, -500, -500), high=(2000, 500, 500))
         sweep.path.write_text(sweep.path.read_text().replace(', "distance"', "").replace("tolerance = 0.002\n", ""))
         making = self.peak(sweep.path, "-o", sweep.folder)
         merging = self.peak(sweep.path, "-o", sweep.folder, "--merge")

@@ -12,7 +12,7 @@ if shutil.which("parallel") is None:
 
 class Parallel(unittest.TestCase):
     def test_a_job_is_killed_and_the_table_is_that_of_one_process(self):
-        sweep = make_job(8000, 1000)
+        sweep = make_job(self, 8000, 1000)
         log = sweep.path.with_name("log")
         line = ["parallel", "--jobs", "2", "--retries", "4", "--joblog", log, "ist", "sweep", sweep.path, "-o", sweep.folder, "--share", "{}/4",
                 "--threads", "1", ":::", "0", "1", "2", "3"]

@@ -9,7 +9,7 @@ from support import command, make_job, path_with_command, sha256, sha256_by_one_
 
 class SlurmByHand(unittest.TestCase):
     def test_the_tasks_of_an_array_make_the_table_of_one_process(self):
-        sweep = make_job(70, 10)
+        sweep = make_job(self, 70, 10)
         script = write_array_script(sweep.path.parent)
         self.assertIn("--requeue", script.read_text())
         seen = []

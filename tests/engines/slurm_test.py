@@ -16,7 +16,7 @@ if MISSING:
 class Slurm(unittest.TestCase):
     def test_a_killed_task_is_requeued_and_the_table_is_that_of_one_process(self):
         os.environ.update(path_with_command())  # which the jobs inherit
-        sweep = make_job(8000, 1000)
+        sweep = make_job(self, 8000, 1000)
         script = write_array_script(sweep.path.parent)
         with OneNodeSlurm() as slurm:
             said = slurm.ask("sbatch", "--array=0-3", "--cpus-per-task=1", script, cwd=script.parent)

@@ -44,17 +44,16 @@ turns_within = [3, 3, 3]
 """
 
 
-def make_job(count, rows_per_part, low=(-1, -1, -3), high=(1, 1, 0)):
-    """A folder with job.toml and its trees, removed when the program ends, and the sweep."""
+def make_job(test, count, rows_per_part, low=(-1, -1, -3), high=(1, 1, 0)):
+    """A sweep: job.toml beside its trees, and the folder `out`; all are removed when the test ends."""
     made = tempfile.TemporaryDirectory()
+    test.addCleanup(made.cleanup)
     folder = pathlib.Path(made.name)
     for name, jaw in zip(("upper", "lower"), ist.jaws()):
         ist.build(jaw, voxel_size=0.8).save(folder / f"{name}.ist")
     job = folder / "job.toml"
     job.write_text(JOB.format(count=count, rows_per_part=rows_per_part, low=list(low), high=list(high)))
-    sweep = ist.Sweep(job, folder / "out")
-    sweep.kept = made  # with the sweep
-    return sweep
+    return ist.Sweep(job, folder / "out")
 
 
 def command(*arguments):

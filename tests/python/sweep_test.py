@@ -298,10 +298,11 @@ class Parts(Sweeps):
         return (sweep.folder / f"part-{part:06}.npy").read_bytes()
 
     def test_a_part_that_was_lost_three_times_is_given_up(self):
-        sweep = self.job(box_poses(9, 30))
+        sweep = self.job(box_poses(9, 60_001), ("distance",), "rows_per_part = 30000\ntolerance = 0.0001")
         sweep.run(1)
-        program = ("import ist, sys, time\n"
-                   f"ist.Sweep({str(sweep.path)!r}).run(0, progress=lambda done: (print('begun', flush=True), time.sleep(60)))")
+        program = ("import ist, time\n"
+                   f"sweep = ist.Sweep({str(sweep.path)!r})\n"
+                   "sweep.run(0, progress=lambda done: done and (print('begun', flush=True), time.sleep(60)))")
         for start in (1, 2, 3):
             process = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE)
             self.assertEqual(process.stdout.readline(), b"begun\n")
@@ -317,7 +318,7 @@ class Parts(Sweeps):
         for mark in sweep.folder.glob("part-000000.start-*"):
             mark.unlink()
         self.assertEqual(sweep.run(0)[:2], (0, "made"))
-        self.assertEqual(sweep.merge().rows, 30)
+        self.assertEqual(sweep.merge().rows, 60_001)
 
 
 class Ended(Exception):
@@ -345,14 +346,16 @@ class Follow(Sweeps):
     def test_an_exception_ends_the_call_and_leaves_nothing(self):
         sweep = self.long()
 
-        def end(kind):
+        def end(kind, after=-1):
             def progress(done):
-                raise kind
+                if done > after:
+                    raise kind
             return progress
 
         for kind in (Ended, KeyboardInterrupt, SystemExit):
             self.assertRaises(kind, sweep.run, 0, progress=end(kind))
             self.assertRaises(kind, ist.Sweep, sweep.path, progress=end(kind))
+            self.assertRaises(kind, sweep.run, 0, progress=end(kind, after=0.01))
             self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
         small = self.job(box_poses(10, 10))
         small.run(0)

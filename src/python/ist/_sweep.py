@@ -87,7 +87,7 @@ class Sweep(Handle):
     path = property(lambda self: self._path, doc="The sweep file, absolute.")
     folder = property(lambda self: self._folder, doc="The folder of the parts and of the table, absolute.")
     rows = property(lambda self: self._info.rows, doc="The number of poses, which is that of the rows.")
-    rows_per_part = property(lambda self: self._info.rows_a_part, doc="Rows of each part; the last one may have fewer.")
+    rows_per_part = property(lambda self: self._info.rows_per_part, doc="Rows of each part; the last one may have fewer.")
     parts = property(lambda self: range(self._info.parts), doc="The numbers of the parts, a range.")
     hash = property(lambda self: self._info.hash.decode(), doc="32 hexadecimal digits, which name the rows of the sweep.")
     columns = property(lambda self: self._columns, doc="The dtype of a row, packed; numpy.load gives it for each file of rows.")
@@ -108,13 +108,12 @@ class Sweep(Handle):
         """
         number, most = count_of(part, "part"), count_of(threads, "threads", 1024)
         place, result = self._place(folder), PartInfo()
-        was_there = begun(place) and self._look(place, number, False).state == DONE
         with Follower(progress) as follower:
             status = LIBRARY.ist_sweep_run_part(
                 self._need(), place, number, most, follower.address, addressof(result)
             )
             follower.finish(status)
-        outcome = "given up" if result.state == GIVEN_UP else "there" if was_there else "made"
+        outcome = "made" if result.made else "given up" if result.state == GIVEN_UP else "there"
         return SweepPart(number, outcome, result.rows, result.seconds)
 
     def merge(self, folder=None, *, progress=None):

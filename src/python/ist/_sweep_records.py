@@ -11,7 +11,7 @@ class SweepInfo(Sized):
     _fields_ = [
         ("struct_size", c_size_t),
         ("rows", c_uint64),
-        ("rows_a_part", c_uint64),
+        ("rows_per_part", c_uint64),
         ("parts", c_uint64),
         ("row_bytes", c_uint64),
         ("columns", c_uint64),
@@ -36,6 +36,8 @@ class PartInfo(Sized):
         ("starts", c_int32),
         ("rows", c_uint64),
         ("seconds", c_double),
+        ("made", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -45,4 +47,5 @@ class MergeResult(Sized):
         ("rows", c_uint64),
         ("missing", c_uint64),
         ("given_up", c_uint64),
+        ("reserved", c_uint64),
     ]
