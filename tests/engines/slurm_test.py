@@ -26,6 +26,7 @@ class Slurm(unittest.TestCase):
             jobs = slurm.ask("scontrol", "show", "job", job)
             version = slurm.ask("sbatch", "--version").strip()
         self.assertEqual(sorted(re.findall(r"Restarts=(\d)", jobs)), ["0", "0", "0", "1"], jobs)
+        self.assertEqual(re.findall(r"Requeue=(\d)", jobs), ["1"] * 4, jobs)
         self.assertEqual(re.findall(r"JobState=(\w+)", jobs), ["COMPLETED"] * 4, jobs)
         self.assertIn(part, sweep.status().done)
         command("sweep", sweep.path, "-o", sweep.folder, "--merge")
