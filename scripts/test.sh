@@ -24,9 +24,9 @@ case ${1:-} in
   -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-setup=(--oracles --python --docs --cross --viewer)
+setup=(--oracles --python --sweep --docs --cross --viewer)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
-! $long || setup+=(--cloudcompare --blender)
+! $long || setup+=(--cloudcompare --blender --slurm)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
