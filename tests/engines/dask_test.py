@@ -4,6 +4,10 @@ import ast
 import inspect
 import os
 import pathlib
+import pickle
+import signal
+import subprocess
+import sys
 import threading
 import unittest
 
@@ -23,7 +27,7 @@ class Dask(unittest.TestCase):
     def setUpClass(cls):
         cluster = LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
         cls.addClassCleanup(cluster.close)
-        cls.client = Client(cluster)
+        cls.client = Client(cluster, set_as_default=False)
         cls.addClassCleanup(cls.client.close)
 
     def workers(self):
@@ -65,6 +69,22 @@ class Dask(unittest.TestCase):
         self.assertEqual(len(shares), 3)
         self.assertEqual(ist.dask.run(sweep, self.client, progress=shares.append).done, [0, 1, 2, 3])
         self.assertEqual(len(shares), 3)
+
+    def test_a_part_that_somebody_else_makes_is_waited_for(self):
+        sweep = make_job(self, 4000, 1000)
+        program = ("import pickle, sys\nsweep = pickle.load(sys.stdin.buffer)\n"
+                   "print(sweep.run(1, threads=1, progress=lambda done: done and print('begun', flush=True)).outcome)")
+        with subprocess.Popen([sys.executable, "-B", "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+            other.stdin.write(pickle.dumps(sweep))
+            other.stdin.close()
+            self.assertEqual(other.stdout.readline(), b"begun\n")
+            other.send_signal(signal.SIGSTOP)
+            goes_on = threading.Timer(3, other.send_signal, [signal.SIGCONT])
+            goes_on.start()
+            self.assertEqual(ist.dask.run(sweep, self.client, retries=0).done, [0, 1, 2, 3])
+            self.assertTrue(goes_on.finished.is_set())
+            goes_on.join()
+            self.assertTrue(other.stdout.read().endswith(b"made\n"))
 
     def test_an_error_comes_out(self):
         sweep = make_job(self, 40, 10)

@@ -1,10 +1,11 @@
 """Makes the parts of a sweep on the workers of dask.distributed. `import ist` alone needs no dask."""
 
 import threading
+import time
 
 from distributed import as_completed
 
-from ._errors import refuse
+from ._errors import InputError, refuse
 from ._sweep import Sweep
 
 _opening = threading.Lock()
@@ -24,7 +25,14 @@ def _sweep_of(path, folder, digits):
 
 
 def _make(path, folder, digits, part, threads):
-    return _sweep_of(path, folder, digits).run(part, threads=threads).outcome
+    while True:
+        try:
+            return _sweep_of(path, folder, digits).run(part, threads=threads).outcome
+        except InputError as error:
+            # A worker that the scheduler took for lost, or a task of a run that was ended, may be making it still.
+            if "is making this part now" not in str(error):
+                raise
+        time.sleep(0.5)
 
 
 def run(sweep, client, threads=1, retries=3, progress=None):
@@ -33,11 +41,11 @@ def run(sweep, client, threads=1, retries=3, progress=None):
     The workers have to see the sweep file, its trees and its folder by the same absolute names. A task names its part, and
     holds no trees: each process loads them once. There are never more tasks than twice the threads of all workers. threads:
     of each part. A worker that is killed loses its parts, and others make them; a part that was lost three times is given
-    up, which the answer says. retries: how often a part is tried again after an exception, before that is raised here.
+    up, which the answer says. A part that somebody else is making is waited for. retries: how often a part is tried again after an exception, before that is raised here.
     progress: called after each part with the share that is done; what it raises ends the call.
     """
     waiting = [(part, retries) for part in reversed(sweep.status().missing)]
-    total, flying, landed = len(waiting), {}, as_completed()
+    total, flying, landed = len(waiting), {}, as_completed(loop=client.loop)
     try:
         while waiting or flying:
             while waiting and len(flying) < 2 * max(1, sum(client.nthreads().values())):
