@@ -50,11 +50,6 @@ Share share_of(const std::string& text) {
   return share;
 }
 
-// Ends the command as a shell tells the end by Ctrl-C. Parts that were begun left no file.
-[[noreturn]] void end_interrupted(const std::string& what) {
-  throw Failure(static_cast<ExitCode>(130), what);
-}
-
 // Shows how far a part is, until a signal asks to end.
 Proceed proceed_until(const std::atomic<bool>& asked, const Proceed& shown) {
   return [&asked, shown](double part) {
@@ -87,8 +82,9 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     switch (outcome) {
       case Sweep::Outcome::kStopped:
-        end_interrupted(fmt::format("interrupted: {} parts were made, and part {} left no file",
-                                    result.made.size(), part));
+        throw Failure(kInterrupted,
+                      fmt::format("interrupted: {} parts were made, and part {} left no file",
+                                  result.made.size(), part));
       case Sweep::Outcome::kWasThere:
         estimate.skip();
         result.there.push_back(part);
