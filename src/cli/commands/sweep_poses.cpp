@@ -108,7 +108,7 @@ void run(const SweepArguments& options, const Sweep& sweep) {
   if (options.json) {
     const nlohmann::ordered_json json{
         {"made", made.made}, {"there", made.there}, {"given_up", made.given_up}};
-    fmt::print("{}\n", json.dump());
+    print_json(sweep, json);
   } else {
     fmt::print("parts   made {}, there before {}, given up {}\n", made.made.size(),
                made.there.size(), made.given_up.size());
@@ -127,7 +127,7 @@ void merge(const SweepArguments& options, const Sweep& sweep) {
   if (options.json) {
     const nlohmann::ordered_json json{
         {"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}};
-    fmt::print("{}\n", json.dump());
+    print_json(sweep, json);
   } else if (merged.whole()) {
     fmt::print("rows    {} in {} and {}\n", merged.rows, (options.folder / "rows.npy").string(),
                (options.folder / "rows.parquet").string());
