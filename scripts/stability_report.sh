@@ -33,7 +33,7 @@ load=$!
 run "$effort" stability_test '*' || failed=1
 run "$effort" search_test 'SharedTreeThread.*' || failed=1
 run "$effort" fuzz_test '*' || failed=1
-run 1 cli_test 'Faults*:CutFiles*:Interruption*' || failed=1
+run 1 cli_test 'Faults*:CutFiles*:Interruption*:SweepCommand*' || failed=1
 wait $load || failed=1
 
 source scripts/machine.sh

@@ -95,6 +95,7 @@ more test 1000 load_test '*' &
 load=$!
 more test 20 stability_test '*'
 more test 600 haptics_test 'LongPressing.*'
+more test 17 cli_test 'SweepCommand.Kills*'  # 51 kills
 more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'  # a million ticks among five bodies
 wait $load
 scripts/fuzz.sh --seconds 60

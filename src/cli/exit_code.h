@@ -13,6 +13,7 @@ enum ExitCode : int {
   kDeadlinesMissed,
   kGuaranteeBroken,
   kTouching,
+  kInterrupted = 130,  // as a shell tells the end by a signal
 };
 
 struct ExitMeaning {
@@ -28,11 +29,12 @@ inline constexpr ExitMeaning kExitMeanings[] = {
     {kGuaranteeBroken,
      "a result breaks a guarantee (--verify), or differs from the model (table --check)"},
     {kTouching, "the bodies touch, or may, or one lies in the other (--fail-if-touching)"},
-    {130, "interrupted"},  // as a shell tells the end by a signal
+    {kInterrupted, "interrupted"},
 };
 
 /// A failure with an exit code of its own: a result that breaks the guarantee, more missed
-/// deadlines than --allow-missed, or bodies that touch where they must not.
+/// deadlines than --allow-missed, bodies that touch where they must not, or a sweep that a signal
+/// ended.
 struct Failure : std::runtime_error {
   Failure(ExitCode code, const std::string& what) : std::runtime_error(what), exit_code(code) {}
 

@@ -82,6 +82,10 @@ int main(int argc, char** argv) try {
   return ist::cli::run(argc, argv);
 } catch (const ist::Error& error) {
   if (ist::cli::is_broken_pipe(error)) ist::cli::end_by_broken_pipe();
+  if (error.code() == ist::ErrorCode::kCancelled) {  // by a signal alone
+    std::fprintf(stderr, "ist: interrupted\n");
+    return ist::cli::kInterrupted;
+  }
   std::fprintf(stderr, "ist: %s [%s]\n", error.what(), ist::to_string(error.code()));
   return ist::cli::exit_code(error.code());
 } catch (const ist::cli::Failure& failure) {

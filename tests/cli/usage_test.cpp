@@ -70,6 +70,9 @@ TEST_F(Usage, HelpTeaches) {
       {"advise",
        {"FIXED", "MOVING", "--budget-us", "--error", "--poses", "--axis", "--workers", "--target",
         "--max-memory", "--json", "Example: ist advise"}},
+      {"sweep",
+       {"SWEEP", "--output", "--share", "--threads", "--merge", "--status", "--verify", "--json",
+        "Examples: ist sweep"}},
       {"table",
        {"--format", "--vectors", "--seed", "--check", "--output", "--json", "Example: ist table"}}};
   for (const auto& [command, parts] : taught) {

@@ -48,9 +48,12 @@ class Pages(unittest.TestCase):
 
 
 class Snippets(unittest.TestCase):
-    def reads(self, text):
+    def reads(self, text, ist="exit 1\n"):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
             there = pathlib.Path(folder)
+            (there / "bin").mkdir()
+            (there / "bin/ist").write_text(f"#!/bin/sh\n{ist}")
+            (there / "bin/ist").chmod(0o755)
             (there / "lib/pkgconfig").mkdir(parents=True)
             (there / "lib/pkgconfig/ist.pc").write_text("Name: ist\nDescription: none\nVersion: 0\n")
             reader = snippets.Reader("page.md", there, there, "g++")
@@ -69,6 +72,14 @@ class Snippets(unittest.TestCase):
             self.refuses(NOTE.format("not run, since it is long") + block(language), "line 2", f"'{language}'")
         for language in ("cmake", "json", "csv", "toml"):
             self.refuses(block(language), "page.md, line 1", f"this {language} needs the note")
+
+    def test_scenes_and_sweeps_are_read_by_the_command(self):
+        scene, sweep = (NOTE.format("file a.toml") + block("toml", text) for text in ("[fixed]\n", "[fixed]\n[[poses.axes]]\n"))
+        by_run, by_sweep = '[ "$1 $3" = "run --check" ]\n', '[ "$1 $3 $5" = "sweep -o --share" ]\n'
+        self.assertEqual(self.reads(scene, by_run)["run"], 1)
+        self.assertEqual(self.reads(sweep, by_sweep)["run"], 1)
+        self.refuses(scene, "page.md, line 2", "ist run", "failed with 1")
+        self.refuses(sweep.replace("[[poses.axes]]", "[poses.box]"), "page.md, line 2", "ist sweep", "failed with 1")
 
     def test_what_a_command_prints(self):
         self.assertEqual(self.reads(block("sh", "echo 1\n") + block("", "1\n"))["compared"], 1)

@@ -1,7 +1,7 @@
 """Runs the code of one page of README or docs, in a folder of its own, as a reader would: shell, Python and C++ in their order, C++
-and C under two compilers, a scene by `ist run --check`. A block without a language that follows is what they print: it is
-compared, where its `…` stands for any text. The notes that change this are those of pages.py. A block of any other language is
-an error: no block is passed over, but for those whose note gives the reason.
+and C under two compilers, a scene by `ist run --check`, a sweep file by a share of `ist sweep` that has no part. A block without a
+language that follows is what they print: it is compared, where its `…` stands for any text. The notes that change this are those
+of pages.py. A block of any other language is an error: no block is passed over, but for those whose note gives the reason.
 
 Fragments of C++, blocks without `int main`, are one program together. Blocks of Python are one too: each knows the names of
 those before it. A file of Python is a program of its own.
@@ -15,6 +15,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 import pages
 
@@ -123,6 +124,14 @@ class Reader:
             raise Failure(f"{self.name}, line {line}: this Python failed:\n{printed}")
         return printed
 
+    def check_toml(self, file, block):
+        """Reads a sweep file, with its trees and its poses, or a scene."""
+        if re.search(r"(?m)^\[+poses\b", block.text) is None:
+            self.run(["ist", "run", file, "--check"], block.line)
+            return
+        with tempfile.TemporaryDirectory() as parts:  # of a share that has no part
+            self.run(["ist", "sweep", file, "-o", parts, "--share", "999999998/999999999"], block.line)
+
     def flags(self, what):
         return self.run(["pkg-config", what, "ist"], 0).split()
 
@@ -185,7 +194,7 @@ class Reader:
             file.write_text(block.text)
             self.counts["written"] += 1
             if block.language == "toml":
-                self.run(["ist", "run", file, "--check"], block.line)
+                self.check_toml(file, block)
                 self.counts["run"] += 1
             if block.language == "c":
                 self.printed = self.program(block.text, block.line, "c", C_COMPILERS, "-std=c11")

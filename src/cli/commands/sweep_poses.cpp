@@ -50,11 +50,6 @@ Share share_of(const std::string& text) {
   return share;
 }
 
-// Ends the command as a shell tells the end by Ctrl-C. Parts that were begun left no file.
-[[noreturn]] void end_interrupted(const std::string& what) {
-  throw Failure(static_cast<ExitCode>(130), what);
-}
-
 // Shows how far a part is, until a signal asks to end.
 Proceed proceed_until(const std::atomic<bool>& asked, const Proceed& shown) {
   return [&asked, shown](double part) {
@@ -87,8 +82,9 @@ Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& s
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     switch (outcome) {
       case Sweep::Outcome::kStopped:
-        end_interrupted(fmt::format("interrupted: {} parts were made, and part {} left no file",
-                                    result.made.size(), part));
+        throw Failure(kInterrupted,
+                      fmt::format("interrupted: {} parts were made, and part {} left no file",
+                                  result.made.size(), part));
       case Sweep::Outcome::kWasThere:
         estimate.skip();
         result.there.push_back(part);
@@ -112,7 +108,7 @@ void run(const SweepArguments& options, const Sweep& sweep) {
   if (options.json) {
     const nlohmann::ordered_json json{
         {"made", made.made}, {"there", made.there}, {"given_up", made.given_up}};
-    fmt::print("{}\n", json.dump());
+    print_json(sweep, json);
   } else {
     fmt::print("parts   made {}, there before {}, given up {}\n", made.made.size(),
                made.there.size(), made.given_up.size());
@@ -131,7 +127,7 @@ void merge(const SweepArguments& options, const Sweep& sweep) {
   if (options.json) {
     const nlohmann::ordered_json json{
         {"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}};
-    fmt::print("{}\n", json.dump());
+    print_json(sweep, json);
   } else if (merged.whole()) {
     fmt::print("rows    {} in {} and {}\n", merged.rows, (options.folder / "rows.npy").string(),
                (options.folder / "rows.parquet").string());

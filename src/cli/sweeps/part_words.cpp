@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "cli/header_line.h"
+#include "cli/source_file.h"
+#include "ist/tree/mesh_source.h"
 
 namespace ist::cli {
 
@@ -65,6 +68,17 @@ FolderStatus status_of(const Sweep& sweep, const std::filesystem::path& path, bo
   return all;
 }
 
+void print_json(const Sweep& sweep, const nlohmann::ordered_json& result) {
+  nlohmann::ordered_json header =
+      header_line("sweep", NamedSources{{"sweep", source_of(sweep.file().file)}});
+  const auto add = [&](const char* name, const SweepFile::Body& body) {
+    header[name] = {{"file", source_name(body.tree.filename().string())}, {"hash", body.hash}};
+  };
+  add("fixed", sweep.file().fixed);
+  add("moving", sweep.file().moving);
+  fmt::print("{}\n{}\n", header.dump(), result.dump());
+}
+
 void print_status(const Sweep& sweep, const FolderStatus& status, bool json) {
   if (json) {
     const nlohmann::ordered_json object{
@@ -73,7 +87,7 @@ void print_status(const Sweep& sweep, const FolderStatus& status, bool json) {
         {"missing", status.missing},      {"given_up", status.given_up},
         {"damaged", status.damaged},      {"running", status.running},
         {"seconds", status.seconds}};
-    fmt::print("{}\n", object.dump());
+    print_json(sweep, object);
     return;
   }
   fmt::print("sweep    {}\n", sweep.identity().hash);

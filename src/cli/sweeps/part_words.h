@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct FolderStatus {
 /// Looks at each part, with `verify` at each byte. Throws what SweepFolder does.
 [[nodiscard]] FolderStatus status_of(const Sweep& sweep, const std::filesystem::path& folder,
                                      bool verify, const Proceed& proceed);
+
+/// Prints the first line of --json, which names the sweep file and the trees, and then the result.
+void print_json(const Sweep& sweep, const nlohmann::ordered_json& result);
 
 /// Prints the sweep and how its parts stand.
 void print_status(const Sweep& sweep, const FolderStatus& status, bool json);

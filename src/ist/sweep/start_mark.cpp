@@ -14,11 +14,19 @@
 namespace ist {
 namespace {
 
-// Whether the process that made a mark still lives: it holds a lock.
+// Whether the process that made a mark still lives: it holds a lock. Whoever looks takes a shared
+// one, so that two who look at a time do not see each other; NFS gives that to a reader too.
 bool is_live(int descriptor) {
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return errno == EWOULDBLOCK;
+  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
   ::flock(descriptor, LOCK_UN);
   return false;
+}
+
+// Locks a mark that this process made just now: for a moment somebody may be looking at it. Where a
+// file system has no locks, the mark counts lost starts all the same, and shares that overlap are
+// not seen.
+void lock(int descriptor) {
+  while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) continue;
 }
 
 }  // namespace
@@ -53,10 +61,7 @@ StartMark::StartMark(const SweepFolder& folder, std::uint64_t part) {
     if (descriptor_ >= 0) {
       // Between its making and its lock a mark looks lost. Who begins meanwhile makes the same
       // bytes, so this costs time alone.
-      if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        ::close(descriptor_);
-        fail_overlap(folder, part);
-      }
+      lock(descriptor_);
       return;
     }
     if (errno != EEXIST) {

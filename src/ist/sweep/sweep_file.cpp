@@ -16,6 +16,7 @@
 #include "ist/sweep/npy_poses.h"
 #include "ist/sweep/pose_box.h"
 #include "ist/sweep/pose_grid.h"
+#include "ist/tree/tree_stream.h"
 
 namespace ist {
 namespace {
@@ -47,6 +48,8 @@ SweepFile::Body read_body(TableReader& sweep, std::string_view key) {
   const bool named = table.has("hash");
   const std::string expected =
       named ? table.text("hash", "the 32 hexadecimal digits of the file's XXH3-128") : "";
+  // What is no tree is found before a folder is made for it.
+  static_cast<void>(TreeReader(body.tree));
   body.hash = hash_of_file(body.tree);
   if (named && expected != body.hash) {
     table.fail("hash",
@@ -154,6 +157,7 @@ std::shared_ptr<const PoseSource> read_box(TableReader& poses) {
 std::shared_ptr<const PoseSource> read_poses(TableReader& sweep) {
   TableReader poses = sweep.table("poses");
   const bool grid = poses.has("axes"), box = poses.has("box"), file = poses.has("file");
+  if (grid + box + file == 0) poses.refuse_unknown();  // a misspelling
   if (grid + box + file != 1) {
     sweep.fail("poses",
                fmt::format("[poses] names {} of 'axes', 'box' and 'file'",

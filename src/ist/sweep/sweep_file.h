@@ -34,7 +34,7 @@ inline constexpr std::uint64_t kMostRows = 1'000'000'000'000, kMostParts = 1'000
 
 /// Reads a sweep file (TOML), opens its file of poses, and computes the hashes of its trees. Throws
 /// kFileUnreadable; kInputInvalid with line and remedy for a wrong value, an unknown key, and a
-/// tree that has another hash than the sweep file says.
+/// tree that has another hash than the sweep file says; kNotATree, kTreeVersion, kTreeTruncated.
 [[nodiscard]] SweepFile read_sweep_file(const std::filesystem::path& file);
 
 }  // namespace ist

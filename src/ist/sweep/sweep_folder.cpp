@@ -83,6 +83,11 @@ PartStatus SweepFolder::look(std::uint64_t part) const {
     if (starts.lost >= kMostStarts) status.state = PartState::kGivenUp;
     return status;
   }
+  if (!std::filesystem::exists(record_file(part), missing)) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: the part has no record beside it: remove it to make it anew",
+                            part_file(part).string()));
+  }
   const PartRecord record = read_part_record(record_file(part));
   if (record.sweep != identity_.hash || record.part != part ||
       record.rows != identity_.rows_of(part)) {

@@ -1,0 +1,303 @@
+// What surroundings can do to a sweep: processes that are killed, interrupted or held, and disks
+// that are full. A part is there and whole, or not there; and the table is that of an undisturbed
+// sweep.
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "cli/sweep_case.h"
+#include "support/random.h"
+#include "support/skip.h"
+#include "support/stability.h"
+
+namespace ist::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST_F(SweepCommand, RefusesAPartThatALivingProcessMakes) {
+  const std::string job = sweep_file({});
+  sweep_well(job, "out", {"--share", "99/100"});  // makes the folder, and no part
+  Process held = with_held_call("fsync", 0, arguments(job, "out", {"--share", "0/3"}));
+  await_hold(held);
+  const auto refuses = [&](const std::string& share) {
+    const Files before = files("out");
+    const CommandResult result = sweep(job, "out", {"--share", share});
+    EXPECT_EQ(result.exit_code, 3) << share;
+    EXPECT_TRUE(says(result.err,
+                     "part-000000.npy: another process is making this part now: shares "
+                     "overlap; give each process a share of its own (--share k/N)"));
+    EXPECT_TRUE(same(files("out"), before));
+  };
+  refuses("0/1");
+  held.signal(SIGSTOP);  // a process that stands still lives
+  refuses("0/2");
+  sweep_well(job, "out", {"--share", "1/3"});
+  sweep_well(job, "out", {"--share", "2/3"});
+  EXPECT_TRUE(says(sweep_well(job, "out", {"--status"}).out, "\nrunning  0\nmissing  0\n"));
+  const CommandResult merged = sweep(job, "out", {"--merge"});
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_TRUE(says(merged.err, "nothing was merged: 0\n"));
+
+  held.signal(SIGKILL);
+  EXPECT_EQ(held.wait().exit_code, 128 + SIGKILL);
+  EXPECT_EQ(sweep_well(job, "out").out, "parts   made 1, there before 2, given up 0\n");
+  EXPECT_EQ(marks_in("out"), 0);
+}
+
+// Whoever looks at a mark locks it for a moment, which makes nobody believe that its process lives.
+TEST_F(SweepCommand, WhoLooksAtAMarkIsNotTakenForItsMaker) {
+  const std::string job = sweep_file({});
+  sweep_well(job, "out", {"--share", "99/100"});
+  write("out/part-000000.start-1", "");
+  const int descriptor = ::open(path("out/part-000000.start-1").c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(descriptor, 0);
+  ASSERT_EQ(::flock(descriptor, LOCK_SH), 0);
+  EXPECT_EQ(object_of(sweep_well(job, "out", {"--status", "--json"}))["running"],
+            nlohmann::json::array());
+  ASSERT_EQ(::flock(descriptor, LOCK_EX), 0);
+  EXPECT_EQ(object_of(sweep_well(job, "out", {"--status", "--json"}))["running"],
+            nlohmann::json{0});
+  EXPECT_EQ(sweep(job, "out").exit_code, 3);
+  ASSERT_EQ(::flock(descriptor, LOCK_SH), 0);
+  EXPECT_EQ(sweep_well(job, "out").out, "parts   made 3, there before 0, given up 0\n");
+  ::close(descriptor);
+}
+
+TEST_F(SweepCommand, GivesUpAPartThatWasLostThreeTimes) {
+  const std::string job = sweep_file({});
+  make_whole(job, "whole");
+  sweep_well(job, "out", {"--share", "99/100"});
+  for (int start = 1; start <= 3; ++start) {
+    Process held = with_held_call("fsync", 0, arguments(job, "out", {"--share", "1/3"}));
+    await_hold(held);
+    held.signal(SIGKILL);
+    EXPECT_EQ(held.wait().exit_code, 128 + SIGKILL);
+    EXPECT_EQ(marks_in("out"), start);
+    EXPECT_FALSE(exists("out/part-000001.npy"));
+  }
+  const std::string given_up =
+      "ist: given up, for 3 processes that began each were lost: 1; remove the files .start-1 to "
+      ".start-3 of a part to try it again\n";
+  const CommandResult run = sweep(job, "out");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.out, "parts   made 2, there before 0, given up 1\n");
+  EXPECT_TRUE(run.err.ends_with(given_up)) << run.err;
+  const CommandResult merged = sweep(job, "out", {"--merge"});
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_EQ(merged.err, given_up);
+  EXPECT_FALSE(exists("out/rows.npy"));
+  EXPECT_TRUE(says(sweep_well(job, "out", {"--status"}).out, "\ngiven up 1\n"));
+
+  std::filesystem::remove(path("out/part-000000.npy"));
+  sweep_well(job, "out", {"--share", "2/3"});
+  const CommandResult both = sweep(job, "out", {"--merge"});
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_TRUE(
+      says(both.err, "ist: parts are missing, and nothing was merged: 0\nist: given up, for 3 "));
+
+  for (int start = 1; start <= 3; ++start) {
+    EXPECT_TRUE(std::filesystem::remove(path(fmt::format("out/part-000001.start-{}", start))));
+  }
+  EXPECT_EQ(sweep_well(job, "out").out, "parts   made 2, there before 1, given up 0\n");
+  sweep_well(job, "out", {"--merge"});
+  EXPECT_TRUE(files("out")["rows.npy"] == files("whole")["rows.npy"]);
+}
+
+TEST_F(SweepCommand, ASignalLeavesWholePartsAndNothingElse) {
+  StabilityCase seen("faults", "signal in a sweep", "wrong outcomes");
+  const std::string job =
+      sweep_file({.count = 100000, .rows_per_part = 200, .answers = R"("penetration")"});
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Process process(IST_COMMAND, arguments(job, "out", {"--threads", "1"}));
+    const std::ptrdiff_t before = parts_in("out");
+    while (parts_in("out") < before + 3 && process.is_running()) std::this_thread::sleep_for(1ms);
+    process.signal(signal);
+    const CommandResult result = process.wait();
+    const std::ptrdiff_t parts = parts_in("out");
+    const auto all = static_cast<std::size_t>(2 * parts + 1);
+    const bool clean =
+        result.exit_code == 130 && result.out.empty() && says(result.err, "ist: interrupted") &&
+        parts >= before + 3 && parts < 500 && names("out").size() == all &&
+        object_of(sweep_well(job, "out", {"--status", "--verify", "--json"}))["done"] == parts;
+    seen.sample(!clean, 0, fmt::format("signal {}, {}: {}", signal, result.exit_code, result.err));
+  }
+}
+
+TEST_F(SweepCommand, ASignalWhileTreesAreLoadedLeavesNoPart) {
+  static_cast<void>(ball_tree("ball.ist", "tight", {"--voxel-size", "0.03"}));
+  const std::string job = sweep_file({});
+  sweep_well(job, "out", {"--share", "99/100"});
+  for (int i = 0; i < 4; ++i) {
+    Process process(IST_COMMAND, arguments(job, "out", {"--threads", "1"}));
+    while (marks_in("out") == 0 && process.is_running()) std::this_thread::sleep_for(100us);
+    process.signal(SIGINT);
+    const CommandResult result = process.wait();
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_TRUE(says(result.err, "ist: interrupted"));
+    EXPECT_EQ(names("out"), std::vector<std::string>{"sweep.json"});
+  }
+}
+
+// Kills at random moments, and at last an end in peace. A process that is killed may leave
+// temporary files; marks go with the part.
+TEST_F(SweepCommand, KillsLeaveWholePartsAndTheSameTable) {
+  StabilityCase seen("faults", "SIGKILL in a sweep", "wrong outcomes");
+  const std::string job = sweep_file(
+      {.count = 6000, .rows_per_part = 200, .answers = R"("intersects", "penetration")"});
+  make_whole(job, "whole");
+  const Files whole = results("whole");
+  const auto is_whole = [&](const std::string& folder) {
+    for (const auto& [name, bytes] : results(folder)) {
+      if (name.ends_with(".npy") && bytes != whole.at(name)) return false;
+    }
+    return true;
+  };
+  const auto remove_marks = [&](const std::string& folder) {
+    for (const std::string& name : names(folder)) {
+      if (says(name, ".start-")) std::filesystem::remove(path(folder + "/" + name));
+    }
+  };
+  Random random(17);
+  std::string folder;
+  int killed = 0, between = 0;
+  for (int kill = 0; kill < samples(3); ++kill) {
+    if (kill % 3 == 0) folder = fmt::format("out-{}", kill / 3);
+    const std::ptrdiff_t before = parts_in(folder);
+    Process process(IST_COMMAND, arguments(job, folder, {"--threads", "1"}));
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(400'000)));
+    process.signal(SIGKILL);
+    const CommandResult result = process.wait();
+    killed += result.exit_code == 128 + SIGKILL;
+    between += parts_in(folder) > before;
+    const bool right =
+        (result.exit_code == 128 + SIGKILL || result.exit_code == 0) && is_whole(folder);
+    seen.sample(!right, 0, fmt::format("{}: {}", result.exit_code, result.err));
+    if (kill % 3 < 2) continue;
+    if (sweep(job, folder).exit_code == 1) {  // all three met one part
+      remove_marks(folder);
+      sweep_well(job, folder);
+    }
+    sweep_well(job, folder, {"--merge"});
+    Files made = results(folder);
+    std::erase_if(made, [](const auto& file) { return file.first.ends_with(".tmp"); });
+    seen.sample(made != whole, 0, "the table after three kills");
+    std::filesystem::remove_all(path(folder));
+  }
+  EXPECT_GT(killed, 0);
+  EXPECT_GT(between, 0);
+}
+
+// Each call in turn fails, until none is left that could.
+TEST_F(SweepCommand, ADiskThatFailsLeavesNothingHalfWritten) {
+  StabilityCase seen("faults", "disk that fails in a sweep", "wrong outcomes");
+  const std::string job = sweep_file({});
+  make_whole(job, "whole");
+  Files parts = results("whole");
+  for (const char* table : {"rows.npy", "rows.parquet", "manifest.json"}) parts.erase(table);
+  for (const char* call : {"fsync", "rename"}) {
+    int refused = 0;
+    for (bool fits = false; !fits; ++refused) {
+      std::filesystem::remove_all(path("out"));
+      const CommandResult result = with_failing_call(call, refused, arguments(job, "out"));
+      fits = result.exit_code == 0;
+      const Files left = results("out");
+      bool whole = fits ? left == parts : result.exit_code == 1 && says(result.err, ": cannot ");
+      for (const auto& [name, bytes] : left)
+        whole = whole && parts.count(name) > 0 && parts.at(name) == bytes;
+      for (const auto& [name, bytes] : files("out")) {  // a part has a record, and a record a part
+        if (name.starts_with("part-") && name.ends_with(".json"))
+          whole = whole && exists("out/" + name.substr(0, 11) + ".npy");
+      }
+      seen.sample(!whole, 0, fmt::format("{} {}: {}", call, refused, result.err));
+      sweep_well(job, "out");
+      seen.sample(results("out") != parts, 0, fmt::format("{} {}, made to the end", call, refused));
+    }
+    EXPECT_GE(refused, 8) << call;
+    refused = 0;
+    for (bool fits = false; !fits; ++refused) {
+      const Files before = files("out");
+      const CommandResult result =
+          with_failing_call(call, refused, arguments(job, "out", {"--merge"}));
+      fits = result.exit_code == 0;
+      const bool right =
+          fits ? results("out") == results("whole")
+               : result.exit_code == 1 && result.out.empty() && files("out") == before;
+      seen.sample(!right, 0, fmt::format("{} {} of a merge: {}", call, refused, result.err));
+    }
+    EXPECT_GE(refused, 4) << call;
+  }
+}
+
+TEST_F(SweepCommand, AFileThatGrowsTooLargeIsRemoved) {
+  const std::string job = sweep_file({.count = 400, .rows_per_part = 200});
+  make_whole(job, "whole");
+  const auto limited = [&](int blocks, const std::vector<std::string>& more) {
+    std::vector<std::string> words = arguments(job, "out", more);
+    words.insert(words.begin(),
+                 {"-c", fmt::format("ulimit -f {} && exec \"$@\"", blocks), "sh", IST_COMMAND});
+    return run_command("/bin/sh", words);
+  };
+  for (const int blocks : {1, 8}) {  // of 512 bytes: too few for sweep.json, and for a part
+    const CommandResult result = limited(blocks, {});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(says(result.err,
+                     "cannot write the file: File too large: check the folder, its permissions and "
+                     "the space on the disk"));
+    EXPECT_EQ(names("out"),
+              blocks == 1 ? std::vector<std::string>{} : std::vector<std::string>{"sweep.json"});
+  }
+  EXPECT_EQ(limited(24, {}).exit_code, 0);
+  const Files parts = files("out");
+  EXPECT_EQ(limited(24, {"--merge"}).exit_code, 1);
+  EXPECT_TRUE(same(files("out"), parts));
+  sweep_well(job, "out", {"--merge"});
+  EXPECT_TRUE(same(results("out"), results("whole")));
+}
+
+// A disk of a few pages, of the system's memory, which only the processes of one shell see.
+TEST_F(SweepCommand, ADiskThatIsFullIsUsedAgainWhenItHasRoom) {
+  const std::string alone = ::geteuid() == 0 ? "unshare -m" : "unshare -rm";
+  std::filesystem::create_directory(path("disk"));
+  const std::string mounted = "mount -t tmpfs -o size=48k none " + path("disk");
+  if (run_command("/bin/sh", {"-c", alone + " sh -c '" + mounted + "'"}).exit_code != 0) {
+    IST_SKIP("this machine lets nobody mount a small disk");
+  }
+  const std::string job = sweep_file({.count = 100});
+  make_whole(job, "whole");
+  const std::string script = write(
+      "script.sh",
+      mounted + R"( || exit 99
+cd ")" + dir_.path().string() +
+          R"("
+ist() { ")" IST_COMMAND
+          R"(" sweep job.toml -o disk/out "$@" >> said 2>&1 && echo 0 >> codes || echo $? >> codes; }
+ist
+ls -A disk/out > full
+ist --status --verify
+mount -o remount,size=1m disk
+ist
+ist --merge
+cp -r disk/out out
+)");
+  const CommandResult result = run_command("/bin/sh", {"-c", alone + " sh -eu " + script});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(file_content(path("codes")), "1\n0\n0\n0\n") << file_content(path("said"));
+  EXPECT_TRUE(
+      says(file_content(path("said")),
+           "No space left on device: check the folder, its permissions and the space on the disk"));
+  const std::string full = file_content(path("full"));
+  EXPECT_TRUE(says(full, "part-000001.npy"));
+  EXPECT_FALSE(says(full, ".tmp"));
+  EXPECT_FALSE(says(full, ".start-"));
+  EXPECT_FALSE(says(full, "part-000009.npy"));
+  EXPECT_TRUE(same(results("out"), results("whole")));
+}
+
+}  // namespace
+}  // namespace ist::test
