@@ -119,8 +119,8 @@ class Sweep(Handle):
     def merge(self, folder=None, *, progress=None):
         """Merges the parts into the table of all rows: rows.npy, rows.parquet and manifest.json of the folder.
 
-        Where a part lacks nothing is written, and the answer names the parts. progress: called with the share that is done; what
-        it raises ends the call. Raises InputError for a part that is damaged. Cost: that of reading and writing.
+        Where a part lacks nothing is written, and the answer names the parts. progress: called with the share that is done;
+        what it raises ends the call. Raises InputError for a part that is damaged. Cost: that of reading and writing.
         """
         place, result = self._place(folder), MergeResult()
         with Follower(progress) as follower:
@@ -133,8 +133,8 @@ class Sweep(Handle):
     def status(self, folder=None, *, verify=False, progress=None):
         """Looks which parts are done, missing, given up and damaged.
 
-        verify: reads each part's file and compares its checksum. progress: called before each part. A folder in which nobody has
-        begun yet lacks all parts. Raises InputError for the folder of another sweep. Cost: 50 us a part, without `verify`.
+        verify: reads each part's file and compares its checksum. progress: called before each part. A folder in which nobody
+        has begun yet lacks all parts. Raises InputError for the folder of another sweep. Cost: 50 us a part, without `verify`.
         """
         found = self._by_state(self._place(folder), verify, progress)
         seconds = math.fsum(took for _, took in found[DONE] if not math.isnan(took))

@@ -41,8 +41,9 @@ def run(sweep, client, threads=1, retries=3, progress=None):
     The workers have to see the sweep file, its trees and its folder by the same absolute names. A task names its part, and
     holds no trees: each process loads them once. There are never more tasks than twice the threads of all workers. threads:
     of each part. A worker that is killed loses its parts, and others make them; a part that was lost three times is given
-    up, which the answer says. A part that somebody else is making is waited for. retries: how often a part is tried again after an exception, before that is raised here.
-    progress: called after each part with the share that is done; what it raises ends the call.
+    up, which the answer says. A part that somebody else is making is waited for. retries: how often a part is tried again
+    after an exception, before that is raised here. progress: called after each part with the share that is done; what it
+    raises ends the call, but not the parts that workers are making.
     """
     waiting = [(part, retries) for part in reversed(sweep.status().missing)]
     total, flying, landed = len(waiting), {}, as_completed(loop=client.loop)
