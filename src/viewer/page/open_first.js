@@ -27,7 +27,7 @@ export async function openFirst(context, data, asked, onRecording) {
   if (!opened) {
     if (!await loader.makeJaws(store.get().seed)) return;
     stage.frameAll();
-    if (!await loader.build(asked.voxelSize ?? undefined)) await loader.build();
+    await buildFirst(loader, asked);
   }
   history.forget();
 }
@@ -61,8 +61,18 @@ async function openData(context, data, asked, onRecording) {
   const pose = data.pose ?? [...identity];
   store.set({pose: asked.pose ?? pose, home: pose, dragging: false});
   stage.frameAll();
-  await loader.build(asked.voxelSize ?? undefined);
+  await buildFirst(loader, asked);
   return true;
+}
+
+/**
+ * Builds the trees as the address says; where that voxel size is refused, as the page would by itself.
+ * @param {Context['loader']} loader
+ * @param {Partial<State>} asked
+ */
+async function buildFirst(loader, {voxelSize}) {
+  const wanted = voxelSize ?? undefined;
+  if (!await loader.build(wanted) && wanted !== undefined) await loader.build();
 }
 
 /**

@@ -20,6 +20,7 @@ const policies = {
   tight: {colour: 'var(--series-2)', words: 'tight: balls round the triangles'},
   slab: {colour: 'var(--series-1)', words: 'slab: those balls, cut by slabs'},
 };
+const tourWords = 'Visit seven voxel sizes';
 const tour = [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3];
 
 /** @type {import('../context.js').MakePanel} */
@@ -45,28 +46,26 @@ export function makeAccuracyPanel({store, loader}) {
     label: 'Error, the resolution, over the time of a query, of the voxel sizes and policies visited at this pose',
     xLabel: 'time of a query, µs', yLabel: 'resolution', logX: true, logY: true,
   });
-  let touring = false;
-  const tourButton = button('Visit seven voxel sizes', async () => {
-    if (touring) {
-      touring = false;
-      return;
-    }
-    touring = true;
+  /** @type {(() => void) | null} ends the visits that are made now */
+  let stop = null;
+  const tourButton = button(tourWords, async () => {
+    if (stop) return stop();
+    const stopped = new Promise((resolve) => { stop = () => resolve('stopped'); });
     tourButton.textContent = 'Stop the visits';
     for (const size of tour) {
-      if (!touring || !await loader.build(size * scale())) break;
-      await nextAnswer();
+      if (!await loader.build(size * scale())) break;
+      if (await Promise.race([stopped, nextAnswer()]) === 'stopped') break;
     }
-    touring = false;
-    tourButton.textContent = 'Visit seven voxel sizes';
+    stop = null;
+    tourButton.textContent = tourWords;
   });
-  const nextAnswer = () => /** @type {Promise<void>} */ (new Promise((resolve) => {
+  const nextAnswer = () => new Promise((resolve) => {
     const end = store.subscribe(['answer'], ({answer}) => {
       if (!answer) return;
       end();
-      resolve();
+      resolve('answered');
     });
-  }));
+  });
 
   const panel = element('div', {},
       element('h2', {}, 'Accuracy against time'),
