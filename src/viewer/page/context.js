@@ -30,6 +30,7 @@
  * @property {string} preset
  * @property {number} reach         millimetres
  * @property {Unit | null} unit     of both bodies, where their files name none
+ * @property {Unit | null} fileUnit of the files that are opened next; null: as each says itself
  * @property {string} frame         "lps", "ras" or ""
  * @property {boolean} wantsMap     whether the map is made again where the pose rests
  * @property {boolean} book         whether both bodies are drawn opened like a book

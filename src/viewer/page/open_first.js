@@ -85,7 +85,7 @@ async function buildFirst(loader, {voxelSize}) {
 export async function openDropped({store, loader, stage, history}, file, at, of) {
   // Of two the first is fixed; one alone takes the place of the body that moves.
   const role = of > 1 && at === 0 ? 'fixed' : 'moving';
-  if (!await loader.open({role, name: file.name, content: file})) return;
+  if (!await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined})) return;
   if (at < of - 1) return;
   store.set({pose: store.get().home, dragging: false});
   history.forget();
