@@ -335,7 +335,7 @@ test('refuses recordings of another version, and what is none', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=recording');
   const {page} = opened;
   await ready(page);
-  const header = {recording: 99, ist: '9.9.9', dt: 0.001, bodies: []};
+  const header = {recording: 99, ist: '9.9.9', dt: 0.001, unit: 0.001, bodies: []};
   const bad = [
     ['newer.jsonl', `${JSON.stringify(header)}\n`, /newer\.jsonl: .*version 99/],
     ['none.jsonl', 'no json\n', /none\.jsonl: /],
