@@ -219,6 +219,12 @@ test('comes back to what its address says', async () => {
   await ready(again.page);
   assert.deepEqual(answerOf((await answer(again.page)).line), answerOf(line));
   assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Pose');
+  await again.page.evaluate((hash) => { location.hash = hash; }, `#voxel=2&panel=save&pose=${closedBy(-0.6)}`);
+  await again.page.waitForFunction(() => window.ist.state().voxelSize === 2);
+  await ready(again.page);
+  const pasted = (await answer(again.page)).line;
+  assert.deepEqual([pasted.voxel_size[0], pasted.pose], [2, closedBy(-0.6)]);
+  assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Save');
   await closePage(again);
   await closePage(opened);
 });

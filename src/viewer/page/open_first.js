@@ -46,7 +46,7 @@ async function openData(context, data, asked, onRecording) {
     store.set({panel: asked.panel ?? 'recording'});
     return true;
   }
-  if (data.occlusion) {
+  if (data.kind === 'bite' && data.occlusion) {
     const {preset, reach, unit, frame} = data.occlusion;
     store.set({preset: asked.preset ?? preset, reach, frame: frame ?? '', panel: asked.panel ?? 'occlusion'});
     for (const body of data.bodies) {

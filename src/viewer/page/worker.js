@@ -57,7 +57,7 @@ async function start(bytes) {
  * @param {any} asked
  */
 function fileOf(asked) {
-  const name = asked.name.replace(/[/\\\0-\x1f\x7f]/g, '_') || 'mesh';
+  const name = asked.name.replace(/[/\\\0-\x1f\x7f]/g, '_').replace(/^\.{0,2}$/, 'mesh');
   return {name, path: `${asked.role === 'fixed' ? 'fixed' : 'moving'}/${name}`};
 }
 
