@@ -337,7 +337,7 @@ test('shows the built-in jaws where the data in it is newer, damaged or of no tr
   }
 });
 
-test('refuses recordings of another version, and what is none', async () => {
+test('refuses recordings of another version, and files that hold no recording', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=recording');
   const {page} = opened;
   await ready(page);

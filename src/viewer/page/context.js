@@ -47,7 +47,7 @@
  * @typedef {object} Store
  * @property {() => Readonly<State>} get
  * @property {(change: Partial<State>) => void} set  calls those who subscribed to a key that changed
- * @property {(keys: (keyof State)[], told: (state: Readonly<State>) => void) => () => void} subscribe
+ * @property {(keys: (keyof State)[], listen: (state: Readonly<State>) => void) => () => void} subscribe
  *   returns what ends the subscription
  */
 

@@ -29,7 +29,7 @@ export function followPose({engine, store, say}) {
       await done;
     } catch (error) {
       const text = faultText(error);
-      // Of trees that went while it waited, nobody wants to know.
+      // A question about trees that are gone needs no answer.
       if (text && store.get().trees === trees) say(text, 'error');
     } finally {
       asking -= 1;
