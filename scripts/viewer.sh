@@ -16,12 +16,13 @@ log=build/viewer/build.log
 logged() { "$@" >"$log" 2>&1 || { cat "$log"; exit 1; }; }
 logged cmake --preset wasm -DIST_WITH_LOOP=OFF
 logged cmake --build --preset wasm --target ist_page_engine -- -j"$(nproc)"
-# Packages by their lock file, in build/ and not among the sources.
+# Packages by their lock file, in build/ and not among the sources; once all of them are there.
 packages=build/viewer/packages
-if ! cmp -s src/viewer/package-lock.json "$packages/package-lock.json"; then
+if ! cmp -s src/viewer/package-lock.json "$packages/installed"; then
   mkdir -p "$packages"
   cp src/viewer/package.json src/viewer/package-lock.json "$packages"
-  logged npm ci --prefix "$packages" --no-audit --no-fund || { rm "$packages/package-lock.json"; exit 1; }
+  logged npm ci --prefix "$packages" --no-audit --no-fund
+  cp src/viewer/package-lock.json "$packages/installed"
 fi
 ln -sfn "$PWD/$packages/node_modules" src/viewer/node_modules
 logged node src/viewer/node_modules/typescript/bin/tsc -p src/viewer

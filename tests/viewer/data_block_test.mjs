@@ -34,10 +34,11 @@ test('damaged blocks are refused, with what is wrong', () => {
   assert.match(readDataBlock('{"format"').problem, /cut off/);
   for (const [block, wrong] of [
     [{...bite, kind: 'x'}, /its kind/], [{...bite, bodies: 3}, /no bodies/], [{...bite, bodies: [body('fixed')]}, /no moving body/],
-    [{...bite, pose: [1, 2]}, /pose is none/], [{...bite, pose: [NaN, ...identity.slice(1)]}, /pose is none/],
+    [{...bite, pose: [1, 2]}, /pose is not rigid/], [{...bite, pose: [NaN, ...identity.slice(1)]}, /pose is not rigid/],
+    [{...bite, kind: 'bodies', bodies: []}, /no bodies/], [{...bite, missing: 'all'}, /missing/], [{...bite, missing: [1]}, /missing/],
     [{...bite, occlusion: {preset: 'scan', reach: NaN}}, /no preset or reach/], [{...bite, occlusion: undefined}, /no preset/], [{...bite, bodies: [{role: 'left'}]}, /no role/],
     [{...recording, metres_per_unit: 0}, /unit is missing/], [{...recording, recording: 1}, /no recording/],
-    [{...recording, bodies: [body('fixed')]}, /pose of body 0/], ['text', /no known format/],
+    [{...recording, bodies: [body('fixed')]}, /body 0 has no rigid pose/], ['text', /no known format/],
   ]) {
     const {data, problem} = read(block);
     assert.equal(data, null);

@@ -19,7 +19,7 @@ test('nothing is read from an empty fragment', () => {
   assert.deepEqual(readFragment('', panels), {change: {}, problems: []});
 });
 
-test('each part that is none gets its sentence, and the others are taken', () => {
+test('each wrong part gets its sentence, and the others are taken', () => {
   const {change, problems} = readFragment('#panel=nowhere&pose=1,2,3&voxel=-1&policy=loose&preset=x&theme=red&seed=a', panels);
   assert.deepEqual(change, {});
   assert.equal(problems.length, 7);
@@ -27,7 +27,7 @@ test('each part that is none gets its sentence, and the others are taken', () =>
   assert.deepEqual(readFragment('#pose=1,2&voxel=0.5', panels).change, {voxelSize: 0.5});
 });
 
-test('a pose with empty, infinite or stretched numbers is none', () => {
+test('a pose with empty, infinite or stretched numbers is refused', () => {
   for (const pose of ['1,0,0,0,0,1,0,0,0,0,1,0,0,0,,1', '1,0,0,0,0,1,0,0,0,0,1,0,0,0,Infinity,1', '2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1']) {
     assert.equal(readFragment(`#pose=${pose}`, panels).problems.length, 1);
   }

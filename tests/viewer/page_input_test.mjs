@@ -87,6 +87,7 @@ test('takes two meshes that are dropped together, the first as fixed', async () 
   const opened = await openPage(browser, coarse);
   const {page} = opened;
   await ready(page);
+  await page.getByLabel('Unit of the files you open').selectOption('mm');
   const names = ['first.stl', 'second.stl'];
   const contents = [scaled(upper, 0.25), scaled(lower, 0.25)].map((bytes) => bytes.toString('base64'));
   await page.evaluate(({names, contents}) => {
@@ -99,7 +100,8 @@ test('takes two meshes that are dropped together, the first as fixed', async () 
   }, {names, contents});
   await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'second.stl' && window.ist.state().trees !== null);
   await ready(page);
-  assert.equal(await page.evaluate(() => window.ist.state().bodies.fixed.name), 'first.stl');
+  const {fixed, moving} = await page.evaluate(() => window.ist.state().bodies);
+  assert.deepEqual([fixed.name, fixed.unit, moving.unit], ['first.stl', 'mm', 'mm']);
   await closePage(opened);
 });
 
@@ -217,6 +219,12 @@ test('comes back to what its address says', async () => {
   await ready(again.page);
   assert.deepEqual(answerOf((await answer(again.page)).line), answerOf(line));
   assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Pose');
+  await again.page.evaluate((hash) => { location.hash = hash; }, `#voxel=2&panel=save&pose=${closedBy(-0.6)}`);
+  await again.page.waitForFunction(() => window.ist.state().voxelSize === 2);
+  await ready(again.page);
+  const pasted = (await answer(again.page)).line;
+  assert.deepEqual([pasted.voxel_size[0], pasted.pose], [2, closedBy(-0.6)]);
+  assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Save');
   await closePage(again);
   await closePage(opened);
 });
@@ -283,6 +291,32 @@ test('shows the bodies of the data in it, whatever their names', async () => {
   await closePage(opened);
 });
 
+test('shows the bite that the command measured, with the settings that it was asked with', async () => {
+  const asked = ['occlusion', upper, lower, '--move', '0,0,-0.6', '--preset', 'stl', '--reach', '3', '--frame', 'lps', '--unit', 'mm'];
+  ist(folder, ...asked, '-o', 'bite.html');
+  const opened = await openPage(browser, '#voxel=2', {file: path.join(folder, 'bite.html')});
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  const [, line] = linesOf(ist(folder, ...asked, '--json'));
+  assert.deepEqual({...await page.evaluate(() => window.ist.bite()), commit: ''}, {...line, commit: ''});
+  assert.equal(await page.getByLabel('Preset').inputValue(), 'stl');
+  assert.equal(await page.getByLabel('Patient frame').inputValue(), 'lps');
+  assert.equal(await page.getByLabel('Reach of the search').getAttribute('aria-valuetext'), '3 mm');
+  await closePage(opened);
+});
+
+test('shows one body alone, and says that there is no other', async () => {
+  ist(folder, 'view', upper, '-o', 'one.html');
+  const opened = await openPage(browser, '', {file: path.join(folder, 'one.html')});
+  const {page} = opened;
+  await ready(page);
+  assert.equal(await page.locator('.body.fixed strong').textContent(), upper);
+  assert.match(await page.locator('.body.moving').textContent(), /There is none yet/);
+  assert.deepEqual(await messages(page), []);
+  await closePage(opened);
+});
+
 test('shows the built-in jaws where the data in it is newer, damaged or of no tree', async () => {
   const body = (role) => ({role, name: 'a/of $&b.ist', tree: Buffer.from('ISTTREE1 nothing').toString('base64')});
   const bad = [
@@ -303,11 +337,11 @@ test('shows the built-in jaws where the data in it is newer, damaged or of no tr
   }
 });
 
-test('refuses recordings of another version, and what is none', async () => {
+test('refuses recordings of another version, and files that hold no recording', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=recording');
   const {page} = opened;
   await ready(page);
-  const header = {recording: 99, ist: '9.9.9', dt: 0.001, bodies: []};
+  const header = {recording: 99, ist: '9.9.9', dt: 0.001, unit: 0.001, bodies: []};
   const bad = [
     ['newer.jsonl', `${JSON.stringify(header)}\n`, /newer\.jsonl: .*version 99/],
     ['none.jsonl', 'no json\n', /none\.jsonl: /],

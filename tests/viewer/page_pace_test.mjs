@@ -10,6 +10,7 @@ const firstPaint = 1000, jawsReady = 5000;  // milliseconds, as all times here
 const early = 5_000, late = 60_000;
 // Thirty answers a second.
 const slowest = 33;
+const mapAgain = 2000;
 const mostGrowth = 1e6;
 let browser;
 
@@ -25,6 +26,21 @@ test('paints at once, and has the built-in jaws soon after', async () => {
   console.log(`first paint after ${paint.toFixed(0)} ms, jaws after ${settled.toFixed(0)} ms`);
   assert.ok(paint < firstPaint, `the first paint came after ${paint} ms`);
   assert.ok(settled < jawsReady, `the jaws were ready after ${settled} ms`);
+  await closePage(opened);
+});
+
+test('makes the map and the depth again soon after the pose rests', async () => {
+  const opened = await openPage(browser, '#voxel=0.4&panel=occlusion');
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  const begun = performance.now();
+  await page.getByRole('slider', {name: 'Close along z'}).press('ArrowRight');
+  assert.equal(await page.evaluate(() => window.ist.bite()), null);
+  await page.waitForFunction(() => window.ist.bite() !== null && window.ist.answer() !== null);
+  const taken = performance.now() - begun;
+  console.log(`map and depth after ${taken.toFixed(0)} ms`);
+  assert.ok(taken < mapAgain, `they took ${taken} ms`);
   await closePage(opened);
 });
 

@@ -6,6 +6,7 @@ import {placeAt, relative, spansOf} from '../../src/viewer/page/recording/placed
 import {indexAt} from '../../src/viewer/page/recording/playback.js';
 import {parseRecording, poseOfRow, recordingSteps} from '../../src/viewer/page/recording/recording.js';
 import {placedByScene, sceneBodies} from '../../src/viewer/page/recording/scene_bodies.js';
+import {toolPath} from '../../src/viewer/page/recording/tool_path.js';
 
 const header = {recording: 2, ist: '0.1.0', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
 const row = (z) => [0, 0, z, 1, 0, 0, 0, 1, 0, 0, 0, 1];
@@ -52,6 +53,12 @@ test('what is no recording of this version is refused, with what to do', () => {
   assert.throws(() => parseRecording(text(header)), /no ticks/);
   assert.throws(() => parseRecording(text(header, '{"tick": 0', tick(1))), /Line 2 .*damaged/);
   assert.throws(() => parseRecording(text(header, tick(0), tick(1, {tool: [1, 2]}))), /Line 3 .*no tick/);
+  for (const number of [0, 1]) {
+    assert.throws(() => parseRecording(text(header, tick(0), tick(1), tick(number))), /Line 4 .*after tick 1\. Record/);
+  }
+  for (const wrong of [{dt: 0}, {dt: null}, {unit: 'mm'}, {bodies: null}, {bodies: [{}]}, {bodies: [null]}]) {
+    assert.throws(() => parseRecording(text({...header, ...wrong}, tick(0))), /header .*damaged: it needs dt and unit .*Record/);
+  }
 });
 
 test('blank lines are passed over, and counted', () => {
@@ -112,4 +119,13 @@ test('a scene of two bodies places them, the tool at the middle of the root cube
 test('the clock finds the tick of a time', () => {
   const {ticks} = parseRecording(text(header, tick(0), tick(1), tick(5)));
   assert.deepEqual([-1, 0, 0.0009, 0.0011, 0.004, 0.005, 9].map((time) => indexAt(ticks, time)), [0, 0, 0, 1, 1, 2, 2]);
+});
+
+test('the way of the tool has its middle and its size, of an hour too', () => {
+  const {points, middle, size} = toolPath([0, 0.03].map((z) => ({tool: translation([0.001, 0, z])})), 1000);
+  assert.deepEqual(points, [1, 0, 0, 1, 0, 30]);
+  assert.deepEqual([middle, size], [[1, 0, 15], 15]);
+  assert.equal(toolPath([{tool: [...identity]}], 1000).size, 1);
+  const hour = Array.from({length: 400_000}, (_, at) => ({tool: translation([0, 0, at / 1e6])}));
+  assert.ok(Math.abs(toolPath(hour, 100).size - 20) < 1e-3);
 });

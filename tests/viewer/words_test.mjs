@@ -11,7 +11,7 @@ test('numbers are short, and tell their size', () => {
   assert.equal(interval(null, null, 'mm'), 'not known');
 });
 
-test('a body is told in sentences', () => {
+test('sentences describe a body', () => {
   const mesh = {kind: 'mesh', triangles: 12, vertices: 8, components: 1, boundary_edges: 4, extent: [1, 2, 3], closed: false, consistent: true, unit: null};
   assert.deepEqual(infoSentences(mesh), [
     'A mesh of 12 triangles and 8 vertices, 1 component.', 'Extent 1 × 2 × 3; the file names no unit, so millimetres are assumed.',

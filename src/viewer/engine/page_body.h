@@ -16,7 +16,7 @@ namespace ist::viewer {
 class PageBody {
  public:
   /// Reads a mesh or a tree, and checks it. Throws as read_mesh() and read_tree() do.
-  /// @param unit of a mesh, and of a tree that was told none
+  /// @param unit of a mesh whose file names none, and of such a tree
   PageBody(const std::filesystem::path& file, LengthUnit unit);
 
   /// Whether it holds triangles, of which a tree can be made.

@@ -5,7 +5,7 @@
 
 import {faultText} from './engine/engine_client.js';
 import {identity} from './pose.js';
-import {bytesWords, short} from './words.js';
+import {bytesWords, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 /** @typedef {import('./context.js').Context} Context */
@@ -17,7 +17,8 @@ import {bytesWords, short} from './words.js';
 
 /** @typedef {{role: Role, name: string, content: Blob, unit?: Unit}} BodyFile */
 /**
- * @typedef {object} BodiesLoader  each promise gives whether it was done; a sentence was said if not
+ * @typedef {object} BodiesLoader  each promise gives whether it was done; if not, a sentence was said, or
+ *   somebody cancelled or replaced it
  * @property {(seed: number) => Promise<boolean>} makeJaws
  * @property {(file: BodyFile) => Promise<boolean>} open  of one role; trees are not built by it
  * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
@@ -29,8 +30,8 @@ import {bytesWords, short} from './words.js';
 const mostBytes = 1e9;
 // Of the smaller body's extent: 0.4 mm of a jaw, which answers in time for every frame.
 const firstVoxel = 1 / 275;
-// Bodies whose sizes differ by more are of different units.
-const farApart = 50;
+// Bodies whose sizes differ by more are of different units: an inch has 25.4 mm.
+const farApart = 20;
 
 /**
  * @param {Pick<Context, 'store' | 'say'> & {ask: Ask}} context
@@ -84,9 +85,14 @@ export function makeBodiesLoader({store, say, ask}) {
    */
   function compare({fixed, moving}) {
     if (!fixed || !moving) return false;
+    if (fixed.unit !== null && moving.unit !== null && fixed.unit !== moving.unit) {
+      say(`${fixed.name} is in ${unitWord(fixed.unit)}, and ${moving.name} in ${unitWord(moving.unit)}. Both must be in one unit; nothing is converted: ` +
+          'convert one of them, and open it again.', 'warning');
+      return true;
+    }
     const [small, large] = fixed.extent < moving.extent ? [fixed, moving] : [moving, fixed];
     if (large.extent <= farApart * small.extent) return false;
-    say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres. ` +
+    say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres or inches. ` +
         'Both must be in one unit; nothing is converted.', 'warning');
     return true;
   }
@@ -111,7 +117,7 @@ export function makeBodiesLoader({store, say, ask}) {
     } catch (error) {
       const text = faultText(error);
       // The trees of before still answer, and are what the panels show.
-      if (text === null) return;
+      if (text === null) throw error;
       const trees = store.get().trees === null ? 'There are no trees yet' : 'The trees of before are kept';
       throw new Error(`${text.replace(/\.$/, '')}. ${trees}: choose another voxel size.`);
     }
@@ -124,7 +130,9 @@ export function makeBodiesLoader({store, say, ask}) {
   async function replace(files, pose) {
     for (const file of files) await open(file);
     store.set({pose, home: pose, dragging: false});
-    await build();
+    await build().catch((error) => {
+      if (faultText(error) !== null) throw error;  // who cancels the trees still sees the bodies
+    });
   }
 
   return {

@@ -30,6 +30,7 @@
  * @property {string} preset
  * @property {number} reach         millimetres
  * @property {Unit | null} unit     of both bodies, where their files name none
+ * @property {Unit | null} fileUnit of the files that are opened next; null: as each says itself
  * @property {string} frame         "lps", "ras" or ""
  * @property {boolean} wantsMap     whether the map is made again where the pose rests
  * @property {boolean} book         whether both bodies are drawn opened like a book
@@ -46,7 +47,7 @@
  * @typedef {object} Store
  * @property {() => Readonly<State>} get
  * @property {(change: Partial<State>) => void} set  calls those who subscribed to a key that changed
- * @property {(keys: (keyof State)[], told: (state: Readonly<State>) => void) => () => void} subscribe
+ * @property {(keys: (keyof State)[], listen: (state: Readonly<State>) => void) => () => void} subscribe
  *   returns what ends the subscription
  */
 

@@ -98,15 +98,17 @@ function refused(problem) {
  */
 function faultOf(data) {
   if (!kinds.includes(data.kind)) return `its kind is ${JSON.stringify(data.kind)}, not one of ${kinds.join(', ')}`;
-  if (!Array.isArray(data.bodies)) return 'it lists no bodies';
+  if (!Array.isArray(data.bodies) || (data.kind !== 'recording' && data.bodies.length === 0)) return 'it lists no bodies';
+  const {missing} = data;
+  if (missing !== undefined && !(Array.isArray(missing) && missing.every((each) => typeof each === 'string'))) return 'what is missing is not said in sentences';
   for (const [index, body] of data.bodies.entries()) {
     if (body?.role !== 'fixed' && body?.role !== 'moving') return `body ${index} has no role`;
     if (typeof body.name !== 'string' || typeof body.tree !== 'string') return `body ${index} has no name or tree`;
     if (body.tree.length % 4 !== 0 || !/^[A-Za-z0-9+/]*={0,2}$/.test(body.tree)) return `the tree of body ${index} is cut off`;
-    if (data.kind === 'recording' && !isRigid(body.pose)) return `the pose of body ${index} is none`;
-    if (body.in_tool !== undefined && !isRigid(body.in_tool)) return `in_tool of body ${index} is no pose`;
+    if (data.kind === 'recording' && !isRigid(body.pose)) return `body ${index} has no rigid pose`;
+    if (body.in_tool !== undefined && !isRigid(body.in_tool)) return `in_tool of body ${index} is not rigid`;
   }
-  if (data.pose !== undefined && !isRigid(data.pose)) return 'its pose is none';
+  if (data.pose !== undefined && !isRigid(data.pose)) return 'its pose is not rigid';
   if (data.kind === 'bite') {
     for (const role of ['fixed', 'moving']) {
       if (!data.bodies.some((/** @type {BlockBody} */ body) => body.role === role)) return `there is no ${role} body`;

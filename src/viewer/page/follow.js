@@ -29,7 +29,7 @@ export function followPose({engine, store, say}) {
       await done;
     } catch (error) {
       const text = faultText(error);
-      // Of trees that went while it waited, nobody wants to know.
+      // A question about trees that are gone needs no answer.
       if (text && store.get().trees === trees) say(text, 'error');
     } finally {
       asking -= 1;
@@ -57,7 +57,10 @@ export function followPose({engine, store, say}) {
     if (!trees || !state.wantsMap || !measurable(state)) return;
     try {
       const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
-      if (store.get().trees === trees) store.set({bite: {...bite, pose}});
+      const now = store.get();
+      // A map of settings that were changed meanwhile would pass for one of theirs.
+      const same = ['preset', 'reach', 'unit', 'frame'].every((key) => now[/** @type {keyof State} */ (key)] === state[/** @type {keyof State} */ (key)]);
+      if (now.trees === trees && same) store.set({bite: {...bite, pose}});
     } catch (error) {
       // Whoever cancels a map wants no other, until they ask for it.
       if (error instanceof EngineError && error.code === 'cancelled') store.set({wantsMap: false});

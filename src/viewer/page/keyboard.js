@@ -23,7 +23,8 @@ export function listenToKeys({store, stage, history}) {
   surface.setAttribute('aria-label', 'Both bodies in 3D. Arrow keys turn the view, plus and minus zoom; with Shift, arrow keys and Page Up and Down move the moving body.');
   surface.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.shiftKey ? moveBody(event.key) : moveView(event.key)) event.preventDefault();
+    // On many keyboards the plus is reached by Shift.
+    if ((event.shiftKey && moveBody(event.key)) || moveView(event.key)) event.preventDefault();
   });
   surface.addEventListener('keyup', (event) => {
     if (event.key === 'Shift' && store.get().dragging) store.set({dragging: false});

@@ -6,6 +6,7 @@ import {readDataBlock} from './data_block.js';
 import {faultText, makeEngineClient} from './engine/engine_client.js';
 import {startEngine, unpackEngine} from './engine/engine_start.js';
 import {followPose} from './follow.js';
+import {makeAddress} from './state/address.js';
 import {readFragment, writeFragment} from './state/fragment.js';
 import {listenToKeys} from './keyboard.js';
 import {openDropped, openFirst} from './open_first.js';
@@ -35,6 +36,12 @@ import {makeStage} from './view/stage.js';
 // Just apart, so that a little closing shows what there is to see.
 const startShift = [0, 0, -1.5];
 
+/** @param {unknown} error  after which the page cannot go on */
+function lostWords(error) {
+  const text = faultText(error) ?? 'The engine ended';
+  return `${text.replace(/\.$/, '')}. Load the page again; if that does not help, use a browser from 2023 or later.`;
+}
+
 /** @param {string} id */
 function byId(id) {
   const found = document.getElementById(id);
@@ -46,7 +53,7 @@ function byId(id) {
 function firstState() {
   return {
     bodies: {fixed: null, moving: null}, jaws: null, trees: null, pose: translation(startShift), home: [...identity], dragging: false,
-    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, bite: null, preset: 'scan', reach: 2, unit: null,
+    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
     frame: '', wantsMap: false, book: false, theme: null, panel: 'pose', seed: 1,
   };
 }
@@ -79,7 +86,7 @@ async function main() {
     restore: (ask) => loader.restore(ask),
     onLost: (error) => {
       dataset.state = 'failed';
-      say(`${faultText(error)} Load the page again; if that does not help, use a browser from 2023 or later.`, 'error');
+      say(lostWords(error), 'error');
     },
   });
   const loader = makeBodiesLoader({store, say, ask: engine.ask});
@@ -103,8 +110,9 @@ async function main() {
   });
   store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
   store.subscribe(['panel'], ({panel}) => show(panel));
+  const setAddress = makeAddress((fragment) => window.history.replaceState(null, '', fragment));
   store.subscribe(['panel', 'pose', 'dragging', 'voxelSize', 'policy', 'preset', 'theme', 'seed'], (state) => {
-    if (!state.dragging) window.history.replaceState(null, '', writeFragment(state));
+    if (!state.dragging) setAddress(writeFragment(state));
   });
   takeDrops(document.body, async (files) => {
     const recorded = files.find((file) => /\.(jsonl|json|csv)$/i.test(file.name));
@@ -116,7 +124,8 @@ async function main() {
   let opened = false;
   exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
 
-  const {change, problems} = readFragment(location.hash, panels.map((panel) => panel.id));
+  const panelIds = panels.map((panel) => panel.id);
+  const {change, problems} = readFragment(location.hash, panelIds);
   const {data, problem} = readDataBlock(byId('ist-data').textContent ?? 'null');
   for (const each of [...problems, ...problem ? [problem] : [], ...data?.missing ?? []]) say(each, 'warning');
   store.set(change);
@@ -124,9 +133,19 @@ async function main() {
   stage.setPose(store.get().pose);
   await openFirst(context, data, change, recording.open);
   opened = true;
+  // An address that somebody pastes over this one; the page's own changes of it make no such event.
+  window.addEventListener('hashchange', async () => {
+    const pasted = readFragment(location.hash, panelIds), {seed, voxelSize, ...others} = pasted.change;
+    for (const each of pasted.problems) say(each, 'warning');
+    store.set(others);
+    const {jaws} = store.get();
+    const remade = jaws !== null && seed !== undefined && seed !== jaws;
+    if (remade && !await loader.makeJaws(seed)) return;
+    if (remade || (voxelSize && voxelSize !== store.get().voxelSize)) await loader.build(voxelSize ?? undefined);
+  });
 }
 
 main().catch((error) => {
   document.documentElement.dataset.state = 'failed';
-  makeMessages(byId('messages'))(`${faultText(error)}`, 'error');
+  makeMessages(byId('messages'))(lostWords(error), 'error');
 });

@@ -27,7 +27,7 @@ export async function openFirst(context, data, asked, onRecording) {
   if (!opened) {
     if (!await loader.makeJaws(store.get().seed)) return;
     stage.frameAll();
-    if (!await loader.build(asked.voxelSize ?? undefined)) await loader.build();
+    await buildFirst(loader, asked);
   }
   history.forget();
 }
@@ -46,7 +46,7 @@ async function openData(context, data, asked, onRecording) {
     store.set({panel: asked.panel ?? 'recording'});
     return true;
   }
-  if (data.occlusion) {
+  if (data.kind === 'bite' && data.occlusion) {
     const {preset, reach, unit, frame} = data.occlusion;
     store.set({preset: asked.preset ?? preset, reach, frame: frame ?? '', panel: asked.panel ?? 'occlusion'});
     for (const body of data.bodies) {
@@ -61,8 +61,18 @@ async function openData(context, data, asked, onRecording) {
   const pose = data.pose ?? [...identity];
   store.set({pose: asked.pose ?? pose, home: pose, dragging: false});
   stage.frameAll();
-  await loader.build(asked.voxelSize ?? undefined);
+  await buildFirst(loader, asked);
   return true;
+}
+
+/**
+ * Builds the trees as the address says; where that voxel size is refused, as the page would by itself.
+ * @param {Context['loader']} loader
+ * @param {Partial<State>} asked
+ */
+async function buildFirst(loader, {voxelSize}) {
+  const wanted = voxelSize ?? undefined;
+  if (!await loader.build(wanted) && wanted !== undefined) await loader.build();
 }
 
 /**
@@ -75,7 +85,7 @@ async function openData(context, data, asked, onRecording) {
 export async function openDropped({store, loader, stage, history}, file, at, of) {
   // Of two the first is fixed; one alone takes the place of the body that moves.
   const role = of > 1 && at === 0 ? 'fixed' : 'moving';
-  if (!await loader.open({role, name: file.name, content: file})) return;
+  if (!await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined})) return;
   if (at < of - 1) return;
   store.set({pose: store.get().home, dragging: false});
   history.forget();

@@ -17,7 +17,7 @@
  * @property {string[]} warnings
  * @property {number} extent    the largest side of its box
  * @property {boolean} rebuilds whether it holds triangles, of which a tree can be made
- * @property {Unit | null} unit  null where neither the file nor the page told it
+ * @property {Unit | null} unit  null where neither the file nor the page names it
  * @property {Float32Array} positions of the vertices to draw, or of the surface of its voxels
  * @property {Uint32Array} triangles  three indices each
  */

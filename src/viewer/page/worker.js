@@ -16,7 +16,7 @@
 
 /** @type {Record<string, any>} */
 const arrayKinds = {Float32Array, Float64Array, Uint32Array, Uint8Array};
-// A page draws 60 times a second; more is not told.
+// Milliseconds between two messages of progress: nobody sees more.
 const leastBetween = 50;
 
 const fullText = 'the page\'s memory is full: take larger voxels or a coarser mesh, or use the command';
@@ -57,7 +57,7 @@ async function start(bytes) {
  * @param {any} asked
  */
 function fileOf(asked) {
-  const name = asked.name.replace(/[/\\\0-\x1f\x7f]/g, '_') || 'mesh';
+  const name = asked.name.replace(/[/\\\0-\x1f\x7f]/g, '_').replace(/^\.{0,2}$/, 'mesh');
   return {name, path: `${asked.role === 'fixed' ? 'fixed' : 'moving'}/${name}`};
 }
 
@@ -73,11 +73,11 @@ function isShortOfMemory(error) {
 function answer({id, question, asked}) {
   const running = /** @type {Engine} */ (engine);
   const begun = performance.now();
-  let told = begun;
+  let sentAt = begun;
   running.progress = (stage, part) => {
     const now = performance.now();
-    if (now - told < leastBetween) return;
-    told = now;
+    if (now - sentAt < leastBetween) return;
+    sentAt = now;
     postMessage({id, progress: {stage, part}});
   };
   /** @type {any} */

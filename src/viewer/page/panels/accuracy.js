@@ -5,7 +5,7 @@ import {unitOf} from '../follow.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {plot} from '../ui/plot.js';
-import {facts} from '../ui/table.js';
+import {facts, table} from '../ui/table.js';
 import {count, interval, short, unitWord} from '../words.js';
 
 /** @typedef {import('../context.js').State} State */
@@ -20,6 +20,7 @@ const policies = {
   tight: {colour: 'var(--series-2)', words: 'tight: balls round the triangles'},
   slab: {colour: 'var(--series-1)', words: 'slab: those balls, cut by slabs'},
 };
+const tourWords = 'Visit seven voxel sizes';
 const tour = [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3];
 
 /** @type {import('../context.js').MakePanel} */
@@ -40,38 +41,36 @@ export function makeAccuracyPanel({store, loader}) {
     label: 'Policy', value: 'slab', choices: policyChoices(['simple', 'table', 'tight', 'slab']),
     onChange: (value) => store.set({policy: /** @type {Policy} */ (value)}),
   });
-  const numbers = element('div', {'aria-live': 'polite'});
+  const numbers = element('div', {'aria-live': 'polite'}), points = element('div');
   const curve = plot({
     label: 'Error, the resolution, over the time of a query, of the voxel sizes and policies visited at this pose',
     xLabel: 'time of a query, µs', yLabel: 'resolution', logX: true, logY: true,
   });
-  let touring = false;
-  const tourButton = button('Visit seven voxel sizes', async () => {
-    if (touring) {
-      touring = false;
-      return;
-    }
-    touring = true;
+  /** @type {(() => void) | null} ends the visits that are made now */
+  let stop = null;
+  const tourButton = button(tourWords, async () => {
+    if (stop) return stop();
+    const stopped = new Promise((resolve) => { stop = () => resolve('stopped'); });
     tourButton.textContent = 'Stop the visits';
     for (const size of tour) {
-      if (!touring || !await loader.build(size * scale())) break;
-      await nextAnswer();
+      if (!await loader.build(size * scale())) break;
+      if (await Promise.race([stopped, nextAnswer()]) === 'stopped') break;
     }
-    touring = false;
-    tourButton.textContent = 'Visit seven voxel sizes';
+    stop = null;
+    tourButton.textContent = tourWords;
   });
-  const nextAnswer = () => /** @type {Promise<void>} */ (new Promise((resolve) => {
+  const nextAnswer = () => new Promise((resolve) => {
     const end = store.subscribe(['answer'], ({answer}) => {
       if (!answer) return;
       end();
-      resolve();
+      resolve('answered');
     });
-  }));
+  });
 
   const panel = element('div', {},
       element('h2', {}, 'Accuracy against time'),
       element('p', {}, 'Smaller voxels tell touching from near more sharply, and take longer. Two surfaces in a leaf pair are no farther apart than the resolution.'),
-      voxel.element, policy.element, numbers, curve.element,
+      voxel.element, policy.element, numbers, curve.element, points,
       element('div', {class: 'row'}, tourButton, button('Forget the points', () => {
         visited = [];
         draw();
@@ -91,10 +90,11 @@ export function makeAccuracyPanel({store, loader}) {
       }];
     });
     curve.set(series);
+    points.replaceChildren(...(visited.length > 0 ? [visitedTable(visited, unitWord(unitOf(store.get())))] : []));
   };
   /** @type {Answer['pose'] | null} */
   let visitedAt = null;
-  store.subscribe(['answer'], ({answer, pose}) => {
+  store.subscribe(['answer'], ({answer}) => {
     if (answer) {
       // Time hangs on the pose, so that a curve is of one.
       if (visitedAt !== answer.pose) visited = [];
@@ -105,9 +105,9 @@ export function makeAccuracyPanel({store, loader}) {
       draw();
     }
     numbers.replaceChildren(answerFacts(answer, unitWord(unitOf(store.get()))));
-    numbers.classList.toggle('stale', answer?.pose !== pose);
   });
-  store.subscribe(['pose'], ({answer, pose}) => numbers.classList.toggle('stale', answer?.pose !== pose));
+  store.subscribe(['answer', 'pose', 'policy'], ({answer, pose, policy: chosenNow}) =>
+    numbers.classList.toggle('stale', answer?.pose !== pose || answer.policy !== chosenNow));
   store.subscribe(['bodies'], () => {
     visited = [];
     draw();
@@ -153,6 +153,17 @@ function answerFacts(answer, unit) {
     ['Distance', interval(line.distance_lower, line.distance_upper, unit)],
     ['Depth', interval(line.depth_lower, line.depth_upper, unit)],
   ]);
+}
+
+/**
+ * The points of the plot in words.
+ * @param {Visited[]} visited
+ * @param {string} unit
+ */
+function visitedTable(visited, unit) {
+  const rows = [...visited].sort((a, b) => b.voxelSize - a.voxelSize || a.microseconds - b.microseconds);
+  return table('Visited at this pose', ['policy', `voxels, ${unit}`, 'time, µs', `resolution, ${unit}`],
+      rows.map(({policy, voxelSize, microseconds, resolution}) => [policy, short(voxelSize, 3), short(microseconds, 3), short(resolution, 3)]));
 }
 
 function ratioWords() {

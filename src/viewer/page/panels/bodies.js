@@ -12,7 +12,7 @@ import {unitOf} from '../follow.js';
 /** @typedef {import('../protocol.js').Unit} Unit */
 /** @typedef {import('../protocol.js').TreeFacts} TreeFacts */
 
-const endings = '.stl,.ply,.obj,.ist';
+const endings = '.stl,.ply,.obj,.off,.glb,.gltf,.ist';
 /** @type {Role[]} */
 const roles = ['fixed', 'moving'];
 const titles = {fixed: 'Fixed body', moving: 'Moving body'};
@@ -20,14 +20,12 @@ const titles = {fixed: 'Fixed body', moving: 'Moving body'};
 /** @type {import('../context.js').MakePanel} */
 export function makeBodiesPanel({store, loader, stage, history}) {
   let seed = store.get().seed;
-  /** @type {Unit | ''} */
-  let unit = '';
   /**
    * @param {Role} role
    * @param {File} file
    */
   const open = async (role, file) => {
-    const opened = await loader.open({role, name: file.name, content: file, unit: unit || undefined});
+    const opened = await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined});
     if (opened) await settle();
   };
   const settle = async () => {
@@ -37,23 +35,24 @@ export function makeBodiesPanel({store, loader, stage, history}) {
     await loader.build();
     stage.frameAll();
   };
+  const number = numberField({label: 'Built-in jaws, number', value: seed, min: 0, max: 999_999_999, step: 1, onChange: (value) => { seed = value; }});
   const parts = {fixed: element('section'), moving: element('section')};
   const panel = element('div', {},
       element('h2', {}, 'Bodies'),
       element('p', {}, 'Nothing that you open leaves this page: the engine is in it.'),
       element('div', {class: 'row'},
-          numberField({label: 'Built-in jaws, number', value: seed, min: 0, max: 999_999_999, step: 1, onChange: (value) => { seed = value; }}).element,
+          number.element,
           button('Make these jaws', async () => {
             if (await loader.makeJaws(seed)) await settle();
           })),
       select({
         label: 'Unit of the files you open',
-        value: unit,
+        value: '',
         choices: [
           {value: '', words: 'as the file says, else millimetres'}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'},
           {value: 'inch', words: 'inches'}, {value: 'µm', words: 'micrometres'},
         ],
-        onChange: (value) => { unit = /** @type {Unit | ''} */ (value); },
+        onChange: (value) => store.set({fileUnit: value === '' ? null : /** @type {Unit} */ (value)}),
       }).element,
       ...roles.map((role) => element('section', {class: `body ${role}`},
           element('h3', {}, titles[role]), parts[role],
@@ -63,6 +62,10 @@ export function makeBodiesPanel({store, loader, stage, history}) {
     for (const role of roles) parts[role].replaceChildren(...bodyLines(state, role));
   };
   store.subscribe(['bodies', 'trees', 'unit'], fill);
+  store.subscribe(['seed'], (state) => {
+    ({seed} = state);
+    number.set(seed);
+  });
   fill(store.get());
   return {id: 'bodies', title: 'Bodies', element: panel, shown: () => {}, hidden: () => {}};
 }

@@ -56,6 +56,9 @@ export function makeOcclusionPanel({store, stage}) {
     const {bite} = now;
     unit.element.hidden = Boolean(now.bodies.fixed?.unit ?? now.bodies.moving?.unit);
     preset.set(now.preset);
+    reach.set(now.reach);
+    unit.set(now.unit ?? '');
+    frame.set(now.frame);
     const stale = bite !== null && bite.pose !== now.pose;
     const possible = now.trees !== null && measurable(now), cancelled = possible && seen && !now.wantsMap;
     again.hidden = !cancelled;
@@ -77,7 +80,7 @@ export function makeOcclusionPanel({store, stage}) {
     fill();
   };
   store.subscribe(['bite', 'bodies'], fillBite);
-  store.subscribe(['pose', 'trees', 'preset', 'book', 'unit', 'wantsMap'], fill);
+  store.subscribe(['pose', 'trees', 'preset', 'reach', 'unit', 'frame', 'book', 'wantsMap'], fill);
   return {
     id: 'occlusion', title: 'Occlusion', element: panel,
     shown() {

@@ -4,6 +4,7 @@ import {faultText} from '../engine/engine_client.js';
 import {placeAt, relative} from '../recording/placed_bodies.js';
 import {openRecordingFile} from '../recording/open_recording.js';
 import {indexAt, makePlayback} from '../recording/playback.js';
+import {toolPath} from '../recording/tool_path.js';
 import {identity} from '../pose.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
@@ -36,6 +37,8 @@ export function makeRecordingPanel(context) {
   const view = makePlayerView(stage);
   /** @type {Opened | null} */
   let opened = null;
+  /** @type {import('../context.js').State['bodies'] | null} those that its scene is of */
+  let bodiesThen = null;
   /** @type {Playback | null} */
   let playback = null;
   let seen = false;
@@ -96,9 +99,10 @@ export function makeRecordingPanel(context) {
   function open(next) {
     playback?.pause();
     opened = next;
-    const {recording: {ticks, header, dt}, scene} = next;
+    const {recording: {ticks}, scene} = next;
+    bodiesThen = store.get().bodies;
     player.hidden = false;
-    head.textContent = `${count(ticks.length)} ticks of ${short(dt * 1e6)} µs by ist ${header.ist}: ${header.bodies.map((/** @type {any} */ body) => body.file ?? body.name).join(', ')}.`;
+    head.textContent = headWords(next.recording);
     scrub.range(0, ticks.length - 1);
     playback = makePlayback(ticks, show);
     const late = {name: 'late ticks', colour: 'var(--series-2)', ticks: true, points: ticks.filter((tick) => tick.late).map((tick) => /** @type {[number, number]} */ ([tick.time, 0]))};
@@ -120,6 +124,7 @@ export function makeRecordingPanel(context) {
       return;
     }
     const {scene, recording: {ticks}} = opened;
+    for (const role of roles) stage.fade(role, scene ? 1 : 0);
     if (scene) {
       const {moving} = store.get().bodies;
       view.set(moving, scene.others.map((other) => other.facts), moving?.extent ?? 1);
@@ -127,12 +132,9 @@ export function makeRecordingPanel(context) {
       stage.frameAll();
       return;
     }
-    for (const role of roles) stage.fade(role, 0);
-    const path = ticks.flatMap(({tool}) => [12, 13, 14].map((axis) => tool[axis] * frameScale));
-    const middle = [0, 1, 2].map((axis) => path.reduce((sum, value, at) => at % 3 === axis ? sum + value : sum, 0) / ticks.length);
-    const size = Math.max(1, ...path.map((value, at) => Math.abs(value - middle[at % 3])));
+    const {points, middle, size} = toolPath(ticks, frameScale);
     view.set(null, [], 8 * size);
-    view.setPath(path);
+    view.setPath(points);
     playback?.jump(playback.at());
     stage.flyTo(middle, [0.4, 1, 0.3], 5 * size);
   }
@@ -193,6 +195,14 @@ export function makeRecordingPanel(context) {
     if (playback) plots.distance.mark(ticks[playback.at()].time);
   }
 
+  store.subscribe(['bodies'], ({bodies}) => {
+    if (!opened?.scene || bodies === bodiesThen) return;
+    playback?.pause();
+    opened = {...opened, scene: null};
+    head.textContent = `${headWords(opened.recording)} Its bodies gave way to others: its frames alone are drawn. Open it again to have them back.`;
+    arrange();
+  });
+
   return {
     id: 'recording', title: 'Recording', element: panel, open, openFile,
     progress: () => opened && playback && {tick: opened.recording.ticks[playback.at()].tick, last: opened.recording.ticks[opened.recording.ticks.length - 1].tick},
@@ -209,6 +219,15 @@ export function makeRecordingPanel(context) {
 }
 
 const roles = /** @type {const} */ (['fixed', 'moving']);
+
+/** @param {import('../recording/recording.js').Recording} recording */
+function headWords({ticks, header, dt}) {
+  /** @type {import('../protocol.js').Line[]} */
+  const bodies = header.bodies;
+  const scripted = bodies.filter(({script}) => script).map(({name}) => name);
+  return `${count(ticks.length)} ticks of ${short(dt * 1e6)} µs by ist ${header.ist}: ${bodies.map((body) => body.file ?? body.name).join(', ')}.` +
+      (scripted.length > 0 ? ` The page does not play the script of ${scripted.join(', ')}: it is drawn, and its distance asked, where it began.` : '');
+}
 
 /** @param {Pose} pose */
 function scaled(pose) {

@@ -116,6 +116,10 @@ function headerOf(line, number) {
     throw new Error(`This recording is of version ${header.recording}, and the page reads version ${version}: ` +
         (header.recording > version ? 'open it in a page of the version of ist that wrote it.' : 'record the scene again with this version of ist.'));
   }
+  const named = Array.isArray(header.bodies) && header.bodies.every((/** @type {unknown} */ body) => typeof (/** @type {any} */ (body)?.name) === 'string');
+  if (!(header.dt > 0) || !(header.unit > 0) || !named) {
+    throw new Error('The header of this recording is damaged: it needs dt and unit (numbers above 0) and bodies with names. Record the scene again.');
+  }
   return header;
 }
 
@@ -167,6 +171,9 @@ function tickOf(line, number, before) {
     throw new Error(`Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null) and wrench (6 numbers). Record the scene again.`);
   }
   const wrench = line.wrench.map((/** @type {unknown} */ value) => typeof value === 'number' ? value : 0);
+  if (previous !== undefined && line.tick <= previous.tick) {
+    throw new Error(`Line ${number} of the recording is damaged: tick ${line.tick} comes after tick ${previous.tick}. Record the scene again.`);
+  }
   const first = before.length ? before[0].tick : line.tick;
   return {
     tick: line.tick,

@@ -14,8 +14,8 @@ const themes = ['dark', 'light'];
 /**
  * @param {string} fragment  with or without its `#`
  * @param {string[]} panels  their ids
- * @returns {{change: Partial<State>, problems: string[]}} a part that is none is passed over, with a
- *   sentence
+ * @returns {{change: Partial<State>, problems: string[]}} a part that it cannot take is passed over,
+ *   with a sentence
  */
 export function readFragment(fragment, panels) {
   /** @type {any} */

@@ -8,7 +8,7 @@
  * @returns {Store}
  */
 export function makeStore(state) {
-  /** @type {Set<{keys: (keyof State)[], told: (state: Readonly<State>) => void}>} */
+  /** @type {Set<{keys: (keyof State)[], listen: (state: Readonly<State>) => void}>} */
   const listeners = new Set();
   return {
     get: () => state,
@@ -17,11 +17,11 @@ export function makeStore(state) {
       if (changed.length === 0) return;
       state = {...state, ...change};
       for (const listener of [...listeners]) {
-        if (listener.keys.some((key) => changed.includes(key))) listener.told(state);
+        if (listener.keys.some((key) => changed.includes(key))) listener.listen(state);
       }
     },
-    subscribe(keys, told) {
-      const listener = {keys, told};
+    subscribe(keys, listen) {
+      const listener = {keys, listen};
       listeners.add(listener);
       return () => listeners.delete(listener);
     },

@@ -15,6 +15,7 @@ import {identity} from '../pose.js';
  * @property {(opacity: number) => void} fade
  * @property {(pose: Pose) => void} setMatrix
  * @property {() => THREE.Box3} bounds
+ * @property {() => void} dispose  gives the picture's memory back; it is not drawn again
  */
 
 /**
@@ -65,6 +66,10 @@ export function makeBodyMesh(ownColour) {
       mesh.matrixWorldNeedsUpdate = true;
     },
     bounds: () => known && mesh.geometry.boundingBox ? mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix) : new THREE.Box3(),
+    dispose() {
+      mesh.geometry.dispose();
+      material.dispose();
+    },
   };
 }
 

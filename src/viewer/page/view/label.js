@@ -2,6 +2,12 @@
 
 import * as THREE from 'three';
 
+/** @param {THREE.Sprite} label  is not drawn again */
+export function disposeLabel({material}) {
+  material.map?.dispose();
+  material.dispose();
+}
+
 /**
  * @param {string} text
  * @param {number} height  mesh units

@@ -34,11 +34,15 @@ export function makePlayerView(stage) {
   const toolFrame = frame(0.12), handFrame = frame(0.08);
   const path = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: pathColour}));
   path.frustumCulled = false;
+  const empty = () => {
+    group.clear();
+    for (const each of hand ? [hand, ...others] : others) each.dispose();
+    hand = null;
+    others = [];
+  };
   return {
     set(moving, drawn, size) {
-      group.clear();
-      hand = null;
-      others = [];
+      empty();
       if (!moving) {
         for (const each of [toolFrame, handFrame]) each.scale.setScalar(size);
         group.add(toolFrame, handFrame, path);
@@ -71,7 +75,7 @@ export function makePlayerView(stage) {
       path.geometry.computeBoundingSphere();
     },
     clear() {
-      group.clear();
+      empty();
       stage.render();
     },
   };

@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 
 import {clearBalls, makeBalls, mostDrawn} from './balls.js';
-import {makeLabel} from './label.js';
+import {disposeLabel, makeLabel} from './label.js';
 
 /** @typedef {import('../protocol.js').Level} Level */
 /** @typedef {import('../protocol.js').Pose} Pose */
@@ -33,7 +33,10 @@ export function makeTreeView(stage) {
   let columnsDrawn = 0;
   const empty = () => {
     for (const column of group.children) {
-      for (const part of column.children) clearBalls(part);
+      for (const part of column.children) {
+        if (part instanceof THREE.Sprite) disposeLabel(part);
+        else clearBalls(part);
+      }
     }
     group.clear();
   };

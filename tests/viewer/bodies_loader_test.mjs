@@ -1,0 +1,91 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {makeBodiesLoader} from '../../src/viewer/page/bodies_loader.js';
+import {EngineError} from '../../src/viewer/page/engine/engine_client.js';
+import {makeStore} from '../../src/viewer/page/state/store.js';
+
+const facts = (name, extent, unit = null) => ({name, extent, unit, warnings: [], info: {}, rebuilds: true});
+const trees = {policies: ['simple', 'slab'], fixed: {}, moving: {}};
+const file = (role, name, unit) => ({role, name, content: new Blob(['solid']), unit});
+
+/** A loader over an engine that answers as it is said to, or throws what it is given. */
+function made(answers) {
+  const said = [], asked = [];
+  const store = makeStore({bodies: {fixed: null, moving: null}, trees: null, policy: null, pose: [], home: [], dragging: false});
+  const ask = async (name, question) => {
+    asked.push([name, question]);
+    const answer = await answers[name](question);
+    if (answer instanceof Error) throw answer;
+    return answer;
+  };
+  return {loader: makeBodiesLoader({store, ask, say: (text, kind) => said.push([kind, text])}), store, said, asked};
+}
+const jaws = {fixed: facts('upper', 110), moving: facts('lower', 110)};
+
+test('a build that is cancelled or replaced was not done, and nothing is said of it', async () => {
+  for (const code of ['cancelled', 'replaced']) {
+    let outcome = trees;
+    const {loader, store, said} = made({make_jaws: () => jaws, build: () => outcome});
+    assert.equal(await loader.makeJaws(1), true);
+    assert.equal(await loader.build(0.4), true);
+    outcome = new EngineError(code, code);
+    assert.equal(await loader.build(0.2), false);
+    assert.deepEqual(said, []);
+    assert.equal(store.get().voxelSize, 0.4);
+  }
+});
+
+test('a build that is refused says that the trees of before are kept', async () => {
+  let outcome = new EngineError('memory-limit', 'it takes too much.');
+  const {loader, said} = made({make_jaws: () => jaws, build: () => outcome});
+  await loader.makeJaws(1);
+  assert.equal(await loader.build(1e-4), false);
+  assert.deepEqual(said.pop(), ['error', 'It takes too much. There are no trees yet: choose another voxel size.']);
+  outcome = trees;
+  await loader.build();
+  outcome = new EngineError('memory-limit', 'it takes too much.');
+  assert.equal(await loader.build(1e-4), false);
+  assert.match(said.pop()[1], /The trees of before are kept/);
+});
+
+test('bodies that come in place of others are there without trees too', async () => {
+  const {loader, store} = made({open: ({name}) => facts(name, 1), build: () => new EngineError('cancelled', '')});
+  assert.equal(await loader.replace([file('fixed', 'a.ist'), file('moving', 'b.ist')]), true);
+  assert.equal(store.get().bodies.moving.name, 'b.ist');
+  assert.equal(store.get().trees, null);
+});
+
+test('another engine gets what this one had: files, their units, and the voxel size', async () => {
+  const {loader} = made({make_jaws: () => jaws, open: ({name, unit}) => facts(name, 100, unit), build: () => trees});
+  const restored = async () => {
+    const again = [];
+    await loader.restore(async (name, {bytes, ...question}) => { again.push([name, question]); });
+    return again;
+  };
+  await loader.makeJaws(3);
+  assert.deepEqual(await restored(), [['make_jaws', {seed: 3}]]);
+  await loader.open(file('moving', 'other.stl', 'mm'));
+  await loader.build(0.5);
+  const opened = ['open', {role: 'moving', name: 'other.stl', unit: 'mm'}], built = ['build', {voxel_size: 0.5}];
+  assert.deepEqual(await restored(), [['make_jaws', {seed: 3}], opened, built]);
+  await loader.open(file('fixed', 'first.stl'));
+  assert.deepEqual(await restored(), [opened, ['open', {role: 'fixed', name: 'first.stl', unit: undefined}]]);
+});
+
+test('bodies that cannot be in one unit get a warning, others get none', async () => {
+  const pairs = [
+    [['mm', 110], ['m', 110], /^a\.stl is in mm, and b\.stl in m\. .*convert one of them, and open it again/],
+    [[null, 110], ['inch', 4.3], /^a\.stl is 26 times as large as b\.stl: one of them may be in metres or inches/],
+    [['mm', 110], [null, 110], null], [['m', 0.11], ['m', 0.02], null],
+  ];
+  for (const [fixed, moving, sentence] of pairs) {
+    const bodies = {'a.stl': fixed, 'b.stl': moving};
+    const {loader, said} = made({open: ({name}) => facts(name, bodies[name][1], bodies[name][0])});
+    await loader.open(file('fixed', 'a.stl'));
+    said.length = 0;
+    await loader.open(file('moving', 'b.stl'));
+    assert.equal(said.length, sentence ? 1 : 0, said.join());
+    if (sentence) assert.match(said[0][1], sentence);
+  }
+});

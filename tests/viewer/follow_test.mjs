@@ -1,0 +1,93 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {EngineError} from '../../src/viewer/page/engine/engine_client.js';
+import {followPose} from '../../src/viewer/page/follow.js';
+import {makeStore} from '../../src/viewer/page/state/store.js';
+
+const body = {rebuilds: true, unit: 'mm'};
+const rested = 400;  // milliseconds, after which a pose has rested
+
+/** The page's answers, of an engine whose questions wait until the test answers them. */
+function followed(change = {}) {
+  const said = [], asked = [];
+  const store = makeStore({
+    bodies: {fixed: body, moving: body}, trees: null, pose: [1], dragging: false, policy: null, stiffness: 0.1, tick: null, answer: null,
+    bite: null, wantsMap: false, preset: 'scan', reach: 2, unit: null, frame: '', ...change,
+  });
+  const ask = (name, question) => new Promise((resolve, reject) => { asked.push({name, question, resolve, reject}); });
+  const {settled} = followPose({engine: {ask}, store, say: (text) => said.push(text)});
+  const take = (name) => {
+    const at = asked.findIndex((each) => each.name === name);
+    assert.ok(at >= 0, `${name} is asked, not ${asked.map((each) => each.name).join()}`);
+    const [found] = asked.splice(at, 1);
+    return found;
+  };
+  return {store, said, asked, take, settled};
+}
+const wait = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+
+test('a tick is asked with each pose, the whole answer where it rests', async () => {
+  const {store, asked, take, settled} = followed();
+  store.set({trees: {}});
+  store.set({pose: [2], dragging: true});
+  assert.deepEqual(asked.map(({name, question}) => [name, question.pose]), [['tick', [1]], ['tick', [2]]]);
+  await wait(rested);
+  assert.equal(asked.length, 2, 'a hand still drags it');
+  store.set({dragging: false});
+  assert.equal(asked.length, 2, 'it does not rest yet');
+  await wait(rested);
+  const answer = take('collide');
+  assert.deepEqual(answer.question.pose, [2]);
+  for (const tick of [take('tick'), take('tick')]) tick.resolve({touch: 'no'});
+  assert.equal(settled(), false);
+  answer.resolve({line: {}});
+  await wait(0);
+  assert.equal(settled(), true);
+  assert.deepEqual(store.get().answer.pose, [2]);
+  assert.equal(asked.length, 0, 'no map is wanted');
+});
+
+test('a map that was measured by other settings than are shown is not shown, and another is made', async () => {
+  const {store, take} = followed({wantsMap: true});
+  store.set({trees: {}});
+  await wait(rested);
+  const first = take('occlusion');
+  assert.equal(first.question.preset, 'scan');
+  store.set({preset: 'stl'});
+  first.resolve({bite: 'of scan'});
+  await wait(rested);
+  assert.equal(store.get().bite, null);
+  const second = take('occlusion');
+  assert.equal(second.question.preset, 'stl');
+  second.resolve({bite: 'of stl'});
+  await wait(0);
+  assert.equal(store.get().bite.bite, 'of stl');
+});
+
+test('answers of trees that went are passed over, without a word', async () => {
+  const {store, said, take} = followed();
+  store.set({trees: {}});
+  await wait(rested);
+  const tick = take('tick'), answer = take('collide');
+  store.set({trees: null});
+  tick.reject(new EngineError('argument-invalid', 'the trees are not built'));
+  answer.resolve({line: {}});
+  await wait(0);
+  assert.equal(store.get().answer, null);
+  assert.deepEqual(said, []);
+});
+
+test('a map that is cancelled is not made again until it is asked for', async () => {
+  const {store, said, asked, take} = followed({wantsMap: true});
+  store.set({trees: {}});
+  await wait(rested);
+  take('occlusion').reject(new EngineError('cancelled', 'cancelled'));
+  await wait(rested);
+  assert.equal(store.get().wantsMap, false);
+  assert.deepEqual(said, []);
+  assert.ok(!asked.some(({name}) => name === 'occlusion'));
+  store.set({wantsMap: true});
+  await wait(rested);
+  take('occlusion');
+});

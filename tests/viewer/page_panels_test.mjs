@@ -1,0 +1,153 @@
+// What each panel says, in its own words, of what the engine and the command answer.
+
+import assert from 'node:assert/strict';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+
+import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
+import {answer, closePage, closedBy, ist, linesOf, openPage, readout, ready, startBrowser} from './browser.mjs';
+
+const ratio = JSON.parse(readFileSync(new URL('../../src/viewer/page/native_ratio.json', import.meta.url), 'utf8'));
+const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
+let browser;
+
+before(async () => {
+  ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true});
+});
+
+const panel = (page, name) => page.getByRole('tabpanel', {name, exact: true});
+
+/** The names and values that a panel lists. */
+function facts(page, name) {
+  return panel(page, name).evaluate((element) => Object.fromEntries(
+      [...element.querySelectorAll('dt')].map((each) => [each.textContent, each.nextElementSibling.textContent])));
+}
+
+/** The cells of a table of a panel, row by row. */
+function rows(page, caption) {
+  return page.getByRole('region', {name: caption}).evaluate((element) =>
+    [...element.querySelectorAll('tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent)));
+}
+
+test('Bodies: what ist info says of both, and their trees', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=bodies');
+  const {page} = opened;
+  await ready(page);
+  for (const [role, file] of [['fixed', 'upper_jaw.stl'], ['moving', 'lower_jaw.stl']]) {
+    const [, info] = linesOf(ist(folder, 'info', file, '--json'));
+    const text = await page.locator(`.body.${role}`).textContent();
+    for (const sentence of infoSentences({unit: null, ...info})) assert.ok(text.includes(sentence), `${sentence} in: ${text}`);
+    const {leaves} = await page.evaluate((role) => window.ist.state().trees[role], role);
+    assert.ok(text.includes(`Leaves${count(leaves)}`) && text.includes('Voxel size2 mm'), text);
+  }
+  await closePage(opened);
+});
+
+test('Accuracy: the numbers of the answer, a point for each voxel size and policy, and the ratio to the command', async () => {
+  const opened = await openPage(browser, '#voxel=1&panel=accuracy');
+  const {page} = opened;
+  await ready(page);
+  const {line} = await answer(page);
+  const said = await facts(page, 'Accuracy');
+  assert.match(said['Time of a query'], /^[\d.,]+ µs, the median of groups of 20$/);
+  assert.deepEqual([said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said.Depth], [
+    count(line.sphere_tests), count(line.leaf_pairs), `${short(line.resolution)} mm`,
+    interval(line.distance_lower, line.distance_upper, 'mm'), interval(line.depth_lower, line.depth_upper, 'mm')]);
+  assert.ok((await panel(page, 'Accuracy').textContent()).includes(`takes ${short(ratio.ratio, 2)} times as long as the program itself`));
+  const points = () => panel(page, 'Accuracy').locator('circle.point').count();
+  assert.equal(await points(), 1);
+  await page.getByLabel('Policy').selectOption('tight');
+  await page.waitForFunction(() => window.ist.answer()?.line.spheres === 'tight');
+  assert.equal(await points(), 2);
+  await page.getByRole('slider', {name: 'Voxel size'}).press('End');
+  await page.waitForFunction(() => window.ist.answer()?.line.voxel_size[0] === 2);
+  assert.equal(await points(), 3);
+  assert.equal(await panel(page, 'Accuracy').locator('circle.point.current').count(), 1);
+  const visited = (await rows(page, 'Visited at this pose')).map(([policy, voxels]) => `${policy} ${voxels}`);
+  assert.deepEqual([visited[0], visited.slice(1).sort()], ['tight 2', ['slab 1', 'tight 1']]);
+  await page.getByRole('button', {name: 'Forget the points'}).click();
+  assert.equal(await points(), 0);
+  await closePage(opened);
+});
+
+test('Tree: nodes of a level, policies beside each other, and a query front by front to its leaf pairs', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=tree&pose=${closedBy(-0.2)}`);
+  const {page} = opened;
+  await ready(page);
+  const {line} = await answer(page);
+  await page.getByLabel('tight', {exact: true}).check();
+  const level = page.getByRole('region', {name: 'Level 4'});
+  await level.getByRole('row', {name: /^tight / }).waitFor();
+  const nodes = await page.evaluate(() => ['fixed', 'moving'].map((role) => window.ist.state().trees[role].nodes[4]));
+  for (const row of await rows(page, 'Level 4')) assert.equal(row[1], nodes.map(count).join(' and '));
+  await page.getByLabel('tight', {exact: true}).uncheck();
+  await page.getByLabel('Show', {exact: true}).selectOption('query');
+  const first = page.getByRole('region', {name: 'This step'}).getByRole('row', {name: /^slab /});
+  await first.waitFor();
+  const tests = (await first.textContent());
+  await page.getByRole('slider', {name: 'Step of the query'}).press('End');
+  await page.getByRole('region', {name: 'This step'}).getByRole('cell', {name: count(line.leaf_pairs), exact: true}).first().waitFor();
+  assert.notEqual(await page.getByRole('region', {name: 'This step'}).getByRole('row', {name: /^slab /}).textContent(), tests);
+  await closePage(opened);
+});
+
+test('Contacts: the deepest ones, and the force and the torque of all', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=contacts&pose=${closedBy(0)}`);
+  const {page} = opened;
+  await ready(page);
+  const {depths, force} = await page.evaluate(() => {
+    const {contacts} = window.ist.state().tick;
+    return {depths: [...contacts.depths].sort((a, b) => b - a), force: Math.hypot(...contacts.force)};
+  });
+  assert.ok(depths.length > 1 && force > 0);
+  const said = await facts(page, 'Contacts');
+  assert.equal(said.Contacts, count(depths.length));
+  assert.equal(said.Contacts, (await readout(page)).Contacts);
+  assert.equal(said.Deepest, `${short(depths[0], 3)} mm`);
+  assert.ok(said['Force on the moving body (green)'].startsWith(`${short(force, 3)} N (`), JSON.stringify(said));
+  assert.match(said['Torque (pink)'], /^[\d.,e−]+ N mm \(/);
+  const listed = await rows(page, 'deepest');
+  assert.deepEqual(listed.map(([, depth]) => depth), depths.slice(0, 10).map((depth) => short(depth, 3)));
+  await closePage(opened);
+});
+
+test('Occlusion: the legend, the areas and the regions of the bite, grey where the pose is another', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=occlusion&preset=stl&pose=${closedBy(-0.6)}`);
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  const {bands, bite} = await page.evaluate(() => {
+    const {bite: {bands, bite}} = window.ist.state();
+    return {bands, bite};
+  });
+  const legend = await page.locator('.map-legend li').allTextContents();
+  assert.equal(legend.length, bands.length + 1);
+  bands.forEach(({words}, at) => assert.ok(legend[at].startsWith(words), legend[at]));
+  assert.match(await panel(page, 'Occlusion').locator('.map-legend figcaption').textContent(), /^stl: .*Rovira-Lastra/);
+  assert.equal(await page.locator('.caveat').textContent(), bite.caveat);
+  for (const role of ['fixed', 'moving']) {
+    assert.equal((await rows(page, `Contact regions of the ${role} body`)).length, bite[role].regions.length);
+  }
+  assert.equal((await facts(page, 'Occlusion')).Regions, `${count(bite.fixed.regions.length)} and ${count(bite.moving.regions.length)}`);
+  await page.getByRole('button', {name: 'Look at region 1 of the moving body', exact: true}).click();
+  const stale = () => panel(page, 'Occlusion').locator('div.stale').count();
+  assert.equal(await stale(), 0);
+  // A hand that holds the slider: the old map is grey until it rests.
+  const box = await page.getByRole('slider', {name: 'Close along z'}).boundingBox();
+  await page.mouse.move(box.x + 0.7 * box.width, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.getByText('Grey: the map of another pose.').waitFor();
+  assert.equal(await stale(), 1);
+  assert.equal(await page.locator('#readout .stale dt').textContent(), 'Depth');
+  await page.mouse.up();
+  await page.getByText('The map is of this pose.').waitFor();
+  assert.equal(await stale(), 0);
+  await closePage(opened);
+});
