@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {EngineError} from '../../src/viewer/page/engine/engine_client.js';
-import {followPose} from '../../src/viewer/page/follow.js';
+import {followPose, isHere} from '../../src/viewer/page/follow.js';
 import {makeStore} from '../../src/viewer/page/state/store.js';
 
 const body = {rebuilds: true, unit: 'mm'};
@@ -13,7 +13,7 @@ function followed(change = {}) {
   const said = [], asked = [];
   const store = makeStore({
     bodies: {fixed: body, moving: body}, trees: null, pose: [1], dragging: false, policy: null, stiffness: 0.1, tick: null, answer: null,
-    bite: null, wantsMap: false, preset: 'scan', reach: 2, unit: null, frame: '', ...change,
+    cancelled: null, bite: null, wantsMap: false, preset: 'scan', reach: 2, unit: null, frame: '', ...change,
   });
   const ask = (name, question) => new Promise((resolve, reject) => { asked.push({name, question, resolve, reject}); });
   const {settled} = followPose({engine: {ask}, store, say: (text) => said.push(text)});
@@ -76,6 +76,26 @@ test('answers of trees that went are passed over, without a word', async () => {
   await wait(0);
   assert.equal(store.get().answer, null);
   assert.deepEqual(said, []);
+});
+
+test('an answer that is cancelled is not asked again before the pose is another', async () => {
+  const {store, said, asked, take, settled} = followed();
+  store.set({trees: {}});
+  await wait(rested);
+  take('tick').resolve({touch: 'no'});
+  take('collide').reject(new EngineError('cancelled', 'cancelled'));
+  await wait(0);
+  assert.deepEqual(store.get().cancelled, {pose: [1], policy: null});
+  assert.ok(isHere(store.get(), store.get().cancelled));
+  store.set({wantsMap: true});
+  await wait(rested);
+  take('occlusion').resolve({});
+  await wait(0);
+  assert.deepEqual([asked, said, settled()], [[], [], true]);
+  store.set({policy: 'tight'});
+  await wait(rested);
+  assert.equal(take('collide').question.policy, 'tight');
+  assert.equal(isHere(store.get(), store.get().cancelled), false);
 });
 
 test('a map that is cancelled is not made again until it is asked for', async () => {

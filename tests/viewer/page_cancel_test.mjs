@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
-import {answer, answerOf, closePage, ist, inWorker, openPage, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
@@ -24,7 +24,8 @@ after(async () => {
 // The engine takes a minute for these, whatever machine it runs on.
 const slowly = inWorker(`addEventListener('message', ({data: {question, asked}}) => {
   const long = question === 'first_contact' || question === 'save_glb' || question === 'save_body' || asked?.name === 'slow.stl' ||
-      asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens');
+      asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens') ||
+      (question === 'touched' && asked.level === 0) || (question === 'collide' && asked.pose[14] === -0.25);
   for (const begun = performance.now(); long && performance.now() - begun < 60_000;);
 });`);
 
@@ -36,6 +37,7 @@ const panelsOf = {
   'Reading slow.stl': ['Bodies', (page) => page.locator('.body.moving input[type=file]')
       .setInputFiles({name: 'slow.stl', mimeType: 'model/stl', buffer: readFileSync(path.join(folder, lower))})],
   'Building both trees': ['Accuracy', (page) => page.getByRole('slider', {name: 'Voxel size'}).press('Home')],
+  'Reading the trees': ['Tree', (page) => page.getByRole('slider', {name: 'Level'}).press('Home')],
   'Looking for the first contact': ['Pose', (page) => page.getByRole('button', {name: 'First contact'}).click()],
   'Measuring the distances': ['Occlusion', (page) => page.getByLabel('Preset').selectOption('owens')],
   'Writing both bodies as GLB': ['Save', (page) => page.getByRole('button', {name: 'Both bodies', exact: true}).click()],
@@ -72,6 +74,33 @@ for (const [words, [panel, begin]] of Object.entries(panelsOf)) {
     await closePage(opened);
   });
 }
+
+test('says that the depth is not known where its search was cancelled, and asks again at the next pose', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=pose', {before: slowly});
+  const {page} = opened;
+  await ready(page);
+  // What is asked at each rest has no bar before a second is over: it would flicker.
+  await page.evaluate(() => {
+    const begun = performance.now();
+    new MutationObserver((changes) => {
+      if (changes.some(({target}) => !target.hidden)) window.barAfter ??= performance.now() - begun;
+    }).observe(document.getElementById('progress'), {subtree: true, attributeFilter: ['hidden']});
+  });
+  await page.evaluate((hash) => { location.hash = hash; }, `#pose=${closedBy(-0.25)}`);
+  await cancel(page, 'Finding distance and depth');
+  const barAfter = await page.evaluate(() => window.barAfter);
+  assert.ok(barAfter > 1000, `${barAfter} ms`);
+  await page.waitForFunction(() => document.documentElement.dataset.state === 'ready');
+  assert.equal(await answer(page), null);
+  const {Touch, Depth} = await readout(page);
+  assert.deepEqual([Touch, Depth], ['they touch', 'not known']);
+  await showPanel(page, 'Save');
+  await page.getByRole('button', {name: 'Answer', exact: true}).click();
+  assert.match(await message(page, /was cancelled/), /move the body a little/);
+  await setPose(page, closedBy(0));
+  assert.match((await readout(page)).Depth, /^[\d.]+ to [\d.]+ mm$/);
+  await closePage(opened);
+});
 
 test('makes a map that was cancelled where it is asked for, and answers meanwhile', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=occlusion', {before: slowly});

@@ -57,7 +57,7 @@ export function makeBodiesLoader({store, say, ask}) {
   async function makeJaws(seed) {
     const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
     Object.assign(kept, {seed, files: {}, built: false});
-    store.set({bodies, jaws: seed, seed, trees: null, tick: null, answer: null, bite: null, unit: null});
+    store.set({bodies, jaws: seed, seed, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: null});
   }
 
   /** @param {BodyFile} file */
@@ -74,7 +74,7 @@ export function makeBodiesLoader({store, say, ask}) {
     kept.built = false;
     if (kept.files.fixed && kept.files.moving) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
-    store.set({bodies, jaws: null, trees: null, tick: null, answer: null, bite: null, unit: file.unit ?? null});
+    store.set({bodies, jaws: null, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: file.unit ?? null});
     for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }
@@ -113,7 +113,7 @@ export function makeBodiesLoader({store, say, ask}) {
       const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
       Object.assign(kept, {voxelSize, built: true});
       const {policy} = store.get();
-      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, bite: null});
+      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, cancelled: null, bite: null});
     } catch (error) {
       const text = faultText(error);
       // The trees of before still answer, and are what the panels show.

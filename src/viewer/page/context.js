@@ -26,6 +26,7 @@
  * @property {number} stiffness     N/mm³
  * @property {Tick | null} tick     the answer at the pose, or at one a few frames ago
  * @property {Answer | null} answer the command's answer at `answer.pose`, where the pose rested last
+ * @property {{pose: Pose, policy: Policy | null} | null} cancelled  where somebody cancelled the answer: it is not known there
  * @property {BiteAt | null} bite   the map, at the pose where it was made
  * @property {string} preset
  * @property {number} reach         millimetres

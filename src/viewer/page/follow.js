@@ -8,6 +8,8 @@ import {millimetresIn} from './words.js';
 
 /** @typedef {import('./context.js').Context} Context */
 /** @typedef {import('./context.js').State} State */
+/** @typedef {import('./protocol.js').Pose} Pose */
+/** @typedef {import('./protocol.js').Policy} Policy */
 
 // A hand that pauses for less is still dragging.
 const rest = 250;
@@ -47,8 +49,14 @@ export function followPose({engine, store, say}) {
   async function answer() {
     const {pose, policy, trees} = store.get();
     if (!trees) return;
-    const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true});
-    if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
+    try {
+      const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true, doing: 'Finding distance and depth', seldomLong: true});
+      if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
+    } catch (error) {
+      // Whoever cancels an answer wants no other at this pose.
+      if (isCancelled(error) && store.get().trees === trees) store.set({cancelled: {pose, policy}});
+      throw error;
+    }
   }
 
   async function map() {
@@ -63,16 +71,16 @@ export function followPose({engine, store, say}) {
       if (now.trees === trees && same) store.set({bite: {...bite, pose}});
     } catch (error) {
       // Whoever cancels a map wants no other, until they ask for it.
-      if (error instanceof EngineError && error.code === 'cancelled') store.set({wantsMap: false});
+      if (isCancelled(error)) store.set({wantsMap: false});
       throw error;
     }
   }
 
   const atRest = () => {
     waiting = undefined;
-    const {dragging, pose, policy, trees, answer: last, bite, wantsMap} = store.get();
+    const {dragging, pose, trees, answer: last, cancelled, bite, wantsMap} = store.get();
     if (dragging || !trees) return;
-    if (!last || last.pose !== pose || last.policy !== policy) counted(answer());
+    if (!isHere(store.get(), last) && !isHere(store.get(), cancelled)) counted(answer());
     if (wantsMap && bite?.pose !== pose) counted(map());
   };
   const later = () => {
@@ -108,6 +116,20 @@ export function measurable({bodies}) {
  */
 export function unitOf({bodies, unit}) {
   return bodies.fixed?.unit ?? bodies.moving?.unit ?? unit;
+}
+
+/**
+ * @param {Readonly<State>} state
+ * @param {{pose: Pose, policy: Policy | null} | null} at  where something was asked
+ * @returns {boolean} whether that is the pose and the policy that are shown
+ */
+export function isHere({pose, policy}, at) {
+  return at !== null && at.pose === pose && at.policy === policy;
+}
+
+/** @param {unknown} error */
+function isCancelled(error) {
+  return error instanceof EngineError && error.code === 'cancelled';
 }
 
 /** @param {Readonly<State>} state */

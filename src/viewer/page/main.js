@@ -53,7 +53,7 @@ function byId(id) {
 function firstState() {
   return {
     bodies: {fixed: null, moving: null}, jaws: null, trees: null, pose: translation(startShift), home: [...identity], dragging: false,
-    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
+    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, cancelled: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
     frame: '', wantsMap: false, book: false, theme: null, panel: 'pose', seed: 1,
   };
 }

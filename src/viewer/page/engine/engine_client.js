@@ -12,6 +12,7 @@
  * @property {boolean} [latest]  a question of this name that still waits is replaced by this one
  * @property {boolean} [first]   it is asked before all that wait
  * @property {string} [doing]    words for the progress bar, with a button to cancel
+ * @property {boolean} [seldomLong]  the bar comes later, so that it does not flicker where this is asked often
  */
 /**
  * @typedef {object} EngineClient
@@ -130,7 +131,7 @@ export function makeEngineClient({start, progress, restore, onLost}) {
       return;
     }
     [running] = queue.splice(at, 1);
-    if (running.options.doing) progress.begin(running.options.doing, true);
+    if (running.options.doing) progress.begin(running.options.doing, true, running.options.seldomLong);
     else if (!restoring) progress.end();
     const {id, name, asked} = running;
     const bytes = /** @type {{bytes?: unknown}} */ (asked).bytes;

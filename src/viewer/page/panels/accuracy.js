@@ -1,7 +1,7 @@
 /** What accuracy costs in time: the voxel size, the policy, and a plot of the points already visited. */
 
 import ratio from '../native_ratio.json';
-import {unitOf} from '../follow.js';
+import {isHere, unitOf} from '../follow.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {plot} from '../ui/plot.js';
@@ -60,10 +60,10 @@ export function makeAccuracyPanel({store, loader}) {
     tourButton.textContent = tourWords;
   });
   const nextAnswer = () => new Promise((resolve) => {
-    const end = store.subscribe(['answer'], ({answer}) => {
-      if (!answer) return;
+    const end = store.subscribe(['answer', 'cancelled'], ({answer, cancelled}) => {
+      if (!answer && !cancelled) return;
       end();
-      resolve('answered');
+      resolve(answer ? 'answered' : 'stopped');
     });
   });
 
@@ -106,8 +106,7 @@ export function makeAccuracyPanel({store, loader}) {
     }
     numbers.replaceChildren(answerFacts(answer, unitWord(unitOf(store.get()))));
   });
-  store.subscribe(['answer', 'pose', 'policy'], ({answer, pose, policy: chosenNow}) =>
-    numbers.classList.toggle('stale', answer?.pose !== pose || answer.policy !== chosenNow));
+  store.subscribe(['answer', 'pose', 'policy'], (state) => numbers.classList.toggle('stale', !isHere(state, state.answer)));
   store.subscribe(['bodies'], () => {
     visited = [];
     draw();
