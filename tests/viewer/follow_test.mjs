@@ -16,14 +16,20 @@ function followed(change = {}) {
     cancelled: null, bite: null, wantsMap: false, preset: 'scan', reach: 2, unit: null, frame: '', ...change,
   });
   const ask = (name, question) => new Promise((resolve, reject) => { asked.push({name, question, resolve, reject}); });
-  const {settled} = followPose({engine: {ask}, store, say: (text) => said.push(text)});
+  const dropped = [];
+  const measurer = {ask, drop: (name) => {
+    dropped.push(name);
+    for (const each of asked.filter((each) => each.name === name)) each.reject(new EngineError('replaced', 'replaced'));
+    asked.splice(0, asked.length, ...asked.filter((each) => each.name !== name));
+  }};
+  const {settled} = followPose({engine: {ask}, measurer, store, say: (text) => said.push(text)});
   const take = (name) => {
     const at = asked.findIndex((each) => each.name === name);
     assert.ok(at >= 0, `${name} is asked, not ${asked.map((each) => each.name).join()}`);
     const [found] = asked.splice(at, 1);
     return found;
   };
-  return {store, said, asked, take, settled};
+  return {store, said, asked, take, settled, dropped};
 }
 const wait = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
@@ -63,6 +69,26 @@ test('a map that was measured by other settings than are shown is not shown, and
   second.resolve({bite: 'of stl'});
   await wait(0);
   assert.equal(store.get().bite.bite, 'of stl');
+});
+
+test('a map of a pose that is gone ends, and that of the pose where it rests is made', async () => {
+  const {store, said, asked, take, dropped} = followed({wantsMap: true});
+  store.set({trees: {}});
+  await wait(rested);
+  store.set({preset: 'stl'});
+  store.set({pose: [2], dragging: true});
+  store.set({pose: [3]});
+  assert.deepEqual(dropped, ['occlusion']);
+  await wait(rested);
+  assert.ok(!asked.some(({name}) => name === 'occlusion'), 'a hand still drags it');
+  store.set({dragging: false});
+  await wait(rested);
+  const second = take('occlusion');
+  assert.deepEqual(second.question.pose, [3]);
+  second.resolve({bite: 'of 3'});
+  await wait(0);
+  store.set({pose: [4]});
+  assert.deepEqual([dropped, said, store.get().wantsMap, store.get().bite.bite], [['occlusion'], [], true, 'of 3']);
 });
 
 test('answers of trees that went are passed over, without a word', async () => {

@@ -109,10 +109,9 @@ test('makes a map that was cancelled where it is asked for, and answers meanwhil
   await ready(page);
   await page.getByLabel('Preset').selectOption('owens');
   await page.getByText('Measuring the distances').waitFor();
-  // These questions wait for the map, and are not lost with it.
-  await page.getByRole('slider', {name: 'Close along z'}).press('End');
   await cancel(page, 'Measuring the distances');
   await page.getByText('The map was cancelled.').waitFor();
+  await page.getByRole('slider', {name: 'Close along z'}).press('End');
   await ready(page);
   const {line} = await answer(page);
   assert.ok(Math.abs(line.pose[14]) < 1e-9 && line.touch === 'yes', JSON.stringify(line));
@@ -122,6 +121,31 @@ test('makes a map that was cancelled where it is asked for, and answers meanwhil
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
   assert.equal(await page.evaluate(() => window.ist.bite().preset.name), 'stl');
+  await closePage(opened);
+});
+
+test('answers a hand while a map is made, and makes that of the pose where it rests', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=occlusion', {before: slowly});
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  await page.getByLabel('Preset').selectOption('owens');
+  await page.getByText('Measuring the distances').waitFor();
+  const {x, y, width, height} = await page.getByRole('slider', {name: 'Close along z'}).boundingBox();
+  await page.mouse.move(x + width - 4, y + height / 2);
+  await page.mouse.down();
+  // The map that was begun takes a minute.
+  await page.waitForFunction(() => window.ist.state().tick.touch === 'yes', null, {timeout: 20_000});
+  assert.equal(await page.evaluate(() => window.ist.state().dragging), true);
+  await page.getByLabel('Preset').evaluate((list) => {
+    list.value = 'stl';
+    list.dispatchEvent(new Event('change'));
+  });
+  await page.mouse.up();
+  await page.waitForFunction(() => window.ist.bite()?.preset.name === 'stl', null, {timeout: 20_000});
+  await ready(page);
+  const {line} = await answer(page);
+  assert.deepEqual((await page.evaluate(() => window.ist.bite())).pose, line.pose);
   await closePage(opened);
 });
 

@@ -23,7 +23,7 @@ import {bytesWords, short, unitWord} from './words.js';
  * @property {(file: BodyFile) => Promise<boolean>} open  of one role; trees are not built by it
  * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
  * @property {(files: BodyFile[], pose?: Pose) => Promise<boolean>} replace  opens, poses and builds
- * @property {(ask: Ask) => Promise<void>} restore
+ * @property {(ask: Ask, trees?: boolean) => Promise<void>} restore  gives another engine the bodies, and their trees where those are wanted
  */
 
 // The engine has 4 GiB, which hold the file, its mesh and its tree.
@@ -140,13 +140,13 @@ export function makeBodiesLoader({store, say, ask}) {
     open: (file) => said(open(file)),
     build: (voxelSize) => said(build(voxelSize)),
     replace: (files, pose = [...identity]) => said(replace(files, pose)),
-    async restore(again) {
+    async restore(again, trees = true) {
       const {seed, files, voxelSize, built} = kept;
       if (seed !== null) await again('make_jaws', {seed});
       for (const file of Object.values(files)) {
         await again('open', {role: file.role, name: file.name, bytes: await bytesOf(file), unit: file.unit});
       }
-      if (built) await again('build', {voxel_size: voxelSize});
+      if (built && trees) await again('build', {voxel_size: voxelSize});
     },
   };
 }

@@ -55,6 +55,7 @@
 /**
  * @typedef {object} Context
  * @property {import('./engine/engine_client.js').EngineClient} engine
+ * @property {import('./engine/engine_client.js').EngineClient} measurer  another engine, for what takes seconds and needs no trees: a hand that drags does not wait for it
  * @property {Store} store
  * @property {import('./view/stage.js').Stage} stage
  * @property {import('./bodies_loader.js').BodiesLoader} loader

@@ -15,13 +15,15 @@ import {millimetresIn} from './words.js';
 const rest = 250;
 
 /**
- * @param {Pick<Context, 'engine' | 'store' | 'say'>} context
+ * @param {Pick<Context, 'engine' | 'measurer' | 'store' | 'say'>} context
  * @returns {{settled: () => boolean}}  whether every answer is of this pose
  */
-export function followPose({engine, store, say}) {
+export function followPose({engine, measurer, store, say}) {
   /** @type {number | undefined} */
   let waiting;
   let asking = 0;
+  /** @type {Readonly<State> | null} of which a map is measured now */
+  let mapped = null;
 
   /** @param {Promise<void>} done */
   const counted = async (done) => {
@@ -64,7 +66,8 @@ export function followPose({engine, store, say}) {
     const {pose, trees} = state;
     if (!trees || !state.wantsMap || !measurable(state)) return;
     try {
-      const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
+      mapped = state;
+      const bite = await measurer.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
       const now = store.get();
       // A map of settings that were changed meanwhile would pass for one of theirs.
       const same = ['preset', 'reach', 'unit', 'frame'].every((key) => now[/** @type {keyof State} */ (key)] === state[/** @type {keyof State} */ (key)]);
@@ -73,6 +76,8 @@ export function followPose({engine, store, say}) {
       // Whoever cancels a map wants no other, until they ask for it.
       if (isCancelled(error)) store.set({wantsMap: false});
       throw error;
+    } finally {
+      if (mapped === state) mapped = null;
     }
   }
 
@@ -88,6 +93,12 @@ export function followPose({engine, store, say}) {
     waiting = setTimeout(atRest, rest);
   };
 
+  // A map of a pose that is gone would keep the next one waiting.
+  store.subscribe(['pose'], ({pose}) => {
+    if (mapped === null || mapped.pose === pose) return;
+    mapped = null;
+    measurer.drop('occlusion');
+  });
   store.subscribe(['pose', 'policy', 'stiffness', 'trees', 'unit'], () => counted(tick()));
   store.subscribe(['pose', 'policy', 'trees', 'dragging', 'wantsMap'], later);
   store.subscribe(['preset', 'reach', 'unit', 'frame'], () => {

@@ -89,9 +89,19 @@ async function main() {
       say(lostWords(error), 'error');
     },
   });
+  const measurer = makeEngineClient({
+    start: () => startEngine(texts), lazy: true,
+    progress: makeBar(() => measurer.cancel()),
+    restore: (ask) => loader.restore(ask, false),
+    onLost: (error) => {
+      const text = faultText(error);
+      measurer.drop(undefined, 'cancelled');
+      if (text) say(`${text.replace(/\.$/, '')}: what was asked of the second engine is not done.`, 'error');
+    },
+  });
   const loader = makeBodiesLoader({store, say, ask: engine.ask});
   const history = makePoseHistory(store);
-  const context = {engine, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
+  const context = {engine, measurer, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
   const recording = makeRecordingPanel(context);
   const panels = [
     makeBodiesPanel(context), makePosePanel(context), makeAccuracyPanel(context), makeTreePanel(context),
@@ -108,6 +118,7 @@ async function main() {
     stage.setBody('moving', bodies.moving);
     byId('subject').textContent = bodies.fixed && bodies.moving ? `${bodies.fixed.name} and ${bodies.moving.name}` : 'where two bodies touch';
   });
+  store.subscribe(['bodies'], () => measurer.drop());
   store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
   store.subscribe(['panel'], ({panel}) => show(panel));
   const setAddress = makeAddress((fragment) => window.history.replaceState(null, '', fragment));
@@ -122,7 +133,7 @@ async function main() {
     for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
   });
   let opened = false;
-  exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
+  exposeTestSurface({store, engine, busy: () => engine.busy() || measurer.busy(), settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
 
   const panelIds = panels.map((panel) => panel.id);
   const {change, problems} = readFragment(location.hash, panelIds);

@@ -21,12 +21,13 @@
  * @param {object} parts
  * @param {Store} parts.store
  * @param {EngineClient} parts.engine
+ * @param {() => boolean} parts.busy
  * @param {() => boolean} parts.settled
  * @param {() => boolean} parts.opened   whether what the page came with is opened
  * @param {TestSurface['playback']} parts.playback
  * @param {TestSurface['picture']} parts.picture
  */
-export function exposeTestSurface({store, engine, settled, opened, playback, picture}) {
+export function exposeTestSurface({store, engine, busy, settled, opened, playback, picture}) {
   /** @type {TestSurface} */
   const surface = {
     state: store.get,
@@ -49,6 +50,6 @@ export function exposeTestSurface({store, engine, settled, opened, playback, pic
   Object.assign(window, {ist: Object.freeze(surface)});
   const {dataset} = document.documentElement;
   setInterval(() => {
-    if (dataset.state !== 'failed') dataset.state = engine.busy() || !settled() || !opened() ? 'busy' : 'ready';
+    if (dataset.state !== 'failed') dataset.state = busy() || !settled() || !opened() ? 'busy' : 'ready';
   }, 50);
 }

@@ -10,7 +10,7 @@ import {download} from '../ui/file_drop.js';
 /** @typedef {import('../protocol.js').Role} Role */
 
 /** @type {import('../context.js').MakePanel} */
-export function makeSavePanel({store, stage, engine, say}) {
+export function makeSavePanel({store, stage, engine, measurer, say}) {
   /**
    * @param {string} label
    * @param {string} about
@@ -44,7 +44,7 @@ export function makeSavePanel({store, stage, engine, say}) {
   };
   const saveGlb = async () => {
     if (!measurable(store.get())) throw new Error('GLB needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.');
-    const {bytes} = await engine.ask('save_glb', biteQuestion(store.get()), {doing: 'Writing both bodies as GLB'});
+    const {bytes} = await measurer.ask('save_glb', biteQuestion(store.get()), {doing: 'Writing both bodies as GLB'});
     download('bite.glb', blob(bytes));
   };
   /** @param {Role} role */
