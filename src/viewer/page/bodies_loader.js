@@ -40,6 +40,8 @@ const farApart = 20;
 export function makeBodiesLoader({store, say, ask}) {
   /** @type {{seed: number | null, files: Partial<Record<Role, BodyFile>>, voxelSize: number | null, built: boolean}} */
   const kept = {seed: null, files: {}, voxelSize: null, built: false};
+  /** @type {Partial<Record<Role, Pose>>} the home pose when a body was opened: of the bodies before it */
+  let homes = {};
 
   /** @param {Promise<void>} done */
   const said = async (done) => {
@@ -57,7 +59,8 @@ export function makeBodiesLoader({store, say, ask}) {
   async function makeJaws(seed) {
     const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
     Object.assign(kept, {seed, files: {}, built: false});
-    store.set({bodies, jaws: seed, seed, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: null});
+    homes = {};
+    store.set({bodies, jaws: seed, seed, home: [...identity], trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: null});
   }
 
   /** @param {BodyFile} file */
@@ -74,7 +77,10 @@ export function makeBodiesLoader({store, say, ask}) {
     kept.built = false;
     if (kept.files.fixed && kept.files.moving) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
-    store.set({bodies, jaws: null, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: file.unit ?? null});
+    // A pose that the bodies before came with says nothing of two others.
+    const {home} = store.get(), both = homes[file.role === 'fixed' ? 'moving' : 'fixed'] === home;
+    homes = both ? {} : {...homes, [file.role]: home};
+    store.set({bodies, jaws: null, home: both ? [...identity] : home, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: file.unit ?? null});
     for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }
