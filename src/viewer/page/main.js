@@ -25,13 +25,11 @@ import {makeReadRecording} from './recording/read_recording.js';
 import {makeStore} from './state/store.js';
 import {exposeTestSurface} from './test_surface.js';
 import {followTheme} from './theme.js';
-import {element} from './ui/element.js';
 import {takeDrops} from './ui/file_drop.js';
 import {makeMessages} from './ui/messages.js';
 import {makeProgress} from './ui/progress.js';
 import {makeTabs} from './ui/tabs.js';
-import {canDraw, makeNoStage} from './view/no_stage.js';
-import {makeStage} from './view/stage.js';
+import {makeAnyStage} from './view/any_stage.js';
 
 // Just apart, so that a little closing shows what there is to see.
 const startShift = [0, 0, -1.5];
@@ -72,10 +70,7 @@ async function main() {
   await painted();
   const say = makeMessages(byId('messages'));
   const store = makeStore(firstState());
-  const stage = canDraw() ? makeStage(byId('surface')) : makeNoStage(byId('surface'));
-  if (!stage.drawn) {
-    byId('surface').append(element('p', {class: 'no-drawing'}, 'This browser draws nothing in 3D: it has no WebGL2, or it is switched off. All numbers are here; for the picture use another browser, or switch hardware acceleration on.'));
-  }
+  const stage = makeAnyStage(byId('surface'), say);
   followTheme(store, stage, byId('theme'));
   const texts = await unpackEngine();
 
