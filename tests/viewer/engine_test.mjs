@@ -221,15 +221,16 @@ test('says so where memory ends while a tree is built, and keeps the trees befor
 
 test('refuses bad files with the command\'s sentence, and goes on', () => {
   engine.ask('make_jaws', {seed: 1});
-  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated'],
-    ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), undefined],
-    ['empty.ply', Buffer.alloc(0), undefined],
-    ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only'],
-    ['tree.ist', Buffer.from('ISTTREE1 nothing'), undefined]];
-  for (const [name, bytes, code] of bad) {
+  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated', /copy or export it again/],
+    ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), 'mesh-not-finite', /repair the mesh/],
+    ['empty.ply', Buffer.alloc(0), 'mesh-empty', /export the mesh again/],
+    ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only', /export the surface as polygons/],
+    ['tree.ist', Buffer.from('ISTTREE1 nothing'), 'not-a-mesh', /convert the mesh/]];
+  for (const [name, bytes, code, whatToDo] of bad) {
     assert.throws(() => engine.open('fixed', name, bytes), (error) => {
-      assert.ok(error.message.includes(name), error.message);
-      if (code !== undefined) assert.equal(error.code, code);
+      assert.ok(error.message.startsWith(`fixed/${name}: `), error.message);
+      assert.equal(error.code, code);
+      assert.match(error.message, whatToDo);
       return true;
     });
   }
