@@ -71,6 +71,7 @@
  * @property {[{pose: Pose, policy: Policy, step: number}, Front]} front
  * @property {[BiteQuestion, Bite]} occlusion
  * @property {[{role: Role}, {bytes: Uint8Array}]} save_body  its tree's file, as `ist build` writes it
+ * @property {[{}, {in_use: number}]} memory  bytes that the engine holds now
  * @property {[BiteQuestion, {bytes: Uint8Array}]} save_glb  both bodies, in the colours of their map
  */
 

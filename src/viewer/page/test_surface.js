@@ -9,7 +9,8 @@
  *   at the pose; null while it has not rested
  * @property {() => object | null} bite          the JSON of `ist occlusion` at the pose
  * @property {() => {count: number, p50: number, p99: number, max: number}} tickTimes  ms, by the Worker
- * @property {() => number | null} heap          bytes of the engine's memory
+ * @property {() => number | null} heap          bytes of the engine's memory, used or not
+ * @property {() => Promise<number>} memory      bytes that the engine holds now
  * @property {() => {tick: number, last: number} | null} playback
  * @property {() => Promise<Blob>} picture  PNG of the canvas alone
  */
@@ -45,6 +46,7 @@ export function exposeTestSurface({store, engine, busy, settled, opened, playbac
       return {count: times.length, p50: at(0.5), p99: at(0.99), max: at(1)};
     },
     heap: () => engine.figures().heap,
+    memory: async () => (await engine.ask('memory', {})).in_use,
     playback, picture,
   };
   Object.assign(window, {ist: Object.freeze(surface)});
