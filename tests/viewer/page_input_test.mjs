@@ -251,6 +251,22 @@ test('starts with its defaults where the address is wrong, and says so', async (
   await closePage(opened);
 });
 
+test('keeps an error before people where warnings follow it', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  await field(page, 'moving').setInputFiles(fileOf('empty.ply', ''));
+  const error = await message(page, 'empty.ply');
+  for (const panel of ['a', 'b', 'c', 'd']) {
+    await page.evaluate((hash) => { location.hash = hash; }, `#panel=${panel}`);
+    await message(page, `panel=${panel},`);
+  }
+  const [first, ...warnings] = await messages(page);
+  assert.equal(first, error);
+  assert.deepEqual(warnings.map((each) => /panel=(.)/.exec(each)[1]), ['b', 'c', 'd']);
+  await closePage(opened);
+});
+
 test('tries a voxel size that does not fit, says why, and goes on with its own', async () => {
   const opened = await openPage(browser, '#voxel=0.0001');
   await message(opened.page, /choose another voxel size/);

@@ -1,6 +1,7 @@
 /** What accuracy costs in time: the voxel size, the policy, and a plot of the points already visited. */
 
 import ratio from '../native_ratio.json';
+import {policies as all} from '../choices.js';
 import {isHere, unitOf} from '../follow.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
@@ -38,7 +39,7 @@ export function makeAccuracyPanel({store, loader}) {
     },
   });
   const policy = select({
-    label: 'Policy', value: 'slab', choices: policyChoices(['simple', 'table', 'tight', 'slab']),
+    label: 'Policy', value: 'slab', choices: policyChoices(all),
     onChange: (value) => store.set({policy: /** @type {Policy} */ (value)}),
   });
   const numbers = element('div', {'aria-live': 'polite'}), points = element('div');
@@ -79,7 +80,7 @@ export function makeAccuracyPanel({store, loader}) {
 
   const draw = () => {
     const {answer} = store.get();
-    const series = /** @type {Policy[]} */ (Object.keys(policies)).flatMap((name) => {
+    const series = all.flatMap((name) => {
       const points = visited.filter((each) => each.policy === name);
       if (points.length === 0) return [];
       const current = points.findIndex((each) => answer?.line.spheres === name && each.voxelSize === answer.line.voxel_size[0]);

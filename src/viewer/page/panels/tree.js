@@ -1,5 +1,6 @@
 /** The trees: the nodes of one level by policy, side by side, and one query, front by front. */
 
+import {policies as all} from '../choices.js';
 import {faultText} from '../engine/engine_client.js';
 import {checkbox, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
@@ -13,8 +14,6 @@ import {makeTreeView} from '../view/tree_view.js';
 /** @typedef {import('../view/tree_view.js').Column} Column */
 
 const long = {doing: 'Reading the trees', seldomLong: true};
-/** @type {Policy[]} */
-const all = ['simple', 'table', 'tight', 'slab'];
 
 /** @type {import('../context.js').MakePanel} */
 export function makeTreePanel({store, engine, stage, say}) {
