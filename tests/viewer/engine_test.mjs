@@ -96,6 +96,24 @@ test('follows each stage of a build', () => {
   assert.ok(engine.stages.size >= 3, [...engine.stages].join());
 });
 
+test('times a query by a clock that is coarser than a browser\'s', async () => {
+  const {hrtime} = process, step = 1e6;  // the engine's clock in node, ns; browsers' step by 0.1 ms
+  process.hrtime = () => {
+    const [seconds, nanoseconds] = hrtime();
+    return [seconds, nanoseconds - nanoseconds % step];
+  };
+  try {
+    const coarse = await startEngine(process.env.IST_ENGINE);
+    coarse.ask('make_jaws', {seed: 1});
+    coarse.ask('build', {voxel_size: 2});
+    const far = coarse.ask('collide', {pose: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -80, 1]}).microseconds;
+    const near = coarse.ask('collide', {pose: poses[3]}).microseconds;
+    assert.ok(far > 0 && far < near, `${far} and ${near} µs`);
+  } finally {
+    process.hrtime = hrtime;
+  }
+});
+
 test('maps the occlusion as the command does', () => {
   engine.ask('make_jaws', {seed: 1});
   engine.ask('build', {voxel_size: 0.8});

@@ -145,7 +145,7 @@ function answerFacts(answer, unit) {
   if (!answer) return element('p', {}, 'The numbers come when the trees are built and the pose rests.');
   const {line, microseconds} = answer;
   return facts([
-    ['Time of a query', `${short(microseconds, 3)} µs, the median of groups of 20`],
+    ['Time of a query', `${short(microseconds, 3)} µs, the median of groups of 20 and more`],
     ['Sphere tests', count(line.sphere_tests)],
     ['Leaf pairs', count(line.leaf_pairs)],
     ['Resolution', `${short(line.resolution)} ${unit}`],
