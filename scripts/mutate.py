@@ -68,6 +68,8 @@ def configure():
 
 def build(programs):
     """Builds the programs. Returns None, or the compiler's output if it fails."""
+    if not programs:
+        return None
     done = subprocess.run(["cmake", "--build", BUILD, "--target", *programs, "--", f"-j{os.cpu_count()}"],
                           capture_output=True, text=True)
     return None if done.returncode == 0 else done.stdout + done.stderr
