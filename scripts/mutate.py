@@ -184,7 +184,8 @@ def main():
         edited(mutant.edits)  # all of them still apply, before an hour is spent
     configure()
     programs = programs_of(chosen)
-    print(f"building {', '.join(programs)}", flush=True)
+    if programs:
+        print(f"building {', '.join(programs)}", flush=True)
     if refused := build(programs):
         fail(f"the code as it is does not compile:\n{refused[-3000:]}")
     if broken := first_failure(sorted({test for m in chosen for test in m.tests})):
