@@ -308,7 +308,7 @@ class Parts(Sweeps):
             self.assertEqual(process.stdout.readline(), b"begun\n")
             process.send_signal(signal.SIGSTOP)
             self.assertEqual(sweep.status().missing, [0])
-            with self.assertRaisesRegex(ist.InputError, "making this part"):
+            with self.assertRaisesRegex(ist.BusyError, "making this part"):
                 sweep.run(0)
             process.kill()
             process.communicate()

@@ -194,12 +194,15 @@ TEST_F(SweepParts, ThatAreMadeMeanwhileAreRefused) {
                          [&](double) {
                            if (refusal.empty()) {
                              const auto error = error_of([&] { job.run_part(parts, 0, 1); });
-                             refusal = error ? error->what() : "none";
+                             refusal =
+                                 error ? to_string(error->code()) + std::string(" ") + error->what()
+                                       : "none";
                              EXPECT_TRUE(parts.look(0).running);
                            }
                            return true;
                          }),
             Outcome::kMade);
+  EXPECT_TRUE(refusal.starts_with("part-busy ")) << refusal;
   EXPECT_NE(refusal.find("shares overlap"), std::string::npos) << refusal;
   EXPECT_EQ(names_in(parts.path()),
             (std::vector<std::string>{"part-000000.json", "part-000000.npy", "sweep.json"}));

@@ -88,10 +88,11 @@ typedef struct ist_sweep_part {
 /** Makes part `part`, from 0, in `folder`, which is made where it is missing. A part that is there,
  * or was given up, stays as it is; `result` says which. `threads`: the most, of the whole process
  * meanwhile; 0: all cores. The same bytes come of every process and number of threads. Errors:
- * IST_ARGUMENT_INVALID beyond the last part; IST_INPUT_INVALID for a folder of another sweep, a
- * tree that changed since, a part that another process is making now; IST_FILE_UNWRITABLE;
- * IST_TRIANGLES_MISSING, IST_POLICY_MISSING, IST_MEMORY_LIMIT, IST_CANCELLED. Nothing half-made
- * stays. Cost: that of ist_query_rows; the first part of a sweep loads the trees. */
+ * IST_ARGUMENT_INVALID beyond the last part; IST_PART_BUSY where another process is making
+ * the part now; IST_INPUT_INVALID for a folder of another sweep and a tree that changed since;
+ * IST_FILE_UNWRITABLE; IST_TRIANGLES_MISSING, IST_POLICY_MISSING, IST_MEMORY_LIMIT, IST_CANCELLED.
+ * Nothing half-made stays. Cost: that of ist_query_rows; the first part of a sweep loads the trees.
+ */
 IST_C_API ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                                         int32_t threads, const ist_progress* progress,
                                         ist_sweep_part* result) IST_NOEXCEPT;

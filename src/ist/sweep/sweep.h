@@ -45,9 +45,10 @@ class Sweep {
   /// @param proceed asked every 20 ms with the share of the part that is done; false ends the call
   ///                (kStopped), and leaves no file
   ///
-  /// Throws kInputInvalid for a part that is there and of another sweep or damaged, for one that
-  /// another process is making now (shares overlap), and for a tree or a file of poses that changed
-  /// since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has cancellation points.
+  /// Throws kPartBusy where another process is making the part now (shares overlap); kInputInvalid
+  /// for a part that is there and of another sweep or damaged, and for a tree or a file of poses
+  /// that changed since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has
+  /// cancellation points.
   /// Memory: that of the trees, of a query for each thread, and 2 MB.
   Outcome run_part(const SweepFolder& folder, std::uint64_t part, std::size_t threads,
                    const Proceed& proceed = {}) const;

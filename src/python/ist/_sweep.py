@@ -103,8 +103,8 @@ class Sweep(Handle):
         """Makes a part, from 0, unless it is there or was given up.
 
         threads: the most of the whole process meanwhile; 0: one for each core. progress: called with the share of the part that
-        is done; what it raises ends the call, and nothing half-made is left. Raises InputError for the folder of another sweep,
-        for a part that somebody is making now or that is damaged, and for a tree that changed since.
+        is done; what it raises ends the call, and nothing half-made is left. Raises BusyError for a part
+        that somebody is making now, and InputError for the folder of another sweep, a damaged part, and a tree that changed since.
         """
         number, most = count_of(part, "part"), count_of(threads, "threads", 1024)
         place, result = self._place(folder), PartInfo()
