@@ -170,7 +170,7 @@ void add_sweep(CLI::App& app) {
   auto* share = command
                     ->add_option("--share", options->share,
                                  "make the parts i with i mod N = k, k from 0: one process of N")
-                    ->type_name("k/N")
+                    ->type_name("K/N")
                     ->capture_default_str();
   auto* threads = command->add_option("--threads", options->threads, "0: one for each core")
                       ->check(whole_number("a number of threads"))
