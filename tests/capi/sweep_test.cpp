@@ -288,11 +288,16 @@ TEST_F(CSweep, NamesEachFailure) {
   const std::string out = (dir_.path() / "changed").string();
   EXPECT_EQ(name(ist_sweep_run_part(changed, out.c_str(), 0, 1, nullptr, &part_)), "input-invalid");
   EXPECT_EQ(name(ist_sweep_free(changed)), "ok");
-  dir_.write("moving.ist", "no tree");
+  // A tree whose content is wrong, and one that is no tree at all.
+  std::string tree = file_content(dir_.path() / "moving.ist");
+  tree.back() = static_cast<char>(tree.back() ^ 1);
+  dir_.write("moving.ist", tree);
   ist_sweep* broken = open(sweep_text("seed = 7", "seed = 10"));
   const std::string again = (dir_.path() / "broken").string();
-  EXPECT_EQ(name(ist_sweep_run_part(broken, again.c_str(), 0, 1, nullptr, &part_)), "not-a-tree");
+  EXPECT_EQ(name(ist_sweep_run_part(broken, again.c_str(), 0, 1, nullptr, &part_)), "tree-corrupt");
   EXPECT_EQ(name(ist_sweep_free(broken)), "ok");
+  dir_.write("moving.ist", "no tree");
+  EXPECT_EQ(opened(kSoundSweep), "not-a-tree");
 }
 
 TEST_F(CSweep, AFullDiskIsAnUnwritableFile) {
