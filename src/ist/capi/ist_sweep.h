@@ -116,7 +116,7 @@ typedef struct ist_sweep_merge_result {
  * nothing is written, and the call returns IST_OK with their numbers: ist_sweep_get_part says which
  * parts these are. Errors: IST_INPUT_INVALID for a folder or a part of another sweep, and for a
  * part that is damaged; IST_FILE_UNWRITABLE, IST_CANCELLED. Cost: that of reading and writing; 40
- * MB of memory. */
+ * MB of memory, and 200 bytes a part. */
 IST_C_API ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder,
                                      const ist_progress* progress,
                                      ist_sweep_merge_result* result) IST_NOEXCEPT;
