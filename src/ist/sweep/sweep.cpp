@@ -12,6 +12,7 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/sweep/bit_text.h"
 #include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/start_mark.h"
@@ -27,11 +28,12 @@ constexpr std::uint64_t kRowsAtOnce = 4096;
 std::string questions_text(const SweepFile& file) {
   const RowQuestions& asked = file.questions;
   return fmt::format(
-      "intersects {:d} leaf_pairs {:d} distance {:d} contacts {:d} penetration {:d} tolerance {:a} "
-      "tests {} spheres {} push {:a} stiffness {:a} rows_per_part {}",
+      "intersects {:d} leaf_pairs {:d} distance {:d} contacts {:d} penetration {:d} tolerance {} "
+      "tests {} spheres {} push {} stiffness {} rows_per_part {}",
       asked.intersects, asked.leaf_pairs, asked.distance, asked.contacts, asked.penetration,
-      asked.tolerance, asked.budget.tests, file.spheres ? to_string(*file.spheres) : "default",
-      file.push_distance, file.stiffness, file.rows_per_part);
+      bits_of(asked.tolerance), asked.budget.tests,
+      file.spheres ? to_string(*file.spheres) : "default", bits_of(file.push_distance),
+      bits_of(file.stiffness), file.rows_per_part);
 }
 
 SweepIdentity identity_of(const SweepFile& file) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <bit>
+#include <cstdint>
+#include <string>
+
+namespace ist {
+
+/// Returns a number's bits in 16 hexadecimal digits. The text of a floating-point number would hold
+/// the decimal mark of the program's locale.
+[[nodiscard]] inline std::string bits_of(double number) {
+  return fmt::format("{:016x}", std::bit_cast<std::uint64_t>(number));
+}
+
+/// Returns the bits of a vector's numbers.
+[[nodiscard]] inline std::string bits_of(const Eigen::Vector3d& v) {
+  return fmt::format("{} {} {}", bits_of(v[0]), bits_of(v[1]), bits_of(v[2]));
+}
+
+}  // namespace ist
