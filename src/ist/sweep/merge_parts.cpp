@@ -1,7 +1,5 @@
 #include "ist/sweep/merge_parts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -20,12 +18,6 @@ namespace ist {
 namespace {
 
 constexpr std::uint64_t kMergedAtOnce = 1 << 16;
-
-[[noreturn]] void fail_damaged(const SweepFolder& folder, std::uint64_t part) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the part is cut off or damaged: remove it, and make it anew",
-                          folder.part_file(part).string()));
-}
 
 // The tables that the rows of all parts go to.
 class Tables {
@@ -112,6 +104,7 @@ MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
     checksums.push_back(status.checksum);
   }
   if (!result.whole()) return result;
+  folder.require_writable();
   const auto go_on = [&](std::uint64_t rows) {
     if (!proceed || proceed(static_cast<double>(rows) / static_cast<double>(all))) return;
     throw Error(ErrorCode::kCancelled, "the merge was ended by its caller");

@@ -21,7 +21,8 @@ struct MergeResult {
 ///
 /// @param proceed asked at each block of 64 KiB rows; false throws kCancelled, and leaves no file
 ///
-/// Throws kInputInvalid for a part of another sweep, and for one that is damaged; UnwritableFile.
+/// Throws kInputInvalid for a part of another sweep, for one that is damaged, and for a folder that
+/// the user may not write to; UnwritableFile.
 /// Memory: 40 MB, and 200 bytes a part.
 MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
                         const Proceed& proceed = {});

@@ -123,11 +123,7 @@ Sweep::Outcome Sweep::run_part(const SweepFolder& folder, std::uint64_t part, st
     return Outcome::kWasThere;
   }
   if (status.state == PartState::kGivenUp) return Outcome::kGivenUp;
-  if (status.state == PartState::kDamaged) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: the part is cut off or damaged: remove it to make it anew",
-                            folder.part_file(part).string()));
-  }
+  if (status.state == PartState::kDamaged) fail_damaged(folder, part);
   if (starts_of(folder, part).live) fail_overlap(folder, part);
   const StartMark mark(folder, part);
   const auto begin = std::chrono::steady_clock::now();
