@@ -148,7 +148,12 @@ TEST_F(SweepFolders, DamagedRecordsAreRefused) {
     EXPECT_EQ(error->code(), ErrorCode::kInputInvalid) << bad;
   }
   std::ofstream(parts.path() / "sweep.json") << "{";
-  EXPECT_EQ(error_name([&] { static_cast<void>(folder(job)); }), "input-invalid");
+  const auto error = error_of([&] { static_cast<void>(folder(job)); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+  EXPECT_TRUE(std::string(error->what()).ends_with("remove it; the next run writes it anew"));
+  std::filesystem::remove(parts.path() / "sweep.json");
+  EXPECT_EQ(folder(job).look(1).state, PartState::kDone);
 }
 
 }  // namespace
