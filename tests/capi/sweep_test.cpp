@@ -102,6 +102,16 @@ TEST_F(CSweep, MakesThePartsOfTheLibrary) {
   EXPECT_TRUE(std::filesystem::exists(dir_.path() / "out" / "rows.parquet"));
 }
 
+TEST_F(CSweep, MergesNoPartIntoATableOfNoRows) {
+  ist_sweep* none = open(sweep_text("count = 10", "count = 0"));
+  EXPECT_EQ(name(ist_sweep_merge(none, folder_.c_str(), nullptr, &merged_)), "ok")
+      << ist_last_error_message();
+  EXPECT_EQ(merged_.rows + merged_.missing + merged_.given_up, 0U);
+  EXPECT_EQ(names_in(folder_),
+            (std::vector<std::string>{"manifest.json", "rows.npy", "rows.parquet", "sweep.json"}));
+  EXPECT_EQ(name(ist_sweep_free(none)), "ok");
+}
+
 TEST_F(CSweep, SaysHowPartsStand) {
   ASSERT_EQ(name(run(0)), "ok");
   for (int start = 1; start <= 3; ++start) {

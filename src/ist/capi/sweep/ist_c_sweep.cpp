@@ -190,11 +190,13 @@ ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder, const ist
     if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<SweepObject> held(call, "sweep", sweep);
     if (held.status() != IST_OK) return held.status();
+    // No part has made the folder of a sweep without poses.
+    const auto access = held->sweep.parts() == 0 ? ist::SweepFolder::Access::kWrite
+                                                 : ist::SweepFolder::Access::kRead;
     std::optional<ist_sweep_merge_result> made;
     followed(follower, [&](const ist::Proceed& proceed) {
       const ist::MergeResult merged =
-          ist::merge_parts(folder_of(held->sweep, folder, ist::SweepFolder::Access::kRead),
-                           held->sweep.layout(), proceed);
+          ist::merge_parts(folder_of(held->sweep, folder, access), held->sweep.layout(), proceed);
       made =
           ist_sweep_merge_result{0, merged.rows, merged.missing.size(), merged.given_up.size(), 0};
     });
