@@ -25,7 +25,7 @@ class Tables {
   Tables(const SweepFolder& folder, const RowLayout& layout)
       : npy_(folder.path() / "rows.npy"),
         parquet_file_(folder.path() / "rows.parquet"),
-        parquet_(parquet_file_, layout) {
+        parquet_(parquet_file_, layout, ParquetWriter::rows_a_group_of(folder.identity().rows)) {
     const std::string header = npy_header(layout, folder.identity().rows);
     add_bytes(header.data(), header.size());
   }

@@ -23,7 +23,7 @@ struct MergeResult {
 ///
 /// Throws kInputInvalid for a part of another sweep, for one that is damaged, and for a folder that
 /// the user may not write to; UnwritableFile.
-/// Memory: 40 MB, and 200 bytes a part.
+/// Memory: 40 MB, 200 bytes a part, and for each 131072 rows 60 bytes a column.
 MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
                         const Proceed& proceed = {});
 
