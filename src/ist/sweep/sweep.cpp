@@ -12,6 +12,7 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/parallel.h"
 #include "ist/sweep/bit_text.h"
 #include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
@@ -22,8 +23,13 @@
 namespace ist {
 namespace {
 
-// Poses that are computed, and rows that are written, at a time.
-constexpr std::uint64_t kRowsAtOnce = 4096;
+// Poses that are computed, and rows that are written, at a time: a block. Threads make their
+// queries anew for each block, some milliseconds each, so a block grows with them.
+constexpr std::uint64_t kRowsAThread = 4096;
+
+std::uint64_t rows_at_once(std::size_t threads) {
+  return kRowsAThread * (threads > 0 ? std::min(threads, thread_count()) : thread_count());
+}
 
 std::string questions_text(const SweepFile& file) {
   const RowQuestions& asked = file.questions;
@@ -89,11 +95,12 @@ bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t thr
   ManifoldOptions manifold_options;
   manifold_options.least_depth = -file_.push_distance;
   Query query(bodies.fixed, bodies.moving, query_options);
-  const std::uint64_t first = part * identity_.rows_per_part, rows = identity_.rows_of(part);
+  const std::uint64_t first = part * identity_.rows_per_part, rows = identity_.rows_of(part),
+                      most = rows_at_once(threads);
   std::vector<Eigen::Isometry3d> poses;
   std::vector<std::byte> block;
   for (std::uint64_t done = 0; done < rows; done += poses.size()) {
-    poses.resize(std::min(kRowsAtOnce, rows - done));
+    poses.resize(std::min(most, rows - done));
     block.resize(poses.size() * layout_.bytes);
     this->poses(first + done, poses);
     const auto give = [&](std::size_t index, const PoseRow& row) {

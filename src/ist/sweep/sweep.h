@@ -49,7 +49,7 @@ class Sweep {
   /// for a part that is there and of another sweep or damaged, and for a tree or a file of poses
   /// that changed since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has
   /// cancellation points.
-  /// Memory: that of the trees, of a query for each thread, and 2 MB.
+  /// Memory: that of the trees, and for each thread that of a query and 2 MB.
   Outcome run_part(const SweepFolder& folder, std::uint64_t part, std::size_t threads,
                    const Proceed& proceed = {}) const;
 
