@@ -107,7 +107,7 @@ IST_C_API ist_status ist_sweep_get_part(const ist_sweep* sweep, const char* fold
 /** How a merge ended. */
 typedef struct ist_sweep_merge_result {
   size_t struct_size; /**< the size of this struct, bytes */
-  uint64_t rows;      /**< of the table; 0 while there is none */
+  uint64_t rows;      /**< of the table; 0: nothing was merged */
   uint64_t missing;   /**< parts that nobody has made yet */
   uint64_t given_up;  /**< parts that are not tried again */
   uint64_t reserved;  /**< zero */
