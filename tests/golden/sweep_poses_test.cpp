@@ -20,7 +20,7 @@ std::uint64_t hash_of_poses(const PoseSource& source) {
   return hasher.value();
 }
 
-PoseBox box(PoseBox::Turns turns) {
+PoseBox poses_of_box(PoseBox::Turns turns) {
   PoseBox::Settings settings{.seed = 7, .count = 1000, .turns = turns};
   settings.from = {-1, -2, -3};
   settings.to = {1, 2, 3};
@@ -32,8 +32,8 @@ PoseBox box(PoseBox::Turns turns) {
 // Pose i of a sweep has the same bits wherever it is computed. The hashes of the boxes are those of
 // the same formulas in Python, too, by numpy's random numbers.
 TEST(GoldenSweepPoses, HaveTheSameBitsEverywhere) {
-  EXPECT_EQ(hash_of_poses(box(PoseBox::Turns::kAny)), 0x53f035f462c1af2f);
-  EXPECT_EQ(hash_of_poses(box(PoseBox::Turns::kWithin)), 0xec838a62269cf860);
+  EXPECT_EQ(hash_of_poses(poses_of_box(PoseBox::Turns::kAny)), 0x53f035f462c1af2f);
+  EXPECT_EQ(hash_of_poses(poses_of_box(PoseBox::Turns::kWithin)), 0xec838a62269cf860);
   PoseGrid::Axis move, turn;
   move.direction = {1, 1, 0};
   move.to = 1;

@@ -124,10 +124,10 @@ class Sweep(Handle):
         and writing.
         """
         place, result = self._place(folder), MergeResult()
-        if self.parts and not begun(place):
-            return SweepTable(0, self.status(folder).missing, [])
         while True:
             with Follower(progress) as follower:
+                if self.parts and not begun(place):
+                    return SweepTable(0, self.status(folder).missing, [])
                 follower.finish(LIBRARY.ist_sweep_merge(self._need(), place, follower.address, addressof(result)))
             if result.missing == 0 and result.given_up == 0:
                 return SweepTable(result.rows, [], [])
