@@ -63,8 +63,7 @@ struct Made {
 
 // Makes the parts of a share, one after the other, a line each.
 Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& share) {
-  const SweepFolder folder(options.folder, sweep.identity(), sweep.layout(),
-                           SweepFolder::Access::kWrite);
+  const SweepFolder folder = sweep.open_folder(options.folder);
   StopOnInterruption stop;
   const ScopedCancellation cancellation(stop.asked());
   Made result;

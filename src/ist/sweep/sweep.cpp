@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/parallel.h"
+#include "ist/measure/require.h"
 #include "ist/sweep/bit_text.h"
 #include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
@@ -81,10 +83,22 @@ void Sweep::poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const
 std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
   const std::lock_guard lock(loading_);
   if (!bodies_) {
-    bodies_ = std::make_shared<const Bodies>(
+    auto loaded = std::make_shared<const Bodies>(
         Bodies{read_same_tree(file_.fixed), read_same_tree(file_.moving)});
+    if (file_.questions.penetration) {
+      require_triangles(loaded->fixed, "the fixed body");
+      require_triangles(loaded->moving, "the moving body");
+    }
+    const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
+    bodies_ = std::move(loaded);
   }
   return bodies_;
+}
+
+SweepFolder Sweep::open_folder(const std::filesystem::path& folder) const {
+  std::error_code unknown;
+  if (!std::filesystem::exists(folder / "sweep.json", unknown)) static_cast<void>(bodies());
+  return {folder, identity_, layout_, SweepFolder::Access::kWrite};
 }
 
 bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t threads,

@@ -36,6 +36,10 @@ class Sweep {
   /// Computes the poses from number `first` on. Precondition: first + poses.size() <= rows().
   void poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const;
 
+  /// Opens the folder of the parts; where nobody has begun, loads the trees and makes it. So a
+  /// sweep whose trees cannot answer leaves no folder. Throws what SweepFolder and run_part() do.
+  [[nodiscard]] SweepFolder open_folder(const std::filesystem::path& folder) const;
+
   /// How run_part() ended.
   enum class Outcome { kMade, kWasThere, kGivenUp, kStopped };
 

@@ -155,7 +155,7 @@ ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64
     if (part >= known.parts()) return fail_part(call, part, known.parts());
     std::optional<ist_sweep_part> made;
     followed(follower, [&](const ist::Proceed& proceed) {
-      const ist::SweepFolder parts = folder_of(known, folder, ist::SweepFolder::Access::kWrite);
+      const ist::SweepFolder parts = known.open_folder(folder);
       const auto outcome = known.run_part(parts, part, static_cast<std::size_t>(threads), proceed);
       if (outcome == ist::Sweep::Outcome::kStopped) return;
       made = part_of(parts, part, parts.look(part));
