@@ -453,7 +453,7 @@ class Misuse(Sweeps):
         sweep = self.job(box_poses(1, 20), bodies=BODIES.replace("lower", "changes"))
         ist.build(box([0, 0, 0], [1, 1, 2]), 0.5).save(self.place / "changes.ist")
         self.refuses(ist.InputError, ["changes.ist", "changed"], sweep.run, 0)
-            self.assertFalse(os.path.exists(sweep.folder))
+        self.assertFalse(os.path.exists(sweep.folder))
 
     def test_freed(self):
         with self.job(box_poses(1, 20)) as sweep:
