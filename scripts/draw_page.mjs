@@ -1,5 +1,5 @@
 // Takes the picture of the page that README shows, the built-in jaws where they bite, with the map; or
-// the pictures of the canvas that tests/viewer/page_picture_test.mjs compares.
+// the pictures of the canvas. tests/viewer/page_picture_test.mjs compares both.
 //
 //   node scripts/draw_page.mjs docs/pictures/page.png
 //   node scripts/draw_page.mjs tests/viewer/pictures
@@ -11,19 +11,15 @@ import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 process.env.IST_PAGE ??= fileURLToPath(new URL('../build/viewer/ist.html', import.meta.url));
-const {closePage, openPage, startBrowser} = await import('../tests/viewer/browser.mjs');
-const {openView, pictureOf, views} = await import('../tests/viewer/pictures.mjs');
+const {closePage, startBrowser} = await import('../tests/viewer/browser.mjs');
+const {openView, pageDrawn, pictureOf, views} = await import('../tests/viewer/pictures.mjs');
 
 const [output] = process.argv.slice(2);
 if (output === undefined) throw new Error('name the picture, or the folder of all that tests compare: node scripts/draw_page.mjs OUTPUT');
 
 async function drawPage() {
-  const opened = await openPage(browser, '#pose=1,0,0,0,0,1,0,0,0,0,1,0,0,0,-0.6,1&panel=occlusion&preset=stl',
-      {window: {viewport: {width: 1100, height: 640}}});
-  await opened.page.waitForFunction(() => document.documentElement.dataset.state === 'ready');
-  await opened.page.getByText('The map is of this pose.').waitFor();
-  await opened.page.waitForTimeout(1000);  // the last frame
-  await opened.page.screenshot({path: output});
+  const {opened, picture} = await pageDrawn(browser);
+  writeFileSync(output, picture);
   await closePage(opened);
 }
 

@@ -68,19 +68,23 @@ def configure():
 
 def build(programs):
     """Builds the programs. Returns None, or the compiler's output if it fails."""
+    if not programs:
+        return None
     done = subprocess.run(["cmake", "--build", BUILD, "--target", *programs, "--", f"-j{os.cpu_count()}"],
                           capture_output=True, text=True)
     return None if done.returncode == 0 else done.stdout + done.stderr
 
 
 def first_failure(tests):
-    """The first test that fails, or None. A test is a program, a program and a filter, or "ctest" and a name."""
+    """The first test that fails, or None. A test is a program, a program and a filter, "ctest" and a name, or "node" and a file."""
     environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), "IST_REQUIRE_ALL": "1", **os.environ}
     for test in tests:
         program, _, pattern = test.partition(" ")
         command = [BUILD / "tests" / program, "--gtest_fail_fast"]
         if program == "ctest":
             command = ["ctest", "--test-dir", BUILD, "--no-tests=error", "-R", f"^{pattern}$"]
+        elif program == "node":
+            command = ["node", "--test", COPY / "tests/viewer" / pattern]
         elif pattern:
             command.append(f"--gtest_filter={pattern}")
         try:
@@ -91,8 +95,8 @@ def first_failure(tests):
         if "Running 0 tests" in done.stdout or "No tests were found" in done.stdout + done.stderr:
             fail(f"no test is called {test}")
         if done.returncode != 0:
-            failed = re.search(r"\[  FAILED  \] ([\w/.]+)|- ([\w.]+) \(Failed\)", done.stdout)
-            return failed.group(1) or failed.group(2) if failed else f"{program} (ends with {done.returncode})"
+            failed = re.search(r"\[  FAILED  \] ([\w/.]+)|- ([\w.]+) \(Failed\)|^not ok \d+ - (.*)", done.stdout, re.M)
+            return next(filter(None, failed.groups())) if failed else f"{program} (ends with {done.returncode})"
     return None
 
 
@@ -116,7 +120,7 @@ def killer_of(mutant):
 
 def programs_of(mutants):
     programs = {test.split()[0] for mutant in mutants for test in mutant.tests}
-    return sorted(programs - {"ctest"} | (PACKAGED if "ctest" in programs else set()))
+    return sorted(programs - {"ctest", "node"} | (PACKAGED if "ctest" in programs else set()))
 
 
 def results():

@@ -7,7 +7,8 @@ class Mutant(NamedTuple):
     name: str
     breaks: str  # what it does, for perf/MUTANTS.md
     edits: list  # (file, a passage that is there once, what stands there instead)
-    tests: list  # programs, or programs and a filter, in the order in which they are asked
+    # Programs, programs and a filter, "ctest" and a name, or "node" and a file of tests/viewer, in the order in which they are asked.
+    tests: list
 
 
 SEARCH_POSE = "src/ist/query/traversal/search_pose.cpp"
@@ -37,6 +38,8 @@ HARDWARE = "src/hardware/"
 FORMAT = "src/ist/mesh/format/"
 OCCLUSION = "src/cli/occlusion/"
 PAGES = "src/cli/pages/"
+PAGE = "src/viewer/page/"
+PAGE_DATA = "src/cli/page/"
 CIRCUIT = HARDWARE + "rtl/ist_pair_test.v"
 SIMULATION = HAPTICS + "simulation.cpp"
 FRICTION = HAPTICS + "effects/friction_effect.cpp"

@@ -147,4 +147,11 @@ Bodies load_bodies(const BodyFiles& files) {
   return bodies;
 }
 
+SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory) {
+  LoadedBody body(file);
+  BodyFiles files;
+  files.max_memory = max_memory;
+  return take_tree(body, files, {});
+}
+
 }  // namespace ist::cli

@@ -52,4 +52,7 @@ struct BodyFiles {
 /// for two trees of different units.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
+/// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.
+[[nodiscard]] SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory);
+
 }  // namespace ist::cli

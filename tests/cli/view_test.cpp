@@ -1,11 +1,15 @@
 #include <cstdlib>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli/cli_case.h"
+#include "cli/page/page_file.h"
 #include "ist/mesh/format/base64.h"
 #include "ist/tree/sphere_tree.h"
+#include "support/errors.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
 
@@ -86,6 +90,18 @@ TEST_F(View, HoldsTwoBodiesWithTheirTriangles) {
   EXPECT_EQ(tree.triangles()->vertices, wanted.vertices);
   ist_well({"view", ball_tree(), "-o", path("one.html")});
   EXPECT_EQ(data_of("one.html")["bodies"].size(), 1U);
+  ist_well({"view", one, other, "--no-names", "-o", path("out.html")});
+  const json nameless = data_of("out.html");
+  EXPECT_EQ(nameless["bodies"][0]["name"], "fixed");
+  EXPECT_EQ(nameless["bodies"][1]["name"], "moving");
+  EXPECT_EQ(tree_of(nameless["bodies"][1]).source().name, "");
+}
+
+TEST_F(View, WarnsOnceOfABodyAlone) {
+  const std::string one = mesh("open.stl", open_strip(2)), warning = "its outside is assumed";
+  const std::string err = ist_well({"view", one, "-o", path("one.html")}).err;
+  ASSERT_TRUE(says(err, warning)) << err;
+  EXPECT_EQ(err.find(warning), err.rfind(warning)) << err;
 }
 
 TEST_F(View, NoNameEndsTheElementThatHoldsIt) {
@@ -155,6 +171,23 @@ TEST_F(View, ARecordingHasTheBodiesOfItsScene) {
   EXPECT_TRUE(says(data_of("bare.html")["missing"][0].get<std::string>(), "--scene"));
 }
 
+TEST_F(View, APageHoldsWhatABrowserReads) {
+  const nlohmann::ordered_json block{{"name", "a<b<"}};
+  const std::size_t bytes = block.dump().size();
+  {
+    OutputFile file(path("out.html"));
+    cli::write_page(page_, block, file, bytes);
+    file.commit();
+  }
+  EXPECT_EQ(data_of("out.html"), json(block));
+  OutputFile file(path("full.html"));
+  const std::optional<Error> error =
+      error_of([&] { cli::write_page(page_, block, file, bytes - 1); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+  EXPECT_TRUE(says(error->what(), "coarser meshes"));
+}
+
 TEST_F(View, RefusesWithFileAndRemedy) {
   const std::string one = ball(), scene = this->scene();
   ist_well({"run", scene, "--unpaced", "--record", path("t.jsonl")});
@@ -168,12 +201,17 @@ TEST_F(View, RefusesWithFileAndRemedy) {
   refuses({"view", one, "--move", "0,0,1", "-o", out}, 2, "name two files");
   refuses({"view", path("t.jsonl"), one, "-o", out}, 2, "all bodies of its scene");
   refuses({"view", path("t.jsonl"), "--move", "0,0,1", "-o", out}, 2, "its own poses");
+  refuses({"view", path("t.jsonl"), "--no-names", "-o", out}, 2, "names its files");
   write("scene.toml", file_content(scene) + "# another\n");
   refuses({"view", path("t.jsonl"), "--scene", scene, "-o", out}, 3, "another scene");
   write("page.html", "<html>no page</html>");
   refuses({"view", one, "-o", out}, 3, "scripts/viewer.sh");
   write("page.html", html_ + html_);
   refuses({"view", one, "-o", out}, 3, "page.html");
+  write("page.html", html_);
+  const std::string long_one = write("long.jsonl", R"({"recording":2,)");
+  std::filesystem::resize_file(long_one, 300'000'001);  // it takes no place on the disk
+  refuses({"view", long_one, "-o", out}, 3, "long.jsonl: it has 300 MB, and a page holds");
   name_page(path("gone.html"));
   refuses({"view", one, "-o", out}, 3, "gone.html");
   name_page("");

@@ -3,6 +3,7 @@ import {test} from 'node:test';
 
 import {makeBodiesLoader} from '../../src/viewer/page/bodies_loader.js';
 import {EngineError} from '../../src/viewer/page/engine/engine_client.js';
+import {identity, translation} from '../../src/viewer/page/pose.js';
 import {makeStore} from '../../src/viewer/page/state/store.js';
 
 const facts = (name, extent, unit = null) => ({name, extent, unit, warnings: [], info: {}, rebuilds: true});
@@ -71,6 +72,21 @@ test('another engine gets what this one had: files, their units, and the voxel s
   assert.deepEqual(await restored(), [['make_jaws', {seed: 3}], opened, built]);
   await loader.open(file('fixed', 'first.stl'));
   assert.deepEqual(await restored(), [opened, ['open', {role: 'fixed', name: 'first.stl', unit: undefined}]]);
+});
+
+test('the pose that two bodies came with is home until both have given way', async () => {
+  const {loader, store} = made({make_jaws: () => jaws, open: ({name}) => facts(name, 100), build: () => trees});
+  const home = () => store.get().home;
+  await loader.replace([file('fixed', 'a.ist'), file('moving', 'b.ist')], translation([1, 2, 3]));
+  assert.deepEqual(home(), translation([1, 2, 3]));
+  await loader.open(file('moving', 'c.stl'));
+  await loader.open(file('moving', 'd.stl'));
+  assert.deepEqual(home(), translation([1, 2, 3]), 'it may be the same body, scanned again');
+  await loader.open(file('fixed', 'e.stl'));
+  assert.deepEqual(home(), [...identity]);
+  await loader.replace([file('fixed', 'a.ist'), file('moving', 'b.ist')], translation([1, 2, 3]));
+  await loader.makeJaws(2);
+  assert.deepEqual(home(), [...identity]);
 });
 
 test('bodies that cannot be in one unit get a warning, others get none', async () => {

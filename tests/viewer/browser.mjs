@@ -1,14 +1,13 @@
 // The page in Chromium, as people open it: from a file, without a server.
 //
 //   IST_PAGE      the page, build/viewer/ist.html
-//   IST_COMMAND   the ist command of the same sources
 //   IST_CHROMIUM  the browser; by default /usr/bin/chromium
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
 import {createRequire} from 'node:module';
-import path from 'node:path';
 import {pathToFileURL} from 'node:url';
+
+export {answerOf, ist, linesOf} from './command.mjs';
 
 const require = createRequire(new URL('../../src/viewer/package.json', import.meta.url));
 const {chromium} = require('playwright-core');
@@ -118,19 +117,4 @@ export function answer(page) {
 export function readout(page) {
   return page.evaluate(() => Object.fromEntries([...document.querySelectorAll('#readout dt')]
       .map((name) => [name.textContent, name.nextElementSibling.textContent])));
-}
-
-/** An answer without the keys that are a machine's. */
-export function answerOf({target, microseconds_min, microseconds_median, ...line}) {
-  return line;
-}
-
-/** Runs the command in a folder, and gives what it prints. */
-export function ist(folder, ...words) {
-  return execFileSync(process.env.IST_COMMAND, words,
-      {cwd: folder, env: {...process.env, IST_PAGE: path.resolve(process.env.IST_PAGE)}, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28});
-}
-
-export function linesOf(text) {
-  return text.trimEnd().split('\n').map((line) => JSON.parse(line));
 }

@@ -42,5 +42,5 @@ export async function startEngine(folder) {
       engine.FS.unlink(`${role}/${name}`);
     }
   }
-  return {ask, open, about, stages};
+  return {ask, open, about, stages, bytes: () => engine.HEAPU8.buffer.byteLength};
 }

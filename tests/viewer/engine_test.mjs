@@ -5,12 +5,12 @@
 //   IST_COMMAND  the ist command of the same sources
 
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
+import {answerOf, ist as istIn, linesOf} from './command.mjs';
 import {startEngine} from './engine.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
@@ -19,24 +19,12 @@ const shifts = [-5, -2, -1.5, -0.6, 0];
 const poses = shifts.map((dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1]);
 let engine;
 
-function ist(...words) {
-  return execFileSync(process.env.IST_COMMAND, words,
-      {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 28});
-}
-const linesOf = (text) => text.trimEnd().split('\n').map((line) => JSON.parse(line));
+const ist = (...words) => istIn(folder, ...words);
 
 // The page and the command may be built at different commits.
 function withoutCommit({commit, ...rest}) {
   assert.match(commit, /^(unknown|[0-9a-f]{8,}\+?)$/);
   return rest;
-}
-
-// Keys that are a machine's, not an answer's.
-function answerOf(line) {
-  const {target, microseconds_min, microseconds_median, ...answer} = line;
-  assert.equal(typeof target, 'string');
-  assert.ok(microseconds_min >= 0 && microseconds_median >= 0);
-  return answer;
 }
 
 before(async () => {
@@ -106,6 +94,24 @@ test('follows each stage of a build', () => {
   engine.stages.clear();
   engine.ask('build', {voxel_size: 0.8});
   assert.ok(engine.stages.size >= 3, [...engine.stages].join());
+});
+
+test('times a query by a clock that is coarser than a browser\'s', async () => {
+  const {hrtime} = process, step = 1e6;  // the engine's clock in node, ns; browsers' step by 0.1 ms
+  process.hrtime = () => {
+    const [seconds, nanoseconds] = hrtime();
+    return [seconds, nanoseconds - nanoseconds % step];
+  };
+  try {
+    const coarse = await startEngine(process.env.IST_ENGINE);
+    coarse.ask('make_jaws', {seed: 1});
+    coarse.ask('build', {voxel_size: 2});
+    const far = coarse.ask('collide', {pose: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -80, 1]}).microseconds;
+    const near = coarse.ask('collide', {pose: poses[3]}).microseconds;
+    assert.ok(far > 0 && far < near, `${far} and ${near} µs`);
+  } finally {
+    process.hrtime = hrtime;
+  }
 });
 
 test('maps the occlusion as the command does', () => {
@@ -181,55 +187,79 @@ test('finds the first contact on the way', () => {
   assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
 });
 
-test('says so where memory ends while a tree is built, and keeps the trees before', async () => {
-  const small = await startEngine(process.env.IST_ENGINE);
+/** An engine whose memory ends: `limit` says at how many bytes, and `bytes` how many there are. */
+async function short(use) {
   const {grow} = WebAssembly.Memory.prototype;
-  let bytes = 0, most = Infinity;
+  const memory = {bytes: 0, limit: Infinity};
   WebAssembly.Memory.prototype.grow = function(pages) {
-    if (this.buffer.byteLength + pages * 65536 > most) throw new RangeError('Maximum memory size exceeded');
+    if (this.buffer.byteLength + pages * 65536 > memory.limit) throw new RangeError('Maximum memory size exceeded');
     const before = grow.call(this, pages);
-    bytes = this.buffer.byteLength;
+    memory.bytes = this.buffer.byteLength;
     return before;
   };
   try {
-    small.ask('make_jaws', {seed: 1});
-    small.ask('build', {voxel_size: 2});
-    const {line} = small.ask('collide', {pose: poses[3]});
-    const tree = Buffer.from(small.ask('save_body', {role: 'fixed'}).bytes);
-    const builds = () => {
-      try {
-        return Boolean(small.ask('build', {voxel_size: 0.8}));
-      } catch (error) {
-        assert.equal(error.code, 'memory-limit');
-        assert.match(error.message, /memory is full/);
-        return false;
-      }
-    };
-    // It ends at the first body, then at the second, until there is enough.
-    let ended = 0;
-    for (most = bytes; !builds(); most += 2e6) {
-      ended += 1;
-      assert.deepEqual(answerOf(small.ask('collide', {pose: poses[3]}).line), answerOf(line));
-      assert.ok(tree.equals(small.ask('save_body', {role: 'fixed'}).bytes), 'the tree is the one that answers');
-    }
-    assert.ok(ended > 5, `${ended} times`);
-    assert.equal(small.ask('collide', {pose: poses[3]}).line.voxel_size[0], 0.8);
+    await use(await startEngine(process.env.IST_ENGINE), memory);
   } finally {
     WebAssembly.Memory.prototype.grow = grow;
   }
-});
+}
+
+/** Does what needs memory, with more and more of it until there is enough; where it ends, `check` is called. */
+function untilItFits(memory, what, check) {
+  let ended = 0;
+  for (memory.limit = memory.bytes; ; memory.limit += 2e6) {
+    try {
+      what();
+      return ended;
+    } catch (error) {
+      assert.equal(error.code, 'memory-limit');
+      assert.match(error.message, /memory is full/);
+    }
+    ended += 1;
+    check();
+  }
+}
+
+test('says so where memory ends while a tree is built, and keeps the trees before', () => short((small, memory) => {
+  small.ask('make_jaws', {seed: 1});
+  small.ask('build', {voxel_size: 2});
+  const {line} = small.ask('collide', {pose: poses[3]});
+  const tree = Buffer.from(small.ask('save_body', {role: 'fixed'}).bytes);
+  // It ends at the first body, then at the second.
+  const ended = untilItFits(memory, () => small.ask('build', {voxel_size: 0.8}), () => {
+    assert.deepEqual(answerOf(small.ask('collide', {pose: poses[3]}).line), answerOf(line));
+    assert.ok(tree.equals(small.ask('save_body', {role: 'fixed'}).bytes), 'the tree is the one that answers');
+  });
+  assert.ok(ended > 5, `${ended} times`);
+  assert.equal(small.ask('collide', {pose: poses[3]}).line.voxel_size[0], 0.8);
+}));
+
+test('says so where memory ends while a body is read or described, and keeps the body before', () => short((small, memory) => {
+  ist('build', lower, '-o', 'bare.ist', '--voxel-size', '0.4', '--no-triangles');
+  const bare = readFileSync(path.join(folder, 'bare.ist'));
+  small.ask('make_jaws', {seed: 1});
+  small.ask('build', {voxel_size: 2});
+  const {header, line} = small.ask('collide', {pose: poses[3]});
+  const ended = untilItFits(memory, () => small.open('moving', 'bare.ist', bare), () => {
+    const again = small.ask('collide', {pose: poses[3]});
+    assert.deepEqual([again.header, answerOf(again.line)], [header, answerOf(line)]);
+  });
+  assert.ok(ended > 5, `${ended} times`);
+  assert.throws(() => small.ask('collide', {pose: poses[3]}), /not built/);
+}));
 
 test('refuses bad files with the command\'s sentence, and goes on', () => {
   engine.ask('make_jaws', {seed: 1});
-  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated'],
-    ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), undefined],
-    ['empty.ply', Buffer.alloc(0), undefined],
-    ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only'],
-    ['tree.ist', Buffer.from('ISTTREE1 nothing'), undefined]];
-  for (const [name, bytes, code] of bad) {
+  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated', /copy or export it again/],
+    ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), 'mesh-not-finite', /repair the mesh/],
+    ['empty.ply', Buffer.alloc(0), 'mesh-empty', /export the mesh again/],
+    ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only', /export the surface as polygons/],
+    ['tree.ist', Buffer.from('ISTTREE1 nothing'), 'not-a-mesh', /convert the mesh/]];
+  for (const [name, bytes, code, whatToDo] of bad) {
     assert.throws(() => engine.open('fixed', name, bytes), (error) => {
-      assert.ok(error.message.includes(name), error.message);
-      if (code !== undefined) assert.equal(error.code, code);
+      assert.ok(error.message.startsWith(`fixed/${name}: `), error.message);
+      assert.equal(error.code, code);
+      assert.match(error.message, whatToDo);
       return true;
     });
   }

@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
-import {answer, answerOf, closePage, ist, inWorker, openPage, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
@@ -24,7 +24,8 @@ after(async () => {
 // The engine takes a minute for these, whatever machine it runs on.
 const slowly = inWorker(`addEventListener('message', ({data: {question, asked}}) => {
   const long = question === 'first_contact' || question === 'save_glb' || question === 'save_body' || asked?.name === 'slow.stl' ||
-      asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens');
+      asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens') ||
+      (question === 'touched' && asked.level === 0) || (question === 'collide' && asked.pose[14] === -0.25);
   for (const begun = performance.now(); long && performance.now() - begun < 60_000;);
 });`);
 
@@ -36,6 +37,7 @@ const panelsOf = {
   'Reading slow.stl': ['Bodies', (page) => page.locator('.body.moving input[type=file]')
       .setInputFiles({name: 'slow.stl', mimeType: 'model/stl', buffer: readFileSync(path.join(folder, lower))})],
   'Building both trees': ['Accuracy', (page) => page.getByRole('slider', {name: 'Voxel size'}).press('Home')],
+  'Reading the trees': ['Tree', (page) => page.getByRole('slider', {name: 'Level'}).press('Home')],
   'Looking for the first contact': ['Pose', (page) => page.getByRole('button', {name: 'First contact'}).click()],
   'Measuring the distances': ['Occlusion', (page) => page.getByLabel('Preset').selectOption('owens')],
   'Writing both bodies as GLB': ['Save', (page) => page.getByRole('button', {name: 'Both bodies', exact: true}).click()],
@@ -73,6 +75,33 @@ for (const [words, [panel, begin]] of Object.entries(panelsOf)) {
   });
 }
 
+test('says that the depth is not known where its search was cancelled, and asks again at the next pose', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=pose', {before: slowly});
+  const {page} = opened;
+  await ready(page);
+  // What is asked at each rest has no bar before a second is over: it would flicker.
+  await page.evaluate(() => {
+    const begun = performance.now();
+    new MutationObserver((changes) => {
+      if (changes.some(({target}) => !target.hidden)) window.barAfter ??= performance.now() - begun;
+    }).observe(document.getElementById('progress'), {subtree: true, attributeFilter: ['hidden']});
+  });
+  await page.evaluate((hash) => { location.hash = hash; }, `#pose=${closedBy(-0.25)}`);
+  await cancel(page, 'Finding distance and depth');
+  const barAfter = await page.evaluate(() => window.barAfter);
+  assert.ok(barAfter > 1000, `${barAfter} ms`);
+  await page.waitForFunction(() => document.documentElement.dataset.state === 'ready');
+  assert.equal(await answer(page), null);
+  const {Touch, Depth} = await readout(page);
+  assert.deepEqual([Touch, Depth], ['they touch', 'not known']);
+  await showPanel(page, 'Save');
+  await page.getByRole('button', {name: 'Answer', exact: true}).click();
+  assert.match(await message(page, /was cancelled/), /move the body a little/);
+  await setPose(page, closedBy(0));
+  assert.match((await readout(page)).Depth, /^[\d.]+ to [\d.]+ mm$/);
+  await closePage(opened);
+});
+
 test('makes a map that was cancelled where it is asked for, and answers meanwhile', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=occlusion', {before: slowly});
   const {page} = opened;
@@ -80,10 +109,9 @@ test('makes a map that was cancelled where it is asked for, and answers meanwhil
   await ready(page);
   await page.getByLabel('Preset').selectOption('owens');
   await page.getByText('Measuring the distances').waitFor();
-  // These questions wait for the map, and are not lost with it.
-  await page.getByRole('slider', {name: 'Close along z'}).press('End');
   await cancel(page, 'Measuring the distances');
   await page.getByText('The map was cancelled.').waitFor();
+  await page.getByRole('slider', {name: 'Close along z'}).press('End');
   await ready(page);
   const {line} = await answer(page);
   assert.ok(Math.abs(line.pose[14]) < 1e-9 && line.touch === 'yes', JSON.stringify(line));
@@ -93,6 +121,31 @@ test('makes a map that was cancelled where it is asked for, and answers meanwhil
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
   assert.equal(await page.evaluate(() => window.ist.bite().preset.name), 'stl');
+  await closePage(opened);
+});
+
+test('answers a hand while a map is made, and makes that of the pose where it rests', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=occlusion', {before: slowly});
+  const {page} = opened;
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  await page.getByLabel('Preset').selectOption('owens');
+  await page.getByText('Measuring the distances').waitFor();
+  const {x, y, width, height} = await page.getByRole('slider', {name: 'Close along z'}).boundingBox();
+  await page.mouse.move(x + width - 4, y + height / 2);
+  await page.mouse.down();
+  // The map that was begun takes a minute.
+  await page.waitForFunction(() => window.ist.state().tick.touch === 'yes', null, {timeout: 20_000});
+  assert.equal(await page.evaluate(() => window.ist.state().dragging), true);
+  await page.getByLabel('Preset').evaluate((list) => {
+    list.value = 'stl';
+    list.dispatchEvent(new Event('change'));
+  });
+  await page.mouse.up();
+  await page.waitForFunction(() => window.ist.bite()?.preset.name === 'stl', null, {timeout: 20_000});
+  await ready(page);
+  const {line} = await answer(page);
+  assert.deepEqual((await page.evaluate(() => window.ist.bite())).pose, line.pose);
   await closePage(opened);
 });
 

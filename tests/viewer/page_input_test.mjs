@@ -35,24 +35,28 @@ function scaled(name, factor) {
   return bytes;
 }
 
-test('says what is wrong with each bad file, and keeps the bodies that it has', async () => {
+test('says what is wrong with each bad file and what to do, and keeps the bodies that it has', async () => {
+  ist(folder, 'build', lower, '-o', 'whole.ist', '--voxel-size', '2');
+  writeFileSync(path.join(folder, 'cut.ist'), readFileSync(path.join(folder, 'whole.ist')).subarray(0, 3000));
   const bad = [
-    ['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000)],
-    ['empty.ply', ''],
-    ['numbers.obj', 'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n'],
-    ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n'],
-    ['tree.ist', 'ISTTREE1 nothing'],
-    ['jaw.step', 'ISO-10303-21;'],
-    ['<script>fault()<!--.stl', 'solid nothing\nendsolid nothing\n'],
+    ['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), /byte 5000: the file ends after 98 of the \d+ facets.*; copy or export it again$/],
+    ['empty.ply', '', /the file is empty; export the mesh again$/],
+    ['numbers.obj', 'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n', /line 2: the coordinate 'nan' is not finite.*; repair the mesh where it was made$/],
+    ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n', /3 vertices, but no face; export the surface as polygons$/],
+    ['cut.ist', readFileSync(path.join(folder, 'cut.ist')), /it has 3000 bytes and should have \d+: copy or build it again$/],
+    ['jaw.step', 'ISO-10303-21;', /in no supported format: STL .*; convert the mesh to one of them$/],
+    ['jaws.3mf', 'PK\x03\x04'.padEnd(40, '\0'), /a 3MF.* no zlib to unpack it: convert the mesh to STL/],
+    ['<script>fault()<!--.stl', 'solid nothing\nendsolid nothing\n', /the STL has no facet; export the mesh again$/],
   ];
   const opened = await openPage(browser, coarse);
   const {page} = opened;
   await ready(page);
   const before = await answer(page);
-  for (const [name, content] of bad) {
+  for (const [name, content, whatToDo] of bad) {
     await field(page, 'moving').setInputFiles(fileOf(name, content));
     const text = await message(page, name);
-    assert.match(text, /: .+/, text);
+    assert.ok(text.startsWith(`${name}: `), text);
+    assert.match(text, whatToDo);
   }
   await ready(page);
   assert.deepEqual(answerOf((await answer(page)).line), answerOf(before.line));
@@ -247,6 +251,22 @@ test('starts with its defaults where the address is wrong, and says so', async (
   await closePage(opened);
 });
 
+test('keeps an error before people where warnings follow it', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  await field(page, 'moving').setInputFiles(fileOf('empty.ply', ''));
+  const error = await message(page, 'empty.ply');
+  for (const panel of ['a', 'b', 'c', 'd']) {
+    await page.evaluate((hash) => { location.hash = hash; }, `#panel=${panel}`);
+    await message(page, `panel=${panel},`);
+  }
+  const [first, ...warnings] = await messages(page);
+  assert.equal(first, error);
+  assert.deepEqual(warnings.map((each) => /panel=(.)/.exec(each)[1]), ['b', 'c', 'd']);
+  await closePage(opened);
+});
+
 test('tries a voxel size that does not fit, says why, and goes on with its own', async () => {
   const opened = await openPage(browser, '#voxel=0.0001');
   await message(opened.page, /choose another voxel size/);
@@ -343,14 +363,14 @@ test('refuses recordings of another version, and files that hold no recording', 
   await ready(page);
   const header = {recording: 99, ist: '9.9.9', dt: 0.001, unit: 0.001, bodies: []};
   const bad = [
-    ['newer.jsonl', `${JSON.stringify(header)}\n`, /newer\.jsonl: .*version 99/],
-    ['none.jsonl', 'no json\n', /none\.jsonl: /],
-    ['empty.jsonl', '', /empty\.jsonl: /],
-    ['ticks.csv', 'tick,dt\n1,2\n', /ticks\.csv: .*CSV/],
-    ['number.jsonl', '7\n', /number\.jsonl: /],
-    ['null.jsonl', 'null\n', /null\.jsonl: /],
-    ['poor.jsonl', `${JSON.stringify({...header, recording: 2})}\n{"tick": 1}\n`, /poor\.jsonl: .*no tick/],
-    ['bodiless.jsonl', '{"recording": 2}\n', /bodiless\.jsonl: /],
+    ['newer.jsonl', `${JSON.stringify(header)}\n`, /^newer\.jsonl: .*version 99.* open it in a page of the version of ist that wrote it/],
+    ['none.jsonl', 'no json\n', /^none\.jsonl: .*first line is no JSON\. Record one/],
+    ['empty.jsonl', '', /^empty\.jsonl: .*empty.*ist run/],
+    ['ticks.csv', 'tick,dt\n1,2\n', /^ticks\.csv: .*CSV.*record JSON lines/],
+    ['number.jsonl', '7\n', /^number\.jsonl: .*no recording of ist run.*Record one/],
+    ['null.jsonl', 'null\n', /^null\.jsonl: .*no recording of ist run.*Record one/],
+    ['poor.jsonl', `${JSON.stringify({...header, recording: 2})}\n{"tick": 1}\n`, /^poor\.jsonl: Line 2 .*no tick.*Record the scene again/],
+    ['bodiless.jsonl', '{"recording": 2}\n', /^bodiless\.jsonl: .*header .*damaged.*Record the scene again/],
   ];
   for (const [name, text, sentence] of bad) {
     await page.getByLabel('Open a recording').setInputFiles(fileOf(name, text));

@@ -1,13 +1,13 @@
 // What each panel says, in its own words, of what the engine and the command answer.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
-import {answer, closePage, closedBy, ist, linesOf, openPage, readout, ready, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, startBrowser} from './browser.mjs';
 
 const ratio = JSON.parse(readFileSync(new URL('../../src/viewer/page/native_ratio.json', import.meta.url), 'utf8'));
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
@@ -50,13 +50,70 @@ test('Bodies: what ist info says of both, and their trees', async () => {
   await closePage(opened);
 });
 
+test('Bodies: makes the built-in jaws of a number, as the command does', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=bodies');
+  const {page} = opened;
+  await ready(page);
+  await page.getByLabel('Built-in jaws, number').fill('7');
+  await page.getByRole('button', {name: 'Make these jaws'}).click();
+  await page.waitForFunction(() => window.ist.state().jaws === 7 && window.ist.state().trees !== null);
+  await ready(page);
+  mkdirSync(path.join(folder, 'seven'));
+  ist(folder, 'demo', '--seed', '7', '--voxel-size', '2', '--keep', 'seven');
+  const hash = (role) => page.evaluate((role) => window.ist.state().bodies[role].info.source.hash, role);
+  for (const [role, file] of [['fixed', 'upper_jaw.stl'], ['moving', 'lower_jaw.stl']]) {
+    const [, {source}] = linesOf(ist(folder, 'info', path.join('seven', file), '--json'));
+    assert.equal(await hash(role), source.hash);
+  }
+  assert.match(page.url(), /&seed=7/);
+  assert.match(await panel(page, 'Bodies').textContent(), /Leaves[\d,]+/);
+  await closePage(opened);
+});
+
+test('Pose: copies the matrix that the command reads', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=pose&pose=${closedBy(-0.6)}`);
+  const {page} = opened;
+  await ready(page);
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.getByRole('button', {name: 'Copy the matrix'}).click();
+  await message(page, /The matrix is copied/);
+  writeFileSync(path.join(folder, 'pose.txt'), await page.evaluate(() => navigator.clipboard.readText()));
+  const [, line] = linesOf(ist(folder, 'collide', 'upper_jaw.stl', 'lower_jaw.stl', '--voxel-size', '2', '--matrix', 'pose.txt', '--json'));
+  assert.deepEqual(answerOf((await answer(page)).line), answerOf(line));
+  await page.evaluate(() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); });
+  await page.getByRole('button', {name: 'Copy the matrix'}).click();
+  await message(page, /does not let the page copy: the matrix is selected/);
+  assert.match(await page.evaluate(() => getSelection().toString()), /^1 0 0 0\n0 1 0 0\n0 0 1 -0\.6\n/);
+  await closePage(opened);
+});
+
+test('Accuracy: visits seven voxel sizes, or as many as it is let', async () => {
+  const opened = await openPage(browser, `#voxel=2&panel=accuracy&pose=${closedBy(-5)}`);
+  const {page} = opened;
+  await ready(page);
+  const visit = page.getByRole('button', {name: 'Visit seven voxel sizes'});
+  await visit.click();
+  await page.waitForFunction(() => window.ist.state().voxelSize === 1.4);
+  await page.getByRole('button', {name: 'Stop the visits'}).click();
+  await visit.waitFor();
+  await ready(page);
+  const fewer = await rows(page, 'Visited at this pose');
+  assert.ok(fewer.length >= 1 && fewer.length < 7, `${fewer.length}`);
+  await visit.click();
+  await visit.waitFor();
+  await ready(page);
+  const sizes = (await rows(page, 'Visited at this pose')).map(([, size]) => Number(size));
+  assert.deepEqual(sizes.sort((a, b) => b - a), [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3]);
+  await closePage(opened);
+});
+
 test('Accuracy: the numbers of the answer, a point for each voxel size and policy, and the ratio to the command', async () => {
   const opened = await openPage(browser, '#voxel=1&panel=accuracy');
   const {page} = opened;
   await ready(page);
   const {line} = await answer(page);
   const said = await facts(page, 'Accuracy');
-  assert.match(said['Time of a query'], /^[\d.,]+ µs, the median of groups of 20$/);
+  assert.match(said['Time of a query'], /^[\d.,]+ µs, the median of groups of 20 and more$/);
   assert.deepEqual([said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said.Depth], [
     count(line.sphere_tests), count(line.leaf_pairs), `${short(line.resolution)} mm`,
     interval(line.distance_lower, line.distance_upper, 'mm'), interval(line.depth_lower, line.depth_upper, 'mm')]);
@@ -113,6 +170,11 @@ test('Contacts: the deepest ones, and the force and the torque of all', async ()
   assert.equal(said.Deepest, `${short(depths[0], 3)} mm`);
   assert.ok(said['Force on the moving body (green)'].startsWith(`${short(force, 3)} N (`), JSON.stringify(said));
   assert.match(said['Torque (pink)'], /^[\d.,e−]+ N mm \(/);
+  await page.getByRole('slider', {name: 'Stiffness'}).press('End');
+  await page.waitForFunction((before) => Math.hypot(...window.ist.state().tick.contacts.force) > 2 * before, force);
+  const stiffer = await page.evaluate(() => Math.hypot(...window.ist.state().tick.contacts.force));
+  assert.ok(Math.abs(stiffer / force - 100) < 1e-6, '0.1 to 10 N/mm³');
+  assert.ok((await facts(page, 'Contacts'))['Force on the moving body (green)'].startsWith(`${short(stiffer, 3)} N (`));
   const listed = await rows(page, 'deepest');
   assert.deepEqual(listed.map(([, depth]) => depth), depths.slice(0, 10).map((depth) => short(depth, 3)));
   await closePage(opened);

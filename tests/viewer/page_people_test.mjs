@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
 
-import {answer, axeFile, closePage, closedBy, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, axeFile, closePage, closedBy, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
 
 const coarse = '#voxel=2&panel=pose';
 let browser;
@@ -202,21 +202,54 @@ test('turns the picture by a finger', async () => {
   await closePage(opened);
 });
 
-test('answers where nothing can be drawn, and says so', async () => {
-  const opened = await openPage(browser, coarse, {before: () => {
-    const {getContext} = HTMLCanvasElement.prototype;
-    HTMLCanvasElement.prototype.getContext = function(kind, ...more) {
-      return String(kind).startsWith('webgl') ? null : getContext.call(this, kind, ...more);
-    };
-  }});
+/** For browsers that give no WebGL2 from the call of that number on. */
+const drawsUntil = (calls) => ({content: `{
+  const {getContext} = HTMLCanvasElement.prototype;
+  let calls = 0;
+  HTMLCanvasElement.prototype.getContext = function(kind, ...more) {
+    if (String(kind).startsWith('webgl') && ++calls > ${calls}) return null;
+    return getContext.call(this, kind, ...more);
+  };
+}`});
+
+// The library that draws complains by itself.
+for (const [how, calls, complaint] of [['it has no WebGL2', 0, /^$/], ['it gives none after all', 1, /^THREE\.WebGLRenderer: [^,]*creating WebGL context\.$/]]) {
+  test(`answers where nothing can be drawn, and says so: ${how}`, async () => {
+    const opened = await openPage(browser, coarse, {before: drawsUntil(calls)});
+    const {page} = opened;
+    await ready(page);
+    assert.match(await page.locator('#view').textContent(), /no WebGL2.*use another browser/);
+    await setPose(page, closedBy(0));
+    assert.equal((await readout(page)).Touch, 'they touch');
+    for (const title of await panels(page)) {
+      await showPanel(page, title);
+      await ready(page);
+    }
+    assert.match(opened.faults.splice(0).join(), complaint);
+    await closePage(opened);
+  });
+}
+
+test('says so where the picture is lost, and draws on when it comes back', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=save');
   const {page} = opened;
   await ready(page);
-  assert.match(await page.locator('#view').textContent(), /no WebGL2/);
-  await setPose(page, closedBy(0));
+  const picture = () => page.locator('canvas').screenshot();
+  const before = await picture();
+  await page.evaluate(() => {
+    window.taken = document.querySelector('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+    window.taken.loseContext();
+  });
+  assert.match(await message(page, /The picture stands still/), /numbers go on.*load the page again/);
+  await page.getByRole('slider', {name: 'Close along z'}).press('End');
+  await ready(page);
   assert.equal((await readout(page)).Touch, 'they touch');
-  for (const title of await panels(page)) {
-    await showPanel(page, title);
-    await ready(page);
-  }
+  await page.keyboard.press('Control+z');
+  await ready(page);
+  await page.evaluate(() => window.taken.restoreContext());
+  await message(page, /The picture is back/);
+  while (await page.locator('#messages .message').count() > 0) await page.getByRole('button', {name: 'Close this message'}).first().click();
+  await page.waitForTimeout(500);
+  assert.ok(before.equals(await picture()), 'the same picture');
   await closePage(opened);
 });

@@ -8,7 +8,7 @@ import path from 'node:path';
 import {after, before, test} from 'node:test';
 
 import {interval} from '../../src/viewer/page/words.js';
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
@@ -179,9 +179,20 @@ test('saves what the command reads and writes', async () => {
   assert.deepEqual(answerOf(ours), answerOf(line));
   const [, again] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '0.8', '--matrix', await saved('Matrix'), '--json'));
   assert.deepEqual(answerOf(again), answerOf(line));
-  ist(folder, 'build', lower, '-o', 'lower.ist', '--voxel-size', '0.8');
-  assert.ok(readFileSync(path.join(folder, 'lower.ist')).equals(readFileSync(await saved('Moving tree'))));
+  for (const [name, mesh] of [['Fixed tree', upper], ['Moving tree', lower]]) {
+    ist(folder, 'build', mesh, '-o', 'built.ist', '--voxel-size', '0.8');
+    assert.ok(readFileSync(path.join(folder, 'built.ist')).equals(readFileSync(await saved(name))), name);
+  }
   assert.equal(readFileSync(await saved('Both bodies')).subarray(0, 4).toString(), 'glTF');
   assert.equal(readFileSync(await saved('Picture')).subarray(1, 4).toString(), 'PNG');
+  await page.getByRole('button', {name: 'Bite', exact: true}).click();
+  assert.match(await message(page, /no map of this pose/), /open the panel Occlusion/);
+  await showPanel(page, 'Occlusion');
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  await showPanel(page, 'Save');
+  const bite = JSON.parse(readFileSync(await saved('Bite'), 'utf8'));
+  ist(folder, 'occlusion', upper, lower, '--matrix', await saved('Matrix'), '-o', 'bite.json');
+  assert.deepEqual({...bite, commit: ''}, {...JSON.parse(readFileSync(path.join(folder, 'bite.json'), 'utf8')), commit: ''});
   await closePage(opened);
 });

@@ -3,7 +3,9 @@
 
 import {closedBy, openPage, ready} from './browser.mjs';
 
-const width = 400, height = 300;
+const canvas = {width: 400, height: 300};
+/** Of the picture of the whole page. */
+export const wholePage = {width: 1100, height: 640};
 // Of the built-in lower jaw in voxels of 1 mm: where a recording has the tool's origin.
 const rootCentre = [8.99052429, 11.52035904, 71.21711206];
 /** Of the pixels, how many may be off, and by how much of 255 a pixel that is not may differ. */
@@ -68,6 +70,17 @@ export async function openView(browser, {fragment, show, file}, theme = 'light')
   return opened;
 }
 
+/** The whole page as README shows it: the built-in jaws where they bite, with the map. */
+export async function pageDrawn(browser) {
+  const opened = await openPage(browser, `#pose=${closedBy(-0.6)}&panel=occlusion&preset=stl&theme=light`, {window: {viewport: wholePage}});
+  const {page} = opened;
+  await ready(page);
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+  await page.waitForTimeout(1000);  // the last frame
+  return {opened, picture: await page.screenshot()};
+}
+
 /** The canvas as it is drawn now: a PNG. */
 export async function pictureOf(page) {
   const text = await page.evaluate(async () => {
@@ -80,10 +93,10 @@ export async function pictureOf(page) {
 }
 
 /**
- * Compares two PNGs, which the browser reads.
+ * Compares two PNGs, which the browser reads, of a size.
  * @returns {Promise<number>} the part of their pixels that differ by more than mostChange; 1 where a size is another
  */
-export function partOff(page, one, other) {
+export function partOff(page, one, other, {width, height} = canvas) {
   return page.evaluate(async ({texts, size, mostChange}) => {
     const [one, other] = await Promise.all(texts.map(async (text) => {
       const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));

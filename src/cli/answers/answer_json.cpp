@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/answers/answer_lines.h"
+#include "cli/poses/pose_json.h"
 
 namespace ist::cli {
 namespace {
@@ -12,12 +13,6 @@ using nlohmann::ordered_json;
 template <class Number>
 ordered_json or_null(const std::optional<Number>& number) {
   return number ? ordered_json(*number) : ordered_json(nullptr);
-}
-
-ordered_json array_of(const Eigen::Isometry3d& pose) {
-  ordered_json numbers = ordered_json::array();
-  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix().data()[i]);
-  return numbers;
 }
 
 ordered_json triple(const std::optional<Eigen::Vector3d>& point) {
@@ -36,7 +31,7 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   const auto upper = [](const std::optional<DistanceInterval>& interval) {
     return interval ? ordered_json(interval->upper) : ordered_json(nullptr);
   };
-  ordered_json line{{"index", index}, {"pose", array_of(answer.pose)}};
+  ordered_json line{{"index", index}, {"pose", pose_json(answer.pose)}};
   if (answer.displacement) line["displacement"] = *answer.displacement;
   line["engine"] = engine.name();
   line["spheres"] = to_string(bodies.policy);

@@ -25,24 +25,38 @@ struct ViewArguments {
   std::filesystem::path output, scene;
   PoseOptions pose;
   std::uint64_t max_memory = BuildOptions{}.max_memory;
+  bool no_names = false;
 };
 
 std::string name_of(const SphereTree& tree, const std::filesystem::path& file) {
   return tree.source().name.empty() ? file.filename().string() : tree.source().name;
 }
 
-nlohmann::ordered_json block_of_bodies(const ViewArguments& options) {
-  const Eigen::Isometry3d pose = options.pose.poses_named().front();
+Bodies bodies_of(const ViewArguments& options) {
+  if (options.files.size() == 1) {
+    const SphereTree body = load_body(options.files.front(), options.max_memory);
+    return {body, body, body.tightest()};  // trees share their content
+  }
   BodyFiles files;
   files.fixed = options.files.front();
   files.moving = options.files.back();
   files.voxels = BodyFiles::Voxels::kNone;  // the page makes its own
   files.max_memory = options.max_memory;
-  const Bodies bodies = load_bodies(files);
+  return load_bodies(files);
+}
+
+nlohmann::ordered_json block_of_bodies(const ViewArguments& options) {
+  const Bodies bodies = bodies_of(options);
   require_triangles(bodies);
-  const bool both = options.files.size() == 2;
-  return bodies_block(bodies.fixed, name_of(bodies.fixed, files.fixed),
-                      both ? &bodies.moving : nullptr, name_of(bodies.moving, files.moving), pose);
+  const auto named = [&](const char* role, const SphereTree& tree,
+                         const std::filesystem::path& file) {
+    return options.no_names ? NamedTree{role, without_name(tree)}
+                            : NamedTree{name_of(tree, file), tree};
+  };
+  const NamedTree fixed = named("fixed", bodies.fixed, options.files.front());
+  if (options.files.size() == 1) return body_alone_block(fixed);
+  return bodies_block(fixed, named("moving", bodies.moving, options.files.back()),
+                      options.pose.poses_named().front());
 }
 
 nlohmann::ordered_json block_of(const ViewArguments& options) {
@@ -55,6 +69,7 @@ nlohmann::ordered_json block_of(const ViewArguments& options) {
   refuse_if(options.files.size() > 1, options.files.back().string(),
             "a recording holds all bodies of its scene: name that by --scene");
   refuse_if(options.pose.is_named(), "--move", "a recording has its own poses");
+  refuse_if(options.no_names, "--no-names", "a recording holds its scene, which names its files");
   return recording_block(options.files.front(), options.scene, options.max_memory);
 }
 
@@ -93,6 +108,7 @@ void add_view(CLI::App& app) {
                    "the scene that a recording is of, for its bodies; else the page shows frames "
                    "and forces alone")
       ->type_name("FILE");
+  command->add_flag("--no-names", options->no_names, "write fixed and moving for the files' names");
   add_max_memory(*command, options->max_memory, "each tree, and for all queries together");
   add_pose_options(*command, options->pose, Poses::kOne);
   add_example(*command,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cli/commit.h"
+#include "cli/poses/pose_json.h"
 
 namespace ist::cli {
 namespace {
@@ -92,8 +93,7 @@ ordered_json json_of(const Bite& bite) {
   ordered_json out{
       {"schema", 1}, {"version", IST_VERSION}, {"commit", IST_COMMIT}, {"unit", bite.unit}};
   out["unit_assumed"] = bite.unit_assumed;
-  out["pose"] = ordered_json::array();
-  for (Eigen::Index i = 0; i < 16; ++i) out["pose"].push_back(bite.pose.matrix().data()[i]);
+  out["pose"] = pose_json(bite.pose);
   out["reach"] = bite.reach;
   out["preset"] = {{"name", bite.preset->name},
                    {"micrometres", bite.preset->micrometres},

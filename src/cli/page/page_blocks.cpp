@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "cli/occlusion/html/html_text.h"
+#include "cli/poses/pose_json.h"
 #include "cli/version.h"
 #include "ist/tree/tree_parts.h"
 
@@ -13,26 +14,13 @@ using nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
 
-// The same tree under another name, or none: its file would tell its mesh's otherwise.
-SphereTree renamed(const SphereTree& tree, const std::string& name) {
-  TreeParts parts = tree.parts();
-  parts.source.name = name;
-  return SphereTree(std::move(parts));
-}
+}  // namespace
 
-ordered_json block_of(const char* kind) {
+ordered_json empty_block(const char* kind) {
   return {{"format", kFormat},
           {"made_by", version_words()},
           {"kind", kind},
           {"bodies", ordered_json::array()}};
-}
-
-}  // namespace
-
-ordered_json matrix_block(const Eigen::Isometry3d& pose) {
-  ordered_json numbers = ordered_json::array();
-  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix().data()[i]);
-  return numbers;
 }
 
 ordered_json body_block(const char* role, const std::string& name, const SphereTree& tree) {
@@ -41,26 +29,35 @@ ordered_json body_block(const char* role, const std::string& name, const SphereT
   return {{"role", role}, {"name", name}, {"tree", base64_of(text)}};
 }
 
-ordered_json bodies_block(const SphereTree& fixed, const std::string& fixed_name,
-                          const SphereTree* moving, const std::string& moving_name,
+SphereTree without_name(const SphereTree& tree) {
+  TreeParts parts = tree.parts();
+  parts.source.name.clear();
+  return SphereTree(std::move(parts));
+}
+
+ordered_json body_alone_block(const NamedTree& body) {
+  ordered_json block = empty_block("bodies");
+  block["bodies"].push_back(body_block("fixed", body.name, body.tree));
+  return block;
+}
+
+ordered_json bodies_block(const NamedTree& fixed, const NamedTree& moving,
                           const Eigen::Isometry3d& pose) {
-  ordered_json block = block_of("bodies");
-  block["bodies"].push_back(body_block("fixed", fixed_name, fixed));
-  if (moving == nullptr) return block;
-  block["bodies"].push_back(body_block("moving", moving_name, *moving));
-  block["pose"] = matrix_block(pose);
+  ordered_json block = body_alone_block(fixed);
+  block["bodies"].push_back(body_block("moving", moving.name, moving.tree));
+  block["pose"] = pose_json(pose);
   return block;
 }
 
 ordered_json bite_block(const Bodies& bodies, const Bite& bite, const BiteQuestions& questions) {
-  ordered_json block = block_of("bite");
+  ordered_json block = empty_block("bite");
   const auto add = [&](const char* role, const BiteBody& body, const SphereTree& tree) {
     block["bodies"].push_back(
-        body_block(role, body.name, questions.no_names ? renamed(tree, std::string()) : tree));
+        body_block(role, body.name, questions.no_names ? without_name(tree) : tree));
   };
   add("fixed", bite.fixed, bodies.fixed);
   add("moving", bite.moving, bodies.moving);
-  block["pose"] = matrix_block(bite.pose);
+  block["pose"] = pose_json(bite.pose);
   ordered_json asked{
       {"preset", bite.preset->name}, {"reach", questions.reach}, {"frame", questions.sides.frame}};
   if (questions.unit != LengthUnit::kUnknown) asked["unit"] = to_string(questions.unit);

@@ -12,16 +12,24 @@
 
 namespace ist::cli {
 
+/// Returns the data of a page of a kind, with no bodies yet.
+[[nodiscard]] nlohmann::ordered_json empty_block(const char* kind);
+
 /// Returns a body as the page's data holds it: its role, name and tree file, in base64.
 [[nodiscard]] nlohmann::ordered_json body_block(const char* role, const std::string& name,
                                                 const SphereTree& tree);
 
-/// Returns the data of a page that shows one body or two: `moving` may be null.
-[[nodiscard]] nlohmann::ordered_json bodies_block(const SphereTree& fixed,
-                                                  const std::string& fixed_name,
-                                                  const SphereTree* moving,
-                                                  const std::string& moving_name,
+struct NamedTree {
+  std::string name;
+  SphereTree tree;
+};
+/// Returns the same tree without the name of its file.
+[[nodiscard]] SphereTree without_name(const SphereTree& tree);
+
+/// Returns the data of a page that shows two bodies, or one alone.
+[[nodiscard]] nlohmann::ordered_json bodies_block(const NamedTree& fixed, const NamedTree& moving,
                                                   const Eigen::Isometry3d& pose);
+[[nodiscard]] nlohmann::ordered_json body_alone_block(const NamedTree& body);
 
 /// Returns the data of a page that shows an occlusion: the page measures it again, to the same
 /// bits.
@@ -30,8 +38,5 @@ namespace ist::cli {
 
 /// Whether the page can ask all that was asked: it knows no sides, midlines and labels.
 [[nodiscard]] bool page_shows(const BiteQuestions& questions);
-
-/// Returns 16 numbers, column by column.
-[[nodiscard]] nlohmann::ordered_json matrix_block(const Eigen::Isometry3d& pose);
 
 }  // namespace ist::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -15,22 +16,18 @@ namespace {
 constexpr std::string_view kBegin = R"(<script type="application/json" id="ist-data">)";
 constexpr std::string_view kEmpty = "null";
 constexpr std::string_view kEnd = "</script>";
+constexpr std::size_t kMega = 1'000'000;
 
-// JSON in which no text can end an element of HTML, or begin a comment.
-std::string text_of(const nlohmann::ordered_json& block) {
-  // A file's name may hold bytes that are no UTF-8.
-  const std::string json =
-      block.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  std::string text;
-  text.reserve(json.size());
-  for (const char character : json) {
-    if (character == '<') {
-      text += "\\u003c";
-    } else {
-      text += character;
-    }
+// Writes JSON so that no text in it can end an element of HTML, or begin a comment.
+void write_text(const std::string& json, OutputFile& file) {
+  constexpr std::string_view kEscaped = "\\u003c";
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = std::min(json.find('<', begin), json.size());
+    file.write(json.data() + begin, end - begin);
+    if (end == json.size()) return;
+    file.write(kEscaped.data(), kEscaped.size());
+    begin = end + 1;
   }
-  return text;
 }
 
 }  // namespace
@@ -47,7 +44,7 @@ std::optional<std::filesystem::path> find_page() {
 }
 
 void write_page(const std::filesystem::path& page, const nlohmann::ordered_json& block,
-                OutputFile& file) {
+                OutputFile& file, std::size_t most) {
   const std::string html = InputFile(page).read_rest();
   const std::string place = fmt::format("{}{}{}", kBegin, kEmpty, kEnd);
   const std::size_t at = html.find(place);
@@ -58,9 +55,17 @@ void write_page(const std::filesystem::path& page, const nlohmann::ordered_json&
                             page.string()));
   }
   const std::size_t begin = at + kBegin.size();
-  const std::string text = text_of(block);
+  // A file's name may hold bytes that are no UTF-8.
+  const std::string json =
+      block.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (json.size() > most) {
+    throw Error(ErrorCode::kInputInvalid,
+                fmt::format("{}: it would hold {} MB of data, and a browser reads {} MB: take "
+                            "coarser meshes, or a shorter recording",
+                            file.target().string(), json.size() / kMega, most / kMega));
+  }
   file.write(html.data(), begin);
-  file.write(text.data(), text.size());
+  write_text(json, file);
   file.write(html.data() + begin + kEmpty.size(), html.size() - begin - kEmpty.size());
 }
 

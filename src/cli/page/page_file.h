@@ -17,10 +17,13 @@ namespace ist::cli {
 inline constexpr const char* kHowToGetPage =
     "this build has no page: make it by scripts/viewer.sh, and name it in IST_PAGE";
 
+/// Browsers' texts end at 2^29 characters; some room is left for `<`, which is written longer.
+inline constexpr std::size_t kMostPageData = 500'000'000;
+
 /// Writes the page with `block` in it, for its data (src/viewer/page/data_block.js). No text in the
 /// block can end its element. Throws kInputInvalid for a file that is no such page, or that holds
-/// data already; kFileUnreadable, kFileUnwritable.
+/// data already, and for a block of more than `most` bytes; kFileUnreadable, kFileUnwritable.
 void write_page(const std::filesystem::path& page, const nlohmann::ordered_json& block,
-                OutputFile& file);
+                OutputFile& file, std::size_t most = kMostPageData);
 
 }  // namespace ist::cli

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 #include <variant>
 
-#include "cli/recordings/recording_header.h"
 #include "cli/extents.h"
 #include "cli/load_bodies.h"
 #include "cli/page/page_blocks.h"
+#include "cli/poses/pose_json.h"
 #include "cli/progress_bar.h"
-#include "cli/version.h"
+#include "cli/recordings/recording_header.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/scene.h"
@@ -20,8 +21,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A page of more is of no use to a browser: an hour at 1 kHz takes 2 GB.
-constexpr std::uint64_t kLongest = std::uint64_t{512} << 20;
+// Beside it the page holds trees, and each quotation mark takes two characters. An hour at 1 kHz
+// takes 2 GB.
+constexpr std::uint64_t kLongest = 300'000'000;
 
 constexpr std::string_view kKey = R"({"recording":)";
 
@@ -58,8 +60,8 @@ void add_bodies(const Scene& scene, const BuiltScene& built, ordered_json& block
                                      std::string(simulation.body_name(number)), whole(body));
       line["index"] = number++;
       line["held"] = held;
-      line["pose"] = matrix_block(pose);
-      if (held) line["in_tool"] = matrix_block(to_tool * pose);
+      line["pose"] = pose_json(pose);
+      if (held) line["in_tool"] = pose_json(to_tool * pose);
       block["bodies"].push_back(std::move(line));
     }
   }
@@ -79,16 +81,15 @@ ordered_json recording_block(const std::filesystem::path& recording,
                              const std::filesystem::path& scene_file, std::uint64_t max_memory) {
   InputFile input(recording);
   if (input.size() > kLongest) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: {} MiB are more than a page shows: record fewer --seconds",
-                            recording.string(), input.size() >> 20));
+    throw Error(
+        ErrorCode::kInputInvalid,
+        fmt::format(
+            "{}: it has {} MB, and a page holds recordings to {} MB: record fewer --seconds",
+            recording.string(), input.size() / 1'000'000, kLongest / 1'000'000));
   }
-  const std::string text = input.read_rest();
+  std::string text = input.read_rest();
   const nlohmann::json header = header_of(text, recording);
-  ordered_json block{{"format", 1},
-                     {"made_by", version_words()},
-                     {"kind", "recording"},
-                     {"bodies", ordered_json::array()}};
+  ordered_json block = empty_block("recording");
   if (scene_file.empty()) {
     block["missing"] = {"The bodies are not in this page: write it again with ist view --scene."};
   } else {
@@ -100,7 +101,7 @@ ordered_json recording_block(const std::filesystem::path& recording,
     RecordingHeader(scene, *built.simulation).check(header, recording);
     add_bodies(scene, built, block);
   }
-  block["recording"] = text;
+  block["recording"] = std::move(text);
   return block;
 }
 

@@ -12,6 +12,7 @@
 #include "cli/occlusion/bite_surfaces.h"
 #include "cli/occlusion/map_colours.h"
 #include "cli/occlusion/open_book.h"
+#include "cli/poses/pose_json.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 
@@ -49,12 +50,6 @@ std::string web_colour(const Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
-ordered_json numbers_of(const Eigen::Isometry3d& pose) {
-  ordered_json numbers = ordered_json::array();
-  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix().data()[i]);
-  return numbers;
-}
-
 ordered_json side_of(const cli::BiteBody& body, const Eigen::Isometry3d& placing,
                      std::span<const cli::MapBand> bands, Reply& reply) {
   std::vector<float> distances;
@@ -66,7 +61,7 @@ ordered_json side_of(const cli::BiteBody& body, const Eigen::Isometry3d& placing
   }
   return {{"distances", reply.array(std::move(distances))},
           {"colours", reply.array(std::move(colours))},
-          {"place", numbers_of(placing * body.to_fixed)}};
+          {"place", cli::pose_json(placing * body.to_fixed)}};
 }
 
 }  // namespace

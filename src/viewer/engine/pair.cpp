@@ -11,10 +11,10 @@
 namespace ist::viewer {
 namespace {
 
-// A browser's clock steps by 0.1 ms.
 constexpr int kTogether = 20;
 constexpr std::size_t kGroups = 9;
-constexpr std::chrono::milliseconds kLongest{400};
+// A browser's clock steps by 0.1 ms.
+constexpr std::chrono::milliseconds kShortestGroup{1}, kLongest{400};
 
 // A distance that a person sees, of the smaller body's extent.
 constexpr double kSeen = 1e-3;
@@ -25,9 +25,14 @@ double median_time(cli::Engine& engine, const Eigen::Isometry3d& pose) {
   const auto begin = Clock::now();
   while (groups.size() < kGroups && (groups.empty() || Clock::now() - begin < kLongest)) {
     const auto group = Clock::now();
-    for (int i = 0; i < kTogether; ++i) static_cast<void>(engine.ask(pose));
-    const std::chrono::duration<double, std::micro> time = Clock::now() - group;
-    groups.push_back(time.count() / kTogether);
+    std::chrono::duration<double, std::micro> time;
+    int asked = 0;
+    do {
+      for (int i = 0; i < kTogether; ++i) static_cast<void>(engine.ask(pose));
+      asked += kTogether;
+      time = Clock::now() - group;
+    } while (time < kShortestGroup);
+    groups.push_back(time.count() / asked);
   }
   const auto middle = groups.begin() + static_cast<std::ptrdiff_t>(groups.size() / 2);
   std::nth_element(groups.begin(), middle, groups.end());

@@ -1,6 +1,7 @@
 #include "viewer/engine/session.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "cli/extents.h"
+#include "cli/poses/pose_json.h"
 #include "ist/base/error.h"
 #include "ist/measure/first_contact.h"
 #include "ist/models/models.h"
@@ -68,6 +70,9 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
     return front(asked);
   } else if (question == "save_body") {
     return save_body(asked);
+  } else if (question == "memory") {
+    // A count that is an int, and is read as one without a sign.
+    reply.json["in_use"] = static_cast<std::uint32_t>(mallinfo().uordblks);
   } else {
     refuse(fmt::format("{}: the engine has no such question", question));
   }
@@ -98,26 +103,29 @@ Reply Session::make_jaws(const Asked& asked) {
   // By way of files, as `ist demo --keep` writes them: the command's answers for those are these.
   write_stl(make_jaw(Jaw::kUpper, seed), upper);
   write_stl(make_jaw(Jaw::kLower, seed), lower);
-  fixed_.emplace(upper, LengthUnit::kUnknown);
-  moving_.emplace(lower, LengthUnit::kUnknown);
+  PageBody fixed(upper, LengthUnit::kUnknown), moving(lower, LengthUnit::kUnknown);
   std::filesystem::remove(upper);
   std::filesystem::remove(lower);
+  Reply reply;
+  reply.json["fixed"] = fixed.facts(reply);
+  reply.json["moving"] = moving.facts(reply);
+  take(Role::kFixed, std::move(fixed));
+  take(Role::kMoving, std::move(moving));
+  return reply;
+}
+
+void Session::take(Role role, PageBody read) {
+  body(role) = std::move(read);
   pairs_.reset();
   recorded_.reset();
-  Reply reply;
-  reply.json["fixed"] = fixed_->facts(reply);
-  reply.json["moving"] = moving_->facts(reply);
-  return reply;
 }
 
 Reply Session::open(const Asked& asked) {
   const Role role = asked.role();
   PageBody read(file_of(role, asked.text("name")), asked.unit());
-  body(role) = std::move(read);
-  pairs_.reset();
-  recorded_.reset();
   Reply reply;
-  reply.json = body(role)->facts(reply);
+  reply.json = read.facts(reply);
+  take(role, std::move(read));
   return reply;
 }
 
@@ -152,13 +160,11 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
   const Motion motion = Motion::between(asked.pose("from"), asked.pose("to"));
   const FirstContact found =
       ist::first_contact(pairs().of({}).query(), motion, asked.number("tolerance"));
-  const Eigen::Isometry3d pose = motion.at(found.upper);
   Reply reply;
   reply.json = {{"status", to_string(found.status)},
                 {"lower", found.lower},
                 {"upper", found.upper},
-                {"pose", nlohmann::ordered_json::array()}};
-  for (Eigen::Index i = 0; i < 16; ++i) reply.json["pose"].push_back(pose.matrix().data()[i]);
+                {"pose", cli::pose_json(motion.at(found.upper))}};
   return reply;
 }
 

@@ -39,6 +39,9 @@ class Session {
   [[nodiscard]] Reply front(const Asked& asked);
   [[nodiscard]] Reply save_body(const Asked& asked);
 
+  /// Puts a body in the place of another, and forgets their pairs. All that may fail is done
+  /// before: where memory ends, the bodies that the page shows are those that answer.
+  void take(Role role, PageBody read);
   [[nodiscard]] std::optional<PageBody>& body(Role role) {
     return role == Role::kFixed ? fixed_ : moving_;
   }

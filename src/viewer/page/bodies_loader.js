@@ -23,7 +23,7 @@ import {bytesWords, short, unitWord} from './words.js';
  * @property {(file: BodyFile) => Promise<boolean>} open  of one role; trees are not built by it
  * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
  * @property {(files: BodyFile[], pose?: Pose) => Promise<boolean>} replace  opens, poses and builds
- * @property {(ask: Ask) => Promise<void>} restore
+ * @property {(ask: Ask, trees?: boolean) => Promise<void>} restore  gives another engine the bodies, and their trees where those are wanted
  */
 
 // The engine has 4 GiB, which hold the file, its mesh and its tree.
@@ -40,6 +40,8 @@ const farApart = 20;
 export function makeBodiesLoader({store, say, ask}) {
   /** @type {{seed: number | null, files: Partial<Record<Role, BodyFile>>, voxelSize: number | null, built: boolean}} */
   const kept = {seed: null, files: {}, voxelSize: null, built: false};
+  /** @type {Partial<Record<Role, Pose>>} the home pose when a body was opened: of the bodies before it */
+  let homes = {};
 
   /** @param {Promise<void>} done */
   const said = async (done) => {
@@ -57,7 +59,8 @@ export function makeBodiesLoader({store, say, ask}) {
   async function makeJaws(seed) {
     const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
     Object.assign(kept, {seed, files: {}, built: false});
-    store.set({bodies, jaws: seed, seed, trees: null, tick: null, answer: null, bite: null, unit: null});
+    homes = {};
+    store.set({bodies, jaws: seed, seed, home: [...identity], trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: null});
   }
 
   /** @param {BodyFile} file */
@@ -74,7 +77,10 @@ export function makeBodiesLoader({store, say, ask}) {
     kept.built = false;
     if (kept.files.fixed && kept.files.moving) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
-    store.set({bodies, jaws: null, trees: null, tick: null, answer: null, bite: null, unit: file.unit ?? null});
+    // A pose that the bodies before came with says nothing of two others.
+    const {home} = store.get(), both = homes[file.role === 'fixed' ? 'moving' : 'fixed'] === home;
+    homes = both ? {} : {...homes, [file.role]: home};
+    store.set({bodies, jaws: null, home: both ? [...identity] : home, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: file.unit ?? null});
     for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }
@@ -113,7 +119,7 @@ export function makeBodiesLoader({store, say, ask}) {
       const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
       Object.assign(kept, {voxelSize, built: true});
       const {policy} = store.get();
-      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, bite: null});
+      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, cancelled: null, bite: null});
     } catch (error) {
       const text = faultText(error);
       // The trees of before still answer, and are what the panels show.
@@ -140,13 +146,13 @@ export function makeBodiesLoader({store, say, ask}) {
     open: (file) => said(open(file)),
     build: (voxelSize) => said(build(voxelSize)),
     replace: (files, pose = [...identity]) => said(replace(files, pose)),
-    async restore(again) {
+    async restore(again, trees = true) {
       const {seed, files, voxelSize, built} = kept;
       if (seed !== null) await again('make_jaws', {seed});
       for (const file of Object.values(files)) {
         await again('open', {role: file.role, name: file.name, bytes: await bytesOf(file), unit: file.unit});
       }
-      if (built) await again('build', {voxel_size: voxelSize});
+      if (built && trees) await again('build', {voxel_size: voxelSize});
     },
   };
 }

@@ -26,6 +26,7 @@
  * @property {number} stiffness     N/mm³
  * @property {Tick | null} tick     the answer at the pose, or at one a few frames ago
  * @property {Answer | null} answer the command's answer at `answer.pose`, where the pose rested last
+ * @property {{pose: Pose, policy: Policy | null} | null} cancelled  where somebody cancelled the answer: it is not known there
  * @property {BiteAt | null} bite   the map, at the pose where it was made
  * @property {string} preset
  * @property {number} reach         millimetres
@@ -54,6 +55,7 @@
 /**
  * @typedef {object} Context
  * @property {import('./engine/engine_client.js').EngineClient} engine
+ * @property {import('./engine/engine_client.js').EngineClient} measurer  another engine, for what takes seconds and needs no trees: a hand that drags does not wait for it
  * @property {Store} store
  * @property {import('./view/stage.js').Stage} stage
  * @property {import('./bodies_loader.js').BodiesLoader} loader

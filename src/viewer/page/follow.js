@@ -8,18 +8,22 @@ import {millimetresIn} from './words.js';
 
 /** @typedef {import('./context.js').Context} Context */
 /** @typedef {import('./context.js').State} State */
+/** @typedef {import('./protocol.js').Pose} Pose */
+/** @typedef {import('./protocol.js').Policy} Policy */
 
 // A hand that pauses for less is still dragging.
 const rest = 250;
 
 /**
- * @param {Pick<Context, 'engine' | 'store' | 'say'>} context
+ * @param {Pick<Context, 'engine' | 'measurer' | 'store' | 'say'>} context
  * @returns {{settled: () => boolean}}  whether every answer is of this pose
  */
-export function followPose({engine, store, say}) {
+export function followPose({engine, measurer, store, say}) {
   /** @type {number | undefined} */
   let waiting;
   let asking = 0;
+  /** @type {Readonly<State> | null} of which a map is measured now */
+  let mapped = null;
 
   /** @param {Promise<void>} done */
   const counted = async (done) => {
@@ -47,8 +51,14 @@ export function followPose({engine, store, say}) {
   async function answer() {
     const {pose, policy, trees} = store.get();
     if (!trees) return;
-    const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true});
-    if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
+    try {
+      const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true, doing: 'Finding distance and depth', seldomLong: true});
+      if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
+    } catch (error) {
+      // Whoever cancels an answer wants no other at this pose.
+      if (isCancelled(error) && store.get().trees === trees) store.set({cancelled: {pose, policy}});
+      throw error;
+    }
   }
 
   async function map() {
@@ -56,23 +66,26 @@ export function followPose({engine, store, say}) {
     const {pose, trees} = state;
     if (!trees || !state.wantsMap || !measurable(state)) return;
     try {
-      const bite = await engine.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
+      mapped = state;
+      const bite = await measurer.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
       const now = store.get();
       // A map of settings that were changed meanwhile would pass for one of theirs.
       const same = ['preset', 'reach', 'unit', 'frame'].every((key) => now[/** @type {keyof State} */ (key)] === state[/** @type {keyof State} */ (key)]);
       if (now.trees === trees && same) store.set({bite: {...bite, pose}});
     } catch (error) {
       // Whoever cancels a map wants no other, until they ask for it.
-      if (error instanceof EngineError && error.code === 'cancelled') store.set({wantsMap: false});
+      if (isCancelled(error)) store.set({wantsMap: false});
       throw error;
+    } finally {
+      if (mapped === state) mapped = null;
     }
   }
 
   const atRest = () => {
     waiting = undefined;
-    const {dragging, pose, policy, trees, answer: last, bite, wantsMap} = store.get();
+    const {dragging, pose, trees, answer: last, cancelled, bite, wantsMap} = store.get();
     if (dragging || !trees) return;
-    if (!last || last.pose !== pose || last.policy !== policy) counted(answer());
+    if (!isHere(store.get(), last) && !isHere(store.get(), cancelled)) counted(answer());
     if (wantsMap && bite?.pose !== pose) counted(map());
   };
   const later = () => {
@@ -80,6 +93,12 @@ export function followPose({engine, store, say}) {
     waiting = setTimeout(atRest, rest);
   };
 
+  // A map of a pose that is gone would keep the next one waiting.
+  store.subscribe(['pose'], ({pose}) => {
+    if (mapped === null || mapped.pose === pose) return;
+    mapped = null;
+    measurer.drop('occlusion');
+  });
   store.subscribe(['pose', 'policy', 'stiffness', 'trees', 'unit'], () => counted(tick()));
   store.subscribe(['pose', 'policy', 'trees', 'dragging', 'wantsMap'], later);
   store.subscribe(['preset', 'reach', 'unit', 'frame'], () => {
@@ -108,6 +127,20 @@ export function measurable({bodies}) {
  */
 export function unitOf({bodies, unit}) {
   return bodies.fixed?.unit ?? bodies.moving?.unit ?? unit;
+}
+
+/**
+ * @param {Readonly<State>} state
+ * @param {{pose: Pose, policy: Policy | null} | null} at  where something was asked
+ * @returns {boolean} whether that is the pose and the policy that are shown
+ */
+export function isHere({pose, policy}, at) {
+  return at !== null && at.pose === pose && at.policy === policy;
+}
+
+/** @param {unknown} error */
+function isCancelled(error) {
+  return error instanceof EngineError && error.code === 'cancelled';
 }
 
 /** @param {Readonly<State>} state */

@@ -25,13 +25,11 @@ import {makeReadRecording} from './recording/read_recording.js';
 import {makeStore} from './state/store.js';
 import {exposeTestSurface} from './test_surface.js';
 import {followTheme} from './theme.js';
-import {element} from './ui/element.js';
 import {takeDrops} from './ui/file_drop.js';
 import {makeMessages} from './ui/messages.js';
 import {makeProgress} from './ui/progress.js';
 import {makeTabs} from './ui/tabs.js';
-import {canDraw, makeNoStage} from './view/no_stage.js';
-import {makeStage} from './view/stage.js';
+import {makeAnyStage} from './view/any_stage.js';
 
 // Just apart, so that a little closing shows what there is to see.
 const startShift = [0, 0, -1.5];
@@ -53,7 +51,7 @@ function byId(id) {
 function firstState() {
   return {
     bodies: {fixed: null, moving: null}, jaws: null, trees: null, pose: translation(startShift), home: [...identity], dragging: false,
-    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
+    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, cancelled: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
     frame: '', wantsMap: false, book: false, theme: null, panel: 'pose', seed: 1,
   };
 }
@@ -72,10 +70,7 @@ async function main() {
   await painted();
   const say = makeMessages(byId('messages'));
   const store = makeStore(firstState());
-  const stage = canDraw() ? makeStage(byId('surface')) : makeNoStage(byId('surface'));
-  if (!stage.drawn) {
-    byId('surface').append(element('p', {class: 'no-drawing'}, 'This browser draws nothing in 3D: it has no WebGL2, or it is switched off. All numbers are here; for the picture use another browser, or switch hardware acceleration on.'));
-  }
+  const stage = makeAnyStage(byId('surface'), say);
   followTheme(store, stage, byId('theme'));
   const texts = await unpackEngine();
 
@@ -89,9 +84,19 @@ async function main() {
       say(lostWords(error), 'error');
     },
   });
+  const measurer = makeEngineClient({
+    start: () => startEngine(texts), lazy: true,
+    progress: makeBar(() => measurer.cancel()),
+    restore: (ask) => loader.restore(ask, false),
+    onLost: (error) => {
+      const text = faultText(error);
+      measurer.drop(undefined, 'cancelled');
+      if (text) say(`${text.replace(/\.$/, '')}: what was asked of the second engine is not done.`, 'error');
+    },
+  });
   const loader = makeBodiesLoader({store, say, ask: engine.ask});
   const history = makePoseHistory(store);
-  const context = {engine, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
+  const context = {engine, measurer, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
   const recording = makeRecordingPanel(context);
   const panels = [
     makeBodiesPanel(context), makePosePanel(context), makeAccuracyPanel(context), makeTreePanel(context),
@@ -108,6 +113,7 @@ async function main() {
     stage.setBody('moving', bodies.moving);
     byId('subject').textContent = bodies.fixed && bodies.moving ? `${bodies.fixed.name} and ${bodies.moving.name}` : 'where two bodies touch';
   });
+  store.subscribe(['bodies'], () => measurer.drop());
   store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
   store.subscribe(['panel'], ({panel}) => show(panel));
   const setAddress = makeAddress((fragment) => window.history.replaceState(null, '', fragment));
@@ -122,7 +128,7 @@ async function main() {
     for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
   });
   let opened = false;
-  exposeTestSurface({store, engine, settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
+  exposeTestSurface({store, engine, busy: () => engine.busy() || measurer.busy(), settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
 
   const panelIds = panels.map((panel) => panel.id);
   const {change, problems} = readFragment(location.hash, panelIds);

@@ -57,8 +57,8 @@
  *   makes the trees of bodies that hold triangles, of this voxel size; null: a 500th of the smaller
  *   body's largest extent
  * @property {[{pose: Pose, policy?: Policy}, {header: Line, line: Line, microseconds: number}]} collide
- *   as `ist collide --json` prints them; `microseconds` is the median of groups of 20 queries that
- *   are timed together
+ *   as `ist collide --json` prints them; `microseconds` is the median of groups of 20 queries or
+ *   more that are timed together, above 0 by a coarse clock too
  * @property {[{pose: Pose, policy?: Policy, stiffness: number}, Tick]} tick
  *   what a frame of dragging needs, quickly
  * @property {[{from: Pose, to: Pose, tolerance: number}, {status: string, lower: number, upper: number, pose: Pose}]} first_contact
@@ -71,6 +71,7 @@
  * @property {[{pose: Pose, policy: Policy, step: number}, Front]} front
  * @property {[BiteQuestion, Bite]} occlusion
  * @property {[{role: Role}, {bytes: Uint8Array}]} save_body  its tree's file, as `ist build` writes it
+ * @property {[{}, {in_use: number}]} memory  bytes that the engine holds now
  * @property {[BiteQuestion, {bytes: Uint8Array}]} save_glb  both bodies, in the colours of their map
  */
 

@@ -1,7 +1,7 @@
 /** Below the picture, whatever panel is shown: the slider that closes the bodies, and the answers at the pose. */
 
 import {middleOf} from './body_box.js';
-import {unitOf} from './follow.js';
+import {isHere, unitOf} from './follow.js';
 import {moved, toSixNumbers} from './pose.js';
 import {slider} from './ui/controls.js';
 import {element} from './ui/element.js';
@@ -30,23 +30,24 @@ export function makeReadout(place, store) {
 
   const fill = () => {
     const state = store.get();
-    const {tick, answer, pose, policy, bodies} = state;
+    const {tick, answer, bodies} = state;
     const unit = unitWord(unitOf(state));
     const span = closingSpan(bodies.moving?.extent ?? 110);
     closing.range(-span, 0);
     closing.set(position());
     // A tick's distance is only as close as a person sees; at rest all is the command's.
-    const rested = answer?.pose === pose && answer.policy === policy;
-    const known = rested ? answer.line : tick;
+    const rested = isHere(state, answer), unknown = !rested && isHere(state, state.cancelled);
+    const known = answer && rested ? answer.line : tick;
     touch.set(known ? touchWords[/** @type {keyof typeof touchWords} */ (known.touch)] ?? known.touch : '…');
     touch.element.dataset.touch = known?.touch ?? '';
-    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…', rested ? inFull(answer.line, 'distance') : '');
-    depth.set(answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…', rested ? inFull(answer.line, 'depth') : '');
-    depth.element.classList.toggle('stale', !rested);
+    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…', answer && rested ? inFull(answer.line, 'distance') : '');
+    depth.set(unknown ? 'not known' : answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…',
+        unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? inFull(answer.line, 'depth') : '');
+    depth.element.classList.toggle('stale', !rested && !unknown);
     force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
     contacts.set(tick ? count(tick.contacts.depths.length) : '…');
   };
-  store.subscribe(['tick', 'answer', 'pose', 'policy', 'home', 'bodies', 'unit'], fill);
+  store.subscribe(['tick', 'answer', 'cancelled', 'pose', 'policy', 'home', 'bodies', 'unit'], fill);
   fill();
 }
 

@@ -9,7 +9,8 @@
  *   at the pose; null while it has not rested
  * @property {() => object | null} bite          the JSON of `ist occlusion` at the pose
  * @property {() => {count: number, p50: number, p99: number, max: number}} tickTimes  ms, by the Worker
- * @property {() => number | null} heap          bytes of the engine's memory
+ * @property {() => number | null} heap          bytes of the engine's memory, used or not
+ * @property {() => Promise<number>} memory      bytes that the engine holds now
  * @property {() => {tick: number, last: number} | null} playback
  * @property {() => Promise<Blob>} picture  PNG of the canvas alone
  */
@@ -21,12 +22,13 @@
  * @param {object} parts
  * @param {Store} parts.store
  * @param {EngineClient} parts.engine
+ * @param {() => boolean} parts.busy
  * @param {() => boolean} parts.settled
  * @param {() => boolean} parts.opened   whether what the page came with is opened
  * @param {TestSurface['playback']} parts.playback
  * @param {TestSurface['picture']} parts.picture
  */
-export function exposeTestSurface({store, engine, settled, opened, playback, picture}) {
+export function exposeTestSurface({store, engine, busy, settled, opened, playback, picture}) {
   /** @type {TestSurface} */
   const surface = {
     state: store.get,
@@ -44,11 +46,12 @@ export function exposeTestSurface({store, engine, settled, opened, playback, pic
       return {count: times.length, p50: at(0.5), p99: at(0.99), max: at(1)};
     },
     heap: () => engine.figures().heap,
+    memory: async () => (await engine.ask('memory', {})).in_use,
     playback, picture,
   };
   Object.assign(window, {ist: Object.freeze(surface)});
   const {dataset} = document.documentElement;
   setInterval(() => {
-    if (dataset.state !== 'failed') dataset.state = engine.busy() || !settled() || !opened() ? 'busy' : 'ready';
+    if (dataset.state !== 'failed') dataset.state = busy() || !settled() || !opened() ? 'busy' : 'ready';
   }, 50);
 }

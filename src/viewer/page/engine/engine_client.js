@@ -1,6 +1,7 @@
 /**
  * Asks the engine's Worker, one question at a time. A long question can be cancelled: the Worker is
- * ended, another is started, and the caller's `restore` gives it the bodies again.
+ * ended, another is started, and the caller's `restore` gives it the bodies again. A lazy client
+ * starts its Worker, and has it restored, when it is asked.
  */
 
 /** @typedef {import('../protocol.js').Questions} Questions */
@@ -12,12 +13,14 @@
  * @property {boolean} [latest]  a question of this name that still waits is replaced by this one
  * @property {boolean} [first]   it is asked before all that wait
  * @property {string} [doing]    words for the progress bar, with a button to cancel
+ * @property {boolean} [seldomLong]  the bar comes later, so that it does not flicker where this is asked often
  */
 /**
  * @typedef {object} EngineClient
  * @property {<Name extends keyof Questions>(name: Name, asked: Questions[Name][0], options?: AskOptions) => Promise<Questions[Name][1]>} ask
  *   rejects with an EngineError
  * @property {() => void} cancel   ends what is asked now, and what waits of the same name; all else is asked after it
+ * @property {(name?: string, code?: 'replaced' | 'cancelled') => void} drop  a lazy client's questions of that name end; without a name: all, and its Worker
  * @property {() => boolean} busy
  * @property {() => EngineFigures} figures
  */
@@ -69,17 +72,20 @@ const mostTimes = 10_000;
  * @param {Progress} parts.progress
  * @param {(ask: EngineClient['ask']) => Promise<void>} parts.restore  gives a new engine what the old one had
  * @param {(error: unknown) => void} parts.onLost  the engine does not start, or cannot be restored
+ * @param {boolean} [parts.lazy]
  * @returns {EngineClient}
  */
-export function makeEngineClient({start, progress, restore, onLost}) {
+export function makeEngineClient({start, progress, restore, onLost, lazy = false}) {
   /** @type {Waiting[]} */
   let queue = [];
   /** @type {Waiting | null} */
   let running = null;
-  let ready = false, restoring = false, lastId = 0;
+  let ready = false, restoring = false, lastId = 0, lives = 0;
   /** @type {EngineFigures} */
   const figures = {version: '', target: '', heap: null, tickTimes: []};
-  let worker = listenTo(start());
+  /** @type {Worker | null} none: it is started when something is asked */
+  let worker = null;
+  if (!lazy) worker = listenTo(start());
 
   /** @param {Worker} to */
   function listenTo(to) {
@@ -123,14 +129,14 @@ export function makeEngineClient({start, progress, restore, onLost}) {
   }
 
   function pump() {
-    if (running || !ready) return;
+    if (running || !ready || !worker) return;
     const at = queue.findIndex((each) => !restoring || each.options === byRestore);
     if (at < 0) {
       if (!restoring) progress.end();
       return;
     }
     [running] = queue.splice(at, 1);
-    if (running.options.doing) progress.begin(running.options.doing, true);
+    if (running.options.doing) progress.begin(running.options.doing, true, running.options.seldomLong);
     else if (!restoring) progress.end();
     const {id, name, asked} = running;
     const bytes = /** @type {{bytes?: unknown}} */ (asked).bytes;
@@ -151,17 +157,22 @@ export function makeEngineClient({start, progress, restore, onLost}) {
       const waiting = {id: lastId, name, asked, options, resolve, reject};
       if (options.first) queue.unshift(waiting);
       else queue.push(waiting);
+      if (!worker) restart();
       pump();
     });
   }
 
   const byRestore = {};
   async function restoreNow() {
+    const life = lives;
     try {
-      await restore((name, asked) => ask(name, asked, byRestore));
+      // What a Worker that is gone was to get, no other gets.
+      await restore((name, asked) => life === lives ? ask(name, asked, byRestore) : new Promise(() => {}));
+      if (life !== lives) return;
       restoring = false;
       pump();
     } catch (error) {
+      if (life !== lives) return;
       restoring = false;
       onLost(error);
       pump();
@@ -169,11 +180,38 @@ export function makeEngineClient({start, progress, restore, onLost}) {
   }
 
   function restart() {
-    worker.terminate();
+    worker?.terminate();
     ready = false;
     restoring = true;
     worker = listenTo(start());
-    progress.begin('Starting the engine again', false);
+    progress.begin(lazy ? 'Starting a second engine' : 'Starting the engine again', lazy);
+  }
+
+  /** Ends the Worker; another starts where something still waits, or else when it is asked. */
+  function sleep() {
+    worker?.terminate();
+    worker = null;
+    lives += 1;
+    running = null;
+    ready = restoring = false;
+    queue = queue.filter((each) => each.options !== byRestore);
+    if (queue.length > 0) restart();
+    else progress.end();
+  }
+
+  /**
+   * @param {(each: Waiting) => boolean} which
+   * @param {string} code
+   */
+  function end(which, code) {
+    const lost = [...running ? [running] : [], ...queue].filter((each) => each.options !== byRestore && which(each));
+    queue = queue.filter((each) => !lost.includes(each));
+    if (running !== null && lost.includes(running)) {
+      running = null;
+      if (lazy) sleep();
+      else restart();
+    }
+    for (const each of lost) each.reject(new EngineError(code, code));
   }
 
   /** @param {EngineError} error */
@@ -189,13 +227,14 @@ export function makeEngineClient({start, progress, restore, onLost}) {
   return {
     ask,
     cancel() {
-      if (running === null || restoring) return;
-      const {name} = running;
-      const lost = [running, ...queue.filter((each) => each.name === name)];
-      queue = queue.filter((each) => each.name !== name);
-      running = null;
-      restart();
-      for (const each of lost) each.reject(new EngineError('cancelled', 'cancelled'));
+      const now = restoring && lazy ? queue.find((each) => each.options !== byRestore) : running;
+      if (restoring && !lazy) return;
+      if (now) end((each) => each.name === now.name, 'cancelled');
+      if (restoring && lazy) sleep();
+    },
+    drop(name, code = 'replaced') {
+      end((each) => name === undefined || each.name === name, code);
+      if (name === undefined) sleep();
     },
     busy: () => running !== null || queue.length > 0 || restoring,
     figures: () => figures,

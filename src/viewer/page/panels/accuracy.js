@@ -1,7 +1,8 @@
 /** What accuracy costs in time: the voxel size, the policy, and a plot of the points already visited. */
 
 import ratio from '../native_ratio.json';
-import {unitOf} from '../follow.js';
+import {policies as all} from '../choices.js';
+import {isHere, unitOf} from '../follow.js';
 import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {plot} from '../ui/plot.js';
@@ -38,7 +39,7 @@ export function makeAccuracyPanel({store, loader}) {
     },
   });
   const policy = select({
-    label: 'Policy', value: 'slab', choices: policyChoices(['simple', 'table', 'tight', 'slab']),
+    label: 'Policy', value: 'slab', choices: policyChoices(all),
     onChange: (value) => store.set({policy: /** @type {Policy} */ (value)}),
   });
   const numbers = element('div', {'aria-live': 'polite'}), points = element('div');
@@ -60,10 +61,10 @@ export function makeAccuracyPanel({store, loader}) {
     tourButton.textContent = tourWords;
   });
   const nextAnswer = () => new Promise((resolve) => {
-    const end = store.subscribe(['answer'], ({answer}) => {
-      if (!answer) return;
+    const end = store.subscribe(['answer', 'cancelled'], ({answer, cancelled}) => {
+      if (!answer && !cancelled) return;
       end();
-      resolve('answered');
+      resolve(answer ? 'answered' : 'stopped');
     });
   });
 
@@ -79,7 +80,7 @@ export function makeAccuracyPanel({store, loader}) {
 
   const draw = () => {
     const {answer} = store.get();
-    const series = /** @type {Policy[]} */ (Object.keys(policies)).flatMap((name) => {
+    const series = all.flatMap((name) => {
       const points = visited.filter((each) => each.policy === name);
       if (points.length === 0) return [];
       const current = points.findIndex((each) => answer?.line.spheres === name && each.voxelSize === answer.line.voxel_size[0]);
@@ -106,8 +107,7 @@ export function makeAccuracyPanel({store, loader}) {
     }
     numbers.replaceChildren(answerFacts(answer, unitWord(unitOf(store.get()))));
   });
-  store.subscribe(['answer', 'pose', 'policy'], ({answer, pose, policy: chosenNow}) =>
-    numbers.classList.toggle('stale', answer?.pose !== pose || answer.policy !== chosenNow));
+  store.subscribe(['answer', 'pose', 'policy'], (state) => numbers.classList.toggle('stale', !isHere(state, state.answer)));
   store.subscribe(['bodies'], () => {
     visited = [];
     draw();
@@ -145,7 +145,7 @@ function answerFacts(answer, unit) {
   if (!answer) return element('p', {}, 'The numbers come when the trees are built and the pose rests.');
   const {line, microseconds} = answer;
   return facts([
-    ['Time of a query', `${short(microseconds, 3)} µs, the median of groups of 20`],
+    ['Time of a query', `${short(microseconds, 3)} µs, the median of groups of 20 and more`],
     ['Sphere tests', count(line.sphere_tests)],
     ['Leaf pairs', count(line.leaf_pairs)],
     ['Resolution', `${short(line.resolution)} ${unit}`],

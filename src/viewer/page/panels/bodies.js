@@ -1,5 +1,6 @@
 /** The two bodies: the built-in jaws, or files, and what is known of them. */
 
+import {unitChoices} from '../choices.js';
 import {button, numberField, select} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {fileField} from '../ui/file_drop.js';
@@ -9,7 +10,6 @@ import {unitOf} from '../follow.js';
 
 /** @typedef {import('../context.js').State} State */
 /** @typedef {import('../protocol.js').Role} Role */
-/** @typedef {import('../protocol.js').Unit} Unit */
 /** @typedef {import('../protocol.js').TreeFacts} TreeFacts */
 
 const endings = '.stl,.ply,.obj,.off,.glb,.gltf,.ist';
@@ -46,13 +46,8 @@ export function makeBodiesPanel({store, loader, stage, history}) {
             if (await loader.makeJaws(seed)) await settle();
           })),
       select({
-        label: 'Unit of the files you open',
-        value: '',
-        choices: [
-          {value: '', words: 'as the file says, else millimetres'}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'},
-          {value: 'inch', words: 'inches'}, {value: 'µm', words: 'micrometres'},
-        ],
-        onChange: (value) => store.set({fileUnit: value === '' ? null : /** @type {Unit} */ (value)}),
+        label: 'Unit of the files you open', value: '', choices: unitChoices('as the file says, else millimetres'),
+        onChange: (value) => store.set({fileUnit: value === '' ? null : value}),
       }).element,
       ...roles.map((role) => element('section', {class: `body ${role}`},
           element('h3', {}, titles[role]), parts[role],

@@ -1,22 +1,12 @@
 /** The occlusion map: both bodies by their distance from each other, its legend, and its regions. */
 
+import {presets, unitChoices} from '../choices.js';
 import {measurable, unitOf} from '../follow.js';
 import {button, checkbox, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {unitWord} from '../words.js';
 import {makeMapView} from '../view/map_view.js';
 import {areaFacts, legend, regionTable} from './occlusion_words.js';
-
-/** @typedef {import('../protocol.js').Unit} Unit */
-
-const presets = [
-  {value: 'scan', words: 'scan: 0 and 100 µm (scans, Beck 2023)'},
-  {value: 'owens', words: 'owens: 50 and 350 µm (silicone bites, Owens 2002)'},
-  {value: 'biteeye', words: 'biteeye: 9 to 149 µm (silicone bites, BiteEye 2022)'},
-  {value: 'paper', words: 'paper: 200 µm (articulating paper, Rovira-Lastra 2026)'},
-  {value: 'stl', words: 'stl: 100 to 400 µm (scans, Rovira-Lastra 2026)'},
-  {value: 'shim', words: 'shim: 10 µm (shim stock holds)'},
-];
 
 /** @type {import('../context.js').MakePanel} */
 export function makeOcclusionPanel({store, stage}) {
@@ -27,9 +17,8 @@ export function makeOcclusionPanel({store, stage}) {
     words: (value) => `${value} mm`, onInput: () => {}, onChange: (value) => store.set({reach: value}),
   });
   const unit = select({
-    label: 'Unit of the meshes', value: '',
-    choices: [{value: '', words: 'millimetres, assumed'}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'}, {value: 'inch', words: 'inches'}, {value: 'µm', words: 'micrometres'}],
-    onChange: (value) => store.set({unit: value === '' ? null : /** @type {Unit} */ (value)}),
+    label: 'Unit of the meshes', value: '', choices: unitChoices('millimetres, assumed'),
+    onChange: (value) => store.set({unit: value === '' ? null : value}),
   });
   const frame = select({
     label: 'Patient frame', value: store.get().frame,

@@ -1,7 +1,7 @@
 /** Saves: the picture, the pose, the answers, both bodies as GLB, and their trees. */
 
 import {faultText} from '../engine/engine_client.js';
-import {biteQuestion, measurable} from '../follow.js';
+import {biteQuestion, isHere, measurable} from '../follow.js';
 import {matrixText} from '../pose.js';
 import {button} from '../ui/controls.js';
 import {element} from '../ui/element.js';
@@ -10,7 +10,7 @@ import {download} from '../ui/file_drop.js';
 /** @typedef {import('../protocol.js').Role} Role */
 
 /** @type {import('../context.js').MakePanel} */
-export function makeSavePanel({store, stage, engine, say}) {
+export function makeSavePanel({store, stage, engine, measurer, say}) {
   /**
    * @param {string} label
    * @param {string} about
@@ -30,8 +30,11 @@ export function makeSavePanel({store, stage, engine, say}) {
   const savePose = () => download('pose.json', json([{pose: store.get().pose}]));
   const saveMatrix = () => download('pose.txt', new Blob([matrixText(store.get().pose)]));
   const saveAnswer = () => {
-    const {answer, pose} = store.get();
-    if (!answer || answer.pose !== pose) throw new Error('The answer at this pose is not there yet: wait until the pose rests.');
+    const {answer, cancelled} = store.get();
+    if (!answer || !isHere(store.get(), answer)) {
+      throw new Error(isHere(store.get(), cancelled) ? 'The answer at this pose was cancelled: move the body a little, and it is asked again.' :
+        'The answer at this pose is not there yet: wait until the pose rests.');
+    }
     download('answer.jsonl', new Blob([`${JSON.stringify(answer.header)}\n${JSON.stringify(answer.line)}\n`]));
   };
   const saveBite = () => {
@@ -41,7 +44,7 @@ export function makeSavePanel({store, stage, engine, say}) {
   };
   const saveGlb = async () => {
     if (!measurable(store.get())) throw new Error('GLB needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.');
-    const {bytes} = await engine.ask('save_glb', biteQuestion(store.get()), {doing: 'Writing both bodies as GLB'});
+    const {bytes} = await measurer.ask('save_glb', biteQuestion(store.get()), {doing: 'Writing both bodies as GLB'});
     download('bite.glb', blob(bytes));
   };
   /** @param {Role} role */

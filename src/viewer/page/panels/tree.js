@@ -1,5 +1,6 @@
 /** The trees: the nodes of one level by policy, side by side, and one query, front by front. */
 
+import {policies as all} from '../choices.js';
 import {faultText} from '../engine/engine_client.js';
 import {checkbox, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
@@ -12,8 +13,7 @@ import {makeTreeView} from '../view/tree_view.js';
 /** @typedef {import('../protocol.js').Step} Step */
 /** @typedef {import('../view/tree_view.js').Column} Column */
 
-/** @type {Policy[]} */
-const all = ['simple', 'table', 'tight', 'slab'];
+const long = {doing: 'Reading the trees', seldomLong: true};
 
 /** @type {import('../context.js').MakePanel} */
 export function makeTreePanel({store, engine, stage, say}) {
@@ -70,6 +70,7 @@ export function makeTreePanel({store, engine, stage, say}) {
   const failed = (error) => {
     const text = faultText(error);
     if (text) say(text, 'error');
+    else note.textContent = 'That was cancelled, and the nodes of before are drawn: choose a level or a step, and it is asked again.';
   };
 
   async function draw() {
@@ -100,9 +101,9 @@ export function makeTreePanel({store, engine, stage, say}) {
   async function whole(policy) {
     const {pose, trees} = store.get();
     const depth = (/** @type {'fixed' | 'moving'} */ role) => Math.min(level, trees?.[role].depth ?? 0);
-    const fixed = await engine.ask('level', {role: 'fixed', policy, level: depth('fixed')});
-    const moving = await engine.ask('level', {role: 'moving', policy, level: depth('moving')});
-    const touched = await engine.ask('touched', {pose, policy, level});
+    const fixed = await engine.ask('level', {role: 'fixed', policy, level: depth('fixed')}, long);
+    const moving = await engine.ask('level', {role: 'moving', policy, level: depth('moving')}, long);
+    const touched = await engine.ask('touched', {pose, policy, level}, long);
     const many = fixed.radii.length + moving.radii.length > mostDrawn;
     return {
       column: {policy, fixed, moving, touched, only: many ? touched : null},
@@ -113,16 +114,16 @@ export function makeTreePanel({store, engine, stage, say}) {
   /** @param {Policy} policy */
   async function front(policy) {
     const {pose} = store.get();
-    ({steps} = await engine.ask('fronts', {pose, policy}));
+    ({steps} = await engine.ask('fronts', {pose, policy}, long));
     step = Math.max(0, Math.min(step, steps.length - 1));
     stepSlider.range(0, Math.max(0, steps.length - 1));
     stepSlider.set(step);
     const at = steps[step];
     if (!at) return {column: emptyColumn(policy), row: [policy, '0', '0', '0 and 0']};
-    const pairs = await engine.ask('front', {pose, policy, step});
+    const pairs = await engine.ask('front', {pose, policy, step}, long);
     const nodes = {fixed: sorted(pairs.fixed), moving: sorted(pairs.moving)};
-    const fixed = await engine.ask('level', {role: 'fixed', policy, level: pairs.fixed_level});
-    const moving = await engine.ask('level', {role: 'moving', policy, level: pairs.moving_level});
+    const fixed = await engine.ask('level', {role: 'fixed', policy, level: pairs.fixed_level}, long);
+    const moving = await engine.ask('level', {role: 'moving', policy, level: pairs.moving_level}, long);
     return {
       column: {policy, fixed, moving, touched: null, only: nodes},
       row: [policy, count(at.tests), count(at.pairs), `${count(nodes.fixed.length)} and ${count(nodes.moving.length)}`],

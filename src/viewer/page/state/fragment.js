@@ -3,12 +3,14 @@
  * is 16 numbers, column by column.
  */
 
+import {policies as allPolicies, presets as allPresets} from '../choices.js';
 import {isRigid} from '../pose.js';
 
 /** @typedef {import('../context.js').State} State */
 
-const policies = ['simple', 'table', 'tight', 'slab'];
-const presets = ['scan', 'owens', 'biteeye', 'paper', 'stl', 'shim'];
+/** @type {string[]} */
+const policies = allPolicies;
+const presets = allPresets.map(({value}) => value);
 const themes = ['dark', 'light'];
 
 /**

@@ -5,6 +5,8 @@ import {element} from './element.js';
 /** @typedef {'note' | 'warning' | 'error'} Kind */
 
 const most = 4;
+// Where there are too many, the least serious goes first, and of those the oldest.
+const kinds = /** @type {const} */ (['note', 'warning', 'error']);
 const heads = {note: 'Note', warning: 'Warning', error: 'Error'};
 
 /**
@@ -19,7 +21,7 @@ export function makeMessages(place) {
     const message = element('div', {class: `message ${kind}`, role: kind === 'error' ? 'alert' : 'status'},
         element('strong', {}, heads[kind]), element('p', {}, text),
         element('button', {type: 'button', 'aria-label': 'Close this message', onclick: () => message.remove()}, '×'));
+    if (place.children.length >= most) place.querySelector(`.${kinds.find((each) => place.querySelector(`.${each}`))}`)?.remove();
     place.append(message);
-    while (place.children.length > most) place.firstElementChild?.remove();
   };
 }

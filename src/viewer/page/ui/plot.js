@@ -110,9 +110,13 @@ function drawn({points, colour, words, ticks, current}, x, y, lines) {
     const path = shown.map(([at, value], i) => `${i ? 'L' : 'M'}${x(at).toFixed(1)} ${y(value).toFixed(1)}`).join('');
     return [svgElement('path', {class: 'line', d: path, stroke: colour})];
   }
-  return points.map(([at, value], i) =>
-    svgElement('circle', {class: i === current ? 'point current' : 'point', cx: x(at), cy: y(value), r: i === current ? 6 : 4, fill: colour},
-        svgElement('title', {}, words?.[i] ?? `${short(at)}, ${short(value)}`)));
+  return points.flatMap(([at, value], i) => {
+    const [cx, cy] = [x(at), y(value)];
+    // What has no place, as 0 on a logarithmic axis, is not drawn.
+    if (!Number.isFinite(cx) || !Number.isFinite(cy)) return [];
+    return [svgElement('circle', {class: i === current ? 'point current' : 'point', cx, cy, r: i === current ? 6 : 4, fill: colour},
+        svgElement('title', {}, words?.[i] ?? `${short(at)}, ${short(value)}`))];
+  });
 }
 
 /** @param {Series} series */

@@ -2,12 +2,12 @@
 
 import {element, newId} from './element.js';
 
-// What takes less long shows no bar, which would only flicker.
-const patience = 300;
+// What takes less long shows no bar, which would only flicker. What is often asked, and seldom long, waits longer.
+const patience = 300, longPatience = 1000;
 
 /**
  * @typedef {object} Progress
- * @property {(words: string, cancellable: boolean) => void} begin
+ * @property {(words: string, cancellable: boolean, seldomLong?: boolean) => void} begin
  * @property {(stage: string, part: number) => void} advance
  * @property {() => void} end
  */
@@ -28,13 +28,14 @@ export function makeProgress(place, onCancel) {
   /** @type {number | undefined} */
   let waiting;
   return {
-    begin(what, cancellable) {
+    begin(what, cancellable, seldomLong = false) {
       doing = what;
       words.textContent = what;
       bar.removeAttribute('value');
       cancel.hidden = !cancellable;
       clearTimeout(waiting);
-      waiting = setTimeout(() => { shown.hidden = false; }, patience);
+      if (seldomLong) shown.hidden = true;
+      waiting = setTimeout(() => { shown.hidden = false; }, seldomLong ? longPatience : patience);
     },
     advance(stage, part) {
       words.textContent = stage ? `${doing}: ${stage}` : doing;

@@ -40,10 +40,12 @@ const front = [0.35, -1, 0.22];
 const ownColours = {fixed: 0xd9c6a0, moving: 0x86aed6};
 
 /**
+ * Throws where the browser draws nothing after all.
  * @param {HTMLElement} surface
+ * @param {(text: string, kind: 'note' | 'warning') => void} say
  * @returns {Stage}
  */
-export function makeStage(surface) {
+export function makeStage(surface, say) {
   const renderer = new THREE.WebGLRenderer({antialias: true});
   renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
   surface.append(renderer.domElement);
@@ -69,6 +71,14 @@ export function makeStage(surface) {
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.enableDamping = false;
   controls.addEventListener('change', () => render());
+
+  renderer.domElement.addEventListener('webglcontextlost', () => {
+    say('The picture stands still: the browser took its memory for graphics away. All numbers go on. If the picture does not come back, load the page again.', 'warning');
+  });
+  renderer.domElement.addEventListener('webglcontextrestored', () => {
+    say('The picture is back.', 'note');
+    render();
+  });
 
   let waits = false;
   const draw = () => {
