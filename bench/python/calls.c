@@ -1,6 +1,5 @@
-/* The calls of calls.py made in C: prints the median time of each, ns, and poses a second in rows.
- *
- *     calls FIXED.ist MOVING.ist CALLS POSES */
+/* Single calls made in C, which calls.py makes in Python in turns with them: each function makes one
+ * and returns the time that it took, ns. */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,69 +20,46 @@ static double now(void) {
   return 1e9 * (double)time.tv_sec + (double)time.tv_nsec;
 }
 
-static int ascending(const void* a, const void* b) {
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
-}
-
-static ist_query* query;
-static double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.1, 0.2, -1.5, 1};
 static ist_leaf_pair pairs[4096];
 static ist_contact contacts[32];
 
-static void intersects(void) {
+double time_of_nothing(ist_query* query, const double pose[16]) {
+  (void)query, (void)pose;
+  const double begin = now();
+  return now() - begin;
+}
+
+double time_of_intersects(ist_query* query, const double pose[16]) {
   int32_t answer;
+  const double begin = now();
   need(ist_query_intersects(query, pose, NULL, &answer));
+  return now() - begin;
 }
-static void leaf_pairs(void) {
+
+double time_of_leaf_pairs(ist_query* query, const double pose[16]) {
   ist_query_result result = {.struct_size = sizeof result};
+  const double begin = now();
   need(ist_query_leaf_pairs(query, pose, NULL, pairs, 4096, &result));
+  return now() - begin;
 }
-static void contacts_of(void) {
+
+double time_of_contacts(ist_query* query, const double pose[16]) {
   ist_query_result result = {.struct_size = sizeof result};
   ist_contact_sums sums = {.struct_size = sizeof sums};
+  const double begin = now();
   need(ist_query_contacts(query, pose, NULL, contacts, 32, &sums, &result));
+  return now() - begin;
 }
 
-static void time_of(const char* name, void (*call)(void), int calls, double height) {
-  pose[14] = height;
-  double* times = malloc((size_t)calls * sizeof *times);
-  for (int i = -calls / 10; i < calls; ++i) {
-    pose[12] = 0.1 + 1e-9 * i;
-    const double begin = now();
-    call();
-    if (i >= 0) times[i] = now() - begin;
-  }
-  qsort(times, (size_t)calls, sizeof *times, ascending);
-  printf("%s_at_%.1f %.1f\n", name, height, times[calls / 2]);
-  free(times);
-}
-
-int main(int argc, char** argv) {
-  if (argc != 5) return 2;
-  ist_tree *fixed, *moving;
-  need(ist_tree_load(argv[1], &fixed));
-  need(ist_tree_load(argv[2], &moving));
-  need(ist_query_create(fixed, moving, NULL, &query));
-  const int calls = atoi(argv[3]), count = atoi(argv[4]);
-  const double heights[] = {-500, -1.5};
-  for (int i = 0; i < 2; ++i) {
-    time_of("intersects", intersects, calls, heights[i]);
-    time_of("leaf_pairs", leaf_pairs, calls, heights[i]);
-    time_of("contacts", contacts_of, calls, heights[i]);
-  }
-  double* poses = malloc((size_t)count * 16 * sizeof *poses);
-  for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < 16; ++k) poses[16 * i + k] = pose[k];
-    poses[16 * i + 14] = -2.5 * i / count;
-  }
-  ist_row* rows = malloc((size_t)count * sizeof *rows);
+double time_of_rows(ist_query* query, const double* poses, size_t count) {
+  ist_row* rows = malloc(count * sizeof *rows);
   const ist_rows_options options = {.struct_size = sizeof options,
                                     .questions = IST_ASK_INTERSECTS | IST_ASK_DISTANCE,
                                     .threads = 2,
                                     .tolerance = 0.01};
   const double begin = now();
-  need(ist_query_rows(query, poses, (size_t)count, &options, rows));
-  printf("rows %.1f\n", 1e9 * count / (now() - begin));
-  return 0;
+  need(ist_query_rows(query, poses, count, &options, rows));
+  const double took = now() - begin;
+  free(rows);
+  return took;
 }

@@ -16,6 +16,8 @@
 namespace ist::test {
 namespace {
 
+using Names = std::vector<std::string>;
+
 class CSweep : public SweepTest {
  protected:
   CSweep() { sweep_ = open(kSoundSweep); }
@@ -102,6 +104,16 @@ TEST_F(CSweep, MakesThePartsOfTheLibrary) {
   EXPECT_TRUE(std::filesystem::exists(dir_.path() / "out" / "rows.parquet"));
 }
 
+TEST_F(CSweep, MergesNoPartIntoATableOfNoRows) {
+  ist_sweep* none = open(sweep_text("count = 10", "count = 0"));
+  EXPECT_EQ(name(ist_sweep_merge(none, folder_.c_str(), nullptr, &merged_)), "ok")
+      << ist_last_error_message();
+  EXPECT_EQ(merged_.rows + merged_.missing + merged_.given_up, 0U);
+  EXPECT_EQ(names_in(folder_),
+            (std::vector<std::string>{"manifest.json", "rows.npy", "rows.parquet", "sweep.json"}));
+  EXPECT_EQ(name(ist_sweep_free(none)), "ok");
+}
+
 TEST_F(CSweep, SaysHowPartsStand) {
   ASSERT_EQ(name(run(0)), "ok");
   for (int start = 1; start <= 3; ++start) {
@@ -155,7 +167,7 @@ TEST_F(CSweep, EndsMidway) {
     const std::string out = (dir_.path() / ("run" + std::to_string(++runs))).string();
     const ist_status status = ist_sweep_run_part(made, out.c_str(), 0, 1, progress, &part_);
     if (status == IST_CANCELLED) {
-      EXPECT_EQ(names_in(out), std::vector<std::string>{"sweep.json"});
+      EXPECT_TRUE(!std::filesystem::exists(out) || names_in(out) == Names{"sweep.json"});
     }
     return status;
   });
@@ -287,12 +299,18 @@ TEST_F(CSweep, NamesEachFailure) {
   write_ball("moving.ist", 1.5);
   const std::string out = (dir_.path() / "changed").string();
   EXPECT_EQ(name(ist_sweep_run_part(changed, out.c_str(), 0, 1, nullptr, &part_)), "input-invalid");
+  EXPECT_FALSE(std::filesystem::exists(out)) << "it would refuse the sweep of the right tree";
   EXPECT_EQ(name(ist_sweep_free(changed)), "ok");
-  dir_.write("moving.ist", "no tree");
+  // A tree whose content is wrong, and one that is no tree at all.
+  std::string tree = file_content(dir_.path() / "moving.ist");
+  tree.back() = static_cast<char>(tree.back() ^ 1);
+  dir_.write("moving.ist", tree);
   ist_sweep* broken = open(sweep_text("seed = 7", "seed = 10"));
   const std::string again = (dir_.path() / "broken").string();
-  EXPECT_EQ(name(ist_sweep_run_part(broken, again.c_str(), 0, 1, nullptr, &part_)), "not-a-tree");
+  EXPECT_EQ(name(ist_sweep_run_part(broken, again.c_str(), 0, 1, nullptr, &part_)), "tree-corrupt");
   EXPECT_EQ(name(ist_sweep_free(broken)), "ok");
+  dir_.write("moving.ist", "no tree");
+  EXPECT_EQ(opened(kSoundSweep), "not-a-tree");
 }
 
 TEST_F(CSweep, AFullDiskIsAnUnwritableFile) {

@@ -257,6 +257,14 @@ TEST_F(SweepCommand, RefusesAFolderThatItCannotWriteTo) {
   EXPECT_EQ(run_command("/bin/sh", words).exit_code, 0);  // who only looks writes nothing
   ASSERT_EQ(::chmod(path("out").c_str(), 0755), 0);
   EXPECT_TRUE(same(files("out"), before));
+
+  sweep_well(job, "out");
+  const Files whole = files("out");
+  ASSERT_EQ(::chmod(path("out").c_str(), 0555), 0);
+  words.back() = "--merge";
+  refuses(run_command("/bin/sh", words), "out", "Permission denied");
+  ASSERT_EQ(::chmod(path("out").c_str(), 0755), 0);
+  EXPECT_TRUE(same(files("out"), whole));
 }
 
 }  // namespace

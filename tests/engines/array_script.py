@@ -2,7 +2,7 @@
 
 import sys
 
-from support import HERE, SOURCE
+from support import SOURCE
 
 sys.path.insert(0, str(SOURCE / "tests/docs"))
 import pages  # noqa: E402  after its folder is known
@@ -10,11 +10,8 @@ import pages  # noqa: E402  after its folder is known
 
 def write_array_script(folder):
     """Writes the page's script into a folder and returns its file."""
-    page = SOURCE / "docs/sweeps.md"
-    if page.exists():
-        (text,) = [block.text for block in pages.read(page.read_text()).blocks if "#SBATCH" in block.text]
-    else:
-        text = (HERE / "array.sh").read_text()
+    page = pages.read((SOURCE / "docs/sweeps.md").read_text())
+    (text,) = [block.text for block in page.blocks if "#SBATCH" in block.text]
     script = folder / "array.sh"
     script.write_text(text)
     return script

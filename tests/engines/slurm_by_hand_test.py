@@ -22,6 +22,7 @@ class SlurmByHand(unittest.TestCase):
         self.assertTrue(0 < seen[0] < seen[1] < seen[2], f"each task makes a share of its own: {seen}")
         command("sweep", sweep.path, "-o", sweep.folder, "--merge")
         self.assertEqual(sha256(sweep.folder), sha256_by_one_process(sweep))
+        print("bash ran the array script, its variables set by hand: Slurm itself runs it in Sweep.Slurm alone")
 
 
 if __name__ == "__main__":

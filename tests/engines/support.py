@@ -10,8 +10,7 @@ import sys
 import tempfile
 import time
 
-HERE = pathlib.Path(__file__).resolve().parent
-SOURCE = HERE.parents[1]
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
 
 def skip(reason):

@@ -27,7 +27,7 @@ class Help:
         self.values = {}  # each spelling, and the type of its value, empty for a flag
         self.arguments = re.findall(r"^  ([A-Z]+) FILE\b", self.text, re.M)
         for spellings, value in re.findall(r"^  (-\S+)(?: ([A-Z]\S*))?", self.text, re.M):
-            self.values.update({each: "" if value.startswith("Excludes") else value for each in spellings.split(",")})
+            self.values.update({each: "" if value.startswith(("Excludes", "Needs")) else value for each in spellings.split(",")})
 
 
 def choices_of(value):

@@ -245,6 +245,18 @@ class Parts(Sweeps):
         self.assertEqual(np.load(sweep.folder / "rows.npy").tobytes(), np.concatenate(parts).tobytes())
         self.assertTrue({"manifest.json", "rows.parquet"} <= set(os.listdir(sweep.folder)))
 
+    def test_no_pose_is_a_table_of_no_rows(self):
+        sweep = self.job(box_poses(1, 0))
+        self.assertEqual(sweep.merge(), (0, [], []))
+        table = np.load(sweep.folder / "rows.npy")
+        self.assertEqual((table.shape, table.dtype), ((0,), sweep.columns))
+        self.assertTrue((sweep.folder / "manifest.json").exists())
+
+    def test_a_folder_in_which_nobody_has_begun_lacks_all_parts(self):
+        sweep = self.job(box_poses(1, 25))
+        self.assertEqual(sweep.merge(), (0, [0, 1, 2], []))
+        self.assertFalse(sweep.folder.exists())
+
     def test_every_number_of_threads_makes_the_same_bytes(self):
         sweep = self.job(box_poses(3, 600), ANSWERS, "rows_per_part = 600\ntolerance = 0.01")
         made = []
@@ -308,7 +320,7 @@ class Parts(Sweeps):
             self.assertEqual(process.stdout.readline(), b"begun\n")
             process.send_signal(signal.SIGSTOP)
             self.assertEqual(sweep.status().missing, [0])
-            with self.assertRaisesRegex(ist.InputError, "making this part"):
+            with self.assertRaisesRegex(ist.BusyError, "making this part"):
                 sweep.run(0)
             process.kill()
             process.communicate()
@@ -441,7 +453,7 @@ class Misuse(Sweeps):
         sweep = self.job(box_poses(1, 20), bodies=BODIES.replace("lower", "changes"))
         ist.build(box([0, 0, 0], [1, 1, 2]), 0.5).save(self.place / "changes.ist")
         self.refuses(ist.InputError, ["changes.ist", "changed"], sweep.run, 0)
-        self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
+        self.assertFalse(os.path.exists(sweep.folder))
 
     def test_freed(self):
         with self.job(box_poses(1, 20)) as sweep:

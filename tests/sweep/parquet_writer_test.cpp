@@ -178,6 +178,18 @@ TEST(ParquetWriter, AGroupHas131072RowsByItself) {
   expect_same_table(file_content(file.target()), layout, rows, {131072, 1});
 }
 
+// Its size is an int32, and a chunk takes some 60 bytes of it.
+TEST(ParquetWriter, TheFooterOfAnyTableHasRoom) {
+  constexpr std::uint64_t kMostRows = 1'000'000'000'000, kColumns = 40, kChunk = 80;
+  for (const std::uint64_t rows : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{1} << 36,
+                                   (std::uint64_t{1} << 36) + 1, kMostRows}) {
+    const std::uint64_t group = ParquetWriter::rows_a_group_of(rows);
+    EXPECT_EQ(group == ParquetWriter::kRowsAGroup, rows <= std::uint64_t{1} << 36) << rows;
+    EXPECT_LE(group, ParquetWriter::kMostRowsAGroup) << rows;
+    EXPECT_LT((rows + group - 1) / group * kColumns * kChunk, std::uint64_t{1} << 31) << rows;
+  }
+}
+
 TEST(ParquetWriter, KeepsAGroupInMemoryAndNoMore) {
   const RowLayout layout = three_types();
   const Rows rows = drawn_rows(layout, 7000);

@@ -51,6 +51,9 @@ TEST(PoseGrid, EndsAreExact) {
     EXPECT_NEAR(PoseGrid::value_of(axis, i), 0.1 + 0.6 * static_cast<double>(i) / 49, 2e-16);
   }
   EXPECT_EQ(PoseGrid::value_of(move(Eigen::Vector3d::UnitZ(), 3, 5, 1), 0), 3);
+  // From here a step to the end would round.
+  EXPECT_NE(1e9 + (0.1 - 1e9), 0.1);
+  EXPECT_EQ(PoseGrid::value_of(move(Eigen::Vector3d::UnitZ(), 1e9, 0.1, 3), 2), 0.1);
 }
 
 TEST(PoseGrid, TurnsByDegreesAboutTheLine) {

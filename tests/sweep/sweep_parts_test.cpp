@@ -194,12 +194,15 @@ TEST_F(SweepParts, ThatAreMadeMeanwhileAreRefused) {
                          [&](double) {
                            if (refusal.empty()) {
                              const auto error = error_of([&] { job.run_part(parts, 0, 1); });
-                             refusal = error ? error->what() : "none";
+                             refusal =
+                                 error ? to_string(error->code()) + std::string(" ") + error->what()
+                                       : "none";
                              EXPECT_TRUE(parts.look(0).running);
                            }
                            return true;
                          }),
             Outcome::kMade);
+  EXPECT_TRUE(refusal.starts_with("part-busy ")) << refusal;
   EXPECT_NE(refusal.find("shares overlap"), std::string::npos) << refusal;
   EXPECT_EQ(names_in(parts.path()),
             (std::vector<std::string>{"part-000000.json", "part-000000.npy", "sweep.json"}));
@@ -255,14 +258,16 @@ TEST_F(SweepParts, NeedWhatTheQuestionsNeed) {
   write_tree(build_tree(icosphere(1, 1), {.voxel_size = 0.4, .keep_triangles = false}),
              dir_.path() / "moving.ist");
   const Sweep deep = sweep_with("\"contacts\"", "\"penetration\"");
-  const SweepFolder parts = folder(deep);
-  EXPECT_EQ(error_name([&] { deep.run_part(parts, 0, 1); }), "triangles-missing");
+  EXPECT_EQ(error_name([&] { static_cast<void>(deep.open_folder(dir_.path() / "deep")); }),
+            "triangles-missing");
   write_tree(build_tree(icosphere(1, 1), {.voxel_size = 0.4, .spheres = SpherePolicy::kTable}),
              dir_.path() / "moving.ist");
   const Sweep slab = sweep_with("tolerance", "spheres = \"slab\"\ntolerance");
-  const SweepFolder others = folder(slab, "others");
-  EXPECT_EQ(error_name([&] { slab.run_part(others, 0, 1); }), "policy-missing");
-  EXPECT_EQ(names_in(others.path()), std::vector<std::string>{"sweep.json"});
+  EXPECT_EQ(error_name([&] { static_cast<void>(slab.open_folder(dir_.path() / "slab")); }),
+            "policy-missing");
+  // Nothing stays that would refuse the sweep once its trees are right.
+  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "deep"));
+  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "slab"));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -64,8 +63,7 @@ struct Made {
 
 // Makes the parts of a share, one after the other, a line each.
 Made run_share(const Sweep& sweep, const SweepArguments& options, const Share& share) {
-  const SweepFolder folder(options.folder, sweep.identity(), sweep.layout(),
-                           SweepFolder::Access::kWrite);
+  const SweepFolder folder = sweep.open_folder(options.folder);
   StopOnInterruption stop;
   const ScopedCancellation cancellation(stop.asked());
   Made result;
@@ -170,7 +168,7 @@ void add_sweep(CLI::App& app) {
   auto* share = command
                     ->add_option("--share", options->share,
                                  "make the parts i with i mod N = k, k from 0: one process of N")
-                    ->type_name("k/N")
+                    ->type_name("K/N")
                     ->capture_default_str();
   auto* threads = command->add_option("--threads", options->threads, "0: one for each core")
                       ->check(whole_number("a number of threads"))

@@ -35,6 +35,7 @@ enum class ErrorCode {
   kFixedPointRange,    ///< a number does not fit the hardware's fixed-point format
   kMeshTooLarge,       ///< the mesh file unpacks, or places, more than its reader allows
   kCancelled,          ///< the caller ended the call
+  kPartBusy,           ///< another process is making this part of a sweep now
 };
 
 /// The exception of the library, beside std::bad_alloc. `what()` names the place, the cause and the

@@ -76,7 +76,8 @@ enum {
   IST_POSE_INVALID = 120,         /**< the pose is not a rigid motion */
   IST_INPUT_INVALID = 121,        /**< the content of a scene or another file is invalid */
   IST_FIXED_POINT_RANGE = 122,    /**< a number exceeds the hardware's fixed-point format */
-  IST_MESH_TOO_LARGE = 123        /**< the mesh file unpacks, or places, too much */
+  IST_MESH_TOO_LARGE = 123,       /**< the mesh file unpacks, or places, too much */
+  IST_PART_BUSY = 124             /**< another process is making this part of a sweep now */
 };
 
 /** The caller's function that follows a call which may last, on the caller's thread. NULL in place

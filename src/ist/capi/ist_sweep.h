@@ -62,7 +62,7 @@ IST_C_API ist_status ist_sweep_get_column(const ist_sweep* sweep, uint64_t colum
                                           ist_sweep_column* info) IST_NOEXCEPT;
 
 /** Computes `count` poses from number `first` on, 16 numbers each. Errors: IST_ARGUMENT_INVALID
- * beyond the last; IST_INPUT_INVALID where the file of poses changed. Cost: 0.1 us a pose. */
+ * beyond the last; IST_INPUT_INVALID where the file of poses changed. Cost: below 1 us a pose. */
 IST_C_API ist_status ist_sweep_get_poses(const ist_sweep* sweep, uint64_t first, size_t count,
                                          double* poses) IST_NOEXCEPT;
 
@@ -88,34 +88,38 @@ typedef struct ist_sweep_part {
 /** Makes part `part`, from 0, in `folder`, which is made where it is missing. A part that is there,
  * or was given up, stays as it is; `result` says which. `threads`: the most, of the whole process
  * meanwhile; 0: all cores. The same bytes come of every process and number of threads. Errors:
- * IST_ARGUMENT_INVALID beyond the last part; IST_INPUT_INVALID for a folder of another sweep, a
- * tree that changed since, a part that another process is making now; IST_FILE_UNWRITABLE;
- * IST_TRIANGLES_MISSING, IST_POLICY_MISSING, IST_MEMORY_LIMIT, IST_CANCELLED. Nothing half-made
- * stays. Cost: that of ist_query_rows; the first part of a sweep loads the trees. */
+ * IST_ARGUMENT_INVALID beyond the last part; IST_PART_BUSY where somebody else is making the part
+ * now; IST_INPUT_INVALID for a folder of another sweep, for one that the user may not write to, for
+ * a damaged part, and for a tree that changed since; the errors of trees; IST_FILE_UNREADABLE,
+ * IST_FILE_UNWRITABLE, IST_TRIANGLES_MISSING, IST_POLICY_MISSING, IST_MEMORY_LIMIT, IST_CANCELLED.
+ * Nothing half-made stays. Cost: that of ist_query_rows; the first part of a sweep loads the trees.
+ */
 IST_C_API ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                                         int32_t threads, const ist_progress* progress,
                                         ist_sweep_part* result) IST_NOEXCEPT;
 
 /** Looks how a part stands. With `verify` other than 0 its file is read and its checksum compared.
- * Errors: IST_ARGUMENT_INVALID beyond the last part; IST_INPUT_INVALID for a folder of another
- * sweep; IST_FILE_UNREADABLE. */
+ * Errors: IST_ARGUMENT_INVALID beyond the last part; IST_INPUT_INVALID for a folder or a part of
+ * another sweep; IST_FILE_UNREADABLE for a folder in which nobody has begun. */
 IST_C_API ist_status ist_sweep_get_part(const ist_sweep* sweep, const char* folder, uint64_t part,
                                         int32_t verify, ist_sweep_part* result) IST_NOEXCEPT;
 
 /** How a merge ended. */
 typedef struct ist_sweep_merge_result {
   size_t struct_size; /**< the size of this struct, bytes */
-  uint64_t rows;      /**< of the table; 0 where a part lacks */
+  uint64_t rows;      /**< of the table; 0: nothing was merged */
   uint64_t missing;   /**< parts that nobody has made yet */
   uint64_t given_up;  /**< parts that are not tried again */
   uint64_t reserved;  /**< zero */
 } ist_sweep_merge_result;
 
-/** Merges the parts into rows.npy, rows.parquet and manifest.json of the folder. Where a part lacks
- * nothing is written, and the call returns IST_OK with their numbers: ist_sweep_get_part says which
- * parts these are. Errors: IST_INPUT_INVALID for a folder or a part of another sweep, and for a
- * part that is damaged; IST_FILE_UNWRITABLE, IST_CANCELLED. Cost: that of reading and writing; 40
- * MB of memory. */
+/** Merges the parts into rows.npy, rows.parquet and manifest.json of the folder. While a part is
+ * missing, or given up, nothing is written, and the call returns IST_OK with the number of such
+ * parts: ist_sweep_get_part says which they are. Errors: IST_FILE_UNREADABLE for a folder in which
+ * nobody has begun; IST_INPUT_INVALID for a folder or a part of another sweep, for a part that is
+ * damaged, and for a folder that the user may not write to; IST_FILE_UNWRITABLE, IST_CANCELLED.
+ * Cost: that of reading and writing; 40 MB of memory, 200 bytes a part, and for each 131072 rows 60
+ * bytes a column. */
 IST_C_API ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder,
                                      const ist_progress* progress,
                                      ist_sweep_merge_result* result) IST_NOEXCEPT;

@@ -35,7 +35,8 @@ constexpr struct {
              {kInputInvalid, IST_INPUT_INVALID},
              {kFixedPointRange, IST_FIXED_POINT_RANGE},
              {kMeshTooLarge, IST_MESH_TOO_LARGE},
-             {kCancelled, IST_CANCELLED}};
+             {kCancelled, IST_CANCELLED},
+             {kPartBusy, IST_PART_BUSY}};
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < std::size(kRows); ++i)

@@ -1,7 +1,5 @@
 #include "ist/sweep/merge_parts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -21,19 +19,13 @@ namespace {
 
 constexpr std::uint64_t kMergedAtOnce = 1 << 16;
 
-[[noreturn]] void fail_damaged(const SweepFolder& folder, std::uint64_t part) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the part is cut off or damaged: remove it, and make it anew",
-                          folder.part_file(part).string()));
-}
-
 // The tables that the rows of all parts go to.
 class Tables {
  public:
   Tables(const SweepFolder& folder, const RowLayout& layout)
       : npy_(folder.path() / "rows.npy"),
         parquet_file_(folder.path() / "rows.parquet"),
-        parquet_(parquet_file_, layout) {
+        parquet_(parquet_file_, layout, ParquetWriter::rows_a_group_of(folder.identity().rows)) {
     const std::string header = npy_header(layout, folder.identity().rows);
     add_bytes(header.data(), header.size());
   }
@@ -112,6 +104,7 @@ MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
     checksums.push_back(status.checksum);
   }
   if (!result.whole()) return result;
+  folder.require_writable();
   const auto go_on = [&](std::uint64_t rows) {
     if (!proceed || proceed(static_cast<double>(rows) / static_cast<double>(all))) return;
     throw Error(ErrorCode::kCancelled, "the merge was ended by its caller");

@@ -16,13 +16,14 @@ struct MergeResult {
   [[nodiscard]] bool whole() const noexcept { return missing.empty() && given_up.empty(); }
 };
 
-/// Merges the parts of a folder into rows.npy and rows.parquet, with their checksums in
-/// manifest.json: all three or none. Where a part lacks nothing is written.
+/// Merges the parts of a folder into rows.npy and rows.parquet, with the checksums of all parts and
+/// of rows.npy in manifest.json: all three or none. Where a part lacks nothing is written.
 ///
 /// @param proceed asked at each block of 64 KiB rows; false throws kCancelled, and leaves no file
 ///
-/// Throws kInputInvalid for a part of another sweep, and for one that is damaged; UnwritableFile.
-/// Memory: 40 MB at most.
+/// Throws kInputInvalid for a part of another sweep, for one that is damaged, and for a folder that
+/// the user may not write to; UnwritableFile.
+/// Memory: 40 MB, 200 bytes a part, and for each 131072 rows 60 bytes a column.
 MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
                         const Proceed& proceed = {});
 

@@ -1,6 +1,5 @@
 #include "ist/sweep/parquet_writer.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>

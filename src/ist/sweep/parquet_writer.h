@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,6 +32,15 @@ class ParquetWriter {
   /// The most rows of a row group: a page's size in bytes is an int32.
   static constexpr std::size_t kMostRowsAGroup = 0x7FFFFFFF / 8;
   static_assert(kRowsAGroup <= kMostRowsAGroup);
+  /// The most row groups of rows_a_group_of(): their descriptions fit into a footer, whose size is
+  /// an int32 too.
+  static constexpr std::uint64_t kMostGroups = 1 << 19;
+
+  /// Returns the rows of each row group of a table of `rows` rows: kRowsAGroup, and more where the
+  /// groups would be more than kMostGroups.
+  [[nodiscard]] static constexpr std::size_t rows_a_group_of(std::uint64_t rows) noexcept {
+    return std::max<std::uint64_t>(kRowsAGroup, (rows + kMostGroups - 1) / kMostGroups);
+  }
 
   /// Writes the file's first bytes.
   ///

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "ist/sweep/bit_text.h"
 #include "ist/sweep/philox.h"
-#include "ist/sweep/pose_text.h"
 #include "ist/sweep/turn.h"
 
 namespace ist {
@@ -66,9 +66,9 @@ void PoseBox::read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) cons
 
 std::string PoseBox::identity() const {
   return fmt::format("box seed {} count {} from {} to {} turns {} within {} about {}",
-                     settings_.seed, settings_.count, text_of(settings_.from),
-                     text_of(settings_.to), static_cast<int>(settings_.turns),
-                     text_of(settings_.within), text_of(settings_.about));
+                     settings_.seed, settings_.count, bits_of(settings_.from),
+                     bits_of(settings_.to), static_cast<int>(settings_.turns),
+                     bits_of(settings_.within), bits_of(settings_.about));
 }
 
 }  // namespace ist

@@ -6,7 +6,7 @@
 
 #include "ist/base/angles.h"
 #include "ist/base/ordered_vector.h"
-#include "ist/sweep/pose_text.h"
+#include "ist/sweep/bit_text.h"
 #include "ist/sweep/turn.h"
 
 namespace ist {
@@ -69,9 +69,9 @@ void PoseGrid::read(std::uint64_t first, std::span<Eigen::Isometry3d> poses) con
 std::string PoseGrid::identity() const {
   std::string text = "grid";
   for (const Axis& axis : axes_) {
-    text +=
-        fmt::format(" {} {} about {} from {:a} to {:a} count {}", axis.turns ? "turn" : "move",
-                    text_of(axis.direction), text_of(axis.about), axis.from, axis.to, axis.count);
+    text += fmt::format(" {} {} about {} from {} to {} count {}", axis.turns ? "turn" : "move",
+                        bits_of(axis.direction), bits_of(axis.about), bits_of(axis.from),
+                        bits_of(axis.to), axis.count);
   }
   return text;
 }

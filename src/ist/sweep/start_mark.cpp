@@ -32,7 +32,7 @@ void lock(int descriptor) {
 }  // namespace
 
 void fail_overlap(const SweepFolder& folder, std::uint64_t part) {
-  throw Error(ErrorCode::kInputInvalid,
+  throw Error(ErrorCode::kPartBusy,
               fmt::format("{}: another process is making this part now: shares overlap; give each "
                           "process a share of its own (--share k/N), or wait for the other one",
                           folder.part_file(part).string()));

@@ -14,7 +14,7 @@ struct PartStarts {
 };
 [[nodiscard]] PartStarts starts_of(const SweepFolder& folder, std::uint64_t part);
 
-/// Throws kInputInvalid: another process is making the part.
+/// Throws kPartBusy: another process is making the part.
 [[noreturn]] void fail_overlap(const SweepFolder& folder, std::uint64_t part);
 
 /// A mark beside a part that is being made: part-000017.start-1. It outlives a process that is
@@ -22,7 +22,7 @@ struct PartStarts {
 /// (flock), by which others see that the part is being made.
 class StartMark {
  public:
-  /// Makes the mark. Throws kInputInvalid where another process, or thread, is making the part;
+  /// Makes the mark. Throws kPartBusy where another process, or thread, is making the part;
   /// UnwritableFile. Precondition: fewer than kMostStarts starts were lost.
   StartMark(const SweepFolder& folder, std::uint64_t part);
   /// Removes the mark: this start ended in order.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/parallel.h"
+#include "ist/measure/require.h"
+#include "ist/sweep/bit_text.h"
 #include "ist/sweep/file_hash.h"
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/start_mark.h"
@@ -21,17 +25,23 @@
 namespace ist {
 namespace {
 
-// Poses that are computed, and rows that are written, at a time.
-constexpr std::uint64_t kRowsAtOnce = 4096;
+// Poses that are computed, and rows that are written, at a time: a block. Threads make their
+// queries anew for each block, some milliseconds each, so a block grows with them.
+constexpr std::uint64_t kRowsAThread = 4096;
+
+std::uint64_t rows_at_once(std::size_t threads) {
+  return kRowsAThread * (threads > 0 ? std::min(threads, thread_count()) : thread_count());
+}
 
 std::string questions_text(const SweepFile& file) {
   const RowQuestions& asked = file.questions;
   return fmt::format(
-      "intersects {:d} leaf_pairs {:d} distance {:d} contacts {:d} penetration {:d} tolerance {:a} "
-      "tests {} spheres {} push {:a} stiffness {:a} rows_per_part {}",
+      "intersects {:d} leaf_pairs {:d} distance {:d} contacts {:d} penetration {:d} tolerance {} "
+      "tests {} spheres {} push {} stiffness {} rows_per_part {}",
       asked.intersects, asked.leaf_pairs, asked.distance, asked.contacts, asked.penetration,
-      asked.tolerance, asked.budget.tests, file.spheres ? to_string(*file.spheres) : "default",
-      file.push_distance, file.stiffness, file.rows_per_part);
+      bits_of(asked.tolerance), asked.budget.tests,
+      file.spheres ? to_string(*file.spheres) : "default", bits_of(file.push_distance),
+      bits_of(file.stiffness), file.rows_per_part);
 }
 
 SweepIdentity identity_of(const SweepFile& file) {
@@ -73,10 +83,22 @@ void Sweep::poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const
 std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
   const std::lock_guard lock(loading_);
   if (!bodies_) {
-    bodies_ = std::make_shared<const Bodies>(
+    auto loaded = std::make_shared<const Bodies>(
         Bodies{read_same_tree(file_.fixed), read_same_tree(file_.moving)});
+    if (file_.questions.penetration) {
+      require_triangles(loaded->fixed, "the fixed body");
+      require_triangles(loaded->moving, "the moving body");
+    }
+    const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
+    bodies_ = std::move(loaded);
   }
   return bodies_;
+}
+
+SweepFolder Sweep::open_folder(const std::filesystem::path& folder) const {
+  std::error_code unknown;
+  if (!std::filesystem::exists(folder / "sweep.json", unknown)) static_cast<void>(bodies());
+  return {folder, identity_, layout_, SweepFolder::Access::kWrite};
 }
 
 bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t threads,
@@ -87,11 +109,12 @@ bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t thr
   ManifoldOptions manifold_options;
   manifold_options.least_depth = -file_.push_distance;
   Query query(bodies.fixed, bodies.moving, query_options);
-  const std::uint64_t first = part * identity_.rows_per_part, rows = identity_.rows_of(part);
+  const std::uint64_t first = part * identity_.rows_per_part, rows = identity_.rows_of(part),
+                      most = rows_at_once(threads);
   std::vector<Eigen::Isometry3d> poses;
   std::vector<std::byte> block;
   for (std::uint64_t done = 0; done < rows; done += poses.size()) {
-    poses.resize(std::min(kRowsAtOnce, rows - done));
+    poses.resize(std::min(most, rows - done));
     block.resize(poses.size() * layout_.bytes);
     this->poses(first + done, poses);
     const auto give = [&](std::size_t index, const PoseRow& row) {
@@ -121,11 +144,7 @@ Sweep::Outcome Sweep::run_part(const SweepFolder& folder, std::uint64_t part, st
     return Outcome::kWasThere;
   }
   if (status.state == PartState::kGivenUp) return Outcome::kGivenUp;
-  if (status.state == PartState::kDamaged) {
-    throw Error(ErrorCode::kInputInvalid,
-                fmt::format("{}: the part is cut off or damaged: remove it to make it anew",
-                            folder.part_file(part).string()));
-  }
+  if (status.state == PartState::kDamaged) fail_damaged(folder, part);
   if (starts_of(folder, part).live) fail_overlap(folder, part);
   const StartMark mark(folder, part);
   const auto begin = std::chrono::steady_clock::now();

@@ -36,6 +36,10 @@ class Sweep {
   /// Computes the poses from number `first` on. Precondition: first + poses.size() <= rows().
   void poses(std::uint64_t first, std::span<Eigen::Isometry3d> poses) const;
 
+  /// Opens the folder of the parts; where nobody has begun, loads the trees and makes it. So a
+  /// sweep whose trees cannot answer leaves no folder. Throws what SweepFolder and run_part() do.
+  [[nodiscard]] SweepFolder open_folder(const std::filesystem::path& folder) const;
+
   /// How run_part() ended.
   enum class Outcome { kMade, kWasThere, kGivenUp, kStopped };
 
@@ -45,10 +49,11 @@ class Sweep {
   /// @param proceed asked every 20 ms with the share of the part that is done; false ends the call
   ///                (kStopped), and leaves no file
   ///
-  /// Throws kInputInvalid for a part that is there and of another sweep or damaged, for one that
-  /// another process is making now (shares overlap), and for a tree or a file of poses that changed
-  /// since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has cancellation points.
-  /// Memory: that of the trees, of a query for each thread, and 2 MB.
+  /// Throws kPartBusy where another process is making the part now (shares overlap); kInputInvalid
+  /// for a part that is there and of another sweep or damaged, and for a tree or a file of poses
+  /// that changed since; kPolicyMissing; UnwritableFile; what answer_rows() throws. Has
+  /// cancellation points.
+  /// Memory: that of the trees, and for each thread that of a query and 2 MB.
   Outcome run_part(const SweepFolder& folder, std::uint64_t part, std::size_t threads,
                    const Proceed& proceed = {}) const;
 

@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -18,15 +17,8 @@
 namespace ist {
 namespace {
 
-// Makes the folder where it is missing. A folder that its user may not write to is bad input; a
-// full disk is not.
-void make_writable(const std::filesystem::path& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  int cause = failed.value();
-  if (cause == 0 && ::access(folder.c_str(), W_OK | X_OK) != 0) cause = errno;
-  if (cause == 0 && !std::filesystem::is_directory(folder, failed)) cause = ENOTDIR;
-  if (cause == 0) return;
+// A folder that its user may not write to is bad input; a full disk is not.
+[[noreturn]] void fail_unwritable(const std::filesystem::path& folder, int cause) {
   const std::string text =
       fmt::format("{}: cannot write to the folder: {}: name a folder that you may write to",
                   folder.string(), std::strerror(cause));
@@ -43,7 +35,11 @@ SweepFolder::SweepFolder(std::filesystem::path folder, SweepIdentity identity,
     : folder_(std::move(folder)), identity_(std::move(identity)), layout_(layout) {
   const std::filesystem::path record = folder_ / "sweep.json";
   std::error_code unknown;
-  if (access == Access::kWrite) make_writable(folder_);
+  if (access == Access::kWrite) {
+    std::filesystem::create_directories(folder_, unknown);
+    if (unknown) fail_unwritable(folder_, unknown.value());
+    require_writable();
+  }
   if (access == Access::kWrite && !std::filesystem::exists(record, unknown)) {
     const std::string text = json_of(identity_, layout);
     // Who begins at the same time writes the same bytes.
@@ -52,6 +48,10 @@ SweepFolder::SweepFolder(std::filesystem::path folder, SweepIdentity identity,
     file.commit();
   }
   require_same_sweep(record, identity_);
+}
+
+void SweepFolder::require_writable() const {
+  if (::access(folder_.c_str(), W_OK | X_OK) != 0) fail_unwritable(folder_, errno);
 }
 
 std::filesystem::path SweepFolder::part_file(std::uint64_t part) const {
@@ -73,7 +73,6 @@ std::uint64_t SweepFolder::bytes_of_part(std::uint64_t part) const {
 
 PartStatus SweepFolder::look(std::uint64_t part) const {
   PartStatus status;
-  status.seconds = std::numeric_limits<double>::quiet_NaN();
   std::error_code missing;
   const std::uint64_t bytes = std::filesystem::file_size(part_file(part), missing);
   if (missing) {
@@ -108,6 +107,12 @@ PartStatus SweepFolder::verify(std::uint64_t part) const {
     status.state = PartState::kDamaged;
   }
   return status;
+}
+
+void fail_damaged(const SweepFolder& folder, std::uint64_t part) {
+  throw Error(ErrorCode::kInputInvalid,
+              fmt::format("{}: the part is cut off or damaged: remove it to make it anew",
+                          folder.part_file(part).string()));
 }
 
 }  // namespace ist

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "ist/base/files.h"
 #include "ist/sweep/columns.h"
 
 namespace ist {
@@ -31,7 +31,7 @@ struct PartStatus {
   PartState state = PartState::kMissing;
   int starts = 0;        ///< begun and not ended, by processes that died or still run
   bool running = false;  ///< somebody is making it now
-  double seconds;        ///< that making it took; NaN where unknown
+  double seconds = std::numeric_limits<double>::quiet_NaN();  ///< that making it took; NaN: unknown
   std::string checksum;  ///< XXH3-128 of its file; empty where it is not there
 };
 
@@ -62,6 +62,9 @@ class SweepFolder {
   [[nodiscard]] std::filesystem::path record_file(std::uint64_t part) const;
   [[nodiscard]] std::filesystem::path mark_file(std::uint64_t part, int start) const;
 
+  /// Throws kInputInvalid where the user may not write to the folder.
+  void require_writable() const;
+
   /// The length of a part's file, bytes.
   [[nodiscard]] std::uint64_t bytes_of_part(std::uint64_t part) const;
 
@@ -76,5 +79,8 @@ class SweepFolder {
   SweepIdentity identity_;
   RowLayout layout_;
 };
+
+/// Throws kInputInvalid: the file of a part is not the one that was written.
+[[noreturn]] void fail_damaged(const SweepFolder& folder, std::uint64_t part);
 
 }  // namespace ist

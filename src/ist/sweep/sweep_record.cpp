@@ -37,10 +37,12 @@ Json object_of(const SweepIdentity& identity, const RowLayout& layout) {
 std::string text_of(const Json& json) { return json.dump(1) + "\n"; }
 
 [[noreturn]] void fail_record(const std::filesystem::path& file) {
-  throw Error(ErrorCode::kInputInvalid,
-              fmt::format("{}: the file is damaged, or no record of a sweep: remove it, and the "
-                          "part beside it, to make the part anew",
-                          file.string()));
+  throw Error(
+      ErrorCode::kInputInvalid,
+      fmt::format("{}: the file is damaged, or no record of a sweep: remove it{}", file.string(),
+                  file.filename() == "sweep.json"
+                      ? "; the next run writes it anew"
+                      : ", and the part beside it, to make the part anew"));
 }
 
 Json read_object(const std::filesystem::path& file) {

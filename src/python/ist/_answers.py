@@ -182,9 +182,9 @@ class SweepPart(NamedTuple):
 
 
 class SweepTable(NamedTuple):
-    """How Sweep.merge() ended: with a table of all rows, or with the parts that lack."""
+    """How Sweep.merge() ended: with a table of all rows, or with the parts that are not there."""
 
-    rows: int  # of the table; 0 where a part lacks, and nothing was written
+    rows: int  # of the table; 0: nothing was written
     missing: List[int]  # parts that nobody has made yet
     given_up: List[int]  # parts that were begun and lost three times
 

@@ -23,7 +23,7 @@ class MemoryLimitError(Error, MemoryError):
 
 
 class BusyError(Error, RuntimeError):
-    """Another thread is using the query, the servo or the world."""
+    """Another thread is using the query, the servo or the world, or another process is making the part of the sweep."""
 
 
 class ChangeRefused(Error, RuntimeError):
@@ -50,6 +50,7 @@ KINDS = {
     FILE_UNREADABLE: FileError,
     FILE_UNWRITABLE: FileError,
     MEMORY_LIMIT: MemoryLimitError,
+    124: BusyError,
 }
 
 

@@ -93,7 +93,7 @@ class Sweep(Handle):
     columns = property(lambda self: self._columns, doc="The dtype of a row, packed; numpy.load gives it for each file of rows.")
 
     def poses(self, first, count):
-        """Computes `count` poses from number `first` on: (count, 4, 4), p_fixed = pose @ p_moving. Cost: 0.1 us a pose."""
+        """Computes `count` poses from number `first` on: (count, 4, 4), p_fixed = pose @ p_moving. Cost: below 1 us a pose."""
         first = count_of(first, "first", self.rows)
         found = np.empty((count_of(count, "count", self.rows - first), 4, 4))
         check(LIBRARY.ist_sweep_get_poses(self._need(), first, len(found), address(found)))
@@ -103,8 +103,8 @@ class Sweep(Handle):
         """Makes a part, from 0, unless it is there or was given up.
 
         threads: the most of the whole process meanwhile; 0: one for each core. progress: called with the share of the part that
-        is done; what it raises ends the call, and nothing half-made is left. Raises InputError for the folder of another sweep,
-        for a part that somebody is making now or that is damaged, and for a tree that changed since.
+        is done; what it raises ends the call, and nothing half-made is left. Raises BusyError for a part
+        that somebody is making now, and InputError for the folder of another sweep, a damaged part, and a tree that changed since.
         """
         number, most = count_of(part, "part"), count_of(threads, "threads", 1024)
         place, result = self._place(folder), PartInfo()
@@ -119,16 +119,21 @@ class Sweep(Handle):
     def merge(self, folder=None, *, progress=None):
         """Merges the parts into the table of all rows: rows.npy, rows.parquet and manifest.json of the folder.
 
-        Where a part lacks nothing is written, and the answer names the parts. progress: called with the share that is done;
-        what it raises ends the call. Raises InputError for a part that is damaged. Cost: that of reading and writing.
+        While a part is missing, or given up, nothing is written, and the answer names such parts. progress: called with the
+        share that is done; what it raises ends the call. Raises InputError for a part that is damaged. Cost: that of reading
+        and writing.
         """
         place, result = self._place(folder), MergeResult()
-        with Follower(progress) as follower:
-            follower.finish(LIBRARY.ist_sweep_merge(self._need(), place, follower.address, addressof(result)))
-        if result.missing == 0 and result.given_up == 0:
-            return SweepTable(result.rows, [], [])
-        found = self._by_state(place, False, None)
-        return SweepTable(0, [part for part, _ in found[MISSING]], [part for part, _ in found[GIVEN_UP]])
+        while True:
+            with Follower(progress) as follower:
+                if self.parts and not begun(place):
+                    return SweepTable(0, self.status(folder).missing, [])
+                follower.finish(LIBRARY.ist_sweep_merge(self._need(), place, follower.address, addressof(result)))
+            if result.missing == 0 and result.given_up == 0:
+                return SweepTable(result.rows, [], [])
+            found = self._by_state(place, False, None)
+            if found[MISSING] or found[GIVEN_UP]:  # else somebody has made the last ones meanwhile
+                return SweepTable(0, *([part for part, _ in found[state]] for state in (MISSING, GIVEN_UP)))
 
     def status(self, folder=None, *, verify=False, progress=None):
         """Looks which parts are done, missing, given up and damaged.

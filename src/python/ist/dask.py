@@ -5,7 +5,7 @@ import time
 
 from distributed import as_completed
 
-from ._errors import InputError, refuse
+from ._errors import BusyError, refuse
 from ._sweep import Sweep
 
 _opening = threading.Lock()
@@ -28,11 +28,8 @@ def _make(path, folder, digits, part, threads):
     while True:
         try:
             return _sweep_of(path, folder, digits).run(part, threads=threads).outcome
-        except InputError as error:
-            # A worker that the scheduler took for lost, or a task of a run that was ended, may be making it still.
-            if "is making this part now" not in str(error):
-                raise
-        time.sleep(0.5)
+        except BusyError:  # a worker that the scheduler took for lost, or a task of a run that was ended, is making it still
+            time.sleep(0.5)
 
 
 def run(sweep, client, threads=1, retries=3, progress=None):

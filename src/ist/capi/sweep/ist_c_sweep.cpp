@@ -155,7 +155,7 @@ ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64
     if (part >= known.parts()) return fail_part(call, part, known.parts());
     std::optional<ist_sweep_part> made;
     followed(follower, [&](const ist::Proceed& proceed) {
-      const ist::SweepFolder parts = folder_of(known, folder, ist::SweepFolder::Access::kWrite);
+      const ist::SweepFolder parts = known.open_folder(folder);
       const auto outcome = known.run_part(parts, part, static_cast<std::size_t>(threads), proceed);
       if (outcome == ist::Sweep::Outcome::kStopped) return;
       made = part_of(parts, part, parts.look(part));
@@ -190,11 +190,13 @@ ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder, const ist
     if (const ist_status wrong = read_follower(call, progress, follower)) return wrong;
     const Held<SweepObject> held(call, "sweep", sweep);
     if (held.status() != IST_OK) return held.status();
+    // No part has made the folder of a sweep without poses.
+    const auto access = held->sweep.parts() == 0 ? ist::SweepFolder::Access::kWrite
+                                                 : ist::SweepFolder::Access::kRead;
     std::optional<ist_sweep_merge_result> made;
     followed(follower, [&](const ist::Proceed& proceed) {
       const ist::MergeResult merged =
-          ist::merge_parts(folder_of(held->sweep, folder, ist::SweepFolder::Access::kRead),
-                           held->sweep.layout(), proceed);
+          ist::merge_parts(folder_of(held->sweep, folder, access), held->sweep.layout(), proceed);
       made =
           ist_sweep_merge_result{0, merged.rows, merged.missing.size(), merged.given_up.size(), 0};
     });
