@@ -135,7 +135,9 @@ class Contacts(NamedTuple):
     leaf_pairs: int
     area: float
     sphere_tests: int
-    sums: Records
+    memory_of_sums: bytearray
+    @property
+    def sums(self) -> Records: ...
     def wrench(self, stiffness: float) -> Tuple[F8, F8, F8]: ...
 
 class Distance(NamedTuple):

@@ -4,6 +4,8 @@ from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
+from ._records import CONTACT_SUMS
+
 made = tuple.__new__  # made(LeafPairs, members): an answer, in half the time of LeafPairs(*members)
 
 
@@ -29,7 +31,12 @@ class Contacts(NamedTuple):
     leaf_pairs: int
     area: float  # sum of the weights of all leaf pairs, mesh units²
     sphere_tests: int
-    sums: np.ndarray  # CONTACT_SUMS, one element
+    memory_of_sums: bytearray  # of `sums`, which is made of it when somebody asks
+
+    @property
+    def sums(self):
+        """The sums over all leaf pairs: CONTACT_SUMS, one element."""
+        return np.frombuffer(self.memory_of_sums, CONTACT_SUMS)
 
     def wrench(self, stiffness):
         """The springs' force on the moving body, their torque, and the point that the torque is about, fixed mesh

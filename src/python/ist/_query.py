@@ -14,7 +14,6 @@ from ._handle import Lone, Out
 from ._library import LIBRARY, bare
 from ._records import (
     CONTACT,
-    CONTACT_SUMS,
     LEAF_PAIR,
     TRIANGLE_PAIR,
     ContactSums,
@@ -223,8 +222,8 @@ class Query(Lone):
             if status:
                 raise error_of(status)
             leaf_pairs, count, written, tested, complete = read_contacts(self._found)
-            sums = np.frombuffer(bytearray(self._sums), CONTACT_SUMS)
-            return made(Contacts, (out[:written], count, complete, leaf_pairs, self._sums.weight, tested, sums))
+            sums = self._sums
+            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, bytearray(sums)))
         finally:
             self._lock.release()
 

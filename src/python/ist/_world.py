@@ -13,7 +13,6 @@ from ._library import LIBRARY
 from ._query import options_of
 from ._records import (
     CONTACT,
-    CONTACT_SUMS,
     LEAF_PAIR,
     TRIANGLE_PAIR,
     WORLD_PAIR,
@@ -217,7 +216,7 @@ class World(Lone):
             int(row["found"]),
             sums.weight,
             int(row["sphere_tests"]),
-            np.frombuffer(bytearray(sums), CONTACT_SUMS),
+            bytearray(sums),
         )
 
     def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):
