@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 from report.figures import here, machine_state, stamp  # noqa: E402  after its folder is known
 from report.runner import fixed_loop  # noqa: E402
 
-CALLS, POSES, ROUNDS = 4000, 20_000, 7
+CALLS, POSES, ROUNDS = 1000, 20_000, 31
 # What was promised: a call takes so much more, µs, and rows reach so much of C's poses a second.
 MOST_MORE, LEAST_SHARE = 3, 0.95
 # The lower jaw far below, where a call is nearly nothing, and about to touch.
