@@ -2,7 +2,7 @@
 
 import sys
 
-from report.figures import PAGES, ROOT, changed_since, has_history, is_commit, rooms, sources_of, stamps_in, tables_in
+from report.figures import PAGES, ROOT, SHOWN, changed_since, has_history, is_commit, rooms, shown_commit, sources_of, stamps_in, tables_in
 
 
 def unstamped(page):
@@ -32,13 +32,19 @@ def stale(page):
             yield f"{page}:{number}: {known[commit, maker]}"
 
 
+def stale_in_page():
+    """Yields a line of text where that is so of the figure that the page shows."""
+    if said := verdict(shown_commit(), SHOWN[1]):
+        yield f"{SHOWN[0]}: {said}"
+
+
 def main(pages):
     for page in pages:
         if not (ROOT / page).is_file():
             sys.exit(f"check_figures: {page} is not there: the pages of results are {', '.join(PAGES)}")
     if not has_history():
         sys.exit("check_figures: no whole history of commits is here: clone the repository, not a part of it")
-    found = [line for page in pages for line in [*unstamped(page), *stale(page)]]
+    found = [line for page in pages for line in [*unstamped(page), *stale(page)]] + (list(stale_in_page()) if pages is PAGES else [])
     print("\n".join(found) if found else f"every figure on {len(pages)} page{'s' if len(pages) > 1 else ''} is of the code as it is")
     return 1 if found else 0
 

@@ -8,6 +8,7 @@ scripts/check_figures.sh reads the stamps again, and names those whose sources h
 """
 
 import datetime
+import json
 import pathlib
 import re
 import subprocess
@@ -32,6 +33,7 @@ RESTS = {
     "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/ist", "tests/fuzz", "tests/query", "tests/stability"],
     "target_instructions.py": [*QUERY, "tests/instructions"],
+    "viewer_ratio.mjs": [*QUERY, "src/cli/engine.cpp", "src/viewer/engine/pair.cpp"],
 }
 STAMP = re.compile(r"Measured at commit `([0-9a-f]+\+?)` on (\d{4}-\d\d-\d\d) by `([\w. ]+)`")
 # Figures that cannot be stale: a test repeats them in every run.
@@ -39,6 +41,14 @@ REPEATED = re.compile(r"Repeated by the test `[\w.]+`")
 # Pages of results: each of their tables needs a stamp, or the test that repeats it.
 PAGES = ["README.md", "docs/performance.md", "perf/HAPTIC_STABILITY.md", "perf/HARDWARE.md", "perf/MUTANTS.md",
          "perf/REPORT.md", "perf/STABILITY.md"]
+
+
+# The figure that the page itself shows, as JSON: its commit, and who makes it.
+SHOWN = ("src/viewer/page/native_ratio.json", "viewer_ratio.mjs")
+
+
+def shown_commit():
+    return json.loads((ROOT / SHOWN[0]).read_text())["commit"]
 
 
 def git(*arguments):

@@ -24,6 +24,7 @@ class Pages(unittest.TestCase):
 
     def test_every_stamp_names_a_commit_of_this_history(self):
         stamps = [(page, number, commit) for page in figures.PAGES for number, commit, _ in figures.stamps_in(page)]
+        stamps.append((figures.SHOWN[0], 1, figures.shown_commit()))
         self.assertGreater(len(stamps), 0)
         if not figures.has_history():
             missing = "no whole history of commits is here, in which the commits of stamps could be looked up: clone the project without --depth"
@@ -31,6 +32,17 @@ class Pages(unittest.TestCase):
                 self.fail(f"IST_REQUIRE_ALL is set, and {missing}")
             self.skipTest(missing)
         self.assertEqual([f"{page}:{number}: {commit}" for page, number, commit in stamps if not figures.is_commit(commit)], [])
+
+    def test_what_the_page_shows_has_sources_whose_changes_are_seen(self):
+        file, maker = figures.SHOWN
+        self.assertTrue((figures.ROOT / "scripts" / maker).exists())
+        for source in figures.sources_of(maker):
+            self.assertTrue((figures.ROOT / source).exists(), f"{file} rests on {source}")
+        if figures.has_history():
+            first = figures.git("rev-list", "--max-parents=0", "HEAD").split()[0]
+            self.addCleanup(setattr, check_figures, "shown_commit", check_figures.shown_commit)
+            check_figures.shown_commit = lambda: first
+            self.assertEqual([line.split(":")[0] for line in check_figures.stale_in_page()], [file])
 
     def test_the_figures_of_ist_bench_have_a_stamp(self):
         begin, end = "<!-- ist bench -->", "<!-- end of ist bench -->"
