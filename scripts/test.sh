@@ -30,11 +30,13 @@ setup=(--oracles --python --sweep --docs --cross --viewer)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
+part() { echo "== $1 (after $SECONDS s)"; }
+
 run() {  # preset and its options, targets to build, then arguments for ctest
   local options=($1) targets=$2
   local preset=${options[0]}
   shift 2
-  echo "== preset ${options[*]}"
+  part "preset ${options[*]}"
   cmake --preset "${options[@]}" >/dev/null
   # shellcheck disable=SC2086  # targets are words
   if ! cmake --build --preset "$preset" --target $targets -- -j"$jobs" >"build/$preset.log"; then
@@ -54,14 +56,14 @@ run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
 run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
 # The rooms that the golden answers come from; the long run compiles all rooms.
 for preset in clang14 arm64 wasm; do run "$preset -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; done
-echo "== the page"
+part "the page"
 scripts/viewer.sh
-echo "== readers of tables"
+part "readers of tables"
 scripts/sweep_readers.sh
 run test all -LE '^long$'
 $long || exit 0
 
-echo "== packages, the circuit by more tools, and platforms that are refused"
+part "packages, the circuit by more tools, and platforms that are refused"
 ctest --preset test -L '^long$'
 # Benchmarks are compiled by nothing else.
 scripts/setup.sh --peers
@@ -73,20 +75,20 @@ run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
 run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare)$|^(Package|Docs|Viewer)\.'
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 more() {  # preset, times the samples, program, filter
-  echo "== $3 $4, preset $1, $2 times the samples"
+  part "$3 $4, preset $1, $2 times the samples"
   local said
   said=$(IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=1 --gtest_filter="$4") || { echo "$said"; return 1; }
   echo "$said"
   ! grep -q "Running 0 tests" <<<"$said" || { echo "test: no test of $3 is named like $4" >&2; return 1; }
 }
-echo "== Package.Subdirectory and Python.Sdist, all compiled"
+part "Package.Subdirectory and Python.Sdist, all compiled"
 IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
 for jaws in built-in human; do
-  echo "== distances of the $jaws jaws against CloudCompare's"
+  part "distances of the $jaws jaws against CloudCompare's"
   /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist \
     "build/test/cloudcompare-$jaws" || [ $? -eq 77 ]
 done
-echo "== the add-on in Blender"
+part "the add-on in Blender"
 /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so || [ $? -eq 77 ]
 more thread 100 search_test 'SharedTreeThread.*'
 more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'  # a million ticks
