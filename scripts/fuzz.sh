@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the fuzzers and runs each for a while on its corpus, under AddressSanitizer and
-# UndefinedBehaviorSanitizer. Prints what each came to; any finding fails, and its input is kept.
+# Builds the fuzzers and runs each for a while on its corpus, one on each core, under AddressSanitizer and
+# UndefinedBehaviorSanitizer. Prints the executions of each; any finding fails, and its input is kept.
 #
 #   scripts/fuzz.sh [TARGET…] [--seconds N]    N seconds each, by default 60
 #
@@ -38,31 +38,44 @@ fi
 last() { sed -nE "s/^$1 *(.*)/\1/p" "$2" | tail -n 1; }
 
 failed=0
+jobs=$(nproc)
 memory=$(mktemp -d)  # where a write need not wait for a disk, if there is such a place
 [ -w /dev/shm ] && { rmdir "$memory"; memory=$(mktemp -d -p /dev/shm); }
-trap 'rm -rf "$memory"' EXIT
-for target in "${targets[@]}"; do
-  kept=build/fuzz/corpus/$target found=build/fuzz/findings log=build/fuzz/$target.log
-  mkdir -p "$kept" "$found"
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$memory"' EXIT
+
+begin() {  # a target's fuzzer, into its log
+  local kept=build/fuzz/corpus/$1
+  mkdir -p "$kept" build/fuzz/findings
   TMPDIR=$memory UBSAN_OPTIONS=print_stacktrace=1 \
-    "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
-    -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/$target-" \
-    "$kept" "tests/fuzz/corpus/$target" >"$log" 2>&1 &
-  fuzzer=$!
-  for ((second = 0; second < seconds; ++second)); do
-    kill -0 $fuzzer 2>/dev/null || break
-    sleep 1
-    [ ! -t 2 ] || printf '\r\033[K%s: %d of %d s' "$target" $((second + 1)) "$seconds" >&2
-  done
-  [ ! -t 2 ] || printf '\r\033[K' >&2
-  if wait $fuzzer; then
+    "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$seconds" -max_len=4096 -timeout=10 \
+    -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$1-" \
+    "$kept" "tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1 &
+}
+
+end() {  # a target, and its process
+  local log=build/fuzz/$1.log edges
+  if wait "$2"; then
     edges=$(grep -oE 'cov: [0-9]+' "$log" | tail -n 1)
-    echo "$target: $(last 'stat::number_of_executed_units:' "$log") executions in $seconds s," \
-      "${edges#cov: } edges covered, no finding"
+    echo "$1: $(last 'stat::number_of_executed_units:' "$log") executions in $seconds s, ${edges#cov: } edges covered, no finding"
   else
     failed=1
-    echo "$target: A FINDING; its input is in $found, the rest in $log:"
+    echo "$1: A FINDING; its input is in build/fuzz/findings, the rest in $log:"
     grep -m 1 -A 25 -E 'ERROR: |runtime error: |what\(\): ' "$log" || tail -n 25 "$log"
   fi
+}
+
+for ((first = 0; first < ${#targets[@]}; first += jobs)); do
+  together=("${targets[@]:first:jobs}") processes=()
+  for target in "${together[@]}"; do
+    begin "$target"
+    processes+=($!)
+  done
+  for ((second = 0; second < seconds; ++second)); do
+    kill -0 "${processes[@]}" 2>/dev/null || break
+    sleep 1
+    [ ! -t 2 ] || printf '\r\033[K%s: %d of %d s' "${together[*]}" $((second + 1)) "$seconds" >&2
+  done
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+  for at in "${!together[@]}"; do end "${together[at]}" "${processes[at]}"; done
 done
 exit $failed

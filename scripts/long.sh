@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Runs what takes hours, part by part: scripts/test.sh itself; the packages, and the circuit's synthesis; golden
+# answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
+# under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
+# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; each fuzzer
+# for 30 minutes. Parts that use one core run side by side.
+#
+#   scripts/long.sh                 every part anew
+#   scripts/long.sh --resume        those that have not passed at this commit
+#   scripts/long.sh PART …          these; a word stands for all parts that begin with it
+#   scripts/long.sh --list          how each part stands
+#
+# A part keeps its log, build/long/PART.log. The log's last line says whether the part passed, at which commit, when and
+# how long it took; with changes that are not committed, it passes for nothing. A part that fails ends this with 1, when
+# all others have run. scripts/long_table.py writes the results to docs/guarantees.md.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+case ${1:-} in
+  -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+esac
+source scripts/run_preset.sh
+source scripts/parts.sh
+begin_parts "$PWD/build/long" "$@"
+export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
+
+more() {  # preset, times the samples, program, filter
+  IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=0 --gtest_filter="$4" |
+    awk '{ print } /Running [1-9]/ { some = 1 } END { exit !some }'
+}
+
+benches() {  # which nothing else compiles
+  scripts/setup.sh --peers
+  cmake --preset bench -DIST_WERROR=ON
+  cmake --build --preset bench -- -j"$jobs"
+}
+installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm; }
+
+$list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
+alone suite scripts/test.sh
+alone packages ctest --preset test -L '^long$'
+alone benches benches
+alone golden scripts/golden_table.py --check
+alone arm64 scripts/arm64_package.sh
+alone portable run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
+alone sanitize-all run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare)$|^(Package|Docs|Viewer)\.'
+alone compile-all env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
+for jaws in built-in human; do
+  alone cloudcompare-$jaws /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist "build/test/cloudcompare-$jaws"
+done
+alone blender /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so
+alone threads more thread 100 search_test 'SharedTreeThread.*'
+alone kills more test 17 cli_test 'SweepCommand.Kills*'
+aside queries more test 1000 load_test '*'
+aside hard-cases more test 20 stability_test '*'
+aside pressing more test 600 haptics_test 'LongPressing.*'
+aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'
+aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'
+settle 0
+for round in 1 2 3 4 5 6; do alone fuzz-$round scripts/fuzz.sh --seconds 300; done
+
+end_parts

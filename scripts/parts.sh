@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# For bash to source: long work in parts, of which those that have passed need not run again.
+#
+#   begin_parts FOLDER [--resume] [--list] [PART …]   where the logs are; which parts are meant
+#   alone NAME COMMAND …                              a part that has the machine for itself
+#   aside NAME COMMAND …                              one that may run beside others, as many as there are cores
+#   end_parts                                         waits for all; ends with 1 where one failed, 2 where a word names none
+#
+# A part keeps its log, FOLDER/NAME.log. The log's last line says whether the part passed, at which commit, when and how
+# long it took. With changes that are not committed a part passes for nothing.
+
+begin_parts() {
+  folder=$1 resume=false list=false chosen=() known=() failed=() running=()
+  shift
+  while [ $# -gt 0 ]; do
+    case $1 in
+      --resume) resume=true ;;
+      --list) list=true ;;
+      -*) echo "${0##*/}: unknown option $1; see --help" >&2; exit 2 ;;
+      *) chosen+=("$1") ;;
+    esac
+    shift
+  done
+  mkdir -p "$folder"
+  trap 'trap - INT TERM; echo "${0##*/}: stopped; --resume goes on" >&2; kill -TERM 0' INT TERM
+  commit=$(git rev-parse --short=12 HEAD)
+  [ -z "$(git status --porcelain)" ] || commit+=" with changes"
+}
+
+passed() { [[ $commit != *changes ]] && [ -e "$folder/$1.log" ] && tail -n 1 "$folder/$1.log" | grep -q "^passed at $commit on "; }
+
+is_chosen() {
+  [ ${#chosen[@]} -gt 0 ] || return 0
+  local word
+  for word in "${chosen[@]}"; do [[ $1 != "$word"* ]] || return 0; done
+  return 1
+}
+
+perform() {  # a part's name, and its command
+  set +e
+  local name=$1 log=$folder/$1.log begun=$SECONDS code verdict
+  shift
+  rm -f "$folder/$name.jsonl"
+  (set -euo pipefail; IST_STABILITY=$folder/$name.jsonl "$@") >"$log" 2>&1
+  code=$?
+  case $code in
+    0) verdict=passed ;;
+    77) verdict=skipped ;;
+    *) verdict=failed ;;
+  esac
+  echo "$verdict at $commit on $(date -u +%Y-%m-%d) in $((SECONDS - begun)) s" >>"$log"
+  [ "$verdict" = passed ] || [ "$verdict $(printenv IST_REQUIRE_ALL)" = "skipped " ]
+}
+
+settle() {  # waits until no more than so many parts run
+  while [ ${#running[@]} -gt "$1" ]; do
+    local name=${running[0]%% *}
+    wait "${running[0]#* }" || failed+=("$name")
+    echo "== $name: $(tail -n 1 "$folder/$name.log") (after $SECONDS s)"
+    running=("${running[@]:1}")
+  done
+}
+
+begin() {  # how many parts may run beside it; its name; its command
+  local beside=$1 name=$2
+  shift 2
+  known+=("$name")
+  is_chosen "$name" || return 0
+  if $list; then
+    echo "$name: $([ ! -e "$folder/$name.log" ] && echo "never begun" || tail -n 1 "$folder/$name.log" | cut -c1-100)"
+  elif $resume && passed "$name"; then
+    echo "== $name: passed before"
+  else
+    settle "$beside"
+    perform "$name" "$@" &
+    running+=("$name $!")
+    [ "$beside" != 0 ] || settle 0
+  fi
+}
+alone() { begin 0 "$@"; }
+aside() { begin $((jobs - 1)) "$@"; }
+
+end_parts() {
+  settle 0
+  local word
+  for word in "${chosen[@]}"; do
+    printf '%s\n' "${known[@]}" | grep -q "^$word" || { echo "${0##*/}: no part begins with $word: there are ${known[*]}" >&2; exit 2; }
+  done
+  [ ${#failed[@]} = 0 ] || { echo "${0##*/}: failed: ${failed[*]}; see $folder" >&2; exit 1; }
+}

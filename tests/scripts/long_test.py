@@ -1,0 +1,162 @@
+"""Which parts of long work scripts/parts.sh runs again, and what scripts/long_table.py makes of their logs."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+import long_table  # noqa: E402
+
+# `stops` is a function whose first command fails: it ends there, as a script would.
+PROGRAM = """#!/usr/bin/env bash
+set -euo pipefail
+jobs=2
+source {scripts}/parts.sh
+begin_parts "$PWD/logs" "$@"
+stops() {{ [ -e mended ]; echo stops >>ran; }}
+alone good bash -c 'echo good >>ran'
+aside slow bash -c 'sleep 0.2; echo slow >>ran'
+aside bad bash -c 'echo bad >>ran; [ -e mended ]'
+alone stops stops
+alone absent bash -c 'echo absent >>ran; exit 77'
+end_parts
+"""
+
+
+class Parts(unittest.TestCase):
+    """Five parts in a repository of their own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "long.sh").write_text(PROGRAM.format(scripts=SCRIPTS))
+        (self.folder / ".gitignore").write_text("logs\nran\nmended\n")
+        self.git("init", "--quiet")
+        self.commit()
+
+    def git(self, *arguments):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=self.folder, check=True, capture_output=True)
+
+    def commit(self):
+        self.git("add", ".")
+        self.git("commit", "--quiet", "--allow-empty", "-m", "a change")
+
+    def run_parts(self, *arguments, environment=None):
+        (self.folder / "ran").write_text("")
+        done = subprocess.run(["bash", "long.sh", *arguments], cwd=self.folder, capture_output=True, text=True, check=False,
+                              env={"PATH": "/usr/bin:/bin", **(environment or {})})
+        self.said = done.stdout + done.stderr
+        return done.returncode, sorted((self.folder / "ran").read_text().split())
+
+    def mend(self):
+        (self.folder / "mended").write_text("")
+
+    def test_one_that_fails_stops_no_other(self):
+        self.assertEqual(self.run_parts(), (1, ["absent", "bad", "good", "slow"]))
+        self.assertIn("failed: bad stops;", self.said)
+
+    def test_all_that_pass(self):
+        self.mend()
+        self.assertEqual(self.run_parts(), (0, ["absent", "bad", "good", "slow", "stops"]))
+
+    def test_one_that_is_skipped_fails_where_all_are_required(self):
+        self.mend()
+        self.assertEqual(self.run_parts(environment={"IST_REQUIRE_ALL": "1"})[0], 1)
+        self.assertIn("failed: absent;", self.said)
+
+    def test_those_that_passed_do_not_run_again(self):
+        self.run_parts()
+        self.mend()
+        self.assertEqual(self.run_parts("--resume"), (0, ["absent", "bad", "stops"]))
+        self.assertEqual(self.run_parts("--resume"), (0, ["absent"]))
+        self.assertEqual(len(self.run_parts()[1]), 5)
+
+    def test_they_run_again_at_another_commit(self):
+        self.mend()
+        self.run_parts()
+        self.commit()
+        self.assertEqual(len(self.run_parts("--resume")[1]), 5)
+
+    def test_they_pass_for_nothing_with_changes(self):
+        self.mend()
+        (self.folder / "more").write_text("")
+        self.run_parts()
+        self.assertEqual(len(self.run_parts("--resume")[1]), 5)
+        (self.folder / "more").unlink()
+        self.assertEqual(len(self.run_parts("--resume")[1]), 5)
+
+    def test_one_that_was_killed_has_not_passed(self):
+        self.mend()
+        self.run_parts()
+        log = self.folder / "logs/slow.log"
+        log.write_text("half of it\n")
+        self.assertEqual(self.run_parts("--resume")[1], ["absent", "slow"])
+
+    def test_those_that_are_named_run_alone(self):
+        self.assertEqual(self.run_parts("go", "sl"), (0, ["good", "slow"]))
+        self.assertEqual(self.run_parts("gone"), (2, []))
+        self.assertIn("no part begins with gone", self.said)
+        self.assertEqual(self.run_parts("--again"), (2, []))
+
+    def test_how_they_stand(self):
+        self.assertEqual(self.run_parts("--list")[0], 0)
+        self.assertIn("good: never begun", self.said)
+        self.run_parts("good")
+        self.assertEqual(self.run_parts("--list"), (0, []))
+        self.assertRegex(self.said, "good: passed at [0-9a-f]{12} on ")
+
+
+class Table(unittest.TestCase):
+    """The table of made-up logs."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def log(self, name, text, verdict="passed at 0123456789ab on 2026-01-02 in 90 s", cases=""):
+        (self.folder / f"{name}.log").write_text(f"{text}\n{verdict}\n")
+        if cases:
+            (self.folder / f"{name}.jsonl").write_text(cases)
+
+    def rows(self):
+        return list(long_table.rows(long_table.results(self.folder)))
+
+    def test_counts(self):
+        self.log("suite", "100% tests passed, 0 tests failed out of 7\n100% tests passed, 0 tests failed out of 12")
+        self.log("queries", "[  PASSED  ] 3 tests.", cases='{"samples": 5, "broken": 0}\n{"samples": 8, "broken": 1}\n')
+        self.log("coherent", "1000 ticks: 3 kept\n2000 ticks: 4 kept\n[  PASSED  ] 1 test.")
+        suite, queries, coherent = self.rows()
+        self.assertIn("| 19 tests | `0123456789ab`, 2026-01-02 | 2 min |", suite)
+        self.assertIn("| 3 tests, 8 most samples of a case, 2 cases, 1 broken |", queries)
+        self.assertIn("| 1 tests, 3,000 ticks |", coherent)
+
+    def test_rounds_of_one_commit_are_one_row(self):
+        for number, commit in enumerate("aab"):
+            self.log(f"fuzz-{number}", "mesh: 50 executions in 300 s", f"passed at {commit} on 2026-01-02 in 300 s")
+        first, second = self.rows()
+        self.assertIn("passed 2 times | 100 executions | `a`, 2026-01-02 | 10 min", first)
+        self.assertIn("| passed | 50 executions | `b`", second)
+
+    def test_what_did_not_pass_is_said(self):
+        self.log("suite", "", "failed at 0123 on 2026-01-02 in 90 s")
+        self.log("blender", "", "skipped at 0123 on 2026-01-02 in 1 s")
+        self.log("golden", "half of it", "")
+        self.log("threads", "", "passed at 0123 with changes on 2026-01-02 in 90 s")
+        suite, blender, threads = self.rows()
+        self.assertIn("| **failed** |", suite)
+        self.assertIn("| **skipped** |", blender)
+        self.assertIn("`0123+`", threads)
+
+    def test_the_page_has_a_place(self):
+        self.assertIn(long_table.BEGIN, long_table.PAGE.read_text())
+        with self.assertRaises(SystemExit):
+            long_table.written("a page", [])
+
+
+if __name__ == "__main__":
+    unittest.main()
