@@ -37,7 +37,7 @@ struct Jaws {
   }
 
   Scene scene;
-  SceneTrees trees;
+  std::vector<BodyTrees> trees;  // of the fixed body, and of the held one
   std::map<std::string, Poses> made;
 };
 
@@ -64,9 +64,9 @@ struct Way {
   std::vector<double> least;
   QueryResult result = {};
 
-  Way(const SceneTrees& of, const QueryOptions& options, std::size_t ticks)
-      : query(*of.fixed, *of.held, options),
-        manifold(*of.fixed, *of.held, query.policy(), kManifold),
+  Way(const std::vector<BodyTrees>& of, const QueryOptions& options, std::size_t ticks)
+      : query(*of.front().contact, *of.back().contact, options),
+        manifold(*of.front().contact, *of.back().contact, query.policy(), kManifold),
         least(ticks, HUGE_VAL) {}
 
   void answer(std::size_t tick, const Eigen::Isometry3d& pose) {
