@@ -9,8 +9,8 @@
 #                            compilers and optimisations, a program built for ARM64 from the package,
 #                            every room and test under the sanitizers, hard cases with 20 times the
 #                            samples, ten million queries of real jaws, an hour of simulated pressing,
-#                            threads for longer, CloudCompare's distances, the add-on in Blender, and
-#                            each fuzzer for a minute; two hours more
+#                            threads for longer, CloudCompare's distances, the add-on in Blender,
+#                            each fuzzer for a minute, and a release, built twice; three hours more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -101,3 +101,11 @@ more test 17 cli_test 'SweepCommand.Kills*'  # 51 kills
 more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'  # a million ticks among five bodies
 wait $load
 scripts/fuzz.sh --seconds 60
+part "a release, built twice"
+if changed=$(git status --porcelain 2>&1) && [ -z "$changed" ]; then
+  rm -rf build/tried-draft
+  scripts/release.sh --despite-figures --out build/tried
+else
+  echo "test: no release was tried, since it is made of a commit: $changed"
+  [ "${IST_REQUIRE_ALL:-}" != 1 ]
+fi
