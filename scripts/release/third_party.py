@@ -80,6 +80,13 @@ def notices(found, modules, version):
     return "\n".join(lines) + "\n\n" + "\n\n".join(bodies) + "\n"
 
 
+def check_page(found, said):
+    """The page carries its own notices, `said`: each library in it is named there, by the name before the first comma."""
+    missing = [name for name, (_, _, places) in found.items() if "page" in places and name.split(",")[0] not in said]
+    if missing:
+        raise SystemExit(f"third_party: in the page, and not named in src/viewer/notices.txt: {'; '.join(missing)}")
+
+
 def main(target):
     build = ROOT / "build"
     modules = build / "viewer/packages/node_modules"
@@ -90,6 +97,8 @@ def main(target):
     used.in_site(uses, build / "docs/site", pathlib.Path("/usr/lib/python3/dist-packages/mkdocs"))
     entries = tomllib.loads((pathlib.Path(__file__).parent / "third_party.toml").read_text())["library"]
     found = by_entry(uses, entries)
+    viewer = ROOT / "src/viewer"
+    check_page(found, (viewer / "notices.txt").read_text() + (viewer / "bundle.mjs").read_text())
     version = re.search(r"project\(ist VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     pathlib.Path(target).write_text(notices(found, modules, version))
     print(f"third_party: {len(found)} libraries of others: {', '.join(sorted(found, key=str.lower))}")

@@ -99,6 +99,13 @@ class Notices(unittest.TestCase):
         self.assertIn("Copyright Ada.", said)
         self.assertIn("TERMS AND CONDITIONS FOR USE", said.partition("Copyright Ada.")[2])
 
+    def test_a_library_that_the_page_s_own_notices_lack_is_an_error(self):
+        entry = {"name": "One, with two", "licence": "MIT", "owners": ["one"]}
+        for places, said in (({"page": set()}, "One. Copyright"), ({"wheel": set()}, "nothing")):
+            third_party.check_page({entry["name"]: (entry, ["one"], places)}, said)
+        with self.assertRaisesRegex(SystemExit, "not named in src/viewer/notices.txt: One, with two"):
+            third_party.check_page({entry["name"]: (entry, ["one"], {"page": set(), "wheel": set()})}, "nothing")
+
 
 if __name__ == "__main__":
     unittest.main()
