@@ -2,8 +2,8 @@
 # Runs what takes hours, part by part: scripts/test.sh itself; the packages, and the circuit's synthesis; golden
 # answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
 # under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
-# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release, built twice; each fuzzer
-# for 30 minutes. Parts that use one core run side by side.
+# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release,
+# built twice; each fuzzer for 30 minutes. Parts that use one core run side by side.
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        those that have not passed at this commit
