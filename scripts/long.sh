@@ -2,8 +2,8 @@
 # Runs what takes hours, part by part: scripts/test.sh itself; the packages, and the circuit's synthesis; golden
 # answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
 # under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
-# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; each fuzzer
-# for 30 minutes. Parts that use one core run side by side.
+# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release,
+# built twice; each fuzzer for 30 minutes. Parts that use one core run side by side.
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        those that have not passed at this commit
@@ -33,6 +33,10 @@ benches() {  # which nothing else compiles
   cmake --preset bench -DIST_WERROR=ON
   cmake --build --preset bench -- -j"$jobs"
 }
+release() {  # made of the commit, twice
+  rm -rf build/tried build/tried-draft
+  scripts/release.sh --despite-figures --out build/tried
+}
 installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm; }
 
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
@@ -56,6 +60,7 @@ aside pressing more test 600 haptics_test 'LongPressing.*'
 aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'
 aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'
 settle 0
+alone release release
 for round in 1 2 3 4 5 6; do alone fuzz-$round scripts/fuzz.sh --seconds 300; done
 
 end_parts

@@ -25,8 +25,10 @@ cmake --build "$build" --target ist_shared >"$build/build.log" || { cat "$build/
 rm -rf "$build/source" "$build"/ist-*.whl "$build"/ist-*.tar.gz
 mkdir "$build/source"
 cp -r src/python/{pyproject.toml,setup.py,MANIFEST.in,README.md,ist} "$build/source"
-date=$(git log -1 --format=%ct 2>/dev/null || echo 315532800)
-SOURCE_DATE_EPOCH=$date IST_PYTHON_LIBRARY=$build/src/package/libist.so.0 \
+sed -i "/^dynamic = /r $build/contact.toml" "$build/source/pyproject.toml"
+SOURCE_DATE_EPOCH=$(cmake -P src/package/commit.cmake)
+export SOURCE_DATE_EPOCH
+IST_PYTHON_LIBRARY=$build/src/package/libist.so.0 \
   /usr/bin/python3 -m build --no-isolation --outdir "$build" "$build/source" >"$build/packages.log" 2>&1 ||
   { cat "$build/packages.log"; exit 1; }
 ls -1 "$build"/ist-*.whl "$build"/ist-*.tar.gz

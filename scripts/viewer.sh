@@ -26,5 +26,5 @@ if ! cmp -s src/viewer/package-lock.json "$packages/installed"; then
 fi
 ln -sfn "$PWD/$packages/node_modules" src/viewer/node_modules
 logged node src/viewer/node_modules/typescript/bin/tsc -p src/viewer
-node src/viewer/bundle.mjs --engine build/wasm/viewer --output build/viewer/ist.html
+node src/viewer/bundle.mjs --engine build/wasm/viewer --output build/viewer/ist.html --bundled build/viewer/bundled.json
 echo "viewer: open build/viewer/ist.html"

@@ -4,7 +4,7 @@
 
 namespace ist::cli {
 
-/// Returns "ist 0.1.0, commit 01234567".
+/// Returns "ist 1.2.3, commit 01234567".
 [[nodiscard]] std::string version_words();
 
 /// Returns the compiler and its version.

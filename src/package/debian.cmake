@@ -1,8 +1,8 @@
 # `cpack` makes four packages, each of one component.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ist)
-# Debian wants an address. The project has none, and nobody can have one in .example (RFC 2606).
-set(CPACK_PACKAGE_CONTACT "IST developers <noreply@ist.example>")
+set(CPACK_PACKAGE_CONTACT "${maintainer}")
+set(CPACK_DEBIAN_PACKAGE_HOMEPAGE "${IST_HOMEPAGE}")
 set(CPACK_COMPONENTS_ALL runtime development python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)

@@ -4,11 +4,13 @@
   a file     that one
   installed  none: the package asks the loader for libist.so.0, as Debian's package libist0 has it"""
 
+import gzip
 import os
 import pathlib
 import re
 import shutil
 import subprocess
+import tarfile
 
 from setuptools import Distribution, setup
 from setuptools.command.build_py import build_py
@@ -101,6 +103,24 @@ class SourceDistribution(sdist):
             else:
                 shutil.copy(source, target)
         copy_licences(pathlib.Path(base_dir, "licences"))
+
+    def make_archive(self, base_name, format, root_dir=None, base_dir=None, **owner):  # the names are setuptools'
+        """With SOURCE_DATE_EPOCH the same bytes wherever it is made: sorted, of root, and all of that time."""
+        if format != "gztar" or "SOURCE_DATE_EPOCH" not in os.environ:
+            return super().make_archive(base_name, format, root_dir, base_dir, **owner)
+        time, name = int(os.environ["SOURCE_DATE_EPOCH"]), f"{base_name}.tar.gz"
+
+        def plain(entry):
+            entry.uid = entry.gid = 0
+            entry.uname = entry.gname = "root"
+            entry.mtime, entry.mode = time, 0o755 if entry.mode & 0o100 else 0o644
+            return entry
+
+        with open(name, "wb") as file, gzip.GzipFile("", "wb", 9, file, mtime=time) as packed, \
+                tarfile.open(fileobj=packed, mode="w") as archive:
+            for path in sorted([pathlib.Path(base_dir), *pathlib.Path(base_dir).rglob("*")]):
+                archive.add(path, recursive=False, filter=plain)
+        return name
 
 
 class WithLibrary(Distribution):

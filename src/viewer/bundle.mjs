@@ -1,6 +1,8 @@
 // Makes the page: one HTML file with its modules, its style, the Worker and the engine in it.
 //
-//   node bundle.mjs --engine DIR --output FILE    DIR holds engine.js and engine.wasm
+//   node bundle.mjs --engine DIR --output FILE --bundled FILE
+//
+// DIR holds engine.js and engine.wasm. The second file gets the names of the packages whose code is in the page.
 import {createHash} from 'node:crypto';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -16,7 +18,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const page = join(here, 'page');
 const target = ['chrome100', 'firefox113', 'safari16.4'];
 
-const {values} = parseArgs({options: {engine: {type: 'string'}, output: {type: 'string'}}});
+const {values} = parseArgs({options: {engine: {type: 'string'}, output: {type: 'string'}, bundled: {type: 'string'}}});
 if (!values.engine || !values.output) {
   console.error('bundle: give --engine DIR, which holds engine.js and engine.wasm, and --output FILE');
   process.exit(2);
@@ -28,10 +30,13 @@ const hash = (text) => `'sha256-${createHash('sha256').update(text, 'utf8').dige
 const safe = (script) => script.replaceAll(/<\/(script|style)/gi, '<\\/$1').replaceAll('<!--', '<\\!--');
 
 async function pageScript() {
-  const {outputFiles} = await build({
+  const {outputFiles, metafile} = await build({
     entryPoints: [join(page, 'main.js')], bundle: true, write: false, minify: true, format: 'iife', target,
     legalComments: 'none', outdir: here, logLevel: 'warning',
+    metafile: true,
   });
+  const names = Object.keys(metafile.inputs).map((file) => file.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1]);
+  if (values.bundled) writeFileSync(values.bundled, `${JSON.stringify([...new Set(names.filter(Boolean))].sort())}\n`);
   return safe(outputFiles[0].text);
 }
 

@@ -7,8 +7,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NAME = re.compile(r"\bIST_[A-Z][A-Z0-9_]*\b")
-# option(NAME …) of CMake; getenv("NAME"), environ["NAME"], environ.get("NAME"), $ENV{NAME}, ${NAME:-…}.
-READ = re.compile(r"\b(?:option\(|getenv\(\"|environ(?:\[|\.get\()\"|ENV\{)(IST_\w+)|\$\{(IST_\w+):-")
+# option(NAME …) and set(NAME "…" CACHE …) of CMake; getenv("NAME"), environ["NAME"], environ.get("NAME"), $ENV{NAME}, ${NAME:-…}.
+READ = re.compile(r"\b(?:option\(|set\((?=\w+ \"[^\"]*\" CACHE)|getenv\(\"|environ(?:\[|\.get\()\"|ENV\{)(IST_\w+)|\$\{(IST_\w+):-")
 SOURCES = ("*.cpp", "*.h", "*.py", "*.sh", "*.cmake", "CMakeLists.txt")
 
 

@@ -2,6 +2,7 @@
 CMakeLists.txt, which makes a test of each function here whose name begins with a capital."""
 
 import argparse
+import datetime
 import gzip
 import os
 import pathlib
@@ -155,11 +156,21 @@ class Packages(Installed, Pages):
         run("cpack", "--config", self.build / "CPackConfig.cmake", "-B", folder / "packages")
         root = CleanRoot(folder / "root", (folder / "packages").glob("*.deb"))
         version = root.field("libist0", "Version")
+        cache = (self.build / "CMakeCache.txt").read_text()
+        seconds = int(run("cmake", "-P", SOURCE / "src/package/commit.cmake"))
+        committed = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).strftime("%Y-%m-%d %H:%M")
         architecture = run("dpkg-architecture", "-qDEB_HOST_MULTIARCH").strip()
         require(self.libraries == f"lib/{architecture}" and root.libraries == root.path / "usr" / self.libraries,
                 f"libraries are in {root.libraries}: take CMAKE_INSTALL_LIBDIR out of CMakeCache.txt if it is of an older tree")
         require(root.field("libist-dev", "Depends") == f"libist0 (= {version}), libeigen3-dev (>= 3.4)",
                 f"libist-dev depends on {root.field('libist-dev', 'Depends')}")
+        contact = re.search(r"^IST_MAINTAINER:STRING=(.*)$", cache, re.M)[1] or "IST developers <noreply@ist.example>"
+        homepage = re.search(r"^IST_HOMEPAGE:STRING=(.*)$", cache, re.M)[1]
+        for name, package in root.files.items():
+            require(root.field(name, "Maintainer") == contact, f"the maintainer of {name} is {root.field(name, 'Maintainer')}")
+            require(root.field(name, "Homepage") == homepage, f"the page of {name} is {root.field(name, 'Homepage')}")
+            times = {" ".join(line.split()[3:5]) for line in run("dpkg-deb", "-c", package, env={**os.environ, "TZ": "UTC"}).splitlines()}
+            require(times == {committed}, f"{name} has files of {times}, and the commit is of {committed}")
         require("libist0" not in root.field("ist", "Depends"), "the command holds the library, and depends on it")
         require(not root.shared_files(), f"in two packages: {root.shared_files()}")
         environment = {**os.environ, "PKG_CONFIG_LIBDIR": f"{root.path}/usr/{self.libraries}/pkgconfig:/usr/share/pkgconfig"}

@@ -1,4 +1,4 @@
-"""What CMake says where a platform, a compiler or an emulator cannot be used: one sentence with the remedy, before
+"""What CMake says where a platform, a compiler or an emulator cannot be used, or nobody could be named by the packages: one sentence with the remedy, before
 anything is built."""
 
 import os
@@ -91,6 +91,16 @@ class Refusals(unittest.TestCase):
     def test_tbb_in_a_portable_library(self):
         said = self.refused(*COMPILER, "-DIST_PORTABLE=ON")
         self.assertIn("A portable library has threads of its own, and no oneTBB: set IST_WITH_TBB=OFF", said)
+
+    def test_a_maintainer_without_an_address(self):
+        for maintainer in ("Ada Example", "ada@example.org", "Ada <ada>", 'Ada "A" Example <ada@example.org>'):
+            with self.subTest(maintainer):
+                said = self.refused(*COMPILER, f"-DIST_MAINTAINER={maintainer}")
+                self.assertIn(f'IST_MAINTAINER is "{maintainer}": give a name and an address, as in Ada Example <ada@example.org>', said)
+
+    def test_a_page_without_an_address(self):
+        said = self.refused(*COMPILER, "-DIST_HOMEPAGE=example.org")
+        self.assertIn('IST_HOMEPAGE is "example.org": give an address that begins with https://', said)
 
 
 if __name__ == "__main__":

@@ -6,9 +6,9 @@ import {identity} from '../../src/viewer/page/pose.js';
 
 const toBase64 = (bytes) => Buffer.from(bytes).toString('base64');
 const body = (role, more = {}) => ({role, name: `${role} </script>.stl`, tree: toBase64(new Uint8Array([1, 2, 3])), ...more});
-const bite = {format: 1, made_by: 'ist 0.1.0', kind: 'bite', bodies: [body('fixed'), body('moving')], pose: [...identity], occlusion: {preset: 'scan', reach: 2}};
+const bite = {format: 1, made_by: 'ist 1.2.3', kind: 'bite', bodies: [body('fixed'), body('moving')], pose: [...identity], occlusion: {preset: 'scan', reach: 2}};
 const recording = {
-  format: 1, made_by: 'ist 0.1.0', kind: 'recording', metres_per_unit: 0.001, recording: '{}',
+  format: 1, made_by: 'ist 1.2.3', kind: 'recording', metres_per_unit: 0.001, recording: '{}',
   bodies: [body('fixed', {pose: [...identity]}), body('moving', {pose: [...identity], in_tool: [...identity], held: true, index: 1})],
 };
 const read = (block) => readDataBlock(JSON.stringify(block));

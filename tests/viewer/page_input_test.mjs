@@ -292,7 +292,7 @@ test('shows the bodies of the data in it, whatever their names', async () => {
   ist(folder, 'build', lower, '-o', 'lower.ist', ...voxels);
   const tree = (file) => readFileSync(path.join(folder, file)).toString('base64');
   const file = pageWith({
-    format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: closedBy(-0.6), missing: ['</script><b>One</b> is not here.'],
+    format: 1, made_by: 'ist 1.2.3', kind: 'bodies', pose: closedBy(-0.6), missing: ['</script><b>One</b> is not here.'],
     bodies: [
       {role: 'fixed', name: '</script><script>fault()</script>.stl', tree: tree('upper.ist')},
       {role: 'moving', name: 'scans/of $& today/lower.stl', tree: tree('lower.ist')},
@@ -342,11 +342,11 @@ test('shows the built-in jaws where the data in it is newer, damaged or of no tr
   const bad = [
     [{format: 2, made_by: 'ist 9.9.9', kind: 'bodies', bodies: []}, /newer version \(ist 9\.9\.9\)/],
     ['{"format": 1, "made_by": "ist', /cut off or damaged/],
-    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [{role: 'fixed', name: 'a', tree: '*'}]}, /damaged/],
-    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /^a\/of \$&b\.ist: /],
-    [{format: 1, made_by: 'ist 0.1.0', kind: 'bite', occlusion: {preset: 'scan', reach: NaN}, bodies: [body('fixed'), body('moving')]}, /no preset or reach/],
-    ['{"format": 1, "made_by": "ist 0.1.0", "kind": "bite", "pose": [NaN], "bodies": []}', /damaged/],
-    [{format: 1, made_by: 'ist 0.1.0', kind: 'bodies', pose: Array(16).fill(null), bodies: [body('fixed'), body('moving')]}, /pose/],
+    [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', bodies: [{role: 'fixed', name: 'a', tree: '*'}]}, /damaged/],
+    [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /^a\/of \$&b\.ist: /],
+    [{format: 1, made_by: 'ist 1.2.3', kind: 'bite', occlusion: {preset: 'scan', reach: NaN}, bodies: [body('fixed'), body('moving')]}, /no preset or reach/],
+    ['{"format": 1, "made_by": "ist 1.2.3", "kind": "bite", "pose": [NaN], "bodies": []}', /damaged/],
+    [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', pose: Array(16).fill(null), bodies: [body('fixed'), body('moving')]}, /pose/],
   ];
   for (const [data, sentence] of bad) {
     const opened = await openPage(browser, '#voxel=2', {file: pageWith(data)});

@@ -17,7 +17,7 @@ function recordingOfJaws() {
   const scene = 'unit = "mm"\n[fixed]\nshape = "upper jaw"\nvoxel_size = 1\n[held]\nshape = "lower jaw"\nvoxel_size = 1\n' +
       'translation = [0, 0, -0.5]\n[effects.contact]\n';
   const row = (dz) => [tool[0], tool[1], tool[2] + dz - 0.5e-3, 1, 0, 0, 0, 1, 0, 0, 0, 1];
-  const header = {recording: 2, ist: '0.1.0', commit: '', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene};
+  const header = {recording: 2, ist: '1.2.3', commit: '', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene};
   const ticks = [0, 1].map((tick) => ({
     tick, dt: 0.001, device: row(1e-3), tool: row(0), wrench: [0, 0, -2, 0, 0, 0], contacts: 9, held: false, fault: false,
     late_microseconds: 0, microseconds: 40,

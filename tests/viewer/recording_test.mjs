@@ -8,7 +8,7 @@ import {parseRecording, poseOfRow, recordingSteps} from '../../src/viewer/page/r
 import {placedByScene, sceneBodies} from '../../src/viewer/page/recording/scene_bodies.js';
 import {toolPath} from '../../src/viewer/page/recording/tool_path.js';
 
-const header = {recording: 2, ist: '0.1.0', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
+const header = {recording: 2, ist: '1.2.3', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
 const row = (z) => [0, 0, z, 1, 0, 0, 0, 1, 0, 0, 0, 1];
 const tick = (number, more = {}) => ({
   tick: number, dt: 0.001, device: row(0), tool: row(0.001 * number), wrench: [3, 0, 4, 0, 0, 0], contacts: 5, held: false, fault: false,

@@ -8,7 +8,7 @@
 namespace ist::cli {
 
 /// Returns the script that completes subcommands, their options, the values of options whose set is
-/// fixed, and files, in bash. `version` is as in ist 0.1.0.
+/// fixed, and files, in bash. `version` is as in ist 1.2.3.
 [[nodiscard]] std::string bash_completion(const CommandView& command,
                                           const std::vector<CommandView>& subcommands,
                                           const std::string& version);

@@ -10,7 +10,7 @@ namespace ist::cli {
 /// The end of a page's title line.
 struct PageEdition {
   std::string date;     ///< as 2005-03-18
-  std::string version;  ///< as ist 0.1.0
+  std::string version;  ///< as ist 1.2.3
 };
 
 /// Returns ist(1), which names all subcommands and shows an example of each.

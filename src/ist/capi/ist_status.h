@@ -30,7 +30,7 @@ extern "C" {
 /** Returns the IST_ABI_VERSION of the library. [real time] */
 IST_C_API uint32_t ist_abi_version(void) IST_NOEXCEPT;
 
-/** Returns the version of the library, such as "0.1.0". [real time] */
+/** Returns the version of the library, such as "1.2.3". [real time] */
 IST_C_API const char* ist_version_string(void) IST_NOEXCEPT;
 
 /** The result of a call. The numbers never change. */

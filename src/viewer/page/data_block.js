@@ -11,7 +11,7 @@
  *
  * @typedef {object} DataBlock
  * @property {1} format
- * @property {string} made_by   program and version: "ist 0.1.0"
+ * @property {string} made_by   program and version: "ist 1.2.3"
  * @property {'bite' | 'recording' | 'bodies'} kind
  *   `bite`: two bodies, `pose` and `occlusion`. `recording`: `recording`, and all bodies of the scene
  *   in the order of their numbers with `metres_per_unit`, or no bodies, which `missing` then explains. `bodies`: one body or two, perhaps a `pose`.

@@ -1,0 +1,20 @@
+# Whom the packages name: those of Debian, the Python package and the file of pkg-config.
+set(IST_MAINTAINER "" CACHE STRING "Who answers for the packages: Name <address>")
+set(IST_HOMEPAGE "" CACHE STRING "The address of the project's page, which the packages name")
+set(maintainer "${IST_MAINTAINER}")
+if(maintainer STREQUAL "")
+  # Debian wants an address. The project has none, and nobody can have one in .example (RFC 2606).
+  set(maintainer "IST developers <noreply@ist.example>")
+endif()
+if(NOT maintainer MATCHES "^([^<>\"\\]*[^<>\"\\ ]) <([^<>@\"\\ ]+@[^<>@\"\\ ]+)>$")
+  message(FATAL_ERROR "IST_MAINTAINER is \"${IST_MAINTAINER}\": give a name and an address, as in Ada Example <ada@example.org>")
+endif()
+set(contact "maintainers = [{name = \"${CMAKE_MATCH_1}\", email = \"${CMAKE_MATCH_2}\"}]\n")
+if(NOT IST_HOMEPAGE MATCHES "^(https?://[^\"\\ ]+)?$")
+  message(FATAL_ERROR "IST_HOMEPAGE is \"${IST_HOMEPAGE}\": give an address that begins with https://")
+endif()
+if(IST_HOMEPAGE)
+  string(APPEND contact "urls = {Homepage = \"${IST_HOMEPAGE}\"}\n")
+endif()
+# Lines for [project] of pyproject.toml, which scripts/python_packages.sh puts there.
+file(WRITE ${PROJECT_BINARY_DIR}/contact.toml "${contact}")
