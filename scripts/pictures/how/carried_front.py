@@ -37,11 +37,11 @@ def draw(command, file, ist):
     tests.step(ticks, kept, color=POLICY["slab"], linewidth=1.2, label="a front carried from tick to tick")
     tests.step(ticks, np.where(pairs > 0, pairs, np.nan), color=INK, linewidth=1, linestyle=":", label="leaf pairs, the answer of both")
     tests.set(yscale="log", ylabel="tests of a tick", ylim=(0.8, 3 * fresh.max()))
-    tests.legend(loc="upper left", bbox_to_anchor=(0.0, 0.83))
+    tests.legend(loc="lower right")
     way.plot(ticks, -closing(), color=INK, linewidth=1.2)
     way.set(ylabel="mm open", xlabel="tick, ms", xlim=(0, len(ticks) - 1), ylim=(0, OPEN))
     save(figure, file)
     searched = int((kept >= fresh).sum())
     return (f"The same jaws close within a second and rest: {len(ticks):,} ticks. A search in each makes {fresh.sum():,} tests, "
-            f"a carried front {kept.sum():,}; {searched} of its ticks are searches. The leaf pairs are the same in every tick. "
+            f"a carried front {kept.sum():,}; in {searched} ticks it makes as many as a search or more. The leaf pairs are the same in every tick. "
             "The tests that make the next front ahead, in slices, are not in this count.")

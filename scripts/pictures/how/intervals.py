@@ -3,9 +3,9 @@ from pictures.how.command import NAMES
 from pictures.how.style import INK, POLICY, plt, save
 
 MOVE = "0,0,-3"
-LIMITS = [round(10 * 10 ** (step / 4)) for step in range(18)]  # 10 to 177,828 tests
+LIMITS = [round(100 * 10 ** (step / 4)) for step in range(17)]  # 100 to a million
 SHARP = 1e-4  # mm
-HIGHEST = 8  # mm, of the plots
+HIGHEST = 5  # mm, of the plots
 
 
 def distances(command, files, tolerance):

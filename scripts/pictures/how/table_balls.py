@@ -27,9 +27,9 @@ def draw_ball(place, square, centre, masks):
     for octant in sorted(octants, key=lambda each: each @ view.axes[2]):
         view.cube(6 * octant - 6, 6, INK, CUBE, zorder=2, width=0.5)
     view.ball(centre, square**0.5, POLICY["table"])
-    view.show(12.4)
+    view.show(13.4)
     count = f"{len(masks)} masks" if len(masks) > 1 else "1 mask"
-    place.set_title(f"{mask:08b}\n{count}", fontsize=7.5, pad=1)
+    place.set_title(f"{mask:08b}\n{count}", fontsize=7.5, pad=3)
 
 
 def draw(command, file):
