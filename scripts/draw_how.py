@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Draws the pictures of docs/how-it-works.md, and says the sentence below each of them, whose numbers are measured with it.
+
+    scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER             draws, and prints the sentences
+    scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER --check     draws, and fails where the page has another sentence
+
+All that is drawn comes from the command, but for the front that a query carries, which the Python package asks of the
+library. What the script computes itself it compares with the command's counts, and ends where they differ. Needs Debian's
+python3-matplotlib, so run it with the system's python3.
+"""
+import os
+import pathlib
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/how-it-works.md"
+
+
+def pictures(command, ist, folder):
+    """Draws each picture; yields its name and its sentence."""
+    from pictures.how import carried_front, frontiers, intervals, leaf_bounds, table_balls
+
+    yield "table", table_balls.draw(command, folder / "table.svg")
+    yield "bounds", leaf_bounds.draw(command, folder / "bounds.svg")
+    yield "frontiers", frontiers.draw(command, folder / "frontiers.png")
+    yield "front", carried_front.draw(command, folder / "front.svg", ist)
+    yield "intervals", intervals.draw(command, folder / "intervals.svg")
+
+
+def main(ist, library, folder, *options):
+    os.environ["IST_LIBRARY"] = str(pathlib.Path(library).resolve())
+    sys.path.append(str(ROOT / "src/python"))
+    import ist as package
+
+    from pictures.how.command import Command
+
+    missing = 0
+    with tempfile.TemporaryDirectory() as name:
+        command = Command(pathlib.Path(ist).resolve(), pathlib.Path(name))
+        for picture, sentence in pictures(command, package, pathlib.Path(folder)):
+            known = sentence in " ".join(PAGE.read_text().split())
+            missing += not known
+            if not known or "--check" not in options:
+                print(f"{picture}: {sentence}", file=sys.stderr if "--check" in options else sys.stdout)
+    if "--check" in options and missing:
+        sys.exit(f"draw_how: {PAGE.name} lacks {missing} of these sentences: draw its pictures again, and write them there")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (4, 5) or sys.argv[4:] not in ([], ["--check"]):
+        sys.exit(__doc__)
+    main(*sys.argv[1:])

@@ -1,0 +1,67 @@
+"""An eye far away: cubes, balls, discs and faces, drawn to the right and upwards in a matplotlib place."""
+import numpy as np
+from matplotlib.patches import Circle, Polygon
+
+BACK = np.array([0.55, -0.75, 0.42])  # towards the eye
+LIGHT = np.array([0.15, -0.55, 0.80])
+SHADES = (0.80, 0.90, 1.0)  # of a cube's faces across x, y and z
+
+
+class View:
+    def __init__(self, place, centre=(0, 0, 0)):
+        back = BACK / np.linalg.norm(BACK)
+        right = np.cross([0, 0, 1], back)
+        right /= np.linalg.norm(right)
+        self.place, self.centre, self.axes = place, np.asarray(centre, float), np.array([right, np.cross(back, right), back])
+
+    def add(self, patch):
+        patch.set_clip_on(False)
+        self.place.add_patch(patch)
+
+    def seen(self, points):
+        return (np.asarray(points, float) - self.centre) @ self.axes.T
+
+    def cube(self, low, edge, colour, face=None, zorder=1, width=0.9):
+        """A cube; with a face colour its faces that look at the eye, else all its edges, those behind dotted."""
+        low = np.asarray(low, float)
+        for axis in range(3):
+            for side in (0, 1):
+                corner = np.zeros((4, 3))
+                corner[:, axis] = side
+                corner[1:3, (axis + 1) % 3] = 1
+                corner[2:4, (axis + 2) % 3] = 1
+                looks = (self.axes[2][axis] > 0) == (side == 1)
+                points = self.seen(low + edge * corner)[:, :2]
+                if face and looks:
+                    fill = tuple(SHADES[axis] * np.array(face))
+                    self.add(Polygon(points, facecolor=fill, edgecolor=colour, linewidth=width, zorder=zorder + 0.1))
+                elif not face:
+                    self.add(Polygon(points, fill=False, edgecolor=colour, linewidth=width if looks else 0.6 * width,
+                                                 linestyle="-" if looks else ":", zorder=zorder + (0.1 if looks else 0)))
+
+    def ball(self, centre, radius, colour, zorder=3, alpha=0.13, width=1.3):
+        at = self.seen(centre)[:2]
+        self.add(Circle(at, radius, facecolor=colour, alpha=alpha, linewidth=0, zorder=zorder))
+        self.add(Circle(at, radius, fill=False, edgecolor=colour, linewidth=width, zorder=zorder + 0.1))
+
+    def faces(self, polygons, face, edge, zorder=2):
+        """Polygons, those that are far first, lit from both sides."""
+        for points in sorted(polygons, key=lambda each: self.seen(each)[:, 2].mean()):
+            normal = np.cross(points[1] - points[0], points[-1] - points[0])
+            lit = abs(normal @ LIGHT) / max(np.linalg.norm(normal) * np.linalg.norm(LIGHT), 1e-30)
+            self.add(Polygon(self.seen(points)[:, :2], facecolor=tuple((0.62 + 0.38 * lit) * np.array(face)),
+                                         edgecolor=edge, linewidth=0.5, zorder=zorder))
+
+    def disc(self, centre, normal, radius, colour, zorder=3, alpha=0.28):
+        normal = normal / np.linalg.norm(normal)
+        one = np.cross(normal, [1, 0, 0] if abs(normal[0]) < 0.8 else [0, 1, 0])
+        one /= np.linalg.norm(one)
+        turn = np.linspace(0, 2 * np.pi, 73)[:, None]
+        rim = centre + radius * (np.cos(turn) * one + np.sin(turn) * np.cross(normal, one))
+        points = self.seen(rim)[:, :2]
+        self.add(Polygon(points, facecolor=colour, alpha=alpha, linewidth=0, zorder=zorder))
+        self.add(Polygon(points, fill=False, edgecolor=colour, linewidth=1.1, zorder=zorder + 0.1))
+
+    def show(self, reach):
+        self.place.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+        self.place.axis("off")
