@@ -9,8 +9,9 @@
 #                            compilers and optimisations, a program built for ARM64 from the package,
 #                            every room and test under the sanitizers, hard cases with 20 times the
 #                            samples, ten million queries of real jaws, an hour of simulated pressing,
-#                            threads for longer, CloudCompare's distances, the add-on in Blender, and
-#                            each fuzzer for a minute; two hours more
+#                            threads for longer, CloudCompare's distances, the add-on in Blender, the four
+#                            doors of tests/doors in a bare Debian, and each fuzzer for a minute; three
+#                            hours more
 #
 #   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
 #   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
@@ -21,12 +22,12 @@ long=false
 case ${1:-} in
   "") ;;
   --long) long=true ;;
-  -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
 esac
 setup=(--oracles --python --sweep --docs --cross --viewer)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
-! $long || setup+=(--cloudcompare --blender --slurm)
+! $long || setup+=(--cloudcompare --blender --slurm --doors)
 scripts/setup.sh "${setup[@]}"
 jobs=$(nproc)
 
@@ -90,6 +91,10 @@ for jaws in built-in human; do
 done
 part "the add-on in Blender"
 /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so || [ $? -eq 77 ]
+for door in scans haptics script cycles; do
+  part "door $door"
+  "tests/doors/$door.sh" || [ $? -eq 77 ]
+done
 more thread 100 search_test 'SharedTreeThread.*'
 more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'  # a million ticks
 trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
