@@ -3,7 +3,7 @@
 # answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
 # under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
 # pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release,
-# built twice; each fuzzer for 30 minutes. Parts that use one core run side by side.
+# built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that use one core run side by side.
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        those that have not passed at this commit
@@ -37,7 +37,7 @@ release() {  # made of the commit, twice
   rm -rf build/tried build/tried-draft
   scripts/release.sh --despite-figures --out build/tried
 }
-installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm; }
+installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm --doors; }
 
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
 alone suite scripts/test.sh
@@ -61,6 +61,7 @@ aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQuery
 aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'
 settle 0
 alone release release
+for door in scans haptics script cycles; do alone doors-$door tests/doors/$door.sh; done
 for round in 1 2 3 4 5 6; do alone fuzz-$round scripts/fuzz.sh --seconds 300; done
 
 end_parts

@@ -15,6 +15,7 @@
 #   scripts/setup.sh --package   also what checks manual pages and Debian packages
 #   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
 #   scripts/setup.sh --blender   also Blender, in which its add-on is tested
+#   scripts/setup.sh --doors     also what walks the four doors: debootstrap, and what they take from here without a root
 #   scripts/setup.sh --viewer    also what makes and tests the page. It takes the commands node (18 or
 #                                later) and npm as they are there, and Debian's where they are not
 #   scripts/setup.sh --cross     also what builds and runs for ARM64 and WebAssembly, and clang 16; only
@@ -47,6 +48,8 @@ for argument in "$@"; do
     --package) packages+=(man-db mandoc lintian) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
     --blender) packages+=(blender) ;;
+    --doors) packages+=(debootstrap git python3-numpy python3-vtk9 python3-venv python3-pip python3-setuptools python3-wheel
+      python3-build python3-dask python3-distributed libfcl-dev libembree-dev libbenchmark-dev) ;;
     --viewer)
       packages+=(emscripten googletest chromium)
       command -v node >/dev/null || packages+=(nodejs)
@@ -54,7 +57,7 @@ for argument in "$@"; do
       viewer=true
       ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,21s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,22s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

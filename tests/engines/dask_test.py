@@ -1,10 +1,14 @@
-"""A sweep on two processes of dask, one of which is killed in the middle of a part."""
+"""A sweep on two processes of dask, one of which is killed in the middle of a part.
+
+IST_DASK_POSES gives the first test another number of poses, and IST_DASK_TABLE names a file for its table.
+"""
 
 import ast
 import inspect
 import os
 import pathlib
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -52,7 +56,10 @@ class Dask(unittest.TestCase):
         self.assertEqual((shares, shares[-1], len(shares)), (sorted(shares), 1, len(sweep.parts)))
 
     def test_a_worker_is_killed_and_the_table_is_that_of_one_process(self):
-        self.makes_all_although_a_worker_is_killed(make_job(self, 16_000, 1000))
+        sweep = make_job(self, int(os.environ.get("IST_DASK_POSES", "16000")), 1000)
+        self.makes_all_although_a_worker_is_killed(sweep)
+        if kept := os.environ.get("IST_DASK_TABLE"):
+            shutil.copyfile(sweep.folder / "rows.npy", kept)
 
     def test_tasks_that_dask_gives_up_are_tried_again(self):
         def allow(failures):

@@ -45,7 +45,7 @@ std::vector<Rival> rivals_named(const std::vector<std::string>& names) {
     refuse_if(
         !rival.here, "--against",
         fmt::format("this ist was built without {}: install it by ./scripts/setup.sh --peers, "
-                    "then cmake --preset bench && cmake --build --preset bench, and run "
+                    "then cmake --preset bench && cmake --build --preset bench --target ist_cli, and run "
                     "build/bench/ist bench",
                     rival.name));
     asked.push_back(rival);
