@@ -3,7 +3,8 @@
 # answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
 # under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
 # pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release,
-# built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that use one core run side by side.
+# built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that use one core run
+# side by side.
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        those that have not passed at this commit
@@ -16,7 +17,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
-  -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
 source scripts/run_preset.sh
 source scripts/parts.sh
