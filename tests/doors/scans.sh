@@ -7,12 +7,12 @@
 # shellcheck source=tests/doors/door.sh
 source "$(dirname "$0")/door.sh"
 door scans "$@"
-needs_here python:vtk
+needs_here python:vtk python:numpy
 packages
 installs "the command, as docs/building.md says" "$(block docs/building.md line 'libist0_*.deb ./ist_')"
 by_page README.md "ist occlusion upper_jaw.stl"
 
-installs "VTK for Python" "apt-get install python3-vtk9"
+installs "VTK for Python, as docs/occlusion.md names it" "apt-get install python3-vtk9 python3-numpy"
 cp "$here/open_map.py" "$walk"
 types "the map, opened by vtkXMLPolyDataReader" "/usr/bin/python3 open_map.py bite.vtp"
 
