@@ -1,5 +1,5 @@
-/* Single calls made in C, which calls.py makes in Python in turns with them: each function makes one
- * and returns the time that it took, ns. */
+/* Single calls made in C, which calls.py makes in Python in turns with them: each function makes
+ * one and returns the time that it took, ns. */
 
 #include <stdio.h>
 #include <stdlib.h>

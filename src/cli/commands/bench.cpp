@@ -44,10 +44,11 @@ std::vector<Rival> rivals_named(const std::vector<std::string>& names) {
     if (std::ranges::find(names, rival.name) == names.end()) continue;
     refuse_if(
         !rival.here, "--against",
-        fmt::format("this ist was built without {}: install it by ./scripts/setup.sh --peers, "
-                    "then cmake --preset bench && cmake --build --preset bench --target ist_cli, and run "
-                    "build/bench/ist bench",
-                    rival.name));
+        fmt::format(
+            "this ist was built without {}: install it by ./scripts/setup.sh --peers, "
+            "then cmake --preset bench && cmake --build --preset bench --target ist_cli, and run "
+            "build/bench/ist bench",
+            rival.name));
     asked.push_back(rival);
   }
   return asked;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/recordings/recording_header.h"
 #include "cli/line_reader.h"
+#include "cli/recordings/recording_header.h"
 #include "ist/base/files.h"
 #include "ist/haptics/recording.h"
 

@@ -6,8 +6,8 @@
 #include <future>
 #include <optional>
 
-#include "cli/recordings/tick_lines.h"
 #include "cli/interruption.h"
+#include "cli/recordings/tick_lines.h"
 #include "ist/haptics/recording.h"
 
 namespace ist::cli {
