@@ -96,6 +96,20 @@ class Parts(unittest.TestCase):
         log.write_text("half of it\n")
         self.assertEqual(self.run_parts("--resume")[1], ["absent", "slow"])
 
+    def test_no_more_run_at_once_than_may(self):
+        steps = "".join(f"{kind} {name} bash -c 'echo begin {name} >>ran; sleep 0.2; echo end {name} >>ran'\n"
+                        for kind, name in (("aside", "a"), ("aside", "b"), ("aside", "c"), ("alone", "d"), ("aside", "e")))
+        head = PROGRAM.format(scripts=SCRIPTS).split("stops()")[0]
+        (self.folder / "long.sh").write_text(f"{head}{steps}end_parts\n")
+        self.assertEqual(self.run_parts()[0], 0)
+        running, most, beside = set(), 0, set()
+        for line in (self.folder / "ran").read_text().splitlines():
+            word, name = line.split()
+            (running.add if word == "begin" else running.remove)(name)
+            most = max(most, len(running))
+            beside |= running - {"d"} if "d" in running else set()
+        self.assertEqual((most, beside), (2, set()))
+
     def test_those_that_are_named_run_alone(self):
         self.assertEqual(self.run_parts("go", "sl"), (0, ["good", "slow"]))
         self.assertEqual(self.run_parts("gone"), (2, []))
