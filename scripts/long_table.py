@@ -85,7 +85,7 @@ def rows(parts):
             group[3][what] = group[3].get(what, 0) + count
     for (kind, state, commit), (number, seconds, date, counts) in groups.items():
         verdict = state if state == "passed" else f"**{state}**"
-        counted = ", ".join(f"{count:,} {what}" for what, count in counts.items()) or "–"
+        counted = ", ".join(f"{what}: {count:,}" for what, count in counts.items()) or "–"
         yield f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {seconds / 60:,.0f} min |\n"
 
 

@@ -145,16 +145,16 @@ class Table(unittest.TestCase):
         self.log("queries", "[  PASSED  ] 3 tests.", cases='{"samples": 5, "broken": 0}\n{"samples": 8, "broken": 1}\n')
         self.log("coherent", "1000 ticks: 3 kept\n2000 ticks: 4 kept\n[  PASSED  ] 1 test.")
         suite, queries, coherent = self.rows()
-        self.assertIn("| 19 tests | `0123456789ab`, 2026-01-02 | 2 min |", suite)
-        self.assertIn("| 3 tests, 8 most samples of a case, 2 cases, 1 broken |", queries)
-        self.assertIn("| 1 tests, 3,000 ticks |", coherent)
+        self.assertIn("| tests: 19 | `0123456789ab`, 2026-01-02 | 2 min |", suite)
+        self.assertIn("| tests: 3, most samples of a case: 8, cases: 2, broken: 1 |", queries)
+        self.assertIn("| tests: 1, ticks: 3,000 |", coherent)
 
     def test_rounds_of_one_commit_are_one_row(self):
         for number, commit in enumerate("aab"):
             self.log(f"fuzz-{number}", "mesh: 50 executions in 300 s", f"passed at {commit} on 2026-01-02 in 300 s")
         first, second = self.rows()
-        self.assertIn("passed 2 times | 100 executions | `a`, 2026-01-02 | 10 min", first)
-        self.assertIn("| passed | 50 executions | `b`", second)
+        self.assertIn("passed 2 times | executions: 100 | `a`, 2026-01-02 | 10 min", first)
+        self.assertIn("| passed | executions: 50 | `b`", second)
 
     def test_what_did_not_pass_is_said(self):
         self.log("suite", "", "failed at 0123 on 2026-01-02 in 90 s")
