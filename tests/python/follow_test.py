@@ -1,5 +1,7 @@
 """Calls that last: their caller follows them, ends them by an exception, and Ctrl-C ends them too."""
 
+import ctypes
+import gc
 import os
 import signal
 import subprocess
@@ -13,6 +15,7 @@ import numpy as np
 from support import JAW_POSES, Jaws, box, write_stl
 
 import ist
+from ist._handle import Handle
 
 
 class Ended(Exception):
@@ -173,6 +176,19 @@ class Interrupt(unittest.TestCase):
                 self.assertEqual((out, run.returncode), ("interrupted True\n", 0), err)
                 self.assertEqual(err, "")
                 self.assertLess(time.monotonic() - sent, 20)
+
+    def test_freeing_leaves_it_to_the_program(self):
+        class Freed(Handle):
+            _free = ctypes.CDLL(None)["raise"]  # SIGINT comes while an object is freed
+
+        for in_a_cycle in (False, True):
+            with self.subTest(in_a_cycle=in_a_cycle), self.assertRaises(KeyboardInterrupt):
+                handle = Freed(signal.SIGINT)
+                if in_a_cycle:
+                    handle.itself = handle
+                del handle
+                gc.collect()
+                time.sleep(0)
 
 
 class Threads(Jaws):

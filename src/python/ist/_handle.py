@@ -1,6 +1,7 @@
 """Objects of the library behind handles: freed once, and never used by two threads at once where they serve one."""
 
 import ctypes
+import functools
 import threading
 
 from ._errors import BUSY, FREED, error_of
@@ -9,10 +10,16 @@ from ._errors import BUSY, FREED, error_of
 class Handle:
     """Owns a handle. It is freed with the object, or before by free() or at the end of a `with`."""
 
+    # Each object has its own: the library's function with the handle. Python drops an exception that comes up in the code of
+    # `__del__`, Ctrl-C too; here no code of Python runs.
+    __slots__ = ("__del__", "__dict__", "__weakref__")
+
     _free = None  # the function of the library that frees it
 
     def __init__(self, handle):
         self._handle = handle
+        if handle is not None:
+            self.__del__ = functools.partial(type(self)._free, handle)
 
     def _need(self):
         if self._handle is None:
@@ -23,10 +30,9 @@ class Handle:
         """Frees the object now. Later uses raise FreedError; a second call does nothing."""
         handle, self._handle = getattr(self, "_handle", None), None
         if handle is not None:
-            type(self)._free(handle)
-
-    def __del__(self):
-        Handle.free(self)  # whatever a lock says: nobody has the object any more
+            free_now = self.__del__
+            del self.__del__
+            free_now()
 
     def __enter__(self):
         return self
