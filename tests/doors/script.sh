@@ -42,5 +42,7 @@ python -c '
 import ist, numpy as np
 rows = np.load(\"engines/rows.npy\", mmap_mode=\"r\")
 assert len(rows) == 100_000 and (rows[\"index\"] == np.arange(len(rows))).all() and (rows[\"status\"] == 0).all()
-print(f\"{len(rows)} rows, {(rows[\"intersects\"] == ist.YES).mean():.0%} intersect\")'"
+intersect = (rows[\"intersects\"] == ist.YES).mean()
+assert 0 < intersect < 1
+print(f\"{len(rows)} rows, {intersect:.0%} intersect\")'"
 end_door
