@@ -9,5 +9,5 @@ forces = [sum(x * x for x in tick["wrench"][:3]) ** 0.5 for tick in ticks]
 faults = sum(tick["fault"] for tick in ticks)
 print(f"{header['bodies'][0]['name']} and {header['bodies'][1]['name']}: {len(ticks)} ticks, {faults} faults, at first {forces[0]:.2f} N, "
       f"at most {max(forces):.2f} N")
-if faults or forces[0] > 0.1 or not 0.5 < max(forces) < 100:
+if faults or forces[0] > 0.01 or not 0.1 < max(forces) < 100:
     sys.exit("that is no press")
