@@ -31,7 +31,7 @@ threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test
 run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
 # What reads what a caller gives, and what runs in vectors; all rooms, and the policies that share code
 # with `table` and `slab`, are watched in the long run.
-run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
+run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test exact_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|tight)$|Thread\.|SplintModel|^Platforms$|OfMoreLeavesThan'
 # The rooms that the golden answers come from; the long run compiles all rooms.
 for preset in clang14 arm64 wasm; do run "$preset -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; done
 part "the page"
