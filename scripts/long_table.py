@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what the long runs gave to docs/guarantees.md, from the logs of scripts/long.sh in build/long. Ends with 1, and
-writes nothing, where no part has a log that was ended.
+"""Writes what the long runs gave to docs/guarantees.md, from the logs of scripts/long.sh in build/long. Rows of parts that
+have no log here are kept. Ends with 1, and writes nothing, where no part has a log that was ended.
 
   scripts/long_table.py
 """
@@ -73,9 +73,19 @@ def results(folder):
     return sorted(made, key=lambda part: (list(PARTS).index(part[0]), part[3]))
 
 
+def kept_rows(table, parts):
+    """The rows of a table whose kinds are not among these parts, by kind."""
+    kinds, found = {title: kind for kind, title in PARTS.items()}, {}
+    for row in table.splitlines(keepends=True):
+        kind = kinds.get(row.split(" | ")[0].removeprefix("| "))
+        if kind and kind not in {part[0] for part in parts}:
+            found.setdefault(kind, []).append(row)
+    return found
+
+
 def rows(parts):
-    """A row for each kind, and for each verdict and commit of it."""
-    groups = {}
+    """A row for each kind, and for each verdict and commit of it, by kind."""
+    groups, made = {}, {}
     for kind, state, commit, date, seconds, counts in parts:
         group = groups.setdefault((kind, state, commit), [0, 0, date, {}])
         group[0] += 1
@@ -86,17 +96,20 @@ def rows(parts):
     for (kind, state, commit), (number, seconds, date, counts) in groups.items():
         verdict = state if state == "passed" else f"**{state}**"
         counted = ", ".join(f"{what}: {count:,}" for what, count in counts.items()) or "–"
-        yield f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {seconds / 60:,.0f} min |\n"
+        made.setdefault(kind, []).append(
+            f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {seconds / 60:,.0f} min |\n")
+    return made
 
 
 def written(text, parts):
-    """The page with the table of these parts."""
+    """The page with the table of these parts, and of those that it had."""
     before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    table, end, after = rest.partition(END)
     if not begin or not end:
         sys.exit(f"long_table: the page has no place for the table: {BEGIN.strip()}")
     head = "| part | ended | counted | commit | time |\n|---|---|---|---|---|\n"
-    return before + BEGIN + head + "".join(rows(parts)) + END + after
+    all_rows = kept_rows(table, parts) | rows(parts)
+    return before + BEGIN + head + "".join(row for kind in PARTS for row in all_rows.get(kind, [])) + END + after
 
 
 def main():

@@ -138,7 +138,7 @@ class Table(unittest.TestCase):
             (self.folder / f"{name}.jsonl").write_text(cases)
 
     def rows(self):
-        return list(long_table.rows(long_table.results(self.folder)))
+        return [row for rows in long_table.rows(long_table.results(self.folder)).values() for row in rows]
 
     def test_counts(self):
         self.log("suite", "100% tests passed, 0 tests failed out of 7\n100% tests passed, 0 tests failed out of 12")
@@ -165,6 +165,22 @@ class Table(unittest.TestCase):
         self.assertIn("| **failed** |", suite)
         self.assertIn("| **skipped** |", blender)
         self.assertIn("`0123+`", threads)
+
+    def test_rows_of_parts_without_a_log_stay(self):
+        page = f"before\n{long_table.BEGIN}No part has been run yet.\n{long_table.END}after\n"
+        self.log("suite", "", "passed at a on 2026-01-02 in 60 s")
+        self.log("fuzz-1", "", "passed at a on 2026-01-02 in 60 s")
+        page = long_table.written(page, long_table.results(self.folder))
+        for log in self.folder.iterdir():
+            log.unlink()
+        self.log("fuzz-2", "", "passed at b on 2026-01-03 in 60 s")
+        self.log("queries", "", "passed at b on 2026-01-03 in 60 s")
+        page = long_table.written(page, long_table.results(self.folder))
+        before, _, _, _, suite, queries, fuzz, _, after = page.splitlines()
+        self.assertEqual((before, after), ("before", "after"))
+        for row, part, commit in ((suite, "suite", "a"), (queries, "queries", "b"), (fuzz, "fuzz", "b")):
+            self.assertTrue(row.startswith(f"| {long_table.PARTS[part]} | passed |"), row)
+            self.assertIn(f"`{commit}`", row)
 
     def test_the_page_has_a_place(self):
         self.assertIn(long_table.BEGIN, long_table.PAGE.read_text())
