@@ -77,8 +77,8 @@ def main():
         counter = Counter(program, int(ticks), pathlib.Path(folder))
         lines, failed, before = [], False, None
         left, text = list(EFFECTS), ALL
-        # Those that act at contacts go before the contact.
-        for effect in [None, "snap", "gravity", "proximity", "damping", "friction", "contact"]:
+        # The contact, which is first, goes last: others act at contacts.
+        for effect in [None, *reversed(EFFECTS)]:
             if effect is not None:
                 left.remove(effect)
                 text = taken_out(text, effect)

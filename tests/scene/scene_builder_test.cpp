@@ -1,11 +1,13 @@
 // Only what a scene names is built, and what it says of its bodies is kept.
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
 
 #include "ist/haptics/tool.h"
 #include "ist/scene/make_effects.h"
+#include "ist/scene/scene_parts.h"
 #include "scene/scene_case.h"
 
 namespace ist::test {
@@ -21,7 +23,11 @@ const std::map<std::string, std::string> kTables{
     {"proximity", "[effects.proximity]\ndistance = 2\n"},
     {"gravity", "[effects.gravity]\nmass = 0.05\n"},
     {"snap", "[effects.snap]\nmove = [0, 0, -2]\nradius = 3\n"}};
-const Names kAll{"contact", "friction", "damping", "proximity", "gravity", "snap"};
+const Names kAll = [] {
+  Names names;
+  for (const auto& [name, table] : kTables) names.insert(name);
+  return names;
+}();
 
 class PayOnlyForWhatIsNamed : public SceneCase {
  protected:
@@ -85,6 +91,20 @@ void expect_built_for(const BuiltScene& scene, const Names& effects) {
     noted += note.bytes;
   }
   EXPECT_EQ(noted, bytes_of(scene)) << "what is said is not what is there";
+}
+
+// An effect that is missing in kTables would be in no test here.
+TEST_F(PayOnlyForWhatIsNamed, EveryEffectThatASceneMayNameIsTested) {
+  const auto file = dir_.write("all.toml", text_of(kAll));
+  TomlTable document = read_toml(file);
+  (void)read_scene(file, document);
+  const auto effects = std::find_if(document.entries.begin(), document.entries.end(),
+                                    [](const TomlEntry& entry) { return entry.key == "effects"; });
+  Names known;
+  for (const KnownKey& key : std::get<TomlTable>(effects->value.content).known) {
+    known.insert(key.name);
+  }
+  EXPECT_EQ(known, kAll);
 }
 
 TEST_F(PayOnlyForWhatIsNamed, NothingIsBuiltForNoEffect) {

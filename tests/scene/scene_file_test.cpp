@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ist/models/models.h"
-#include "ist/scene.h"
+#include "ist/scene/make_effects.h"
 #include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
 #include "support/temp_dir.h"
@@ -79,7 +79,7 @@ TEST_F(SceneFile, SaysWhatIsSimulated) {
 
 TEST_F(SceneFile, LeavesOutWhatIsNotNamed) {
   const Scene scene = read(kSoundScene);
-  EXPECT_FALSE(scene.friction || scene.damping || scene.proximity || scene.gravity || scene.snap);
+  EXPECT_EQ(make_effects(scene, {}, true, 1).size(), 1u);
   EXPECT_FALSE(scene.open);
   EXPECT_FALSE(read(replaced(kSoundScene, "[effects.contact]\nstiffness = 2000\n", "")).contact);
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "ist/scene.h"
+#include "ist/scene/make_effects.h"
 #include "support/data_dir.h"
 #include "support/skip.h"
 
@@ -16,15 +16,12 @@ Scene shipped(const std::string& name) {
   return read_scene(std::filesystem::path(IST_SCENES) / (name + ".toml"));
 }
 
-int effects(const Scene& scene) {
-  return scene.contact.has_value() + scene.friction.has_value() + scene.damping.has_value() +
-         scene.proximity.has_value() + scene.gravity.has_value() + scene.snap.has_value();
-}
+std::size_t effects(const Scene& scene) { return make_effects(scene, {}, true, 1).size(); }
 
 TEST(ShippedScene, PressesASphereOnABox) {
   const Scene scene = shipped("press");
   EXPECT_TRUE(scene.contact);
-  EXPECT_EQ(effects(scene), 1);
+  EXPECT_EQ(effects(scene), 1u);
   const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.front().source).size.z();
   const double bottom =
       scene.held.front().translation.z() - std::get<BuiltInShape>(scene.held.front().source).radius;
@@ -52,7 +49,7 @@ TEST(ShippedScene, RestsStillWhereItPresses) {
 TEST(ShippedScene, SlidesABoxOverABox) {
   const Scene scene = shipped("slide");
   EXPECT_TRUE(scene.contact && scene.friction && scene.damping);
-  EXPECT_EQ(effects(scene), 3);
+  EXPECT_EQ(effects(scene), 3u);
   const double top = 0.5 * std::get<BuiltInShape>(scene.fixed.front().source).size.z();
   const double bottom = scene.held.front().translation.z() -
                         0.5 * std::get<BuiltInShape>(scene.held.front().source).size.z();
@@ -65,7 +62,7 @@ TEST(ShippedScene, SlidesABoxOverABox) {
 
 TEST(ShippedScene, ClosesTwoJawsWithAllEffects) {
   const Scene scene = shipped("jaws");
-  EXPECT_EQ(effects(scene), 6);
+  EXPECT_EQ(effects(scene), 6u);
   EXPECT_EQ(std::get<BuiltInShape>(scene.fixed.front().source).kind, BuiltInShape::Kind::kUpperJaw);
   EXPECT_EQ(std::get<BuiltInShape>(scene.held.front().source).kind, BuiltInShape::Kind::kLowerJaw);
   // make_jaw() promises that the jaws are free there, and not where the plan leads.
@@ -113,7 +110,7 @@ TEST(ShippedScene, ClosesTheHumanPair) {
   EXPECT_EQ(scene.held.front().voxel_size, 0.2);
   EXPECT_EQ(scene.open.value(), Eigen::Vector3d(0, 0, -1));
   EXPECT_TRUE(scene.contact && scene.friction && scene.damping);
-  EXPECT_EQ(effects(scene), 3);
+  EXPECT_EQ(effects(scene), 3u);
   const auto& plan = std::get<HandSettings>(scene.device).plan;
   EXPECT_TRUE(plan[1].pose.translation.isZero(0)) << "does not close fully";
   EXPECT_EQ(scene.seconds, plan.back().time);

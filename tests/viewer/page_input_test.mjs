@@ -44,7 +44,7 @@ test('says what is wrong with each bad file and what to do, and keeps the bodies
     ['numbers.obj', 'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n', /line 2: the coordinate 'nan' is not finite.*; repair the mesh where it was made$/],
     ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n', /3 vertices, but no face; export the surface as polygons$/],
     ['cut.ist', readFileSync(path.join(folder, 'cut.ist')), /it has 3000 bytes and should have \d+: copy or build it again$/],
-    ['jaw.step', 'ISO-10303-21;', /in no supported format: STL .*; convert the mesh to one of them$/],
+    ['jaw.step', 'ISO-10303-21;', /in no supported format: STL, .*; convert the mesh to one of them$/],
     ['jaws.3mf', 'PK\x03\x04'.padEnd(40, '\0'), /a 3MF.* no zlib to unpack it: convert the mesh to STL/],
     ['<script>fault()<!--.stl', 'solid nothing\nendsolid nothing\n', /the STL has no facet; export the mesh again$/],
   ];

@@ -13,6 +13,7 @@
 #include "cli/load_bodies.h"
 #include "cli/refusals.h"
 #include "cli/source_file.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -91,7 +92,7 @@ void add_build(CLI::App& app) {
   const auto options = std::make_shared<BuildArguments>();
   command
       ->add_option("MESH", options->mesh,
-                   "STL, OBJ, PLY, OFF, glTF or 3MF file; no unit is converted")
+                   fmt::format("{} file; no unit is converted", kMeshFormats))
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", options->output, "the tree file to write, .ist")

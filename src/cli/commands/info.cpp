@@ -9,6 +9,7 @@
 #include "cli/common_options.h"
 #include "cli/header_line.h"
 #include "cli/source_file.h"
+#include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
@@ -46,7 +47,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show the contents of a mesh or a tree, level by level");
   const auto options = std::make_shared<InfoArguments>();
-  command->add_option("FILE", options->file, "STL, OBJ, PLY, OFF, glTF or 3MF mesh, or tree")
+  command->add_option("FILE", options->file, fmt::format("{} mesh, or tree", kMeshFormats))
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "print one JSON object");

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "ist/haptics/devices/hand_device.h"
+#include "ist/haptics/effects/effect.h"
+#include "ist/haptics/simulation.h"
 #include "ist/scene/table_reader.h"
 
 namespace ist {
@@ -37,6 +41,53 @@ inline constexpr NumberRange kTorqueSlew{1e-6, 1e9, "N m/s"};
 inline constexpr NumberRange kSoftStart{0, 60, "s"};
 inline constexpr NumberRange kWorkers{1, 2, ""};
 inline constexpr NumberRange kSeed{0, std::numeric_limits<double>::infinity(), ""};
+
+/// A number of a table: its key, its place in the settings, its range. The reader of scene files
+/// and the check of scenes that programs make go by the same lists.
+template <typename Settings>
+struct NumberKey {
+  const char* name;
+  double Settings::*member;
+  NumberRange range;
+};
+inline constexpr NumberKey<DeviceMechanics> kMechanicsKeys[] = {
+    {"damping", &DeviceMechanics::damping, kDamping},
+    {"angular_damping", &DeviceMechanics::angular_damping, kAngularDamping},
+    {"delay", &DeviceMechanics::delay, kDelay}};
+inline constexpr NumberKey<CouplingSettings> kCouplingKeys[] = {
+    {"stiffness", &CouplingSettings::stiffness, kStiffness},
+    {"damping", &CouplingSettings::damping, kDamping},
+    {"angular_stiffness", &CouplingSettings::angular_stiffness, kAngularStiffness},
+    {"angular_damping", &CouplingSettings::angular_damping, kAngularDamping},
+    {"max_force", &CouplingSettings::max_force, kForce},
+    {"max_torque", &CouplingSettings::max_torque, kTorque}};
+inline constexpr NumberKey<SafetySettings> kSafetyKeys[] = {
+    {"max_force", &SafetySettings::max_force, kForce},
+    {"max_torque", &SafetySettings::max_torque, kTorque},
+    {"force_slew", &SafetySettings::force_slew, kForceSlew},
+    {"torque_slew", &SafetySettings::torque_slew, kTorqueSlew},
+    {"soft_start", &SafetySettings::soft_start, kSoftStart}};
+inline constexpr NumberKey<ContactSettings> kContactKeys[] = {
+    {"stiffness", &ContactSettings::stiffness, kStiffness},
+    {"margin", &ContactSettings::margin, kMargin}};
+inline constexpr NumberKey<FrictionSettings> kFrictionKeys[] = {
+    {"static", &FrictionSettings::static_coefficient, kFriction},
+    {"dynamic", &FrictionSettings::dynamic_coefficient, kFriction},
+    {"stiffness", &FrictionSettings::stiffness, kStiffness}};
+inline constexpr NumberKey<SnapSettings> kSnapKeys[] = {
+    {"stiffness", &SnapSettings::stiffness, kStiffness},
+    {"angular_stiffness", &SnapSettings::angular_stiffness, kAngularStiffness},
+    {"angle", &SnapSettings::angle, kAngle}};
+
+/// Reads the numbers of a table whose keys are listed. A key that is missing leaves its default.
+template <typename Settings, std::size_t kCount>
+[[nodiscard]] Settings read_numbers(TableReader table, const NumberKey<Settings> (&keys)[kCount],
+                                    std::type_identity_t<Settings> settings = {}) {
+  for (const auto& [name, member, range] : keys) {
+    settings.*member = table.number(name, range, settings.*member);
+  }
+  return settings;
+}
 
 /// Returns the metres in a unit of length, "m", "cm", "mm", "um" or "inch", or nullopt for another
 /// name.

@@ -17,9 +17,16 @@ class Check {
  public:
   explicit Check(const Scene& scene) : scene_(scene) {}
 
-  void number(const char* key, double value, const NumberRange& range) const {
+  void number(std::string_view key, double value, const NumberRange& range) const {
     if (!range.holds(value)) {
       fail_at(scene_, key, fmt::format("it is {}: give a number {}", value, range.text()));
+    }
+  }
+  template <typename Settings, std::size_t kCount>
+  void numbers(const char* table, const Settings& settings,
+               const NumberKey<Settings> (&keys)[kCount]) const {
+    for (const auto& [name, member, range] : keys) {
+      number(fmt::format("{}.{}", table, name), settings.*member, range);
     }
   }
   // A length in metres, which was one in the scene's unit.
@@ -128,21 +135,6 @@ void check_changes(const Scene& scene) {
   }
 }
 
-void check_coupling(const Check& check, const CouplingSettings& coupling,
-                    const SafetySettings& safety) {
-  check.number("coupling.stiffness", coupling.stiffness, kStiffness);
-  check.number("coupling.damping", coupling.damping, kDamping);
-  check.number("coupling.angular_stiffness", coupling.angular_stiffness, kAngularStiffness);
-  check.number("coupling.angular_damping", coupling.angular_damping, kAngularDamping);
-  check.number("coupling.max_force", coupling.max_force, kForce);
-  check.number("coupling.max_torque", coupling.max_torque, kTorque);
-  check.number("safety.max_force", safety.max_force, kForce);
-  check.number("safety.max_torque", safety.max_torque, kTorque);
-  check.number("safety.force_slew", safety.force_slew, kForceSlew);
-  check.number("safety.torque_slew", safety.torque_slew, kTorqueSlew);
-  check.number("safety.soft_start", safety.soft_start, kSoftStart);
-}
-
 void check_effects(const Check& check, const Scene& scene) {
   if (!scene.contact && (scene.friction || scene.damping)) {
     const char* effect = scene.friction ? "friction" : "damping";
@@ -151,14 +143,9 @@ void check_effects(const Check& check, const Scene& scene) {
                         "this one out",
                         effect));
   }
-  if (scene.contact) {
-    check.number("effects.contact.stiffness", scene.contact->stiffness, kStiffness);
-    check.number("effects.contact.margin", scene.contact->margin, kMargin);
-  }
+  if (scene.contact) check.numbers("effects.contact", *scene.contact, kContactKeys);
   if (scene.friction) {
-    check.number("effects.friction.static", scene.friction->static_coefficient, kFriction);
-    check.number("effects.friction.dynamic", scene.friction->dynamic_coefficient, kFriction);
-    check.number("effects.friction.stiffness", scene.friction->stiffness, kStiffness);
+    check.numbers("effects.friction", *scene.friction, kFrictionKeys);
     if (scene.friction->dynamic_coefficient > scene.friction->static_coefficient) {
       fail_at(scene, "effects.friction.dynamic", "it is more than the static one: lower it");
     }
@@ -180,10 +167,7 @@ void check_effects(const Check& check, const Scene& scene) {
       fail_at(scene, "effects.snap", "its pose is no rigid motion: give a rotation");
     }
     check.length("effects.snap.radius", scene.snap->radius);
-    check.number("effects.snap.angle", scene.snap->angle, kAngle);
-    check.number("effects.snap.stiffness", scene.snap->stiffness, kStiffness);
-    check.number("effects.snap.angular_stiffness", scene.snap->angular_stiffness,
-                 kAngularStiffness);
+    check.numbers("effects.snap", *scene.snap, kSnapKeys);
   }
 }
 
@@ -211,15 +195,13 @@ void check_scene(const Scene& scene) {
   }
   check_bodies(check, scene);
   check_changes(scene);
-  const DeviceMechanics& mechanics = mechanics_of(scene);
-  check.number("device.damping", mechanics.damping, kDamping);
-  check.number("device.angular_damping", mechanics.angular_damping, kAngularDamping);
-  check.number("device.delay", mechanics.delay, kDelay);
+  check.numbers("device", mechanics_of(scene), kMechanicsKeys);
   check_plan(scene);
   if (scene.open && !(std::abs(scene.open->norm() - 1) < 1e-6)) {
     fail_at(scene, "held.open", "it is no direction: give an axis of unit length");
   }
-  check_coupling(check, scene.coupling, scene.safety);
+  check.numbers("coupling", scene.coupling, kCouplingKeys);
+  check.numbers("safety", scene.safety, kSafetyKeys);
   check_effects(check, scene);
 }
 

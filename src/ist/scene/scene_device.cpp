@@ -55,11 +55,7 @@ ScriptSettings read_plan_file(TableReader& device, const DeviceMechanics& mechan
 void read_device(TableReader& scene, Scene& result) {
   TableReader device = scene.table("device");
   const DeviceKind kind = device.choice("kind", device_kind, R"("hand", "script" or "null")");
-  const DeviceMechanics usual = HandSettings().mechanics;
-  const DeviceMechanics mechanics{
-      .damping = device.number("damping", kDamping, usual.damping),
-      .angular_damping = device.number("angular_damping", kAngularDamping, usual.angular_damping),
-      .delay = device.number("delay", kDelay, usual.delay)};
+  const DeviceMechanics mechanics = read_numbers(device, kMechanicsKeys, HandSettings().mechanics);
   switch (kind) {
     case DeviceKind::kHand:
       result.device = read_hand(device, mechanics, result.unit);

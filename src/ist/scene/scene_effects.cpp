@@ -8,19 +8,12 @@
 namespace ist {
 namespace {
 
-ContactSettings read_contact(TableReader contact) {
-  ContactSettings settings;
-  settings.stiffness = contact.number("stiffness", kStiffness, settings.stiffness);
-  settings.margin = contact.number("margin", kMargin, settings.margin);
-  return settings;
-}
-
 FrictionSettings read_friction(TableReader friction) {
-  FrictionSettings settings;
-  settings.static_coefficient = friction.number("static", kFriction, settings.static_coefficient);
-  settings.dynamic_coefficient = friction.number(
-      "dynamic", kFriction, std::min(settings.dynamic_coefficient, settings.static_coefficient));
-  settings.stiffness = friction.number("stiffness", kStiffness, settings.stiffness);
+  FrictionSettings settings = read_numbers(friction, kFrictionKeys);
+  if (!friction.has("dynamic")) {
+    settings.dynamic_coefficient =
+        std::min(settings.dynamic_coefficient, settings.static_coefficient);
+  }
   if (settings.dynamic_coefficient > settings.static_coefficient) {
     friction.fail("dynamic",
                   fmt::format("'dynamic' is {}, more than 'static', which is {}",
@@ -39,14 +32,10 @@ SceneGravity read_gravity(TableReader gravity) {
 }
 
 SnapSettings read_snap(TableReader snap, double unit) {
-  SnapSettings settings;
+  SnapSettings settings = read_numbers(snap, kSnapKeys);
   settings.pose.rotation = snap.rotation("turn");
   settings.pose.translation = unit * snap.vector("move", kPlace, Eigen::Vector3d::Zero());
-  settings.stiffness = snap.number("stiffness", kStiffness, settings.stiffness);
-  settings.angular_stiffness =
-      snap.number("angular_stiffness", kAngularStiffness, settings.angular_stiffness);
   settings.radius = unit * snap.number("radius", kLength);
-  settings.angle = snap.number("angle", kAngle, settings.angle);
   return settings;
 }
 
@@ -55,7 +44,9 @@ SnapSettings read_snap(TableReader snap, double unit) {
 void read_effects(TableReader& scene, Scene& result) {
   if (!scene.has("effects")) return;
   TableReader effects = scene.table("effects");
-  if (effects.has("contact")) result.contact = read_contact(effects.table("contact"));
+  if (effects.has("contact")) {
+    result.contact = read_numbers(effects.table("contact"), kContactKeys);
+  }
   if (effects.has("friction")) result.friction = read_friction(effects.table("friction"));
   if (effects.has("damping")) {
     result.damping = DampingSettings{

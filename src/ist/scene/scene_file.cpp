@@ -18,43 +18,25 @@ void open_if_missing(TomlTable& document, std::string_view key) {
   if (!is_there) document.entries.push_back({std::string(key), {document.line, TomlTable{}}});
 }
 
-SafetySettings read_safety(TableReader& scene) {
-  TableReader safety = scene.table("safety");
-  const SafetySettings usual;
-  return {.max_force = safety.number("max_force", kForce, usual.max_force),
-          .max_torque = safety.number("max_torque", kTorque, usual.max_torque),
-          .force_slew = safety.number("force_slew", kForceSlew, usual.force_slew),
-          .torque_slew = safety.number("torque_slew", kTorqueSlew, usual.torque_slew),
-          .soft_start = safety.number("soft_start", kSoftStart, usual.soft_start)};
+// A spring beyond the safety limit would be cut off.
+void refuse_beyond(const TableReader& coupling, std::string_view key, double limit, double safe,
+                   const NumberRange& range) {
+  if (limit <= safe) return;
+  coupling.fail(key,
+                fmt::format("'{}' in [coupling] is {} {}, more than the {} that [safety] lets "
+                            "through",
+                            key, limit, range.unit, safe),
+                fmt::format("lower it, or raise '{}' in [safety]", key));
 }
 
-// Reads a spring's limit, which must not exceed the safety limit: a spring beyond it would be cut
-// off.
-double read_limit(TableReader& coupling, std::string_view key, const NumberRange& range,
-                  double otherwise, double safe) {
-  const double limit = coupling.number(key, range, std::min(otherwise, safe));
-  if (limit > safe) {
-    coupling.fail(key,
-                  fmt::format("'{}' in [coupling] is {} {}, more than the {} that [safety] lets "
-                              "through",
-                              key, limit, range.unit, safe),
-                  fmt::format("lower it, or raise '{}' in [safety]", key));
-  }
-  return limit;
-}
-
-CouplingSettings read_coupling(TableReader& scene, const SafetySettings& safety) {
-  TableReader coupling = scene.table("coupling");
-  const CouplingSettings usual;
-  return {
-      .stiffness = coupling.number("stiffness", kStiffness, usual.stiffness),
-      .damping = coupling.number("damping", kDamping, usual.damping),
-      .angular_stiffness =
-          coupling.number("angular_stiffness", kAngularStiffness, usual.angular_stiffness),
-      .angular_damping = coupling.number("angular_damping", kAngularDamping, usual.angular_damping),
-      .max_force = read_limit(coupling, "max_force", kForce, usual.max_force, safety.max_force),
-      .max_torque =
-          read_limit(coupling, "max_torque", kTorque, usual.max_torque, safety.max_torque)};
+CouplingSettings read_coupling(TableReader coupling, const SafetySettings& safety) {
+  CouplingSettings usual;
+  usual.max_force = std::min(usual.max_force, safety.max_force);
+  usual.max_torque = std::min(usual.max_torque, safety.max_torque);
+  const CouplingSettings read = read_numbers(coupling, kCouplingKeys, usual);
+  refuse_beyond(coupling, "max_force", read.max_force, safety.max_force, kForce);
+  refuse_beyond(coupling, "max_torque", read.max_torque, safety.max_torque, kTorque);
+  return read;
 }
 
 }  // namespace
@@ -83,8 +65,8 @@ Scene read_scene(const std::filesystem::path& file, TomlTable& document) {
       reader.whole_number("workers", kWorkers, static_cast<std::uint64_t>(scene.workers)));
   read_bodies(reader, scene);
   read_device(reader, scene);
-  scene.safety = read_safety(reader);
-  scene.coupling = read_coupling(reader, scene.safety);
+  scene.safety = read_numbers(reader.table("safety"), kSafetyKeys);
+  scene.coupling = read_coupling(reader.table("coupling"), scene.safety);
   read_effects(reader, scene);
   reader.refuse_unknown();
   check_scene(scene);

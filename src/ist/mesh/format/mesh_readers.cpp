@@ -1,5 +1,7 @@
 #include "ist/mesh/format/mesh_readers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "ist/mesh/format/stl_layout.h"
@@ -67,9 +69,10 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   if (is_text(content) ? could_be_cut && could_be_header
                        : could_be_cut || begins_like_binary_stl(content))
     return read_binary_stl(content, name);
-  fail_mesh(ErrorCode::kNotAMesh, name, "",
-            "the content is in no supported format: STL (binary or text), PLY (binary or "
-            "text), OBJ, OFF, glTF or 3MF; convert the mesh to one of them");
+  fail_mesh(
+      ErrorCode::kNotAMesh, name, "",
+      fmt::format("the content is in no supported format: {}; convert the mesh to one of them",
+                  kMeshFormats));
 }
 
 }  // namespace ist

@@ -8,6 +8,9 @@
 
 namespace ist {
 
+/// The formats that read_content() reads, for messages and helps.
+inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, glTF or 3MF";
+
 /// Reads the content of a mesh file, whose format the content tells (of an OBJ also the name). The
 /// file itself is not opened.
 ///
