@@ -1,5 +1,6 @@
 """How the tests of packages run commands, and how they fail."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -26,3 +27,13 @@ def need(*tools):
     for tool in tools:
         if shutil.which(tool) is None:
             raise Missing(f"{tool} is not installed: scripts/setup.sh does that, some of it with --package")
+
+
+def ends(test):
+    """The exit code of a test: 77 where what it needs is not installed, 1 then with IST_REQUIRE_ALL=1."""
+    try:
+        test()
+    except Missing as missing:
+        print(f"packages: skipped: {missing}", file=sys.stderr)
+        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else 77
+    return 0

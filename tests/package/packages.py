@@ -11,14 +11,13 @@ import shutil
 import subprocess
 import sys
 
-from checks import Missing, need, require, run
+from checks import ends, need, require, run
 from clean_root import CleanRoot
 from installed import Installed, files_below
 from pages import Pages
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
-SKIPPED = 77
 # What a user's project may ask of a compiler, without a word from our headers.
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wmissing-field-initializers", "-Werror"]
 OTHER_COMPILER = "clang++-14"
@@ -296,12 +295,7 @@ def main():
         parser.add_argument(f"--{name}", type=pathlib.Path, required=True)
     parser.add_argument("--compiler", required=True)
     arguments = parser.parse_args()
-    try:
-        getattr(Packages(arguments), arguments.test)()
-    except Missing as missing:
-        print(f"packages: skipped: {missing}", file=sys.stderr)
-        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
-    return 0
+    return ends(getattr(Packages(arguments), arguments.test))
 
 
 if __name__ == "__main__":

@@ -13,13 +13,11 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
 sys.path.insert(0, str(SOURCE / "tests/package"))
-from checks import Missing, need, require, run  # noqa: E402  after its folder is known
+from checks import Missing, ends, need, require, run  # noqa: E402  after its folder is known
 from debian import DebianPackage  # noqa: E402
 from environments import PYTHON, clean_environment, tries  # noqa: E402
 from modules import LICENCES, modules  # noqa: E402
 from remedies import WithoutLibrary  # noqa: E402
-
-SKIPPED = 77
 
 
 def need_modules(*names):
@@ -173,12 +171,7 @@ def main():
     parser.add_argument("--compiler", required=True)
     parser.add_argument("--unity", default="0")
     arguments = parser.parse_args()
-    try:
-        getattr(Packages(arguments), arguments.test)()
-    except Missing as missing:
-        print(f"packages: skipped: {missing}", file=sys.stderr)
-        return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
-    return 0
+    return ends(getattr(Packages(arguments), arguments.test))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -23,7 +24,28 @@ struct RealPair {
   double voxel_size;
 };
 
-class RealPairs : public ::testing::TestWithParam<RealPair> {};
+// Two scans at twelve poses, and what is true there.
+class RealPairs : public ::testing::TestWithParam<RealPair> {
+ protected:
+  void SetUp() override {
+    const auto file = data_dir() / (std::string("truth_") + GetParam().name + ".json");
+    if (!std::filesystem::exists(file)) IST_SKIP(file << " is not there");
+    truth_ = nlohmann::json::parse(std::ifstream(file));
+    ASSERT_EQ(truth_.size(), 12u);
+  }
+  static SphereTree tree(const char* file, BuildOptions options) {
+    options.voxel_size = GetParam().voxel_size;
+    return build_tree(read_mesh(data_dir() / file), options);
+  }
+  static Eigen::Isometry3d pose_of(const nlohmann::json& item) {
+    const auto numbers = item["pose"].get<std::vector<double>>();
+    Eigen::Isometry3d pose;
+    std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+    return pose;
+  }
+
+  nlohmann::json truth_;
+};
 
 INSTANTIATE_TEST_SUITE_P(
     Pairs, RealPairs,
@@ -33,26 +55,17 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Contacts wherever triangles meet, none where the surfaces are farther apart than the resolution.
 TEST_P(RealPairs, AgreeWithExactTriangles) {
-  const auto& [name, fixed_file, moving_file, voxel_size] = GetParam();
-  const auto truth_file = data_dir() / (std::string("truth_") + name + ".json");
-  if (!std::filesystem::exists(truth_file)) IST_SKIP(truth_file << " is not there");
-  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(truth_file));
-  ASSERT_EQ(truth.size(), 12u);
-
   BuildOptions options;
-  options.voxel_size = voxel_size;
   options.spheres = SpherePolicy::kSlab;
-  const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
-  const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
+  const SphereTree fixed = tree(GetParam().fixed, options);
+  const SphereTree moving = tree(GetParam().moving, options);
   std::vector<LeafPair> leaf_pairs(1 << 18);
   for (const SpherePolicy policy : kSpherePolicies) {
     ReferenceQuery query(fixed, moving, policy);
     int free = 0;
-    for (const nlohmann::json& item : truth) {
+    for (const nlohmann::json& item : truth_) {
       SCOPED_TRACE(std::string(to_string(policy)) + ", " + item["label"].get<std::string>());
-      const auto numbers = item["pose"].get<std::vector<double>>();
-      Eigen::Isometry3d pose;
-      std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+      const Eigen::Isometry3d pose = pose_of(item);
       const QueryResult result = query.leaf_pairs(pose, leaf_pairs);
       EXPECT_EQ(result.status, QueryStatus::kDone);
       EXPECT_FALSE(result.truncated);
@@ -67,23 +80,15 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
 // To the last pair of triangles, each decided in rational numbers, and the distance to within what
 // the truth is rounded to.
 TEST_P(RealPairs, HaveTheTrianglesThatMeet) {
-  const auto& [name, fixed_file, moving_file, voxel_size] = GetParam();
-  const auto truth_file = data_dir() / (std::string("truth_") + name + ".json");
-  if (!std::filesystem::exists(truth_file)) IST_SKIP(truth_file << " is not there");
-  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(truth_file));
-  ASSERT_EQ(truth.size(), 12u);
   BuildOptions options;
-  options.voxel_size = voxel_size;
   options.keep_triangles = true;
-  const SphereTree fixed = build_tree(read_mesh(data_dir() / fixed_file), options);
-  const SphereTree moving = build_tree(read_mesh(data_dir() / moving_file), options);
+  const SphereTree fixed = tree(GetParam().fixed, options);
+  const SphereTree moving = tree(GetParam().moving, options);
   Query query(fixed, moving);
   std::vector<TrianglePair> pairs(1 << 14);
-  for (const nlohmann::json& item : truth) {
+  for (const nlohmann::json& item : truth_) {
     SCOPED_TRACE(item["label"].get<std::string>());
-    const auto numbers = item["pose"].get<std::vector<double>>();
-    Eigen::Isometry3d pose;
-    std::copy(numbers.begin(), numbers.end(), pose.matrix().data());
+    const Eigen::Isometry3d pose = pose_of(item);
     const TrianglePairsResult result = query.triangle_pairs(pose, pairs);
     ASSERT_LE(result.triangle_pairs, pairs.size());
     EXPECT_EQ(result.triangle_pairs, item["triangle_pairs"]);

@@ -1,24 +1,16 @@
 // Every long step has a bar and a button that ends it: the page then is as it was, and goes on.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {readFileSync} from 'node:fs';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {browser, folder, stage} from './stage.mjs';
 
-const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
-let browser;
-
-before(async () => {
+stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
-  browser = await startBrowser();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true});
 });
 
 // The engine takes a minute for these, whatever machine it runs on.

@@ -2,25 +2,17 @@
 // bad gets a sentence, and the page goes on.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {readFileSync, truncateSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, messages, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, messages, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {browser, folder, stage} from './stage.mjs';
 
-const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
 const coarse = '#voxel=2&panel=bodies';
-let browser;
-
-before(async () => {
+stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
-  browser = await startBrowser();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true});
 });
 
 const fileOf = (name, buffer) => ({name, mimeType: 'application/octet-stream', buffer: Buffer.from(buffer)});

@@ -1,25 +1,17 @@
 // What each panel says, in its own words, of what the engine and the command answer.
 
 import assert from 'node:assert/strict';
-import {mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
 import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready} from './browser.mjs';
+import {browser, folder, stage} from './stage.mjs';
 
 const ratio = JSON.parse(readFileSync(new URL('../../src/viewer/page/native_ratio.json', import.meta.url), 'utf8'));
-const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
-let browser;
-
-before(async () => {
+stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
-  browser = await startBrowser();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true});
 });
 
 const panel = (page, name) => page.getByRole('tabpanel', {name, exact: true});

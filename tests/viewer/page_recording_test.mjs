@@ -2,13 +2,13 @@
 // `ist view` wrote.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {readFileSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
-import {answer, closePage, ist, linesOf, message, messages, openPage, ready, showPanel, startBrowser} from './browser.mjs';
+import {answer, closePage, ist, linesOf, message, messages, openPage, ready, showPanel} from './browser.mjs';
 import {mostOff, openView, partOff, pictureOf} from './pictures.mjs';
+import {browser, folder, stage} from './stage.mjs';
 
 // A hand closes the jaws until they bite, and draws the lower one a millimetre beyond.
 const scene = `unit = "mm"
@@ -28,11 +28,10 @@ plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.3, move = [0, 0, 5] }]
 [effects.contact]
 stiffness = 2000
 `;
-const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const last = 299, lateTick = 100, missingTick = 200;
-let browser, written;
+let written;
 
-before(async () => {
+stage(() => {
   writeFileSync(path.join(folder, 'scene.toml'), scene);
   ist(folder, 'run', 'scene.toml', '--unpaced', '--record', 'measured.jsonl');
   // How long a tick took is the machine's: here one takes longer than a period, and one is missed.
@@ -41,11 +40,6 @@ before(async () => {
   writeFileSync(path.join(folder, 'run.jsonl'), written.map((line) => `${JSON.stringify(line)}\n`).join(''));
   ist(folder, 'view', 'run.jsonl', '--scene', 'scene.toml', '-o', 'run.html');
   ist(folder, 'view', 'run.jsonl', '-o', 'bodiless.html');
-  browser = await startBrowser();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true});
 });
 
 async function drop(page, name, text) {

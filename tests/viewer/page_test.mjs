@@ -1,29 +1,21 @@
 // The page in a browser: it loads, its numbers are the command's, and it follows the hand.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
-import {tmpdir} from 'node:os';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {test} from 'node:test';
 
 import {interval} from '../../src/viewer/page/words.js';
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, showPanel, startBrowser} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {browser, folder, stage} from './stage.mjs';
 
-const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
 const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
 const turned = [Math.cos(0.02), 0, -Math.sin(0.02), 0, 0, 1, 0, 0, Math.sin(0.02), 0, Math.cos(0.02), 0, 0.5, -0.25, -1.2, 1];
 const poses = [closedBy(-5), closedBy(-1.5), closedBy(-0.6), closedBy(0), turned];
-let browser;
-
-before(async () => {
+stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
   writeFileSync(path.join(folder, 'poses.json'), JSON.stringify(poses.map((pose) => ({pose}))));
-  browser = await startBrowser();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true});
 });
 
 test('has the built-in jaws at the start', async () => {
