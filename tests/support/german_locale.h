@@ -14,11 +14,6 @@
 #include "support/skip.h"
 #include "support/temp_dir.h"
 
-// LeakSanitizer asks it: glibc's setlocale never frees the folders of LOCPATH.
-extern "C" __attribute__((used)) inline const char* __lsan_default_suppressions() {
-  return "leak:__argz_add_sep\n";
-}
-
 namespace ist::test {
 
 /// Tests in the locale of a country that writes 0,5 and 1.000.000: in C's and in C++'s, as a host
