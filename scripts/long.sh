@@ -25,6 +25,8 @@ begin_parts "$PWD/build/long" "$@"
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp
 
 more() {  # preset, times the samples, program, filter
+  flock build/long cmake --preset "$1"  # parts that run side by side build one after the other
+  flock build/long cmake --build --preset "$1" --target "$3" -- -j"$jobs"
   IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=0 --gtest_filter="$4" |
     awk '{ print } /Running [1-9]/ { some = 1 } END { exit !some }'
 }
