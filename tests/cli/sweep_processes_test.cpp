@@ -159,16 +159,13 @@ TEST_F(SweepCommand, ASignalWhileTreesAreLoadedLeavesNoPart) {
   }
 }
 
-// Kills at random moments, and at last an end in peace. A process that is killed may leave
-// temporary files; marks go with the part.
+// Kills at random moments, one of three behind a part, and at last an end in peace. A process that
+// is killed may leave temporary files; marks go with the part.
 TEST_F(SweepCommand, KillsLeaveWholePartsAndTheSameTable) {
   StabilityCase seen("faults", "SIGKILL in a sweep", "wrong outcomes");
   const std::string job = sweep_file(
       {.count = 6000, .rows_per_part = 200, .answers = R"("intersects", "penetration")"});
-  const auto begin = std::chrono::steady_clock::now();
   make_whole(job, "whole");
-  const auto long_enough = std::chrono::duration_cast<std::chrono::microseconds>(
-      std::chrono::steady_clock::now() - begin);  // for some parts, however slow the machine
   const Files whole = results("whole");
   const auto is_whole = [&](const std::string& folder) {
     for (const auto& [name, bytes] : results(folder)) {
@@ -188,8 +185,11 @@ TEST_F(SweepCommand, KillsLeaveWholePartsAndTheSameTable) {
     if (kill % 3 == 0) folder = fmt::format("out-{}", kill / 3);
     const std::ptrdiff_t before = parts_in(folder);
     Process process(IST_COMMAND, arguments(job, folder, {"--threads", "1"}));
-    std::this_thread::sleep_for(
-        std::chrono::microseconds(random.below(static_cast<std::uint32_t>(long_enough.count()))));
+    if (kill % 3 == 1) {  // in the midst of its parts, however slow the machine
+      while (parts_in(folder) == before && process.is_running()) std::this_thread::sleep_for(1ms);
+    } else {
+      std::this_thread::sleep_for(std::chrono::microseconds(random.below(400'000)));
+    }
     process.signal(SIGKILL);
     const CommandResult result = process.wait();
     killed += result.exit_code == 128 + SIGKILL;
