@@ -71,6 +71,8 @@ found=$(grep -rnE '\b[Ll]ikewise\b|\b(is|are|was|were) none\b|\bso many\b|\b[Tt]
 [ -z "$found" ] || breach "a sentence in a foreign syntax (say who does what, with the field's noun): $found"
 found=$(grep -rnwE 'CollisionQuery|ContactPoints?|ContactSink|TouchedLeaves|TouchSet|ChunkBoard|PromiseCheck|GapResult|WrenchGuard|promises?|promised|breach|growth|[dD]ive|run_hurried|run_until|run_within|widen|StepParts' src simd --include='*.h' --include='*.cpp' || true)
 [ -z "$found" ] || breach "a word of the first version (docs/glossary.md has the new one): $found"
+found=$(grep -rnoE '[ ="]/[a-zA-Z]+/[^" ]*' perf/results || true)
+[ -z "$found" ] || breach "a result names a folder of the machine that it was made on: $found"
 headers=$(grep -c '^ist/' src/package/public_headers.txt)
 [ "$headers" -le 34 ] || breach "$headers headers are installed: 34 are the most"
 long=$(find src simd tests bench -name node_modules -prune -o \( -name '*.h' -o -name '*.cpp' -o -name '*.js' -o -name '*.mjs' \) -print | xargs -r wc -l | awk '$2 != "total" && $1 > 400 {print $2 " has " $1 " lines"}')

@@ -11,7 +11,7 @@ commit=$(git rev-parse --short HEAD 2>/dev/null || echo none)
 git diff --quiet HEAD -- CMakeLists.txt CMakePresets.json src simd tests bench 2>/dev/null || commit+=+
 results=perf/results/$machine
 flags=$(grep -m 1 'exact_search.cpp\.o ' build/bench/compile_commands.json 2>/dev/null |
-  tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | tr '\n' ' ' || true)
+  tr ' ' '\n' | grep -E '^-(O|f|m|std=|DNDEBUG)' | grep -v -- -prefix-map= | tr '\n' ' ' || true)
 # Processors of one name differ: their family and model tell them apart.
 number() { sed -n "s/^$1[[:space:]]*: //p" /proc/cpuinfo | head -n 1; }
 kind=$(number 'cpu family') && kind=${kind:+ (family $kind, model $(number model))}
