@@ -4,7 +4,7 @@
 # UndefinedBehaviorSanitizer; golden answers by clang, for ARM64 and in WebAssembly; then all,
 # optimised with assertions, the page in a browser among them.
 #
-#   scripts/test.sh          all but what takes long, 30 to 60 minutes from nothing built on two cores
+#   scripts/test.sh          all but what takes long, 25 to 60 minutes from nothing built on two cores
 #   scripts/test.sh --long   that, and then hours of more: scripts/long.sh, which says what, and takes
 #                            the words after --long
 #
