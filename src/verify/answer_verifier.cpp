@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "ist/base/float_environment.h"
-#include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
+#include "ist/voxel/morton.h"
+#include "verify/frame_motion.h"
 #include "verify/leaf_geometry.h"
 
 namespace ist {
@@ -33,6 +35,27 @@ bool surely_cross(std::span<const ClippedTriangle> a, std::span<const ClippedTri
   });
 }
 
+// The centre of a leaf's cube in the tree's frame, mesh units.
+Eigen::Vector3d leaf_centre(const Lattice& lattice, std::uint64_t code) {
+  const Cell cell = morton_decode(code);
+  const Eigen::Vector3d middle(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5);
+  return lattice.voxel_size * (middle.array() - lattice.root_centre()).matrix();
+}
+
+// Half a voxel's diagonal, mesh units.
+double half_diagonal(const Lattice& lattice) { return std::sqrt(0.75) * lattice.voxel_size; }
+
+// Returns the radius of the largest bound of a leaf, mesh units; throws where the tree has none.
+double largest_radius(const SphereTree& tree, SpherePolicy policy, std::string_view body) {
+  tree.require(policy, body);
+  if (is_implicit(policy)) return half_diagonal(tree.parts().lattice);
+  double largest = 0;
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    largest = std::max(largest, read_bounds(tree, policy, leaf).ball.radius);
+  }
+  return largest;
+}
+
 }  // namespace
 
 AnswerVerifier::AnswerVerifier(const SphereTree& fixed, const SphereTree& moving,
@@ -41,32 +64,31 @@ AnswerVerifier::AnswerVerifier(const SphereTree& fixed, const SphereTree& moving
       moving_(moving),
       policy_(policy),
       knows_geometry_(is_implicit(policy) || (fixed.triangles() && moving.triangles())),
-      fixed_radius_(fixed.largest_leaf_radius(policy)),
-      grid_(fixed, fixed_radius_ + moving.largest_leaf_radius(policy)),
-      moving_codes_(moving.parts().octree.codes(0)) {
-  fixed.require(policy, "fixed");
-  moving.require(policy, "moving");
-}
+      fixed_radius_(largest_radius(fixed, policy, "fixed")),
+      grid_(fixed, fixed_radius_ + largest_radius(moving, policy, "moving")),
+      moving_codes_(moving.parts().octree.codes(0)) {}
 
 std::optional<Violation> AnswerVerifier::check(const Eigen::Isometry3d& pose,
                                                std::span<const GivenAnswer> answers) const {
   const ScopedFloatEnvironment environment;
-  const std::optional<RelativePose> relative =
-      relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if ((answers[i].result.status == QueryStatus::kDone) != relative.has_value()) {
+  const Rigidity rigid = rigidity_of(pose);
+  for (std::size_t i = 0; i < answers.size() && rigid != Rigidity::kEither; ++i) {
+    if ((answers[i].result.status == QueryStatus::kDone) != (rigid == Rigidity::kRigid)) {
       return Violation{i, "it accepts a pose that is not rigid, or refuses one that is"};
     }
   }
-  if (!relative) return std::nullopt;
-  const double tolerance = kTolerance * (fixed_.bounding_radius() + moving_.bounding_radius() +
-                                         relative->translation.norm());
+  if (rigid == Rigidity::kNone) return std::nullopt;
+  const Lattice &fixed = fixed_.parts().lattice, &moving = moving_.parts().lattice;
+  const auto [motion, error] = frame_motion(pose, fixed, moving);
+  const double lengths =
+      fixed.edge(fixed.depth) + moving.edge(moving.depth) + motion.translation().norm();
+  const double tolerance = kTolerance * lengths + error;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     Found found = check_list(answers[i]);
-    if (!found) found = check_bounds(*relative, tolerance, answers[i]);
+    if (!found) found = check_bounds(motion, tolerance, answers[i]);
     if (found) return Violation{i, *found};
   }
-  return find_missing(*relative, tolerance, answers);
+  return find_missing(motion, tolerance, answers);
 }
 
 AnswerVerifier::Found AnswerVerifier::check_list(const GivenAnswer& answer) const {
@@ -90,15 +112,16 @@ AnswerVerifier::Found AnswerVerifier::check_list(const GivenAnswer& answer) cons
 Bounds AnswerVerifier::leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
                                    std::uint32_t leaf) const {
   if (!is_implicit(policy_)) return read_bounds(tree, policy_, leaf);
-  const Lattice& lattice = tree.parts().lattice;
-  return {implicit_ball(policy_, lattice, 0, cube_centre(lattice, 0, codes[leaf]), 0), {}};
+  const Lattice& lattice = tree.parts().lattice;  // the circumsphere of the leaf's cube
+  return {{leaf_centre(lattice, codes[leaf]), half_diagonal(lattice)}, {}};
 }
 
-AnswerVerifier::Found AnswerVerifier::check_bounds(const RelativePose& pose, double tolerance,
+AnswerVerifier::Found AnswerVerifier::check_bounds(const Eigen::Isometry3d& motion,
+                                                   double tolerance,
                                                    const GivenAnswer& answer) const {
   for (const LeafPair& pair : answer.leaf_pairs) {
     const Bounds fixed = leaf_bounds(fixed_, grid_.codes(), pair.fixed);
-    const Bounds other = moved(pose, leaf_bounds(moving_, moving_codes_, pair.moving));
+    const Bounds other = moved(motion, leaf_bounds(moving_, moving_codes_, pair.moving));
     const double overlapping = overlap(policy_, fixed, other);
     if (overlapping < -(answer.result.pad + tolerance)) {
       return fmt::format(
@@ -110,17 +133,16 @@ AnswerVerifier::Found AnswerVerifier::check_bounds(const RelativePose& pose, dou
   return std::nullopt;
 }
 
-std::optional<Violation> AnswerVerifier::find_missing(const RelativePose& pose, double tolerance,
+std::optional<Violation> AnswerVerifier::find_missing(const Eigen::Isometry3d& motion,
+                                                      double tolerance,
                                                       std::span<const GivenAnswer> answers) const {
   const Lattice &fixed = fixed_.parts().lattice, &moving = moving_.parts().lattice;
-  const CubeAxes axes(fixed.voxel_size, moving.voxel_size, pose.rotation);
+  const CubeAxes axes(fixed.voxel_size, moving.voxel_size, motion.linear(), tolerance);
   std::optional<Violation> violation;
   std::vector<ClippedTriangle> moved_polygons;
   for (std::uint32_t m = 0; m < moving_codes_.size() && !violation; ++m) {
-    const Eigen::Vector3d centre =
-        pose.rotation * (moving.voxel_size * cube_centre(moving, 0, moving_codes_[m])) +
-        pose.translation;
-    const Bounds own = moved(pose, leaf_bounds(moving_, moving_codes_, m));
+    const Eigen::Vector3d centre = motion * leaf_centre(moving, moving_codes_[m]);
+    const Bounds own = moved(motion, leaf_bounds(moving_, moving_codes_, m));
     // Why a pair must be in the answer, or null if it need not be.
     const auto reason = [&](std::uint32_t f, bool nested) -> const char* {
       if (nested && overlap(policy_, leaf_bounds(fixed_, grid_.codes(), f), own) > tolerance) {
@@ -128,13 +150,13 @@ std::optional<Violation> AnswerVerifier::find_missing(const RelativePose& pose, 
       }
       if (!knows_geometry_) return nullptr;
       const std::uint64_t code = grid_.codes()[f];
-      const Eigen::Vector3d apart = centre - fixed.voxel_size * cube_centre(fixed, 0, code);
+      const Eigen::Vector3d apart = centre - leaf_centre(fixed, code);
       if (!axes.surely_meet(apart)) return nullptr;  // nor do their contents surely intersect
       if (is_implicit(policy_)) return "cubes intersect";
       if (moved_polygons.empty()) {
         moved_polygons = leaf_polygons(moving_, m, moving_codes_[m]);
         for (ClippedTriangle& polygon : moved_polygons) {
-          for (Eigen::Vector3d& p : polygon.corners) p = pose.rotation * p + pose.translation;
+          for (Eigen::Vector3d& p : polygon.corners) p = motion * p;
         }
       }
       return surely_cross(leaf_polygons(fixed_, f, code), moved_polygons, tolerance)

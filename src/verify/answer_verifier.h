@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "ist/query/relative_pose.h"
 #include "ist/query/results.h"
 #include "ist/tree/sphere_tree.h"
 #include "verify/leaf_grid.h"
@@ -35,8 +34,11 @@ struct Violation {
 ///
 /// sorted, without duplicates, as many as counted; and against what it is for: an answer has every
 /// pair whose geometry intersects, as far as the trees hold it. Of an answer from bounds that are
-/// not nested, the second is required alone. Finds near leaves by a hash of their cells instead of
-/// the trees, and computes in double.
+/// not nested, the second is required alone.
+///
+/// Shares no step of a query: projects and composes the pose by itself (frame_motion), finds near
+/// leaves by a hash of their cells, and tests them in double. Its input is the trees' leaves: it
+/// reads their Morton codes and saved bounds, and clips their triangles, by the library's code.
 ///
 /// Requires certain pairs only, so there are no false alarms: bounds that overlap by more than
 /// `tolerance` of all lengths, cubes that intersect if shrunk by CubeAxes::kShrink, and triangles
@@ -44,10 +46,11 @@ struct Violation {
 /// coplanar are not required.
 class AnswerVerifier {
  public:
-  /// The tolerance relative to the bounding radii of both trees plus their distance: 2⁻⁴⁰.
+  /// The tolerance relative to the edges of both root cubes plus their distance: 2⁻⁴⁰. The rounding
+  /// of a pose far from the origin is added (FrameMotion::error).
   static constexpr double kTolerance = 0x1p-40;
 
-  /// Prepares the checks. Both trees must have `policy` and outlive the verifier. Cost: 0.2 µs a
+  /// Prepares the checks. Both trees must have `policy` and outlive the verifier. Cost: 0.3 µs a
   /// leaf.
   AnswerVerifier(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy);
 
@@ -63,9 +66,10 @@ class AnswerVerifier {
  private:
   using Found = std::optional<std::string>;
   [[nodiscard]] Found check_list(const GivenAnswer& answer) const;
-  [[nodiscard]] Found check_bounds(const RelativePose& pose, double tolerance,
+  [[nodiscard]] Found check_bounds(const Eigen::Isometry3d& motion, double tolerance,
                                    const GivenAnswer& answer) const;
-  [[nodiscard]] std::optional<Violation> find_missing(const RelativePose& pose, double tolerance,
+  [[nodiscard]] std::optional<Violation> find_missing(const Eigen::Isometry3d& motion,
+                                                      double tolerance,
                                                       std::span<const GivenAnswer> answers) const;
   [[nodiscard]] Bounds leaf_bounds(const SphereTree& tree, const std::vector<std::uint64_t>& codes,
                                    std::uint32_t leaf) const;

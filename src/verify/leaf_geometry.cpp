@@ -68,13 +68,15 @@ bool line_pierces(const ClippedTriangle& lines, const ClippedTriangle& face,
 
 }  // namespace
 
-CubeAxes::CubeAxes(double first_edge, double second_edge, const Eigen::Matrix3d& rotation) {
+CubeAxes::CubeAxes(double first_edge, double second_edge, const Eigen::Matrix3d& rotation,
+                   double tolerance) {
   const double first_half = (0.5 - kShrink) * first_edge,
                second_half = (0.5 - kShrink) * second_edge;
   const auto add = [&](const Vector3d& direction) {
     if (direction.squaredNorm() < kParallel * kParallel) return;
     axes_.push_back({direction, first_half * direction.lpNorm<1>() +
-                                    second_half * (rotation.transpose() * direction).lpNorm<1>()});
+                                    second_half * (rotation.transpose() * direction).lpNorm<1>() -
+                                    tolerance * direction.norm()});
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
     add(Vector3d::Unit(i));

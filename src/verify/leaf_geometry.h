@@ -16,11 +16,13 @@ class CubeAxes {
   static constexpr double kShrink = 1e-6;
 
   /// Computes the axes for both edges, mesh units; `rotation` maps the second body's axes to the
-  /// first's.
-  CubeAxes(double first_edge, double second_edge, const Eigen::Matrix3d& rotation);
+  /// first's. The centres' distance is uncertain by `tolerance`, mesh units.
+  CubeAxes(double first_edge, double second_edge, const Eigen::Matrix3d& rotation,
+           double tolerance = 0);
 
   /// Returns whether two cubes surely intersect; `apart` is the vector from the first centre to the
-  /// second, mesh units. Misses only pairs that a motion of 4e-6 of both edges would separate.
+  /// second, mesh units. Misses only pairs that a motion of 4e-6 of both edges, or of twice
+  /// the tolerance, would separate.
   [[nodiscard]] bool surely_meet(const Eigen::Vector3d& apart) const noexcept;
 
  private:

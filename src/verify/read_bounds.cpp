@@ -24,9 +24,9 @@ Bounds read_bounds(const SphereTree& tree, SpherePolicy policy, std::uint32_t le
   return bounds;
 }
 
-Bounds moved(const RelativePose& pose, Bounds bounds) noexcept {
-  bounds.ball.centre = pose.rotation * bounds.ball.centre + pose.translation;
-  bounds.slab.normal = pose.rotation * bounds.slab.normal;
+Bounds moved(const Eigen::Isometry3d& motion, Bounds bounds) noexcept {
+  bounds.ball.centre = motion * bounds.ball.centre;
+  bounds.slab.normal = motion.linear() * bounds.slab.normal;
   return bounds;
 }
 

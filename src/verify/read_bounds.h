@@ -1,8 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 
-#include "ist/query/relative_pose.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 
@@ -23,8 +23,8 @@ struct Bounds {
 [[nodiscard]] Bounds read_bounds(const SphereTree& tree, SpherePolicy policy,
                                  std::uint32_t leaf) noexcept;
 
-/// Returns the bounds mapped by a pose.
-[[nodiscard]] Bounds moved(const RelativePose& pose, Bounds bounds) noexcept;
+/// Returns the bounds mapped by a motion between two trees' frames.
+[[nodiscard]] Bounds moved(const Eigen::Isometry3d& motion, Bounds bounds) noexcept;
 
 /// Returns the overlap of two bounds in one frame, mesh units, by the test that finds least; below
 /// 0 if they are apart.

@@ -188,17 +188,45 @@ TEST_P(Guarantee, BoundsThatAreNotNestedOweWhatIntersects) {
   EXPECT_EQ(lacking > 0, !published_are_nested(GetParam()));
 }
 
-TEST_P(Guarantee, APoseThatIsNone) {
-  Eigen::Isometry3d none = pose_;
-  none.matrix()(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  ReferenceQuery query(fixed_, moving_, GetParam());
-  FoundPairs answer = ask(query, none);
-  const auto given = [&answer] {
-    return std::vector{GivenAnswer{answer.result, answer.leaf_pairs}};
+// A rotation that is too long by 4e-6 would put a body far from its mesh's origin elsewhere.
+TEST_P(Guarantee, AnswersAreAboutTheProjectedPose) {
+  constexpr double kFar = 1e5, kStretch = 4e-6;
+  TriangleMesh far = moving_mesh_;
+  for (Eigen::Vector3d& vertex : far.vertices) vertex[0] += kFar;
+  const SphereTree moving = exact_tree(far, 7);
+  const AnswerVerifier check(fixed_, moving, GetParam());
+  QueryOptions options;
+  options.policy = GetParam();
+  Query query(fixed_, moving, options);
+  const Eigen::Isometry3d rigid = pose_ * shift({-kFar, 0, 0});
+  Eigen::Isometry3d stretched = rigid;
+  stretched.linear() *= 1 + kStretch;
+  const auto violation = [&](const Eigen::Isometry3d& answered) {
+    const FoundPairs answer = ask(query, answered);
+    EXPECT_GT(answer.leaf_pairs.size(), 50u);
+    return check.check(stretched, std::vector{GivenAnswer{answer.result, answer.leaf_pairs}});
   };
-  EXPECT_FALSE(check_.check(none, given()));
-  answer.result.status = QueryStatus::kDone;
-  EXPECT_TRUE(check_.check(none, given()));
+  EXPECT_FALSE(violation(stretched));
+  EXPECT_FALSE(violation(rigid));
+  EXPECT_TRUE(violation(rigid * shift({kStretch * kFar, 0, 0})));
+}
+
+TEST_P(Guarantee, APoseThatIsNone) {
+  std::vector<Eigen::Isometry3d> poses(4, pose_);
+  poses[0](0, 0) = std::numeric_limits<double>::quiet_NaN();
+  poses[1].linear().col(2) *= -1;
+  poses[2].linear() *= 1 + 6e-6;
+  poses[3](3, 0) = 1e-9;
+  ReferenceQuery query(fixed_, moving_, GetParam());
+  for (const Eigen::Isometry3d& none : poses) {
+    FoundPairs answer = ask(query, none);
+    const auto given = [&answer] {
+      return std::vector{GivenAnswer{answer.result, answer.leaf_pairs}};
+    };
+    EXPECT_FALSE(check_.check(none, given())) << none.matrix();
+    answer.result.status = QueryStatus::kDone;
+    EXPECT_TRUE(check_.check(none, given())) << none.matrix();
+  }
 }
 
 }  // namespace
