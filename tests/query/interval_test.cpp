@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "ist/query/manifold.h"
-#include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search.h"
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
+#include "support/rigid_pose.h"
 
 namespace ist::test {
 namespace {
@@ -203,9 +203,9 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
           const QueryResult told =
               query.leaf_pairs(at, std::span<LeafPair>(), {.tests = tests + 1});
           if (told.sphere_tests == 1) continue;  // the roots are apart, or no test was left
-          const Bodies bodies{
-              scene.fixed, scene.moving, policy,
-              *relative_pose(at, scene.fixed.parts().lattice, scene.moving.parts().lattice)};
+          const Eigen::Isometry3d between = between_frames(at, scene.fixed, scene.moving);
+          const Bodies bodies{scene.fixed, scene.moving, policy,
+                              RelativePose{between.linear(), between.translation()}};
           const SearchPose pose = to_float(bodies.at, lengths_of(scene.fixed, policy),
                                            lengths_of(scene.moving, policy));
           LeafPairSink sink(plan, kernels, {});

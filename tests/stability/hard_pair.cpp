@@ -12,6 +12,7 @@
 #include "query/scenes.h"
 #include "simd/dispatch.h"
 #include "stability/leaf_overlap.h"
+#include "support/rigid_pose.h"
 #include "verify/read_bounds.h"
 
 namespace ist::test {
@@ -119,11 +120,10 @@ void HardPair::check_leaf_pairs(Asked& asked, const ExactPair& exact, const Eige
     cases.answers.sample(same(ask(*engine, pose), answer) ? 0 : 1, 0, engine->target());
   }
   const double pad = answer.result.pad;
-  const RelativePose relative =
-      *relative_pose(pose, fixed_.parts().lattice, moving_.parts().lattice);
+  const Eigen::Isometry3d between = between_frames(pose, fixed_, moving_);
   double apart = 0;
   for (const LeafPair& pair : answer.leaf_pairs) {
-    apart = std::max(apart, -leaf_overlap(fixed_, moving_, asked.policy, relative, pair));
+    apart = std::max(apart, -leaf_overlap(fixed_, moving_, asked.policy, between, pair));
   }
   const auto kept = keeps_guarantee(exact, asked.policy, answer.leaf_pairs, pad);
   cases.leaf_pairs.samples_of(std::max<std::size_t>(answer.leaf_pairs.size(), 1),

@@ -26,16 +26,9 @@ Bounds bounds_of(const SphereTree& tree, SpherePolicy policy, std::uint32_t leaf
 }  // namespace
 
 double leaf_overlap(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                    const RelativePose& pose, const LeafPair& pair) {
+                    const Eigen::Isometry3d& between, const LeafPair& pair) {
   return overlap(policy, bounds_of(fixed, policy, pair.fixed),
-                 moved(pose, bounds_of(moving, policy, pair.moving)));
-}
-
-double leaf_overlap(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
-                    const Eigen::Isometry3d& pose, const LeafPair& pair) {
-  return leaf_overlap(fixed, moving, policy,
-                      relative_pose(pose, fixed.parts().lattice, moving.parts().lattice).value(),
-                      pair);
+                 moved(between, bounds_of(moving, policy, pair.moving)));
 }
 
 }  // namespace ist::test

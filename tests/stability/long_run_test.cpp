@@ -9,6 +9,7 @@
 #include "ist/base/pose.h"
 #include "query/scenes.h"
 #include "stability/leaf_overlap.h"
+#include "support/rigid_pose.h"
 #include "support/stability.h"
 
 namespace ist::test {
@@ -109,7 +110,8 @@ void compare_answers(const Eigen::Isometry3d& composed, const Eigen::Isometry3d&
         differing += differ.size();
         for (const LeafPair& pair : differ) {
           const double overlap =
-              leaf_overlap(scene.fixed, scene.moving, policy, place(direct, x), pair);
+              leaf_overlap(scene.fixed, scene.moving, policy,
+                           between_frames(place(direct, x), scene.fixed, scene.moving), pair);
           pairs.sample(std::abs(overlap), band);
         }
       }

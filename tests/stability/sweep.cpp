@@ -9,6 +9,7 @@
 #include "query/contacts/pair_sums.h"
 #include "query/query_cases.h"
 #include "stability/leaf_overlap.h"
+#include "support/rigid_pose.h"
 #include "verify/read_bounds.h"
 
 namespace ist::test {
@@ -97,7 +98,7 @@ Sweep::Step Sweep::look(const Isometry3d& pose) {
 }
 
 double Sweep::overlap(const LeafPair& pair, const Isometry3d& pose) const {
-  return leaf_overlap(fixed_, moving_, policy_, pose, pair);
+  return leaf_overlap(fixed_, moving_, policy_, between_frames(pose, fixed_, moving_), pair);
 }
 
 // A pair is in an answer only if nothing over it is farther apart than the pad, and is out of one

@@ -9,7 +9,6 @@
 #include "ist/query/contacts/contact_reducer.h"
 #include "ist/query/manifold.h"
 #include "ist/query/query.h"
-#include "ist/query/relative_pose.h"
 #include "query/contacts/plain_contacts.h"
 #include "support/stability.h"
 

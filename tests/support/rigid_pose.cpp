@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "ist/tree/tree_parts.h"
+#include "support/exact.h"
+
 namespace ist::test {
 namespace {
 
@@ -26,6 +29,15 @@ Rows nearer(const Rows& r) {
   return next;
 }
 
+// The root cube's centre in mesh coordinates.
+ExactPoint origin_of(const SphereTree& tree) {
+  const Lattice& lattice = tree.parts().lattice;
+  const mpq_class half = mpq_class(lattice.voxel_size) * (std::uint64_t{1} << lattice.depth) / 2;
+  ExactPoint origin;
+  for (std::size_t i = 0; i < 3; ++i) origin[i] = lattice.corner[i] + half;
+  return origin;
+}
+
 }  // namespace
 
 Eigen::Isometry3d rigid_pose(const Eigen::Isometry3d& pose) {
@@ -39,6 +51,19 @@ Eigen::Isometry3d rigid_pose(const Eigen::Isometry3d& pose) {
     rigid(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = rows[i / 3][i % 3];
   }
   return rigid;
+}
+
+Eigen::Isometry3d between_frames(const Eigen::Isometry3d& pose, const SphereTree& fixed,
+                                 const SphereTree& moving) {
+  Eigen::Isometry3d between = rigid_pose(pose);
+  const ExactPoint from = origin_of(moving), to = origin_of(fixed);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const ExactPoint row = exact(between.linear().row(i).transpose());
+    const mpq_class translation =
+        between.translation()[i] + dot(row, from) - to[static_cast<std::size_t>(i)];
+    between.translation()[i] = translation.get_d();
+  }
+  return between;
 }
 
 }  // namespace ist::test
