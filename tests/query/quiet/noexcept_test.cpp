@@ -26,6 +26,7 @@ namespace {
   static_assert(noexcept(manifold.points()));
   static_assert(noexcept(manifold.sums()));
   static_assert(noexcept(manifold.wrench(1.0)));
+  static_assert(noexcept(manifold.rates()));
 }
 
 [[maybe_unused]] void verbs_of_a_world(World& world, const Eigen::Isometry3d& pose,
@@ -50,8 +51,16 @@ namespace {
                                       const TickBudget& budget, std::span<const double, 16> pose,
                                       std::span<double, 3> three, const Vector6& six) {
   static_assert(noexcept(simulation.tick(place, budget)));
+  static_assert(noexcept(simulation.attach(0, budget)));
+  static_assert(noexcept(simulation.release(0, budget)));
+  static_assert(noexcept(simulation.changes()));
+  static_assert(noexcept(simulation.body_pose(0)));
+  static_assert(noexcept(simulation.tool_pose()));
   static_assert(noexcept(simulation.fault()));
   static_assert(noexcept(callback.on_tick(pose, three, three)));
+  static_assert(noexcept(callback.attach(0)));
+  static_assert(noexcept(callback.release(0)));
+  static_assert(noexcept(callback.tool()));
   static_assert(noexcept(callback.fault()));
   static_assert(noexcept(device.read()));
   static_assert(noexcept(device.write(six, 1.0)));

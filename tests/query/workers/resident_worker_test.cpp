@@ -184,7 +184,6 @@ TEST(ResidentWorkerThread, IsAwakeForTicksWithAPeriodAndSleepsBetween) {
                        std::chrono::duration<double>(after.wall - before.wall);
   std::cout << "awake in " << awake << " of " << kTicks << " ticks, " << 100 * share
             << " % of a core\n";
-  EXPECT_GE(awake, 1);
   EXPECT_EQ(counting.runs, awake);
   EXPECT_GT(share, 0);
   EXPECT_LT(share, 0.9);
