@@ -43,6 +43,13 @@ class Steadiness {
   Vector6 last_ = Vector6::Zero();
 };
 
+// The force trembles by less than this part of it while the hand rests on the other jaw.
+constexpr double kStill = 0.01;
+// Of 1,200 presses with voxels of 0.8 mm six are not still, the worst by 3.1 %: the tool's steps
+// circle round the balance where few pairs bear it (perf/NOTES.md). The same presses give the same
+// forces, but for sines of the platform's library, for which the rest is.
+constexpr double kCircling = 0.033;
+
 // Whether no more presses tremble than may: one in a hundred, rounded up, and of two none.
 bool are_few(int trembling, int presses) {
   return trembling <= (presses > 2 ? (presses + 99) / 100 : 0);
@@ -51,8 +58,10 @@ bool are_few(int trembling, int presses) {
 // The force is still while the hand rests on the other jaw.
 class Stillness {
  public:
-  explicit Stillness(const std::string& name)
-      : noise_("long runs", "force at rest" + name, "part of it that trembles") {}
+  // `all_still`: no press may circle.
+  Stillness(const std::string& name, bool all_still)
+      : noise_("long runs", "force at rest" + name, "part of it that trembles"),
+        most_noise_(all_still ? kStill : kCircling) {}
 
   void check(const Tick& tick, double time_of_press) {
     if (time_of_press <= kRestBegins || time_of_press >= kRestEnds) return;
@@ -62,12 +71,10 @@ class Stillness {
   void press_ends() {
     // Below it, the flicker of one count of the encoders in each direction, 5 mN, is 1 % of it.
     EXPECT_GT(least_, 0.6) << "N: hardly pressed";
-    // Still is less than 1 %. With voxels of 0.8 mm one press in 200 is not, by up to 3.1 %: the
-    // tool's steps circle round the balance where few pairs bear it (perf/NOTES.md).
     const double trembles = (most_ - least_) / most_;
-    noise_.sample(trembles, 0.04);
+    noise_.sample(trembles, most_noise_);
     ++presses_;
-    trembling_ += trembles > 0.01 ? 1 : 0;
+    trembling_ += trembles > kStill ? 1 : 0;
     EXPECT_TRUE(are_few(trembling_, presses_)) << trembling_ << " of " << presses_ << " tremble";
     least_ = 1e300;
     most_ = 0;
@@ -75,6 +82,7 @@ class Stillness {
 
  private:
   StabilityCase noise_;
+  double most_noise_;
   int presses_ = 0, trembling_ = 0;
   double least_ = 1e300, most_ = 0;
 };
@@ -89,7 +97,7 @@ void press_for(double voxel_size, double give, int count) {
   Simulation simulation = pair.simulation(coupling);
   const std::string name = ", voxels of " + std::to_string(voxel_size);
   Steadiness steadiness(name);
-  Stillness stillness(name);
+  Stillness stillness(name, count <= 2);
   PressEnergy energy(name, coupling);
   int looked = 0;
   for (int i = 0; i < count; ++i) {
