@@ -45,7 +45,7 @@ MUTANTS = [
            ["base_test", "query_test RelativePose*"]),
     Mutant("pose-not-projected", "a nearly orthonormal rotation is not projected",
            [("src/ist/base/pose.cpp", "for (int step = 0; step < 3; ++step) {",
-             "for (int step = 0; step < 0; ++step) {")], ["base_test"]),
+             "for (int step = 0; step < 0; ++step) {")], ["query_test *AnswersAreAboutTheProjectedPose*", "base_test"]),
     Mutant("mirror-accepted", "a mirroring pose is accepted as a rigid motion",
            [("src/ist/base/pose.cpp", "if (!(determinant(rotation) > 0)) return std::nullopt;",
              "static_cast<void>(determinant(rotation));")], ["base_test"]),
@@ -61,6 +61,9 @@ MUTANTS = [
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   LeafPairSink sink(s.plan, s.kernels, out);""")],
            ["search_test *KeepsTheFloatEnvironment*", "stability_test *Environment*"]),
+    Mutant("environment-not-restored", "the caller's floating-point environment is not restored",
+           [("src/ist/base/float_environment.h", "~ScopedFloatEnvironment() { saved_.write(); }", "~ScopedFloatEnvironment() {}")],
+           ["search_test *KeepsTheFloatEnvironment*"]),
     Mutant("worker-forgets-mxcsr", "the second worker computes with the flags of its thread",
            [("src/ist/query/workers/resident_worker.cpp", "const ScopedFloatEnvironment environment;", "")],
            ["workers_test *Ieee*"]),
