@@ -52,7 +52,7 @@ perform() {  # a part's name, and its command
   [ "$verdict" = passed ] || [ "$verdict $(printenv IST_REQUIRE_ALL)" = "skipped " ]
 }
 
-settle() {  # waits until no more than so many parts run
+settle() {  # waits until no more than N parts run
   while [ ${#running[@]} -gt "$1" ]; do
     local name=${running[0]%% *}
     wait "${running[0]#* }" || failed+=("$name")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compares the working tree with HEAD, for who changes a kernel: builds both as users do, asks `ist bench` of each in turn,
+# Compares the working tree with HEAD, for those who change a kernel: builds both as users do, asks `ist bench` of each in turn,
 # and shows what became faster or slower. Two minutes once both are built; the first time the build of HEAD takes some
 # three minutes more. A row counts where the medians of all runs of one side lie beyond those of the other, by 3 % at least.
 #

@@ -35,7 +35,7 @@ class Comparison {
 
   /// Ends the program where a variant's answer to any pose is not what it must be: with pointers
   /// that of ReferenceQuery, contacts, order and tests; in batches that of one worker without SIMD,
-  /// likewise; and those two, which may differ in pairs whose geometry does not meet, keep what
+  /// as exactly; and those two, which may differ in pairs whose geometry does not meet, keep what
   /// AnswerVerifier asks of both; where quick() that is checked in full occlusion alone. A time of
   /// a wrong answer would mean nothing.
   void check();

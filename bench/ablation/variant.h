@@ -20,17 +20,17 @@ struct Bodies {
   PointerTree fixed_pointers, moving_pointers;
 };
 
-/// What a query is made of.
+/// The parts of a query.
 struct Parts {
   enum class Search {
     kPointers,  ///< depth first, node by node, by pointers: PointerQuery
-    kLinear,    ///< likewise on the linear octree: ReferenceQuery
+    kLinear,    ///< depth first, on the linear octree: ReferenceQuery
     kBatches,   ///< breadth first, in batches of spheres: Query
   };
   Search search;
   SpherePolicy policy;
   std::string target = "scalar";  ///< of kBatches; the others have none
-  int workers = 1;                ///< likewise
+  int workers = 1;                ///< of kBatches; the others have one
 
   friend bool operator==(const Parts&, const Parts&) = default;
 };

@@ -17,13 +17,13 @@ void add_first_contacts();
 /// gap/SIZE/POLICY/DISTANCE and gap/SIZE/exact-TOLERANCE/DISTANCE: the interval's width, and its
 /// time.
 void add_gaps();
-/// verdict/SIZE/POLICY: yes and no against exact triangles, and leaf pairs likewise.
+/// verdict/SIZE/POLICY: yes and no against exact triangles, and leaf pairs against them too.
 void add_verdicts();
 /// form/SIZE/POLICY: depths and normals of contact points on bodies whose surfaces are known.
 void add_forms();
 /// force/SIZE/POLICY: the force of a contact beside that of the finest voxels.
 void add_forces();
-/// deadline/BUDGET/DISTANCE: the interval that a query within so many microseconds gives.
+/// deadline/BUDGET/DISTANCE: the interval that a query with that budget, in microseconds, gives.
 void add_deadlines();
 
 /// Voxel sizes that are compared, mm, the finest last.

@@ -7,7 +7,7 @@
 
 namespace ist::bench {
 
-/// What it takes to make a library's structures of both meshes, with all its contestants, in the
+/// The cost to make a library's structures of both meshes, with all its contestants, in the
 /// thread limit that is set.
 struct BuildCost {
   Latencies times;     ///< one a build

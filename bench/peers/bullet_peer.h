@@ -13,7 +13,7 @@ namespace ist::bench {
 ///  - `bullet_boxes`: btGImpactBoxSet::find_collision, which lists candidates, told apart by
 ///    meet() in double where pairs are asked for: Bullet's hierarchy without its
 ///    triangles.
-/// What differs: boxes are of 16 bits an axis, rounded to the nearest, so that a pair may be
+/// Differences: boxes are of 16 bits an axis, rounded to the nearest, so that a pair may be
 /// missed; and Bullet's own test of triangles clips one at the edges of the other in float, which
 /// names more pairs than meet. It knows no distance between meshes that are apart.
 [[nodiscard]] Library bullet_library();

@@ -10,7 +10,7 @@
 
 namespace ist::bench {
 
-/// What anybody said; the pairs are candidates where these were asked for.
+/// An answer of anybody; the pairs are candidates where these were asked for.
 struct Answer {
   bool meets = false;
   std::uint64_t pairs = 0;
@@ -22,7 +22,7 @@ struct Answer {
 [[nodiscard]] bool agree(Question question, const Answer& ist, const Answer& peer,
                          Guarantee guarantee);
 
-/// What is wrong with IST's answer where the truth is known, if anything.
+/// Returns the fault of IST's answer where the truth is known, or nothing.
 [[nodiscard]] std::optional<std::string> untrue(Question question, const Answer& ist,
                                                 const NamedPose& pose);
 
@@ -33,7 +33,7 @@ class Contest {
   struct Player {
     Peer& peer;
     std::vector<Answer> answers;       ///< one a pose
-    std::vector<Latencies> latencies;  ///< likewise
+    std::vector<Latencies> latencies;  ///< one a pose
     int rounds = 0;
     double spent = 0;  ///< s, with what is not counted
   };

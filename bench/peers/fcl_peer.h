@@ -14,7 +14,7 @@ namespace ist::bench {
 ///    over what is at most 0.05 mm nearer than the nearest pair so far, so that the answer is the
 ///    interval from that pair's distance down to 0.05 mm less. DistanceRequest's abs_err does not
 ///    do that in 0.7: it is not passed on to a mesh, and does nothing there while rel_err is 0.
-/// What differs: its predicates are in double and not exact, so nothing is guaranteed where
+/// Differences: its predicates are in double and not exact, so nothing is guaranteed where
 /// triangles only touch or lie in one plane. Debian's library is built for any x86-64, without
 /// FCL's own SSE code, and with assertions.
 [[nodiscard]] Library fcl_library();

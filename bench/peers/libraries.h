@@ -13,8 +13,8 @@ namespace ist::bench {
 /// Names of those that it was built without, with a comma between them.
 [[nodiscard]] std::string missing_libraries();
 
-/// What compiles others than IST for this processor, as a compiler takes it; empty where it has
-/// nothing for that.
+/// The compiler's option that compiles others than IST for this processor; empty where it has
+/// none.
 [[nodiscard]] std::string library_flags();
 
 }  // namespace ist::bench

@@ -12,7 +12,7 @@ namespace ist::bench {
 ///  - `openvdb`: one point for each voxel of 0.2 mm that the surface goes through, in the order of
 ///    the grid's leaves;
 ///  - `openvdb_vertices`: the moving mesh's vertices alone.
-/// What differs: it samples. What lies between points, or is smaller than a voxel, is missed; a
+/// Differences: it samples. What lies between points, or is smaller than a voxel, is missed; a
 /// point inside the fixed jaw touches, though no triangles meet; distances beyond the band are not
 /// known. It has no pairs of triangles. The fixed mesh must be closed.
 [[nodiscard]] Library openvdb_library();

@@ -14,7 +14,7 @@
 
 namespace ist::bench {
 
-/// What every contestant is asked, of two meshes and a pose that maps moving to fixed coordinates.
+/// A question to every contestant, of two meshes and a pose that maps moving to fixed coordinates.
 enum class Question : std::uint8_t {
   kMeets,       ///< whether any triangles meet
   kPairs,       ///< all pairs of triangles that meet
@@ -50,7 +50,7 @@ class Peer {
   [[nodiscard]] Guarantee guarantee() const { return guarantee_; }
   [[nodiscard]] virtual bool answers(Question question) const = 0;
 
-  /// What is not to be counted: called before each question, outside of the time that is taken.
+  /// Does the work that is not to be counted: called before each question, outside of its time.
   virtual void prepare(const Eigen::Isometry3d&) {}
   /// Whether prepare() already does some of what another must do in its time.
   [[nodiscard]] virtual bool prepared() const { return false; }

@@ -8,7 +8,7 @@
 
 namespace ist::bench {
 
-/// What is known of a pose by other ways than any contestant's.
+/// The truth about a pose, known by other ways than any contestant's.
 struct Truth {
   std::uint64_t pairs;  ///< triangles that meet
   double distance;      ///< of the surfaces, mesh units

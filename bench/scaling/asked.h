@@ -14,7 +14,7 @@
 
 namespace ist::bench {
 
-/// What was answered about a pose, each time it was asked.
+/// The answers about a pose, each time it was asked.
 struct Asked {
   Latencies times;
   QueryResult result;

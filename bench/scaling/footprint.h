@@ -7,7 +7,7 @@
 
 namespace ist::bench {
 
-/// What both jaws take in voxels of a size: to be built one after the other, and to be held.
+/// The memory of both jaws in voxels of a size: to be built one after the other, and to be held.
 /// Megabytes are 10^6 bytes.
 struct Footprint {
   double leaves;    ///< of both trees

@@ -77,7 +77,7 @@ bool largest_is_built(benchmark::State& state, SpherePolicy policy, double& voxe
   std::string why_not = left_out();
   if (why_not.empty()) {
     // Three quarters of the limit: build_tree() refuses by what it counts beforehand, which is more
-    // than what it comes to use.
+    // than it uses then.
     voxel_size = size_that_takes(0.75 * kLimitMb, policy);
     try {
       static_cast<void>(footprint(policy, voxel_size));

@@ -82,7 +82,7 @@ class Level {
   double voxel_size_;
   int level_;
   std::vector<double> volumes_;   // by policy
-  std::vector<Latencies> times_;  // likewise
+  std::vector<Latencies> times_;  // by policy
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ namespace ist::bench {
 
 /// Both trees of a voxel size, which answer every policy; made once.
 [[nodiscard]] const std::pair<SphereTree, SphereTree>& trees(double voxel_size);
-/// Likewise, with their triangles.
+/// The trees of trees(), with their triangles.
 [[nodiscard]] const std::pair<SphereTree, SphereTree>& exact_trees(double voxel_size);
 
 using test::closing;

@@ -31,7 +31,7 @@ class LittleMemory {
 };
 
 TEST(CMemory, ThatIsNotThereIsTold) {
-  // Of so many leaves that a frontier is one block of half a gigabyte: the heaps that threads of
+  // With enough leaves that a frontier is one block of half a gigabyte: the heaps that threads of
   // other tests left behind, 64 MB at most, have no room for it.
   ist_tree* tree = c_tree(icosphere(2, 1), 0.03);
   auto options = sized<ist_query_options>();

@@ -2,12 +2,8 @@
 #include <map>
 #include <set>
 #include <string>
-#include <thread>
 #include <tuple>
 
-#include "cli/bench/contest.h"
-#include "cli/bench/machine.h"
-#include "cli/bench/ratios.h"
 #include "cli/cli_case.h"
 #include "support/shapes.h"
 
@@ -53,6 +49,7 @@ TEST_F(Bench, ComparesTheSameSpheresAndThenTheTightest) {
   EXPECT_GE(machine.at("cores"), 1);
   EXPECT_EQ(machine.at("quiet").get<bool>(), machine.at("noise").is_null());
   EXPECT_GT(machine.at("loop_microseconds").at(0), 0);
+  EXPECT_GT(machine.at("seconds"), 0.01);  // in three turns each
   std::map<Key, double> times;
   std::map<Key, json> listed;
   std::map<std::pair<std::string, std::string>, double> ratios;
@@ -144,6 +141,43 @@ TEST_F(Bench, TakesPosesWithMostAndFewestPairs) {
             (std::set<std::string>{"contacts", "leaf pairs"}));  // triangles are not there
 }
 
+TEST_F(Bench, TakesPosesOfTheBuiltInJaws) {
+  const CommandResult result = bench({"--voxel-size", "3", "--poses", poses({200, 0}), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::map<std::string, json> listed;
+  for (const json& line : json_lines(result.out)) {
+    if (line.value("question", "") == "leaf pairs") listed[line.at("at")] = line.at("listed");
+  }
+  EXPECT_GT(listed.at("most"), 0);
+  EXPECT_EQ(listed.at("fewest"), 0);
+}
+
+TEST_F(Bench, RefusesPosesThatAreAllAlike) {
+  refuses({fixed_, fixed_, "--voxel-size", "0.5", "--poses", poses({1, 1, 1})}, 3,
+          "poses.json: each of its 3 poses has ");
+}
+
+TEST_F(Bench, RefusesAFileWithoutPoses) {
+  refuses({fixed_, moving_, "--poses", poses({})}, 3, "poses.json: give an array of objects");
+  refuses({"--voxel-size", "3", "--poses", write("empty.json", "")}, 3, "empty.json: not JSON");
+}
+
+TEST_F(Bench, KeepsToItsMemory) {
+  for (const std::vector<std::string>& bodies :
+       {std::vector<std::string>{}, {fixed_, moving_, "--voxel-size", "0.1"}}) {
+    std::vector<std::string> arguments = bodies;
+    arguments.insert(arguments.end(), {"--max-memory", "10K"});
+    refuses(arguments, 2, "allow more");
+  }
+}
+
+// Four policies in three ways, each in three turns of 0.01 s, take longer than that.
+TEST_F(Bench, SaysThatItTookLongerThanAsked) {
+  const CommandResult result = bench({"--voxel-size", "3"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.out, " s instead of 0.01: three turns of each query are the least\n"));
+}
+
 TEST_F(Bench, RefusesBodiesThatNeverMeet) {
   const std::string beside = mesh("beside.stl", moved(icosphere(2, 2), {100, 100, 100}));
   refuses({fixed_, beside}, 2, "--poses: needed, because the bodies never meet on the way");
@@ -171,65 +205,6 @@ TEST_F(Bench, NamesTheRemedyForALibraryThatIsNotBuiltIn) {
     refuses({"--against", name}, 2, std::string("this ist was built without ") + name);
   }
   refuses({"--against", "embree,fcl"}, 2, "./scripts/setup.sh --peers");
-}
-
-cli::Samples samples(const std::vector<double>& times) {
-  cli::Samples all;
-  for (const double time : times) all.add(time);
-  return all;
-}
-
-TEST(BenchNoise, IsNamedWhereTheMachineIsNotQuiet) {
-  cli::Machine machine;
-  machine.load = {{0.1, 2, 3}};
-  const cli::Samples steady = samples(std::vector<double>(100, 200.0));
-  EXPECT_EQ(cli::noise_of(machine, steady), std::nullopt);
-  machine.load = {{0.8, 0, 0}};
-  EXPECT_TRUE(says(cli::noise_of(machine, steady).value(), "other work took 0.8 cores"));
-  std::vector<double> some = std::vector<double>(90, 200.0);
-  some.insert(some.end(), 10, 300.0);
-  const std::string both = cli::noise_of(machine, samples(some)).value();
-  EXPECT_TRUE(says(both, "other work took 0.8 cores"));
-  EXPECT_TRUE(says(both, "1.50 times as long at times"));
-  machine.load.reset();  // where the system does not tell
-  EXPECT_FALSE(says(cli::noise_of(machine, samples(some)).value(), "other work"));
-}
-
-TEST(BenchContest, GivesEverybodyAsMuchTime) {
-  int fast = 0, slow = 0;
-  const auto waits = [](int& count, int milliseconds) {
-    return [&count, milliseconds](std::size_t) {
-      ++count;
-      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-      return cli::Contestant::Answer{1e3 * milliseconds, std::nullopt};
-    };
-  };
-  cli::Contest contest(
-      {{"touch", "fast", "", 1, waits(fast, 1)}, {"touch", "slow", "", 1, waits(slow, 20)}},
-      {{"here", "here", Eigen::Isometry3d::Identity()}});
-  double last = 0;
-  contest.hold(0.5, [&](double part) {
-    EXPECT_GE(part, last);
-    last = part;
-    return true;
-  });
-  EXPECT_EQ(last, 1);
-  EXPECT_GT(fast, 10 * slow);  // 22 times; in as many turns 5.5 times
-  EXPECT_GE(contest.score(1, 0).times.size(), 3u);
-  EXPECT_EQ(contest.score(0, 0).times.median(), 1e3);
-  EXPECT_FALSE(contest.loop().empty());
-}
-
-TEST(BenchRatios, AreNotMadeOfDifferentQuestions) {
-  const auto nothing = [](std::size_t) { return cli::Contestant::Answer{1, std::nullopt}; };
-  const auto groups = cli::ratios_of({{"touch", "IST", "", 1, nothing},
-                                      {"touch", "fcl", "", 1, nothing},
-                                      {"distance", "fcl", "", 1, nothing}});
-  ASSERT_EQ(groups.size(), 1u);
-  ASSERT_EQ(groups[0].ratios.size(), 1u);
-  EXPECT_EQ(groups[0].ratios[0].words, "touch, against fcl");
-  EXPECT_EQ(groups[0].ratios[0].of, 0u);
-  EXPECT_EQ(groups[0].ratios[0].over, 1u);
 }
 
 }  // namespace

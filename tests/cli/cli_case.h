@@ -45,7 +45,7 @@ class CliTest : public ::testing::Test {
 
   /// Processes that a signal ends leave no core from now on.
   static void leave_no_core();
-  /// Waits until the folder has so many entries, or the process has ended.
+  /// Waits until the folder has that number of entries, or the process has ended.
   void await_entries(std::size_t entries, Process& process) const;
   /// Runs it with a system call that does not return any more, once it has returned `after` times.
   [[nodiscard]] Process with_held_call(const std::string& call, int after,

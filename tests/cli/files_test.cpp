@@ -163,7 +163,7 @@ TEST_F(Files, ExportedSpheresAreThoseOfTheTree) {
       const double circumradius = std::ldexp(0.8660254037844386, level - 1);
       for (const auto& sphere : ply.vertices) {
         ASSERT_EQ(sphere.size(), 4u);
-        // Each comes to the surface of the ball, and none is larger than its cube asks for.
+        // Each reaches the surface of the ball, and none is larger than its cube asks for.
         const double distance = std::hypot(sphere.at("x"), sphere.at("y"), sphere.at("z"));
         EXPECT_LE(std::abs(distance - 2), sphere.at("radius") + 0.1);
         EXPECT_LE(sphere.at("radius"), circumradius * 1.01);

@@ -213,7 +213,7 @@ TEST_F(RunRecord, ReplayRefusesARecordingOfAnotherScene) {
   expect_refused(scene, file, "the file of 'held', \"ball.stl\", is not the one");
 }
 
-// A body that the hand takes has a line of its own, before its tick's; a replay comes to the same.
+// A body that the hand takes has a line of its own, before its tick's; a replay writes the same.
 TEST_F(RunRecord, ChangesOfTheHandHaveLinesOfTheirOwn) {
   const std::string scene = write("two.toml", R"(unit = "mm"
 seconds = 0.05

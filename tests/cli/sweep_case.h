@@ -23,7 +23,7 @@ class SweepCommand : public CliTest {
     static_cast<void>(ball_tree());
   }
 
-  /// What a sweep file says.
+  /// The content of a sweep file.
   struct Job {
     std::uint64_t count = 25, rows_per_part = 10, seed = 1;
     std::string answers = R"("intersects", "distance")";

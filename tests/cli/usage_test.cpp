@@ -232,7 +232,7 @@ TEST_F(Usage, OptionsOfDemo) {
   refuses({"demo", "--seed", "-1"}, "--seed");
 }
 
-// The voxel size is for meshes: refused where there is none.
+// The voxel size is for meshes: refused without a mesh.
 TEST_F(Usage, VoxelSizeGoesWithMeshes) {
   const std::string mesh = ball(), tree = ball_tree(), list = poses({0});
   refuses({"collide", tree, tree, "--poses", list, "--voxel-size", "0.5"}, "both bodies are trees");

@@ -19,7 +19,7 @@ types "the servo example, run" "cd examples && build/servo_loop probe.toml && bu
 pushes() { awk '/ N$/ {if ($1 > most) most = $1} END {print "at most " most " N"; exit !(most > 0.5)}' "$work/printed"; }
 step "it pushes" pushes
 
-# Whether a recording has forces: where nothing touches yet there is none, later there is.
+# Whether a recording has forces: none before anything touches, some later.
 cp "$here/forces.py" "$walk"
 writes docs/haptics.md closing.toml
 by_page_alone docs/haptics.md "ist run closing.toml --check"

@@ -11,7 +11,7 @@ namespace {
 constexpr double kInside = 0.8;  // what clamp_coupling() leaves of the border
 constexpr double kBeyond = 2;    // at which a wall is surely active
 
-// Beyond the border a coupling is as stiff, at 4 kHz, as the wall, which then is none.
+// Beyond the border a coupling is as stiff, at 4 kHz, as the wall, which is no stiff wall then.
 const std::vector<double> kRates = {500, 1000, 4000}, kRatesOfStiffWalls = {500, 1000};
 
 // Each rate with no delay and with 1 ms, each damping of the device; the coupling has none.

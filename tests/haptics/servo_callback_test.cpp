@@ -137,7 +137,7 @@ TEST_F(Callback, APoseThatIsNoneIsAFaultAndNothingIsFelt) {
     expect_fault(entry, std::numeric_limits<double>::infinity());
   }
   expect_fault(0, -good[0]);  // not orthonormal any more
-  expect_fault(3, 0.5);       // a last row that is none, as of a transposed pose
+  expect_fault(3, 0.5);       // a last row of no motion, as of a transposed pose
   EXPECT_EQ(callback.counts().faults, 34u);
   EXPECT_EQ(callback.tool(), before);
   // Then little by little.

@@ -12,7 +12,7 @@ namespace {
 constexpr CouplingSettings kSpring{1000, 0, 2, 0, 5, 0.2};
 constexpr double kDt = 1e-3, kContact = 3000;
 
-// A tool that touches one plane z = const, from above, so many metres deep.
+// A tool that touches one plane z = const, from above, to a depth in metres.
 struct Bench {
   Placement at;
   ToolContacts contacts, proximity;

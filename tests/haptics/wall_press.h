@@ -7,7 +7,7 @@
 
 namespace ist::test {
 
-/// What a hand presses on: two bodies in millimetres, in voxels of 0.5, that meet when the held one
+/// The pair of a press: two bodies in millimetres, in voxels of 0.5, that meet when the held one
 /// goes along `way`. Numbers of a press on it are in m, N/m, N s/m and N, or where it turns in rad,
 /// N m/rad, N m s/rad and N m.
 struct Wall {
@@ -35,11 +35,11 @@ struct PressSettings {
 };
 
 struct PressResult {
-  /// What the loop gave the hand while the bodies touched, less what the device's damping took, J.
+  /// Energy that the hand got while the bodies touched, less that of the device's damping, J.
   /// Where it is positive the wall is active: a hand that does the same again and again draws
   /// energy from it without end.
   double returned;
-  /// What of it is due to encoders and to the tick in which bodies meet, at most, J:
+  /// The part of it that is due to encoders and to the tick in which bodies meet, at most, J:
   ///
   ///     (K/2 + |B|/T) q · way gone in contact  +  (K T + |B|) T v²
   ///

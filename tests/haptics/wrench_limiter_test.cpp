@@ -29,7 +29,7 @@ WrenchLimiter started(const SafetySettings& settings = kSettings) {
   return guard;
 }
 
-// Small, large and huge numbers, now and then what is none.
+// Small, large and huge numbers, now and then infinity or NaN.
 Vector6 any_wrench(Random& random) {
   Vector6 w;
   const double scale = std::pow(10.0, random.uniform(-3, 3));

@@ -70,7 +70,7 @@ TEST(GoldenVectors, CornersGoToTheEndsOfEveryInput) {
   }
 }
 
-// On each axis, to both sides: touching to the last bit is a hit, one step more is none. And with
+// On each axis, to both sides: touching to the last bit is a hit, one step more is a miss. And with
 // every number of bits that is cut off the reach.
 TEST(GoldenVectors, CornersTouchToTheLastBit) {
   std::set<std::pair<std::size_t, bool>> touching, beyond;

@@ -15,7 +15,7 @@ struct HardwareNode {
   std::uint8_t mask = 255;
 };
 
-/// What the circuit is given for two nodes.
+/// The circuit's input for two nodes.
 [[nodiscard]] inline NodePair node_pair(const QuantizedPose& pose, const HardwareNode& fixed,
                                         const HardwareNode& moving) noexcept {
   NodePair pair;

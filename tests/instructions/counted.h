@@ -10,7 +10,7 @@
 
 namespace ist::test {
 
-/// What was counted came to this.
+/// The answer of the queries that were counted.
 struct Answer {
   std::uint64_t found, sphere_tests;
   friend bool operator==(const Answer&, const Answer&) = default;

@@ -121,7 +121,7 @@ TEST(FirstContact, OfANeedleBetweenTeeth) {
 }
 
 TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
-  // A rod that turns about z comes to a post from behind: after 350 degrees less their widths.
+  // A rod that turns about z meets a post from behind: after 350 degrees less their widths.
   BodyPair pair(box({-0.1, 4, -5}, {0.1, 4.2, 50}), box({0, -0.05, -0.05}, {5, 0.05, 0.05}));
   const Motion motion =
       Motion::screw(place({0, 0, 0}), {0, 0, 0}, {0, 0, 1}, -4 * std::numbers::pi, 20);

@@ -13,7 +13,7 @@ import sys
 
 
 def meaning(arguments, build):
-    """What a command comes to: its words without outputs and warnings, and without the build's place."""
+    """The meaning of a command: its words without outputs and warnings, and without the build's place."""
     words, rest = [], iter(arguments)
     for word in rest:
         if word in ("-o", "-MT", "-MF"):

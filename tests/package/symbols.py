@@ -1,6 +1,6 @@
 """Holds what the shared library exports against exported_symbols.txt, which is reviewed like code.
 
-    python3 symbols.py LIBRARY             fails where a name came, went, or is none that may get out
+    python3 symbols.py LIBRARY             fails where a name came, went, or may not get out
     python3 symbols.py LIBRARY --update    keeps what it exports now; never what may not get out"""
 
 import pathlib

@@ -13,12 +13,12 @@
 
 namespace ist::test {
 
-/// What finds leaf pairs: the published query with spheres of one source, or the fast one.
+/// A finder of leaf pairs: the published query with spheres of one source, or the fast one.
 struct Engine {
   SpherePolicy policy;
   std::optional<SphereSource> published = {};  ///< nothing: the fast one
   std::string target = {};                     ///< of the fast one; "": the best
-  int workers = 1;                             ///< likewise
+  int workers = 1;                             ///< of the fast one
 
   /// The relative size of the last bit of the numbers that it decides with.
   [[nodiscard]] double last_bit() const { return published ? 0x1p-53 : 0x1p-24; }
@@ -46,7 +46,7 @@ struct Engine {
   return engines;
 }
 
-/// Likewise, of every policy.
+/// The engines of these targets, of every policy.
 [[nodiscard]] inline std::vector<Engine> engines_of(const std::vector<std::string>& targets) {
   std::vector<Engine> engines;
   for (const SpherePolicy policy : kSpherePolicies) {

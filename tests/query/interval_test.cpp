@@ -158,7 +158,7 @@ class Listing : public PairLister {
     end_step(pairs.moving_count);
     return true;
   }
-  // The search found that so many pairs of the step overlap.
+  // The search found that `pairs` pairs of the step overlap.
   void end_step(std::size_t pairs) {
     live_.erase(live_.begin(), live_.begin() + static_cast<std::ptrdiff_t>(before_));
     before_ = live_.size();

@@ -21,7 +21,7 @@ struct LateClock {
   static Budget::Clock::time_point now() noexcept {
     return Budget::Clock::time_point(std::chrono::nanoseconds(looks++ < allowed ? 0 : 2));
   }
-  /// Returns a budget whose deadline has passed after so many looks.
+  /// Returns a budget whose deadline has passed after `looks_allowed` looks.
   static Budget budget_of(int looks_allowed) {
     looks = 0;
     allowed = looks_allowed;

@@ -21,7 +21,7 @@ class SceneCase : public ::testing::Test {
   [[nodiscard]] BuiltScene built(std::string_view text) const {
     return build_scene(scene_of(text));
   }
-  /// The note of that name; the test fails where there is none.
+  /// The note of that name; the test fails without it.
   [[nodiscard]] static BuildNote note_of(const BuiltScene& scene, std::string_view what) {
     const auto found = std::find_if(scene.notes.begin(), scene.notes.end(),
                                     [&](const BuildNote& note) { return note.what == what; });

@@ -115,7 +115,7 @@ struct Meshes {
 /// Two units of length: powers of two, so that nothing here is rounded.
 class FloatEnvironmentOfTheCaller : public ::testing::TestWithParam<double> {
  protected:
-  /// In each arithmetic of a caller, `call` records the same bytes, at least so many, and leaves
+  /// In each arithmetic of a caller, `call` records the same bytes, at least `least`, and leaves
   /// the arithmetic as it was.
   template <class Call>
   static void changes_nothing(const std::string& name, std::size_t least, const Call& call) {

@@ -13,7 +13,7 @@
 
 namespace ist::test {
 
-/// What is found out about one hard shape: a line each in perf/STABILITY.md.
+/// The results about one hard shape: a line each in perf/STABILITY.md.
 struct ShapeCases {
   explicit ShapeCases(const std::string& shape);
 

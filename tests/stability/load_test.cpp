@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 struct LoadPair {
   const char *name, *fixed, *moving;
   Vector3d centre;  // mm; of the turns, amid the moving body
-  // Of all answers, after so many queries. Instruction sets, workers and builds make no difference.
+  // The answers' hash, by queries. Instruction sets, workers and builds make no difference.
   std::array<std::pair<int, std::uint64_t>, 2> golden;
 };
 

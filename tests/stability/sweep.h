@@ -32,7 +32,7 @@ struct Path {
                         const Eigen::Vector3d& centre, double lever, double reach, double step,
                         int steps);
 
-/// What is found out about motion with one policy: a line each in perf/STABILITY.md.
+/// The results about motion with one policy: a line each in perf/STABILITY.md.
 struct MotionCases {
   MotionCases(const std::string& what, SpherePolicy policy);
 
@@ -45,7 +45,7 @@ struct MotionCases {
 
 /// Moves one body along paths and looks at what changes from each step to the next.
 ///
-/// What a leaf pair guarantees in motion: it is in the answer while its bounds overlap, and each
+/// The guarantee of a leaf pair in motion: it is in the answer while its bounds overlap, and each
 /// test is whether two balls, or a ball and a slab, are near enough. So it enters and leaves where
 /// the least overlap of them all passes between 0 and the pad. Along a straight line that overlap
 /// is a concave function: the pair is there in one interval, and comes and goes only while the

@@ -29,7 +29,7 @@ mpq_class distance_squared(const ExactPoint& point, const ExactPoint& a, const E
   return square(point - (a + std::clamp<mpq_class>(part, 0, 1) * along));
 }
 
-// The smallest ball with all the points on its surface, or nothing where there is none: its centre
+// The smallest ball with all the points on its surface, or nothing where no ball has: its centre
 // is p0 + Σ xᵢ dᵢ, dᵢ = pᵢ - p0, and |centre - pᵢ| = |centre - p0| makes Σⱼ 2 dᵢ·dⱼ xⱼ = dᵢ·dᵢ.
 std::optional<ExactBall> ball_through(const std::vector<ExactPoint>& points) {
   const std::size_t n = points.size() - 1;

@@ -13,7 +13,7 @@ class FakeScheduler {
  public:
   /// As drivers declare it: who calls, where the handle is, and what to feel.
   using Callback = int (*)(void* user, const double pose[16], double force[3], double torque[3]);
-  /// Where the handle is, column by column, so many seconds after the start.
+  /// Where the handle is, column by column, `time` seconds after the start.
   using Path = std::function<void(double time, double pose[16])>;
 
   struct Call {
@@ -27,10 +27,10 @@ class FakeScheduler {
 
   /// No call for the ticks from `first` on, as where the system gave the driver no time.
   void drop(std::uint64_t first, std::uint64_t count);
-  /// The call of a tick comes so many seconds late.
+  /// The call of a tick comes `seconds` late.
   void delay(std::uint64_t tick, double seconds);
 
-  /// All calls of so many ticks, in order.
+  /// All calls of `ticks` ticks, in order.
   [[nodiscard]] std::vector<Call> run(std::uint64_t ticks);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace ist::test {
 
-/// What a process left behind.
+/// The outcome of a process.
 struct CommandResult {
   int exit_code = -1;  ///< 128 + the signal, where one ended it
   std::string out;     ///< all of its stdout

@@ -14,7 +14,7 @@ namespace ist::test {
 [[nodiscard]] TriangleMesh triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& c);
 
-/// One triangle, so many times: its corners are about 1 from the origin.
+/// One triangle, `triangles` times: its corners are about 1 from the origin.
 [[nodiscard]] TriangleMesh coincident(std::size_t triangles);
 
 /// An icosahedron whose triangles are cut in four `level` times, its vertices on the sphere round
@@ -26,9 +26,9 @@ namespace ist::test {
 /// circle; normals outward. Like the sphere the same bits everywhere.
 [[nodiscard]] TriangleMesh cylinder(int quarter, double radius, double height);
 
-/// Likewise, with a hole along its axis: a thick pipe.
+/// The cylinder with a hole along its axis: a thick pipe.
 [[nodiscard]] TriangleMesh pipe(int quarter, double inner, double outer, double height);
-/// What an outline sweeps about z, in `around` parts, its vertices on the surface. The outline is
+/// A solid of revolution about z, in `around` parts, its vertices on the surface. The outline is
 /// of (radius, z), closed and counterclockwise; points at radius 0 become one vertex each.
 [[nodiscard]] TriangleMesh revolved(const std::vector<Eigen::Vector2d>& outline, int around);
 
@@ -40,7 +40,7 @@ namespace ist::test {
 /// `inner` 0 a cylinder. Its squares are about `edge` wide.
 [[nodiscard]] TriangleMesh tube(double inner, double outer, double half, double edge);
 
-/// A closed plate of unit cubes, one thick, with so many square holes through it: of that genus.
+/// A closed plate of unit cubes, one thick, with `holes` square holes through it: of that genus.
 /// Its corner is the origin, its faces are in planes of whole numbers, normals outward.
 [[nodiscard]] TriangleMesh plate_with_holes(int holes);
 

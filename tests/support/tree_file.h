@@ -46,7 +46,7 @@ class TreeFile {
 /// Makes size and checksum of a file right that has at least kBody bytes.
 void seal(std::string& tree_file);
 
-/// What write_tree writes.
+/// The bytes that write_tree writes.
 [[nodiscard]] std::string file_of(const SphereTree& tree);
 
 /// Throws what read_tree throws for a file of these bytes.

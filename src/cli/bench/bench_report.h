@@ -14,9 +14,17 @@ struct BenchSetting {
   std::string target;  ///< the instruction set
   std::string bodies;  ///< a sentence: triangles, voxels, time to build
   std::string rivals;  ///< names and versions; empty: none was asked
+  double seconds = 0;  ///< given to all queries together
 };
 
-/// Prints the setting, then ratios, then times, for people.
+/// Returns the lines before the ratios: what was measured, where, and how fast a fixed loop was
+/// meanwhile. A line more says that the machine was not quiet, another one that asking took over
+/// 1.1 times the time that it was given. Precondition: `loop` is not empty.
+/// @param taken as Contest::taken()
+[[nodiscard]] std::string bench_heading(const BenchSetting& setting, const Samples& loop,
+                                        double taken);
+
+/// Prints the heading, then ratios, then times, for people.
 void print_bench(const BenchSetting& setting, const Contest& contest);
 
 /// Prints the setting, ratios and times as lines of JSON.

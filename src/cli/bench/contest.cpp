@@ -41,6 +41,7 @@ void Contest::hold(double seconds, const Proceed& proceed) {
     ++turns[next];
     proceed(std::min(1.0, seconds_since(begin) / seconds));
   }
+  taken_ = seconds_since(begin);
 }
 
 void Contest::take_turn(std::size_t contestant) {

@@ -57,6 +57,8 @@ class Contest {
   [[nodiscard]] const Score& score(std::size_t contestant, std::size_t pose) const {
     return scores_[contestant][pose];
   }
+  /// Seconds that hold() took.
+  [[nodiscard]] double taken() const { return taken_; }
   /// The times of the fixed loop.
   [[nodiscard]] const Samples& loop() const { return loop_; }
 
@@ -67,6 +69,7 @@ class Contest {
   std::vector<BenchPose> poses_;
   std::vector<std::vector<Score>> scores_;
   Samples loop_;
+  double taken_ = 0;
 };
 
 }  // namespace ist::cli

@@ -54,9 +54,10 @@ std::vector<Rival> rivals_named(const std::vector<std::string>& names) {
   return asked;
 }
 
-Bodies built_in_jaws(double voxel_size) {
+Bodies built_in_jaws(const BodyFiles& options) {
   BuildOptions build;
-  build.voxel_size = voxel_size;
+  build.voxel_size = options.voxel_size.value_or(kJawVoxels);
+  build.max_memory = options.max_memory;
   std::vector<std::string> warnings;
   Bodies jaws{build_with_progress("upper jaw", make_jaw(Jaw::kUpper, 1), build, warnings),
               build_with_progress("lower jaw", make_jaw(Jaw::kLower, 1), build, warnings),
@@ -100,10 +101,10 @@ void run(const BenchArguments& options) {
   BenchSetting setting;
   setting.machine = this_machine();
   setting.target = select_kernels({}).target;
+  setting.seconds = options.seconds;
   const std::vector<Rival> rivals = rivals_named(options.against);
-  const Bodies bodies = options.own_bodies()
-                            ? load_bodies(options.files)
-                            : built_in_jaws(options.files.voxel_size.value_or(kJawVoxels));
+  const Bodies bodies =
+      options.own_bodies() ? load_bodies(options.files) : built_in_jaws(options.files);
   const std::chrono::duration<double> loaded = std::chrono::steady_clock::now() - begin;
   setting.bodies = bodies_words(options, bodies, loaded.count());
   const std::vector<BenchPose> poses = poses_for(options, bodies);
@@ -163,7 +164,10 @@ void add_bench(CLI::App& app) {
   command->add_option("--against", options->against, "other libraries to ask too")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
-  command->add_option("--seconds", options->seconds, "time for all queries")->capture_default_str();
+  command
+      ->add_option("--seconds", options->seconds,
+                   "time for all queries; each has three turns at least")
+      ->capture_default_str();
   add_max_memory(*command, options->files.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(

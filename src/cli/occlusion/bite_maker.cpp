@@ -112,7 +112,8 @@ std::vector<std::string> checks_of(const Bite& bite) {
   for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
     if (body->closed) continue;
     checks.push_back(fmt::format(
-        "the {} body is open: distances at its border have no sign, and depth is told by vertices",
+        "the {} body is open: distances at its border have no sign, and depth is measured at "
+        "vertices",
         role));
   }
   for (const std::string& note : bite.findings.notes) checks.push_back(note);

@@ -77,7 +77,7 @@ def close(what, found, expected):
 
 
 def turned(points, metres):
-    """Where a point of a GLB comes to lie: up is y, in metres."""
+    """The places of points in a GLB: up is y, in metres."""
     return np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=1).astype("f8") * metres
 
 

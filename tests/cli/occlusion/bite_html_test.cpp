@@ -70,7 +70,7 @@ void expect_place(const std::string& cell, const Eigen::Vector3d& at) {
   expect_numbers(cell, {at.x(), at.y(), at.z()}, 1e-4 * at.cwiseAbs().maxCoeff());
 }
 
-// The row that begins so; empty where there is none.
+// The row that begins so; empty without one.
 Cells row_of(const Rows& rows, const Cells& begin) {
   for (const Cells& row : rows) {
     if (row.size() >= begin.size() && std::equal(begin.begin(), begin.end(), row.begin())) {

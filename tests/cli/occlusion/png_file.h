@@ -6,7 +6,7 @@
 
 namespace ist::test {
 
-/// Reads a PNG by libpng's decoder. Throws std::runtime_error where it is none.
+/// Reads a PNG by libpng's decoder. Throws std::runtime_error for other bytes.
 [[nodiscard]] cli::Picture decoded(const std::string& png);
 
 /// The pixel at a place, whose y runs down.

@@ -48,7 +48,7 @@ inline constexpr DeviceMechanics kDeviceUnderTest{.damping = 2, .angular_damping
   return scene;
 }
 
-/// The tool's pose at the start, moved by so many millimetres.
+/// The tool's pose at the start, moved by millimetres.
 [[nodiscard]] inline Placement moved_by(const Placement& start, const Eigen::Vector3d& by) {
   return {start.rotation, start.translation + 1e-3 * by};
 }

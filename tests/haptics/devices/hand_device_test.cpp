@@ -252,7 +252,7 @@ TEST(HandDevice, GainsNoEnergyWhenNothingDrivesIt) {
     double last = most;
     for (int tick = 0; tick < 2000; ++tick) {
       hand.write(Vector6::Zero(), kDt);
-      // In a tick the spring gives 7 % at most, of which (h w)²/8, at 80 rad/s 3e-7, is none of its
+      // In a tick the spring gives 7 % at most, of which (h w)²/8, at 80 rad/s 3e-7, is not of its
       // own; damping takes more.
       ASSERT_LE(hand.energy(), last + (damped > 0 ? 1e-15 : 0.07 * 3e-7) * most) << tick;
       last = hand.energy();

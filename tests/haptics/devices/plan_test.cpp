@@ -43,7 +43,7 @@ TEST(Plan, PassesThroughItsWaypointsAndStaysAtTheLast) {
   EXPECT_LE(distance(plan.start(), waypoints[0].pose), 1e-15);
   for (const Waypoint& waypoint : waypoints) {
     EXPECT_LE(distance(plan.at(waypoint.time).pose, waypoint.pose), 5e-15);
-    // And comes to them without a jump, at up to 200 rad/s.
+    // And reaches them without a jump, at up to 200 rad/s.
     const double before = std::nextafter(waypoint.time, 0);
     EXPECT_LE(distance(plan.at(before).pose, waypoint.pose), 1e-12);
   }

@@ -81,7 +81,7 @@ TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
   for (int i = 0; i < 300; ++i) {
     const EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
-    // Where no place is about to turn from coming to going.
+    // Where no place is about to turn from approach to retreat.
     bool smooth = true, approaches = false;
     for (const ToolContact& point : c.contacts.points()) {
       const double approach = -point.normal.dot(point.moved(motion));

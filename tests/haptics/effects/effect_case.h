@@ -13,7 +13,7 @@ inline Vector6 six(const Eigen::Vector3d& translation, const Eigen::Vector3d& ro
   return motion;
 }
 
-/// What an effect is asked about; owns what its input refers to.
+/// A question to an effect; owns all that its input refers to.
 struct EffectCase {
   Placement tool;
   ToolContacts contacts, proximity;
@@ -74,7 +74,7 @@ inline bool is_symmetric_and_semidefinite(const Matrix6& stiffness) {
   return solver.eigenvalues()[0] >= -1e-14 * size;
 }
 
-/// What an effect has asked for, in order: normals, depth, velocity, proximity, triangles.
+/// The needs of an effect, in order: normals, depth, velocity, proximity, triangles.
 inline std::array<bool, 5> asked(const EffectNeeds& needs) {
   return {needs.normals, needs.depth, needs.velocity, needs.proximity, needs.triangles};
 }

@@ -40,7 +40,7 @@ class PressedTool {
   }
   Vector6 slide(double x, double y = 0) { return move(six({x, y, 0}, {0, 0, 0})); }
   Vector6 turn(double angle) { return move(six({0, 0, 0}, {0, 0, angle})); }
-  /// What a tick without motion gives.
+  /// The wrench of a tick without motion.
   [[nodiscard]] Vector6 wrench() const { return respond(friction_, at_).wrench; }
   [[nodiscard]] const EffectCase& at() const { return at_; }
   [[nodiscard]] FrictionEffect& friction() { return friction_; }

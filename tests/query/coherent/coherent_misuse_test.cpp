@@ -122,7 +122,7 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
       stream.released.notify_all();
       first.join();
     };
-    // At a pose that is none, so that a query that is entered all the same comes to no harm.
+    // At a pose that is no motion, so that a query that is entered all the same suffers no harm.
     Eigen::Isometry3d no_pose = pose_;
     no_pose.translation()[0] = kNotANumber;
     if (query.leaf_pairs(no_pose, std::span<LeafPair>()).status != QueryStatus::kBusy) {
@@ -157,7 +157,7 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
   }
 }
 
-// At any moment: an answer is right, or that there is none.
+// At any moment: an answer is right, or the query is busy.
 TEST_F(TwoThreads, InOneQueryAreRightOrBusy) {
   for (const int workers : {1, 2}) {
     QueryOptions options;

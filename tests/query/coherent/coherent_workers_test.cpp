@@ -92,7 +92,7 @@ TEST_F(CoherentQueryThread, AnswersWithoutAWorkerThatStalls) {
   EXPECT_EQ(answers.kept().sharing().worth, 0u);
 }
 
-// It stalls each time it comes to a point, for a while that ends at any moment of a later tick.
+// It stalls each time it reaches a point, for a while that ends at any moment of a later tick.
 TEST_F(CoherentQueryThread, AnswersWhereTheWorkerIsLate) {
   Random random(1);
   for (int round = 0; round < samples(6); ++round) {

@@ -16,7 +16,7 @@ namespace {
 using State = FrontSearch::State;
 
 constexpr std::size_t kRoom = 1 << 17;
-// Each slice of so many tests goes on: a piece of a step has no more.
+// Each slice of kPiece tests goes on: a piece of a step has no more.
 constexpr std::uint64_t kPiece = kPieceTests;
 
 class FrontSearchOf : public ::testing::TestWithParam<SpherePolicy> {

@@ -10,7 +10,7 @@
 
 namespace ist::test {
 
-/// What a hand does for some ticks.
+/// The motion of a hand for some ticks.
 enum class Move : std::uint8_t {
   kStill,
   kTremble,  ///< at rest, with noise
@@ -35,9 +35,9 @@ class Motion {
   [[nodiscard]] Eigen::Isometry3d next();
   /// The move that the last pose was part of.
   [[nodiscard]] Move move() const { return move_; }
-  /// Goes on with another move, of so many ticks.
+  /// Goes on with another move, of `ticks` ticks.
   void begin(Move move, int ticks);
-  /// From now on such moves do not exceed so many voxels a tick.
+  /// From now on such moves do not exceed `voxels` a tick.
   void limit_step(double voxels) { most_step_ = voxels; }
 
  private:

@@ -101,8 +101,8 @@ TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
   EXPECT_GT(stopped, 5);
 }
 
-// Two workers share what has a deadline; what the clock ends early is told as what no worker can
-// change, and is the same with a budget of so many tests.
+// Two workers share what has a deadline; an answer that the clock ends early depends on no
+// worker, and is the same with a budget of as many tests.
 TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
   const Scene& scene = jaws();
   QueryOptions options = options_of(SpherePolicy::kSlab);

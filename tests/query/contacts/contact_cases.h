@@ -11,7 +11,7 @@
 
 namespace ist::test {
 
-/// What one query found, kept.
+/// The contacts of one query, kept.
 struct FoundContacts {
   ContactSums sums;
   std::vector<Contact> points;
@@ -24,7 +24,7 @@ struct FoundContacts {
   return {points.sums(), {points.points().begin(), points.points().end()}, result};
 }
 
-/// Everything of one pose, at most so many points.
+/// Everything of one pose, at most `most` points.
 [[nodiscard]] inline FoundContacts find_contacts(const SphereTree& fixed, const SphereTree& moving,
                                                  SpherePolicy policy, const Eigen::Isometry3d& pose,
                                                  std::size_t most = 1 << 14) {

@@ -8,10 +8,10 @@ namespace ist::test {
 /// Of contact points: depths in voxels, normals in degrees, where both surfaces are smooth.
 struct FormErrors {
   std::size_t points = 0;          ///< in all
-  std::size_t smooth = 0;          ///< of which so many are where both surfaces are smooth
+  std::size_t smooth = 0;          ///< those where both surfaces are smooth
   bool finite = true;              ///< whether all of them are numbers
   double depth = 0, depths = 0;    ///< the largest, and the sum of all
-  double normal = 0, normals = 0;  ///< likewise
+  double normal = 0, normals = 0;  ///< the largest, and the sum of all
   double deepest = -2;             ///< of any point
 
   void add(const FormErrors& other);
@@ -21,7 +21,7 @@ struct FormErrors {
 
 [[nodiscard]] SphereTree tree_of_solid(const Solid& solid, double voxel_size);
 
-/// Of the bodies when they overlap by `depth` voxels, reduced to at most so many points. What is
+/// Of the bodies when they overlap by `depth` voxels, reduced to at most `most` points. What is
 /// true is what both surfaces are at the point; a depth is defined from -2s to s.
 [[nodiscard]] FormErrors form_errors(const ClosedForm& form, const SphereTree& fixed,
                                      const SphereTree& moving, SpherePolicy policy, double depth,

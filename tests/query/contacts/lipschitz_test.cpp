@@ -46,7 +46,7 @@ struct Nearness {
   double all;     // of each of the five sums
 };
 // A rate has the steepest share, the greatest depth and the farthest position at once, which no
-// pair has: a weight comes to a fifth of its rate, a torque to a thirtieth.
+// pair has: a weight reaches a fifth of its rate, a torque to a thirtieth.
 constexpr Nearness kOfAPair{0.2, 0.03};
 // And the bound of a sum has all its pairs change by as much the same way, before and after.
 constexpr Nearness kOfASum{0.05, 0.004};

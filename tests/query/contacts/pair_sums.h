@@ -52,7 +52,7 @@ struct PairSums {
   return all;
 }
 
-/// What rounding does to a leaf pair is no more than this motion does, mesh units
+/// Rounding changes a leaf pair no more than a motion by this length does, mesh units
 /// (docs/guarantees.md, Rates of the contact sums).
 [[nodiscard]] inline double rounding_of(const SphereTree& fixed, const ContactManifold& points) {
   return 0x1p-17 * (fixed.bounding_radius() + points.rates().lever);

@@ -19,7 +19,7 @@ struct Way {
   const char* name;
   Eigen::Isometry3d from;
   Eigen::Vector3d along = Eigen::Vector3d::Zero();  // of unit length, or nothing
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();   // likewise
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();   // of unit length, or nothing
   int steps;
 
   [[nodiscard]] Eigen::Isometry3d at(int step, double lever, const Eigen::Vector3d& centre) const {

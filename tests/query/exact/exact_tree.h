@@ -15,7 +15,7 @@ namespace ist::test {
   return build_tree(mesh, options);
 }
 
-/// Likewise, of about `cells` voxels along the mesh's largest extent.
+/// A tree with its triangles, of about `cells` voxels along the mesh's largest extent.
 [[nodiscard]] inline SphereTree exact_tree(const TriangleMesh& mesh, double cells) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& v : mesh.vertices) box.extend(v);

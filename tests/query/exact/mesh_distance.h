@@ -14,7 +14,7 @@
 
 namespace ist::test {
 
-/// What the error of a distance of two triangles goes by (kTriangleDistanceError).
+/// The length that the error of a distance of two triangles grows with (kTriangleDistanceError).
 [[nodiscard]] inline double longest_edge(const TriangleMesh& mesh) {
   double longest = 0;
   for (const Triangle& t : mesh.triangles) {

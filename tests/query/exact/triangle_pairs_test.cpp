@@ -142,7 +142,7 @@ TEST_F(ManyPairs, SpansTooShortHoldTheFirst) {
   }
 }
 
-// A pose that is none has no pairs; nor do bodies whose roots are apart, in one test.
+// A pose that is no motion has no pairs; nor do bodies whose roots are apart, in one test.
 TEST_F(ManyPairs, OfWhatDoesNotTouchAreNone) {
   Query query = query_with();
   std::vector<TrianglePair> pairs(10);

@@ -8,7 +8,7 @@
 
 namespace ist::test {
 
-/// Stalls the resident worker wherever it comes to `point`, until it is released or destroyed.
+/// Stalls the resident worker wherever it reaches `point`, until it is released or destroyed.
 class Stall {
  public:
   explicit Stall(HandOver point) {

@@ -32,7 +32,7 @@ TEST(ResidentWorkerThread, ComesAndGoesWithItsHandles) {
   }
   EXPECT_EQ(counting.runs, 10);
 
-  // It comes to rest. (A task that TBB begins late leaves at once, so it may take a while.)
+  // It rests then. (A task that TBB begins late leaves at once, so it may take a while.)
   bool at_rest = false;
   for (int i = 0; i < 40 && !at_rest; ++i) {
     const ResidentWorker::Usage before = ResidentWorker::usage();

@@ -187,7 +187,7 @@ TEST_P(ClusterKernelsOf, MissNoPairThatMeetsAndInventNone) {
   EXPECT_LT(open, meeting / 5);
 }
 
-// The nearest pair is never left out, and its lower bound is none but that.
+// The nearest pair is never left out, and its lower bound is that distance.
 TEST_P(ClusterKernelsOf, KeepTheNearestPair) {
   for (const ClusterCase& c : cluster_cases()) {
     SCOPED_TRACE(c.name);

@@ -1,0 +1,142 @@
+// The parts of `ist bench`: who is asked when, what is made of it, and what is said of the machine.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/bench/bench_report.h"
+#include "cli/bench/contest.h"
+#include "cli/bench/machine.h"
+#include "cli/bench/ratios.h"
+#include "cli/cli_case.h"
+
+namespace ist::test {
+namespace {
+
+cli::Samples samples(const std::vector<double>& times) {
+  cli::Samples all;
+  for (const double time : times) all.add(time);
+  return all;
+}
+
+TEST(BenchNoise, IsNamedWhereTheMachineIsNotQuiet) {
+  cli::Machine machine;
+  machine.load = {{0.1, 2, 3}};
+  const cli::Samples steady = samples(std::vector<double>(100, 200.0));
+  EXPECT_EQ(cli::noise_of(machine, steady), std::nullopt);
+  machine.load = {{0.8, 0, 0}};
+  EXPECT_TRUE(says(cli::noise_of(machine, steady).value(), "other work took 0.8 cores"));
+  std::vector<double> some = std::vector<double>(90, 200.0);
+  some.insert(some.end(), 10, 300.0);
+  const std::string both = cli::noise_of(machine, samples(some)).value();
+  EXPECT_TRUE(says(both, "other work took 0.8 cores"));
+  EXPECT_TRUE(says(both, "1.50 times as long at times"));
+  machine.load.reset();  // where the system does not tell
+  EXPECT_FALSE(says(cli::noise_of(machine, samples(some)).value(), "other work"));
+}
+
+// A bench of six seconds on a machine without other work, whose fixed loop never varies.
+struct QuietBench {
+  QuietBench() {
+    setting.machine = {
+        .processor = "P", .cores = 2, .governor = "performance", .load = {{0.1, 2, 3}}};
+    setting.target = "t";
+    setting.bodies = "two bodies";
+    setting.seconds = 6;
+  }
+  cli::BenchSetting setting;
+  cli::Samples loop = samples(std::vector<double>(100, 200.0));
+  double taken = 6.1;
+
+  [[nodiscard]] std::string heading() const { return cli::bench_heading(setting, loop, taken); }
+};
+
+TEST(BenchHeading, SaysNoMoreOfAQuietMachine) {
+  const std::string heading = QuietBench().heading();
+  EXPECT_TRUE(says(heading,
+                   ", t\nP, 2 cores, governor performance; load before 0.1, 2.0, 3.0; "
+                   "a fixed loop took 200 to 200 µs\ntwo bodies\n"));
+  EXPECT_TRUE(heading.ends_with("\ntwo bodies\n")) << heading;
+}
+
+// scripts/readme_bench.py finds other work by the beginning of this line.
+TEST(BenchHeading, SaysWhereTheMachineIsNotQuiet) {
+  QuietBench bench;
+  bench.setting.machine.load = {{0.8, 0, 0}};
+  EXPECT_TRUE(
+      says(bench.heading(), "\ntwo bodies\nnot a quiet machine: other work took 0.8 cores"));
+  bench.setting.machine.load = {{0.1, 0, 0}};
+  bench.loop = samples({200, 200, 200, 300, 300});
+  EXPECT_TRUE(says(bench.heading(), "\nnot a quiet machine: a fixed loop took 1.50 times as long"));
+}
+
+TEST(BenchHeading, SaysWhereQueriesAreSoSlowThatTheirTurnsTakeLonger) {
+  QuietBench bench;
+  bench.taken = 14.2;
+  EXPECT_TRUE(bench.heading().ends_with(
+      "\ntook 14.2 s instead of 6: three turns of each query are the least\n"))
+      << bench.heading();
+}
+
+// Waits at each question, and counts them.
+auto waits(int& count, int milliseconds) {
+  return [&count, milliseconds](std::size_t) {
+    ++count;
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    return cli::Contestant::Answer{1e3 * milliseconds, std::nullopt};
+  };
+}
+
+TEST(BenchContest, GivesEverybodyThreeTurnsHoweverLongTheyTake) {
+  int fast = 0, slow = 0;
+  cli::Contest contest(
+      {{"touch", "fast", "", 1, waits(fast, 1)}, {"touch", "slow", "", 1, waits(slow, 40)}},
+      {{"here", "here", Eigen::Isometry3d::Identity()}});
+  double last = 0;
+  contest.hold(0.01, [&](double part) {
+    last = part;
+    return true;
+  });
+  EXPECT_EQ(last, 1);
+  // A turn is one question that does not count and one that does.
+  EXPECT_GE(slow, 2 * 3);
+  EXPECT_EQ(contest.score(1, 0).times.size(), static_cast<std::size_t>(slow / 2));
+  EXPECT_GE(contest.score(0, 0).times.size(), 3u);
+  EXPECT_GE(contest.taken(), slow * 0.04);
+}
+
+TEST(BenchContest, GivesEverybodyAsMuchTime) {
+  int fast = 0, slow = 0;
+  cli::Contest contest(
+      {{"touch", "fast", "", 1, waits(fast, 1)}, {"touch", "slow", "", 1, waits(slow, 20)}},
+      {{"here", "here", Eigen::Isometry3d::Identity()}});
+  double last = 0;
+  contest.hold(0.5, [&](double part) {
+    EXPECT_GE(part, last);
+    last = part;
+    return true;
+  });
+  EXPECT_EQ(last, 1);
+  EXPECT_GT(fast, 10 * slow);  // 22 times; in as many turns 5.5 times
+  EXPECT_GE(contest.score(1, 0).times.size(), 3u);
+  EXPECT_EQ(contest.score(0, 0).times.median(), 1e3);
+  EXPECT_FALSE(contest.loop().empty());
+  EXPECT_GE(contest.taken(), 0.5);
+}
+
+TEST(BenchRatios, AreNotMadeOfDifferentQuestions) {
+  const auto nothing = [](std::size_t) { return cli::Contestant::Answer{1, std::nullopt}; };
+  const auto groups = cli::ratios_of({{"touch", "IST", "", 1, nothing},
+                                      {"touch", "fcl", "", 1, nothing},
+                                      {"distance", "fcl", "", 1, nothing}});
+  ASSERT_EQ(groups.size(), 1u);
+  ASSERT_EQ(groups[0].ratios.size(), 1u);
+  EXPECT_EQ(groups[0].ratios[0].words, "touch, against fcl");
+  EXPECT_EQ(groups[0].ratios[0].of, 0u);
+  EXPECT_EQ(groups[0].ratios[0].over, 1u);
+}
+
+}  // namespace
+}  // namespace ist::test
