@@ -1,5 +1,6 @@
 """Chapter: what each part of the fast query gives, added one by one and left out one by one."""
 
+from report.losses import NOISE, UNKNOWN, WHY, factor, is_loss, listing, why, why_worker
 from report.text import number, table
 
 PROGRAMS = ["ablation_bench"]
@@ -59,26 +60,21 @@ class Variants:
         return f"{min(counts):,} to {max(counts):,}"
 
 
-NOISE = 0.03  # factors nearer to 1 are no gain and no loss
-
-
-def is_loss(value):
-    return value < 1 - NOISE
-
-
-def factor(value):
-    """A factor, in bold where it is a loss."""
-    text = number(value, 3) if value >= 10 else f"{value:.2f}"
-    return f"**{text}**" if is_loss(value) else text
-
-
-def listing(words):
-    words = list(words)
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
-
-
 def added(name):
     return ADDED[name] if name in ADDED else f"+ SIMD: {INSTRUCTIONS.get(name, name)}"
+
+
+def policy_of(step):
+    """The spheres of a step of the ladder."""
+    return {"pointers_simple": "simple", "linear_simple": "simple", "pointers_table": "table", "linear_table": "table", "batches": "table",
+            "tight": "tight"}.get(step, "slab")
+
+
+def because(variants, before, name, dz):
+    """Why a step of the ladder loses against the one before it."""
+    if name == "second_worker":
+        return why_worker(variants.of(before, "p50_us", dz))
+    return why(name, variants.of(name, "tests", dz) / variants.of(before, "tests", dz), variants.times(before, name, dz))
 
 
 def main_line(variants):
@@ -87,12 +83,12 @@ def main_line(variants):
 
 
 def ladder_table(variants):
-    head = ["step", "MB"]
-    for dz in POSES:
-        head += [f"µs, dz = {dz}", "tests", "leaf pairs", "times the step before", "times the first row"]
     rows, line = [], main_line(variants)
+    head = ["step", "spheres", "MB"]
+    for dz in POSES:
+        head += [f"µs, dz = {dz}", "tests", "leaf pairs", "times as fast as the step before", f"as `{policy_of(line[0])}` on pointers"]
     for before, name in zip([None] + line, line):
-        row = [added(name), variants.of(name, "bytes", "0.0") / 1e6]
+        row = [added(name), f"`{policy_of(name)}`", variants.of(name, "bytes", "0.0") / 1e6]
         for dz in POSES:
             row += [variants.of(name, "p50_us", dz), int(variants.of(name, "tests", dz)), int(variants.of(name, "contacts", dz))]
             row += [factor(variants.times(before, name, dz)) if before else ""]
@@ -105,19 +101,21 @@ POLICIES = ("simple", "table", "tight", "slab")
 
 
 def same_table(variants):
-    """The published query and the fast one with the same spheres, and the tightest spheres against the published table."""
+    """Lines of the published query and the fast one with the same spheres, and the tightest spheres against the published table."""
     head = ["IST against published"]
     for dz in POSES:
         head += [f"published, µs, dz = {dz}", "IST, µs", "times as fast", "leaf pairs: published, IST"]
-    rows = []
+    rows, losses = [], []
     for of, over in [(policy, policy) for policy in POLICIES] + [("slab", "table")]:
         row = [f"`{of}` against `{over}`"]
         for dz in POSES:
             fast, published = f"fast-{of}", f"published-{over}"
             row += [variants.of(published, "p50_us", dz), variants.of(fast, "p50_us", dz), factor(variants.times(published, fast, dz)),
                     f"{int(variants.of(published, 'contacts', dz)):,}, {int(variants.of(fast, 'contacts', dz)):,}"]
+            if is_loss(variants.times(published, fast, dz)):
+                losses.append(f"{row[0]} at dz = {dz}")
         rows.append(row)
-    return table(head, rows)
+    return table(head, rows) + (["", f"**Slower than the published query**: {listing(losses)}; {UNKNOWN}."] if losses else [])
 
 
 def same_text():
@@ -141,32 +139,38 @@ def without_table(variants):
 
 
 def steps_by_factor(variants, dz):
-    """(factor, step) of each step but the first, the largest factor first."""
+    """(factor, step, the step before) of each step but the first, the largest factor first."""
     line = main_line(variants)
-    return sorted(((variants.times(before, name, dz), name) for before, name in zip(line, line[1:])), reverse=True)
+    return sorted(((variants.times(before, name, dz), name, before) for before, name in zip(line, line[1:])), reverse=True)
 
 
 def verdict(variants, dz):
     """Returns sentences on the steps that gain and lose most at a pose."""
     steps, line = steps_by_factor(variants, dz), main_line(variants)
-    named = lambda chosen: listing(f"{added(name)[2:]} ({factor(value)})" for value, name in chosen)
-    losses = [step for step in steps if is_loss(step[0])]
+    gains = listing(f"{added(name)[2:]} ({factor(value)})" for value, name, _ in steps[:3])
+    losses = [f"{added(name)[2:]} ({factor(value)}; {because(variants, before, name, dz)})" for value, name, before in steps if is_loss(value)]
+    first, last = line[0], line[-1]
+    workers = ", two workers," if last == "second_worker" else ""
     return (
-        f"At {PLACE[dz]} all steps together make the query {number(variants.times(line[0], line[-1], dz))} times as "
-        f"fast. Most give {named(steps[:3])}. " + (f"These lose: {named(losses)}." if losses else "No step loses."))
+        f"At {PLACE[dz]} `{policy_of(last)}` with all steps{workers} is {factor(variants.times(first, last, dz))} times as fast as "
+        f"`{policy_of(first)}` on pointers; they list {int(variants.of(last, 'contacts', dz)):,} and {int(variants.of(first, 'contacts', dz)):,} leaf pairs. "
+        f"Most give {gains}. " + (f"**These lose**: {'; '.join(losses)}." if losses else "No step loses."))
 
 
 def without_verdict(variants, size):
-    """Which parts the whole would be faster without."""
+    """Which parts the whole would be faster without, and why."""
     found = []
     for dz in POSES:
         for name in variants.names():
             value = variants.times(name, "full", dz)
-            if is_loss(value):
-                found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long)")
+            if not is_loss(value):
+                continue
+            reason = (why_worker(variants.of(name, "p50_us", dz)) if name == "second_worker" else
+                      why(name, variants.of("full", "tests", dz) / variants.of(name, "tests", dz), value))
+            found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long; with it {reason})")
     if not found:
         return f"At {size} mm no part is better left out."
-    return f"At {size} mm the query is faster without {listing(found)}."
+    return f"At {size} mm **the query is faster without** {'; '.join(found)}."
 
 
 def label_down(axes, labels, unit):
@@ -214,11 +218,15 @@ def without_plot(variants, pictures, size):
 
 def layout_text(variants):
     """Returns sentences on the speed and the memory of the layout alone."""
-    gain = lambda name, base: listing(f"{factor(variants.times(base, name, dz))} at dz = {dz}" for dz in POSES)
+    bases = {"linear_table": "pointers_table", "linear_simple": "pointers_simple"}
+    gain = lambda name: listing(f"{factor(variants.times(bases[name], name, dz))} at dz = {dz}" for dz in POSES)
+    loses = any(is_loss(variants.times(base, name, dz)) for name, base in bases.items() for dz in POSES)
     ratio = variants.of("pointers_table", "bytes", "0.0") / variants.of("linear_table", "bytes", "0.0")
     return (
-        f"The linear layout gives a factor of {gain('linear_table', 'pointers_table')} with the table, and of "
-        f"{gain('linear_simple', 'pointers_simple')} with circumspheres. It takes {number(ratio)} times less memory. "
+        f"The linear layout gives a factor of {gain('linear_table')} with the table, and of "
+        f"{gain('linear_simple')} with circumspheres. "
+        + (f"Where it loses, {WHY['linear_table']}. " if loses else "") +
+        f"The nodes with pointers take {number(ratio)} times its memory. "
         "The nodes with pointers lie on a fresh heap in the order of a depth-first search, which is the best locality that "
         "pointers allow. Batches and saved bounds also build on the layout.")
 
@@ -259,7 +267,7 @@ def chapter(results, pictures):
         "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted contacts: "
         f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, the fewest for "
         "the slowest variants. A test compares the bounds of two nodes. Losses are bold: factors below "
-        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise.", "",
+        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise. The reason of a loss is the work that the part adds, in the code; nothing here measures it alone.", "",
         "The search of the published query and of the linear layout is depth first, in double, with spheres made on "
         "the fly; from the batches on it is breadth first, in float. Each SIMD step is compared with the narrower "
         "instruction set before it. Queries follow back to back, which suits the second worker best. MB counts the parts of both trees that the "
