@@ -1,73 +1,12 @@
 """Chapter: what each part of the fast query gives, added one by one and left out one by one."""
 
+from report.ablation_steps import LEFT_OUT, PLACE, POLICIES, POSES, SIZES, Variants, added, main_line, policy_of
 from report.losses import NOISE, UNKNOWN, WHY, factor, is_loss, listing, why, why_worker
 from report.text import number, table
 
 PROGRAMS = ["ablation_bench"]
-
-SIZES = ("0.2", "0.8")
-POSES = ("0.0", "-1.5")
-PLACE = {"0.0": "full occlusion (dz = 0)", "-1.5": "near contact (dz = -1.5)"}
 LOOKS = {"0.0": {"color": "#1f4e79", "marker": "o"}, "-1.5": {"color": "#e6851e", "marker": "D", "linestyle": "--"}}
 HATCHES = {"0.0": "", "-1.5": "///"}
-
-# What a step of the ladder adds; one that is not here adds an instruction set.
-ADDED = {
-    "pointers_simple": "published, its nodes as pointers: circumspheres",
-    "pointers_table": "+ lookup table",
-    "linear_table": "+ linear layout",
-    "batches": "+ breadth-first batches",
-    "tight": "+ tight balls",
-    "slab": "+ slabs",
-    "second_worker": "+ second worker",
-}
-INSTRUCTIONS = {"ssse3": "SSSE3", "sse4": "SSE4", "avx2": "AVX2", "avx3": "AVX-512"}
-LEFT_OUT = {
-    "second_worker": "second worker",
-    "simd": "SIMD",
-    "simd_and_worker": "SIMD and second worker",
-    "slab": "slabs",
-    "tight": "tight balls, slabs (so: table)",
-    "table": "tight balls, slabs, table (so: circumspheres)",
-    "batches": "batches, SIMD, second worker",
-    "layout": "linear layout, batches, SIMD, second worker",
-}
-
-
-class Variants:
-    """The variants of one kind and voxel size, in the order measured: runs by name and dz."""
-
-    def __init__(self, results, kind, size):
-        self.runs = {}
-        for run in results.runs("ablation_bench", "ablation", kind):
-            _, _, step, at, dz = run.parts
-            if at == size:
-                self.runs.setdefault(step if kind == "same" else step.split("-", 1)[1], {})[dz] = run
-
-    def names(self):
-        return list(self.runs)
-
-    def of(self, name, counter, dz):
-        return self.runs[name][dz][counter]
-
-    def times(self, slow, fast, dz):
-        """How many times faster `fast` is than `slow`."""
-        return self.of(slow, "p50_us", dz) / self.of(fast, "p50_us", dz)
-
-    def samples(self):
-        """Of how many queries a median is, as a text."""
-        counts = [int(run["n"]) for poses in self.runs.values() for run in poses.values()]
-        return f"{min(counts):,} to {max(counts):,}"
-
-
-def added(name):
-    return ADDED[name] if name in ADDED else f"+ SIMD: {INSTRUCTIONS.get(name, name)}"
-
-
-def policy_of(step):
-    """The spheres of a step of the ladder."""
-    return {"pointers_simple": "simple", "linear_simple": "simple", "pointers_table": "table", "linear_table": "table", "batches": "table",
-            "tight": "tight"}.get(step, "slab")
 
 
 def because(variants, before, name, dz):
@@ -75,11 +14,6 @@ def because(variants, before, name, dz):
     if name == "second_worker":
         return why_worker(variants.of(before, "p50_us", dz))
     return why(name, variants.of(name, "tests", dz) / variants.of(before, "tests", dz), variants.times(before, name, dz))
-
-
-def main_line(variants):
-    """The steps of which each adds to the one before it; linear_simple stands beside them."""
-    return [name for name in variants.names() if name != "linear_simple"]
 
 
 def ladder_table(variants):
@@ -95,9 +29,6 @@ def ladder_table(variants):
             row += [factor(variants.times(line[0], name, dz))]
         rows.append(row)
     return table(head, rows)
-
-
-POLICIES = ("simple", "table", "tight", "slab")
 
 
 def same_table(variants):
