@@ -130,9 +130,10 @@ void unbudgeted(benchmark::State& state, const std::string& name, const Make& ma
 // wall time: what was off its core for longer than this does not count, but is counted.
 class Overruns {
  public:
+  static constexpr double kAway = 2;  // µs
+
   template <class Run>
   void measure(std::chrono::microseconds given, const Run& run) {
-    constexpr double kAway = 2;
     const auto wall = Clock::now();
     const double begin = thread_microseconds();
     run(wall + given);
@@ -146,6 +147,10 @@ class Overruns {
   }
 
   void report(benchmark::State& state, const std::string& prefix) {
+    if (over_.size() == 0) {
+      state.SkipWithError("everything was off its core");
+      return;
+    }
     over_.report(state, prefix);
     state.counters[prefix + "p99.99_us"] = over_.quantile(0.9999);
     state.counters[prefix + "away"] = away_;
@@ -189,6 +194,7 @@ void within(benchmark::State& state, std::chrono::microseconds given, Verb verb,
   state.counters["complete"] = static_cast<double>(complete) / queries;
   state.counters["tests"] = tests / queries;
   state.counters["most_pairs"] = most_pairs;
+  state.counters["away_us"] = Overruns::kAway;
   state.counters["n"] = queries;
 }
 

@@ -109,6 +109,7 @@ void loop(benchmark::State& state, int workers, bool noisy) {
   state.counters["held"] = static_cast<double>(report.held);
   state.counters["contacts"] = static_cast<double>(end.contacts->leaf_pairs);
   state.counters["voxel_size"] = *scene.fixed.front().voxel_size;
+  state.counters["period_us"] = microseconds(kPeriod);
   state.counters["awake_us"] = microseconds(TickClock::kLead);
   state.counters["neighbour_MB"] = static_cast<double>(NoisyNeighbour::kMegabytes);
   state.counters["denied"] = static_cast<double>(report.notes.size());

@@ -76,7 +76,7 @@ def build(programs):
 
 
 def first_failure(tests):
-    """The first test that fails, or None. A test is a program, a program and a filter, "ctest" and a name, or "node" and a file."""
+    """The first test that fails, or None. A test is a program, a program and a filter, "ctest" and a name, or "node" or "python" and a file."""
     environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), "IST_REQUIRE_ALL": "1", **os.environ}
     for test in tests:
         program, _, pattern = test.partition(" ")
@@ -85,6 +85,8 @@ def first_failure(tests):
             command = ["ctest", "--test-dir", BUILD, "--no-tests=error", "-R", f"^{pattern}$"]
         elif program == "node":
             command = ["node", "--test", COPY / "tests/viewer" / pattern]
+        elif program == "python":
+            command = ["python3", "-B", COPY / "tests/scripts" / pattern]
         elif pattern:
             command.append(f"--gtest_filter={pattern}")
         try:
@@ -95,7 +97,7 @@ def first_failure(tests):
         if "Running 0 tests" in done.stdout or "No tests were found" in done.stdout + done.stderr:
             fail(f"no test is called {test}")
         if done.returncode != 0:
-            failed = re.search(r"\[  FAILED  \] ([\w/.]+)|- ([\w.]+) \(Failed\)|^not ok \d+ - (.*)", done.stdout, re.M)
+            failed = re.search(r"\[  FAILED  \] ([\w/.]+)|- ([\w.]+) \(Failed\)|^not ok \d+ - (.*)|^FAIL: (\w+)", done.stdout + done.stderr, re.M)
             return next(filter(None, failed.groups())) if failed else f"{program} (ends with {done.returncode})"
     return None
 
@@ -120,7 +122,7 @@ def killer_of(mutant):
 
 def programs_of(mutants):
     programs = {test.split()[0] for mutant in mutants for test in mutant.tests}
-    return sorted(programs - {"ctest", "node"} | (PACKAGED if "ctest" in programs else set()))
+    return sorted(programs - {"ctest", "node", "python"} | (PACKAGED if "ctest" in programs else set()))
 
 
 def results():
@@ -182,9 +184,9 @@ def main():
     copy_sources()
     for mutant in chosen:
         edited(mutant.edits)  # all of them still apply, before an hour is spent
-    configure()
     programs = programs_of(chosen)
     if programs:
+        configure()
         print(f"building {', '.join(programs)}", flush=True)
     if refused := build(programs):
         fail(f"the code as it is does not compile:\n{refused[-3000:]}")

@@ -50,7 +50,7 @@ def join(printed, counts):
     """Returns the record of one run: compiler and flags, and the counts of each query."""
     context, queries = {}, []
     for line in printed.splitlines():
-        if re.match(r"(compiler|flags): ", line):
+        if re.match(r"(compiler|flags|ticks): ", line):
             key, value = line.split(": ", 1)
             context[key] = value
             continue

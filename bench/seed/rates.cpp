@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,17 +57,39 @@ void add_saved(double voxel_size) {
         const auto& [fixed, moving] = trees(voxel_size);
         const auto nodes = static_cast<double>(fixed.parts().octree.node_count() +
                                                moving.parts().octree.node_count());
+        state.counters["ball_bytes"] = sizeof(Ball);
         state.counters["saved_MB"] = sizeof(Ball) * nodes / 1e6;
         state.counters["octree_MB"] =
             static_cast<double>(fixed.parts().octree.bytes() + moving.parts().octree.bytes()) / 1e6;
       });
 }
 
+constexpr double kDistances[] = {0, 0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7.5, 10, 15, 20, 25, 30, 40, 50};
+
+// Which of the distances is right before collision: the first at which no triangles meet.
+void add_before_contact(const std::string& name, double unit) {
+  benchmark::RegisterBenchmark(("before_contact/" + name).c_str(), [=](benchmark::State& state) {
+    const auto& [fixed, moving] = exact_trees(0.8);  // triangles meet whatever the voxels
+    Query query(fixed, moving);
+    const double* apart = nullptr;
+    for (auto _ : state) {
+      apart = std::ranges::find_if(kDistances, [&](double distance) {
+        return query.intersects(closing(-distance * unit)).answer == Answer::kNo;
+      });
+    }
+    if (apart == std::end(kDistances)) {
+      state.SkipWithError("the jaws meet at every distance");
+      return;
+    }
+    state.counters["distance"] = *apart;
+    state.SetLabel(pair_name());
+  })->Iterations(1);
+}
+
 // Figure 10: by distance, policy and engine; distances in units of which there are `unit` mm.
 void add_rate(const std::string& name, double voxel_size, double unit, int turns) {
   std::vector<Place> places;
-  for (const double distance : {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0, 15.0, 20.0,
-                                25.0, 30.0, 40.0, 50.0}) {
+  for (const double distance : kDistances) {
     places.push_back({fmt::format("{:g}", distance), closing(-distance * unit)});
   }
   std::vector<std::string> names;
@@ -101,7 +124,10 @@ void add_rates() {
   for (const double size : {0.8, 0.2}) {
     add_saved(size);
     add_rate(fmt::format("{:g}", size), size, 1, rounds(size < 0.5 ? 31 : 101));
-    if (!quick()) add_rate(fmt::format("scaled{:g}", size), size * unit, unit, rounds(31));
+    add_before_contact(fmt::format("{:g}", size), 1);
+    if (quick()) continue;
+    add_rate(fmt::format("scaled{:g}", size), size * unit, unit, rounds(31));
+    add_before_contact(fmt::format("scaled{:g}", size), unit);
   }
 }
 

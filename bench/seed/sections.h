@@ -15,7 +15,8 @@ void add_voxels();
 /// levels/POLICY/LEVEL, in voxels of one published unit.
 void add_levels();
 /// saved/SIZE/POLICY/SOURCE/DISTANCE, and rate/SIZE/ENGINE/POLICY/DISTANCE, where SIZE and DISTANCE
-/// are mm, or where SIZE begins with "scaled" published units.
+/// are mm, or where SIZE begins with "scaled" published units; and before_contact/SIZE, the
+/// DISTANCE right before collision.
 void add_rates();
 
 }  // namespace ist::bench

@@ -17,6 +17,12 @@ MUTANTS = [
     Mutant("comments-age-figures", "a comment that changes makes figures stale",
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["ctest Figures"]),
 
+    # The report.
+    Mutant("verdict-always-agrees", "the worst case is right before collision wherever it is",
+           [("scripts/report/seed_rates.py", "\"*Agrees*\" if beyond in (0, 1) else", "\"*Agrees*\" if True else")], ["python verdicts_seed_test.py"]),
+    Mutant("away-hidden", "queries that were off their core count among those that the quantiles are of",
+           [("scripts/report/deadlines.py", "{run['n'] - run['over_away']:,.0f}", "{run['n']:,.0f}")], ["python verdicts_deadlines_test.py"]),
+
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",
            [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),

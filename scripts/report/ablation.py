@@ -1,98 +1,28 @@
 """Chapter: what each part of the fast query gives, added one by one and left out one by one."""
 
+from report.ablation_steps import LEFT_OUT, PLACE, POLICIES, POSES, SIZES, Variants, added, main_line, policy_of
+from report.losses import NOISE, UNKNOWN, WHY, factor, is_loss, listing, why, why_worker
 from report.text import number, table
 
 PROGRAMS = ["ablation_bench"]
-
-SIZES = ("0.2", "0.8")
-POSES = ("0.0", "-1.5")
-PLACE = {"0.0": "full occlusion (dz = 0)", "-1.5": "near contact (dz = -1.5)"}
 LOOKS = {"0.0": {"color": "#1f4e79", "marker": "o"}, "-1.5": {"color": "#e6851e", "marker": "D", "linestyle": "--"}}
 HATCHES = {"0.0": "", "-1.5": "///"}
 
-# What a step of the ladder adds; one that is not here adds an instruction set.
-ADDED = {
-    "pointers_simple": "published, its nodes as pointers: circumspheres",
-    "pointers_table": "+ lookup table",
-    "linear_table": "+ linear layout",
-    "batches": "+ breadth-first batches",
-    "tight": "+ tight balls",
-    "slab": "+ slabs",
-    "second_worker": "+ second worker",
-}
-INSTRUCTIONS = {"ssse3": "SSSE3", "sse4": "SSE4", "avx2": "AVX2", "avx3": "AVX-512"}
-LEFT_OUT = {
-    "second_worker": "second worker",
-    "simd": "SIMD",
-    "simd_and_worker": "SIMD and second worker",
-    "slab": "slabs",
-    "tight": "tight balls, slabs (so: table)",
-    "table": "tight balls, slabs, table (so: circumspheres)",
-    "batches": "batches, SIMD, second worker",
-    "layout": "linear layout, batches, SIMD, second worker",
-}
 
-
-class Variants:
-    """The variants of one kind and voxel size, in the order measured: runs by name and dz."""
-
-    def __init__(self, results, kind, size):
-        self.runs = {}
-        for run in results.runs("ablation_bench", "ablation", kind):
-            _, _, step, at, dz = run.parts
-            if at == size:
-                self.runs.setdefault(step if kind == "same" else step.split("-", 1)[1], {})[dz] = run
-
-    def names(self):
-        return list(self.runs)
-
-    def of(self, name, counter, dz):
-        return self.runs[name][dz][counter]
-
-    def times(self, slow, fast, dz):
-        """How many times faster `fast` is than `slow`."""
-        return self.of(slow, "p50_us", dz) / self.of(fast, "p50_us", dz)
-
-    def samples(self):
-        """Of how many queries a median is, as a text."""
-        counts = [int(run["n"]) for poses in self.runs.values() for run in poses.values()]
-        return f"{min(counts):,} to {max(counts):,}"
-
-
-NOISE = 0.03  # factors nearer to 1 are no gain and no loss
-
-
-def is_loss(value):
-    return value < 1 - NOISE
-
-
-def factor(value):
-    """A factor, in bold where it is a loss."""
-    text = number(value, 3) if value >= 10 else f"{value:.2f}"
-    return f"**{text}**" if is_loss(value) else text
-
-
-def listing(words):
-    words = list(words)
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
-
-
-def added(name):
-    return ADDED[name] if name in ADDED else f"+ SIMD: {INSTRUCTIONS.get(name, name)}"
-
-
-def main_line(variants):
-    """The steps of which each adds to the one before it; linear_simple stands beside them."""
-    return [name for name in variants.names() if name != "linear_simple"]
+def because(variants, before, name, dz):
+    """Why a step of the ladder loses against the one before it."""
+    if name == "second_worker":
+        return why_worker(variants.of(before, "p50_us", dz))
+    return why(name, variants.of(name, "tests", dz) / variants.of(before, "tests", dz), variants.times(before, name, dz))
 
 
 def ladder_table(variants):
-    head = ["step", "MB"]
-    for dz in POSES:
-        head += [f"µs, dz = {dz}", "tests", "leaf pairs", "times the step before", "times the first row"]
     rows, line = [], main_line(variants)
+    head = ["step", "spheres", "MB"]
+    for dz in POSES:
+        head += [f"µs, dz = {dz}", "tests", "leaf pairs", "times as fast as the step before", f"as `{policy_of(line[0])}` on pointers"]
     for before, name in zip([None] + line, line):
-        row = [added(name), variants.of(name, "bytes", "0.0") / 1e6]
+        row = [added(name), f"`{policy_of(name)}`", variants.of(name, "bytes", "0.0") / 1e6]
         for dz in POSES:
             row += [variants.of(name, "p50_us", dz), int(variants.of(name, "tests", dz)), int(variants.of(name, "contacts", dz))]
             row += [factor(variants.times(before, name, dz)) if before else ""]
@@ -101,23 +31,22 @@ def ladder_table(variants):
     return table(head, rows)
 
 
-POLICIES = ("simple", "table", "tight", "slab")
-
-
 def same_table(variants):
-    """The published query and the fast one with the same spheres, and the tightest spheres against the published table."""
+    """Lines of the published query and the fast one with the same spheres, and the tightest spheres against the published table."""
     head = ["IST against published"]
     for dz in POSES:
         head += [f"published, µs, dz = {dz}", "IST, µs", "times as fast", "leaf pairs: published, IST"]
-    rows = []
+    rows, losses = [], []
     for of, over in [(policy, policy) for policy in POLICIES] + [("slab", "table")]:
         row = [f"`{of}` against `{over}`"]
         for dz in POSES:
             fast, published = f"fast-{of}", f"published-{over}"
             row += [variants.of(published, "p50_us", dz), variants.of(fast, "p50_us", dz), factor(variants.times(published, fast, dz)),
                     f"{int(variants.of(published, 'contacts', dz)):,}, {int(variants.of(fast, 'contacts', dz)):,}"]
+            if is_loss(variants.times(published, fast, dz)):
+                losses.append(f"{row[0]} at dz = {dz}")
         rows.append(row)
-    return table(head, rows)
+    return table(head, rows) + (["", f"**Slower than the published query**: {listing(losses)}; {UNKNOWN}."] if losses else [])
 
 
 def same_text():
@@ -141,32 +70,38 @@ def without_table(variants):
 
 
 def steps_by_factor(variants, dz):
-    """(factor, step) of each step but the first, the largest factor first."""
+    """(factor, step, the step before) of each step but the first, the largest factor first."""
     line = main_line(variants)
-    return sorted(((variants.times(before, name, dz), name) for before, name in zip(line, line[1:])), reverse=True)
+    return sorted(((variants.times(before, name, dz), name, before) for before, name in zip(line, line[1:])), reverse=True)
 
 
 def verdict(variants, dz):
     """Returns sentences on the steps that gain and lose most at a pose."""
     steps, line = steps_by_factor(variants, dz), main_line(variants)
-    named = lambda chosen: listing(f"{added(name)[2:]} ({factor(value)})" for value, name in chosen)
-    losses = [step for step in steps if is_loss(step[0])]
+    gains = listing(f"{added(name)[2:]} ({factor(value)})" for value, name, _ in steps[:3])
+    losses = [f"{added(name)[2:]} ({factor(value)}; {because(variants, before, name, dz)})" for value, name, before in steps if is_loss(value)]
+    first, last = line[0], line[-1]
+    workers = ", two workers," if last == "second_worker" else ""
     return (
-        f"At {PLACE[dz]} all steps together make the query {number(variants.times(line[0], line[-1], dz))} times as "
-        f"fast. Most give {named(steps[:3])}. " + (f"These lose: {named(losses)}." if losses else "No step loses."))
+        f"At {PLACE[dz]} `{policy_of(last)}` with all steps{workers} is {factor(variants.times(first, last, dz))} times as fast as "
+        f"`{policy_of(first)}` on pointers; they list {int(variants.of(last, 'contacts', dz)):,} and {int(variants.of(first, 'contacts', dz)):,} leaf pairs. "
+        f"Most give {gains}. " + (f"**These lose**: {'; '.join(losses)}." if losses else "No step loses."))
 
 
 def without_verdict(variants, size):
-    """Which parts the whole would be faster without."""
+    """Which parts the whole would be faster without, and why."""
     found = []
     for dz in POSES:
         for name in variants.names():
             value = variants.times(name, "full", dz)
-            if is_loss(value):
-                found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long)")
+            if not is_loss(value):
+                continue
+            reason = (why_worker(variants.of(name, "p50_us", dz)) if name == "second_worker" else
+                      why(name, variants.of("full", "tests", dz) / variants.of(name, "tests", dz), value))
+            found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long; with it {reason})")
     if not found:
         return f"At {size} mm no part is better left out."
-    return f"At {size} mm the query is faster without {listing(found)}."
+    return f"At {size} mm **the query is faster without** {'; '.join(found)}."
 
 
 def label_down(axes, labels, unit):
@@ -214,11 +149,15 @@ def without_plot(variants, pictures, size):
 
 def layout_text(variants):
     """Returns sentences on the speed and the memory of the layout alone."""
-    gain = lambda name, base: listing(f"{factor(variants.times(base, name, dz))} at dz = {dz}" for dz in POSES)
+    bases = {"linear_table": "pointers_table", "linear_simple": "pointers_simple"}
+    gain = lambda name: listing(f"{factor(variants.times(bases[name], name, dz))} at dz = {dz}" for dz in POSES)
+    loses = any(is_loss(variants.times(base, name, dz)) for name, base in bases.items() for dz in POSES)
     ratio = variants.of("pointers_table", "bytes", "0.0") / variants.of("linear_table", "bytes", "0.0")
     return (
-        f"The linear layout gives a factor of {gain('linear_table', 'pointers_table')} with the table, and of "
-        f"{gain('linear_simple', 'pointers_simple')} with circumspheres. It takes {number(ratio)} times less memory. "
+        f"The linear layout gives a factor of {gain('linear_table')} with the table, and of "
+        f"{gain('linear_simple')} with circumspheres. "
+        + (f"Where it loses, {WHY['linear_table']}. " if loses else "") +
+        f"The nodes with pointers take {number(ratio)} times its memory. "
         "The nodes with pointers lie on a fresh heap in the order of a depth-first search, which is the best locality that "
         "pointers allow. Batches and saved bounds also build on the layout.")
 
@@ -259,7 +198,7 @@ def chapter(results, pictures):
         "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted contacts: "
         f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, the fewest for "
         "the slowest variants. A test compares the bounds of two nodes. Losses are bold: factors below "
-        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise.", "",
+        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise. The reason of a loss is the work that the part adds, in the code; nothing here measures it alone.", "",
         "The search of the published query and of the linear layout is depth first, in double, with spheres made on "
         "the fly; from the batches on it is breadth first, in float. Each SIMD step is compared with the narrower "
         "instruction set before it. Queries follow back to back, which suits the second worker best. MB counts the parts of both trees that the "

@@ -5,11 +5,7 @@ import pathlib
 import textwrap
 import xml.etree.ElementTree as ElementTree
 
-import matplotlib
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402  after the backend is chosen
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+# matplotlib is imported by what draws alone: the verdicts of chapters are tested where it is missing.
 
 # Each policy and engine has one colour and one mark in all plots, so that they differ without colours too.
 STYLE = {
@@ -24,6 +20,8 @@ STYLE = {
 
 def plain_ticks(axes):
     """Numbers as people write them, on axes in logarithms: at each decade, and at 2 and 5 where there are few."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         if axis.get_scale() != "log":
             continue
@@ -37,7 +35,12 @@ class Pictures:
     """Makes plots and keeps them, each with what it takes to read it on paper."""
 
     def __init__(self, folder, machine):
-        self.folder, self.machine = pathlib.Path(folder), machine
+        import matplotlib
+
+        matplotlib.use("svg")
+        import matplotlib.pyplot as plt  # after the backend is chosen
+
+        self.folder, self.machine, self.plt = pathlib.Path(folder), machine, plt
         self.folder.mkdir(parents=True, exist_ok=True)
         plt.rcParams.update({
             "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3,
@@ -47,7 +50,7 @@ class Pictures:
 
     def figure(self, columns=1, width=None, height=3.6):
         """A figure and its axes, side by side; one axes alone where there is one column."""
-        return plt.subplots(1, columns, figsize=(width or 4.6 * columns + 1, height))
+        return self.plt.subplots(1, columns, figsize=(width or 4.6 * columns + 1, height))
 
     def save(self, figure, name, alt, n):
         """Writes NAME.svg, under it `n` (what was measured how often) and the machine; gives the markdown."""
@@ -58,7 +61,7 @@ class Pictures:
         figure.supxlabel(caption, fontsize=6.5, color="#555555", x=0.01, ha="left")
         file = self.folder / f"{name}.svg"
         figure.savefig(file, metadata={"Date": None})
-        plt.close(figure)
+        self.plt.close(figure)
         ElementTree.parse(file)
         return f"![{alt}](pictures/{self.folder.name}/{name}.svg)"
 

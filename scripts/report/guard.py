@@ -3,13 +3,14 @@
 import json
 import pathlib
 
+from query_instructions import LIMIT
 from report.text import number, table
 
 PROGRAMS = []  # no benchmark: scripts/query_instructions.py counts, and keeps the counts in perf/
 
 
 def chapter(_results, _pictures):
-    file = pathlib.Path("perf/query_instructions.json")
+    file = pathlib.Path(__file__).parents[2] / "perf/query_instructions.json"
     if not file.exists():
         raise SystemExit(f"report: {file} is not there: scripts/query_instructions.sh --update makes it")
     counted = json.loads(file.read_text())
@@ -26,8 +27,8 @@ def chapter(_results, _pictures):
         "## Instructions",
         "",
         f"Instructions of {len(rows)} fixed queries of the built-in jaws, as callgrind counts them: one query, one worker "
-        f"on AVX2, without building; and of 200 ticks of {len(ticks)} scenes, in which a ball sinks on a box and slides. Counts depend on neither load nor clock, so every run of the tests "
-        "with this compiler repeats them, and fails if one differs by over 1 %. They are no times: a vector "
+        f"on AVX2, without building; and of {context['ticks']} ticks of {len(ticks)} scenes, in which a ball sinks on a box and slides. Counts depend on neither load nor clock, so every run of the tests "
+        f"with this compiler repeats them, and fails if one differs by over {100 * LIMIT:g} %. They are no times: a vector "
         "instruction counts as one, and so does one that waits for memory.",
         "",
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows + ticks),

@@ -21,9 +21,9 @@ def chapter(results, pictures):
     """The markdown of the chapter."""
     runs = {tuple(run.parts[:3]): run for kind in ("loop", "bare") for run in results.runs(PROGRAM, kind)}
     loop = runs["loop", "1", "idle"]
-    period = 1000
+    period = loop["period_us"]
     lines = ["## The loop's latency", "",
-             "The servo loop turns the simulation of two jaws once a millisecond: a simulated hand closes them and "
+             f"The servo loop turns the simulation of two jaws every {number(period)} µs: a simulated hand closes them and "
              f"holds them closed, with contact, friction and damping, in voxels of {number(loop['voxel_size'])} mm. The lateness of a "
              "tick is the time from its scheduled to its actual begin. Its execution lasts until the wrench is written to "
              "the device. The neighbour is one thread for each core, of ordinary priority, that streams "
@@ -98,11 +98,41 @@ def _late_in_words(runs):
                f"within {at('bare', 'timer', condition, 'p99')} and {at('bare', 'timer', condition, 'p99.9')} µs; an "
                f"ordinary thread within {at('bare', 'plain', condition, 'p99')} and "
                f"{at('bare', 'plain', condition, 'p99.9')} µs.")
-    idle, noisy = (runs["bare", "timer", condition]["late_p99_us"] for condition in CONDITIONS)
-    if idle > noisy:
-        yield ("**The idle machine is the later of the two**, also in the empty loops, so the machine is the cause. Resting cores "
-               "take time to wake, and a virtual machine's cores may be lent to others meanwhile; a busy neighbour of lower "
-               "priority keeps them awake.")
+    yield from _later_idle(runs)
+
+
+def _later_idle(runs):
+    """Yields what begins later idle than beside the neighbour, and why where the empty loops show it."""
+    later = [kind for kind in KINDS if runs[kind + ("idle",)]["late_p99_us"] > runs[kind + ("noisy",)]["late_p99_us"]]
+    if not later:
+        return
+    cause = ("An empty loop is among them, so the machine is a cause: resting cores take time to wake, and a virtual machine's cores may be lent "
+             "to others meanwhile; a busy neighbour of lower priority keeps them awake." if any(kind[0] == "bare" for kind in later) else
+             "No empty loop is among them: not explained.")
+    yield f"**At p99 these begin later idle than beside the neighbour**: {'; '.join(KINDS[kind][0] for kind in later)}. {cause}"
+
+
+def why_missed(run, bare):
+    """Why a loop missed ticks: where its longest tick is shorter than the period, it is the late begins."""
+    period = run["period_us"]
+    if run["execution_max_us"] < period:
+        return (f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most, so ticks began late, by up to {number(run['late_max_us'])} µs; "
+                f"the empty loop by the same clock missed {number(bare['missed'])}")
+    if run["cpu_max_us"] < period:
+        return (f"a tick took {number(run['execution_max_us'])} µs, but no tick over {number(run['cpu_max_us'])} µs of its thread's processor time: it was "
+                "off its core")
+    return f"a tick took {number(run['cpu_max_us'])} µs of its thread's processor time: not explained"
+
+
+def _missed_in_words(runs):
+    """Yields a verdict on the ticks that the loop missed."""
+    missed = []
+    for kind in KINDS:
+        for at, place in CONDITIONS.items():
+            run = runs[kind + (at,)]
+            if kind[0] == "loop" and run["missed"]:
+                missed.append(f"{KINDS[kind][0]}, {place}, {number(run['missed'])} beside {number(run['ticks'])} ticks ({why_missed(run, runs['bare', 'clock', at])})")
+    yield f"**Deadlines were missed**: {'; '.join(missed)}." if missed else "The loop missed no deadline."
 
 
 def _taken_in_words(runs):
@@ -111,7 +141,6 @@ def _taken_in_words(runs):
         yield (f"With {workers} worker{'s' * (workers == '2')} a tick takes {number(idle['execution_p50_us'])} µs in "
                f"the median and {number(idle['execution_p99.9_us'])} µs at 99.9 of 100; beside the neighbour "
                f"{number(noisy['execution_p50_us'])} and {number(noisy['execution_p99.9_us'])} µs. Its processor time "
-               f"is {number(idle['cpu_p50_us'])} and {number(noisy['cpu_p50_us'])} µs in the median. Deadlines "
-               f"missed: {number(idle['missed'])} of {number(idle['ticks'])}, and {number(noisy['missed'])} of "
-               f"{number(noisy['ticks'])}; answers that were not complete in time: {number(idle['held'])} and "
-               f"{number(noisy['held'])}.")
+               f"is {number(idle['cpu_p50_us'])} and {number(noisy['cpu_p50_us'])} µs in the median. Answers that were not complete "
+               f"in time: {number(idle['held'])} and {number(noisy['held'])}.")
+    yield from _missed_in_words(runs)

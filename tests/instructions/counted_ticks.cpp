@@ -12,8 +12,6 @@
 namespace ist::test {
 namespace {
 
-constexpr int kTicks = 200;
-
 Scene ball_on_box() {
   Scene scene{.unit = 1e-3};
   scene.fixed = {box_body("box", {-20, -20, -10}, {20, 20, 0})};

@@ -1,7 +1,7 @@
 // Asks ten fixed queries of the built-in jaws, one worker on AVX2, and makes ticks of two scenes,
-// for callgrind to count: see scripts/query_instructions.sh, which runs this. Prints compiler and
-// flags, then a line a query: its name, what it found and how many pairs of spheres it tested.
-// Exits with 77 where the processor has no AVX2.
+// for callgrind to count: see scripts/query_instructions.sh, which runs this. Prints compiler,
+// flags and how many ticks, then a line a query: its name, what it found and how many pairs of
+// spheres it tested. Exits with 77 where the processor has no AVX2.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ int main() try {
     fmt::print(stderr, "this processor, as valgrind shows it, has no AVX2\n");
     return kSkipped;
   }
-  fmt::print("compiler: {}\nflags: {}\n", IST_COMPILER, IST_FLAGS);
+  fmt::print("compiler: {}\nflags: {}\nticks: {}\n", IST_COMPILER, IST_FLAGS, ist::test::kTicks);
   count_all();
   ist::test::count_ticks();
 } catch (const std::exception& error) {
