@@ -13,6 +13,8 @@ MUTANTS = [
            [("scripts/report/check_figures.py", "return 1 if found else 0", "return 0")], ["ctest Figures"]),
     Mutant("comments-age-figures", "a comment that changes makes figures stale",
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["ctest Figures"]),
+    Mutant("report-mixes-codes", "results of other code count as results of this one",
+           [("scripts/report/runner.py", " and not changed_since(commit, program)", "")], ["ctest Report.Runner"]),
 
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",
