@@ -29,7 +29,7 @@ def fail(text):
 def sources():
     for folder in ["src", "simd", "tests", "bench", "scripts", "docs", "perf"]:
         yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
-    for name in ["CMakeLists.txt", "LICENSE", "README.md", "HACKING.md", "CHANGELOG.md"]:
+    for name in ["CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "HACKING.md", "CHANGELOG.md"]:
         yield ROOT / name
 
 

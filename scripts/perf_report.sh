@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Makes perf/REPORT.md, with its plots, from raw results in perf/results/<machine>/: what accuracy
 # costs in time, the article's own measurements again, what each part gives, and other libraries
-# side by side. Runs the benchmarks whose results are missing, so that after an interruption it goes
-# on where it was. Some 28 minutes on two cores that have nothing else to do, and 5 to build.
+# side by side. Runs the benchmarks that have no results of this code, so that after an interruption
+# it goes on where it was; results of an earlier commit count where no source of theirs has changed,
+# those of changes that no commit holds do not. Some 28 minutes on two cores that have nothing else
+# to do, and 5 to build.
 #
-#   scripts/perf_report.sh            runs what is missing
+#   scripts/perf_report.sh            runs what has no results of this code
 #   scripts/perf_report.sh --fresh    runs all again
 #   scripts/perf_report.sh --quick    shows that all of it runs, in 3 minutes once built: few rounds,
 #                                     large voxels; everything goes to build/report instead
@@ -16,7 +18,7 @@ options=()
 for argument in "$@"; do
   case $argument in
     --quick | --fresh) options+=("$argument") ;;
-    -h | --help) sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "perf_report: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

@@ -3,6 +3,7 @@
 
     scripts/readme_bench.py     after cmake --preset release && cmake --build --preset release; on a quiet machine
 """
+import os
 import pathlib
 import re
 import subprocess
@@ -26,6 +27,14 @@ def ratios(printed):
     return before.rstrip() + "\n"
 
 
+def state(printed, load_after):
+    """Returns a sentence on the machine before and after: what `ist bench` prints of it, and the load now."""
+    found = re.search(r"load before ([\d.]+)[^;]*; a fixed loop took (\S+ to \S+ µs)", printed)
+    if not found:
+        sys.exit(f"readme_bench: {PROGRAM} bench prints neither the load before nor the time of its fixed loop")
+    return f"Load {found.group(1)} before, {load_after:.1f} after; a fixed loop took {found.group(2)} between the queries."
+
+
 def main():
     commit, date = here()
     if commit.endswith("+"):
@@ -39,7 +48,7 @@ def main():
         sys.exit(f"readme_bench: ist bench: {done.stderr}")
     note = "<!-- snippet: output varies, since it is times -->\n"
     text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{ratios(done.stdout)}```\n\n"
-            f"{stamp(commit, date, 'ist bench')}\n")
+            f"{stamp(commit, date, 'ist bench', state(done.stdout, os.getloadavg()[0]))}\n")
     page = PAGE.read_text()
     before, begin, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)

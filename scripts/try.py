@@ -54,12 +54,14 @@ def main(folder):
     for name, before, after, ratio, word in rows_of(head, tree):
         slower += word == "slower"
         print(f"{name:<58} {before:>10.2f} {after:>10.2f} {ratio:>7.3f} {word}")
-    for key in sorted(head.keys() ^ tree.keys()):
-        print(f"only of {'HEAD' if key in head else 'the tree'}: {', '.join(map(str, key))}")
+    lost = sorted(head.keys() - tree.keys())
+    for side, keys in (("HEAD", lost), ("the tree", sorted(tree.keys() - head.keys()))):
+        for key in keys:
+            print(f"only of {side}: {', '.join(map(str, key))}")
     others = [key for key in head if key in tree and listed_before[key] != listed_after[key]]
     for key in others:
         print(f"another answer: {', '.join(map(str, key))}: {sorted(map(str, listed_before[key]))} pairs, now {sorted(map(str, listed_after[key]))}")
-    return 1 if slower or others else 0
+    return 1 if slower or others or lost else 0
 
 
 if __name__ == "__main__":

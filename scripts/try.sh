@@ -6,8 +6,8 @@
 #   scripts/try.sh                 the built-in jaws, in voxels of 0.4 mm
 #   scripts/try.sh ARGUMENT …      of `ist bench`: FIXED MOVING, --voxel-size 0.2, …
 #
-# Exits with 0 where no row is slower, 1 where one is or lists other pairs, 2 where it could not compare. scripts/bench_compare.sh compares two
-# commits in more benchmarks.
+# Exits with 0 where no row is slower, 1 where one is, lists other pairs or is gone, 2 where it could not compare.
+# scripts/bench_compare.sh compares two commits in more benchmarks.
 set -eEuo pipefail
 cd "$(dirname "$0")/.."
 trap 'exit 2' ERR

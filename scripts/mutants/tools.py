@@ -1,4 +1,4 @@
-"""Faults in advice, the circuit, the C interface and the reports of an occlusion."""
+"""Faults in advice, the circuit, the C interface, the reports of an occlusion and the comparison of a working tree."""
 
 from .mutant import Mutant, ADVICE, CAPI, HARDWARE, OCCLUSION, CIRCUIT
 
@@ -83,4 +83,8 @@ MUTANTS = [
            ["occlusion_report_test BiteHtml*"]),
     Mutant("tooth-numbers-unchecked", "numbers of another system pass as teeth",
            [(OCCLUSION + "labels/tooth_numbers.cpp", "tooth <= (quarter <= 4 ? 8 : 5)", "tooth <= 8")], ["labels_test LabelLines*"]),
+
+    # The working tree beside HEAD.
+    Mutant("try-forgets-lost-rows", "a change that loses a way of asking passes",
+           [("scripts/try.py", "slower or others or lost", "slower or others")], ["python try_test.py"]),
 ]

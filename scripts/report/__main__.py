@@ -6,9 +6,9 @@ import sys
 from report import ablation, accuracy, bodies, closing, deadlines, guard, loop, peers, scaling, seed, sweeps
 from report.draw import Pictures
 from report.figures import machine_state, stamp, stamped
+from report.made_with import made_with
 from report.results import Results
 from report.runner import Runner
-from report.text import table
 
 CHAPTERS = [accuracy, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
 HEAD = """# What accuracy costs in time
@@ -46,32 +46,6 @@ def with_stamps(lines, chapter, results):
     return made
 
 
-def machine_of(context):
-    """Returns a sentence on the machine and the compiler of a program's run."""
-    caches = ", ".join(f"L{c['level']} {c['type'].lower()} {c['size'] // 1024} KiB" for c in context["caches"])
-    return (f"{context['processor']}, {context['num_cpus']} cores at {context['mhz_per_cpu']} MHz; {caches}. "
-            f"{context['compiler']}; `{context['flags']}`.")
-
-
-def made_with(results):
-    """Returns the chapter on the machine and the programs."""
-    rows, machines = [], []
-    for program in programs():
-        c = results.context(program)
-        machine = machine_of(c)
-        if machine not in machines:
-            machines.append(machine)
-        load = ", ".join(f"{value:.1f}" for value in c["load_avg"])
-        loop = f"{c['loop_before']}, {c['loop_after']}" if "loop_before" in c else ""
-        rows.append([f"`{program}`", machines.index(machine) + 1, c["commit"], c["date"][:16].replace("T", " "), float(c["seconds"]), load, loop])
-    mixed = ["**Not all of it was measured on one machine: compare within a chapter, and not across machines.**", ""] if len(machines) > 1 else []
-    return ["## What it was made with", "", *(f"{number}. {machine}" for number, machine in enumerate(machines, 1)), "", *mixed,
-            *table(["program", "machine", "commit", "begun", "seconds", "load when it began (1, 5, 15 minutes)",
-                    "fixed loop before and after, µs"], rows), "",
-            "A + after a commit says that the code had changes beside it. The fixed loop reads no memory: its time shows the clock of the "
-            "core and other work on it."]
-
-
 def programs():
     return list(dict.fromkeys(program for chapter in CHAPTERS for program in chapter.PROGRAMS))
 
@@ -96,7 +70,7 @@ def main():
     for chapter in CHAPTERS:
         machine = description(results, chapter.PROGRAMS[0]) if chapter.PROGRAMS else ""
         lines += [*with_stamps(chapter.chapter(results, Pictures(folder, machine)), chapter, results), ""]
-    lines += made_with(results)
+    lines += made_with(results, programs())
     report = out / "REPORT.md"
     report.write_text("\n".join(lines) + "\n")
     if not quick:

@@ -9,17 +9,16 @@ def unstamped(page):
     """Yields a line of text for each table of the page that names no commit."""
     for number, is_stamped in tables_in(page):
         if not is_stamped:
-            yield f"{page}:{number}: the table names neither the commit that it was measured at nor a test that repeats it"
+            yield f"{page}:{number}: the table names neither the commit that it was measured at nor a test, of those that ctest knows, that repeats it"
 
 
 def verdict(commit, maker):
     """Returns what is wrong with figures of a maker at a commit, or nothing."""
     if not is_commit(commit):
         return f"measured at {commit}, which is no commit of this history"
-    sources = sources_of(maker)
-    changed = changed_since(commit, sources)
+    changed = changed_since(commit, maker)
     files = f"{len(changed)} file{'s' if len(changed) > 1 else ''}"
-    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed, sources).replace('`', '')}"
+    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed, sources_of(maker)).replace('`', '')}"
 
 
 def stale(page):

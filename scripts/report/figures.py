@@ -13,21 +13,44 @@ import pathlib
 import re
 import subprocess
 
+from report import flags
+
 ROOT = pathlib.Path(__file__).parents[2]
+
+
+def both(stem):
+    """A source and its header."""
+    return [f"{stem}.cpp", f"{stem}.h"]
+
+
 # What every query rests on.
-QUERY = ["simd", "src/ist/base", "src/ist/query", "src/ist/tree", "src/ist/voxel"]
+QUERY = ["simd", "src/ist/base", "src/ist/mesh/mesh.h", "src/ist/query", "src/ist/tree", "src/ist/voxel"]
+MEASURE = [*QUERY, "src/ist/measure", "src/ist/mesh/bounding_box.h", *both("src/ist/mesh/nearest_point"), *both("src/ist/mesh/pseudonormals")]
 LOOP = [*QUERY, "src/ist/haptics", "src/ist/scene"]
-# What figures rest on, by the benchmark or the script that makes them, beside a benchmark's own files.
+SHAPES = ["src/ist/models", *both("tests/support/shapes")]
+# What figures rest on, by the benchmark or the script that makes them, beside a benchmark's own files. A benchmark's bodies come
+# from files or from built-in models, by readers that are not timed.
 RESTS = {
-    "accuracy_bench": [*QUERY, "src/ist/measure"],
+    "ablation_bench": [*QUERY, "src/verify"],
+    "accuracy_bench": [*MEASURE, *SHAPES, "src/ist/haptics", "src/verify", *both("tests/query/contacts/closed_forms"),
+                       "tests/query/contacts/contact_cases.h", *both("tests/query/contacts/form_errors"), *both("tests/query/query_cases"),
+                       *both("tests/support/random")],
     "advise_bench": [*QUERY, "src/advise"],
     "build_bench": ["src/ist/base", "src/ist/mesh", "src/ist/tree", "src/ist/voxel"],
-    "hardware_bench": ["src/hardware", "src/ist/tree", "src/ist/voxel"],
+    "coherent_bench": LOOP,
+    "deadline_bench": [*QUERY, *SHAPES, *both("tests/support/conformal")],
+    "hardware_bench": ["src/hardware", "src/ist/query/query_rules.h", "src/ist/tree", "src/ist/voxel", "tests/hardware/node_pair.h",
+                       "tests/hardware/pair_walk.h"],
     "hardware_report.sh": ["scripts/hardware", "src/hardware"],
     "haptics_bench": LOOP,
     "loop_bench": LOOP,
-    "measure_bench": [*QUERY, "src/ist/measure"],
-    "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
+    "measure_bench": MEASURE,
+    "peers_bench": [*MEASURE, "src/cli/bench/rivals.h"],
+    "scaling_bench": [*QUERY, *SHAPES, *both("tests/support/conformal")],
+    "seed_bench": [*QUERY, "src/ist/mesh/bounding_box.h"],
+    "sweep_bench": [*MEASURE, "bench/python/sweep_loop.py", "src/ist/capi", "src/ist/sweep", "src/python/ist"],
+    "world_bench": [*QUERY, "src/ist/models"],
+    "calls.py": [*MEASURE, "bench/python", "src/ist/capi", "src/python/ist"],
     "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/cli/engine.cpp", "src/ist/models"],
     "mutate.sh": ["scripts/mutants", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
@@ -35,14 +58,19 @@ RESTS = {
     "target_instructions.py": [*QUERY, "tests/instructions"],
     "viewer_ratio.mjs": [*QUERY, "src/cli/engine.cpp", "src/viewer/engine/pair.cpp"],
 }
+# The presets that build what makes them, where these are not that of the benchmarks.
+PRESETS = {"calls.py": ["release"], "hardware_report.sh": [], "ist bench": ["release"], "mutate.sh": [], "stability_report.sh": ["test"],
+           "target_instructions.py": ["arm64", "release"], "viewer_ratio.mjs": ["release", "wasm"]}
+# Those that count, and time nothing: a count is the same on every machine, whatever else runs there.
+COUNTERS = {"hardware_bench", "hardware_report.sh", "mutate.sh", "stability_border.sh", "stability_report.sh", "target_instructions.py"}
 STAMP = re.compile(r"Measured at commit `([0-9a-f]+\+?)` on (\d{4}-\d\d-\d\d) by `([\w. ]+)`")
+# Of figures that are times: the machine's, beside the stamp.
+STATE = re.compile(r"Load [\d.]+ before, [\d.]+ after; a fixed loop took [\d.]+")
 # Figures that cannot be stale: a test repeats them in every run.
-REPEATED = re.compile(r"Repeated by the test `[\w.]+`")
+REPEATED = re.compile(r"Repeated by the test `([\w.]+)`")
 # Pages of results: each of their tables needs a stamp, or the test that repeats it.
 PAGES = ["README.md", "docs/performance.md", "perf/HAPTIC_STABILITY.md", "perf/HARDWARE.md", "perf/MUTANTS.md",
          "perf/REPORT.md", "perf/STABILITY.md"]
-
-
 # The figure that the page itself shows, as JSON: its commit, and who makes it.
 SHOWN = ("src/viewer/page/native_ratio.json", "viewer_ratio.mjs")
 
@@ -76,10 +104,15 @@ def here():
 def sources_of(maker):
     """The folders and files that the figures of a benchmark or a script rest on."""
     stem = maker.removesuffix("_bench")
-    own = [f"bench/{maker}.cpp", f"bench/{stem}", "bench/support"] if stem != maker else []
+    own = ["bench/CMakeLists.txt", f"bench/{maker}.cpp", f"bench/{stem}", "bench/support"] if stem != maker else []
     if stem == maker and maker not in RESTS:
         raise ValueError(f"{maker} makes no figures")
-    return sorted(RESTS.get(maker, QUERY) + [path for path in own if (ROOT / path).exists()])
+    compiled = flags.FILES if presets_of(maker) else []
+    return sorted({*RESTS.get(maker, QUERY), *(path for path in [*own, *compiled] if (ROOT / path).exists())})
+
+
+def presets_of(maker):
+    return PRESETS.get(maker, ["bench"])
 
 
 def code_of(text, name):
@@ -91,10 +124,13 @@ def code_of(text, name):
     return " ".join(without.split())
 
 
-def changed_since(commit, paths):
-    """Returns the files among `paths` whose code is another in the working tree than at a commit, in order of name. Comments and
-    texts about the code do not count."""
-    names = git("diff", "--name-only", commit, "--", *paths)
+def changed_since(commit, maker):
+    """Returns the files that the figures of a maker rest on whose code is another in the working tree than at a commit, in order
+    of name. Comments and texts about the code do not count, nor do CMake's files but for the flags in them."""
+    def code(text):
+        return flags.of(name, text, presets_of(maker)) if name in flags.FILES else code_of(text, name)
+
+    names = git("diff", "--name-only", commit, "--", *sources_of(maker))
     if names is None:
         raise ValueError(f"{commit} is no commit of this history")
     found = []
@@ -103,7 +139,7 @@ def changed_since(commit, paths):
             continue
         now = ROOT / name
         before = git("show", f"{commit}:{name}")
-        if before is None or not now.exists() or code_of(before, name) != code_of(now.read_text("latin-1"), name):
+        if before is None or not now.exists() or code(before) != code(now.read_text("latin-1")):
             found.append(name)
     return found
 
@@ -122,9 +158,8 @@ def stamp(commit, date, maker, more=""):
     elif not is_commit(commit):
         state = "**a commit that this history does not have**"
     else:
-        sources = sources_of(maker)
-        changed = changed_since(commit, sources)
-        state = f"**its code has changed since**, in {rooms(changed, sources)}" if changed else "its code was the same when this was written"
+        changed = changed_since(commit, maker)
+        state = f"**its code has changed since**, in {rooms(changed, sources_of(maker))}" if changed else "its code was the same when this was written"
     return f"Measured at commit `{commit}` on {date} by `{maker}`; {state}.{' ' + more if more else ''}"
 
 
@@ -140,34 +175,55 @@ def stamped(lines, line):
 
 def machine_state(context):
     """Returns a sentence on the machine before and after a run: its load, and the time of a fixed loop."""
-    load = context.get("load_avg", [])
-    before = f"{load[0]:.1f}" if load else "unknown"
+    missing = [name for name in ("load_avg", "load_after", "loop_before", "loop_after") if not context.get(name)]
+    if missing:
+        raise ValueError(f"results that are times say nothing of {', '.join(missing)}: measure them again")
     on = f"On {context['processor']}. " if "processor" in context else ""
-    if "loop_before" not in context:
-        return f"{on}Load {before} before."
-    return (f"{on}Load {before} before, {float(context['load_after']):.1f} after; a fixed loop took {context['loop_before']} µs before and "
-            f"{context['loop_after']} µs after.")
+    return (f"{on}Load {context['load_avg'][0]:.1f} before, {float(context['load_after']):.1f} after; a fixed loop took "
+            f"{context['loop_before']} µs before and {context['loop_after']} µs after.")
+
+
+def is_test(name):
+    """Whether ctest knows a test by that name: one that CMake adds, or a case of a suite."""
+    suite, _, case = name.rpartition(".")
+    added, written = re.compile(rf"add_test\(\s*NAME {re.escape(name)}\s"), re.compile(rf"\bTEST(_F)?\({suite},\s*{case}\)")
+    tests = ROOT / "tests"
+    return (any(added.search(file.read_text()) for file in tests.rglob("CMakeLists.txt")) or
+            bool(suite) and any(written.search(file.read_text()) for file in tests.rglob("*.cpp")))
+
+
+def cells(line):
+    return [cell.strip(" `") for cell in line.strip().strip("|").split("|")]
 
 
 def stamps_in(page):
-    """Yields (line number, commit, maker) of each stamp on a page."""
+    """Yields (line number, commit, maker) of each stamp on a page, and of each row that names its program and its commit."""
+    columns = None
     for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
         for found in STAMP.finditer(line):
             yield number, found.group(1), found.group(3)
+        if not line.startswith("|"):
+            columns = None
+        elif columns is None:
+            columns = cells(line)
+        elif {"program", "commit"} <= set(columns) and not line.startswith("|-"):
+            row = dict(zip(columns, cells(line)))
+            yield number, row["commit"], row["program"]
 
 
 def tables_in(page):
     """Yields the line number of each table on a page, and whether its figures name their commit: by a stamp below it, before the
-    next table or heading, or row by row."""
+    next table or heading, or row by row; or a test that there is repeats them."""
     lines = (ROOT / page).read_text().splitlines()
     begins = [i for i, line in enumerate(lines) if line.startswith("|") and (i == 0 or not lines[i - 1].startswith("|"))]
     for begin in begins:
         below = begin
         while below < len(lines) and lines[below].startswith("|"):
             below += 1
-        stamped = "| commit |" in lines[begin]
+        stamped = {"program", "commit"} <= set(cells(lines[begin]))
         for line in lines[below:]:
             if line.startswith(("|", "#")):
                 break
-            stamped = stamped or STAMP.search(line) is not None or REPEATED.search(line) is not None
+            repeated = REPEATED.search(line)
+            stamped = stamped or STAMP.search(line) is not None or repeated is not None and is_test(repeated.group(1))
         yield begin + 1, stamped

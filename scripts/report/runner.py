@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 
+from report.figures import changed_since, has_history, is_commit
 from report.stamp import stamp
 
 PROGRAMS = pathlib.Path("build/bench/bench")
@@ -31,18 +32,28 @@ class Runner:
         results.mkdir(parents=True, exist_ok=True)
 
     def run(self, programs, again):
-        """Runs those that have no results yet, or all."""
+        """Runs those that have no results of this code yet, or all."""
         missing = [p for p in programs if again or not self._is_whole(p)]
         for program in programs:
             if program not in missing:
-                print(f"perf_report: {program}: results are there", file=sys.stderr)
+                print(f"perf_report: {program}: results of this code are there", file=sys.stderr)
         for place, program in enumerate(missing, 1):
             self._run(program, f"[{place}/{len(missing)}] {program}")
 
     def _is_whole(self, program):
-        """Whether the results cover the whole program, not a part that the arguments of bench.sh chose."""
+        """Whether the results cover the whole program, not a part that the arguments of bench.sh chose, and are of this code, made by
+        this compiler with these flags. An earlier commit counts where all that the program rests on is as it was then."""
         file = self.results / f"{program}.json"
-        return file.exists() and not json.loads(file.read_text())["context"].get("arguments")
+        if not file.exists():
+            return False
+        made, now = json.loads(file.read_text())["context"], dict(item.split("=", 1) for item in self.context)
+        if made.get("arguments") or any(made.get(name) != now.get(name) for name in ("compiler", "flags")):
+            return False
+        commit = made["commit"]
+        if commit == now["commit"]:
+            # A + says that code differed from the commit: it may differ otherwise by now.
+            return not commit.endswith("+")
+        return has_history() and is_commit(commit) and not changed_since(commit, program)
 
     def _run(self, program, title):
         command = [str(PROGRAMS / program), *self.least]

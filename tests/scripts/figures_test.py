@@ -4,15 +4,18 @@ Without the history of commits that is said, and the exit code is 77; with IST_R
 
 import contextlib
 import io
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-from report import check_figures, figures  # noqa: E402  after its folder is known
+import readme_bench  # noqa: E402  after its folder is known
+from report import check_figures, figures, flags  # noqa: E402
 
 
 class Pages(unittest.TestCase):
@@ -50,10 +53,121 @@ class Pages(unittest.TestCase):
         self.assertRegex(between, figures.STAMP)
 
     def test_every_maker_of_figures_has_sources(self):
+        made = {maker for page in figures.PAGES for _, _, maker in figures.stamps_in(page)}
+        for maker in made | set(figures.RESTS):
+            for source in figures.sources_of(maker):
+                self.assertTrue((figures.ROOT / source).exists(), f"{maker} rests on {source}")
+
+    def test_times_name_the_load_and_a_fixed_loop_beside_their_commit(self):
+        # `ist bench` prints both itself, too, above its stamp.
+        printed = re.compile(r"load before [\d., ]+; a fixed loop took [\d.]+ to [\d.]+ µs")
+        bare, timed = [], 0
         for page in figures.PAGES:
-            for number, _, maker in figures.stamps_in(page):
-                for source in figures.sources_of(maker):
-                    self.assertTrue((figures.ROOT / source).exists(), f"{page}:{number}: {maker} rests on {source}")
+            text = (figures.ROOT / page).read_text()
+            for number, line in enumerate(text.splitlines(), 1):
+                makers = {found.group(3) for found in figures.STAMP.finditer(line)} - figures.COUNTERS
+                timed += len(makers)
+                if makers and not figures.STATE.search(line) and not (makers == {"ist bench"} and printed.search(text)):
+                    bare.append(f"{page}:{number}")
+        self.assertEqual(bare, [])
+        self.assertGreater(timed, 0)
+
+
+class Sources(unittest.TestCase):
+    """What benchmarks include is what their figures rest on."""
+
+    @staticmethod
+    def includes(file):
+        """The project's files that a source includes. A header of users stands for those that it gathers, and for its room."""
+        for name in re.findall(r'^#include "([^"]+)"', file.read_text(), re.M):
+            for folder in ("src", "bench", "tests", "."):
+                found = figures.ROOT / folder / name
+                if found.exists() and found.parent == figures.ROOT / "src/ist":
+                    yield from Sources.includes(found)
+                    yield from [room.relative_to(figures.ROOT) for room in [found.with_suffix("")] if room.is_dir()]
+                elif found.exists():
+                    yield found.relative_to(figures.ROOT)
+                else:
+                    continue
+                break
+
+    @staticmethod
+    def unlisted(program):
+        """The files that a benchmark includes, it or those of the tests that are compiled into it, and does not rest on."""
+        rests, stem = figures.sources_of(program), program.removesuffix("_bench")
+        own = [figures.ROOT / f"bench/{program}.cpp", *(figures.ROOT / "bench" / stem).rglob("*.*")]
+        waiting, seen = [file for file in own if file.suffix in (".h", ".cpp") and file.exists()], set()
+        while waiting:
+            file = waiting.pop()
+            for name in Sources.includes(file):
+                if name in seen:
+                    continue
+                seen.add(name)
+                if name.parts[0] == "tests":
+                    waiting += filter(pathlib.Path.exists, (figures.ROOT / name, (figures.ROOT / name).with_suffix(".cpp")))
+        return sorted(str(name) for name in seen if not any(name == pathlib.Path(rest) or pathlib.Path(rest) in name.parents for rest in rests))
+
+    def test_every_benchmark_rests_on_what_it_includes(self):
+        programs = sorted(file.stem for file in (figures.ROOT / "bench").glob("*_bench.cpp")) + ["peers_bench"]
+        self.assertIn("sweep_bench", programs)
+        for program in programs:
+            self.assertEqual(self.unlisted(program), [], program)
+
+    def test_a_room_that_is_not_listed_is_found(self):
+        for program, room in (("sweep_bench", "src/ist/sweep"), ("accuracy_bench", "src/ist/haptics"), ("peers_bench", "src/ist/measure"),
+                              ("deadline_bench", "tests/support/conformal.h"), ("loop_bench", "src/ist/scene")):
+            rests = figures.RESTS[program]
+            self.addCleanup(figures.RESTS.__setitem__, program, rests)
+            figures.RESTS[program] = [rest for rest in rests if rest != room]
+            self.assertTrue(any(name.startswith(room) for name in self.unlisted(program)), (program, room))
+
+
+class Flags(unittest.TestCase):
+    """Of CMake's files only what changes the compiled code counts."""
+
+    TEXT = "project(ist VERSION 1)\nif(GCC)  # (why)\n  target_compile_options(ist INTERFACE -O3 -Wall)\nendif()\n"
+
+    def same(self, one, other, name="CMakeLists.txt"):
+        return flags.of(name, one, ["bench"]) == flags.of(name, other, ["bench"])
+
+    def test_a_flag_counts(self):
+        self.assertFalse(self.same(self.TEXT, self.TEXT.replace("-O3", "-O2")))
+
+    def test_the_condition_of_a_flag_counts(self):
+        self.assertFalse(self.same(self.TEXT, self.TEXT.replace("if(GCC)", "if(NOT GCC)")))
+        self.assertFalse(self.same(self.TEXT, self.TEXT.replace("if(GCC)", "if(GCC)\nelse()")))
+
+    def test_versions_warnings_and_comments_do_not(self):
+        for old, new in (("VERSION 1", "VERSION 2"), (" -Wall", " -Wextra"), ("why", "a reason"),
+                         ("endif()", "  target_compile_options(ist INTERFACE -fmacro-prefix-map=/=)\nendif()\nadd_library(b c.cpp)")):
+            self.assertTrue(self.same(self.TEXT, self.TEXT.replace(old, new)), new)
+
+    def test_what_a_preset_inherits_counts_and_other_presets_do_not(self):
+        def text(**kinds):
+            presets = [{"name": "base", "cacheVariables": {"TYPE": kinds.get("base", "Release")}},
+                       {"name": "bench", "displayName": kinds.get("shown", ""), "inherits": "base", "cacheVariables": {"BENCHES": "ON"}},
+                       {"name": "fuzz", "inherits": "base", "cacheVariables": {"FUZZ": kinds.get("fuzz", "ON")}}]
+            return json.dumps({"configurePresets": presets})
+
+        self.assertFalse(self.same(text(), text(base="Debug"), "CMakePresets.json"))
+        self.assertTrue(self.same(text(), text(fuzz="OFF", shown="a name"), "CMakePresets.json"))
+
+
+class States(unittest.TestCase):
+    CONTEXT = {"load_avg": [0.25, 1, 1], "load_after": "0.5", "loop_before": "140.0", "loop_after": "141.0"}
+
+    def test_load_and_loop_are_in_a_stamp_of_times(self):
+        self.assertRegex(figures.machine_state(self.CONTEXT), figures.STATE)
+
+    def test_results_without_them_are_refused(self):
+        for name in self.CONTEXT:
+            with self.assertRaisesRegex(ValueError, name):
+                figures.machine_state({key: value for key, value in self.CONTEXT.items() if key != name})
+
+    def test_the_figures_of_ist_bench_get_them_from_what_it_prints(self):
+        printed = "AMD, 2 cores, governor unknown; load before 0.2, 2.3, 3.7; a fixed loop took 148 to 177 µs\n"
+        self.assertRegex(readme_bench.state(printed, 0.9), figures.STATE)
+        self.assertIn("Load 0.2 before, 0.9 after; a fixed loop took 148 to 177 µs", readme_bench.state(printed, 0.9))
 
 
 class Code(unittest.TestCase):
@@ -138,12 +252,41 @@ class History(unittest.TestCase):
         self.assertIn("page.md:1: the table names neither the commit", said)
 
     def test_a_table_that_a_test_repeats_needs_none(self):
-        self.page("Repeated by the test `Some.Test`.")
-        self.assertEqual(self.check()[0], 0)
+        (self.root / "tests").mkdir()
+        (self.root / "tests/a_test.cpp").write_text("TEST_F(Some, Test) {}\n")
+        (self.root / "tests/CMakeLists.txt").write_text("add_test(NAME Whole COMMAND a_test)\n")
+        for name, known in (("Some.Test", True), ("Whole", True), ("Some.Tes", False), ("Whol", False), ("Other", False)):
+            self.page(f"Repeated by the test `{name}`.")
+            self.assertEqual(self.check()[0], 0 if known else 1, name)
 
-    def test_a_table_whose_rows_name_their_commits_needs_none(self):
-        (self.root / self.PAGE).write_text(f"| a | commit |\n|---|---|\n| 1 | {self.commit} |\n")
+    def rows(self, commit):
+        (self.root / self.PAGE).write_text(f"| program | commit |\n|---|---|\n| `made` | {commit} |\n")
+
+    def test_a_table_whose_rows_name_their_programs_and_commits_needs_none(self):
+        self.rows(self.commit)
         self.assertEqual(self.check()[0], 0)
+        self.assertEqual(list(figures.stamps_in(self.PAGE)), [(3, self.commit, "made")])
+
+    def test_the_commit_of_a_row_is_looked_up(self):
+        self.rows("fedcba9")
+        self.assertEqual(self.check(), (1, "page.md:3: measured at fedcba9, which is no commit of this history\n"))
+
+    def test_the_code_of_a_row_is_compared(self):
+        self.rows(self.commit)
+        self.write("int b;\n")
+        self.assertEqual(self.check()[0], 1)
+
+    def test_a_column_of_commits_alone_is_no_stamp(self):
+        (self.root / self.PAGE).write_text(f"| a | commit |\n|---|---|\n| 1 | {self.commit} |\n")
+        self.assertEqual(self.check()[0], 1)
+
+    def test_figures_of_other_flags_are_stale(self):
+        for flag, code in (("-O2", 0), ("-O2 -Wall", 0), ("-O3", 1)):
+            (self.root / "CMakeLists.txt").write_text(f"target_compile_options(a PRIVATE {flag})\n")
+            if flag == "-O2":
+                self.commit = self.write("int a;\n")
+                self.page(figures.stamp(self.commit, "2026-01-01", "made"))
+            self.assertEqual(self.check()[0], code, flag)
 
     def test_a_page_that_is_not_there_is_named(self):
         with self.assertRaises(SystemExit) as said:
