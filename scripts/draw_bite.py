@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the README's first picture: how far two jaws are from each other, opened like a book, and where they touch.
+"""Draws the picture of docs/occlusion.md: how far two jaws are from each other, opened like a book, and where they touch.
 
     scripts/draw_bite.py PATH/TO/ist OUTPUT.png
 

@@ -4,8 +4,9 @@
     scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER             draws, and prints the sentences
     scripts/draw_how.py PATH/TO/ist PATH/TO/libist.so FOLDER --check     draws, and fails where the page has another sentence
 
-All that is drawn comes from the command, but for the front that a query carries, which the Python package asks of the
-library. What the script computes itself it compares with the command's counts, and ends where they differ. Needs Debian's
+All that is drawn comes from the command, but for two things: the Python package asks the library for the front that a query
+carries, and the nodes of triangle clusters, which nothing public has, follow from the library's rule. The script computes the
+steps of a query itself, compares them with the command's counts, and ends where they differ. Needs Debian's
 python3-matplotlib, so run it with the system's python3.
 """
 import os
@@ -19,12 +20,14 @@ PAGE = ROOT / "docs/how-it-works.md"
 
 def pictures(command, ist, folder):
     """Draws each picture; yields its name and its sentence."""
-    from pictures.how import carried_front, frontiers, intervals, leaf_bounds, table_balls
+    from pictures.how import carried_front, clusters, frontiers, intervals, leaf_bounds, octree_levels, table_balls
 
+    yield "octree", octree_levels.draw(command, folder / "octree.png")
     yield "table", table_balls.draw(command, folder / "table.svg")
     yield "bounds", leaf_bounds.draw(command, folder / "bounds.svg")
     yield "frontiers", frontiers.draw(command, folder / "frontiers.png")
     yield "front", carried_front.draw(command, folder / "front.svg", ist)
+    yield "clusters", clusters.draw(command, folder / "clusters.png")
     yield "intervals", intervals.draw(command, folder / "intervals.svg")
 
 

@@ -1,23 +1,24 @@
 #!/usr/bin/env bash
 # Runs what takes hours, part by part: scripts/test.sh itself; the packages, and the circuit's synthesis; golden
 # answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
-# under the sanitizers; hard cases with 20 times the samples; ten million queries of real jaws; an hour of simulated
-# pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances; Blender; a release,
-# built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that use one core run
-# side by side.
+# under the sanitizers; the hard cases of perf/STABILITY.md with 20 times the samples, and ten million queries of real
+# jaws; an hour of simulated pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances;
+# Blender; a release, built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that
+# use one core run side by side.
 #
 #   scripts/long.sh                 every part anew
-#   scripts/long.sh --resume        those that have not passed at this commit
+#   scripts/long.sh --resume        those that do not count at this commit
 #   scripts/long.sh PART …          these; a word stands for all parts that begin with it
-#   scripts/long.sh --list          how each part stands
+#   scripts/long.sh --list          which parts count at this commit
 #
 # A part keeps its log, build/long/PART.log. The log's last line says whether the part passed, at which commit, when and
-# how long it took; with changes that are not committed, it passes for nothing. A part that fails ends this with 1, when
+# how long it took; with changes that are not committed, it passes for nothing. A part that passed counts until something
+# else than pages and results changes: docs/, perf/ and the pages beside them. A part that fails ends this with 1, when
 # all others have run. scripts/long_table.py writes the results to docs/guarantees.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
-  -h | --help) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
 source scripts/run_preset.sh
 source scripts/parts.sh
@@ -57,9 +58,8 @@ for jaws in built-in human; do
 done
 alone blender /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so
 alone threads more thread 100 search_test 'SharedTreeThread.*'
+alone stability scripts/stability_report.sh --out build/long/stability
 alone kills more test 17 cli_test 'SweepCommand.Kills*'
-aside queries more test 1000 load_test '*'
-aside hard-cases more test 20 stability_test '*'
 aside pressing more test 600 haptics_test 'LongPressing.*'
 aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQueryOfScans*'
 aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'

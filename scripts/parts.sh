@@ -6,8 +6,7 @@
 #   aside NAME COMMAND …                              one that may run beside others, as many as there are cores
 #   end_parts                                         waits for all; ends with 1 where one failed, 2 where a word names none
 #
-# A part keeps its log, FOLDER/NAME.log. The log's last line says whether the part passed, at which commit, when and how
-# long it took. With changes that are not committed a part passes for nothing.
+# A part's log is FOLDER/NAME.log; scripts/long.sh says what its last line is.
 
 begin_parts() {
   folder=$1 resume=false list=false chosen=() known=() failed=() running=()
@@ -25,9 +24,17 @@ begin_parts() {
   trap 'trap - INT TERM; echo "${0##*/}: stopped; --resume goes on" >&2; kill -TERM 0' INT TERM
   commit=$(git rev-parse --short=12 HEAD)
   [ -z "$(git status --porcelain)" ] || commit+=" with changes"
+  changed=$(git status --porcelain -- "${code[@]}")
 }
 
-passed() { [[ $commit != *changes ]] && [ -e "$folder/$1.log" ] && tail -n 1 "$folder/$1.log" | grep -q "^passed at $commit on "; }
+# All but pages and results: a table of what passed is committed, and what passed counts on.
+code=(. ':!docs' ':!perf' ':(exclude,glob)*.md')
+passed() {  # and at a commit since which no code changed
+  [ -z "$changed" ] && [ -e "$folder/$1.log" ] || return 1
+  local at
+  at=$(tail -n 1 "$folder/$1.log" | sed -n 's/^passed at \([0-9a-f]*\) on .*/\1/p')
+  [ -n "$at" ] && git diff --quiet "$at" HEAD -- "${code[@]}" 2>/dev/null
+}
 
 is_chosen() {
   [ ${#chosen[@]} -gt 0 ] || return 0
@@ -67,7 +74,11 @@ begin() {  # how many parts may run beside it; its name; its command
   known+=("$name")
   is_chosen "$name" || return 0
   if $list; then
-    echo "$name: $([ ! -e "$folder/$name.log" ] && echo "never begun" || tail -n 1 "$folder/$name.log" | cut -c1-100)"
+    if [ ! -e "$folder/$name.log" ]; then
+      echo "$name: never begun"
+    else
+      echo "$name: $(passed "$name" && echo counts || echo not) at this commit: $(tail -n 1 "$folder/$name.log" | cut -c1-100)"
+    fi
   elif $resume && passed "$name"; then
     echo "== $name: passed before"
   else

@@ -34,7 +34,7 @@ top=$(git rev-parse --show-toplevel 2>/dev/null) || top=''
 [ "$top" = "$(pwd -P)" ] || fail "this folder is no git checkout, and a release is made of a commit: clone the repository"
 changed=$(git status --porcelain)
 [ -z "$changed" ] || fail "the working tree differs from its commit: commit, or remove"$'\n'"$changed"
-version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+version=$(scripts/version.sh)
 name=ist-$version
 out=${out:-build/$name}
 ! $despite || out=${out%-draft}-draft

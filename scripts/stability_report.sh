@@ -2,15 +2,17 @@
 # Makes perf/STABILITY.md: tries the hard cases many more times than a run of all tests does, and
 # shows the worst error of each beside what is guaranteed. Some 20 minutes on two cores.
 #
-#   scripts/stability_report.sh           10 million queries of real jaws, 20 times the other samples
-#   scripts/stability_report.sh --quick   as many as in a run of all tests, written to build/ instead
+#   scripts/stability_report.sh                10 million queries of real jaws, 20 times the other samples
+#   scripts/stability_report.sh --quick        as many as in a run of all tests, written to build/stability
+#   scripts/stability_report.sh --out FOLDER   written there instead of perf/
 set -euo pipefail
 cd "$(dirname "$0")/.."
 effort=20 load_effort=1000 folder=perf
 case ${1:-} in
   "") ;;
   --quick) effort=1 load_effort=1 folder=build/stability ;;
-  -h | --help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  --out) folder=${2:?stability_report: --out needs a folder} ;;
+  -h | --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "stability_report: unknown option $1; see --help" >&2; exit 2 ;;
 esac
 scripts/setup.sh --bench >&2
@@ -18,7 +20,7 @@ cmake --preset test >/dev/null
 programs=(stability_test load_test search_test fuzz_test cli_test)
 cmake --build --preset test --target "${programs[@]}" | tail -n 1 >&2
 
-cases=$PWD/build/stability.jsonl
+cases=${IST_STABILITY:-$PWD/build/stability.jsonl}
 rm -f "$cases"
 export IST_STABILITY=$cases IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data}
 failed=0

@@ -8,7 +8,7 @@ out=$1
 shift
 SOURCE_DATE_EPOCH=$(cmake -P src/package/commit.cmake)
 export SOURCE_DATE_EPOCH
-version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+version=$(scripts/version.sh)
 part() { echo "== $1 (after $SECONDS s)"; }
 
 cmake --preset release "$@"  # first, for it says what is missing or wrong

@@ -15,7 +15,7 @@ out=$1/reference
 rm -rf "$out"
 mkdir -p "$out"
 mapfile -t headers < <(sed -n 's|^ist/|src/&|p' src/package/public_headers.txt)
-version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+version=$(scripts/version.sh)
 {
   cat scripts/site/Doxyfile
   echo "INPUT = ${headers[*]} src/hardware/include scripts/site/reference.dox"

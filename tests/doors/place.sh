@@ -83,6 +83,9 @@ in_place() {
 }
 unpacked=$doors/unpacked
 
+# For the title of a step: a user gets packages, the page and the wheel ready made.
+outside="built on this machine, outside the bare Debian"
+
 # The Debian packages of this tree, as docs/building.md makes them, beside the user.
 packages_made() {
   cmake --preset release
@@ -102,8 +105,8 @@ packages_unpacked() {
 }
 packages() {
   cd "$source" || exit
-  [ -e build/viewer/ist.html ] || step "the page, by scripts/viewer.sh" page_made
-  step "the packages, by CMake's preset release and CPack" packages_made
+  [ -e build/viewer/ist.html ] || step "the page, by scripts/viewer.sh, $outside" page_made
+  step "the packages, by CMake's preset release and CPack, $outside" packages_made
   [ "$way" = root ] || step "the packages, unpacked" packages_unpacked
 }
 page_made() {

@@ -15,7 +15,7 @@ wheel_made() {
   scripts/python_packages.sh || lacks "needs the wheel, and scripts/python_packages.sh makes none: $install"
   cp build/python/ist-*.whl "$walk"
 }
-step "the wheel, by scripts/python_packages.sh" wheel_made
+step "the wheel, by scripts/python_packages.sh, $outside" wheel_made
 installs "what a wheel takes on Debian, as docs/python.md says" "$(block docs/python.md line 'apt-get install python3-venv')"
 venv=$(block docs/python.md line '-m venv')
 types "an environment" "$venv"

@@ -41,9 +41,12 @@ class Parts(unittest.TestCase):
     def git(self, *arguments):
         subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=self.folder, check=True, capture_output=True)
 
-    def commit(self):
+    def commit(self, *changed):
+        for name in changed:
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / name).write_text("changed")
         self.git("add", ".")
-        self.git("commit", "--quiet", "--allow-empty", "-m", "a change")
+        self.git("commit", "--quiet", "-m", "a change")
 
     def run_parts(self, *arguments, environment=None):
         (self.folder / "ran").write_text("")
@@ -75,11 +78,26 @@ class Parts(unittest.TestCase):
         self.assertEqual(self.run_parts("--resume"), (0, ["absent"]))
         self.assertEqual(len(self.run_parts()[1]), 5)
 
-    def test_they_run_again_at_another_commit(self):
+    def test_they_run_again_where_something_else_than_a_page_or_a_result_changed(self):
         self.mend()
         self.run_parts()
-        self.commit()
-        self.assertEqual(len(self.run_parts("--resume")[1]), 5)
+        for changed, again in (("docs/guarantees.md", 1), ("perf/results/machine.json", 1), ("README.md", 1), ("code.cpp", 5), ("src/README.md", 5)):
+            with self.subTest(changed=changed):
+                self.commit(changed)
+                self.assertEqual(len(self.run_parts("--resume")[1]), again, self.said)  # one is skipped each time
+
+    def test_what_passed_at_a_commit_that_is_not_known_does_not_count(self):
+        self.run_parts("good")
+        log = self.folder / "logs/good.log"
+        log.write_text("passed at 0123456789ab on 2026-01-02 in 3 s\n")
+        self.assertEqual(self.run_parts("--resume", "good"), (0, ["good"]))
+
+    def test_a_page_that_is_not_committed_takes_nothing_away(self):
+        self.run_parts("good")
+        (self.folder / "docs").mkdir()
+        for page, again in (("docs/guarantees.md", []), ("long.py", ["good"])):
+            (self.folder / page).write_text("changed")
+            self.assertEqual(self.run_parts("--resume", "good"), (0, again))
 
     def test_they_pass_for_nothing_with_changes(self):
         self.mend()
@@ -121,7 +139,15 @@ class Parts(unittest.TestCase):
         self.assertIn("good: never begun", self.said)
         self.run_parts("good")
         self.assertEqual(self.run_parts("--list"), (0, []))
-        self.assertRegex(self.said, "good: passed at [0-9a-f]{12} on ")
+        self.assertRegex(self.said, "good: counts at this commit: passed at [0-9a-f]{12} on ")
+        self.run_parts("bad")
+        self.commit("docs/page.md")
+        self.run_parts("--list")
+        self.assertRegex(self.said, "good: counts at this commit: passed at ")
+        self.assertRegex(self.said, "bad: not at this commit: failed at ")
+        self.commit("code.cpp")
+        self.run_parts("--list")
+        self.assertRegex(self.said, "good: not at this commit: passed at ")
 
 
 class Table(unittest.TestCase):
@@ -142,11 +168,11 @@ class Table(unittest.TestCase):
 
     def test_counts(self):
         self.log("suite", "100% tests passed, 0 tests failed out of 7\n100% tests passed, 0 tests failed out of 12")
-        self.log("queries", "[  PASSED  ] 3 tests.", cases='{"samples": 5, "broken": 0}\n{"samples": 8, "broken": 1}\n')
+        self.log("stability", "[  PASSED  ] 3 tests.\n[  PASSED  ] 4 tests.", cases='{"samples": 5, "broken": 0}\n{"samples": 8, "broken": 1}\n')
         self.log("coherent", "1000 ticks: 3 kept\n2000 ticks: 4 kept\n[  PASSED  ] 1 test.")
-        suite, queries, coherent = self.rows()
+        suite, stability, coherent = self.rows()
         self.assertIn("| tests: 19 | `0123456789ab`, 2026-01-02 | 2 min |", suite)
-        self.assertIn("| tests: 3, most samples of a case: 8, cases: 2, broken: 1 |", queries)
+        self.assertIn("| tests: 7, most samples of a case: 8, cases: 2, broken: 1 |", stability)
         self.assertIn("| tests: 1, ticks: 3,000 |", coherent)
 
     def test_rounds_of_one_commit_are_one_row(self):
@@ -174,11 +200,11 @@ class Table(unittest.TestCase):
         for log in self.folder.iterdir():
             log.unlink()
         self.log("fuzz-2", "", "passed at b on 2026-01-03 in 60 s")
-        self.log("queries", "", "passed at b on 2026-01-03 in 60 s")
+        self.log("kills", "", "passed at b on 2026-01-03 in 60 s")
         page = long_table.written(page, long_table.results(self.folder))
-        before, _, _, _, suite, queries, fuzz, _, after = page.splitlines()
+        before, _, _, _, suite, kills, fuzz, _, after = page.splitlines()
         self.assertEqual((before, after), ("before", "after"))
-        for row, part, commit in ((suite, "suite", "a"), (queries, "queries", "b"), (fuzz, "fuzz", "b")):
+        for row, part, commit in ((suite, "suite", "a"), (kills, "kills", "b"), (fuzz, "fuzz", "b")):
             self.assertTrue(row.startswith(f"| {long_table.PARTS[part]} | passed |"), row)
             self.assertIn(f"`{commit}`", row)
 

@@ -22,7 +22,7 @@ FILES = {
                                 'echo "$@" >"$out/options"\ncmake -P src/package/commit.cmake >"$out/time"\n. ./more.sh\n',
     "more.sh": "",
 }
-KEPT = ("scripts/release.sh", "src/package/commit.cmake", "src/package/commit.txt", ".gitattributes")
+KEPT = ("scripts/release.sh", "scripts/version.sh", "src/package/commit.cmake", "src/package/commit.txt", ".gitattributes")
 
 
 class Release(unittest.TestCase):
