@@ -158,7 +158,8 @@ TEST_F(Bench, RefusesPosesThatAreAllAlike) {
 }
 
 TEST_F(Bench, RefusesAFileWithoutPoses) {
-  refuses({fixed_, moving_, "--poses", poses({})}, 3, "poses.json: give an array of objects");
+  refuses({fixed_, moving_, "--voxel-size", "0.5", "--poses", poses({})}, 3,
+          "poses.json: give an array of objects");
   refuses({"--voxel-size", "3", "--poses", write("empty.json", "")}, 3, "empty.json: not JSON");
 }
 

@@ -163,6 +163,7 @@ void add_bench(CLI::App& app) {
   for (const Rival& rival : rivals()) names.push_back(rival.name);
   command->add_option("--against", options->against, "other libraries to ask too")
       ->delimiter(',')
+      ->allow_extra_args(false)  // bodies may come behind it
       ->check(CLI::IsMember(names));
   command
       ->add_option("--seconds", options->seconds,
