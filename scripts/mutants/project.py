@@ -14,6 +14,9 @@ MUTANTS = [
     Mutant("comments-age-figures", "a comment that changes makes figures stale",
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["ctest Figures"]),
 
+    Mutant("verdict-always-fails", "the report says of every query that it needs a budget",
+           [("scripts/report/scaling_conformal.py", "if worst[\"p50_us\"] > TICK:", "if worst[\"p50_us\"] > 0:")], ["ctest Report.Verdicts"]),
+
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",
            [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),

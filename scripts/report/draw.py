@@ -11,15 +11,7 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  after the backend is chosen
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
-# Each policy and engine has one colour and one mark in all plots, so that they differ without colours too.
-STYLE = {
-    "simple": ("#888888", "s"),
-    "table": ("#d95f02", "o"),
-    "tight": ("#7570b3", "^"),
-    "slab": ("#1b9e77", "D"),
-    "exact": ("#e7298a", "*"),
-    "touches": ("#e6ab02", "P"),
-}
+from report.styles import style  # noqa: E402, F401  for those who draw
 
 
 def plain_ticks(axes):
@@ -61,9 +53,3 @@ class Pictures:
         plt.close(figure)
         ElementTree.parse(file)
         return f"![{alt}](pictures/{self.folder.name}/{name}.svg)"
-
-
-def style(name, **more):
-    """Colour and mark of a policy or engine, for plot()."""
-    colour, mark = STYLE[name]
-    return {"color": colour, "marker": mark, "label": name} | more

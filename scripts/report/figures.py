@@ -22,6 +22,7 @@ RESTS = {
     "accuracy_bench": [*QUERY, "src/ist/measure"],
     "advise_bench": [*QUERY, "src/advise"],
     "build_bench": ["src/ist/base", "src/ist/mesh", "src/ist/tree", "src/ist/voxel"],
+    "coherent_bench": LOOP,
     "hardware_bench": ["src/hardware", "src/ist/tree", "src/ist/voxel"],
     "hardware_report.sh": ["scripts/hardware", "src/hardware"],
     "haptics_bench": LOOP,
