@@ -2,7 +2,7 @@
 # Makes perf/REPORT.md, with its plots, from raw results in perf/results/<machine>/: what accuracy
 # costs in time, the article's own measurements again, what each part gives, and other libraries
 # side by side. Runs the benchmarks whose results are missing, so that after an interruption it goes
-# on where it was. Some 28 minutes on two cores that have nothing else to do, and 5 to build.
+# on where it was. Some half an hour on two cores that have nothing else to do, and 5 to build.
 #
 #   scripts/perf_report.sh            runs what is missing
 #   scripts/perf_report.sh --fresh    runs all again

@@ -7,6 +7,8 @@ from report.text import number, table
 PROGRAMS = ["measure_bench"]
 TICK = 1000  # µs, of a haptic loop at 1 kHz
 QUESTIONS = {"distance": "distance of the surfaces", "depth": "penetration depth"}
+# Why a question is too slow for a tick to any tolerance (perf/NOTES.md, Measures), where that is known.
+TOO_SLOW = {"depth": "most of the points that it measures only show that nothing else is deeper"}
 STYLES = {"distance": "slab", "depth": "tight"}
 
 
@@ -63,27 +65,22 @@ def _table(touch, asked):
 
 def verdicts(asked):
     """Which tolerance of each question fits into a tick, and by how much one that does not is too slow."""
-    return [_verdict(QUESTIONS[question], answers) for question, answers in asked.items()]
+    return [_verdict(question, answers) for question, answers in asked.items()]
 
 
-def _verdict(name, answers):
+def _verdict(question, answers):
+    name = QUESTIONS[question]
     fit, late = [one for one in answers if one.time <= TICK], [one for one in answers if one.time > TICK]
     if not late:
         return f"The {name} fits into a tick of {TICK:,} µs to every tolerance measured, down to {number(answers[-1].tolerance)} mm."
     worst = max(late, key=lambda one: one.time)
-    lost = by_reason([(f"to {number(one.tolerance)} mm", _reason(answers)) for one in late])
+    reason = "the finer the tolerance, the fewer candidates its bounds rule out" if fit else TOO_SLOW.get(question)
+    lost = by_reason([(f"to {number(one.tolerance)} mm", reason) for one in late])
     if fit:
         begin = f"The {name} fits into a tick of {TICK:,} µs to {number(fit[-1].tolerance)} mm."
     else:
         begin = f"**The {name} fits into a tick of {TICK:,} µs to no tolerance.**"
     return f"{begin} It takes up to {number(worst.time / TICK)} times as long {lost}."
-
-
-def _reason(answers):
-    """Why a question is too slow; None where that is not known."""
-    if answers[-1].time < 2 * answers[0].time:
-        return "its time hardly depends on the tolerance: most of its work is to show that no other point decides"
-    return "the finer the tolerance, the fewer candidates its bounds rule out"
 
 
 def _beside(touch, asked):

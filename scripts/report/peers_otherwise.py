@@ -114,4 +114,13 @@ def avx2(results):
                      str(one.rounds("ist_avx2"))])
     poses = next(iter(asked.values())).poses
     return title + ["IST with its kernels for AVX2, in turn with the kernels that it chooses. Median, µs, and in brackets the multiple of "
-                    "their time:", "", *table(["question", *poses, "n"], rows), ""]
+                    "their time:", "", *table(["question", *poses, "n"], rows), "", avx2_verdict(asked), ""]
+
+
+def avx2_verdict(asked):
+    """Where the kernels for AVX2 are faster than those that IST chooses."""
+    times = [(question, pose, ratio) for question, one in asked.items() for pose, ratio in zip(one.poses, ratios(one, one, "ist_avx2", "ist"))]
+    lost = [(f"{question} at {pose}, {number(1 / ratio, 3)} times", None) for question, pose, ratio in times if ratio < 1]
+    if not lost:
+        return "The kernels that IST chooses are the faster at every pose."
+    return f"The kernels for AVX2 are faster than those that IST chooses at {len(lost)} of {len(times)}: {by_reason(lost)}."

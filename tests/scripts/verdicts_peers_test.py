@@ -9,7 +9,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 from report import peers_builds, peers_elsewhere  # noqa: E402  after its folder is known
 from report.losses import NOT_EXPLAINED, by_reason  # noqa: E402
 from report.peer_answers import Answers, verdict  # noqa: E402
-from report.peers_otherwise import cold, points_verdict  # noqa: E402
+from report.peers_otherwise import avx2_verdict, cold, points_verdict  # noqa: E402
 from report.results import Results, Run  # noqa: E402
 
 POSES = ("0.0", "-1.0")
@@ -58,6 +58,17 @@ class ColdCaches(unittest.TestCase):
     def test_they_have_a_verdict_of_their_own(self):
         self.assertIn("IST is the fastest at all 2 poses.", self.said((20, 30)))
         self.assertIn("**It loses at 2, by up to 2 times**", self.said((9, 5)))
+
+
+class Avx2(unittest.TestCase):
+    @staticmethod
+    def said(times):
+        runs = [entry | {"name": entry["name"].replace("/other/", "/ist_avx2/")} for entry in answers(times)]
+        return avx2_verdict({"meets": asked(runs)[1]})
+
+    def test_it_may_be_slower_or_faster(self):
+        self.assertEqual(self.said((12, 11)), "The kernels that IST chooses are the faster at every pose.")
+        self.assertIn(f"at 1 of 2: **meets at -1.0, 1.25 times** ({NOT_EXPLAINED})", self.said((12, 8)))
 
 
 class Builds(unittest.TestCase):

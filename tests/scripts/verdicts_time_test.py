@@ -55,7 +55,10 @@ class Measures(unittest.TestCase):
 
     def test_what_does_not_is_bold(self):
         self.assertIn("to 0.1 mm. It takes up to 5 times as long **to 0.01 mm** (the finer the tolerance", self.said(coarse=10, fine=5000))
-        self.assertIn("**The penetration depth fits into a tick of 1,000 µs to no tolerance.**", self.said(coarse=4000, fine=5000))
+        said = self.said(coarse=4000, fine=5000)
+        self.assertIn("**The penetration depth fits into a tick of 1,000 µs to no tolerance.**", said)
+        self.assertIn("(most of the points that it measures only show that nothing else is deeper)", said)
+        self.assertIn(f"({NOT_EXPLAINED})", measures.verdicts({"distance": self.asked(coarse=4000, fine=5000)})[0])
 
     def test_the_slowest_pose_counts(self):
         asked = measures.Asked([run(f"by_accuracy/depth/0.1/{dz}", p50_us=time, lower=0, upper=0.1) for dz, time in ((0, 5), (-1, 7), (-2, 6))])
