@@ -20,8 +20,7 @@ namespace ist::bench {
 namespace {
 
 constexpr double kPoses[] = {0, -1.5};
-// Of the limit: build_tree() refuses by what it counts beforehand, which is more than what it takes
-// in the end.
+// Of the limit: build_tree() refuses by an estimate made beforehand, which is larger than the peak.
 constexpr double kPartOfLimit = 0.75;
 constexpr double kLimitMb = 1e-6 * static_cast<double>(kMaxMemory);
 

@@ -53,7 +53,7 @@ def reason(key, ist, bounds):
     """Why IST needs more of a cost; None where that is not known. `bounds` is what cheapest_bounds returns."""
     if key == "peak_mb":
         held = ist["held_mb"] / ist["peak_mb"]
-        return f"what it holds is {100 * held:.0f} % of it" if held > 0.5 else None
+        return f"{100 * held:.0f} % of it is the memory held" if held > 0.5 else None
     share = bounds.get(key, 1)
     if share > 0.5:
         return None

@@ -83,7 +83,7 @@ class Builds(unittest.TestCase):
         said = self.said(self.BOUNDS, p50_us=100, held_mb=16, peak_mb=18)
         self.assertIn("**time to build: 1 of 1 need less, bullet 80 times less** (tight bounds of every voxel", said)
         self.assertIn("the trees need 13 % of that", said)
-        self.assertIn("**peak memory: 1 of 1 need less, bullet 10 times less** (what it holds is 89 % of it)", said)
+        self.assertIn("**peak memory: 1 of 1 need less, bullet 10 times less** (89 % of it is the memory held)", said)
 
     def test_bounds_that_cost_little_explain_nothing(self):
         for bounds in ({}, {"p50_us": 0.9, "held_mb": 0.9}):
