@@ -7,6 +7,7 @@
 //   measure/first_contact/MOTION    to 1 µm
 //   measure/occlusion/POSE          all of it
 //   measure/normals/upper|lower     made once a tree
+//   by_accuracy/…                   touch, distance and depth by tolerance
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@
 #include "ist/measure/signed_distance.h"
 #include "ist/mesh/pseudonormals.h"
 #include "ist/query/query.h"
+#include "measure/by_accuracy.h"
 #include "support/bodies.h"
 
 namespace ist::bench {
@@ -58,6 +60,7 @@ void distances(benchmark::State& state, const Eigen::Isometry3d& pose) {
     }
   }
   state.counters["near"] = static_cast<double>(near);
+  state.counters["reach"] = kReach;
 }
 
 void depth(benchmark::State& state, const Eigen::Isometry3d& pose, bool warm) {
@@ -67,6 +70,7 @@ void depth(benchmark::State& state, const Eigen::Isometry3d& pose, bool warm) {
   for (auto _ : state) {
     found = penetration(query, pose, kDepth, {.last = warm ? &before : nullptr});
   }
+  state.counters["tolerance"] = kDepth;
   state.counters["points"] = static_cast<double>(found.points);
   state.counters["lower"] = found.lower;
   state.counters["upper"] = found.upper;
@@ -76,6 +80,7 @@ void first(benchmark::State& state, const Motion& motion) {
   Query query = make_query();
   FirstContact found;
   for (auto _ : state) found = first_contact(query, motion, kContact);
+  state.counters["tolerance"] = kContact;
   state.counters["distances"] = static_cast<double>(found.distances);
   state.counters["verdicts"] = static_cast<double>(found.verdicts);
   state.counters["upper"] = found.upper;
@@ -116,6 +121,7 @@ const int kRegistered = [] {
   });
   add("measure/normals/upper", [](auto& state) { normals(state, upper_jaw()); });
   add("measure/normals/lower", [](auto& state) { normals(state, lower_jaw()); });
+  add_by_accuracy();
   return 0;
 }();
 

@@ -26,6 +26,10 @@ namespace {
 
 constexpr std::uint64_t kPoses = 5000;  // of a round
 constexpr double kTolerance = 0.01;
+constexpr double kVoxelSize = 0.4;
+// Of the poses' box: mm to each side, mm that the lower jaw is lower at most, degrees about each
+// axis.
+constexpr double kBeside = 1, kBelow = 3, kTurned = 3;
 
 [[noreturn]] void fail(const std::string& what) {
   std::cerr << what << '\n';
@@ -39,25 +43,25 @@ class Job {
       : folder_(std::filesystem::temp_directory_path() /
                 fmt::format("ist-sweep-bench-{}", ::getpid())) {
     std::filesystem::create_directory(folder_);
-    const auto& [upper, lower] = exact_trees(0.4);
+    const auto& [upper, lower] = exact_trees(kVoxelSize);
     write_tree(upper, folder_ / "upper.ist");
     write_tree(lower, folder_ / "lower.ist");
     std::ofstream(file()) << fmt::format(R"(answers = ["intersects", "distance"]
-tolerance = {}
-rows_per_part = {}
+tolerance = {0}
+rows_per_part = {1}
 [fixed]
 tree = "upper.ist"
 [moving]
 tree = "lower.ist"
 [poses.box]
 seed = 1
-count = {}
-from = [-1, -1, -3]
-to = [1, 1, 0]
-turns_within = [3, 3, 3]
+count = {2}
+from = [-{3}, -{3}, -{4}]
+to = [{3}, {3}, 0]
+turns_within = [{5}, {5}, {5}]
 )",
-                                         kTolerance, kPoses,
-                                         kPoses * static_cast<unsigned>(rounds));
+                                         kTolerance, kPoses, kPoses * static_cast<unsigned>(rounds),
+                                         kBeside, kBelow, kTurned);
   }
   ~Job() { std::filesystem::remove_all(folder_); }
   Job(const Job&) = delete;
@@ -166,6 +170,11 @@ void measure(benchmark::State& state) {
   for (const auto& [way, values] : rates) state.counters[way] = median(values);
   state.counters["poses"] = static_cast<double>(kPoses);
   state.counters["rounds"] = rounds_made;
+  state.counters["tolerance"] = kTolerance;
+  state.counters["voxel_size"] = kVoxelSize;
+  state.counters["beside_mm"] = kBeside;
+  state.counters["below_mm"] = kBelow;
+  state.counters["turned_degrees"] = kTurned;
   state.counters["row_bytes"] = static_cast<double>(sweep.layout().bytes);
   state.SetLabel(pair_name());
 }

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kVoxelSize = 0.4;
 constexpr BodyIndex kFour = 4;
+constexpr double kTremble = 0.05;  // voxels
 
 Eigen::Isometry3d at(const Eigen::Vector3d& place) {
   return Eigen::Isometry3d(Eigen::Translation3d(place));
@@ -58,7 +59,7 @@ struct FourBodies {
     for (BodyIndex body = 1; body < kFour; ++body) {
       const double phase = 0.1 * tick + body;
       const Eigen::Vector3d by(std::sin(phase), std::cos(1.3 * phase), std::sin(0.7 * phase));
-      poses[body] = at(places[body] + 0.05 * kVoxelSize * by);
+      poses[body] = at(places[body] + kTremble * kVoxelSize * by);
     }
   }
   void move() {
@@ -155,6 +156,10 @@ void measure_four(benchmark::State& state, const Question& question) {
   }
   of_world.report(state);
   one_by_one.report(state, "one_by_one_");
+  state.counters["bodies"] = kFour;
+  state.counters["pairs"] = static_cast<double>(four.pairs.size());
+  state.counters["voxel_size"] = kVoxelSize;
+  state.counters["tremble_voxels"] = kTremble;
   state.counters["ratio"] = of_world.quantile(0.5) / one_by_one.quantile(0.5);
   state.SetLabel(pair_name());
 }
@@ -183,6 +188,8 @@ void measure_grid(benchmark::State& state, int count, double step, int moved) {
     }
     near += world.intersects().near_pairs;
   }
+  state.counters["bodies"] = count;
+  state.counters["moved"] = moved;
   state.counters["near"] = static_cast<double>(near) / static_cast<double>(tick);
 }
 

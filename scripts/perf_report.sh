@@ -3,7 +3,7 @@
 # costs in time, the article's own measurements again, what each part gives, and other libraries
 # side by side. Runs the benchmarks that have no results of this code, so that after an interruption
 # it goes on where it was; results of an earlier commit count where no source of theirs has changed,
-# those of changes that no commit holds do not. Some 28 minutes on two cores that have nothing else
+# those of changes that no commit holds do not. Some half an hour on two cores that have nothing else
 # to do, and 5 to build.
 #
 #   scripts/perf_report.sh            runs what has no results of this code

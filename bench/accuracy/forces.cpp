@@ -1,7 +1,9 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "accuracy/approaches.h"
 #include "accuracy/sections.h"
@@ -69,6 +71,9 @@ void force(benchmark::State& state, double voxel_size, SpherePolicy policy) {
   state.counters["angle_p50"] = angles.quantile(0.5);
   state.counters["angle_max"] = angles.quantile(1);
   state.counters["none"] = none;
+  const auto [least, most] = std::minmax_element(std::begin(kDepths), std::end(kDepths));
+  state.counters["least_depth_mm"] = *least;
+  state.counters["most_depth_mm"] = *most;
   state.counters["n"] = static_cast<double>(lengths.size());
   state.SetLabel(pair_name());
 }

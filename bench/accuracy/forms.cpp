@@ -1,6 +1,9 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "accuracy/sections.h"
 #include "query/contacts/form_errors.h"
 
@@ -9,6 +12,8 @@ namespace {
 
 // Bodies of some 4 mm whose radii of curvature are over ten of these.
 constexpr double kSizes[] = {0.3, 0.15, 0.075};
+// Voxels: how far apart, and how deep.
+constexpr double kDepths[] = {-1.0, -0.5, 0.0, 0.25, 0.5, 0.75, 1.0};
 
 void form(benchmark::State& state, double voxel_size, SpherePolicy policy) {
   test::FormErrors all;
@@ -16,7 +21,7 @@ void form(benchmark::State& state, double voxel_size, SpherePolicy policy) {
     for (const test::ClosedForm& form : test::closed_forms()) {
       const SphereTree fixed = test::tree_of_solid(form.fixed, voxel_size);
       const SphereTree moving = test::tree_of_solid(form.moving, voxel_size);
-      for (const double depth : {-1.0, -0.5, 0.0, 0.25, 0.5, 0.75, 1.0}) {
+      for (const double depth : kDepths) {
         all.add(test::form_errors(form, fixed, moving, policy, depth));
       }
     }
@@ -30,6 +35,9 @@ void form(benchmark::State& state, double voxel_size, SpherePolicy policy) {
   state.counters["normal_mean"] = all.mean_normal();
   state.counters["normal_max"] = all.normal;
   state.counters["n"] = static_cast<double>(all.smooth);
+  const auto [least, most] = std::minmax_element(std::begin(kDepths), std::end(kDepths));
+  state.counters["apart_voxels"] = -*least;
+  state.counters["deep_voxels"] = *most;
   state.counters["forms"] = static_cast<double>(test::closed_forms().size());
 }
 

@@ -1,5 +1,6 @@
 #include "coherent/motions.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 #include <string>
@@ -57,7 +58,7 @@ Poses trembling(double dz) {
 Poses to_and_fro(double from, double to, double speed) {
   Poses poses;
   double at = from, step = 1e-3 * speed;
-  for (std::size_t i = 0; i < ticks(3000); ++i) {
+  for (std::size_t i = 0; i < ticks(1500); ++i) {
     if (at + step > to || at + step < from) step = -step;
     at += step;
     poses.push_back(closing(at));
@@ -66,24 +67,43 @@ Poses to_and_fro(double from, double to, double speed) {
 }
 
 constexpr Motion kMotions[] = {
-    {"closing", [](const Scene& jaws) { return recorded(jaws, 0, ticks(6000)); }},
+    {"closing", [](const Scene& jaws) { return recorded(jaws, 0, ticks(6000)); }, true},
     {"held_closed", [](const Scene& jaws) { return held_closed(jaws); }},
     {"trembling/apart", [](const Scene&) { return trembling(-2); }},
     {"trembling/touching", [](const Scene&) { return trembling(-1.2); }},
     {"trembling/occlusion", [](const Scene&) { return trembling(0); }},
+    {"1mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 1); }},
+    {"3mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 3); }},
     {"10mm_s/apart", [](const Scene&) { return to_and_fro(-1.9, -1.6, 10); }},
-    {"10mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 10); }},
+    {"10mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 10); }, true},
     {"10mm_s/occlusion", [](const Scene&) { return to_and_fro(-0.3, 0, 10); }},
+    {"20mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 20); }},
     {"30mm_s/apart", [](const Scene&) { return to_and_fro(-1.9, -1.6, 30); }},
-    {"30mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 30); }},
+    {"30mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 30); }, true},
     {"30mm_s/occlusion", [](const Scene&) { return to_and_fro(-0.3, 0, 30); }},
     {"100mm_s/apart", [](const Scene&) { return to_and_fro(-1.9, -1.6, 100); }},
-    {"100mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 100); }},
+    {"100mm_s/touching", [](const Scene&) { return to_and_fro(-1.3, -1, 100); }, true},
 };
 
 }  // namespace
 
 std::span<const Motion> motions() { return kMotions; }
+
+std::vector<double> steps(const Poses& poses) {
+  // A motion is affine, so no point of a box moves farther than one of its corners.
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : lower_jaw().vertices) box.extend(vertex);
+  std::vector<double> all;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    double most = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+      most = std::max(most, (poses[i] * at - poses[i - 1] * at).norm());
+    }
+    all.push_back(most);
+  }
+  return all;
+}
 
 Scene scene_of_jaws(double voxel_size) {
   const bool real = std::string(pair_name()) == "human";

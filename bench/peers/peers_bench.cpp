@@ -11,6 +11,7 @@
 //   IST_PEERS_SECONDS   for how long each question of `peers` is asked, at least 5 rounds; by
 //                       default 55. What follows takes two thirds of that together
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -174,6 +175,9 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("voxel_size", std::to_string(voxel_size()));
   benchmark::AddCustomContext("pair", pair_name());
   benchmark::AddCustomContext("peer_flags", library_flags());
+  benchmark::AddCustomContext("tolerance", fmt::format("{:g}", kTolerance));
+  benchmark::AddCustomContext("turned_degrees",
+                              fmt::format("{:g} {:g}", kFixedTurned, kMovingTurned));
   benchmark::AddCustomContext("swept_mb", std::to_string(swept_bytes() / 1'000'000));
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -105,6 +105,7 @@ void report(benchmark::State& state, Contest& contest, std::size_t player, std::
   for (auto _ : state) state.SetIterationTime(1e-6 * latencies.quantile(0.5));
   latencies.report(state);
   state.counters["n"] = static_cast<double>(latencies.size());
+  state.counters["reach_mm"] = kReach;
   state.counters["points"] = static_cast<double>(contest.points(pose));
   state.SetLabel(contest.poses()[pose].label);
 }

@@ -19,7 +19,8 @@ TriangleMesh turned(TriangleMesh mesh, const Eigen::Isometry3d& by) {
 }  // namespace
 
 TurnedPair turned_pair() {
-  const Eigen::Isometry3d fixed = turn(46, {1, 2, 3}), moving = turn(52, {-3, 1, 2});
+  const Eigen::Isometry3d fixed = turn(kFixedTurned, {1, 2, 3}),
+                          moving = turn(kMovingTurned, {-3, 1, 2});
   TurnedPair pair{turned(upper_jaw(), fixed), turned(lower_jaw(), moving), peer_poses()};
   for (NamedPose& pose : pair.poses) {
     pose.label += ", turned";

@@ -7,11 +7,14 @@
 
 namespace ist::bench {
 
-/// The same bodies in other frames: each mesh turned about an oblique axis of its own, by 46 and by
-/// 52 degrees, its vertices rounded to double, and poses that put them where peer_poses() do. A
-/// scan has the axes of its scanner; here no axis of a box, a voxel or a grid lies along a jaw, and
-/// no mesh's along the other's. Coordinates are rounded, so that counts may differ from those of
-/// the meshes as they are given.
+/// Degrees by which each mesh is turned.
+inline constexpr double kFixedTurned = 46, kMovingTurned = 52;
+
+/// The same bodies in other frames: each mesh turned about an oblique axis of its own, by
+/// kFixedTurned and kMovingTurned, its vertices rounded to double, and poses that put them where
+/// peer_poses() do. A scan has the axes of its scanner; here no axis of a box, a voxel or a grid
+/// lies along a jaw, and no mesh's along the other's. Coordinates are rounded, so that counts may
+/// differ from those of the meshes as they are given.
 struct TurnedPair {
   TriangleMesh fixed, moving;
   std::vector<NamedPose> poses;

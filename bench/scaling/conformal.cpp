@@ -59,6 +59,7 @@ void report(benchmark::State& state, const Case& c) {
   require_gap(trees, pair.gap);
   Series series([&] { return ask(trees, places(), {rounds(20)}); });
   series.report(state, 0);
+  state.counters["voxel_size"] = kVoxelSize;
   state.counters["area_mm2"] = area_of(c);
   state.counters["leaves"] =
       static_cast<double>(trees.first.leaf_count()) + trees.second.leaf_count();

@@ -20,6 +20,8 @@ namespace ist::bench {
 namespace {
 
 constexpr double kPoses[] = {0, -1.5};
+// Of the limit: build_tree() refuses by an estimate made beforehand, which is larger than the peak.
+constexpr double kPartOfLimit = 0.75;
 constexpr double kLimitMb = 1e-6 * static_cast<double>(kMaxMemory);
 
 std::vector<double> voxel_sizes() {
@@ -76,9 +78,7 @@ std::string left_out() {
 bool largest_is_built(benchmark::State& state, SpherePolicy policy, double& voxel_size) {
   std::string why_not = left_out();
   if (why_not.empty()) {
-    // Three quarters of the limit: build_tree() refuses by what it counts beforehand, which is more
-    // than it uses then.
-    voxel_size = size_that_takes(0.75 * kLimitMb, policy);
+    voxel_size = size_that_takes(kPartOfLimit * kLimitMb, policy);
     try {
       static_cast<void>(footprint(policy, voxel_size));
     } catch (const Error& error) {
@@ -97,6 +97,7 @@ void largest(benchmark::State& state, SpherePolicy policy) {
   for (auto _ : state) state.SetIterationTime(seconds);
   state.counters["built"] = built;
   state.counters["voxel_size"] = voxel_size;
+  state.counters["part_of_limit"] = kPartOfLimit;
   if (!built) return;
   tell(state, footprint(policy, voxel_size));
   Asked closed = ask_jaws(policy, voxel_size, 5).front();

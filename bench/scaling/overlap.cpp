@@ -43,6 +43,7 @@ void report(benchmark::State& state, Series& series, std::size_t step) {
     std::cerr << "triangles meet, and no leaves do, at dz = " << steps()[step] << '\n';
     std::exit(1);
   }
+  state.counters["voxel_size"] = kVoxelSize;
   state.counters["triangle_pairs"] = static_cast<double>(meet);
   state.counters["gap_mm"] = 0.5 * (gap.lower + gap.upper);
   state.SetLabel(pair_name());

@@ -26,6 +26,7 @@ std::vector<Asked> ask_closing(int workers, bool paced) {
 void report(benchmark::State& state, Series& series, std::size_t pose) {
   const Asked& asked = series.report(state, pose);
   const auto rounds = static_cast<double>(asked.rounds);
+  state.counters["voxel_size"] = kVoxelSize;
   state.counters["worth"] = static_cast<double>(asked.worth) / rounds;
   state.counters["shared"] = static_cast<double>(asked.shared) / rounds;
   state.SetLabel(pair_name());

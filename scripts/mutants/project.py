@@ -25,6 +25,9 @@ MUTANTS = [
     Mutant("away-hidden", "queries that were off their core count among those that the quantiles are of",
            [("scripts/report/deadlines.py", "{run['n'] - run['over_away']:,.0f}", "{run['n']:,.0f}")], ["python verdicts_deadlines_test.py"]),
 
+    Mutant("verdict-always-fails", "the report says of every query that it needs a budget",
+           [("scripts/report/scaling_conformal.py", "if worst[\"p50_us\"] > TICK:", "if worst[\"p50_us\"] > 0:")], ["python verdicts_time_test.py"]),
+
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",
            [("src/package/ist.map.in", "      ist::*;", "      *;")], ["ctest Package.Symbols"]),

@@ -3,14 +3,14 @@
 import pathlib
 import sys
 
-from report import ablation, accuracy, bodies, closing, deadlines, guard, loop, peers, scaling, seed, sweeps
+from report import ablation, accuracy, bodies, closing, coherent, deadlines, guard, loop, measures, peers, scaling, seed, sweeps
 from report.draw import Pictures
 from report.figures import machine_state, stamp, stamped
 from report.made_with import made_with
 from report.results import Results
 from report.runner import Runner
 
-CHAPTERS = [accuracy, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
+CHAPTERS = [accuracy, coherent, measures, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
 HEAD = """# What accuracy costs in time
 
 Made by `scripts/perf_report.sh` from the raw results in `{results}`; no number in it is typed by hand, but for the times of peers that were built elsewhere, which say so. Times are wall times

@@ -1,7 +1,7 @@
 """Chapter: what each part of the fast query gives, added one by one and left out one by one."""
 
 from report.ablation_steps import LEFT_OUT, PLACE, POLICIES, POSES, SIZES, Variants, added, main_line, policy_of
-from report.losses import NOISE, UNKNOWN, WHY, factor, is_loss, listing, why, why_worker
+from report.losses import NOISE, NOT_EXPLAINED, WHY, factor, is_loss, listing, why, why_worker
 from report.text import number, table
 
 PROGRAMS = ["ablation_bench"]
@@ -46,7 +46,7 @@ def same_table(variants):
             if is_loss(variants.times(published, fast, dz)):
                 losses.append(f"{row[0]} at dz = {dz}")
         rows.append(row)
-    return table(head, rows) + (["", f"**Slower than the published query**: {listing(losses)}; {UNKNOWN}."] if losses else [])
+    return table(head, rows) + (["", f"**Slower than the published query**: {listing(losses)}; {NOT_EXPLAINED}."] if losses else [])
 
 
 def same_text():

@@ -1,7 +1,9 @@
 """Chapter: what accuracy costs in time. Errors are measured, never assumed."""
 
+from report import advice
 from report.curves import between, power
-from report.draw import style
+from report.losses import by_reason
+from report.styles import style
 from report.text import number, table
 
 PROGRAMS = ["accuracy_bench", "advise_bench"]
@@ -25,6 +27,10 @@ class FirstContacts:
     def curve(self, policy, x, y):
         return sorted((run[x], run[y]) for run in self.by_policy[policy])
 
+    def sized(self, policy, y):
+        """Any number of the policy's runs over the voxel size."""
+        return sorted((float(run.parts[1]), run[y]) for run in self.by_policy[policy])
+
     def sizes(self, policy, x):
         """Voxel size over any other number of the policy's runs."""
         return sorted((run[x], float(run.parts[1])) for run in self.by_policy[policy])
@@ -33,7 +39,7 @@ class FirstContacts:
 def chapter(results, pictures):
     first = FirstContacts(results)
     return ["## The cost of accuracy", "", *_meaning(first), *_budget(first, pictures), *_wanted(first, pictures),
-            *_table(first), *_advice(results, first), *_verdicts(results), *_gaps(results, pictures), *_deadlines(results, pictures),
+            *_table(first), *advice.section(results, first), *_verdicts(results), *_gaps(results, pictures), *_deadlines(results, pictures),
             *_points(results), *_forces(results)]
 
 
@@ -130,44 +136,23 @@ def _table(first):
             f"{first.by_policy['exact'][0].parts[1]} mm, and the table states the memory and build time of these.", ""]
 
 
-def _advice(results, first):
-    rows, beyond, known = [], [], 0
-    error, time = (sorted((float(r.parts[1]), r[key]) for r in first.by_policy["slab"]) for key in ("error_max", "p50_us"))
-    for run in results.runs("advise_bench", "advise"):
-        asked, limit, size = run.parts[1], float(run.parts[2]), run["voxel_size"]
-        on_curve = {"error": between(error, size), "budget": between(time, size)}
-        cell = {key: number(value) if value else "beyond what was measured" for key, value in on_curve.items()}
-        known += on_curve[asked] is not None
-        if on_curve[asked] and on_curve[asked] > limit:
-            beyond.append(on_curve[asked] / limit - 1)
-            cell[asked] = f"**{cell[asked]}**"
-        rows.append([f"{limit:g} µs" if asked == "budget" else f"{limit:g} mm", f"{size:g}", run["error"], cell["error"],
-                     run["slowest_us"], cell["budget"], f"{run['sizes']:.0f}", run["seconds"]])
-    verdict = f"Of {known} recommendations on that curve {known - len(beyond) if beyond else 'all'} keep the limit" + (
-        f"; the others are in bold, and exceed it by at most {100 * max(beyond):.0f} %." if beyond else ".")
-    some = results.runs("advise_bench", "advise")[0]
-    part = f"{100 * some['part_of_limit']:.0f} %"
-    return ["### Advice, held against this curve", "",
-            f"`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that keeps "
-            f"{part} of the limit: its time at {some['poses']:.0f} poses of one straight closing, its error on that path and on {some['paths_beside']:.0f} "
-            "slightly inclined and turned ones. The columns beside show the curve of `slab` above, interpolated, for other poses, other paths and another time. As only "
-            f"{part} of a budget are used, the recommended voxels are larger than the curve allows for all of it. " + verdict, "",
-            *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
-                   rows), ""]
-
-
 def _verdicts(results):
     runs = results.runs("accuracy_bench", "verdict")
     rows = [[f"`{run.parts[2]}`", run.parts[1], f"{run['missed']:.0f}", f"{run['false']:.0f}", run["leaf_pairs"],
              100 * (1 - run["crossing"] / run["leaf_pairs"])] for run in runs]
     some = runs[0]
-    missed = sum(run["missed"] for run in runs)
     return ["### Missed and false contacts", "",
             f"Measured at {some['n']:.0f} poses from {some['before_mm']:g} mm before first contact to {some['behind_mm']:g} mm behind it; triangles meet at "
             f"{some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no triangles do. "
             "A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
-            f"leaf pair would stop the program. **Missed in all: {missed:.0f}.**", "",
+            "leaf pair would stop the program. " + missed_verdict(runs), "",
             *table(["bounds", "voxel size, mm", "missed", "false", "leaf pairs, closed", "of which false, %"], rows), ""]
+
+
+def missed_verdict(runs):
+    """Whether voxels missed a contact of triangles, and in which rows."""
+    lost = [(f"{run['missed']:.0f} by `{run.parts[2]}` at {run.parts[1]} mm", None) for run in runs if run["missed"] > 0]
+    return f"Missed are {by_reason(lost)}, which no bounds may miss." if lost else "None is missed in any row."
 
 
 def _gaps(results, pictures):
@@ -213,11 +198,12 @@ def _deadlines(results, pictures):
 
 def _points(results):
     runs = results.runs("accuracy_bench", "form")
+    some = runs[0]
     rows = [[f"`{run.parts[2]}`", run.parts[1], run["depth_mean"], run["depth_max"], run["depth_max"] / float(run.parts[1]),
              run["normal_mean"], run["normal_max"], run["n"]] for run in runs]
     return ["### Depths and normals", "",
-            f"Measured on {runs[0]['forms']:.0f} pairs of bodies with known surfaces (spheres, planes, a bore, boxes, tori; a few mm large), where "
-            "radii of curvature exceed ten voxels, from a voxel apart to a voxel deep. n is the number of contact points.", "",
+            f"Measured on {some['forms']:.0f} pairs of bodies with known surfaces (spheres, planes, a bore, boxes, tori), whose "
+            f"radii of curvature are many voxels, from {number(some['apart_voxels'])} voxel apart to {number(some['deep_voxels'])} deep. n is the number of contact points.", "",
             *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels", "normal error, mean, °", "largest, °", "n"],
                    rows), ""]
 
@@ -228,7 +214,7 @@ def _forces(results):
     rows = [[f"`{run.parts[2]}`", run.parts[1], run["angle_p50"], run["angle_max"], 100 * run["length_p50"], 100 * run["length_max"],
              f"{run['none']:.0f}"] for run in runs]
     return ["### Forces", "",
-            f"The contact force at {runs[0]['n']:.0f} poses, 0.02 to 0.08 mm behind first contact, compared with the force by voxels of {finest} mm with "
+            f"The contact force at {runs[0]['n']:.0f} poses, {runs[0]['least_depth_mm']:g} to {runs[0]['most_depth_mm']:g} mm behind first contact, compared with the force by voxels of {finest} mm with "
             "`slab`. A hand distinguishes its direction. Its length differs at the same pose, because a surface "
-            "begins to push a quarter of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
+            "begins to push a part of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
             *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %", "no force"], rows)]

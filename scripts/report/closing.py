@@ -5,7 +5,7 @@ import re
 import sys
 
 from report.figures import machine_state, stamp
-from report.losses import UNKNOWN, factor, is_loss, listing, why_worker
+from report.losses import NOT_EXPLAINED, factor, is_loss, listing, why_worker
 from report.text import number, table
 
 POSES = {"0.0": "closed, dz = 0", "-0.5": "dz = -0.5", "-1.0": "dz = -1", "-1.5": "dz = -1.5, before contact", "-2.0": "dz = -2"}
@@ -46,7 +46,7 @@ def compare(results):
             row.append(f"{number(published['p50_us'])} → {number(fast['p50_us'])}: {bold}{times:.1f}{bold}<br>"
                        f"{published['contacts']:,.0f} → {fast['contacts']:,.0f}")
         rows.append(row)
-    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {UNKNOWN}." if behind else "No cell is slower than the published query.",
+    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query.",
                            f"**Two workers are slower than one** at {'; at '.join(f'{listing(places)}: {reason}' for reason, places in slower.items())}." if slower else "Two workers are nowhere slower than one."])
 
 

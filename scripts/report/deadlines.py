@@ -1,6 +1,6 @@
 """Chapter: by how much a query exceeds its deadline, every row that was measured, and how many queries do not count."""
 
-from report.losses import UNKNOWN
+from report.losses import NOT_EXPLAINED
 from report.text import number, table
 
 PROGRAMS = ["deadline_bench"]
@@ -48,8 +48,8 @@ def why(run, own, worst_loop):
     if run.parts[1] == "contacts" and 0 < run["complete"] < 1 and run["most_pairs"] > 0 and own != ["max"]:
         return "an answer that is complete just in time still makes contacts of its pairs, without a look at the clock"
     if set(own) <= {"p99.99", "max"} and run["over_max_us"] <= worst_loop:
-        return f"{UNKNOWN}, but the worst loop of another row took {number(worst_loop)} µs"
-    return UNKNOWN
+        return f"{NOT_EXPLAINED}, but the worst loop of another row took {number(worst_loop)} µs"
+    return NOT_EXPLAINED
 
 
 def away_more(run):
@@ -73,7 +73,7 @@ def _away(runs):
     more = [f"{row_name(run)} ({run['over_away']:,.0f} and {run['loop_away']:,.0f})" for run in runs if away_more(run)]
     return (f"Off their core for over {number(runs[0]['away_us'])} µs, and so in no quantile, were {number(min(parts['over']), 2)} to {number(max(parts['over']), 2)} % "
             f"of the queries of a row and {number(min(parts['loop']), 2)} to {number(max(parts['loop']), 2)} % of its loops: nothing here shows how late these were. "
-            + (f"**Queries were away more often than loops**, {FACTOR} times and {100 * PART:g} % of all, in {len(more)} of {len(runs)} rows: {'; '.join(more)}; {UNKNOWN}."
+            + (f"**Queries were away more often than loops**, {FACTOR} times and {100 * PART:g} % of all, in {len(more)} of {len(runs)} rows: {'; '.join(more)}; {NOT_EXPLAINED}."
                if more else f"In no row were queries away more often than loops by over {FACTOR} times and {100 * PART:g} % of all."))
 
 

@@ -7,15 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 # matplotlib is imported by what draws alone: the verdicts of chapters are tested where it is missing.
 
-# Each policy and engine has one colour and one mark in all plots, so that they differ without colours too.
-STYLE = {
-    "simple": ("#888888", "s"),
-    "table": ("#d95f02", "o"),
-    "tight": ("#7570b3", "^"),
-    "slab": ("#1b9e77", "D"),
-    "exact": ("#e7298a", "*"),
-    "touches": ("#e6ab02", "P"),
-}
+from report.styles import style  # noqa: E402, F401  for those who draw
 
 
 def plain_ticks(axes):
@@ -64,9 +56,3 @@ class Pictures:
         self.plt.close(figure)
         ElementTree.parse(file)
         return f"![{alt}](pictures/{self.folder.name}/{name}.svg)"
-
-
-def style(name, **more):
-    """Colour and mark of a policy or engine, for plot()."""
-    colour, mark = STYLE[name]
-    return {"color": colour, "marker": mark, "label": name} | more

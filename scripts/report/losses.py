@@ -1,9 +1,9 @@
-"""Losses of parts: when a factor is one, how it is written, and why a part loses where it does."""
+"""Losses: when a factor is one, how it is written, and why a part loses where it does."""
 
 from report.text import number
 
 NOISE = 0.03  # factors nearer to 1 are no gain and no loss
-UNKNOWN = "not explained"
+NOT_EXPLAINED = "not explained"
 # Two workers halve a query of over 200 µs, and gain less below this (perf/NOTES.md, The fast path).
 SHORT_US = 150
 # By the step that adds the part: what it does that its absence does not, in the code. What is not here is not explained.
@@ -36,10 +36,22 @@ def listing(words):
 
 def why_worker(alone_us):
     """Why a second worker loses in a query that one worker answers in `alone_us`."""
-    return SHORT if alone_us < SHORT_US else UNKNOWN
+    return SHORT if alone_us < SHORT_US else NOT_EXPLAINED
 
 
 def why(part, tests, times):
     """Why a part loses with which a query makes `tests` times the tests, and is `times` times as fast: what its tests do."""
     change = "as many tests" if abs(tests - 1) < 0.005 else f"{100 * abs(1 - tests):.0f} % {'fewer' if tests < 1 else 'more'} tests"
-    return f"{change}, at {1 / times / tests:.2f} times the time of a test: {WHY.get(part, UNKNOWN)}"
+    return f"{change}, at {1 / times / tests:.2f} times the time of a test: {WHY.get(part, NOT_EXPLAINED)}"
+
+
+def by_reason(lost):
+    """What lost, in one bold text: pairs of a text and its reason, or None where none is known, grouped by reason."""
+    groups = {}
+    for text, reason in lost:
+        groups.setdefault(reason or NOT_EXPLAINED, []).append(text)
+    return "; ".join(f"**{', '.join(texts)}** ({reason})" for reason, texts in groups.items())
+
+
+def bold_if(text, lost):
+    return f"**{text}**" if lost else text

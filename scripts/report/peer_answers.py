@@ -1,5 +1,6 @@
 """The answers of each contestant of peers_bench to a question, and their comparison."""
 
+from report.losses import by_reason
 from report.text import number, table
 
 GUARANTEES = ["exact", "rounded", "sampled"]
@@ -8,7 +9,7 @@ QUESTIONS = {
     "meets": "Do any triangles meet?",
     "pairs": "Which triangles meet? (all pairs)",
     "candidates": "Which may meet? (pairs among which are all that do)",
-    "distance": "How far apart are the surfaces? (to within 0.05 mm)",
+    "distance": "How far apart are the surfaces? (to within a tolerance)",
 }
 
 # The use of each contestant; the questions that it cannot answer follow from the missing answers.
@@ -16,7 +17,7 @@ USES = {
     "ist": "This library: slabs, with triangles; one worker. Its candidates are its exact pairs, a stricter answer.",
     "fcl": "OBBRSS hierarchies in double. Its distance is exact to rounding, sharper than the tolerance. Debian builds it for any x86-64, "
            "without its own SSE code, and with assertions: a line below each table states their cost. It lists no candidates.",
-    "fcl_within": "The same, with a distance to the tolerance: its traversal skips pairs that are at most 0.05 mm nearer than "
+    "fcl_within": "The same, with a distance to the tolerance: its traversal skips pairs that are nearer by at most the tolerance than "
                   "the nearest pair so far. FCL's own request has an absolute error, which does nothing in this version.",
     "embree": "rtcCollide over boxes in float; IST's exact test decides on the triangles. It takes no pose: the moving "
               "mesh is moved, in vectors, and its hierarchy refitted, and both count. It cannot stop at the first pair, so whether any meet "
@@ -31,7 +32,7 @@ USES = {
     "cgal": "AABB trees with EPICK, one traversed with the boxes of the other; CGAL's parts, combined for this. It has no "
             "public least distance between two meshes, only from a point to one.",
     "cgal_rigid": "Rigid_triangle_mesh_collision_detection, CGAL's own function for this question.",
-    "openvdb": "A narrow-band level set of the fixed jaw (3 voxels to either side), read at one point for each voxel "
+    "openvdb": "A narrow-band level set of the fixed jaw, read at one point for each voxel "
                "of the moving jaw's surface. It counts a contact from inside, and misses contacts between points.",
     "openvdb_vertices": "The same, read at the moving jaw's vertices alone.",
 }
@@ -118,17 +119,30 @@ def verdict(asked):
 
 
 def standing(asked, counts):
-    lost = []
+    """At how many poses IST is the fastest among those that count, and each one that is faster, with the reason."""
+    lost, count = {}, len(asked.poses)
     for pose in asked.poses:
         ist = asked.runs["ist", pose]["p50_us"]
         others = [player for player in asked.players if player != "ist" and counts(player, pose)]
         time, winner = asked.best(pose, others)
         if winner and time < ist:
-            lost.append((ist / time, winner, pose))
-    count = len(asked.poses)
+            lost.setdefault(winner, []).append((ist / time, pose))
     if not lost:
         return f"IST is the fastest at all {count} poses."
-    times, winner, pose = max(lost)
-    names = sorted({winner for _, winner, _ in lost})
-    return (f"IST is the fastest at {count - len(lost)} of {count} poses. At {len(lost)} **{', '.join(names)}** "
-            f"{'is' if len(names) == 1 else 'are'}, by up to {number(times)} times (**{winner}**, {pose}).")
+    times, pose, winner = max((*max(wins), winner) for winner, wins in lost.items())
+    places = sum(len(wins) for wins in lost.values())
+    named = by_reason([(f"{winner} at {len(wins)}", reason(asked, winner, [pose for _, pose in wins])) for winner, wins in sorted(lost.items())])
+    return (f"IST is the fastest at {count - places} of {count} poses. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
+            f"{named}.")
+
+
+def reason(asked, player, poses):
+    """Why a contestant is faster at these poses; None where that is not known."""
+    runs = [asked.runs[player, pose] for pose in poses]
+    if GUARANTEES[int(runs[0]["promise"])] == "sampled":
+        return "it reads stored distances at points, so it compares no triangles and may be wrong"
+    if runs[0]["prepared"]:
+        return "its mesh was moved, and its hierarchy refitted, before the time began"
+    if not any(run["agree"] for run in runs):
+        return "it gives another answer"
+    return None

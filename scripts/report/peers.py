@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from report import peers_elsewhere, peers_otherwise
+from report import peers_builds, peers_elsewhere, peers_otherwise
 from report.peer_answers import GUARANTEES, QUESTIONS, USES, Answers, all_players, medians, verdict
 from report.text import number, table
 
@@ -28,12 +28,16 @@ def chapter(results, pictures):
     lines += missing(context) + compiled(context) + peers_elsewhere.absent(answers)
     lines += versions(results) + pose_table(answers, poses)
     for question, title in QUESTIONS.items():
-        lines += [f"### {title}", ""] + medians(question, answers[question]) + verdict(answers[question]) + [""]
+        lines += [f"### {title}", *within(question, context), ""] + medians(question, answers[question]) + verdict(answers[question]) + [""]
         lines += peers_elsewhere.native_fcl(question, answers[question])
     lines += plot(answers, poses, pictures) + tails(answers)
     lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers) + peers_otherwise.avx2(results) + peers_otherwise.points(results)
-    lines += sampled(answers) + builds(results) + cannot(answers)
+    lines += sampled(answers) + peers_builds.section(results) + cannot(answers)
     return lines
+
+
+def within(question, context):
+    return ["", f"The tolerance is {context['tolerance']} mm."] if question == "distance" and "tolerance" in context else []
 
 
 def missing(context):
@@ -133,23 +137,6 @@ def sampled(answers):
             "the tolerance of a voxel, and this table counts their errors.", "",
             *table(["", "contacts missed", "false contacts", "error of distance (mm)",
                     "poses beyond the band, distance unknown"], rows), ""]
-
-
-def builds(results):
-    runs = results.runs("peers_bench", "peers", "build")
-    least = {key: min(run[key] for run in runs) for key in ("p50_us", "held_mb", "peak_mb")}
-
-    def cell(run, key, scale=1):
-        text = number(run[key] * scale)
-        return f"**{text}**" if run[key] == least[key] else text
-
-    rows = [[run.parts[2], cell(run, "p50_us", 1e-3), number(run["max_us"] / 1000), number(run["n"]),
-             cell(run, "held_mb"), number(run["grown_mb"]), cell(run, "peak_mb")] for run in runs]
-    return ["### Build and memory", "",
-            "Time from both meshes in memory to structures that answer queries, in one thread. Held: the increase of malloc's memory in use "
-            "(mallinfo2); grown: the increase of the process's resident memory, free pages "
-            "given back; peak: the largest such increase while building.", "",
-            *table(["", "median (ms)", "worst (ms)", "n", "held (MB)", "grown (MB)", "peak (MB)"], rows), ""]
 
 
 def cannot(answers):

@@ -20,7 +20,15 @@ def native_fcl(question, asked):
     ahead = (f"By the greater factor it would be the fastest of those without a mark at {len(won)} of {len(asked.poses)} poses "
              f"({', '.join(won)})." if won else "By this factor it would win at no pose.")
     return [f"FCL compiled for its processor, with its own SSE code and without assertions, is some {factor} times faster than "
-            f"Debian's, which this run measures ([one measurement on another machine](elsewhere.json), in no number above). {ahead}", ""]
+            f"Debian's, which this run measures ([{measured()}](elsewhere.json), in no number above). {ahead}", ""]
+
+
+def measured():
+    """Where FCL's factors were measured, and how often on each machine."""
+    machines, runs = ELSEWHERE["native_fcl"]["machines"], ELSEWHERE["native_fcl"]["runs_a_machine"]
+    where = "another machine" if len(machines) == 1 else f"{len(machines)} other machines"
+    how_often = "one measurement" if runs == 1 else f"{runs} measurements"
+    return f"{how_often} on {where}" if len(machines) == 1 else f"{how_often} on each of {where}"
 
 
 def would_win(asked, pose, factor):

@@ -1,6 +1,7 @@
 """The same peers under other conditions: bodies in turned frames, cold caches, IST without AVX-512."""
 
 from report.peer_answers import QUESTIONS, Answers, medians, verdict
+from report.losses import by_reason
 from report.text import number, table
 
 
@@ -21,12 +22,19 @@ def span(values):
     return low if low == high else f"{low} to {high}"
 
 
+def _turns(context):
+    if "turned_degrees" not in context:
+        return "both meshes turned"
+    fixed, moving = context["turned_degrees"].split()
+    return f"the fixed mesh turned by {fixed} degrees and the moving one by {moving}"
+
+
 def turned(results, answers):
     asked = asked_in(results, "turned")
     if not asked:
         return []
     lines = ["### In turned frames", "",
-             "The same poses, the same bodies given in other frames: the fixed mesh turned by 46 degrees and the moving one by 52, "
+             f"The same poses, the same bodies given in other frames: {_turns(results.context('peers_bench'))}, "
              "each about an oblique axis of its own, vertices rounded to double, poses composed to match. A scan lies along its scanner's "
              "axes, which favours boxes and voxels along the same axes; turned bodies do not. Exact contestants agree here too, or the run "
              "fails.", ""]
@@ -61,7 +69,8 @@ def cold(results, answers):
             f"The quickest again at the same poses, but before each question {number(float(swept))} MB are read, twice the size of the last "
             "cache: a program that asks seldom finds its caches so. Median, µs, and in brackets the multiple of the time in the tables above, "
             "where one question follows the other; the fastest is in bold, as there.", "",
-            *table(["question", "", *poses, "n"], rows), ""]
+            *table(["question", "", *poses, "n"], rows), "",
+            *(text for question, one in asked.items() for text in (f"{QUESTIONS[question]} {verdict(one)[0]}", ""))]
 
 
 def points(results):
@@ -77,9 +86,20 @@ def points(results):
                  for pose in poses]
         rows.append([player, *cells, str(int(by[player, poses[0]]["n"]))])
     return ["### How far is each vertex?", "",
-            "The vertices of both jaws within 2 mm of the other one, at the closing. IST also gives the sign, the triangle and its point; "
+            f"The vertices of both jaws {_near(runs[0])} the other one, at the closing. IST also gives the sign, the triangle and its point; "
             "CGAL's `AABB_tree`, with its tree of points, gives the distance alone. Both are right to within rounding, or the run fails. Median, ms, and in brackets the "
-            "multiple of IST's time:", "", *table(["", *poses, "n"], rows), ""]
+            "multiple of IST's time:", "", *table(["", *poses, "n"], rows), "", points_verdict(by, players, poses), ""]
+
+
+def _near(run):
+    return f"within {run['reach_mm']:g} mm of" if "reach_mm" in run else "near"
+
+
+def points_verdict(by, players, poses):
+    """Who measures the vertices faster than IST; runs by contestant and pose."""
+    lost = [(f"{player} at {pose}, {number(by['ist', pose]['p50_us'] / by[player, pose]['p50_us'])} times as fast", None)
+            for player in players if player != "ist" for pose in poses if by[player, pose]["p50_us"] < by["ist", pose]["p50_us"]]
+    return f"IST loses to {by_reason(lost)}." if lost else f"IST is the fastest at all {len(poses)} poses."
 
 
 def avx2(results):
@@ -94,4 +114,13 @@ def avx2(results):
                      str(one.rounds("ist_avx2"))])
     poses = next(iter(asked.values())).poses
     return title + ["IST with its kernels for AVX2, in turn with the kernels that it chooses. Median, µs, and in brackets the multiple of "
-                    "their time:", "", *table(["question", *poses, "n"], rows), ""]
+                    "their time:", "", *table(["question", *poses, "n"], rows), "", avx2_verdict(asked), ""]
+
+
+def avx2_verdict(asked):
+    """Where the kernels for AVX2 are faster than those that IST chooses."""
+    times = [(question, pose, ratio) for question, one in asked.items() for pose, ratio in zip(one.poses, ratios(one, one, "ist_avx2", "ist"))]
+    lost = [(f"{question} at {pose}, {number(1 / ratio, 3)} times", None) for question, pose, ratio in times if ratio < 1]
+    if not lost:
+        return "The kernels that IST chooses are the faster at every pose."
+    return f"The kernels for AVX2 are faster than those that IST chooses at {len(lost)} of {len(times)}: {by_reason(lost)}."

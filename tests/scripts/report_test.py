@@ -48,9 +48,9 @@ class Bodies(unittest.TestCase):
         self.results._read["loop_bench"] = {"benchmarks": [
             {"name": "bodies/splint/iterations:1", "ticks": 100, "ticks_apart": 10, "ratio": 1.1, **times, "apart_p50_us": 0.5}]}
         self.results._read["world_bench"] = {"benchmarks": [
-            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, **times},
-            {"name": "world/hundred_at_rest/real_time", "real_time": 25},
-            {"name": "world/a_pair_apart/real_time", "real_time": 0.3}]}
+            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, "bodies": 4, "pairs": 6, "voxel_size": 0.4, "tremble_voxels": 0.05, **times},
+            {"name": "world/hundred_at_rest/real_time", "real_time": 25, "bodies": 100, "moved": 0},
+            {"name": "world/a_pair_apart/real_time", "real_time": 0.3, "bodies": 2, "moved": 1}]}
         self.text = "\n".join(bodies.chapter(self.results, None))
 
     def test_a_promise_that_holds_is_said_plainly(self):
@@ -58,8 +58,8 @@ class Bodies(unittest.TestCase):
         self.assertIn("\nA pair that is apart takes 0.5 µs: at most 2 was promised.", self.text)
 
     def test_one_that_does_not_is_bold_in_words_and_in_the_table(self):
-        self.assertIn("**`contacts` of the world takes 1.2 times its queries; at most 1.15 was promised.**", self.text)
-        self.assertIn("| 100 bodies, none near, at rest | **25** | 20 |", self.text)
+        self.assertIn("**`contacts` of the world takes 1.2 times its queries; at most 1.15 was promised** (a world also", self.text)
+        self.assertIn("| 100 bodies, none near, 0 moving | **25** | 20 |", self.text)
 
 
 class Peers(unittest.TestCase):
