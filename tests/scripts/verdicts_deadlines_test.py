@@ -32,9 +32,10 @@ class Tails(unittest.TestCase):
 
     def test_contacts_that_are_complete_just_in_time_have_their_reason_and_others_have_not(self):
         late = "an answer that is complete just in time still makes contacts"
-        self.assertIn(late, text(within_100us__contacts__inside=row(over=100, complete=0.5, pairs=9)))
-        self.assertNotIn(late, text(within_100us__contacts__inside=row(over=100, complete=0.0, pairs=9)))
-        self.assertNotIn(late, text(within_100us__leaf_pairs__inside=row(over=100, complete=0.5, pairs=9)))
+        self.assertIn(late, text(within_100us__contacts__inside=row(over=100, complete=0.5, pairs=9000)))
+        self.assertNotIn(late, text(within_100us__contacts__inside=row(over=100, complete=0.0, pairs=9000)))
+        self.assertNotIn(late, text(within_100us__contacts__inside=row(over=100, complete=0.5, pairs=9)))
+        self.assertNotIn(late, text(within_100us__leaf_pairs__inside=row(over=100, complete=0.5, pairs=9000)))
 
 
 class Away(unittest.TestCase):
