@@ -13,7 +13,7 @@ from report.runner import Runner
 CHAPTERS = [accuracy, coherent, measures, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
 HEAD = """# What accuracy costs in time
 
-Made by `scripts/perf_report.sh` from the raw results in `{results}`; no number in it is typed by hand, but for the times of peers that were built elsewhere, which say so. Times are wall times
+Made by `scripts/perf_report.sh` from the raw results in `{results}`; no measured number in it is typed by hand, but for the times of peers that were built elsewhere, which say so. Times are wall times
 of a query alone, trees loaded, unless stated otherwise; a *median* is over *n* queries. Two jaws are a *{pair}*
 pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth are in full
 occlusion, at dz = -1.5 they are just apart. In tables and plots, **bold** marks the best of a row or column, or a loss;

@@ -135,7 +135,7 @@ class Saved(unittest.TestCase):
 
 class Voxels(unittest.TestCase):
     def said(self, times):
-        """With so many times the published voxels at equal l/s."""
+        """With that many times the published voxels at equal l/s."""
         run = {"extent": 100, "triangles": 9, "nodes": 9, "cells": 9, "voxels_ms": 1, "octree_ms": 1, "MB": 1, "n": 3, "leaves": 9}
         published = seed.PUBLISHED["voxels_by_size"]
         runs = {f"voxels/{size}": run | {"leaves": 1 / float(size) ** 2} for size in ("1", "0.5", "0.2")}
