@@ -58,6 +58,7 @@ def main():
         sys.exit(f"target_instructions: {PAGE} has no place for the table: {BEGIN.strip()}")
     run("cc", "-shared", "-fPIC", "-O2", "-o", PLUGIN, ROOT / "tests/instructions/counting_plugin.c")
     run("cc", "-O2", "-o", STEPS, ROOT / "tests/instructions/counting_steps.c")
+    asked_of = set()  # sphere tests and leaf pairs: the same on every platform
     lines = ["| platform | target | leaf pairs | a sphere test | contacts | more a leaf pair |\n", "|---|---|---|---|---|---|\n"]
     for platform, preset, counter, targets in COUNTERS:
         rows = counted(preset, counter, targets)
@@ -66,7 +67,11 @@ def main():
         for target, asked in rows.items():
             listed, tests, pairs = asked["leaf_pairs"]
             summed = asked["contacts"][0]
+            asked_of.add((tests, pairs))
             lines.append(f"| {platform} | `{target}` | {listed:,} | {listed / tests:.1f} | {summed:,} | {(summed - listed) / pairs:.0f} |\n")
+    if len(asked_of) != 1:
+        sys.exit(f"target_instructions: platforms differ in sphere tests and leaf pairs: {sorted(asked_of)}")
+    lines += ["\n", "Each makes {:,} sphere tests and lists {:,} leaf pairs.\n".format(*asked_of.pop())]
     lines += ["\n", stamp(*here(), "target_instructions.py"), "\n"]
     PAGE.write_text(before + BEGIN + "".join(lines) + END + after)
     print("".join(lines), end="")
