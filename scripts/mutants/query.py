@@ -61,8 +61,18 @@ MUTANTS = [
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   LeafPairSink sink(s.plan, s.kernels, out);""")],
            ["search_test *KeepsTheFloatEnvironment*", "stability_test *Environment*"]),
-    Mutant("environment-not-restored", "the caller's floating-point environment is not restored",
-           [("src/ist/base/float_environment.h", "~ScopedFloatEnvironment() { saved_.write(); }", "~ScopedFloatEnvironment() {}")],
+    Mutant("environment-not-restored", "a query leaves its own floating-point environment to its caller",
+           [("src/ist/query/query.cpp", """                              const Budget& budget) noexcept {
+  const ScopedFloatEnvironment environment;
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  LeafPairSink sink(s.plan, s.kernels, out);""", """                              const Budget& budget) noexcept {
+  FloatRegisters().write();
+  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  LeafPairSink sink(s.plan, s.kernels, out);""")],
            ["search_test *KeepsTheFloatEnvironment*"]),
     Mutant("worker-forgets-mxcsr", "the second worker computes with the flags of its thread",
            [("src/ist/query/workers/resident_worker.cpp", "const ScopedFloatEnvironment environment;", "")],
