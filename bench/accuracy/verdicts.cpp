@@ -10,6 +10,7 @@
 #include "query/query_cases.h"
 #include "support/latencies.h"
 #include "verify/answer_verifier.h"
+#include "verify/frame_motion.h"
 #include "verify/leaf_geometry.h"
 
 namespace ist::bench {
@@ -45,7 +46,7 @@ const std::vector<ChunkState>& verdicts() {
 // Leaves' triangles, clipped to their cubes and moved to the fixed tree's frame.
 class Leaves {
  public:
-  Leaves(const SphereTree& tree, const RelativePose* move)
+  Leaves(const SphereTree& tree, const Pose* move)
       : tree_(tree), codes_(tree.parts().octree.codes(0)), move_(move) {}
 
   const std::vector<ClippedTriangle>& of(std::uint32_t leaf) {
@@ -62,26 +63,24 @@ class Leaves {
  private:
   [[nodiscard]] ClippedTriangle moved(const ClippedTriangle& polygon) const {
     ClippedTriangle out = polygon;
-    for (Eigen::Vector3d& corner : out.corners) {
-      corner = move_->rotation * corner + move_->translation;
-    }
+    for (Eigen::Vector3d& corner : out.corners) corner = *move_ * corner;
     return out;
   }
 
   const SphereTree& tree_;
   const std::vector<std::uint64_t> codes_;
-  const RelativePose* move_;
+  const Pose* move_;
   std::map<std::uint32_t, std::vector<ClippedTriangle>> made_;
 };
 
 // How many of the leaf pairs hold triangles that cross inside of them.
 std::uint64_t crossing(const SphereTree& fixed, const SphereTree& moving, const Pose& pose,
                        const std::vector<LeafPair>& leaf_pairs) {
-  const RelativePose relative = *relative_pose(pose, fixed.parts().lattice, moving.parts().lattice);
-  const double tolerance =
-      AnswerVerifier::kTolerance *
-      (fixed.bounding_radius() + moving.bounding_radius() + relative.translation.norm());
-  Leaves of_fixed(fixed, nullptr), of_moving(moving, &relative);
+  const auto [motion, error] = frame_motion(pose, fixed.parts().lattice, moving.parts().lattice);
+  const double lengths =
+      fixed.bounding_radius() + moving.bounding_radius() + motion.translation().norm();
+  const double tolerance = AnswerVerifier::kTolerance * lengths + error;
+  Leaves of_fixed(fixed, nullptr), of_moving(moving, &motion);
   std::uint64_t count = 0;
   for (const LeafPair& pair : leaf_pairs) {
     const auto& as = of_fixed.of(pair.fixed);
