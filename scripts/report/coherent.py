@@ -1,6 +1,6 @@
 """Chapter: what a tick takes whose leaf pairs are kept from the last one, beside a fresh query, by motion."""
 
-from report.losses import bold_if, by_reason
+from report.losses import bold_if, by_reason, is_loss
 from report.styles import style
 from report.text import number, table
 
@@ -30,6 +30,9 @@ class Motion:
     def ratio(self, kind):
         fresh, kept = self.times(kind)
         return kept / fresh
+
+    def loses(self, kind):
+        return is_loss(1 / self.ratio(kind))
 
     def reason(self, kind):
         """Why it loses; None where that is not known."""
@@ -74,7 +77,7 @@ def _table(motions):
     rows = []
     for one in motions:
         (fresh, kept), (worst_fresh, worst_kept) = one.times("median"), one.times("slowest")
-        rows.append([one.title, one.step, fresh, bold_if(number(kept), kept > fresh), worst_fresh, bold_if(number(worst_kept), worst_kept > worst_fresh),
+        rows.append([one.title, one.step, fresh, bold_if(number(kept), one.loses("median")), worst_fresh, bold_if(number(worst_kept), one.loses("slowest")),
                      *(f"{one.run[key]:,.0f}" for key in ("by_search", "among_kept", "in_clearance"))])
     return table(["motion, voxels", "motion a tick, voxels", "fresh, median, µs", "kept, median, µs", "fresh, slowest, µs", "kept, slowest, µs",
                   "ticks by search", "by kept pairs", "in a clearance"], rows)
@@ -86,8 +89,8 @@ def verdicts(motions):
 
 
 def _verdict(motions, kind):
-    lost = [one for one in motions if one.ratio(kind) > 1]
-    won = [one for one in motions if one.ratio(kind) <= 1]
+    lost = [one for one in motions if one.loses(kind)]
+    won = [one for one in motions if not one.loses(kind)]
     text = f"The {kind} tick"
     if won:
         ratios = [one.ratio(kind) for one in won]

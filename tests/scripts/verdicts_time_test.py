@@ -37,6 +37,10 @@ class CoherentTicks(unittest.TestCase):
         for lost in (self.motion(10, 500), self.motion(10, 260, workers=2)):
             self.assertIn(f"({NOT_EXPLAINED})", verdicts([lost])[2])
 
+    def test_noise_is_no_loss(self):
+        for kept, said in ((102, "it loses at none"), (104, "It takes longer at 1")):
+            self.assertIn(said, verdicts([self.motion(kept, 190)])[0])
+
     def test_where_nothing_gains_it_says_so(self):
         self.assertIn("The median tick gains at no motion.", verdicts([self.motion(110, 260)])[0])
 
