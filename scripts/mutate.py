@@ -76,7 +76,7 @@ def build(programs):
 
 
 def first_failure(tests):
-    """The first test that fails, or None. A test is a program, a program and a filter, "ctest" and a name, or "node" or "python" and a file."""
+    """The first test that fails, or None; a mutant's `tests` say what a test is."""
     environment = {"IST_DATA_DIR": str(ROOT.parent / "shared/data"), "IST_REQUIRE_ALL": "1", **os.environ}
     for test in tests:
         program, _, pattern = test.partition(" ")
@@ -86,7 +86,8 @@ def first_failure(tests):
         elif program == "node":
             command = ["node", "--test", COPY / "tests/viewer" / pattern]
         elif program == "python":
-            command = ["python3", "-B", COPY / "tests/scripts" / pattern]
+            file, *cases = pattern.split()
+            command = ["python3", "-B", COPY / "tests/scripts" / file, *cases]
         elif pattern:
             command.append(f"--gtest_filter={pattern}")
         try:

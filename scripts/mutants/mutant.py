@@ -7,7 +7,8 @@ class Mutant(NamedTuple):
     name: str
     breaks: str  # what it does, for perf/MUTANTS.md
     edits: list  # (file, a passage that is there once, what stands there instead)
-    # Programs, programs and a filter, "ctest" and a name, "node" and a file of tests/viewer, or "python" and one of tests/scripts, in the order in which they are asked.
+    # In the order in which they are asked: a program; a program and a filter; "ctest" and a name; "node" and a file of tests/viewer;
+    # "python" and a file of tests/scripts, of which a class alone where one is named.
     tests: list
 
 

@@ -4,6 +4,13 @@ from .mutant import Mutant, SEARCH_POSE, LANES, BOUNDS_INL, MEASURE_INL, PAIR_RO
 
 RULES = "src/ist/query/query_rules.h"
 RESOLUTION = "return 2 * (fixed.largest_leaf_radius(policy) + moving.largest_leaf_radius(policy)) + result.pad;"
+ENVIRONMENT = "  const ScopedFloatEnvironment environment;\n"
+# The head of Query::leaf_pairs.
+LEAF_PAIRS = f"""                              const Budget& budget) noexcept {{
+{ENVIRONMENT}  detail::QueryState& s = *state_;
+  const detail::Use use(s);
+  if (!use) return {{.status = QueryStatus::kBusy, .complete = false}};
+  LeafPairSink sink(s.plan, s.kernels, out);"""
 RESOLUTIONS = ["query_test Engines/Resolution*:ResolutionOfContacts*"]
 
 MUTANTS = [
@@ -50,29 +57,10 @@ MUTANTS = [
            [("src/ist/base/pose.cpp", "if (!(determinant(rotation) > 0)) return std::nullopt;",
              "static_cast<void>(determinant(rotation));")], ["base_test"]),
     Mutant("query-forgets-mxcsr", "a query computes with its caller's floating-point flags",
-           [("src/ist/query/query.cpp", """                              const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  detail::QueryState& s = *state_;
-  const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, out);""", """                              const Budget& budget) noexcept {
-  detail::QueryState& s = *state_;
-  const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, out);""")],
+           [("src/ist/query/query.cpp", LEAF_PAIRS, LEAF_PAIRS.replace(ENVIRONMENT, ""))],
            ["search_test *KeepsTheFloatEnvironment*", "stability_test *Environment*"]),
     Mutant("environment-not-restored", "a query leaves its own floating-point environment to its caller",
-           [("src/ist/query/query.cpp", """                              const Budget& budget) noexcept {
-  const ScopedFloatEnvironment environment;
-  detail::QueryState& s = *state_;
-  const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, out);""", """                              const Budget& budget) noexcept {
-  FloatRegisters().write();
-  detail::QueryState& s = *state_;
-  const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
-  LeafPairSink sink(s.plan, s.kernels, out);""")],
+           [("src/ist/query/query.cpp", LEAF_PAIRS, LEAF_PAIRS.replace(ENVIRONMENT, "  FloatRegisters().write();\n"))],
            ["search_test *KeepsTheFloatEnvironment*"]),
     Mutant("worker-forgets-mxcsr", "the second worker computes with the flags of its thread",
            [("src/ist/query/workers/resident_worker.cpp", "const ScopedFloatEnvironment environment;", "")],

@@ -87,7 +87,9 @@ def git(*arguments):
 
 
 def has_history():
-    return git("rev-parse", "--is-shallow-repository") == "false\n"
+    """Whether the folder has a history of its own, and all of it. A copy inside of a repository has none."""
+    shallow, top = (git("rev-parse", "--is-shallow-repository", "--show-toplevel") or "\n\n").splitlines()[:2]
+    return shallow == "false" and pathlib.Path(top).resolve() == ROOT.resolve()
 
 
 def is_commit(name):

@@ -89,11 +89,16 @@ auto waits(int& count, int milliseconds) {
   };
 }
 
+// A contest of one that takes a millisecond, and counts its questions in `fast`, and a slower one.
+cli::Contest against_slow(int& fast, int& slow, int milliseconds) {
+  return {{{"touch", "fast", "", 1, waits(fast, 1)},
+           {"touch", "slow", "", 1, waits(slow, milliseconds)}},
+          {{"here", "here", Eigen::Isometry3d::Identity()}}};
+}
+
 TEST(BenchContest, GivesEverybodyThreeTurnsHoweverLongTheyTake) {
   int fast = 0, slow = 0;
-  cli::Contest contest(
-      {{"touch", "fast", "", 1, waits(fast, 1)}, {"touch", "slow", "", 1, waits(slow, 40)}},
-      {{"here", "here", Eigen::Isometry3d::Identity()}});
+  cli::Contest contest = against_slow(fast, slow, 40);
   double last = 0;
   contest.hold(0.01, [&](double part) {
     last = part;
@@ -109,9 +114,7 @@ TEST(BenchContest, GivesEverybodyThreeTurnsHoweverLongTheyTake) {
 
 TEST(BenchContest, GivesEverybodyAsMuchTime) {
   int fast = 0, slow = 0;
-  cli::Contest contest(
-      {{"touch", "fast", "", 1, waits(fast, 1)}, {"touch", "slow", "", 1, waits(slow, 20)}},
-      {{"here", "here", Eigen::Isometry3d::Identity()}});
+  cli::Contest contest = against_slow(fast, slow, 20);
   double last = 0;
   contest.hold(0.5, [&](double part) {
     EXPECT_GE(part, last);

@@ -199,6 +199,11 @@ class History(unittest.TestCase):
         (self.root / self.PAGE).write_text(f"| a | commit |\n|---|---|\n| 1 | {self.commit} |\n")
         self.assertEqual(self.check()[0], 1)
 
+    def test_a_folder_within_a_repository_has_no_history(self):
+        self.assertTrue(figures.has_history())
+        figures.ROOT = self.root / "src"
+        self.assertFalse(figures.has_history())
+
     def test_figures_of_other_flags_are_stale(self):
         for flag, code in (("-O2", 0), ("-O2 -Wall", 0), ("-O3", 1)):
             (self.root / "CMakeLists.txt").write_text(f"target_compile_options(a PRIVATE {flag})\n")
