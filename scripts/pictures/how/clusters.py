@@ -1,6 +1,6 @@
 """The tree of triangle clusters: a jaw coloured by the nodes of three levels, and the bounds of one cluster.
 
-Nothing public has the nodes, so the triangles of each follow from the rule of the library's order."""
+No public function returns the nodes, so the triangles of each follow from the rule of the library's order."""
 import colorsys
 
 import numpy as np
