@@ -1,6 +1,6 @@
 """The answers of each contestant of peers_bench to a question, and their comparison."""
 
-from report.losses import by_reason
+from report.losses import NOISE, by_reason, is_loss
 from report.text import number, table
 
 GUARANTEES = ["exact", "rounded", "sampled"]
@@ -120,19 +120,22 @@ def verdict(asked):
 
 def standing(asked, counts):
     """At how many poses IST is the fastest among those that count, and each one that is faster, with the reason."""
-    lost, count = {}, len(asked.poses)
+    lost, near, count = {}, 0, len(asked.poses)
     for pose in asked.poses:
         ist = asked.runs["ist", pose]["p50_us"]
         others = [player for player in asked.players if player != "ist" and counts(player, pose)]
         time, winner = asked.best(pose, others)
-        if winner and time < ist:
+        if winner and is_loss(time / ist):
             lost.setdefault(winner, []).append((ist / time, pose))
+        else:
+            near += bool(winner and time < ist)
+    equal = f", and as fast as the fastest, within {100 * NOISE:.0f} %, at {near}" if near else ""
     if not lost:
-        return f"IST is the fastest at all {count} poses."
+        return f"IST is the fastest at {count - near if near else 'all'} {'of ' if near else ''}{count} poses{equal}."
     times, pose, winner = max((*max(wins), winner) for winner, wins in lost.items())
     places = sum(len(wins) for wins in lost.values())
     named = by_reason([(f"{winner} at {len(wins)}", reason(asked, winner, [pose for _, pose in wins])) for winner, wins in sorted(lost.items())])
-    return (f"IST is the fastest at {count - places} of {count} poses. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
+    return (f"IST is the fastest at {count - places - near} of {count} poses{equal}. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
             f"{named}.")
 
 

@@ -37,6 +37,11 @@ class Standing(unittest.TestCase):
     def test_a_win_everywhere_is_said_plainly(self):
         self.assertEqual(self.said((20, 30)), "IST is the fastest at all 2 poses.")
 
+    def test_noise_is_neither_a_win_nor_a_loss(self):
+        self.assertEqual(self.said((20, 9.8)), "IST is the fastest at 1 of 2 poses, and as fast as the fastest, within 3 %, at 1.")
+        self.assertIn("IST is the fastest at 0 of 2 poses, and as fast as the fastest, within 3 %, at 1. **It loses at 1, by up to 2 times**",
+                      self.said((5, 9.8)))
+
     def test_a_loss_without_a_mark_is_not_explained(self):
         self.assertIn(f"IST is the fastest at 1 of 2 poses. **It loses at 1, by up to 2 times** (other, -1.0): to **other at 1** ({NOT_EXPLAINED}).",
                       self.said((20, 5)))
