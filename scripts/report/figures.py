@@ -144,14 +144,15 @@ def texts_at(commit, names):
 
 def changed_since(commit, maker):
     """Returns the files that the figures of a maker rest on whose code is another in the working tree than at a commit, in order
-    of name. Comments and texts about the code do not count, nor do CMake's files but for the flags in them."""
+    of name. Comments and texts about the code do not count, nor the figure that the page shows, nor CMake's files but for the flags in
+    them."""
     def code(text):
         return flags.of(name, text, presets_of(maker)) if name in flags.FILES else code_of(text, name)
 
     names = git("diff", "--name-only", commit, "--", *sources_of(maker))
     if names is None:
         raise ValueError(f"{commit} is no commit of this history")
-    found, names = [], [name for name in names.splitlines() if not name.endswith(".md")]
+    found, names = [], [name for name in names.splitlines() if not name.endswith(".md") and name != SHOWN[0]]
     for name, before in texts_at(commit, names).items():
         now = ROOT / name
         if before is None or not now.exists() or code(before) != code(now.read_bytes().decode("latin-1")):
