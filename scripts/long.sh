@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Runs what takes hours, part by part: scripts/test.sh itself; the packages, and the circuit's synthesis; golden
-# answers by more compilers and optimisations; a program built for ARM64 from the package; every room and test
-# under the sanitizers; the hard cases of perf/STABILITY.md with 20 times the samples, and ten million queries of real
-# jaws; an hour of simulated pressing; a million ticks of coherent queries against fresh ones; CloudCompare's distances;
-# Blender; a release, built twice; the four doors of tests/doors in a bare Debian; each fuzzer for 30 minutes. Parts that
-# use one core run side by side.
+# Runs what takes hours, part by part: scripts/test.sh itself; the tests of what users build; the packages, and the
+# circuit's synthesis; golden answers by more compilers and optimisations; a program built for ARM64 from the package;
+# every room and test under the sanitizers; the hard cases of perf/STABILITY.md with 20 times the samples, and ten
+# million queries of real jaws; an hour of simulated pressing; a million ticks of coherent queries against fresh ones;
+# CloudCompare's distances; Blender; a release, built twice; the four doors of tests/doors in a bare Debian; each
+# fuzzer for 30 minutes. Parts that use one core run side by side.
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        those that do not count at this commit
@@ -41,10 +41,12 @@ release() {  # made of the commit, twice
   rm -rf build/tried build/tried-draft
   scripts/release.sh --despite-figures --out build/tried
 }
+as_users_build="base_test mesh_test tree_test query_test search_test"
 installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm --doors; }
 
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
 alone suite scripts/test.sh
+alone as-users-build run "release -DIST_TESTS=ON" "$as_users_build" -L "^(${as_users_build// /|})$" -E 'RealPairs\.HaveTheTriangles'
 alone packages ctest --preset test -L '^long$'
 alone benches benches
 alone golden scripts/golden_table.py --check

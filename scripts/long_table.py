@@ -17,6 +17,7 @@ VERDICT = re.compile(r"(passed|skipped|failed) at (\w+)( with changes)? on ([\d-
 # What a part tries, by its name; several rounds of one kind are one row.
 PARTS = {
     "suite": "`scripts/test.sh`",
+    "as-users-build": "tests of the library as users build it: file by file, without assertions",
     "packages": "tests of packages, wheels, the page in a browser, the circuit's synthesis",
     "benches": "all benchmarks compile without a warning",
     "golden": "golden answers by every compiler, optimisation and platform",
