@@ -6,6 +6,11 @@
 #   scripts/bench.sh peers_bench        beside other libraries, which it installs
 set -euo pipefail
 cd "$(dirname "$0")/.."
+case ${1:-} in
+  -h | --help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -- | "" | [!-]*) ;;
+  *) echo "bench: unknown option $1; see --help" >&2; exit 2 ;;
+esac
 programs=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do programs+=("$1"); shift; done
 [ $# -eq 0 ] || shift

@@ -112,7 +112,7 @@ def main():
     lines += ["", f"A call was to take {MOST_MORE} µs more than in C at most. "
               + (f"**Up to {dearest:.1f} µs more were measured.**" if dearest > MOST_MORE else "It does."), "",
               f"`rows` on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: "
-              f"{bold(100 * share, share < LEAST_SHARE, '.0f')} % (promised: {100 * LEAST_SHARE:.0f}).", ""]
+              f"{bold(100 * share, share < LEAST_SHARE, '.0f')} %, the median of {ROUNDS} rounds (promised: {100 * LEAST_SHARE:.0f}).", ""]
     lines.append(stamp(*here(), "calls.py", machine_state(context)))
     show("\n".join(lines) + "\n")
 

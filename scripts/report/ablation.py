@@ -1,7 +1,7 @@
 """Chapter: what each part of the fast query gives, added one by one and left out one by one."""
 
 from report.ablation_steps import LEFT_OUT, PLACE, POLICIES, POSES, SIZES, Variants, added, main_line, policy_of
-from report.losses import NOISE, NOT_EXPLAINED, WHY, factor, is_loss, listing, why, why_worker
+from report.losses import NOISE, NOT_EXPLAINED, WHY, factor, is_loss, listing, why
 from report.text import number, table
 
 PROGRAMS = ["ablation_bench"]
@@ -11,8 +11,6 @@ HATCHES = {"0.0": "", "-1.5": "///"}
 
 def because(variants, before, name, dz):
     """Why a step of the ladder loses against the one before it."""
-    if name == "second_worker":
-        return why_worker(variants.of(before, "p50_us", dz))
     return why(name, variants.of(name, "tests", dz) / variants.of(before, "tests", dz), variants.times(before, name, dz))
 
 
@@ -96,8 +94,7 @@ def without_verdict(variants, size):
             value = variants.times(name, "full", dz)
             if not is_loss(value):
                 continue
-            reason = (why_worker(variants.of(name, "p50_us", dz)) if name == "second_worker" else
-                      why(name, variants.of("full", "tests", dz) / variants.of(name, "tests", dz), value))
+            reason = why(name, variants.of("full", "tests", dz) / variants.of(name, "tests", dz), value)
             found.append(f"{LEFT_OUT[name]} at dz = {dz} ({factor(value)} times as long; with it {reason})")
     if not found:
         return f"At {size} mm no part is better left out."

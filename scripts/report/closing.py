@@ -5,7 +5,7 @@ import re
 import sys
 
 from report.figures import machine_state, stamp
-from report.losses import NOT_EXPLAINED, factor, is_loss, listing, why_worker
+from report.losses import NOT_EXPLAINED, factor, is_loss, listing
 from report.text import number, table
 
 POSES = {"0.0": "closed, dz = 0", "-0.5": "dz = -0.5", "-1.0": "dz = -1", "-1.5": "dz = -1.5, before contact", "-2.0": "dz = -2"}
@@ -25,7 +25,7 @@ def write(page, text):
 
 def compare(results):
     """The rows of the table, with losses in bold, and sentences on the losses."""
-    rows, alone, behind, slower = [], {}, [], {}  # slower: places by reason
+    rows, alone, behind, slower = [], {}, [], []
     for of, workers, over in COMPARED:
         row = [f"`{of}`{', two workers' if workers == 2 else ''} against `{over}`"]
         for pose, place in POSES.items():
@@ -40,14 +40,13 @@ def compare(results):
                 alone[of, pose] = fast["p50_us"]
             elif is_loss(alone[of, pose] / fast["p50_us"]):
                 lost = True
-                reason = why_worker(alone[of, pose])
-                slower.setdefault(reason, []).append(f"{place} ({number(fast['p50_us'])} against {number(alone[of, pose])} µs)")
+                slower.append(f"{place} ({number(fast['p50_us'])} against {number(alone[of, pose])} µs)")
             bold = "**" if lost else ""
             row.append(f"{number(published['p50_us'])} → {number(fast['p50_us'])}: {bold}{times:.1f}{bold}<br>"
                        f"{published['contacts']:,.0f} → {fast['contacts']:,.0f}")
         rows.append(row)
     return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query.",
-                           f"**Two workers are slower than one** at {'; at '.join(f'{listing(places)}: {reason}' for reason, places in slower.items())}." if slower else "Two workers are nowhere slower than one."])
+                           f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else "Two workers are nowhere slower than one."])
 
 
 def update(results, machine):

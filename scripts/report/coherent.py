@@ -1,6 +1,6 @@
 """Chapter: what a tick takes whose leaf pairs are kept from the last one, beside a fresh query, by motion."""
 
-from report.losses import bold_if, by_reason, is_loss
+from report.losses import NOISE, bold_if, by_reason, is_loss
 from report.styles import style
 from report.text import number, table
 
@@ -52,7 +52,7 @@ def chapter(results, pictures):
             "A *coherent* query keeps the leaf pairs that are nearly near enough, its *front*, and tests them again at the next pose in place of a "
             f"search; its answers are those of a fresh query, bit by bit, or the program that measures fails. Both answer every tick in turn, with "
             f"`slab`, one worker unless stated otherwise, and room for {number(some['room'])} pairs: contacts with their sums, pose in, sums out. "
-            f"Of each tick the least of {some['rounds']:.0f} rounds counts. *Motion* is the median motion of a tick, at the corner of the "
+            f"Of each tick the least of {some['rounds']:.0f} rounds counts; times within {100 * NOISE:.0f} % of each other are equal. *Motion* is the median motion of a tick, at the corner of the "
             "moving jaw's box that moves most.", "",
             "### Coherent ticks by motion", "", _plot(motions, pictures), "", *_table(motions), "", *verdicts(motions)]
 

@@ -116,12 +116,12 @@ def why_missed(run, bare):
     """Why a loop missed ticks: where its longest tick is shorter than the period, it is the late begins."""
     period = run["period_us"]
     if run["execution_max_us"] < period:
-        return (f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most, so ticks began late, by up to {number(run['late_max_us'])} µs; "
-                f"the empty loop by the same clock missed {number(bare['missed'])}")
-    if run["cpu_max_us"] < period:
-        return (f"a tick took {number(run['execution_max_us'])} µs, but no tick over {number(run['cpu_max_us'])} µs of its thread's processor time: it was "
-                "off its core")
-    return f"a tick took {number(run['cpu_max_us'])} µs of its thread's processor time: not explained"
+        why = f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most, so ticks began late, by up to {number(run['late_max_us'])} µs"
+    elif run["cpu_max_us"] < period:
+        why = f"a tick took {number(run['execution_max_us'])} µs, but no tick over {number(run['cpu_max_us'])} µs of its thread's processor time: it was off its core"
+    else:
+        why = f"a tick took {number(run['cpu_max_us'])} µs of its thread's processor time: not explained"
+    return f"{why}; the empty loop by the same clock missed {number(bare['missed'])}"
 
 
 def _missed_in_words(runs):

@@ -4,8 +4,6 @@ from report.text import number
 
 NOISE = 0.03  # factors nearer to 1 are no gain and no loss
 NOT_EXPLAINED = "not explained"
-# Two workers halve a query of over 200 µs, and gain less below this (perf/NOTES.md, The fast path).
-SHORT_US = 150
 # By the step that adds the part: what it does that its absence does not, in the code. What is not here is not explained.
 WHY = {
     "pointers_table": "a sphere by the table takes longer to make than a circumsphere",
@@ -15,8 +13,6 @@ WHY = {
     "tight": "a ball is read from memory and unpacked, instead of made",
     "slab": "a test reads and compares two slabs beside the balls",
 }
-SHORT = (f"a query of under {SHORT_US} µs has little to share: the caller hands groups of pairs over, copies what the worker finds, "
-         "and may wait for its last chunk")
 
 
 def is_loss(value):
@@ -32,11 +28,6 @@ def factor(value):
 def listing(words):
     words = list(words)
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
-
-
-def why_worker(alone_us):
-    """Why a second worker loses in a query that one worker answers in `alone_us`."""
-    return SHORT if alone_us < SHORT_US else NOT_EXPLAINED
 
 
 def why(part, tests, times):

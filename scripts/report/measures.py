@@ -105,8 +105,8 @@ def _warm(results):
 def warm_verdict(runs, tolerance):
     """Whether a search for the depth gains by the last answer; runs are a pose's name, its cold and its warm run."""
     ratios = {pose: warm["real_time"] / cold["real_time"] for pose, cold, warm in runs}
-    text = (f"The depth to {number(tolerance)} mm, begun with the answer at a pose beside it, takes {number(min(ratios.values()), 2)} to "
-            f"{number(max(ratios.values()), 2)} of the time afresh")
+    text = (f"The depth to {number(tolerance)} mm, begun with the answer at a pose beside it, takes {number(min(ratios.values()))} to "
+            f"{number(max(ratios.values()))} of the time afresh")
     lost = [(f"dz = {pose}", "it measures nearly as many points: most show that nothing else is deeper"
              if warm["points"] > 0.9 * cold["points"] else None) for pose, cold, warm in runs if ratios[pose] > 1]
     return text + (f". It is slower at {by_reason(lost)}." if lost else ", and is slower at no pose.")

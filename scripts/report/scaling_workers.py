@@ -45,8 +45,7 @@ def verdict(runs):
     for key, name in (("p50_us", "median"), ("p99_us", "99 of 100")):
         both = [(pace, dz) for workers, pace, dz in runs if workers == "1"]
         times = {(pace, dz): runs["2", pace, dz][key] / runs["1", pace, dz][key] for pace, dz in both}
-        lost = [(f"{NAMES[pace]} at {dz}", "no query there had work enough to share" if key == "p50_us" and runs["2", pace, dz]["worth"] == 0 else None)
-                for pace, dz in both if times[pace, dz] > 1]
+        lost = [(f"{NAMES[pace]} at {dz}", None) for pace, dz in both if times[pace, dz] > 1]
         if lost:
             said.append(f"In the {name} two workers are slower than one at {len(lost)} of {len(both)}, by up to {number(max(times.values()))} times: {by_reason(lost)}.")
         else:

@@ -23,7 +23,8 @@ void add_max_memory(CLI::App& command, std::uint64_t& bytes, const std::string& 
   };
   command
       .add_option("--max-memory", bytes, "most memory for " + of + ", in bytes, or with K, M or G")
-      ->transform(CLI::AsSizeValue(false))
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("BYTES")
       ->transform(CLI::Validator(refuse_minus, ""))  // applied before the transformation above
       ->default_str("4G");
 }

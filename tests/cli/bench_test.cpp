@@ -160,7 +160,10 @@ TEST_F(Bench, RefusesPosesThatAreAllAlike) {
 TEST_F(Bench, RefusesAFileWithoutPoses) {
   refuses({fixed_, moving_, "--voxel-size", "0.5", "--poses", poses({})}, 3,
           "poses.json: give an array of objects");
-  refuses({"--voxel-size", "3", "--poses", write("empty.json", "")}, 3, "empty.json: not JSON");
+  refuses({"--voxel-size", "3", "--poses", write("empty.json", "")}, 3,
+          "empty.json: not JSON: parse error");
+  refuses({"--voxel-size", "3", "--poses", write("words.json", "no")}, 3,
+          "invalid literal; last read: 'no'; give an array of objects with");
 }
 
 TEST_F(Bench, KeepsToItsMemory) {

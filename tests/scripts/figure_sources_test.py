@@ -7,7 +7,8 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-from report import figures, flags  # noqa: E402  after its folder is known
+import mutants  # noqa: E402  after its folder is known
+from report import figures, flags  # noqa: E402
 
 
 class Sources(unittest.TestCase):
@@ -31,9 +32,13 @@ class Sources(unittest.TestCase):
     @staticmethod
     def unlisted(program):
         """The files that a benchmark includes, it or those of the tests that are compiled into it, and does not rest on."""
-        rests, stem = figures.sources_of(program), program.removesuffix("_bench")
-        own = [figures.ROOT / f"bench/{program}.cpp", *(figures.ROOT / "bench" / stem).rglob("*.*")]
-        waiting, seen = [file for file in own if file.suffix in (".h", ".cpp") and file.exists()], set()
+        own = [figures.ROOT / f"bench/{program}.cpp", *(figures.ROOT / "bench" / program.removesuffix("_bench")).rglob("*.*")]
+        return Sources.not_among(figures.sources_of(program), [file for file in own if file.suffix in (".h", ".cpp") and file.exists()])
+
+    @staticmethod
+    def not_among(rests, waiting):
+        """What these files include, they or those of the tests that they include, beside what figures rest on."""
+        seen = set()
         while waiting:
             file = waiting.pop()
             for name in Sources.includes(file):
@@ -42,13 +47,40 @@ class Sources(unittest.TestCase):
                 seen.add(name)
                 if name.parts[0] == "tests":
                     waiting += filter(pathlib.Path.exists, (figures.ROOT / name, (figures.ROOT / name).with_suffix(".cpp")))
-        return sorted(str(name) for name in seen if not any(name == pathlib.Path(rest) or pathlib.Path(rest) in name.parents for rest in rests))
+        return sorted(str(name) for name in seen if not Sources.is_among(rests, name))
+
+    @staticmethod
+    def is_among(rests, name):
+        return any(name == pathlib.Path(rest) or pathlib.Path(rest) in name.parents for rest in rests)
+
+    @staticmethod
+    def stability_sources():
+        """The sources of the programs that scripts/stability_report.sh runs."""
+        programs = re.search(r"^programs=\((.*)\)$", (figures.ROOT / "scripts/stability_report.sh").read_text(), re.M)[1].split()
+        found = {}
+        for listing in (figures.ROOT / "tests").rglob("CMakeLists.txt"):
+            for program, sources in re.findall(r"ist_add_test\((\w+)\s([^)]*)\)", listing.read_text()):
+                if program in programs:
+                    found[program] = [listing.parent / name for name in sources.split() if name.endswith(".cpp")]
+        assert sorted(found) == sorted(programs), found
+        return [source for sources in found.values() for source in sources]
 
     def test_every_benchmark_rests_on_what_it_includes(self):
         programs = sorted(file.stem for file in (figures.ROOT / "bench").glob("*_bench.cpp")) + ["peers_bench"]
         self.assertIn("sweep_bench", programs)
         for program in programs:
             self.assertEqual(self.unlisted(program), [], program)
+
+    def test_stability_rests_on_its_programs_and_what_they_include(self):
+        rests, own = figures.sources_of("stability_report.sh"), self.stability_sources()
+        self.assertEqual([str(file) for file in own if not self.is_among(rests, file.relative_to(figures.ROOT))], [])
+        self.assertEqual(self.not_among(rests, own), [])
+        self.assertIn("src/cli/page/page_file.h", self.not_among([rest for rest in rests if rest != "src/cli"], self.stability_sources()))
+
+    def test_mutants_rest_on_the_files_that_they_break(self):
+        broken = {pathlib.Path(file) for mutant in mutants.MUTANTS for file, _, _ in mutant.edits}
+        self.assertIn(pathlib.Path("scripts/try.py"), broken)
+        self.assertEqual([str(file) for file in broken if not self.is_among(figures.sources_of("mutate.sh"), file)], [])
 
     def test_a_room_that_is_not_listed_is_found(self):
         for program, room in (("sweep_bench", "src/ist/sweep"), ("accuracy_bench", "src/ist/haptics"), ("peers_bench", "src/ist/measure"),

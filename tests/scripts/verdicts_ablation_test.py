@@ -39,12 +39,6 @@ class Ladder(unittest.TestCase):
         said = ablation.verdict(variants("ladder", self.FASTER | {"7-avx2": 500}), "0.0")
         self.assertIn("SIMD: AVX2 (**0.80**; as many tests, at 1.25 times the time of a test: not explained)", said)
 
-    def test_a_second_worker_loses_for_its_reason_in_a_short_query_alone(self):
-        long = ablation.verdict(variants("ladder", self.FASTER | {"8-second_worker": 400}), "0.0")
-        short = ablation.verdict(variants("ladder", self.FASTER | {"7-avx2": 60, "8-second_worker": 80}), "0.0")
-        self.assertIn("second worker (**0.75**; not explained)", long)
-        self.assertIn("second worker (**0.75**; a query of under 150 µs has little to share", short)
-
     def test_the_whole_may_lose(self):
         self.assertIn("is **0.90** times as fast", ablation.verdict(variants("ladder", self.FASTER | {"8-second_worker": 1000}), "0.0"))
 
@@ -100,10 +94,7 @@ class Closing(unittest.TestCase):
         self.assertEqual(table.count("**7.7**"), len(closing.POSES))
         self.assertNotIn("**10.0**", table)
         self.assertIn("**Two workers are slower than one** at closed, dz = 0 (130 against 100 µs),", verdict)
-        self.assertIn("a query of under 150 µs has little to share", verdict)
-
-    def test_a_long_query_has_no_reason(self):
-        self.assertIn("not explained", self.said(published=10000, fast=1000, two=1300)[1])
+        self.assertIn("not explained", verdict)
 
     def test_a_cell_that_is_slower_than_published_is_bold(self):
         table, verdict = self.said(fast=2000, two=1900)

@@ -19,6 +19,7 @@ test('sentences describe a body', () => {
   ]);
   const tree = {kind: 'tree', triangles: false, voxels: 9, voxel_size: 0.5, extent: [1, 2, 3], closed: null, unit: 'mm'};
   assert.match(infoSentences(tree).join(' '), /A tree of 9 voxels of 0.5, without triangles.* Extent 1 × 2 × 3 mm\.$/);
+  assert.equal(infoSentences({...tree, triangles: true, voxels: 1})[0], 'A mesh, kept in a tree of one voxel: the page builds its own tree.');
 });
 
 test('a wrench about the contacts\' middle does the same as about another point', () => {

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
@@ -21,8 +20,7 @@ namespace ist::cli {
 namespace {
 
 struct ViewArguments {
-  std::vector<std::filesystem::path> files;
-  std::filesystem::path output, scene;
+  std::filesystem::path fixed, moving, output, scene;
   PoseOptions pose;
   std::uint64_t max_memory = BuildOptions{}.max_memory;
   bool no_names = false;
@@ -33,13 +31,13 @@ std::string name_of(const SphereTree& tree, const std::filesystem::path& file) {
 }
 
 Bodies bodies_of(const ViewArguments& options) {
-  if (options.files.size() == 1) {
-    const SphereTree body = load_body(options.files.front(), options.max_memory);
+  if (options.moving.empty()) {
+    const SphereTree body = load_body(options.fixed, options.max_memory);
     return {body, body, body.tightest()};  // trees share their content
   }
   BodyFiles files;
-  files.fixed = options.files.front();
-  files.moving = options.files.back();
+  files.fixed = options.fixed;
+  files.moving = options.moving;
   files.voxels = BodyFiles::Voxels::kNone;  // the page makes its own
   files.max_memory = options.max_memory;
   return load_bodies(files);
@@ -53,31 +51,30 @@ nlohmann::ordered_json block_of_bodies(const ViewArguments& options) {
     return options.no_names ? NamedTree{role, without_name(tree)}
                             : NamedTree{name_of(tree, file), tree};
   };
-  const NamedTree fixed = named("fixed", bodies.fixed, options.files.front());
-  if (options.files.size() == 1) return body_alone_block(fixed);
-  return bodies_block(fixed, named("moving", bodies.moving, options.files.back()),
+  const NamedTree fixed = named("fixed", bodies.fixed, options.fixed);
+  if (options.moving.empty()) return body_alone_block(fixed);
+  return bodies_block(fixed, named("moving", bodies.moving, options.moving),
                       options.pose.poses_named().front());
 }
 
 nlohmann::ordered_json block_of(const ViewArguments& options) {
-  if (!is_recording(options.files.front())) {
+  if (!is_recording(options.fixed)) {
     refuse_if(!options.scene.empty(), "--scene", "goes with a recording");
-    refuse_if(options.files.size() == 1 && options.pose.is_named(), "--move",
+    refuse_if(options.moving.empty() && options.pose.is_named(), "--move",
               "a pose is of the second body: name two files");
     return block_of_bodies(options);
   }
-  refuse_if(options.files.size() > 1, options.files.back().string(),
+  refuse_if(!options.moving.empty(), options.moving.string(),
             "a recording holds all bodies of its scene: name that by --scene");
   refuse_if(options.pose.is_named(), "--move", "a recording has its own poses");
   refuse_if(options.no_names, "--no-names", "a recording holds its scene, which names its files");
-  return recording_block(options.files.front(), options.scene, options.max_memory);
+  return recording_block(options.fixed, options.scene, options.max_memory);
 }
 
 void run(const ViewArguments& options) {
   static_cast<void>(format_by_ending("-o", options.output, std::array{FileFormat::kHtml}));
-  for (const std::filesystem::path& file : options.files) {
-    refuse_to_overwrite(options.output, {file, options.scene, options.pose.matrix});
-  }
+  refuse_to_overwrite(options.output,
+                      {options.fixed, options.moving, options.scene, options.pose.matrix});
   const std::optional<std::filesystem::path> page = find_page();
   if (!page) throw std::runtime_error(kHowToGetPage);
   refuse_to_overwrite(options.output, {*page});
@@ -94,12 +91,12 @@ void add_view(CLI::App& app) {
       "view", "Write a page that shows bodies, or plays a recording, in any browser");
   const auto options = std::make_shared<ViewArguments>();
   command
-      ->add_option("FILES", options->files,
-                   "a recording of 'ist run --record'; or the mesh or tree of a body that stays, "
-                   "and of one that is moved")
+      ->add_option("FIXED", options->fixed,
+                   "mesh or tree of the body that stays, or a recording of 'ist run --record'")
       ->type_name("FILE")
-      ->expected(1, 2)
       ->required();
+  command->add_option("MOVING", options->moving, "mesh or tree of the body that is moved")
+      ->type_name("FILE");
   command->add_option("-o,--output", options->output, "the page, which ends in .html")
       ->type_name("FILE")
       ->required();

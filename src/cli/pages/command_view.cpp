@@ -22,11 +22,10 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-// CLI11 names C++ types: FLOAT:FLOAT in [1 - 10], UINT:SIZE [b, kb, ...].
+// CLI11 names C++ types: FLOAT:FLOAT in [1 - 10].
 std::string value_name(const std::string& type) {
   std::string name = type.substr(0, type.find(':'));
-  if (name == "FLOAT") return "number";
-  if (name == "INT" || name == "UINT") return type.find(":SIZE") == type.npos ? "number" : "bytes";
+  if (name == "FLOAT" || name == "INT" || name == "UINT") return "number";
   std::transform(name.begin(), name.end(), name.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });

@@ -18,6 +18,9 @@ namespace {
   throw Error(code, fmt::format("{}: {}", file.string(), what));
 }
 
+constexpr const char* kRemedy =
+    "give an array of objects with \"pose\", 16 numbers, column by column";
+
 // Discards all values; finds the place where a text stops being JSON.
 struct Locator : nlohmann::json_sax<nlohmann::json> {
   std::string error;
@@ -37,7 +40,8 @@ struct Locator : nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t byte, const std::string&,
                    const nlohmann::json::exception& e) override {
     error = e.what();
-    constexpr int kOverflow = 406;  // the one error that names no line
+    error.erase(0, error.find("] ") + 2);  // the parser's own name of the error
+    constexpr int kOverflow = 406;         // the one error that names no line
     if (e.id == kOverflow) error += fmt::format(" at byte {}", byte);
     return false;
   }
@@ -47,7 +51,7 @@ nlohmann::json parse(const std::filesystem::path& file) {
   const std::string text = InputFile(file).read_rest();
   Locator locator;
   if (!nlohmann::json::sax_parse(text, &locator)) {
-    fail(ErrorCode::kInputInvalid, file, fmt::format("not JSON: {}", locator.error));
+    fail(ErrorCode::kInputInvalid, file, fmt::format("not JSON: {}; {}", locator.error, kRemedy));
   }
   return nlohmann::json::parse(text);
 }
@@ -57,8 +61,7 @@ nlohmann::json parse(const std::filesystem::path& file) {
 std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
   const nlohmann::json list = parse(file);
   if (!list.is_array() || list.empty()) {
-    fail(ErrorCode::kInputInvalid, file,
-         "give an array of objects with \"pose\", 16 numbers, column by column");
+    fail(ErrorCode::kInputInvalid, file, kRemedy);
   }
   std::vector<Eigen::Isometry3d> poses;
   for (const nlohmann::json& item : list) {

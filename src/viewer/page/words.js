@@ -64,7 +64,9 @@ export function bytesWords(bytes) {
  */
 export function infoSentences(info) {
   const sentences = [];
-  if (info.kind === 'tree') {
+  if (info.kind === 'tree' && info.voxels === 1 && info.triangles) {
+    sentences.push('A mesh, kept in a tree of one voxel: the page builds its own tree.');
+  } else if (info.kind === 'tree') {
     sentences.push(`A tree of ${count(info.voxels)} voxels of ${short(info.voxel_size)}, ` + (info.triangles ?
       'which keeps its triangles: the page builds its own.' : 'without triangles: touch is known to voxels alone, and it cannot be built again.'));
   } else {
