@@ -33,7 +33,7 @@ PARTS = {
     "pressing": "simulated presses of the human jaws, voxels of 0.8 and of 0.2 mm",
     "coherent": "coherent queries against fresh ones",
     "five-bodies": "presses among five bodies",
-    "doors": "four ways in, from a bare system (tests/doors)",
+    "doors": "four ways in (tests/doors)",
     "release": "the release folder, made twice with the same bytes",
     "fuzz": "fuzzers, each 5 minutes a round",
 }
@@ -46,6 +46,9 @@ def seen_in(log, cases):
     def add(what, counts):
         if counts:
             found[what] = sum(int(count) for count in counts)
+
+    for way in ("in a bare Debian 12 root", "in unpacked packages"):
+        add(way, re.findall(rf"^door \w+, {way}", log, re.M) and [1])
 
     add("tests", re.findall(r"tests passed, 0 tests failed out of (\d+)", log) + re.findall(r"^\[  PASSED  \] (\d+) tests?", log, re.M))
     add("ticks", re.findall(r"^(\d+) ticks: ", log, re.M))
@@ -95,9 +98,10 @@ def rows(parts):
             group[3][what] = group[3].get(what, 0) + count
     for (kind, state, commit), (number, seconds, date, counts) in groups.items():
         verdict = state if state == "passed" else f"**{state}**"
+        time = f"{seconds / 60:,.0f} min" if seconds >= 60 else f"{seconds} s"
         counted = ", ".join(f"{what}: {count:,}" for what, count in counts.items()) or "–"
         made.setdefault(kind, []).append(
-            f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {seconds / 60:,.0f} min |\n")
+            f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {time} |\n")
     return made
 
 

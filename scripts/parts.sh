@@ -4,6 +4,7 @@
 #   begin_parts FOLDER [--resume] [--list] [PART …]   where the logs are; which parts are meant
 #   alone NAME COMMAND …                              a part that has the machine for itself
 #   aside NAME COMMAND …                              one that may run beside others, as many as there are cores
+#   also[NAME]="PATHS"                                files that a part rests on beside the code
 #   end_parts                                         waits for all; ends with 1 where one failed, 2 where a word names none
 #
 # A part's log is FOLDER/NAME.log; scripts/long.sh says what its last line is.
@@ -29,11 +30,14 @@ begin_parts() {
 
 # All but pages and results: a table of what passed is committed, and what passed counts on.
 code=(. ':!docs' ':!perf' ':(exclude,glob)*.md')
+declare -A also=()
 passed() {  # and at a commit since which no code changed
   [ -z "$changed" ] && [ -e "$folder/$1.log" ] || return 1
   local at
   at=$(tail -n 1 "$folder/$1.log" | sed -n 's/^passed at \([0-9a-f]*\) on .*/\1/p')
-  [ -n "$at" ] && git diff --quiet "$at" HEAD -- "${code[@]}" 2>/dev/null
+  [ -n "$at" ] && git diff --quiet "$at" HEAD -- "${code[@]}" 2>/dev/null || return 1
+  # shellcheck disable=SC2086  # paths are words
+  [ -z "${also[$1]:-}" ] || git diff --quiet "$at" -- ${also[$1]}
 }
 
 is_chosen() {

@@ -62,12 +62,13 @@ def plot(groups, file):
 
 
 def table(groups):
-    """Returns a line per group, and the number of presses within the part used that exceed their allowance."""
+    """Returns a line per group, the number of presses within the part used, and how many of these exceed their allowance."""
     lines = ["| wall | rate, Hz | delay, ms | presses | within 80 %: worst returned / allowance, µJ | "
              "grows from | measured / computed |", "|---|--:|--:|--:|--:|--:|--:|"]
-    broken = 0
+    used = broken = 0
     for (wall, delay, rate), (presses, borders) in groups.items():
         inside = [p for p in presses if p["stiffness"] <= (USED + 1e-9) * p["computed"]]
+        used += len(inside)
         broken += sum(p["returned"] > p["allowance"] for p in inside)
         worst = max(inside, key=lambda p: p["returned"] - p["allowance"])
         growing = min(p["stiffness"] / p["computed"] for p in presses if p["growth"] > 1)
@@ -76,7 +77,7 @@ def table(groups):
         lines.append(f"| {wall} | {rate:g} | {1e3 * delay:g} | {len(presses)} | "
                      f"{1e6 * worst['returned']:.1f} / {1e6 * worst['allowance']:.1f} | {growing:.2f} | "
                      f"{min(ratios):.2f} to {most} |")
-    return lines, broken
+    return lines, used, broken
 
 
 def main():
@@ -84,13 +85,14 @@ def main():
     groups = grouped(json.loads(line) for line in open(source))
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     plot(groups, folder / "pictures/stability_border.svg")
-    rows, broken = table(groups)
+    rows, used, broken = table(groups)
     lines = [
         "# Stability of the haptic loop", "",
         "A hand presses a wall and lets go, with couplings within and beyond the border that the loop computes,",
         "b > K (T/2 + t_d) + |B|, with B = 0 and no clamping. Made by `scripts/stability_border.sh`; it uses no clock,",
         "so the results are the same on every machine. The tests `Passivity.*` repeat parts of it.", "",
-        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses, {broken} broken.", "",
+        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
+        f"{100 * USED:.0f} % of the border, the part that the loop uses, {broken} returned more than their allowance.", "",
         "- *push*: a block on a slab, along the normal. *turn*: two balls on two slabs that stop a turn.",
         "- *returned*: the energy that the wrench gave the hand while bodies touched, less the energy that the device's own",
         "  damping took. The hand's arm is a spring without damping, so it takes none.",

@@ -17,11 +17,11 @@ Made by `scripts/perf_report.sh` from the raw results in `{results}`; no measure
 of a query alone, trees loaded, unless stated otherwise; a *median* is over *n* queries. Two jaws are a *{pair}*
 pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth are in full
 occlusion, at dz = -1.5 they are just apart. In tables and plots, **bold** marks the best of a row or column, or a loss;
-the text says which.
+the text says which. What is worse by 3 % or more is a loss: less is noise.
 
 A shared machine changes its speed within minutes, so the same query may take different times in different chapters: compare within one.
-These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, the article's rates, saved
-spheres, folding and levels, the parts of the query, and the peers. All others ran one after the other: voxel sizes, gaps,
+These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, coherent ticks and fresh ones, the article's
+rates, saved spheres, folding and levels, the parts of the query, the peers, worlds, and sweeps. All others ran one after the other: voxel sizes, gaps,
 advice, one worker and two, deadlines, the loop. The last chapter states the load of the machine.
 """
 

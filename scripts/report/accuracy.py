@@ -2,7 +2,7 @@
 
 from report import advice
 from report.curves import between, power
-from report.losses import by_reason
+from report.losses import bold_if, by_reason, is_loss
 from report.styles import style
 from report.text import number, table
 
@@ -11,6 +11,7 @@ SECTIONS = {"Advice, held against this curve": "advise_bench"}  # tables of anot
 POLICIES = ("simple", "table", "tight", "slab")
 BUDGET = 300  # µs, of the question that the first plot answers
 NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
+FORCE_ERRORS = (("angle_p50", 1), ("angle_max", 1), ("length_p50", 100), ("length_max", 100))
 WANTED = 0.1  # mm, of the second
 
 
@@ -211,10 +212,24 @@ def _points(results):
 def _forces(results):
     runs = results.runs("accuracy_bench", "force")
     finest = min(runs, key=lambda r: float(r.parts[1])).parts[1]
-    rows = [[f"`{run.parts[2]}`", run.parts[1], run["angle_p50"], run["angle_max"], 100 * run["length_p50"], 100 * run["length_max"],
+    balls = {run.parts[1]: run for run in runs if run.parts[2] == "simple"}  # what a voxel's ball gives, by size
+    loses = lambda run, key: is_loss(balls[run.parts[1]][key] / run[key]) if run[key] else False
+    rows = [[f"`{run.parts[2]}`", run.parts[1], *(bold_if(number(factor * run[key]), loses(run, key)) for key, factor in FORCE_ERRORS),
              f"{run['none']:.0f}"] for run in runs]
     return ["### Forces", "",
             f"The contact force at {runs[0]['n']:.0f} poses, {runs[0]['least_depth_mm']:g} to {runs[0]['most_depth_mm']:g} mm behind first contact, compared with the force by voxels of {finest} mm with "
-            "`slab`. A hand distinguishes its direction. Its length differs at the same pose, because a surface "
+            "`slab`. Its length differs at the same pose, because a surface "
             "begins to push a part of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
-            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %", "no force"], rows)]
+            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %", "no force"], rows), "",
+            forces_verdict({(run.parts[2], run.parts[1]): (run["angle_p50"], run["angle_max"]) for run in runs}), ""]
+
+
+def forces_verdict(angles):
+    """Where the direction of a force by tight or slab bounds is farther off than by the voxels' balls; (median, largest) in degrees, by policy and size."""
+    said = []
+    for at, name in enumerate(("In the median", "At the most")):
+        lost = [(f"`{policy}` at {size} mm, {number(off[at])}° beside {number(angles['simple', size][at])}°", None)
+                for (policy, size), off in angles.items() if policy in ("tight", "slab") and off[at] and is_loss(angles["simple", size][at] / off[at])]
+        said.append(f"{name} the direction is farther off than with `simple` for {by_reason(lost)}." if lost else
+                    f"{name} the direction is nowhere farther off than with `simple`.")
+    return " ".join(said)

@@ -94,7 +94,7 @@ def _verdict(motions, kind):
     text = f"The {kind} tick"
     if won:
         ratios = [one.ratio(kind) for one in won]
-        text += (f" by kept pairs takes {number(min(ratios), 2)} to {number(max(ratios), 2)} of a fresh query's time at {len(won)} of {len(motions)} "
+        text += (f" by kept pairs takes {number(min(ratios))} to {number(max(ratios))} of a fresh query's time at {len(won)} of {len(motions)} "
                  f"motions, of up to {number(max(one.step for one in won), 2)} voxels a tick")
     if not lost:
         return text + ": it loses at none."

@@ -1,5 +1,6 @@
 """How late the loop's ticks begin and how long they take, idle and beside a noisy neighbour."""
 
+from report.losses import is_loss
 from report.text import number, table
 
 PROGRAMS = ["loop_bench"]
@@ -103,7 +104,7 @@ def _late_in_words(runs):
 
 def _later_idle(runs):
     """Yields what begins later idle than beside the neighbour, and why where the empty loops show it."""
-    later = [kind for kind in KINDS if runs[kind + ("idle",)]["late_p99_us"] > runs[kind + ("noisy",)]["late_p99_us"]]
+    later = [kind for kind in KINDS if is_loss(runs[kind + ("noisy",)]["late_p99_us"] / runs[kind + ("idle",)]["late_p99_us"])]
     if not later:
         return
     cause = ("An empty loop is among them, so the machine is a cause: resting cores take time to wake, and a virtual machine's cores may be lent "
@@ -112,16 +113,27 @@ def _later_idle(runs):
     yield f"**At p99 these begin later idle than beside the neighbour**: {'; '.join(KINDS[kind][0] for kind in later)}. {cause}"
 
 
+def _over(run, what):
+    """The bucket of a time that the period reaches first, in µs, and the number of ticks whose time is longer."""
+    uptos = {float(key[len(what) + 6:-2]): value for key, value in run.items() if key.startswith(what + "_upto_")}
+    bound = min(upto for upto in uptos if upto >= run["period_us"])
+    return bound, run[what + "_count"] - uptos[bound]
+
+
 def why_missed(run, bare):
-    """Why a loop missed ticks: where its longest tick is shorter than the period, it is the late begins."""
-    period = run["period_us"]
-    if run["execution_max_us"] < period:
-        why = f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most, so ticks began late, by up to {number(run['late_max_us'])} µs"
-    elif run["cpu_max_us"] < period:
-        why = f"a tick took {number(run['execution_max_us'])} µs, but no tick over {number(run['cpu_max_us'])} µs of its thread's processor time: it was off its core"
+    """Why a loop missed ticks: some took longer than the period, before others the loop slept or waited too long."""
+    (bound, long), (_, late), period = _over(run, "execution"), _over(run, "late"), run["period_us"]
+    causes = []
+    if run["execution_max_us"] >= period:
+        cause = ("its thread had the processor all that time: not explained" if run["cpu_max_us"] >= 0.99 * run["execution_max_us"] else
+                 f"its thread had the processor for {number(run['cpu_max_us'])} µs at most: "
+                 + ("not explained" if run["cpu_max_us"] >= period else "it was off its core"))
+        causes.append(f"{number(long)} took over {number(bound)} µs; the longest took {number(run['execution_max_us'])} µs, and {cause}")
     else:
-        why = f"a tick took {number(run['cpu_max_us'])} µs of its thread's processor time: not explained"
-    return f"{why}; the empty loop by the same clock missed {number(bare['missed'])}"
+        causes.append(f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most")
+    causes.append(f"{number(late)} began over {number(bound)} µs late, by up to {number(run['late_max_us'])} µs, and each of these skipped the ticks before it"
+                  if late else f"none began over {number(bound)} µs late")
+    return f"{'; '.join(causes)}; the empty loop by the same clock missed {number(bare['missed'])}"
 
 
 def _missed_in_words(runs):

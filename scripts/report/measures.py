@@ -1,6 +1,6 @@
 """Chapter: what exact touch, distance and penetration depth take, by how accurate they are."""
 
-from report.losses import bold_if, by_reason
+from report.losses import bold_if, by_reason, is_loss
 from report.styles import style
 from report.text import number, table
 
@@ -96,7 +96,7 @@ def _warm(results):
     met = [pose for pose, run in times["cold"].items() if run["upper"] > 0]
     tolerance = times["cold"][met[0]]["tolerance"]
     rows = [[pose, times["cold"][pose]["real_time"],
-             bold_if(number(times["warm"][pose]["real_time"]), times["warm"][pose]["real_time"] > times["cold"][pose]["real_time"]),
+             bold_if(number(times["warm"][pose]["real_time"]), is_loss(times["cold"][pose]["real_time"] / times["warm"][pose]["real_time"])),
              times["cold"][pose]["points"], times["warm"][pose]["points"], times["cold"][pose]["lower"]] for pose in met]
     return [*table(["dz, mm", "afresh, µs", "from the last answer, µs", "points afresh", "points from it", "depth at least, mm"], rows), "",
             warm_verdict([(pose, *(times[way][pose] for way in ("cold", "warm"))) for pose in met], tolerance)]
@@ -108,7 +108,7 @@ def warm_verdict(runs, tolerance):
     text = (f"The depth to {number(tolerance)} mm, begun with the answer at a pose beside it, takes {number(min(ratios.values()))} to "
             f"{number(max(ratios.values()))} of the time afresh")
     lost = [(f"dz = {pose}", "it measures nearly as many points: most show that nothing else is deeper"
-             if warm["points"] > 0.9 * cold["points"] else None) for pose, cold, warm in runs if ratios[pose] > 1]
+             if warm["points"] > 0.9 * cold["points"] else None) for pose, cold, warm in runs if is_loss(1 / ratios[pose])]
     return text + (f". It is slower at {by_reason(lost)}." if lost else ", and is slower at no pose.")
 
 

@@ -1,6 +1,6 @@
 """Section of scaling: one worker and two."""
 
-from report.losses import bold_if, by_reason
+from report.losses import bold_if, by_reason, is_loss
 from report.scaling_asked import COLOURS, PROGRAM, queries
 from report.text import number, table
 
@@ -26,14 +26,14 @@ def section(results, pictures):
             one, two = runs["1", pace, dz], runs["2", pace, dz]
             gain = one["p50_us"] / two["p50_us"]
             rows.append([NAMES[pace], dz, one["p50_us"],
-                         bold_if(number(two["p50_us"]), gain < 1), gain, one["p99_us"],
-                         bold_if(number(two["p99_us"]), two["p99_us"] > one["p99_us"]), f"{100 * two['worth']:.0f} %",
+                         bold_if(number(two["p50_us"]), is_loss(gain)), gain, one["p99_us"],
+                         bold_if(number(two["p99_us"]), is_loss(one["p99_us"] / two["p99_us"])), f"{100 * two['worth']:.0f} %",
                          f"{100 * two['shared']:.0f} %"])
     picture = pictures.save(figure, "scaling_workers", "Time of a query by workers, along the closing",
                             queries(runs.values()))
     lines = ["### One worker and two", "",
              "The second worker polls when a query is expected, and no query waits for it. Queries with too little work "
-             "are not offered to it. Where two are the slower, their time is bold.", ""]
+             "are not offered to it. Where two are slower by 3 % or more, their time is bold.", ""]
     lines += table(["queries", "dz, mm", "one, µs", "two, µs", "times faster", "one, 99 of 100", "two, 99 of 100",
                     "worth sharing", "shared"], rows)
     return lines + ["", verdict(runs), "", picture]
@@ -45,7 +45,7 @@ def verdict(runs):
     for key, name in (("p50_us", "median"), ("p99_us", "99 of 100")):
         both = [(pace, dz) for workers, pace, dz in runs if workers == "1"]
         times = {(pace, dz): runs["2", pace, dz][key] / runs["1", pace, dz][key] for pace, dz in both}
-        lost = [(f"{NAMES[pace]} at {dz}", None) for pace, dz in both if times[pace, dz] > 1]
+        lost = [(f"{NAMES[pace]} at {dz}", None) for pace, dz in both if is_loss(1 / times[pace, dz])]
         if lost:
             said.append(f"In the {name} two workers are slower than one at {len(lost)} of {len(both)}, by up to {number(max(times.values()))} times: {by_reason(lost)}.")
         else:

@@ -138,13 +138,14 @@ def _volumes(results, pictures):
 
 def _saved(results):
     runs = {tuple(run.parts[1:]): run for run in results.runs("seed_bench", "saved")}
-    rows, gains, losses = [], [], []
+    rows, gains, sizes, losses = [], [], [], []
     for size, policy, source, place in runs:
         if source != "on_the_fly":
             continue
         fly, saved = (runs[size, policy, of, place] for of in ("on_the_fly", "saved"))
         gain = fly["p50_us"] / saved["p50_us"]
         gains.append(gain)
+        sizes.append(f"{saved['saved_MB'] / saved['octree_MB']:.1f}")
         if is_loss(gain):
             losses.append(f"`{policy}` at {size} mm and distance {place} ({factor(gain)})")
         rows.append([size, f"`{policy}`", place, fly["tests"], fly["p50_us"], saved["p50_us"], factor(gain), saved["octree_MB"], saved["saved_MB"]])
@@ -156,5 +157,5 @@ def _saved(results):
             "Both sides have the same spheres and list the same leaf pairs. The distance is the opening of the lower jaw, in mm.", "",
             *table(["voxel size", "spheres", "distance", "sphere tests", "on the fly, µs", "saved, µs", "times as fast", "octree, MB", "saved spheres, MB"], rows), "",
             f"{verdict} The query is {factor(min(gains))} to {factor(max(gains))} times as fast, and takes "
-            f"{rows[-1][-1] / rows[-1][-2]:.1f} times the octree's bytes on top.{lost} Bounds that are better than any derived from the octree (`tight`, `slab`) "
+            f"{min(sizes, key=float)} to {max(sizes, key=float)} times the octree's bytes on top.{lost} Bounds that are better than any derived from the octree (`tight`, `slab`) "
             "can only be saved: the chapter on the query's parts has their gain.", ""]

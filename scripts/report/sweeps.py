@@ -1,6 +1,6 @@
 """What sweeps cost: rows a second by threads, beside loops in C and in Python, and what 10⁹ poses take by these rates."""
 
-from report.losses import by_reason
+from report.losses import by_reason, is_loss
 from report.text import number, table
 
 PROGRAMS = ["sweep_bench"]
@@ -38,10 +38,10 @@ def verdict(run):
     """Whether a loop answers more than one thread of a sweep, or a thread more answers less."""
     alone = run["threads_1"]
     lost = [(f"a loop in {language} answers {number(run[key] / alone)} times as many poses", "a sweep also computes its poses, and stores its rows on the disk")
-            for key, language in (("loop_in_c", "C"), ("loop_in_python", "Python")) if run[key] > alone]
+            for key, language in (("loop_in_c", "C"), ("loop_in_python", "Python")) if is_loss(alone / run[key])]
     counts = sorted(int(key.split("_")[1]) for key in run.keys() if key.startswith("threads_"))
     lost += [(f"{more} threads answer less than {fewer}", None)
-             for fewer, more in zip(counts, counts[1:]) if run[f"threads_{more}"] < run[f"threads_{fewer}"]]
+             for fewer, more in zip(counts, counts[1:]) if is_loss(run[f"threads_{more}"] / run[f"threads_{fewer}"])]
     if not lost:
         return "No loop answers more poses than one thread of a sweep, and more threads answer more."
     return f"A sweep loses: {by_reason(lost)}."

@@ -16,6 +16,7 @@ set -euo pipefail
 jobs=2
 source {scripts}/parts.sh
 begin_parts "$PWD/logs" "$@"
+also[good]="README.md docs :!docs/results.md"
 stops() {{ [ -e mended ]; echo stops >>ran; }}
 alone good bash -c 'echo good >>ran'
 aside slow bash -c 'sleep 0.2; echo slow >>ran'
@@ -81,7 +82,8 @@ class Parts(unittest.TestCase):
     def test_they_run_again_where_something_else_than_a_page_or_a_result_changed(self):
         self.mend()
         self.run_parts()
-        for changed, again in (("docs/guarantees.md", 1), ("perf/results/machine.json", 1), ("README.md", 1), ("code.cpp", 5), ("src/README.md", 5)):
+        for changed, again in (("docs/results.md", 1), ("perf/results/machine.json", 1), ("HACKING.md", 1), ("README.md", 2), ("docs/page.md", 2), ("code.cpp", 5),
+                               ("src/README.md", 5)):
             with self.subTest(changed=changed):
                 self.commit(changed)
                 self.assertEqual(len(self.run_parts("--resume")[1]), again, self.said)  # one is skipped each time
@@ -92,12 +94,14 @@ class Parts(unittest.TestCase):
         log.write_text("passed at 0123456789ab on 2026-01-02 in 3 s\n")
         self.assertEqual(self.run_parts("--resume", "good"), (0, ["good"]))
 
-    def test_a_page_that_is_not_committed_takes_nothing_away(self):
-        self.run_parts("good")
-        (self.folder / "docs").mkdir()
-        for page, again in (("docs/guarantees.md", []), ("long.py", ["good"])):
-            (self.folder / page).write_text("changed")
-            self.assertEqual(self.run_parts("--resume", "good"), (0, again))
+    def test_a_page_that_is_not_committed_ages_what_rests_on_it(self):
+        self.commit("docs/page.md")
+        self.run_parts("good", "slow")
+        for page, again in (("docs/results.md", []), ("docs/page.md", ["good"]), ("long.py", ["good", "slow"])):
+            (self.folder / page).write_text("changed again")
+            self.assertEqual(self.run_parts("--resume", "good", "slow"), (0, again))
+            (self.folder / page).unlink()
+            self.git("checkout", "--quiet", "--", ".")
 
     def test_they_pass_for_nothing_with_changes(self):
         self.mend()
@@ -141,7 +145,7 @@ class Parts(unittest.TestCase):
         self.assertEqual(self.run_parts("--list"), (0, []))
         self.assertRegex(self.said, "good: counts at this commit: passed at [0-9a-f]{12} on ")
         self.run_parts("bad")
-        self.commit("docs/page.md")
+        self.commit("docs/results.md")
         self.run_parts("--list")
         self.assertRegex(self.said, "good: counts at this commit: passed at ")
         self.assertRegex(self.said, "bad: not at this commit: failed at ")
@@ -181,6 +185,13 @@ class Table(unittest.TestCase):
         first, second = self.rows()
         self.assertIn("passed 2 times | executions: 100 | `a`, 2026-01-02 | 10 min", first)
         self.assertIn("| passed | executions: 50 | `b`", second)
+
+    def test_doors_say_what_they_lead_from(self):
+        self.log("doors-scans", "door scans, in a bare Debian 12 root\nstep", "passed at a on 2026-01-02 in 20 s")
+        self.log("doors-script", "door script, in a bare Debian 12 root", "passed at a on 2026-01-02 in 20 s")
+        self.log("doors-cycles", "door cycles, in unpacked packages, without a root of its own: none", "passed at a on 2026-01-02 in 3 s")
+        (row,) = self.rows()
+        self.assertIn("passed 3 times | in unpacked packages: 1, in a bare Debian 12 root: 2 | `a`, 2026-01-02 | 43 s |", row)
 
     def test_what_did_not_pass_is_said(self):
         self.log("suite", "", "failed at 0123 on 2026-01-02 in 90 s")

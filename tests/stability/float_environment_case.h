@@ -1,9 +1,11 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <xmmintrin.h>
 
 #include <cfenv>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -118,8 +120,10 @@ class FloatEnvironmentOfTheCaller : public ::testing::TestWithParam<double> {
   /// In each arithmetic of a caller, `call` records the same bytes, at least `least`, and leaves
   /// the arithmetic as it was.
   template <class Call>
-  static void changes_nothing(const std::string& name, std::size_t least, const Call& call) {
-    StabilityCase wrong("arithmetic", name + " in any arithmetic of the caller",
+  void changes_nothing(const std::string& name, std::size_t least, const Call& call) const {
+    const std::string unit =
+        unit_ == 1 ? "" : fmt::format(", unit of length 2^{}", std::ilogb(unit_));
+    StabilityCase wrong("arithmetic", name + " in any arithmetic of the caller" + unit,
                         "answers that differ, or change the arithmetic");
     std::string expected;
     for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {

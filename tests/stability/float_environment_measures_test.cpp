@@ -168,7 +168,7 @@ TEST_P(FloatEnvironmentOfAMeasure, ChangesNoRow) {
                                .penetration = true,
                                .tolerance = 0.01 * unit_};
   for (const std::size_t threads : {1U, 2U}) {
-    changes_nothing("answer_rows", 500, [&](Record& record) {
+    changes_nothing(fmt::format("answer_rows, threads: {}", threads), 500, [&](Record& record) {
       Query query(fixed_, moving_);
       std::vector<PoseRow> rows(poses.size());
       std::vector<double> parts;

@@ -40,8 +40,9 @@ struct Locator : nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t byte, const std::string&,
                    const nlohmann::json::exception& e) override {
     error = e.what();
-    error.erase(0, error.find("] ") + 2);  // the parser's own name of the error
-    constexpr int kOverflow = 406;         // the one error that names no line
+    const std::size_t name = error.find("] ");  // the parser's own name of the error ends there
+    if (name != std::string::npos) error.erase(0, name + 2);
+    constexpr int kOverflow = 406;  // the one error that names no line
     if (e.id == kOverflow) error += fmt::format(" at byte {}", byte);
     return false;
   }

@@ -80,13 +80,14 @@ class Loop {
     const Tick tick = simulation_.tick(at, budget());
     device_.write(tick.wrench, simulation_.dt());
     const Clock::time_point end = Clock::now();
+    const nanoseconds processor = thread_time() - used;
 
     TickRecord record = record_of(number, simulation_.dt(), tick, at.has_value());
     record.late_ns = start.late.count();
     record.execution_ns = nanoseconds(end - begin).count();
-    record.cpu_ns = (thread_time() - used).count();
+    record.cpu_ns = processor.count();
     if (record.cpu_ns > report_.worst_cpu.count()) {
-      report_.worst_cpu = nanoseconds(record.cpu_ns);
+      report_.worst_cpu = processor;
       report_.worst_effects = effects_time(simulation_) - effects;
     }
     if (options_.paced && end > clock_.deadline()) ++report_.missed;
