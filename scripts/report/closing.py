@@ -46,7 +46,7 @@ def compare(results):
                        f"{published['contacts']:,.0f} → {fast['contacts']:,.0f}")
         rows.append(row)
     return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query.",
-                           f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else "Two workers are nowhere slower than one."])
+                           f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else "Two workers are nowhere slower than one by 3 % or more."])
 
 
 def update(results, machine):

@@ -109,7 +109,7 @@ def warm_verdict(runs, tolerance):
             f"{number(max(ratios.values()))} of the time afresh")
     lost = [(f"dz = {pose}", "it measures nearly as many points: most show that nothing else is deeper"
              if warm["points"] > 0.9 * cold["points"] else None) for pose, cold, warm in runs if is_loss(1 / ratios[pose])]
-    return text + (f". It is slower at {by_reason(lost)}." if lost else ", and is slower at no pose.")
+    return text + (f". It is slower at {by_reason(lost)}." if lost else ", and is at no pose slower by 3 % or more.")
 
 
 def _others(results):

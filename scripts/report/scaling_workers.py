@@ -49,5 +49,5 @@ def verdict(runs):
         if lost:
             said.append(f"In the {name} two workers are slower than one at {len(lost)} of {len(both)}, by up to {number(max(times.values()))} times: {by_reason(lost)}.")
         else:
-            said.append(f"In the {name} two workers are at no place slower than one.")
+            said.append(f"In the {name} two workers are at no place slower than one by 3 % or more.")
     return " ".join(said)
