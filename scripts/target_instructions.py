@@ -56,6 +56,7 @@ def main():
     _, end, after = rest.partition(END)
     if not end:
         sys.exit(f"target_instructions: {PAGE} has no place for the table: {BEGIN.strip()}")
+    PLUGIN.parent.mkdir(exist_ok=True)
     run("cc", "-shared", "-fPIC", "-O2", "-o", PLUGIN, ROOT / "tests/instructions/counting_plugin.c")
     run("cc", "-O2", "-o", STEPS, ROOT / "tests/instructions/counting_steps.c")
     asked_of = set()  # sphere tests and leaf pairs: the same on every platform

@@ -43,4 +43,17 @@ class SharedQueryTest : public ::testing::Test {
   }
 };
 
+/// Asks until the second worker, in one query, has done chunks and had no room for others, or for
+/// five minutes. A late worker leaves one chunk to the caller, its last; it had no room for the
+/// second of two. Whether it got so far, and all answers were right.
+inline bool ask_until_short_of_room(const Query& query, const std::function<bool()>& is_right) {
+  for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+    const Sharing before = query.sharing();
+    if (!is_right()) return false;
+    const Sharing after = query.sharing();
+    if (after.dropped >= before.dropped + 2 && after.chunks > before.chunks) return true;
+  }
+  return false;
+}
+
 }  // namespace ist::test
