@@ -98,6 +98,20 @@ TEST_F(ClearDistance, IsKnownToBodiesAtRest) {
   EXPECT_LT(last.distance->upper, 1.6);
 }
 
+// Each clearance that comes true makes the next one wider, until a body can come nearer within it
+// than it is wide.
+TEST_F(ClearDistance, IsLessByTheMotion) {
+  make(icosphere(3, 1), box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8}), 24);
+  double gap = 0.05, known = 0;
+  while (gap < 1 && known < 0.56 * gap) {
+    gap += 0.005;
+    known = tick(shift({1.9 + gap, 0, 0}), 1).distance->lower;
+  }
+  const double nearer = gap - 0.85 * known;
+  ASSERT_LT(nearer, known);
+  EXPECT_EQ(tick(shift({1.9 + nearer, 0, 0}), 1).found, Found::kClear);
+}
+
 // Two plates face to face that come apart at once: their roots still overlap, but no two leaves are
 // near, and so no motion of what is near tells how far.
 TEST_F(ClearDistance, HoldsWherePlatesComeApartAtOnce) {
