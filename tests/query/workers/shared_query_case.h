@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <utility>
 
 #include "ist/query/query.h"
 #include "query/workers/stall.h"
@@ -17,6 +18,27 @@ using Clock = std::chrono::steady_clock;
 constexpr HandOver kHandOvers[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
                                    HandOver::kWorked};
 
+/// Asks until `done`, or for five minutes: a machine that is busy is no failure. Whether it was
+/// done, and all answers were right.
+inline bool ask_until(const std::function<bool()>& is_right, const std::function<bool()>& done) {
+  for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
+    if (!is_right()) return false;
+    if (done()) return true;
+  }
+  return false;
+}
+
+/// Asks until the second worker, in one query, has done chunks and had no room for others. A worker
+/// that is late leaves one chunk, its last, to the caller. If it left two, it had no room for one of
+/// them.
+inline bool ask_until_short_of_room(const Query& query, const std::function<bool()>& is_right) {
+  Sharing before = query.sharing();
+  return ask_until(is_right, [&] {
+    const Sharing last = std::exchange(before, query.sharing());
+    return before.dropped >= last.dropped + 2 && before.chunks > last.chunks;
+  });
+}
+
 /// Tests of a query with two workers that must give the answer of one.
 class SharedQueryTest : public ::testing::Test {
  protected:
@@ -27,14 +49,9 @@ class SharedQueryTest : public ::testing::Test {
   /// Asks once more: whether the answer is that of one worker.
   virtual bool is_right(Query& query) = 0;
 
-  /// Asks until `done`, or for five minutes: a machine that is busy is no failure. Whether it was
-  /// done, and all answers were right.
+  /// Asks until `done`, as above.
   bool ask_until(Query& query, const std::function<bool()>& done) {
-    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
-      if (!is_right(query)) return false;
-      if (done()) return true;
-    }
-    return false;
+    return test::ask_until([&] { return is_right(query); }, done);
   }
   /// Until the second worker has done a part.
   bool ask_until_helped(Query& query) {
@@ -42,18 +59,5 @@ class SharedQueryTest : public ::testing::Test {
     return ask_until(query, [&] { return query.sharing().chunks > before; });
   }
 };
-
-/// Asks until the second worker, in one query, has done chunks and had no room for others, or for
-/// five minutes. A late worker leaves one chunk to the caller, its last; it had no room for the
-/// second of two. Whether it got so far, and all answers were right.
-inline bool ask_until_short_of_room(const Query& query, const std::function<bool()>& is_right) {
-  for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up;) {
-    const Sharing before = query.sharing();
-    if (!is_right()) return false;
-    const Sharing after = query.sharing();
-    if (after.dropped >= before.dropped + 2 && after.chunks > before.chunks) return true;
-  }
-  return false;
-}
 
 }  // namespace ist::test
