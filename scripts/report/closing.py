@@ -45,7 +45,7 @@ def compare(results):
             row.append(f"{number(published['p50_us'])} → {number(fast['p50_us'])}: {bold}{times:.1f}{bold}<br>"
                        f"{published['contacts']:,.0f} → {fast['contacts']:,.0f}")
         rows.append(row)
-    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query.",
+    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query by 3 % or more.",
                            f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else "Two workers are nowhere slower than one by 3 % or more."])
 
 

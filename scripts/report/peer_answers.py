@@ -114,21 +114,28 @@ def verdict(asked):
         return ["No other library answers."]
     text = standing(asked, lambda player, pose: True)
     if any(not asked.unmarked(player, pose) for player, pose in asked.runs):
-        text += " Among those without a mark, " + standing(asked, asked.unmarked)
+        among = standing(asked, asked.unmarked)
+        text += f" Among those without a mark, {among}" if among else " No other without a mark answers."
     return [text]
 
 
 def standing(asked, counts):
-    """At how many poses IST is the fastest among those that count, and each one that is faster, with the reason."""
-    lost, near, count = {}, 0, len(asked.poses)
+    """At how many poses IST is the fastest among those that count, and each one that is faster, with the reason. Poses without
+    another that counts are left out; nothing where no pose is left."""
+    lost, near, count = {}, 0, 0
     for pose in asked.poses:
         ist = asked.runs["ist", pose]["p50_us"]
         others = [player for player in asked.players if player != "ist" and counts(player, pose)]
+        if not others:
+            continue
+        count += 1
         time, winner = asked.best(pose, others)
-        if winner and is_loss(time / ist):
+        if is_loss(time / ist):
             lost.setdefault(winner, []).append((ist / time, pose))
         else:
-            near += bool(winner and time < ist)
+            near += time < ist
+    if count == 0:
+        return ""
     equal = f", and as fast as the fastest, within {100 * NOISE:.0f} %, at {near}" if near else ""
     if not lost:
         return f"IST is the fastest at {count - near if near else 'all'} {'of ' if near else ''}{count} poses{equal}."

@@ -43,7 +43,7 @@ def verdict(run):
     lost += [(f"{more} threads answer less than {fewer}", None)
              for fewer, more in zip(counts, counts[1:]) if is_loss(run[f"threads_{more}"] / run[f"threads_{fewer}"])]
     if not lost:
-        return "No loop answers 3 % more poses than one thread of a sweep, and more threads answer no fewer."
+        return "No loop answers 3 % more poses than one thread of a sweep, and no number of threads 3 % fewer than the next smaller one."
     return f"A sweep loses: {by_reason(lost)}."
 
 

@@ -87,7 +87,7 @@ class Closing(unittest.TestCase):
     def test_where_all_is_faster_nothing_is_bold(self):
         table, verdict = self.said()
         self.assertNotIn("**", table + verdict)
-        self.assertEqual(verdict, "No cell is slower than the published query. Two workers are nowhere slower than one by 3 % or more.")
+        self.assertEqual(verdict, "No cell is slower than the published query by 3 % or more. Two workers are nowhere slower than one by 3 % or more.")
 
     def test_two_workers_that_are_slower_are_bold_with_both_times(self):
         table, verdict = self.said(two=130)

@@ -50,7 +50,14 @@ class Standing(unittest.TestCase):
         for marks, reason in (({"promise": 2}, "it reads stored distances"), ({"prepared": 1}, "its mesh was moved"), ({"agree": 0}, "it gives another answer")):
             said = self.said((20, 5), **marks)
             self.assertIn(f"**other at 1** ({reason}", said)
-            self.assertIn("Among those without a mark, IST is the fastest at all 2 poses.", said)
+            self.assertTrue(said.endswith(" No other without a mark answers."), said)
+
+    def test_those_without_a_mark_win_or_lose_where_they_answer(self):
+        for times, expected in (((20, 5), "IST is the fastest at all 1 poses."), ((5, 5), "IST is the fastest at 0 of 1 poses. **It loses at 1")):
+            runs = answers(times)
+            runs[-1]["agree"] = 0  # the other's, at the second pose
+            said = verdict(asked(runs)[1])[0]
+            self.assertIn(f"Among those without a mark, {expected}", said)
 
 
 class ColdCaches(unittest.TestCase):
