@@ -5,9 +5,10 @@
 #
 #   scripts/release.sh                     into build/ist-VERSION
 #   scripts/release.sh --out FOLDER        into another folder, which is not there yet
-#   scripts/release.sh --once              builds once: half the time, and nothing shows that the bytes are the same elsewhere
-#   scripts/release.sh --despite-figures   even where figures are older than their code (scripts/check_figures.sh); the folder
-#                                          is called FOLDER-draft
+#   scripts/release.sh --once              a draft, in FOLDER-draft: built once, in half the time, and so nothing shows that the
+#                                          bytes are the same elsewhere
+#   scripts/release.sh --despite-figures   a draft, too: made even where figures are older than their code, or long runs
+#                                          (scripts/check_figures.sh, scripts/long_table.py --check)
 #   scripts/release.sh -DIST_MAINTAINER='Name <address>' -DIST_HOMEPAGE=https://…
 #                                          whom the packages name; without them "IST developers", and no page
 #
@@ -37,16 +38,21 @@ changed=$(git status --porcelain)
 version=$(scripts/version.sh)
 name=ist-$version
 out=${out:-build/$name}
-! $despite || out=${out%-draft}-draft
+if $despite || ! $twice; then out=${out%-draft}-draft; fi
 [ ! -e "$out" ] || fail "$out is there already: remove it, or name another folder by --out"
 
 say "ist $version of commit $(git log -1 --format='%h, %cs') into $out"
 [[ ${contact[*]} == *IST_MAINTAINER=* ]] || say 'IST_MAINTAINER is unset: the packages say "IST developers"'
 [[ ${contact[*]} == *IST_HOMEPAGE=* ]] || say "IST_HOMEPAGE is unset: the packages name no page"
-if ! figures=$(scripts/check_figures.sh 2>&1); then
-  echo "$figures" >&2
-  $despite || fail "figures are older than their code: measure these pages again, or make a draft by --despite-figures"
-  say "figures are older than their code: this is a draft"
+stale=''
+for check in "check_figures.sh" "long_table.py --check"; do
+  # shellcheck disable=SC2086  # words
+  said=$(scripts/$check 2>&1) || stale+=$said$'\n'
+done
+if [ -n "$stale" ]; then
+  printf '%s' "$stale" >&2
+  $despite || fail "figures or long runs are older than their code: make these anew, or a draft by --despite-figures"
+  say "figures or long runs are older than their code: this is a draft"
 fi
 scripts/setup.sh --viewer --python --docs
 
@@ -55,7 +61,7 @@ keep() { [ $? -eq 0 ] || echo "release: what was made so far is in $work" >&2; }
 trap keep EXIT
 umask 022
 # What a user has set for other builds would be built in.
-unset CFLAGS CXXFLAGS CPPFLAGS LDFLAGS CMAKE_GENERATOR CMAKE_BUILD_TYPE CMAKE_CXX_COMPILER_LAUNCHER CMAKE_C_COMPILER_LAUNCHER
+unset CC CXX CFLAGS CXXFLAGS CPPFLAGS LDFLAGS CPATH C_INCLUDE_PATH CPLUS_INCLUDE_PATH LIBRARY_PATH CMAKE_GENERATOR CMAKE_BUILD_TYPE CMAKE_CXX_COMPILER_LAUNCHER CMAKE_C_COMPILER_LAUNCHER
 # A cache of objects would show in the second build what the first one has made.
 export CCACHE_DISABLE=1 LC_ALL=C.UTF-8 TZ=UTC
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
@@ -90,7 +96,9 @@ find . -type f -printf '%P\n' | LC_ALL=C sort | xargs -d '\n' sha256sum >"$work/
 mv "$work/SHA256SUMS" .
 cd - >/dev/null
 mkdir -p "$(dirname "$out")"
-cp -r "$work/made-first" "$work/whole" && mv "$work/whole" "$out"
+rm -rf "$out.part"
+cp -r "$work/made-first" "$out.part"
+mv -T "$out.part" "$out"
 rm -rf "$work"
 say "$out has"
 cat "$out/SHA256SUMS"

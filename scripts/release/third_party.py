@@ -1,5 +1,5 @@
-"""Writes the notices of all that others wrote and a release has in it, or loads: name, version, licence, where it is used, and
-the text of the licence. Fails where something is used that third_party.toml does not know.
+"""Writes the notices of all that others wrote and a release has in it, and of the shared libraries that it loads: name, version,
+licence, where it is used, and the text of the licence. Fails where something is used that third_party.toml does not know.
 
     third_party.py FILE       of what build.sh has built in build/"""
 

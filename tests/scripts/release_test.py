@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from unittest import mock
 
 SOURCE = pathlib.Path(__file__).parents[2]
 TIME = 1700000000
@@ -17,6 +18,7 @@ FILES = {
     ".gitignore": "build/\n",
     "scripts/setup.sh": "#!/bin/sh\n",
     "scripts/check_figures.sh": "#!/bin/sh\n[ ! -e figures ] || { cat figures; exit 1; }\n",
+    "scripts/long_table.py": '#!/bin/sh\n[ "$1" = --check ] || exit 2\n[ ! -e runs ] || { cat runs; exit 1; }\n',
     # What it has been given, and what the sources say of their commit.
     "scripts/release/build.sh": '#!/bin/sh\nset -e\ncd "$(dirname "$0")/../.."\nout=$1\nshift\n'
                                 'echo "$@" >"$out/options"\ncmake -P src/package/commit.cmake >"$out/time"\n. ./more.sh\n',
@@ -104,16 +106,33 @@ class Release(unittest.TestCase):
         self.assertIn(f"{there} is there already", self.refused(1, "--out", str(there)))
 
     def test_stale_figures_are_named_and_make_a_draft_at_most(self):
+        self.commit(runs="a part failed\n")
+        self.assertIn("a part failed\n", self.refused(1))
         self.commit(figures="docs/page.md:7: measured long ago\n")
         said = self.refused(1)
-        self.assertIn("docs/page.md:7: measured long ago", said)
+        self.assertIn("docs/page.md:7: measured long ago\na part failed\n", said)
         self.assertIn("--despite-figures", said)
         said, folder = self.made("--despite-figures", name="ist-1.2.3-draft")
         self.assertIn("this is a draft", said)
         self.assertTrue((folder / "SHA256SUMS").exists())
 
     def test_a_folder_of_a_draft_is_always_called_so(self):
-        self.made("--despite-figures", "--once", "--out", "build/mine", name="mine-draft")
+        for options, name in (("--despite-figures",), "mine"), (("--once",), "yours"), (("--despite-figures", "--once"), "ours-draft"):
+            _, folder = self.made(*options, "--out", f"build/{name}", name=f"{name.removesuffix('-draft')}-draft")
+            self.assertTrue((folder / "SHA256SUMS").exists())
+        self.assertEqual(len(list((self.project / "build").iterdir())), 3)
+
+    def test_what_was_made_is_kept_where_it_cannot_be_copied(self):
+        full = self.folder / "bin/cp"
+        full.parent.mkdir()
+        full.write_text('#!/bin/sh\n[ "$1" != -r ] || exit 1\nexec /bin/cp "$@"\n')
+        full.chmod(0o755)
+        with mock.patch.dict(os.environ, PATH=f"{full.parent}:{os.environ['PATH']}"):
+            done = self.release()
+        self.assertEqual(done.returncode, 1)
+        self.assertFalse((self.project / "build/ist-1.2.3").exists())
+        kept = pathlib.Path(re.search(r"release: what was made so far is in (.*)", done.stderr)[1])
+        self.assertTrue((kept / "made-first/SHA256SUMS").exists())
 
     def test_the_folder_has_all_files_and_their_hashes(self):
         said, folder = self.made()
@@ -125,7 +144,7 @@ class Release(unittest.TestCase):
         self.assertIn("both builds have the same bytes", said)
 
     def test_the_archive_is_of_the_commit_and_knows_its_time(self):
-        _, folder = self.made("--once")
+        _, folder = self.made("--once", name="ist-1.2.3-draft")
         archive = folder / "ist-1.2.3-source.tar.gz"
         self.assertEqual(archive.read_bytes()[3:8], bytes(5), "gzip keeps a name or a time")
         listed = subprocess.run(["tar", "tvzf", archive, "--utc", "--full-time"], capture_output=True, text=True, check=True).stdout
@@ -138,7 +157,7 @@ class Release(unittest.TestCase):
         self.assertEqual(text, f"{self.git('rev-parse', 'HEAD')}{TIME}\n")
 
     def test_an_archive_within_another_checkout_keeps_its_own_commit(self):
-        _, folder = self.made("--once")
+        _, folder = self.made("--once", name="ist-1.2.3-draft")
         inner = self.project / "build/inner"
         inner.mkdir()
         subprocess.run(["tar", "xzf", folder / "ist-1.2.3-source.tar.gz", "-C", inner], check=True)
@@ -155,7 +174,7 @@ class Release(unittest.TestCase):
         self.assertIn("the second build has other bytes", said)
         self.assertIn("place", said)
         self.assertNotIn("other ", said.partition("bytes:")[2])
-        said, _ = self.made("--once")
+        said, _ = self.made("--once", name="ist-1.2.3-draft")
         self.assertIn("built once: that another build has the same bytes is not shown", said)
 
     def test_a_build_with_one_file_more_is_named(self):
@@ -168,13 +187,13 @@ class Release(unittest.TestCase):
         self.assertIn("the reason\nrelease: the build first failed", said)
 
     def test_it_says_whom_the_packages_name(self):
-        said, folder = self.made("--once")
+        said, folder = self.made("--once", name="ist-1.2.3-draft")
         self.assertIn('IST_MAINTAINER is unset: the packages say "IST developers"', said)
         self.assertIn("IST_HOMEPAGE is unset", said)
         self.assertEqual((folder / "options").read_text(), "\n")
         shutil.rmtree(folder)
         options = ["-DIST_MAINTAINER=Ada Example <ada@example.org>", "-DIST_HOMEPAGE=https://example.org"]
-        said, folder = self.made("--once", *options)
+        said, folder = self.made("--once", *options, name="ist-1.2.3-draft")
         self.assertNotIn("unset", said)
         self.assertEqual((folder / "options").read_text(), " ".join(options) + "\n")
 
