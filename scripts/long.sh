@@ -29,8 +29,16 @@ export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data} TSAN_OPTIONS=suppressio
 more() {  # preset, times the samples, program, filter
   flock build/long cmake --preset "$1"  # parts that run side by side build one after the other
   flock build/long cmake --build --preset "$1" --target "$3" -- -j"$jobs"
-  IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=0 --gtest_filter="$4" |
-    awk '{ print } /Running [1-9]/ { some = 1 } END { exit !some }'
+  IST_EFFORT=$2 "build/$1/tests/$3" --gtest_brief=0 --gtest_filter="$4"
+  grep -q 'Running [1-9]' "$log"
+  ! grep -q '^\[  SKIPPED \]' "$log" || return 77
+}
+
+built() {  # of this commit: the page and the preset `test`; then a command that tries them
+  scripts/viewer.sh
+  cmake --preset test
+  cmake --build --preset test -- -j"$jobs"
+  "$@"
 }
 
 benches() {  # which nothing else compiles
@@ -48,18 +56,18 @@ installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewe
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
 alone suite scripts/test.sh
 alone as-users-build run "release -DIST_TESTS=ON" "$as_users_build" -L "^(${as_users_build// /|})$" -E 'RealPairs\.HaveTheTriangles'
-alone packages ctest --preset test -L '^long$'
+alone packages built ctest --preset test -L '^long$'
 alone benches benches
 alone golden scripts/golden_table.py --check
 alone arm64 scripts/arm64_package.sh
 alone portable run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
 # The sanitizers themselves allocate, where a thread begins, call the system, and take terabytes of addresses.
 alone sanitize-all run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|^(Package|Docs|Viewer|Allocations|SystemCalls)\.|MakesNoSystemCall$|^Faults\.MemoryThatEndsIsNamedWithTheRemedy$'
-alone compile-all env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
+alone compile-all built env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
 for jaws in built-in human; do
-  alone cloudcompare-$jaws /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist "build/test/cloudcompare-$jaws"
+  alone cloudcompare-$jaws built /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist "build/test/cloudcompare-$jaws"
 done
-alone blender /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so
+alone blender built /usr/bin/python3 -B tests/python/recipes/blender_itself.py build/test/src/package/libist.so
 alone threads more thread 100 search_test 'SharedTreeThread.*'
 alone stability scripts/stability_report.sh --out build/long/stability
 alone kills more test 17 cli_test 'SweepCommand.Kills*'
@@ -69,7 +77,7 @@ aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergy
 settle 0
 alone release release
 for door in scans haptics script cycles; do
-  also[doors-$door]="README.md docs :!docs/guarantees.md :!docs/pictures"
+  also[doors-$door]=$pages
   alone doors-$door tests/doors/$door.sh
 done
 for round in 1 2 3 4 5 6; do alone fuzz-$round scripts/fuzz.sh --seconds 300; done

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Writes what the long runs gave to docs/guarantees.md, from the logs of scripts/long.sh in build/long. Rows of parts that
-have no log here are kept. Ends with 1, and writes nothing, where no part has a log that was ended.
+have no log here are kept.
 
-  scripts/long_table.py
+  scripts/long_table.py           writes the table; ends with 1, and writes nothing, where no part has a log that was ended
+  scripts/long_table.py --check   ends with 1 where a part has no row that counts: passed, and at a commit since which no code
+                                  has changed. The release is made last, and may lack its row
 """
 import json
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -14,7 +17,7 @@ PAGE = ROOT / "docs/guarantees.md"
 BEGIN, END = "<!-- long runs -->\n", "<!-- end of long runs -->\n"
 VERDICT = re.compile(r"(passed|skipped|failed) at (\w+)( with changes)? on ([\d-]+) in (\d+) s\n?\Z")
 
-# What a part tries, by its name; several rounds of one kind are one row.
+# What a part tries, by its name.
 PARTS = {
     "suite": "`scripts/test.sh`",
     "as-users-build": "tests of the library as users build it: file by file, without assertions",
@@ -25,7 +28,8 @@ PARTS = {
     "portable": "golden answers of the portable library",
     "sanitize-all": "every room and test under AddressSanitizer and UndefinedBehaviorSanitizer",
     "compile-all": "the library compiled inside a user's build, and from the sdist",
-    "cloudcompare": "distances of two pairs of jaws against CloudCompare's",
+    "cloudcompare-built-in": "distances of the built-in jaws against CloudCompare's",
+    "cloudcompare-human": "distances of the human jaws against CloudCompare's",
     "blender": "the add-on in Blender",
     "threads": "eight threads ask one tree, under ThreadSanitizer",
     "stability": "perf/STABILITY.md: hard cases with 20 times the samples, ten million queries of real jaws",
@@ -33,9 +37,13 @@ PARTS = {
     "pressing": "simulated presses of the human jaws, voxels of 0.8 and of 0.2 mm",
     "coherent": "coherent queries against fresh ones",
     "five-bodies": "presses among five bodies",
-    "doors": "four ways in (tests/doors)",
     "release": "the release folder, made twice with the same bytes",
-    "fuzz": "fuzzers, each 5 minutes a round",
+    "doors-scans": "a door: I have scans",
+    "doors-haptics": "a door: I build a haptic loop",
+    "doors-script": "a door: I script",
+    "doors-cycles": "a door: I count cycles",
+    **{f"fuzz-{number}": f"each fuzzer for 5 minutes, the {place} time" for number, place in
+       enumerate(("first", "second", "third", "fourth", "fifth", "sixth"), 1)},
 }
 
 
@@ -51,6 +59,7 @@ def seen_in(log, cases):
         add(way, re.findall(rf"^door \w+, {way}", log, re.M) and [1])
 
     add("tests", re.findall(r"tests passed, 0 tests failed out of (\d+)", log) + re.findall(r"^\[  PASSED  \] (\d+) tests?", log, re.M))
+    add("skipped", [1 for _ in re.findall(r"^\s+\d+ - \S.* \(Skipped\)$", log, re.M)])
     add("ticks", re.findall(r"^(\d+) ticks: ", log, re.M))
     add("executions", re.findall(r": (\d+) executions in ", log))
     lines = [json.loads(line) for line in cases.splitlines()]
@@ -61,70 +70,68 @@ def seen_in(log, cases):
     return found
 
 
-def results(folder):
-    """The parts that ended, as (kind, verdict, commit, date, seconds, counts), in the order of PARTS."""
-    made = []
-    for log in folder.glob("*.log"):
-        text = log.read_text(errors="replace")
-        verdict = VERDICT.search(text)
-        kind = max((name for name in PARTS if log.stem == name or log.stem.startswith(name + "-")), key=len, default=None)
-        if verdict is None or kind is None:
-            continue
-        cases = log.with_suffix(".jsonl")
-        state, commit, changes, date, seconds = verdict.groups()
-        made.append((kind, state, commit + ("+" if changes else ""), date, int(seconds), seen_in(text, cases.read_text() if cases.exists() else "")))
-    return sorted(made, key=lambda part: (list(PARTS).index(part[0]), part[3]))
-
-
-def kept_rows(table, parts):
-    """The rows of a table whose kinds are not among these parts, by kind."""
-    kinds, found = {title: kind for kind, title in PARTS.items()}, {}
-    for row in table.splitlines(keepends=True):
-        kind = kinds.get(row.split(" | ")[0].removeprefix("| "))
-        if kind and kind not in {part[0] for part in parts}:
-            found.setdefault(kind, []).append(row)
-    return found
-
-
-def rows(parts):
-    """A row for each kind, and for each verdict and commit of it, by kind."""
-    groups, made = {}, {}
-    for kind, state, commit, date, seconds, counts in parts:
-        group = groups.setdefault((kind, state, commit), [0, 0, date, {}])
-        group[0] += 1
-        group[1] += seconds
-        group[2] = date
-        for what, count in counts.items():
-            group[3][what] = group[3].get(what, 0) + count
-    for (kind, state, commit), (number, seconds, date, counts) in groups.items():
-        verdict = state if state == "passed" else f"**{state}**"
-        time = f"{seconds / 60:,.0f} min" if seconds >= 60 else f"{seconds} s"
-        counted = ", ".join(f"{what}: {count:,}" for what, count in counts.items()) or "–"
-        made.setdefault(kind, []).append(
-            f"| {PARTS[kind]} | {verdict}{f' {number} times' if number > 1 else ''} | {counted} | `{commit}`, {date} | {time} |\n")
+def rows(folder):
+    """The rows of the parts that ended, by part."""
+    made = {}
+    for part, title in PARTS.items():
+        log, cases = folder / f"{part}.log", folder / f"{part}.jsonl"
+        text = log.read_text(errors="replace") if log.exists() else ""
+        if ended := VERDICT.search(text):
+            state, commit, changes, date, seconds = ended.groups()
+            verdict = state if state == "passed" else f"**{state}**"
+            counts = seen_in(text, cases.read_text() if cases.exists() else "")
+            counted = ", ".join(f"{what}: {count:,}" for what, count in counts.items()) or "–"
+            time = f"{int(seconds) / 60:,.0f} min" if int(seconds) >= 60 else f"{seconds} s"
+            made[part] = f"| {title} | {verdict} | {counted} | `{commit}{'+' if changes else ''}`, {date} | {time} |\n"
     return made
 
 
-def written(text, parts):
-    """The page with the table of these parts, and of those that it had."""
+def apart(text):
+    """A page before its table, the rows of the table by part, and the page after it."""
     before, begin, rest = text.partition(BEGIN)
     table, end, after = rest.partition(END)
     if not begin or not end:
         sys.exit(f"long_table: the page has no place for the table: {BEGIN.strip()}")
+    parts, found = {title: part for part, title in PARTS.items()}, {}
+    for row in table.splitlines(keepends=True)[2:]:
+        title = row.split(" | ")[0].removeprefix("| ")
+        if title not in parts:
+            sys.exit(f"long_table: {PAGE.name} has a row of no part: {title}: name it as PARTS does, or remove it")
+        found[parts[title]] = row
+    return before, found, after
+
+
+def written(text, made):
+    """The page with these rows, and with those of other parts that it had."""
+    before, kept, after = apart(text)
     head = "| part | ended | counted | commit | time |\n|---|---|---|---|---|\n"
-    all_rows = kept_rows(table, parts) | rows(parts)
-    return before + BEGIN + head + "".join(row for kind in PARTS for row in all_rows.get(kind, [])) + END + after
+    all_rows = kept | made
+    return before + BEGIN + head + "".join(all_rows[part] for part in PARTS if part in all_rows) + END + after
 
 
-def main():
-    if len(sys.argv) > 1:
+def counts(row, part):
+    """Whether a row says that the part passed, with the code as it is now; a door also with the pages that it types."""
+    found = re.match(r"\| [^|]+ \| passed \| [^|]+ \| `(\w+)`, ", row)
+    command = f'source scripts/parts.sh; [ -z "$(git status --porcelain -- "${{code[@]}}")" ] && same_code "$1" {"$pages" if part.startswith("doors-") else ""}'
+    return found is not None and subprocess.run(["bash", "-c", command, "bash", found[1]], cwd=ROOT, check=False).returncode == 0
+
+
+def main(words):
+    if words == ["--check"]:
+        _, had, _ = apart(PAGE.read_text())
+        lacking = [part for part in PARTS if part != "release" and not (part in had and counts(had[part], part))]
+        print(f"long_table: not passed with the code as it is: {', '.join(lacking)}: scripts/long.sh runs them" if lacking else
+              "every long part has passed with the code as it is")
+        return 1 if lacking else 0
+    if words:
         print(__doc__.strip())
-        sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
-    parts = results(ROOT / "build/long")
-    if not parts:
+        return 0 if words in (["-h"], ["--help"]) else 2
+    made = rows(ROOT / "build/long")
+    if not made:
         sys.exit("long_table: no part has ended: run scripts/long.sh")
-    PAGE.write_text(written(PAGE.read_text(), parts))
+    PAGE.write_text(written(PAGE.read_text(), made))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main(sys.argv[1:]))

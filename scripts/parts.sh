@@ -23,21 +23,29 @@ begin_parts() {
   done
   mkdir -p "$folder"
   trap 'trap - INT TERM; echo "${0##*/}: stopped; --resume goes on" >&2; kill -TERM 0' INT TERM
-  commit=$(git rev-parse --short=12 HEAD)
-  [ -z "$(git status --porcelain)" ] || commit+=" with changes"
   changed=$(git status --porcelain -- "${code[@]}")
 }
 
 # All but pages and results: a table of what passed is committed, and what passed counts on.
 code=(. ':!docs' ':!perf' ':(exclude,glob)*.md')
+# The pages whose words are tried, for `also`.
+pages="README.md docs :!docs/guarantees.md :!docs/pictures"
 declare -A also=()
+same_code() {  # as at a commit, and the same of these files
+  git diff --quiet "$1" HEAD -- "${code[@]}" 2>/dev/null || return 1
+  [ $# -eq 1 ] || git diff --quiet "$1" -- "${@:2}"
+}
 passed() {  # and at a commit since which no code changed
   [ -z "$changed" ] && [ -e "$folder/$1.log" ] || return 1
   local at
   at=$(tail -n 1 "$folder/$1.log" | sed -n 's/^passed at \([0-9a-f]*\) on .*/\1/p')
-  [ -n "$at" ] && git diff --quiet "$at" HEAD -- "${code[@]}" 2>/dev/null || return 1
   # shellcheck disable=SC2086  # paths are words
-  [ -z "${also[$1]:-}" ] || git diff --quiet "$at" -- ${also[$1]}
+  [ -n "$at" ] && same_code "$at" ${also[$1]:-}
+}
+
+at_commit() {
+  git rev-parse --short=12 HEAD
+  [ -z "$(git status --porcelain)" ] || echo "with changes"
 }
 
 is_chosen() {
@@ -49,8 +57,9 @@ is_chosen() {
 
 perform() {  # a part's name, and its command
   set +e
-  local name=$1 log=$folder/$1.log begun=$SECONDS code verdict
+  local name=$1 log=$folder/$1.log begun=$SECONDS code verdict commit
   shift
+  mapfile -t commit < <(at_commit)
   rm -f "$folder/$name.jsonl"
   (set -euo pipefail; IST_STABILITY=$folder/$name.jsonl "$@") >"$log" 2>&1
   code=$?
@@ -59,7 +68,8 @@ perform() {  # a part's name, and its command
     77) verdict=skipped ;;
     *) verdict=failed ;;
   esac
-  echo "$verdict at $commit on $(date -u +%Y-%m-%d) in $((SECONDS - begun)) s" >>"$log"
+  [ "${commit[*]}" = "$(at_commit | paste -sd ' ')" ] || commit[1]="with changes"
+  echo "$verdict at ${commit[*]} on $(date -u +%Y-%m-%d) in $((SECONDS - begun)) s" >>"$log"
   [ "$verdict" = passed ] || [ "$verdict $(printenv IST_REQUIRE_ALL)" = "skipped " ]
 }
 

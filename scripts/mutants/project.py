@@ -18,10 +18,15 @@ MUTANTS = [
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["python figures_test.py History"]),
     Mutant("report-mixes-codes", "results of other code count as results of this one",
            [("scripts/report/runner.py", " and not changed_since(commit, program)", "")], ["python runner_test.py"]),
+    Mutant("long-runs-of-other-code", "a part of the long runs counts whatever has changed since it passed",
+           [("scripts/parts.sh", "  git diff --quiet \"$1\" HEAD -- \"${code[@]}\" 2>/dev/null || return 1\n", "")], ["python long_test.py"]),
 
     # The report.
     Mutant("verdict-always-agrees", "the worst case is right before collision wherever it is",
            [("scripts/report/seed_rates.py", "\"*Agrees*\" if beyond in (0, 1) else", "\"*Agrees*\" if True else")], ["python verdicts_seed_test.py"]),
+    Mutant("win-against-nobody", "a pose at which no other counts is a win",
+           [("scripts/report/peer_answers.py", "        if not others:\n            continue\n", "        if not others:\n            count += 1\n            continue\n")],
+           ["python verdicts_peers_test.py"]),
     Mutant("away-hidden", "queries that were off their core count among those that the quantiles are of",
            [("scripts/report/deadlines.py", "{run['n'] - run['over_away']:,.0f}", "{run['n']:,.0f}")], ["python verdicts_deadlines_test.py"]),
 

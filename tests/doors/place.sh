@@ -105,7 +105,7 @@ packages_unpacked() {
 }
 packages() {
   cd "$source" || exit
-  [ -e build/viewer/ist.html ] || step "the page, by scripts/viewer.sh, $outside" page_made
+  step "the page, by scripts/viewer.sh, $outside" page_made
   step "the packages, by CMake's preset release and CPack, $outside" packages_made
   [ "$way" = root ] || step "the packages, unpacked" packages_unpacked
 }

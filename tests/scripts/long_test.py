@@ -1,6 +1,9 @@
 """Which parts of long work scripts/parts.sh runs again, and what scripts/long_table.py makes of their logs."""
 
+import contextlib
+import io
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -103,6 +106,16 @@ class Parts(unittest.TestCase):
             (self.folder / page).unlink()
             self.git("checkout", "--quiet", "--", ".")
 
+    def test_they_pass_for_nothing_where_a_commit_is_made_meanwhile(self):
+        (self.folder / "mended").write_text("")
+        steps = "alone a bash -c 'echo a >>ran; git commit -q --allow-empty -m meanwhile'\nalone b bash -c 'echo b >>ran'\n"
+        (self.folder / "long.sh").write_text(f"{PROGRAM.format(scripts=SCRIPTS).split('stops()')[0]}{steps}end_parts\n")
+        self.git("config", "user.name", "a")
+        self.git("config", "user.email", "a@b")
+        self.commit()
+        self.assertEqual(self.run_parts()[0], 0)
+        self.assertEqual(self.run_parts("--resume"), (0, ["a"]))
+
     def test_they_pass_for_nothing_with_changes(self):
         self.mend()
         (self.folder / "more").write_text("")
@@ -168,30 +181,33 @@ class Table(unittest.TestCase):
             (self.folder / f"{name}.jsonl").write_text(cases)
 
     def rows(self):
-        return [row for rows in long_table.rows(long_table.results(self.folder)).values() for row in rows]
+        return list(long_table.rows(self.folder).values())
+
+    def test_it_has_the_parts_of_the_long_runs_in_their_order(self):
+        (self.folder / "scripts").mkdir()
+        for name in ("long.sh", "parts.sh", "run_preset.sh"):
+            shutil.copy(SCRIPTS / name, self.folder / "scripts" / name)
+        subprocess.run(["git", "init", "--quiet"], cwd=self.folder, check=True)
+        said = subprocess.run([self.folder / "scripts/long.sh", "--list"], capture_output=True, text=True, check=True).stdout
+        self.assertEqual([line.partition(":")[0] for line in said.splitlines()], list(long_table.PARTS))
+        self.assertEqual(len(set(long_table.PARTS.values())), len(long_table.PARTS))
 
     def test_counts(self):
-        self.log("suite", "100% tests passed, 0 tests failed out of 7\n100% tests passed, 0 tests failed out of 12")
+        self.log("suite", "100% tests passed, 0 tests failed out of 7\n100% tests passed, 0 tests failed out of 12\n\n"
+                          "The following tests did not run:\n\t 5 - Some.Test (Skipped)")
         self.log("stability", "[  PASSED  ] 3 tests.\n[  PASSED  ] 4 tests.", cases='{"samples": 5, "broken": 0}\n{"samples": 8, "broken": 1}\n')
         self.log("coherent", "1000 ticks: 3 kept\n2000 ticks: 4 kept\n[  PASSED  ] 1 test.")
         suite, stability, coherent = self.rows()
-        self.assertIn("| tests: 19 | `0123456789ab`, 2026-01-02 | 2 min |", suite)
+        self.assertIn("| tests: 19, skipped: 1 | `0123456789ab`, 2026-01-02 | 2 min |", suite)
         self.assertIn("| tests: 7, most samples of a case: 8, cases: 2, broken: 1 |", stability)
         self.assertIn("| tests: 1, ticks: 3,000 |", coherent)
 
-    def test_rounds_of_one_commit_are_one_row(self):
-        for number, commit in enumerate("aab"):
-            self.log(f"fuzz-{number}", "mesh: 50 executions in 300 s", f"passed at {commit} on 2026-01-02 in 300 s")
-        first, second = self.rows()
-        self.assertIn("passed 2 times | executions: 100 | `a`, 2026-01-02 | 10 min", first)
-        self.assertIn("| passed | executions: 50 | `b`", second)
-
     def test_doors_say_what_they_lead_from(self):
         self.log("doors-scans", "door scans, in a bare Debian 12 root\nstep", "passed at a on 2026-01-02 in 20 s")
-        self.log("doors-script", "door script, in a bare Debian 12 root", "passed at a on 2026-01-02 in 20 s")
         self.log("doors-cycles", "door cycles, in unpacked packages, without a root of its own: none", "passed at a on 2026-01-02 in 3 s")
-        (row,) = self.rows()
-        self.assertIn("passed 3 times | in unpacked packages: 1, in a bare Debian 12 root: 2 | `a`, 2026-01-02 | 43 s |", row)
+        scans, cycles = self.rows()
+        self.assertIn("| passed | in a bare Debian 12 root: 1 | `a`, 2026-01-02 | 20 s |", scans)
+        self.assertIn("| passed | in unpacked packages: 1 |", cycles)
 
     def test_what_did_not_pass_is_said(self):
         self.log("suite", "", "failed at 0123 on 2026-01-02 in 90 s")
@@ -202,27 +218,93 @@ class Table(unittest.TestCase):
         self.assertIn("| **failed** |", suite)
         self.assertIn("| **skipped** |", blender)
         self.assertIn("`0123+`", threads)
+        self.assertEqual([long_table.counts(row, "suite") for row in (suite, blender, threads)], [False, False, False])
 
     def test_rows_of_parts_without_a_log_stay(self):
         page = f"before\n{long_table.BEGIN}No part has been run yet.\n{long_table.END}after\n"
         self.log("suite", "", "passed at a on 2026-01-02 in 60 s")
-        self.log("fuzz-1", "", "passed at a on 2026-01-02 in 60 s")
-        page = long_table.written(page, long_table.results(self.folder))
+        self.log("fuzz-2", "", "passed at a on 2026-01-02 in 60 s")
+        page = long_table.written(page, long_table.rows(self.folder))
         for log in self.folder.iterdir():
             log.unlink()
         self.log("fuzz-2", "", "passed at b on 2026-01-03 in 60 s")
         self.log("kills", "", "passed at b on 2026-01-03 in 60 s")
-        page = long_table.written(page, long_table.results(self.folder))
+        page = long_table.written(page, long_table.rows(self.folder))
         before, _, _, _, suite, kills, fuzz, _, after = page.splitlines()
         self.assertEqual((before, after), ("before", "after"))
-        for row, part, commit in ((suite, "suite", "a"), (kills, "kills", "b"), (fuzz, "fuzz", "b")):
+        for row, part, commit in ((suite, "suite", "a"), (kills, "kills", "b"), (fuzz, "fuzz-2", "b")):
             self.assertTrue(row.startswith(f"| {long_table.PARTS[part]} | passed |"), row)
             self.assertIn(f"`{commit}`", row)
 
     def test_the_page_has_a_place(self):
         self.assertIn(long_table.BEGIN, long_table.PAGE.read_text())
         with self.assertRaises(SystemExit):
-            long_table.written("a page", [])
+            long_table.written("a page", {})
+
+    def test_a_row_of_no_part_is_named_and_not_lost(self):
+        page = f"{long_table.BEGIN}| part |\n|---|\n| a part that was | passed |\n{long_table.END}"
+        with self.assertRaisesRegex(SystemExit, "a row of no part: a part that was"):
+            long_table.written(page, {})
+
+
+class Check(unittest.TestCase):
+    """What --check says in a repository of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root, real = pathlib.Path(folder.name), (long_table.ROOT, long_table.PAGE)
+        self.addCleanup(self.restore, *real)
+        long_table.ROOT, long_table.PAGE = self.root, self.root / "docs/guarantees.md"
+        self.write("scripts/parts.sh", (SCRIPTS / "parts.sh").read_text())
+        self.git("init", "--quiet")
+        self.commit = self.write("README.md", "one")
+
+    @staticmethod
+    def restore(root, page):
+        long_table.ROOT, long_table.PAGE = root, page
+
+    def git(self, *words):
+        return subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *words], cwd=self.root, check=True, capture_output=True, text=True).stdout
+
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / name).write_text(text)
+        if (self.root / ".git").exists():
+            self.git("add", ".")
+            self.git("commit", "--quiet", "-m", "a change")
+            return self.git("rev-parse", "--short=12", "HEAD").strip()
+        return None
+
+    def lacking(self, without="release"):
+        """The parts that --check names on a page with the rows of all parts but one."""
+        rows = [f"| {title} | passed | – | `{self.commit}`, 2026-01-02 | 1 s |\n" for part, title in long_table.PARTS.items() if part != without]
+        long_table.PAGE.parent.mkdir(exist_ok=True)
+        long_table.PAGE.write_text("".join([long_table.BEGIN, "| part |\n", "|---|\n", *rows, long_table.END]))
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            code = long_table.main(["--check"])
+        named = [part for part in long_table.PARTS if f" {part}," in said.getvalue() or f" {part}:" in said.getvalue()]
+        self.assertEqual(code, 1 if named else 0, said.getvalue())
+        return named
+
+    def test_it_names_what_has_no_row(self):
+        self.assertEqual(self.lacking(), [])
+        self.assertEqual(self.lacking(without="fuzz-3"), ["fuzz-3"])
+
+    def test_it_names_all_where_code_has_changed_and_doors_where_a_page_has(self):
+        self.write("README.md", "two")
+        self.assertEqual(self.lacking(), [part for part in long_table.PARTS if part.startswith("doors")])
+        self.write("code.cpp", "int a;")
+        self.assertEqual(self.lacking(), [part for part in long_table.PARTS if part != "release"])
+
+    def test_it_names_all_where_changes_are_not_committed(self):
+        (self.root / "code.cpp").write_text("int a;")
+        self.assertEqual(len(self.lacking()), len(long_table.PARTS) - 1)
+
+    def test_a_commit_that_is_not_there_counts_for_nothing(self):
+        self.commit = "0123456789ab"
+        self.assertEqual(len(self.lacking()), len(long_table.PARTS) - 1)
 
 
 if __name__ == "__main__":
