@@ -54,7 +54,10 @@ int run(int argc, char** argv) {
     flush_stdout();
     return code;
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "ist: %s\nTry 'ist %s--help'.\n", error.what(),
+    // No option is read as anything else than a text or a number.
+    const bool no_number = dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;
+    std::fprintf(stderr, "ist: %s%s\nTry 'ist %s--help'.\n", error.what(),
+                 no_number ? ": give a number as its help says" : "",
                  subcommand_among(*app, argc, argv).c_str());
     return kUsage;
   }

@@ -32,9 +32,11 @@ TEST(BenchNoise, IsNamedWhereTheMachineIsNotQuiet) {
   some.insert(some.end(), 10, 300.0);
   const std::string both = cli::noise_of(machine, samples(some)).value();
   EXPECT_TRUE(says(both, "other work took 0.8 cores"));
-  EXPECT_TRUE(says(both, "1.50 times as long at times"));
+  EXPECT_TRUE(says(both, "1.50 times as long at times: ratios are rough"));
   machine.load.reset();  // where the system does not tell
-  EXPECT_FALSE(says(cli::noise_of(machine, samples(some)).value(), "other work"));
+  const std::string unsteady = cli::noise_of(machine, samples(some)).value();
+  EXPECT_FALSE(says(unsteady, "other work"));
+  EXPECT_TRUE(says(unsteady, "ratios hold"));
 }
 
 // A bench of six seconds on a machine without other work, whose fixed loop never varies.

@@ -142,6 +142,14 @@ TEST_F(Usage, VoxelSizes) {
   }
 }
 
+TEST_F(Usage, WhatIsNoNumber) {
+  for (const char* word : {"banana", "1,5", "0.4mm"}) {
+    refuses({"build", ball(), "-o", path("out.ist"), "--voxel-size", word},
+            std::string("--voxel-size = ") + word + ": give a number as its help says");
+  }
+  refuses({"bench", "--seconds", "ten"}, "--seconds = ten: give a number as its help says");
+}
+
 TEST_F(Usage, OptionsOfBuild) {
   const std::string mesh = ball(), tree = path("out.ist");
   const auto refuses_with = [&](const std::string& flag, const std::string& value,

@@ -60,8 +60,11 @@ std::optional<std::string> noise_of(const Machine& machine, const Samples& loop)
                          found.empty() ? "" : ", and ", unsteady);
   }
   if (found.empty()) return std::nullopt;
-  return found +
-         ": ratios hold, since all queries take turns; times do not compare with another run";
+  return found + (load > kIdle
+                      ? ": ratios are rough, and most of all with two workers: repeat this "
+                        "when nothing else runs"
+                      : ": ratios hold, since all queries take turns; times do not compare "
+                        "with another run");
 }
 
 }  // namespace ist::cli
