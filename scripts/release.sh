@@ -57,7 +57,12 @@ fi
 scripts/setup.sh --viewer --python --docs
 
 work=$(mktemp -d)
-keep() { [ $? -eq 0 ] || echo "release: what was made so far is in $work" >&2; }
+whole=''
+keep() {
+  [ $? -ne 0 ] || return 0
+  [ -z "$whole" ] || rm -rf "$whole"
+  echo "release: what was made so far is in $work" >&2
+}
 trap keep EXIT
 umask 022
 # What a user has set for other builds would be built in.
@@ -88,7 +93,7 @@ if $twice; then
   fi
   say "both builds have the same bytes"
 else
-  say "built once: that another build has the same bytes is not shown"
+  say "built once: that another build has the same bytes is not shown, so this is a draft"
 fi
 
 cd "$work/made-first"
@@ -96,9 +101,10 @@ find . -type f -printf '%P\n' | LC_ALL=C sort | xargs -d '\n' sha256sum >"$work/
 mv "$work/SHA256SUMS" .
 cd - >/dev/null
 mkdir -p "$(dirname "$out")"
-rm -rf "$out.part"
-cp -r "$work/made-first" "$out.part"
-mv -T "$out.part" "$out"
+whole=$(mktemp -d "$out.XXXXXX")
+chmod 755 "$whole"
+cp -r "$work/made-first/." "$whole"
+mv -T "$whole" "$out"
 rm -rf "$work"
 say "$out has"
 cat "$out/SHA256SUMS"
