@@ -114,14 +114,14 @@ def verdict(asked):
         return ["No other library answers."]
     text = standing(asked, lambda player, pose: True)
     if any(not asked.unmarked(player, pose) for player, pose in asked.runs):
-        among = standing(asked, asked.unmarked)
+        among = standing(asked, asked.unmarked, " where one answers")
         text += f" Among those without a mark, {among}" if among else " No other without a mark answers."
     return [text]
 
 
-def standing(asked, counts):
+def standing(asked, counts, where=""):
     """At how many poses IST is the fastest among those that count, and each one that is faster, with the reason. Poses without
-    another that counts are left out; nothing where no pose is left."""
+    another that counts are left out, and `where` says so; nothing where no pose is left."""
     lost, near, count = {}, 0, 0
     for pose in asked.poses:
         ist = asked.runs["ist", pose]["p50_us"]
@@ -136,13 +136,14 @@ def standing(asked, counts):
             near += time < ist
     if count == 0:
         return ""
+    where = where if count < len(asked.poses) else ""
     equal = f", and as fast as the fastest, within {100 * NOISE:.0f} %, at {near}" if near else ""
     if not lost:
-        return f"IST is the fastest at {count - near if near else 'all'} {'of ' if near else ''}{count} poses{equal}."
+        return f"IST is the fastest at {count - near if near else 'all'} {'of ' if near else ''}{count} poses{where}{equal}."
     times, pose, winner = max((*max(wins), winner) for winner, wins in lost.items())
     places = sum(len(wins) for wins in lost.values())
     named = by_reason([(f"{winner} at {len(wins)}", reason(asked, winner, [pose for _, pose in wins])) for winner, wins in sorted(lost.items())])
-    return (f"IST is the fastest at {count - places - near} of {count} poses{equal}. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
+    return (f"IST is the fastest at {count - places - near} of {count} poses{where}{equal}. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
             f"{named}.")
 
 

@@ -43,7 +43,7 @@ def verdict(run):
     lost += [(f"{more} threads answer less than {fewer}", None)
              for fewer, more in zip(counts, counts[1:]) if is_loss(run[f"threads_{more}"] / run[f"threads_{fewer}"])]
     if not lost:
-        return "No loop answers 3 % more poses than one thread of a sweep, and no number of threads 3 % fewer than the next smaller one."
+        return "No loop answers 3 % more poses than one thread of a sweep, and no step to more threads answers 3 % fewer."
     return f"A sweep loses: {by_reason(lost)}."
 
 

@@ -53,7 +53,7 @@ class Standing(unittest.TestCase):
             self.assertTrue(said.endswith(" No other without a mark answers."), said)
 
     def test_those_without_a_mark_win_or_lose_where_they_answer(self):
-        for times, expected in (((20, 5), "IST is the fastest at all 1 poses."), ((5, 5), "IST is the fastest at 0 of 1 poses. **It loses at 1")):
+        for times, expected in (((20, 5), "IST is the fastest at all 1 poses where one answers."), ((5, 5), "IST is the fastest at 0 of 1 poses where one answers. **It loses at 1")):
             runs = answers(times)
             runs[-1]["agree"] = 0  # the other's, at the second pose
             said = verdict(asked(runs)[1])[0]
