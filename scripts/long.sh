@@ -12,9 +12,9 @@
 #   scripts/long.sh --list          which parts count at this commit
 #
 # A part keeps its log, build/long/PART.log. The log's last line says whether the part passed, at which commit, when and
-# how long it took; with changes that are not committed, it passes for nothing. A part that passed counts until something
-# else than pages and results changes: docs/, perf/ and the pages beside them. A door types what pages say, and counts until
-# one of these changes too. A part that fails ends this with 1, when all others have run. scripts/long_table.py writes the
+# how long it took; where code is not committed, or changes meanwhile, it passes for nothing. A part that passed counts until
+# something else than pages and results changes: docs/, perf/ and the pages beside them. A door types what pages say, and counts
+# until one of these changes too. A test that ctest skips is counted as such; IST_REQUIRE_ALL=1 lets it fail. A part that fails ends this with 1, when all others have run. scripts/long_table.py writes the
 # results to docs/guarantees.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -34,11 +34,14 @@ more() {  # preset, times the samples, program, filter
   ! grep -q '^\[  SKIPPED \]' "$log" || return 77
 }
 
-built() {  # of this commit: the page and the preset `test`; then a command that tries them
-  scripts/viewer.sh
+built() {  # the preset `test` of this commit, and then a command that tries it
   cmake --preset test
   cmake --build --preset test -- -j"$jobs"
   "$@"
+}
+with_page() {
+  scripts/viewer.sh
+  built "$@"
 }
 
 benches() {  # which nothing else compiles
@@ -56,14 +59,14 @@ installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewe
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
 alone suite scripts/test.sh
 alone as-users-build run "release -DIST_TESTS=ON" "$as_users_build" -L "^(${as_users_build// /|})$" -E 'RealPairs\.HaveTheTriangles'
-alone packages built ctest --preset test -L '^long$'
+alone packages with_page ctest --preset test -L '^long$'
 alone benches benches
 alone golden scripts/golden_table.py --check
 alone arm64 scripts/arm64_package.sh
 alone portable run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
 # The sanitizers themselves allocate, where a thread begins, call the system, and take terabytes of addresses.
 alone sanitize-all run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|^(Package|Docs|Viewer|Allocations|SystemCalls)\.|MakesNoSystemCall$|^Faults\.MemoryThatEndsIsNamedWithTheRemedy$'
-alone compile-all built env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
+alone compile-all with_page env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
 for jaws in built-in human; do
   alone cloudcompare-$jaws built /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist "build/test/cloudcompare-$jaws"
 done

@@ -23,7 +23,6 @@ begin_parts() {
   done
   mkdir -p "$folder"
   trap 'trap - INT TERM; echo "${0##*/}: stopped; --resume goes on" >&2; kill -TERM 0' INT TERM
-  changed=$(git status --porcelain -- "${code[@]}")
 }
 
 # All but pages and results: a table of what passed is committed, and what passed counts on.
@@ -31,21 +30,17 @@ code=(. ':!docs' ':!perf' ':(exclude,glob)*.md')
 # The pages whose words are tried, for `also`.
 pages="README.md docs :!docs/guarantees.md :!docs/pictures"
 declare -A also=()
-same_code() {  # as at a commit, and the same of these files
+same_code() {  # a commit, and files more: whether code and files are now as they were at that commit
+  [ -z "$(git status --porcelain -- "${code[@]}")" ] || return 1
   git diff --quiet "$1" HEAD -- "${code[@]}" 2>/dev/null || return 1
   [ $# -eq 1 ] || git diff --quiet "$1" -- "${@:2}"
 }
 passed() {  # and at a commit since which no code changed
-  [ -z "$changed" ] && [ -e "$folder/$1.log" ] || return 1
+  [ -e "$folder/$1.log" ] || return 1
   local at
   at=$(tail -n 1 "$folder/$1.log" | sed -n 's/^passed at \([0-9a-f]*\) on .*/\1/p')
   # shellcheck disable=SC2086  # paths are words
   [ -n "$at" ] && same_code "$at" ${also[$1]:-}
-}
-
-at_commit() {
-  git rev-parse --short=12 HEAD
-  [ -z "$(git status --porcelain)" ] || echo "with changes"
 }
 
 is_chosen() {
@@ -57,19 +52,22 @@ is_chosen() {
 
 perform() {  # a part's name, and its command
   set +e
-  local name=$1 log=$folder/$1.log begun=$SECONDS code verdict commit
+  local name=$1 log=$folder/$1.log begun=$SECONDS status verdict commit rests=${also[$1]:-} changes=''
   shift
-  mapfile -t commit < <(at_commit)
+  commit=$(git rev-parse --short=12 HEAD)
+  # shellcheck disable=SC2086  # paths are words
+  same_code "$commit" $rests || changes=' with changes'
   rm -f "$folder/$name.jsonl"
   (set -euo pipefail; IST_STABILITY=$folder/$name.jsonl "$@") >"$log" 2>&1
-  code=$?
-  case $code in
+  status=$?
+  # shellcheck disable=SC2086
+  same_code "$commit" $rests || changes=' with changes'
+  case $status in
     0) verdict=passed ;;
     77) verdict=skipped ;;
     *) verdict=failed ;;
   esac
-  [ "${commit[*]}" = "$(at_commit | paste -sd ' ')" ] || commit[1]="with changes"
-  echo "$verdict at ${commit[*]} on $(date -u +%Y-%m-%d) in $((SECONDS - begun)) s" >>"$log"
+  echo "$verdict at $commit$changes on $(date -u +%Y-%m-%d) in $((SECONDS - begun)) s" >>"$log"
   [ "$verdict" = passed ] || [ "$verdict $(printenv IST_REQUIRE_ALL)" = "skipped " ]
 }
 

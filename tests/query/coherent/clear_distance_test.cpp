@@ -98,8 +98,8 @@ TEST_F(ClearDistance, IsKnownToBodiesAtRest) {
   EXPECT_LT(last.distance->upper, 1.6);
 }
 
-// Each clearance that comes true makes the next one wider. In the end a body can move by most of a
-// clearance, and be nearer than the clearance was wide.
+// Each clearance that comes true makes the next one wider, until the bodies can come nearer by most
+// of a clearance, and are then closer together than the clearance was wide.
 TEST_F(ClearDistance, IsLessByTheMotion) {
   make(icosphere(3, 1), box({-0.9, -0.7, -0.8}, {0.9, 0.7, 0.8}), 24);
   double gap = 0.05, known = 0;

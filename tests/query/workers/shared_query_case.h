@@ -29,13 +29,13 @@ inline bool ask_until(const std::function<bool()>& is_right, const std::function
 }
 
 /// Asks until the second worker, in one query, has done chunks and had no room for others. A worker
-/// that is late leaves one chunk, its last, to the caller. If it left two, it had no room for one of
-/// them.
+/// that is late leaves one chunk, its last, to the caller. If it left two, it had no room for one
+/// of them.
 inline bool ask_until_short_of_room(const Query& query, const std::function<bool()>& is_right) {
-  Sharing before = query.sharing();
+  Sharing now = query.sharing();
   return ask_until(is_right, [&] {
-    const Sharing last = std::exchange(before, query.sharing());
-    return before.dropped >= last.dropped + 2 && before.chunks > last.chunks;
+    const Sharing before = std::exchange(now, query.sharing());
+    return now.dropped >= before.dropped + 2 && now.chunks > before.chunks;
   });
 }
 
