@@ -68,11 +68,14 @@ class Refusals(unittest.TestCase):
         self.assertIn("clang++-99 is missing: install it, or run scripts/setup.sh --cross", said)
 
     def test_a_missing_emulator(self):
-        for program in ("qemu-aarch64", "aarch64-linux-gnu-g++"):
+        programs = {"qemu-aarch64", "aarch64-linux-gnu-g++"}
+        for program in programs:
             with self.subTest(program):
                 self.setUp()
-                said = self.refused("--toolchain", SOURCE / "scripts/toolchains/arm64.cmake",
-                                    path=self.path_without(program))
+                path = self.path_without(*programs)
+                for other in programs - {program}:
+                    (pathlib.Path(path) / other).symlink_to("/bin/true")
+                said = self.refused("--toolchain", SOURCE / "scripts/toolchains/arm64.cmake", path=path)
                 self.assertIn(f"{program} is missing: run scripts/setup.sh --cross", said)
 
     def test_missing_node(self):

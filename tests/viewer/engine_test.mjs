@@ -207,7 +207,7 @@ async function short(use) {
 /** Does what needs memory, with more and more of it until there is enough; where it ends, `check` is called. */
 function untilItFits(memory, what, check) {
   let ended = 0;
-  for (memory.limit = memory.bytes; ; memory.limit += 2e6) {
+  for (memory.limit = memory.bytes; ; memory.limit += 4e6) {
     try {
       what();
       return ended;
