@@ -33,7 +33,7 @@ run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
 # the arithmetic of exact triangles are watched in the long run.
 run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3|scalar)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|table|tight)$|Thread\.|^Python\.(SweepParts|Threads)$|SplintModel|^Platforms$|OfMoreLeavesThan'
 # The rooms that the golden answers come from; the long run compiles all rooms, by clang for x86-64 and for ARM64 too.
-run "wasm -DIST_WITH_LOOP=OFF" golden_test
+run "wasm -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test
 part "the page"
 scripts/viewer.sh
 part "readers of tables"
