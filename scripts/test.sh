@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Sets up, builds as users do, and runs every test: what users build, by its golden answers; what has
-# threads under ThreadSanitizer; what reads files and what runs in vectors under AddressSanitizer and
-# UndefinedBehaviorSanitizer; golden answers in WebAssembly, by clang; then all, optimised with
-# assertions, the page in a browser among them.
+# Sets up, builds, and runs every test: what has threads under ThreadSanitizer, by a library that is
+# compiled file by file, as users do; what reads files and what runs in vectors under AddressSanitizer
+# and UndefinedBehaviorSanitizer; golden answers in WebAssembly, by clang and without assertions; then
+# all, optimised with assertions, the page in a browser among them.
 #
 #   scripts/test.sh          all but what takes long, 20 to 50 minutes from nothing built on two cores
 #   scripts/test.sh --long   that, and then hours of more: scripts/long.sh, which says what, and takes
@@ -24,11 +24,10 @@ setup=(--oracles --python --sweep --docs --viewer)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
 scripts/setup.sh "${setup[@]}"
 
-# What users build: the library file by file, since builds of several files as one hide a missing include. Its golden
-# answers are tested here, and its rooms in the long run.
-run "release -DIST_TESTS=ON" golden_test -L '^golden_test$'
+# File by file, since builds of several files as one hide a missing include. What users build, without ThreadSanitizer, is
+# tried in the long run.
 threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test workers_test coherent_test"
-run thread "$threaded" -R "^Threads\.(${threaded// /|})$"
+run "thread -DIST_UNITY=OFF" "$threaded" -R "^Threads\.(${threaded// /|})$"
 # What reads what a caller gives, and what runs in vectors; all rooms, all policies of random bodies and
 # the arithmetic of exact triangles are watched in the long run.
 run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3|scalar)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|table|tight)$|Thread\.|^Python\.(SweepParts|Threads)$|SplintModel|^Platforms$|OfMoreLeavesThan'

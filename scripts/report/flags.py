@@ -9,8 +9,9 @@ COMMAND = re.compile(r'^\s*(\w+)\s*\(((?:[^()"]|"(?:\\.|[^"\\])*"|\((?:[^()]|\([
 COMMENT = re.compile(r'("(?:\\.|[^"\\])*")|#[^\n]*')
 WORD = re.compile(r'(?:[^\s"]|"(?:\\.|[^"\\])*")+')
 SETTERS = re.compile(r"(add|target)_(compile|link)_(options|definitions|features)|set_(source_files|target)_properties")
-# Options of a compiler that leave the code as it is: warnings, names of folders, the compiler's own memory.
-IDLE = re.compile(r"-W|-f\w+-prefix-map=|--param=ggc-")
+# Options of a compiler that leave the code as it is: warnings, names of folders, the compiler's own memory, and exceptions from
+# sanitizers, under which no figure is measured.
+IDLE = re.compile(r"-W|-f\w+-prefix-map=|-fno-sanitize=|--param=ggc-")
 SCOPES = {"INTERFACE", "PRIVATE", "PUBLIC"}
 
 
