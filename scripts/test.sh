@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds, and runs every test: what has threads under ThreadSanitizer, by a library that is
+# Sets up, builds, and runs every test: what has threads under ThreadSanitizer, with the library
 # compiled file by file, as users do; what reads files and what runs in vectors under AddressSanitizer
 # and UndefinedBehaviorSanitizer; golden answers in WebAssembly, by clang and without assertions; then
 # all, optimised with assertions, the page in a browser among them.
@@ -24,8 +24,8 @@ setup=(--oracles --python --sweep --docs --viewer)
 [ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
 scripts/setup.sh "${setup[@]}"
 
-# File by file, since builds of several files as one hide a missing include. What users build, without ThreadSanitizer, is
-# tried in the long run.
+# File by file, since builds of several files as one hide a missing include. The long run tries what users build: the
+# same files without ThreadSanitizer.
 threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test workers_test coherent_test"
 run "thread -DIST_UNITY=OFF" "$threaded" -R "^Threads\.(${threaded// /|})$"
 # What reads what a caller gives, and what runs in vectors; all rooms, all policies of random bodies and
