@@ -60,6 +60,8 @@ MUTANTS = [
            [("src/ist/scene/table_reader.cpp", "if (!otherwise.empty()) noted", "if (false) noted")], ["ctest Docs.SceneReference"]),
     Mutant("left-without-a-reason", "a page's code may be left without a reason",
            [("tests/docs/pages.py", r"output varies), \S.*", "output varies).*")], ["ctest Docs.Refusals"]),
+    Mutant("scripts-left-unnamed", "HACKING may leave out a script",
+           [("tests/docs/names.py", "sorted(needed - named)", "sorted(needed - needed)")], ["ctest Docs.Refusals"]),
     Mutant("guards-end-at-the-line", "tests that an invariant names after a line's end may be missing",
            [("tests/docs/guards.py", r"(?:,\s+)?)*)", "(?:, )?)*)")], ["ctest Docs.Refusals"]),
 ]

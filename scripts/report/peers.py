@@ -51,8 +51,8 @@ def compiled(context):
     if "peer_flags" not in context:
         return []
     flags = f"for the processor they run on (`{context['peer_flags']}`), as" if context["peer_flags"] else "for any processor, though"
-    return [f"Header-only libraries, and the code here that calls the others, are compiled {flags} IST chooses its "
-            "vectors by the processor; the others' own code is Debian's build.", ""]
+    return [f"CGAL is made of headers, and OpenVDB's grids are read by headers: they, and the code here that calls the others, are compiled {flags} "
+            "IST chooses its vectors by the processor. The own code of FCL, Embree and Bullet is Debian's build.", ""]
 
 
 def versions(results):

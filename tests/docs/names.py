@@ -1,5 +1,5 @@
 """Checks the names in capitals on README and the pages of docs: each is in a public header, or is an option of CMake or a
-variable of the environment that something reads."""
+variable of the environment that something reads. Checks the names of scripts in HACKING: each is there, and none is left out."""
 
 import pathlib
 import re
@@ -9,6 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 NAME = re.compile(r"\bIST_[A-Z][A-Z0-9_]*\b")
 # option(NAME …) and set(NAME "…" CACHE …) of CMake; getenv("NAME"), environ["NAME"], environ.get("NAME"), $ENV{NAME}, ${NAME:-…}.
 READ = re.compile(r"\b(?:option\(|set\((?=\w+ \"[^\"]*\" CACHE)|getenv\(\"|environ(?:\[|\.get\()\"|ENV\{)(IST_\w+)|\$\{(IST_\w+):-")
+SCRIPT = re.compile(r"\b[a-z]\w*\.(?:sh|py|mjs)\b")
 SOURCES = ("*.cpp", "*.h", "*.py", "*.sh", "*.cmake", "CMakeLists.txt")
 
 
@@ -29,9 +30,20 @@ def unknown(text, names):
     return [(number, name) for number, line in enumerate(text.splitlines(), 1) for name in NAME.findall(line) if name not in names]
 
 
+def scripts_wrong(text, scripts, others):
+    """What is wrong with the names of scripts in a text: those that neither `scripts` nor `others` have, and those of `scripts`
+    that it leaves out. A file of Python behind a shell script of the same name needs none of its own."""
+    named = set(SCRIPT.findall(text))
+    needed = {name for name in scripts if name.removesuffix(".py") + ".sh" not in scripts or name.endswith(".sh")}
+    return [f"there is no {name}" for name in sorted(named - scripts - others)] + [f"{name} is not named" for name in sorted(needed - named)]
+
+
 def main():
     pages, names = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "src").glob("*/README.md")], known()
     wrong = [f"{page.relative_to(ROOT)}:{number}: there is no {name}" for page in pages for number, name in unknown(page.read_text(), names)]
+    scripts = {file.name for file in (ROOT / "scripts").iterdir() if SCRIPT.fullmatch(file.name)}
+    others = {file.name for folder in ("tests", "src", "bench", "scripts") for file in (ROOT / folder).rglob("*") if SCRIPT.fullmatch(file.name)}
+    wrong += [f"HACKING.md: {what}" for what in scripts_wrong((ROOT / "HACKING.md").read_text(), scripts, others)]
     print("\n".join(wrong), file=sys.stderr)
     print(f"{len(pages)} pages, {len(names)} names, {len(wrong)} that are not there")
     return 1 if wrong else 0

@@ -119,6 +119,13 @@ class Names(unittest.TestCase):
         self.assertEqual(names.unknown("a\nb `IST_ERROR_HANDLE` and IST_OK\n", known), [(2, "IST_ERROR_HANDLE")])
         self.assertEqual(names.unknown("IST_OK, IST_MOST_BODIES, IST_API, -D IST_WITH_TBB=OFF, IST_LIBRARY=a.so\n", known), [])
 
+    def test_scripts_that_are_not_there_or_left_out(self):
+        def wrong(text):
+            return names.scripts_wrong(text, {"test.sh", "mutate.sh", "mutate.py", "build_table.py"}, {"own_test.py"})
+
+        self.assertEqual(wrong("`test.sh`, `mutate.sh`, `build_table.py`; a `*_test.py`, as own_test.py\n"), [])
+        self.assertEqual(wrong("`tests.sh`, `mutate.sh`, `build_table.py`\n"), ["there is no tests.sh", "test.sh is not named"])
+
 
 class Guards(unittest.TestCase):
     def flaws(self, invariants, presets=("test",)):
