@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests the tests: breaks the code in one named way after the other (scripts/mutants), in a copy,
-# and runs tests until one fails. A mutant that no test kills fails the run. All of them take about
-# half an hour on two cores. Writes perf/MUTANTS.md, where a run of some renews their rows.
+# and runs tests until one fails. A mutant that no test kills fails the run. All of them take
+# up to three hours on two cores. Writes perf/MUTANTS.md, where a run of some renews their rows.
 #
 #   scripts/mutate.sh               every mutant
 #   scripts/mutate.sh NAME...       those whose names contain one of these words

@@ -44,7 +44,7 @@ int run(int argc, char** argv) {
   const std::unique_ptr<CLI::App> app = make_app();
   std::vector<std::string> words = words_of(argc, argv);
   try {
-    refuse_unknown_words(*app, words);
+    refuse_wrong_words(*app, words);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app->parse(words);
   } catch (const CLI::Success& asked) {  // help, or the version

@@ -59,7 +59,7 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
-void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& words) {
+void refuse_wrong_words(const CLI::App& app, const std::vector<std::string>& words) {
   if (words.empty()) return;
   const std::vector<std::string> subcommands = subcommands_of(app);
   const std::string& first = words.front();
@@ -74,7 +74,10 @@ void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& w
     if (word == "--") return;
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
-    if (std::find(options.begin(), options.end(), name) != options.end()) continue;
+    if (std::find(options.begin(), options.end(), name) != options.end()) {
+      if (name == word || command.get_option(name)->get_items_expected_max() > 0) continue;
+      throw CLI::ValidationError(name, "takes no value; give it alone");
+    }
     throw CLI::ValidationError(name, renamed(name, with_nearest("no such option", name, options)));
   }
 }

@@ -12,7 +12,8 @@ namespace ist::cli {
 
 /// Throws CLI::ValidationError for a subcommand or an option that `app` does not have, and names
 /// the one that is spelled most like it. Otherwise CLI11 would first ask for what is required.
-void refuse_unknown_words(const CLI::App& app, const std::vector<std::string>& words);
+/// Throws it for a value of a flag too, as in --json=banana, for which CLI11 wants a number.
+void refuse_wrong_words(const CLI::App& app, const std::vector<std::string>& words);
 
 /// Returns the first word and a space, where it is a subcommand; else nothing.
 [[nodiscard]] std::string subcommand_among(const CLI::App& app, int argc, char** argv);

@@ -150,6 +150,13 @@ TEST_F(Usage, WhatIsNoNumber) {
   refuses({"bench", "--seconds", "ten"}, "--seconds = ten: give a number as its help says");
 }
 
+TEST_F(Usage, AValueOfAFlag) {
+  for (const char* value : {"banana", "", "1", "true", "false"}) {
+    refuses({"bench", std::string("--json=") + value}, "--json: takes no value; give it alone");
+    refuses({std::string("--version=") + value}, "--version: takes no value; give it alone");
+  }
+}
+
 TEST_F(Usage, OptionsOfBuild) {
   const std::string mesh = ball(), tree = path("out.ist");
   const auto refuses_with = [&](const std::string& flag, const std::string& value,

@@ -34,7 +34,7 @@ def scripts_wrong(text, scripts, others):
     """What is wrong with the names of scripts in a text: those that neither `scripts` nor `others` have, and those of `scripts`
     that it leaves out. A file of Python behind a shell script of the same name needs none of its own."""
     named = set(SCRIPT.findall(text))
-    needed = {name for name in scripts if name.removesuffix(".py") + ".sh" not in scripts or name.endswith(".sh")}
+    needed = {name for name in scripts if name.removesuffix(".py") + ".sh" not in scripts}
     return [f"there is no {name}" for name in sorted(named - scripts - others)] + [f"{name} is not named" for name in sorted(needed - named)]
 
 

@@ -129,7 +129,7 @@ void press_for(double voxel_size, double give, int count) {
 
 // A leaf's ball is no wider, m: a voxel's diagonal. A surface that lies deeper in the other body is
 // in none of the balls that hold the other surface. Of 1,200 presses with voxels of 0.2 mm, whose
-// diagonal is 0.346 mm, the hardest (1.6 N) needs 0.302 mm.
+// diagonal is 0.346 mm, the deepest (at 1.6 N) needs 0.302 mm.
 double widest_ball(double voxel_size) { return std::sqrt(3.0) * 1e-3 * voxel_size; }
 
 // Two presses by default; with IST_EFFORT=600 an hour, with voxels of either size.
