@@ -24,7 +24,7 @@ MEMORIES = [  # name, bytes a transfer, transfers a second, share
     ("one 16-bit SDRAM at 100 MHz", 2, 100e6, 0.5),
     ("one 16-bit DDR3 at 400 MHz", 2, 800e6, 0.5),
 ]
-CONTACT_BYTES = 8  # two leaves of 32 bits
+LEAF_PAIR_BYTES = 8  # two leaves of 32 bits
 SERVO = 1000  # Hz
 
 HEAD = """# The pair test in hardware
@@ -96,8 +96,8 @@ def near_misses(runs):
         return [*lines, "It calls no miss a hit."]
     lines += [f"At most {100 * worst['false_hit_rate']:.3f} % of the misses become hits. They cost at most"
               f" {100 * (more['pairs'] / more['pairs_exact'] - 1):.2f} % more pairs, and"]
-    lines.append(f"at most {extra:,} more contacts, of {int(found['contacts_exact']):,}." if extra > 0
-                 else "no more contacts.")
+    lines.append(f"at most {extra:,} more leaf pairs, of {int(found['contacts_exact']):,}." if extra > 0
+                 else "no more leaf pairs.")
     return lines
 
 
@@ -110,14 +110,14 @@ def worst_tick(runs, latency, clock):
     worst = [max((run for run in runs if run["voxel_size"] == size), key=lambda run: run["pairs"]) for size in sizes]
     clocks = CLOCKS + ([clock] if clock else [])
     name = lambda hertz: f"{hertz / 1e6:g} MHz" if hertz in CLOCKS else f"{hertz / 1e6:.1f} MHz, as placed"
-    traffic = lambda run: run["words"] * run["word_bytes"] + run["contacts"] * CONTACT_BYTES
+    traffic = lambda run: run["words"] * run["word_bytes"] + run["contacts"] * LEAF_PAIR_BYTES
     waiting = lambda run: run["pairs"] + latency * run["opened"]
     of = lambda run: f"{run['voxel_size']:g}"
 
     lines = ["## The worst tick, on paper", "",
              "This is an estimate; no such circuit was built. The counts are a query's, down two trees, at the pose of the closing with most",
              f"tests; the clocks, and the memories' share of their highest rate, are assumed. **Bold** is {SERVO:,} Hz or more.", "",
-             *table(["voxel", "worst at dz", "pairs P", "pairs opened O", "words read W", "contacts C", "centres moved"],
+             *table(["voxel", "worst at dz", "pairs P", "pairs opened O", "words read W", "leaf pairs C", "centres moved"],
                     [[of(run), run.parts[2], *(f"{int(run[key]):,}" for key in ("pairs", "opened", "words", "contacts", "moved"))]
                      for run in worst]), "",
              "**By the circuit**: one unit, at one pair a clock, gives clock / P ticks a second if it never waits, because other pairs are",
@@ -125,9 +125,9 @@ def worst_tick(runs, latency, clock):
              *table(["clock", *(f"voxel {of(run)}" for run in worst)],
                     [[name(hertz), *(f"{rate(hertz / run['pairs'])} … {rate(hertz / waiting(run))} Hz" for run in worst)]
                      for hertz in sorted(clocks)]), "",
-             f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a contact is written in "
-             f"{CONTACT_BYTES}.", "So a tick moves "
-             f"{int(worst[0]['word_bytes'])} W + {CONTACT_BYTES} C bytes, if no word is kept from one pair to the next, and each centre is",
+             f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a leaf pair is written in "
+             f"{LEAF_PAIR_BYTES}.", "So a tick moves "
+             f"{int(worst[0]['word_bytes'])} W + {LEAF_PAIR_BYTES} C bytes, if no word is kept from one pair to the next, and each centre is",
              "moved when its node is met. A kept centre would cost 12 bytes to write, and to read at each opened pair.", "",
              *table(["memory", "highest rate", "share assumed", *(f"voxel {of(run)}" for run in worst)],
                     [["bytes a tick", "", "", *(f"{int(traffic(run)):,}" for run in worst)]]

@@ -170,13 +170,13 @@ def spheres_text(results):
         "at compile time.")
 
 
-def contacts_text(variants):
+def leaf_pairs_text(variants):
     found = listing(f"{int(variants.of(step, 'contacts', '0.0')):,} with {name}" for step, name in (
         ("pointers_simple", "circumspheres"), ("pointers_table", "the table"), ("batches", "the table in batches"),
         ("tight", "tight balls"), ("slab", "slabs")))
     return (
         "Steps that change the bounds change the answer too, within the guarantee: they drop pairs of leaves "
-        f"whose surfaces do not meet. Contacts at dz = 0: {found}. Later steps keep each of them, and their "
+        f"whose surfaces do not meet. Leaf pairs at dz = 0: {found}. Later steps keep each of them, and their "
         "order.")
 
 
@@ -191,8 +191,8 @@ def chapter(results, pictures):
         "Several parts distinguish the fast query from the published one. The article does not say how its nodes are linked: pointers are assumed. Here the parts are added one by one, and then left "
         f"out one by one. All variants query the same trees of the {first['label']} jaws at the same poses in one "
         "process, in turns, so that other load on the machine affects all of them. Each answer is checked: variants "
-        "with the same search and the same bounds give the same contacts and make the same number of tests, and the two "
-        "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted contacts: "
+        "with the same search and the same bounds give the same leaf pairs and make the same number of tests, and the two "
+        "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted leaf pairs: "
         f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, the fewest for "
         "the slowest variants. A test compares the bounds of two nodes. Losses are bold: factors below "
         f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise. The reason of a loss is the work that the part adds, in the code; nothing here measures it alone.", "",
@@ -210,7 +210,7 @@ def chapter(results, pictures):
     for size in SIZES:
         lines += [f"### The same spheres on both sides, at {size} mm", "", *same_table(Variants(results, "same", size)), ""]
     lines += [same_text(), ""]
-    lines += [layout_text(ladders[finest]), "", contacts_text(ladders[finest]), "", spheres_text(results), ""]
+    lines += [layout_text(ladders[finest]), "", leaf_pairs_text(ladders[finest]), "", spheres_text(results), ""]
     for size in SIZES:
         lines += [f"### Left out one by one, at {size} mm", ""] + without_table(withouts[size]) + [""]
         lines += [without_verdict(withouts[size], size), ""]

@@ -6,13 +6,13 @@ from report.text import number, table
 PROGRAMS = ["world_bench", "loop_bench"]
 SECTIONS = {"In the loop": "loop_bench", "In a world": "world_bench"}
 
-# The most that is promised: times the same pairs one by one, and µs.
+# The goals: how many times the same pairs one by one at most, and how many µs at most.
 MOST_TIMES, MOST_APART, MOST_AT_REST = 1.15, 2, 20
 GRIDS = {"a_pair_apart": ("apart", MOST_APART),
          "a_pair_near_and_not_prepared": ("whose balls overlap, without a query", None),
          "hundred_at_rest": ("none near", MOST_AT_REST),
          "hundred_moving": ("none near", None)}
-# What each side does that the other does not: why a promise may fail.
+# What each side does that the other does not: why a goal may be missed.
 TOGETHER = "a tick also divides its time among the pairs, and joins their answers"
 OF_WORLD = "a world also looks for the pairs that are near, and lists them"
 
@@ -56,12 +56,12 @@ def _grid(name, run):
 
 
 def _judged(value, most):
-    """A number; bold where it is more than was promised."""
+    """A number; bold where it misses its goal."""
     return bold_if(number(value), most is not None and value > most)
 
 
 def _verdict(what, value, most, unit, reason=NOT_EXPLAINED):
-    """A sentence that says whether a promise holds, and why one that does not may fail."""
+    """A sentence that says whether a goal is met, and why one that is not may be missed."""
     if value <= most:
-        return f"{what} {number(value)}{unit}: at most {number(most)} was promised."
-    return f"**{what} {number(value)}{unit}; at most {number(most)} was promised** ({reason})."
+        return f"{what} {number(value)}{unit}: the goal is at most {number(most)}."
+    return f"**{what} {number(value)}{unit}; the goal is at most {number(most)}** ({reason})."

@@ -10,17 +10,24 @@ ELSEWHERE = json.loads((pathlib.Path(__file__).parents[2] / "perf/elsewhere.json
 
 
 def native_fcl(question, asked):
-    """Returns a sentence for below the table of a question, with the poses where FCL would win by the greater factor."""
+    """Returns a sentence for below the table of a question, with the poses where FCL would win by its factors."""
     factors = ELSEWHERE["native_fcl"]["times_as_fast"].get(question)
     if factors is None or "fcl" not in asked.players:
         return []
     least, most = (number(factor) for factor in factors)
     factor = least if least == most else f"{least} to {most}"
-    won = [pose for pose in asked.poses if would_win(asked, pose, max(factors))]
-    ahead = (f"By the greater factor it would be the fastest of those without a mark at {len(won)} of {len(asked.poses)} poses "
-             f"({', '.join(won)})." if won else "By this factor it would win at no pose.")
+    by_greater, by_less = ([pose for pose in asked.poses if would_win(asked, pose, of(factors))] for of in (max, min))
+    which = ("this factor" if least == most else "either factor") if by_less == by_greater else "the greater factor"
+    ahead = f"By {which} it would win at no pose."
+    if by_greater:
+        ahead = (f"By {which} it would be the fastest of those without a mark at {len(by_greater)} of {len(asked.poses)} poses "
+                 f"({', '.join(by_greater)}){_less(by_less) if by_less != by_greater else ''}.")
     return [f"FCL compiled for its processor, with its own SSE code and without assertions, is some {factor} times faster than "
             f"Debian's, which this run measures ([{measured()}](elsewhere.json), in no number above). {ahead}", ""]
+
+
+def _less(poses):
+    return f", by the lesser one at {len(poses)}" + (f" ({', '.join(poses)})" if poses else "")
 
 
 def measured():

@@ -53,7 +53,7 @@ def _leaves(results, pictures):
              f"The same jaws in voxels from {number(max(sizes))} to {number(min(sizes))} mm. Surfaces that cross meet "
              "in a curve, so leaf pairs should grow as the root of the leaves; surfaces that lie on each other as the "
              "leaves themselves. Fitted from 0.8 mm on, by least squares of the logarithms:", ""]
-    lines += table(["dz, mm", "time grows as", "tests grow as", "finest, mm", "leaves there", "contacts", "median, µs"],
+    lines += table(["dz, mm", "time grows as", "tests grow as", "finest, mm", "leaves there", "leaf pairs", "median, µs"],
                    [[dz, f"leaves^{exponent:.2f}", f"leaves^{of_tests:.2f}", last.parts[1], last["leaves"],
                      last["contacts"], last["p50_us"]] for dz, exponent, of_tests, last in fits])
     return lines + ["", picture]
@@ -63,29 +63,29 @@ def _overlap(results, pictures):
     runs = results.runs(PROGRAM, "overlap")
     places = [float(run.parts[1]) for run in runs]
     touching = [run for run in runs if run["contacts"] > 0]
-    figure, (by_place, by_contacts) = pictures.figure(2)
+    figure, (by_place, by_pairs) = pictures.figure(2)
     by_place.plot(places, [run["p50_us"] for run in runs], **style("slab", label="median"))
     by_place.plot(places, [run["p99_us"] for run in runs], "--", color=style("slab")["color"], label="99 of 100")
     by_place.set(xlabel="dz, mm (0: full occlusion)", ylabel="time of a query, µs", title="Along the closing", ylim=0)
-    by_contacts.plot([run["contacts"] for run in touching], [run["p50_us"] for run in touching], "D",
-                     color=COLOURS[0], label="median, against contacts")
+    by_pairs.plot([run["contacts"] for run in touching], [run["p50_us"] for run in touching], "D",
+                     color=COLOURS[0], label="median, against leaf pairs")
     slope, start = numpy.polyfit([run["contacts"] for run in touching], [run["p50_us"] for run in touching], 1)
     ends = numpy.array([0, max(run["contacts"] for run in touching)])
-    by_contacts.plot(ends, start + slope * ends, "-", color="#555555",
-                     label=f"fit: {start:.0f} µs + {1e3 * slope:.0f} ns a contact")
-    by_contacts.set(xlabel="contacts (leaf pairs)", ylabel="time of a query, µs", title="Against contacts", ylim=0)
-    for axes in (by_place, by_contacts):
+    by_pairs.plot(ends, start + slope * ends, "-", color="#555555",
+                     label=f"fit: {start:.0f} µs + {1e3 * slope:.0f} ns a leaf pair")
+    by_pairs.set(xlabel="leaf pairs", ylabel="time of a query, µs", title="Against leaf pairs", ylim=0)
+    for axes in (by_place, by_pairs):
         axes.legend(fontsize=7)
-    picture = pictures.save(figure, "scaling_overlap", "Time of a query along a closing, and against its contacts",
+    picture = pictures.save(figure, "scaling_overlap", "Time of a query along a closing, and against its leaf pairs",
                             queries(runs))
     apart, closed = runs[0], runs[-1]
-    lines = ["### Against overlap and contacts", "",
+    lines = ["### Against overlap and leaf pairs", "",
              f"The lower jaw closes in steps of {number(places[1] - places[0])} mm. From a gap of {number(apart['gap_mm'])} mm to full occlusion "
              f"the time grows from {number(apart['p50_us'])} to {number(closed['p50_us'])} µs, "
              f"{number(closed['p50_us'] / apart['p50_us'])} times. Where the jaws touch, it is {number(start, 2)} µs "
-             f"and {number(1e3 * slope, 2)} ns a contact, by least squares. The number of pairs of triangles that meet, "
+             f"and {number(1e3 * slope, 2)} ns a leaf pair, by least squares. The number of pairs of triangles that meet, "
              "found exactly, shows how far they overlap. The gap is the distance of the triangles.", ""]
-    lines += table(["dz, mm", "gap, mm", "triangle pairs", "contacts", "tests", "median, µs", "99 of 100, µs",
+    lines += table(["dz, mm", "gap, mm", "triangle pairs", "leaf pairs", "tests", "median, µs", "99 of 100, µs",
                     "ns a test"],
                    [[run.parts[1], run["gap_mm"], run["triangle_pairs"], run["contacts"], run["tests"], run["p50_us"],
                      run["p99_us"], 1e3 * run["p50_us"] / run["tests"]] for run in runs])

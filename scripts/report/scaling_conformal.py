@@ -9,7 +9,7 @@ TICK = 1000  # µs, of a haptic loop at 1 kHz
 
 def section(results, pictures):
     runs = results.runs(PROGRAM, "conformal")
-    figure, (time, contacts) = pictures.figure(2)
+    figure, (time, pairs) = pictures.figure(2)
     rows = []
     kinds = [(kind, gap) for kind in ("plates", "shells") for gap in ("0.05", "0.5")]
     for (kind, gap), colour, mark in zip(kinds, COLOURS, "DosP"):
@@ -19,27 +19,27 @@ def section(results, pictures):
         time.loglog(area, times, "-" + mark, color=colour, label=f"{kind}, {gap} mm apart: area^{exponent:.2f}")
         met = [(run["area_mm2"], run["contacts"]) for run in own if run["contacts"] > 0]
         if met:
-            contacts.loglog(*zip(*met), "-" + mark, color=colour, label=f"{kind}, {gap} mm apart")
+            pairs.loglog(*zip(*met), "-" + mark, color=colour, label=f"{kind}, {gap} mm apart")
         last = own[-1]
         rows.append([f"{kind}, {gap} mm", f"area^{exponent:.2f}", last["area_mm2"], last["leaves"], last["contacts"],
                      last["tests"], 1e-3 * last["p50_us"], 1e3 * last["p50_us"] / last["tests"],
                      (TICK / factor) ** (1 / exponent)])
     time.axhline(TICK, color="#555555", linestyle=":", label="1 ms")
     time.set(ylabel="time of a query, µs", title="Time against area (medians)")
-    contacts.set(ylabel="contacts (leaf pairs)", title="Contacts against area")
-    for axes in (time, contacts):
+    pairs.set(ylabel="leaf pairs", title="Leaf pairs against area")
+    for axes in (time, pairs):
         axes.set_xlabel("area that lies along the other body, mm²")
         axes.legend(fontsize=7)
-    picture = pictures.save(figure, "scaling_conformal", "Time and contacts against conformal area, log-log",
+    picture = pictures.save(figure, "scaling_conformal", "Time and leaf pairs against conformal area, log-log",
                             queries(runs))
     worst = max(runs, key=lambda run: run["p50_us"])
     lines = ["### Against conformal area", "",
-             "Surfaces that lie along each other have the most contacts: two square plates, and a sphere in "
-             "a shell. Leaves within reach of each other are contacts, so the nearer surface has many times more. The "
+             "Surfaces that lie along each other have the most leaf pairs: two square plates, and a sphere in "
+             "a shell. Leaves whose bounds overlap are leaf pairs, so the nearer surface has many times more. The "
              f"worst here, {worst.parts[1]} {worst.parts[2]} mm apart on {number(worst['area_mm2'])} mm², takes "
              f"{verdict(worst)} The last column gives the area at which the "
              "fitted power reaches 1 ms.", ""]
-    lines += table(["bodies", "time grows as", "largest area, mm²", "leaves", "contacts", "tests", "median, ms",
+    lines += table(["bodies", "time grows as", "largest area, mm²", "leaves", "leaf pairs", "tests", "median, ms",
                     "ns a test", "1 ms by the fit, mm²"], rows)
     return lines + ["", picture]
 

@@ -77,5 +77,5 @@ def _largest(run, line):
             f"{number(run['leaves'] / 1e6)} million leaves. Building took {number(run['peak_MB'])} MB; the line "
             f"predicts {number(peak)} ({off[0]:+.1f} %). Holding took {number(_held(run))} MB; it predicts {number(held)} "
             f"({off[1]:+.1f} %): {verdict} {worst:.0f} %. A query in full occlusion takes "
-            f"{number(1e-3 * run['p50_us'])} ms there, with {number(run['contacts'])} contacts and "
+            f"{number(1e-3 * run['p50_us'])} ms there, with {number(run['contacts'])} leaf pairs and "
             f"{number(run['tests'])} tests (median of {int(run['rounds'])}).")

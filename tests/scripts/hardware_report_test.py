@@ -67,8 +67,8 @@ class HardwareReport(unittest.TestCase):
         self.assertIn("It calls no miss a hit.", self.report(run(0.4, 0.0)))
         said = self.report(run(0.4, 0.0), run(0.4, -1.0, false_hits=100, false_hit_rate=0.002, pairs_exact=80000))
         self.assertIn("At most 0.200 % of the misses become hits. They cost at most 25.00 % more pairs", said)
-        self.assertIn("no more contacts.", said)
-        self.assertIn("at most 3 more contacts, of 10", self.report(
+        self.assertIn("no more leaf pairs.", said)
+        self.assertIn("at most 3 more leaf pairs, of 10", self.report(
             run(0.4, 0.0, false_hits=1, false_hit_rate=0.001, contacts=13)))
 
     def test_the_worst_tick_is_the_one_with_most_pairs(self):
