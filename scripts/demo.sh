@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Sets up, builds, times how two built-in jaws are searched as they close, and measures their bite. Arguments go to
-# `ist demo`, which then is all that is run.
+# Sets up this machine, builds the command, times searches of two built-in jaws as they close, and measures their bite.
+# With arguments it only runs `ist demo` with them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh >&2
 cmake --preset release >/dev/null
-cmake --build --preset release >&2
+cmake --build --preset release --target ist_cli >&2
 ist=build/release/ist
 [ $# -eq 0 ] || exec $ist demo "$@"
 

@@ -133,7 +133,8 @@ def main(ist, output):
             spheres, _ = read_ply(folder / f"{policy}.ply")
             spheres = np.column_stack([positions(spheres), spheres["radius"]]).astype(float)
             volume = 4 / 3 * np.pi * (spheres[:, 3] ** 3).sum() / 1000
-            panels.append((f"{policy}: {len(spheres):,} spheres of level {LEVEL}, {volume:,.0f} cm³", (0.80, 0.90, 0.74), lambda c, s=spheres: c.add_spheres(s)))
+            panels.append((f"{policy}: {len(spheres):,} spheres of level {LEVEL}, {volume:,.0f} cm³", (0.80, 0.90, 0.74),
+                           lambda c, s=spheres: c.add_spheres(s)))
 
         figure, places = plt.subplots(2, 3, figsize=(13.2, 8.9))
         for place, (title, colour, draw) in zip(places.flat, panels):

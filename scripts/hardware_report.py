@@ -89,7 +89,8 @@ def near_misses(runs):
     lost = sum(int(run["false_misses"]) for run in runs)
     lines = ["## How often a near miss is a hit", "",
              "The table counts the pairs that a query tests along a closing by `table` spheres, the misses among them (pairs without a common",
-             f"point), and the misses that the circuit calls hits. The circuit misses a hit in {lost:,} of {sum(int(run['pairs']) for run in runs):,} pairs"
+             "point), and the misses that the circuit calls hits. "
+             f"The circuit misses a hit in {lost:,} of {sum(int(run['pairs']) for run in runs):,} pairs"
              + (".", ": **this must not be.**")[lost > 0], "",
              *table(["voxel", "dz", "pairs tested", "misses", "of them called a hit", "part"], rows), ""]
     if worst["false_hits"] == 0:
@@ -125,8 +126,8 @@ def worst_tick(runs, latency, clock):
              *table(["clock", *(f"voxel {of(run)}" for run in worst)],
                     [[name(hertz), *(f"{rate(hertz / run['pairs'])} … {rate(hertz / waiting(run))} Hz" for run in worst)]
                      for hertz in sorted(clocks)]), "",
-             f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; a leaf pair is written in "
-             f"{LEAF_PAIR_BYTES}.", "So a tick moves "
+             f"**By memory**: a word has {int(worst[0]['word_bytes'])} bytes, a mask and a first child, and leaves have none; "
+             f"a leaf pair is written in {LEAF_PAIR_BYTES}.", "So a tick moves "
              f"{int(worst[0]['word_bytes'])} W + {LEAF_PAIR_BYTES} C bytes, if no word is kept from one pair to the next, and each centre is",
              "moved when its node is met. A kept centre would cost 12 bytes to write, and to read at each opened pair.", "",
              *table(["memory", "highest rate", "share assumed", *(f"voxel {of(run)}" for run in worst)],

@@ -1,25 +1,32 @@
 #!/usr/bin/env bash
-# Runs what takes hours, part by part: scripts/test.sh itself; the tests of what users build; the packages, and the
-# circuit's synthesis; golden answers by more compilers and optimisations; a program built for ARM64 from the package;
-# every room and test under the sanitizers; the hard cases of perf/STABILITY.md with 20 times the samples, and ten
-# million queries of real jaws; an hour of simulated pressing; a million ticks of coherent queries against fresh ones;
-# CloudCompare's distances; Blender; a release, built twice; the four doors of tests/doors in a bare Debian; each
-# fuzzer for 30 minutes. Parts that use one core run side by side.
+# Runs hours of tests, part by part. Parts that use one core run side by side.
+#
+#   suite            scripts/test.sh and scripts/test.sh --all
+#   samples          each test program with 20 times the random samples
+#   packages         the tests labelled long: packages, manual pages, wheels, the page in a browser, pictures
+#   as-users-build   five programs, compiled file by file without assertions, as users compile the library
+#   benches, portable, compile-all, release     builds that no test makes
+#   clang-tidy       the checks of .clang-tidy on the library and the command
+#   golden, arm64    golden answers by more compilers, optimisations and platforms
+#   sanitize-all     every test program under AddressSanitizer and UndefinedBehaviorSanitizer
+#   threads, kills, pressing, coherent, five-bodies, stability     hard cases with more samples still
+#   cloudcompare, blender, doors                what other programs and new users do with it
+#   mutants          scripts/mutate.sh: the tests notice deliberate faults
+#   fuzz-1 to 6      each fuzzer for 30 minutes
 #
 #   scripts/long.sh                 every part anew
-#   scripts/long.sh --resume        those that do not count at this commit
-#   scripts/long.sh PART …          these; a word stands for all parts that begin with it
+#   scripts/long.sh --resume        the parts that do not count at this commit
+#   scripts/long.sh PART ...        these; a word stands for all parts that begin with it
 #   scripts/long.sh --list          which parts count at this commit
 #
-# A part keeps its log, build/long/PART.log. The log's last line says whether the part passed, at which commit, when and
-# how long it took; where code is not committed, or changes meanwhile, it passes for nothing. A part that passed counts until
-# something else than pages and results changes: docs/, perf/ and the pages beside them. A door types what pages say, and counts
-# until one of these changes too. A test that ctest skips is counted as such; IST_REQUIRE_ALL=1 lets it fail. A part that fails ends this with 1, when all others have run. scripts/long_table.py writes the
-# results to docs/guarantees.md.
+# A part keeps its log, build/long/PART.log. Its last line is a stamp: passed or failed, the commit, the day and the time it
+# took. A part with uncommitted changes does not count. A part counts until something other than docs/, perf/ and pages
+# changes; a door also rests on the pages. A skipped test counts as skipped, or as failed with IST_REQUIRE_ALL=1. If a part
+# fails, the others still run, and the exit code is 1. scripts/long_table.py writes the results to docs/guarantees.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
-  -h | --help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,27s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
 source scripts/run_preset.sh
 source scripts/parts.sh
@@ -53,19 +60,30 @@ release() {  # made of the commit, twice
   rm -rf build/tried build/tried-draft
   scripts/release.sh --despite-figures --out build/tried
 }
+samples() {
+  local program
+  for program in build/test/tests/*_test; do
+    [[ $program == */ist_c11_test ]] || IST_EFFORT=20 "$program" --gtest_brief=1
+  done
+}
+suite() {
+  scripts/test.sh
+  scripts/test.sh --all
+}
 as_users_build="base_test mesh_test tree_test query_test search_test"
-installed() { scripts/setup.sh --oracles --python --sweep --docs --cross --viewer --hardware --package --cloudcompare --blender --slurm --doors; }
+installed() { scripts/setup.sh --all --lint --cross --cloudcompare --blender --slurm --doors; }
 
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
-alone suite scripts/test.sh
-alone as-users-build run "release -DIST_TESTS=ON" "$as_users_build" -L "^(${as_users_build// /|})$" -E 'RealPairs\.HaveTheTriangles'
+alone suite suite
+alone samples built samples
+alone as-users-build run "release -DIST_TESTS=ON" "$as_users_build" -R "^(${as_users_build// /|})"
 alone packages with_page ctest --preset test -L '^long$'
 alone benches benches
+alone clang-tidy scripts/lint.sh clang-tidy
 alone golden scripts/golden_table.py --check
 alone arm64 scripts/arm64_package.sh
 alone portable run "python -DIST_GOLDEN=ON" "ist_shared golden_test"
-# The sanitizers themselves allocate, where a thread begins, call the system, and take terabytes of addresses.
-alone sanitize-all run sanitize-all all -E '^(House|Figures|Report|HardwareReport|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|^(Package|Docs|Viewer|Allocations|SystemCalls)\.|MakesNoSystemCall$|^Faults\.MemoryThatEndsIsNamedWithTheRemedy$'
+alone sanitize-all run sanitize-all tests_fast -L '^fast$'
 alone compile-all with_page env IST_COMPILE_ALL=1 ctest --preset test -R '^(Package\.Subdirectory|Python\.Sdist)$'
 for jaws in built-in human; do
   alone cloudcompare-$jaws built /usr/bin/python3 -B tests/cli/occlusion/distances_by_cloudcompare.py "$jaws" build/test/ist "build/test/cloudcompare-$jaws"
@@ -79,6 +97,7 @@ aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQuery
 aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'
 settle 0
 alone release release
+alone mutants scripts/mutate.sh
 for door in scans haptics script cycles; do
   also[doors-$door]=$pages
   alone doors-$door tests/doors/$door.sh

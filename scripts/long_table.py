@@ -19,10 +19,12 @@ VERDICT = re.compile(r"(passed|skipped|failed) at (\w+)( with changes)? on ([\d-
 
 # What a part tries, by its name.
 PARTS = {
-    "suite": "`scripts/test.sh`",
+    "suite": "`scripts/test.sh` and `scripts/test.sh --all`",
+    "samples": "every test program with 20 times the random samples",
     "as-users-build": "tests of the library as users build it: file by file, without assertions",
     "packages": "tests of packages, wheels, the page in a browser, the circuit's synthesis",
     "benches": "all benchmarks compile without a warning",
+    "clang-tidy": "the library and the command pass clang-tidy",
     "golden": "golden answers by every compiler, optimisation and platform",
     "arm64": "a program built for ARM64 from the package",
     "portable": "golden answers of the portable library",
@@ -38,6 +40,7 @@ PARTS = {
     "coherent": "coherent queries against fresh ones",
     "five-bodies": "presses among five bodies",
     "release": "the release folder, made twice with the same bytes",
+    "mutants": "tests notice every deliberate fault",
     "doors-scans": "a door: I have scans",
     "doors-haptics": "a door: I build a haptic loop",
     "doors-script": "a door: I script",

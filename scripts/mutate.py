@@ -27,9 +27,9 @@ def fail(text):
 
 
 def sources():
-    for folder in ["src", "simd", "tests", "bench", "scripts", "docs", "perf"]:
+    for folder in ["src", "simd", "tests", "bench", "examples", "scripts", "docs", "perf"]:
         yield from (path for path in (ROOT / folder).rglob("*") if path.is_file())
-    for name in ["CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "HACKING.md", "CHANGELOG.md"]:
+    for name in ["CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md"]:
         yield ROOT / name
 
 

@@ -4,7 +4,6 @@
     scripts/readme_bench.py     after cmake --preset release && cmake --build --preset release; on a quiet machine
 """
 import os
-import pathlib
 import re
 import subprocess
 import sys

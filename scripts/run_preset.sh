@@ -5,16 +5,31 @@ jobs=$(nproc)
 
 part() { echo "== $1 (after $SECONDS s)"; }
 
-run() {  # preset and its options, targets to build, then arguments for ctest
-  local options=($1) targets=$2
-  local preset=${options[0]}
-  shift 2
-  part "preset ${options[*]}"
-  cmake --preset "${options[@]}" >/dev/null
-  # shellcheck disable=SC2086  # targets are words
-  if ! cmake --build --preset "$preset" --target $targets -- -j"$jobs" >"build/$preset.log"; then
+configure() {  # a preset and its options
+  mkdir -p build
+  cmake --preset "$@" >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+}
+
+build() {  # a preset and its targets; ninja's progress shows on a terminal
+  local preset=$1
+  shift
+  if [ -t 1 ]; then
+    cmake --build --preset "$preset" --target "$@" -- -j"$jobs"
+  elif ! cmake --build --preset "$preset" --target "$@" -- -j"$jobs" >"build/$preset.log" 2>&1; then
     cat "build/$preset.log"
     exit 1
   fi
-  ctest --preset "$preset" -j"$jobs" "$@" | grep -vE '^ *Start +[0-9]+:'
+}
+
+tests() {  # a preset for ctest, and its arguments
+  ctest --preset "$@" -j"$jobs" | grep -vE '^ *Start +[0-9]+:'
+}
+
+run() {  # a preset and its options, targets to build, then arguments for ctest
+  local options=($1) targets=($2)
+  shift 2
+  part "preset ${options[*]}"
+  configure "${options[@]}"
+  build "${options[0]}" "${targets[@]}"
+  tests "${options[0]}" "$@"
 }

@@ -1,43 +1,52 @@
 #!/usr/bin/env bash
-# Installs from Debian 12's packages what is missing to build and test. Works as root or with sudo,
-# and does nothing where all is there.
+# Installs the Debian 12 packages that are missing. It works as root or with sudo, and does nothing if all are installed.
 #
-#   scripts/setup.sh             what the library, the command and the tests need
-#   scripts/setup.sh --bench     also what the benchmarks and the plots need
-#   scripts/setup.sh --peers     also the libraries that bench/peers compares with
-#   scripts/setup.sh --fuzz      also what the fuzzers need
-#   scripts/setup.sh --hardware  also what simulates and synthesises the circuit
-#   scripts/setup.sh --oracles   also what reads and measures again what the command writes
-#   scripts/setup.sh --python    also what makes and tests the Python package
-#   scripts/setup.sh --sweep     also what runs sweeps on other engines: dask, GNU parallel
-#   scripts/setup.sh --slurm     also Slurm, which the tests run on one node of their own
-#   scripts/setup.sh --docs      also what makes a site of the pages and of the reference
-#   scripts/setup.sh --package   also what checks manual pages and Debian packages
-#   scripts/setup.sh --cloudcompare   also CloudCompare, which measures distances too
-#   scripts/setup.sh --blender   also Blender, in which its add-on is tested
-#   scripts/setup.sh --doors     also what walks the four doors: debootstrap, and what they take from here without a root
-#   scripts/setup.sh --viewer    also what makes and tests the page. It takes the commands node (18 or
-#                                later) and npm as they are there, and Debian's where they are not
-#   scripts/setup.sh --cross     also what builds and runs for ARM64 and WebAssembly, and clang 16; only
-#                                then the architecture arm64 is added to this machine's
+#   scripts/setup.sh             builds the command and the library
+#   scripts/setup.sh --tests     also builds and runs the fast tests
+#   scripts/setup.sh --all       also runs scripts/test.sh --all
+#   scripts/setup.sh --bench     also builds the benchmarks and draws the plots
+#   scripts/setup.sh --peers     also builds the libraries that bench/peers compares with
+#   scripts/setup.sh --fuzz      also builds the fuzzers
+#   scripts/setup.sh --lint      also checks style: clang-tidy, clang-format, flake8, prettier by npm, pre-commit
+#   scripts/setup.sh --hardware  also simulates and synthesises the circuit
+#   scripts/setup.sh --oracles   also reads and measures the command's files by other tools
+#   scripts/setup.sh --python    also makes and tests the Python package
+#   scripts/setup.sh --sweep     also runs sweeps by dask and GNU parallel
+#   scripts/setup.sh --slurm     also runs sweeps by Slurm, on one node of its own
+#   scripts/setup.sh --docs      also makes a site of the pages and of the reference
+#   scripts/setup.sh --package   also checks packages, manual pages and instruction counts
+#   scripts/setup.sh --cloudcompare   also measures distances by CloudCompare
+#   scripts/setup.sh --blender   also tests the add-on in Blender
+#   scripts/setup.sh --doors     also walks the four doors of tests/doors
+#   scripts/setup.sh --viewer    also makes and tests the page. It uses the node (18 or later) and npm that it finds, and
+#                                installs Debian's if it finds none
+#   scripts/setup.sh --cross     also builds and runs for ARM64 and WebAssembly, and with clang 16. It adds the
+#                                architecture arm64 to this machine
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
-  libeigen3-dev libtbb-dev libassimp-dev libhwy-dev libfmt-dev libxxhash-dev
-  libtomlplusplus-dev zlib1g-dev
-  libcli11-dev nlohmann-json3-dev libpng-dev
-  libgtest-dev libgmp-dev python3 valgrind clang-14
-  binutils dpkg-dev file locales)
+  libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
+  libcli11-dev nlohmann-json3-dev libpng-dev)
+tests=(libgtest-dev libgmp-dev libassimp-dev python3 python3-numpy locales)
 bench=(libbenchmark-dev python3-matplotlib)
-cross=(clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
+cross=(clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
   libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64
   zlib1g-dev:arm64 libpng-dev:arm64 libgtest-dev:arm64)
+arguments=()
 for argument in "$@"; do
   case $argument in
+    --all) arguments+=(--tests --oracles --python --sweep --docs --viewer --hardware --package) ;;
+    *) arguments+=("$argument") ;;
+  esac
+done
+for argument in "${arguments[@]}"; do
+  case $argument in
+    --tests) packages+=("${tests[@]}") ;;
+    --lint) packages+=(clang-tidy-14 clang-format-14 flake8 pre-commit) ;;
     --bench) packages+=("${bench[@]}") ;;
     --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
       libbullet-dev libcgal-dev libopenvdb-dev) ;;
-    --fuzz) packages+=(libclang-rt-14-dev llvm-14) ;;
+    --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
     --hardware) packages+=(iverilog verilator ghdl yosys) ;;
     --oracles) packages+=(python3-numpy python3-vtk9 python3-meshio) ;;
     --python) packages+=(python3-numpy python3-setuptools python3-wheel python3-build python3-venv python3-pip
@@ -45,7 +54,7 @@ for argument in "$@"; do
     --sweep) packages+=(python3-numpy python3-dask python3-distributed parallel) ;;
     --slurm) packages+=(slurm-wlm munge) ;;
     --docs) packages+=(doxygen mkdocs) ;;
-    --package) packages+=(man-db mandoc lintian) ;;
+    --package) packages+=(man-db mandoc lintian binutils dpkg-dev file clang-14 valgrind) ;;
     --cloudcompare) packages+=(cloudcompare) ;;
     --blender) packages+=(blender) ;;
     --doors) packages+=(debootstrap git python3-numpy python3-vtk9 python3-venv python3-pip python3-setuptools python3-wheel
@@ -57,20 +66,20 @@ for argument in "$@"; do
       viewer=true
       ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,22s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,26s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done
 
 # A package may be installed for several architectures.
 native=$(dpkg --print-architecture)
-# A node from elsewhere may be too old for the page's packages.
+# A node that Debian did not install may be too old for the page's packages.
 oldest_node=18
 check_node() {
   local version
   version=$(node --version | sed 's/^v//; s/\..*//')
   [ "$version" -ge $oldest_node ] && return
-  echo "setup: node is of version $version, and the page needs $oldest_node: take Debian's, by apt-get install nodejs" >&2
+  echo "setup: node has version $version, and the page needs $oldest_node: run apt-get install nodejs" >&2
   exit 1
 }
 missing=()
@@ -89,16 +98,19 @@ fi
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo >/dev/null; then
-    echo "setup: these packages are missing, and neither root nor sudo is here to install them:" >&2
-    echo "  apt-get install ${missing[*]}" >&2
+    echo "setup: packages are missing, and this user is neither root nor has sudo: ask for apt-get install ${missing[*]}" >&2
     exit 1
   fi
   as_root=(sudo)
 fi
 echo "setup: installing ${missing[*]}"
 if [[ ${missing[*]} == *:arm64* ]]; then "${as_root[@]}" dpkg --add-architecture arm64; fi
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-  "${missing[@]}" >/dev/null
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Acquire::Retries=3 "$@" >"$log" 2>&1; }
+if ! apt update || ! apt install -y --no-install-recommends "${missing[@]}"; then
+  echo "setup: apt-get failed ($(grep -m 1 '^E:' "$log" || tail -n 1 "$log")): check the network and /etc/apt/sources.list, and run this again" >&2
+  exit 1
+fi
 [ -z "${viewer:-}" ] || check_node
 echo "setup: done"

@@ -85,7 +85,8 @@ def main():
         "Each hard case with its number of samples, its worst error and the guaranteed bound. Made by",
         "`scripts/stability_report.sh`; every row is a test, and a run of all tests tries it too, with fewer samples.",
         "A case that is right or wrong counts wrong samples, and its bound is 0. Cases of real bodies have the names of their",
-        "meshes: `human` is one patient's jaws, `spl` a skull of the SPL's atlas (Surgical Planning Laboratory), and a mesh called `dirty` has faults.", "",
+        "meshes: `human` is one patient's jaws, `spl` a skull of the SPL's atlas (Surgical Planning Laboratory), "
+        "and a mesh called `dirty` has faults.", "",
         f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, "
         f"{len(broken)} broken.", "",
         "![The worst error of each case over its bound](pictures/stability.svg)", ""]

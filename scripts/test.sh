@@ -1,40 +1,79 @@
 #!/usr/bin/env bash
-# Sets up, builds, and runs every test: what has threads under ThreadSanitizer, with the library
-# compiled file by file, as users do; what reads files and what runs in vectors under AddressSanitizer
-# and UndefinedBehaviorSanitizer; golden answers in WebAssembly, by clang and without assertions; then
-# all, optimised with assertions, the page in a browser among them.
+# Sets up this machine, builds, and runs tests.
 #
-#   scripts/test.sh          all but what takes long, 20 to 50 minutes from nothing built on two cores
-#   scripts/test.sh --long   that, and then hours of more: scripts/long.sh, which says what, and takes
-#                            the words after --long
+#   scripts/test.sh            the fast tests, with a fifth of the random samples: 10 minutes on two cores from nothing
+#   scripts/test.sh --all      the rest that a landing needs: threads under ThreadSanitizer; readers and vector code
+#                              under AddressSanitizer and UndefinedBehaviorSanitizer; golden answers in WebAssembly; the
+#                              page; packages; other tools as oracles; and every test with all its samples
+#   scripts/test.sh LABEL      the tests of one label: fast slow oracle page package long sanitize thread
+#   scripts/test.sh --long     hours of more, in parts: scripts/long.sh, which takes the words after --long
 #
-#   IST_DATA_DIR=FOLDER    where the real meshes are; by default ../shared/data
-#   IST_REQUIRE_ALL=1      a test that would be skipped fails; the tools that simulate and synthesise
-#                          the circuit, and those that check packages, are installed too
+#   IST_DATA_DIR=FOLDER    the folder of real meshes; ../shared/data if it is not set
+#   IST_EFFORT=FACTOR      the share of random samples; 0.2 for the fast tests and under sanitizers, else 1
+#   IST_REQUIRE_ALL=1      a test that would be skipped fails
 set -euo pipefail
 cd "$(dirname "$0")/.."
-case ${1:-} in
-  "") ;;
-  --long) shift; exec scripts/long.sh "$@" ;;
-  -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  *) echo "test: unknown option $1; see --help" >&2; exit 2 ;;
-esac
 source scripts/run_preset.sh
-setup=(--oracles --python --sweep --docs --viewer)
-[ "${IST_REQUIRE_ALL:-}" != 1 ] || setup+=(--hardware --package)
-scripts/setup.sh "${setup[@]}"
+few=${IST_EFFORT:-0.2} all=${IST_EFFORT:-1}
+what=${1:-fast}
+[ $# -le 1 ] || [ "$what" = --long ] || { echo "test: one word at a time, and \"$2\" is a second one; see --help" >&2; exit 2; }
 
-# File by file, since builds of several files as one hide a missing include. The long run tries what users build: the
-# same files without ThreadSanitizer.
-threaded="base_test thread_ranges_test capi_test loop_test tree_test search_test workers_test coherent_test"
-run "thread -DIST_UNITY=OFF" "$threaded" -R "^Threads\.(${threaded// /|})$"
-# What reads what a caller gives, and what runs in vectors; all rooms, all policies of random bodies and
-# the arithmetic of exact triangles are watched in the long run.
-run sanitize "ist_shared capi_test ist_c11_test labels_test mesh_test search_test fuzz_test" -E '_NOT_BUILT|[/_](avx3|sse4|ssse3|scalar)$|/[a-z]+Published(Saved)?$|^(Viewer|Docs)\.|^(House|Figures|Report|MutantsStillApply|BenchCompare|LongRuns|Doors|Release)$|/(Guarantee|AllPairsOf)\.[A-Za-z]*/(simple|table|tight)$|Thread\.|^Python\.(SweepParts|Threads)$|SplintModel|^Platforms$|OfMoreLeavesThan'
-# The rooms that the golden answers come from; the long run compiles all rooms, by clang for x86-64 and for ARM64 too.
-run "wasm -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test
-part "the page"
-scripts/viewer.sh
-part "readers of tables"
-scripts/sweep_readers.sh
-run test all -LE '^long$'
+# A build with every instruction set serves the fast tests too, and stays.
+instruction_sets() { grep -qs '^IST_FEW_TARGETS:BOOL=OFF' build/test/CMakeCache.txt && echo OFF || echo ON; }
+
+count() {  # of the tests with a label
+  ctest --test-dir build/test -N -L "^$1$" | sed -n 's/^Total Tests: //p'
+}
+
+fast() {
+  scripts/setup.sh --tests
+  part "fast tests"
+  configure test "-DIST_FEW_TARGETS=$(instruction_sets)"
+  build test tests_fast
+  echo "left out: four fifths of the random samples, sanitizers, WebAssembly, and $(count slow) slow, $(count oracle) oracle," \
+    "$(count page) page and $(count package) package tests; scripts/test.sh --all runs them"
+  echo "left out: $(count long) long tests; scripts/test.sh --long runs them"
+  IST_EFFORT=$few tests fast
+}
+
+threads() {  # file by file, because builds of several files as one hide a missing include
+  IST_EFFORT=$few run "thread -DIST_UNITY=OFF" tests_thread -L '^thread$'
+}
+
+sanitize() { IST_EFFORT=$few run sanitize tests_sanitize -L '^sanitize$'; }
+
+golden() { run "wasm -DIST_WERROR=ON -DIST_WITH_LOOP=OFF" golden_test; }
+
+page() {
+  part "the page"
+  scripts/viewer.sh
+}
+
+labelled() {  # the rest of the test preset: arguments for ctest
+  part "preset test"
+  configure test -DIST_FEW_TARGETS=OFF
+  build test all
+  IST_EFFORT=$all tests "$@"
+}
+
+everything=(--tests --oracles --python --sweep --docs --viewer --hardware --package)
+case $what in
+  fast) fast ;;
+  thread) scripts/setup.sh --tests; threads ;;
+  sanitize) scripts/setup.sh --tests; sanitize ;;
+  page) scripts/setup.sh --tests --viewer; page; labelled test -L '^page$' ;;
+  slow | oracle | package | long) scripts/setup.sh "${everything[@]}"; labelled test -L "^$what\$" ;;
+  --all)
+    scripts/setup.sh "${everything[@]}"
+    threads
+    sanitize
+    golden
+    page
+    part "readers of tables"
+    scripts/sweep_readers.sh
+    labelled all
+    ;;
+  --long) shift; exec scripts/long.sh "$@" ;;
+  -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0" ;;
+  *) echo "test: there is no label or option \"$what\": take fast, slow, oracle, page, package, long, sanitize, thread, --all or --long" >&2; exit 2 ;;
+esac

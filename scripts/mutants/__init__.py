@@ -2,4 +2,5 @@
 
 from . import bodies, fronts, loop, meshes, page, project, promises, query, sweeps, tools, tree, triangles, worlds
 
-MUTANTS = [mutant for room in (query, fronts, tree, meshes, triangles, loop, bodies, tools, promises, worlds, sweeps, page, project) for mutant in room.MUTANTS]
+MUTANTS = [mutant for room in (query, fronts, tree, meshes, triangles, loop, bodies, tools, promises, worlds, sweeps, page, project)
+           for mutant in room.MUTANTS]

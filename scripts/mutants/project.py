@@ -23,9 +23,11 @@ MUTANTS = [
 
     # The report.
     Mutant("verdict-always-agrees", "the worst case is right before collision wherever it is",
-           [("scripts/report/seed_rates.py", "\"*Agrees*\" if beyond in (0, 1) else", "\"*Agrees*\" if True else")], ["python verdicts_seed_test.py"]),
+           [("scripts/report/seed_rates.py", "\"*Agrees*\" if beyond in (0, 1) else", "\"*Agrees*\" if True else")],
+           ["python verdicts_seed_test.py"]),
     Mutant("win-against-nobody", "a pose at which no other counts is a win",
-           [("scripts/report/peer_answers.py", "        if not others:\n            continue\n", "        if not others:\n            count += 1\n            continue\n")],
+           [("scripts/report/peer_answers.py", "        if not others:\n            continue\n",
+             "        if not others:\n            count += 1\n            continue\n")],
            ["python verdicts_peers_test.py"]),
     Mutant("away-hidden", "queries that were off their core count among those that the quantiles are of",
            [("scripts/report/deadlines.py", "{run['n'] - run['over_away']:,.0f}", "{run['n']:,.0f}")], ["python verdicts_deadlines_test.py"]),
@@ -50,7 +52,7 @@ MUTANTS = [
            [(PAGES + "bash_completion.cpp", "if (option.value.empty()) continue;",
              "if (option.value.empty() || !option.choices.empty()) continue;")], ["ctest Package.Completion"]),
     Mutant("installed-links-astray", "links of the installed documents lead to where the sources have things",
-           [("src/package/documents.cmake", "set(place examples/${CMAKE_MATCH_1})", "set(place src/examples/${CMAKE_MATCH_1})")],
+           [("src/package/documents.cmake", "set(place examples/${CMAKE_MATCH_1})", "set(place src/${CMAKE_MATCH_1})")],
            ["ctest Package.Documents"]),
     Mutant("uninstall-takes-others", "uninstalling removes what others have put beside it",
            [("src/package/uninstall.cmake.in", "if(others)", "if(FALSE)")], ["ctest Package.Uninstall"]),

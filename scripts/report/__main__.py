@@ -13,15 +13,18 @@ from report.runner import Runner
 CHAPTERS = [accuracy, coherent, measures, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
 HEAD = """# What accuracy costs in time
 
-Made by `scripts/perf_report.sh` from the raw results in `{results}`; no measured number in it is typed by hand, but for the times of peers that were built elsewhere, which say so. Times are wall times
+Made by `scripts/perf_report.sh` from the raw results in `{results}`; no measured number in it is typed by hand, \
+but for the times of peers that were built elsewhere, which say so. Times are wall times
 of a query alone, trees loaded, unless stated otherwise; a *median* is over *n* queries. Two jaws are a *{pair}*
 pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth are in full
 occlusion, at dz = -1.5 they are just apart. In tables and plots, **bold** marks the best of a row or column, or a loss;
 the text says which. What is worse by 3 % or more is a loss: less is noise.
 
 A shared machine changes its speed within minutes, so the same query may take different times in different chapters: compare within one.
-These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, coherent ticks and fresh ones, the article's
-rates, saved spheres, folding and levels, the parts of the query, the peers, worlds, and sweeps. All others ran one after the other: voxel sizes, gaps,
+These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, coherent ticks and fresh ones, \
+the article's
+rates, saved spheres, folding and levels, the parts of the query, the peers, worlds, and sweeps. All others ran one after the other: \
+voxel sizes, gaps,
 advice, one worker and two, deadlines, the loop. The last chapter states the load of the machine.
 """
 
@@ -30,7 +33,8 @@ def description(results, program):
     """Returns the machine, compiler, commit and date of a program's run, as the caption of a plot."""
     c = results.context(program)
     level = c["flags"].split()[:1]
-    return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1], *level, f"commit {c['commit']}", c["date"][:10]])
+    return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1],
+                      *level, f"commit {c['commit']}", c["date"][:10]])
 
 
 def with_stamps(lines, chapter, results):

@@ -48,9 +48,10 @@ def same_table(variants):
 
 
 def same_text():
-    return ("Both queries list all leaf pairs and sort them by fixed and then by moving leaf, one worker each. With the same spheres they give the same answer, but "
-            "for pairs that the guarantee leaves open, and `table`, whose published balls are not nested. The last row compares different answers: "
-            "tighter bounds list fewer pairs, and lose none whose surfaces meet. The published query here is `ReferenceQuery`: the linear octree, depth first, in double.")
+    return ("Both queries list all leaf pairs and sort them by fixed and then by moving leaf, one worker each. With the same spheres they give the "
+            "same answer, but for pairs that the guarantee leaves open, and `table`, whose published balls are not nested. The last row compares "
+            "different answers: tighter bounds list fewer pairs, and lose none whose surfaces meet. The published query here is `ReferenceQuery`: "
+            "the linear octree, depth first, in double.")
 
 
 def without_table(variants):
@@ -82,8 +83,8 @@ def verdict(variants, dz):
     workers = ", two workers," if last == "second_worker" else ""
     return (
         f"At {PLACE[dz]} `{policy_of(last)}` with all steps{workers} is {factor(variants.times(first, last, dz))} times as fast as "
-        f"`{policy_of(first)}` on pointers; they list {int(variants.of(last, 'contacts', dz)):,} and {int(variants.of(first, 'contacts', dz)):,} leaf pairs. "
-        f"Most give {gains}. " + (f"**These lose**: {'; '.join(losses)}." if losses else "No step loses."))
+        f"`{policy_of(first)}` on pointers; they list {int(variants.of(last, 'contacts', dz)):,} and {int(variants.of(first, 'contacts', dz)):,} "
+        f"leaf pairs. Most give {gains}. " + (f"**These lose**: {'; '.join(losses)}." if losses else "No step loses."))
 
 
 def without_verdict(variants, size):
@@ -188,14 +189,15 @@ def chapter(results, pictures):
     finest = SIZES[0]
     lines = [
         "## What each part gives", "",
-        "Several parts distinguish the fast query from the published one. The article does not say how its nodes are linked: pointers are assumed. Here the parts are added one by one, and then left "
-        f"out one by one. All variants query the same trees of the {first['label']} jaws at the same poses in one "
-        "process, in turns, so that other load on the machine affects all of them. Each answer is checked: variants "
+        "Several parts distinguish the fast query from the published one. The article does not say how its nodes are linked: pointers are assumed. "
+        f"Here the parts are added one by one, and then left out one by one. All variants query the same trees of the {first['label']} jaws at the "
+        "same poses in one process, in turns, so that other load on the machine affects all of them. Each answer is checked: variants "
         "with the same search and the same bounds give the same leaf pairs and make the same number of tests, and the two "
         "searches differ only in pairs that the guarantee leaves open. Times run from the pose to the sorted leaf pairs: "
         f"medians of n = {listing(f'{ladders[size].samples()} queries at {size} mm' for size in SIZES)}, the fewest for "
         "the slowest variants. A test compares the bounds of two nodes. Losses are bold: factors below "
-        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise. The reason of a loss is the work that the part adds, in the code; nothing here measures it alone.", "",
+        f"{1 - NOISE:.2f}, since smaller deviations from 1 are noise. "
+        "The reason of a loss is the work that the part adds, in the code; nothing here measures it alone.", "",
         "The search of the published query and of the linear layout is depth first, in double, with spheres made on "
         "the fly; from the batches on it is breadth first, in float. Each SIMD step is compared with the narrower "
         "instruction set before it. Queries follow back to back, which suits the second worker best. MB counts the parts of both trees that the "

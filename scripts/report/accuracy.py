@@ -47,13 +47,13 @@ def chapter(results, pictures):
 def _meaning(first):
     some = first.runs[0]
     return [
-        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to {number(some['turned_degrees'], 2)} degrees about each axis and inclined by "
-        f"up to {number(some['inclined_degrees'], 2)} to each side. The "
+        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to {number(some['turned_degrees'], 2)} degrees about each axis "
+        f"and inclined by up to {number(some['inclined_degrees'], 2)} to each side. The "
         "**error** is the distance of the surfaces, by exact triangles, when voxels first report a contact: "
         "the largest of all paths. A contact is never reported too late, and no error exceeds the certain bound: otherwise the program that measures "
         f"fails, and it did not. The **time** is the median ({first.rounds:.0f} rounds, all bounds of a voxel size in turns) of the slowest "
-        f"pose, among {some['closing_poses']:.0f} of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, written. This "
-        "is the search's part of a tick; contact points and effects add to it.", ""]
+        f"pose, among {some['closing_poses']:.0f} of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, "
+        "written. This is the search's part of a tick; contact points and effects add to it.", ""]
 
 
 def _budget(first, pictures):
@@ -132,9 +132,10 @@ def _table(first):
     return ["### Every accuracy", "",
             *table(["bounds", "voxel size, mm", "error, median, mm", "error, largest, mm", "certain bound, mm", "to build both, s",
                     "both trees, MB", "slowest pose, µs", "its 99 of 100, µs", "rate, Hz"], rows), "",
-            f"With `slab` the error grows as size^{growth:.2f}. The rate is one over the median; each pair was built once. The certain bound is `resolution`, which every answer states; measured "
-            f"errors are at most {100 * worst:.0f} % of it. Answers about triangles do not depend on voxels; their trees have voxels of "
-            f"{first.by_policy['exact'][0].parts[1]} mm, and the table states the memory and build time of these.", ""]
+            f"With `slab` the error grows as size^{growth:.2f}. The rate is one over the median; each pair was built once. "
+            f"The certain bound is `resolution`, which every answer states; measured errors are at most {100 * worst:.0f} % of it. Answers about "
+            f"triangles do not depend on voxels; their trees have voxels of {first.by_policy['exact'][0].parts[1]} mm, and the table states the "
+            "memory and build time of these.", ""]
 
 
 def _verdicts(results):
@@ -143,9 +144,9 @@ def _verdicts(results):
              100 * (1 - run["crossing"] / run["leaf_pairs"])] for run in runs]
     some = runs[0]
     return ["### Missed and false contacts", "",
-            f"Measured at {some['n']:.0f} poses from {some['before_mm']:g} mm before first contact to {some['behind_mm']:g} mm behind it; triangles meet at "
-            f"{some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no triangles do. "
-            "A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
+            f"Measured at {some['n']:.0f} poses from {some['before_mm']:g} mm before first contact to {some['behind_mm']:g} mm behind it; "
+            f"triangles meet at {some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no "
+            "triangles do. A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
             "leaf pair would stop the program. " + missed_verdict(runs), "",
             *table(["bounds", "voxel size, mm", "missed", "false", "leaf pairs, closed", "of which false, %"], rows), ""]
 
@@ -176,7 +177,8 @@ def _gaps(results, pictures):
             "The certified interval of the distance between the surfaces, from voxels alone (a point for each voxel size, "
             "coarse ones above) and with triangles, to tolerances of "
             + ", ".join(dict.fromkeys(r.parts[2].split("-")[1] for r in runs if "-" in r.parts[2])) + " mm. Every interval was compared with exact "
-            f"triangles and contains the distance. The widest of all is {number(coarse['width_max'])} mm (`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
+            f"triangles and contains the distance. The widest of all is {number(coarse['width_max'])} mm "
+            f"(`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
 
 
 def _deadlines(results, pictures):
@@ -192,8 +194,8 @@ def _deadlines(results, pictures):
                             f"n = {runs[0]['n']:.0f} queries a point, slab, voxels of {runs[0]['voxel_size']:g} mm")
     late = max((run["p50_us"] - float(run.parts[1]) for run in runs if run["p50_us"] > float(run.parts[1])), default=0)
     return ["### Deadlines", "", picture, "",
-            "A contact query that a budget stops returns the interval known by then, and the interval always contains the distance. Where surfaces are far "
-            "apart the query ends before its budget, and the interval stays as wide as the pruning left it: for a narrow one "
+            "A contact query that a budget stops returns the interval known by then, and the interval always contains the distance. Where surfaces "
+            "are far apart the query ends before its budget, and the interval stays as wide as the pruning left it: for a narrow one "
             f"ask for the gap itself. In the median no query ended more than {number(late, 2)} µs after its budget.", ""]
 
 
@@ -204,9 +206,10 @@ def _points(results):
              run["normal_mean"], run["normal_max"], run["n"]] for run in runs]
     return ["### Depths and normals", "",
             f"Measured on {some['forms']:.0f} pairs of bodies with known surfaces (spheres, planes, a bore, boxes, tori), whose "
-            f"radii of curvature are many voxels, from {number(some['apart_voxels'])} voxel apart to {number(some['deep_voxels'])} deep. n is the number of contact points.", "",
-            *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels", "normal error, mean, °", "largest, °", "n"],
-                   rows), ""]
+            f"radii of curvature are many voxels, from {number(some['apart_voxels'])} voxel apart to {number(some['deep_voxels'])} deep. "
+            "n is the number of contact points.", "",
+            *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels",
+                    "normal error, mean, °", "largest, °", "n"], rows), ""]
 
 
 def _forces(results):
@@ -217,19 +220,22 @@ def _forces(results):
     rows = [[f"`{run.parts[2]}`", run.parts[1], *(bold_if(number(factor * run[key]), loses(run, key)) for key, factor in FORCE_ERRORS),
              f"{run['none']:.0f}"] for run in runs]
     return ["### Forces", "",
-            f"The contact force at {runs[0]['n']:.0f} poses, {runs[0]['least_depth_mm']:g} to {runs[0]['most_depth_mm']:g} mm behind first contact, compared with the force by voxels of {finest} mm with "
-            "`slab`. Its length differs at the same pose, because a surface "
+            f"The contact force at {runs[0]['n']:.0f} poses, {runs[0]['least_depth_mm']:g} to {runs[0]['most_depth_mm']:g} mm behind first contact, "
+            f"compared with the force by voxels of {finest} mm with `slab`. Its length differs at the same pose, because a surface "
             "begins to push a part of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
-            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °", "length off by, median, %", "largest, %", "no force"], rows), "",
+            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °",
+                    "length off by, median, %", "largest, %", "no force"], rows), "",
             forces_verdict({(run.parts[2], run.parts[1]): (run["angle_p50"], run["angle_max"]) for run in runs}), ""]
 
 
 def forces_verdict(angles):
-    """Where the direction of a force by tight or slab bounds is farther off than by the voxels' balls; (median, largest) in degrees, by policy and size."""
+    """Where the direction of a force by tight or slab bounds is farther off than by the voxels' balls; (median, largest) in degrees, by
+    policy and size."""
     said = []
     for at, name in enumerate(("In the median", "At the most")):
         lost = [(f"`{policy}` at {size} mm, {number(off[at])}° beside {number(angles['simple', size][at])}°", None)
-                for (policy, size), off in angles.items() if policy in ("tight", "slab") and off[at] and is_loss(angles["simple", size][at] / off[at])]
+                for (policy, size), off in angles.items()
+                if policy in ("tight", "slab") and off[at] and is_loss(angles["simple", size][at] / off[at])]
         said.append(f"{name} the direction is farther off than with `simple` for {by_reason(lost)}." if lost else
                     f"{name} the direction is nowhere farther off than with `simple`.")
     return " ".join(said)

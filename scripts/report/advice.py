@@ -26,8 +26,9 @@ def section(results, first):
     part = f"{100 * some['part_of_limit']:.0f} %"
     return ["### Advice, held against this curve", "",
             f"`ist advise` measures a few voxel sizes on the user's own meshes and recommends one that keeps "
-            f"{part} of the limit: its time at {some['poses']:.0f} poses of one straight closing, its error on that path and on {some['paths_beside']:.0f} "
-            "slightly inclined and turned ones. The columns beside show the curve of `slab` above, interpolated, for other poses, other paths and another time. "
+            f"{part} of the limit: its time at {some['poses']:.0f} poses of one straight closing, its error on that path and on "
+            f"{some['paths_beside']:.0f} slightly inclined and turned ones. The columns beside show the curve of `slab` above, interpolated, for "
+            "other poses, other paths and another time. "
             + size_verdict(sizes, part) + verdict, "",
             *table(["asked for", "recommended, mm", "its error, mm", "curve, mm", "its slowest pose, µs", "curve, µs", "sizes tried", "seconds"],
                    rows), ""]
@@ -39,5 +40,6 @@ def size_verdict(sizes, part):
         return ""
     smaller = [size for size in sizes if size < 1]
     if not smaller:
-        return f"As only {part} of a budget are used, the recommended voxels are up to {number(max(sizes))} times as large as the curve allows for all of it. "
+        return (f"As only {part} of a budget are used, the recommended voxels are up to {number(max(sizes))} times as large "
+                "as the curve allows for all of it. ")
     return f"At **{len(smaller)} of {len(sizes)} budgets the recommended voxels are smaller than the curve allows** ({NOT_EXPLAINED}). "

@@ -36,8 +36,8 @@ def chapter(results, _pictures):
                     [[splint["ticks_apart"], _judged(splint["apart_p50_us"], MOST_APART), splint["apart_p99_us"]]]), "",
              _verdict("A pair that is apart takes", splint["apart_p50_us"], MOST_APART, " µs"), "",
              "### In a world", "",
-             f"{some['bodies']:.0f} bodies in {pairs} pairs, voxels of {some['voxel_size']:g} mm: two jaws that bite, a ball on the front teeth, a bar below "
-             f"the lower jaw. All but one tremble by {some['tremble_voxels']:g} voxel. `World` and {pairs} queries are asked in turns.", "",
+             f"{some['bodies']:.0f} bodies in {pairs} pairs, voxels of {some['voxel_size']:g} mm: two jaws that bite, a ball on the front teeth, a "
+             f"bar below the lower jaw. All but one tremble by {some['tremble_voxels']:g} voxel. `World` and {pairs} queries are asked in turns.", "",
              *table(["question", "`World`, p50, µs", "p99, µs", f"{pairs} queries, p50, µs", "p99, µs", "`World` / queries"],
                     [[name, run["p50_us"], run["p99_us"], run["one_by_one_p50_us"], run["one_by_one_p99_us"],
                       _judged(run["ratio"], MOST_TIMES)] for name, run in four.items()]), "",

@@ -9,7 +9,8 @@ def unstamped(page):
     """Yields a line of text for each table of the page that names no commit."""
     for number, is_stamped in tables_in(page):
         if not is_stamped:
-            yield f"{page}:{number}: the table names neither the commit that it was measured at nor a test, of those that ctest knows, that repeats it"
+            yield (f"{page}:{number}: the table names neither the commit that it was measured at nor a test, "
+                   "of those that ctest knows, that repeats it")
 
 
 def verdict(commit, maker):

@@ -45,8 +45,10 @@ def compare(results):
             row.append(f"{number(published['p50_us'])} → {number(fast['p50_us'])}: {bold}{times:.1f}{bold}<br>"
                        f"{published['contacts']:,.0f} → {fast['contacts']:,.0f}")
         rows.append(row)
-    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else "No cell is slower than the published query by 3 % or more.",
-                           f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else "Two workers are nowhere slower than one by 3 % or more."])
+    return rows, " ".join([f"**Slower than the published query**: {'; '.join(behind)}; {NOT_EXPLAINED}." if behind else
+                           "No cell is slower than the published query by 3 % or more.",
+                           f"**Two workers are slower than one** at {listing(slower)}: {NOT_EXPLAINED}." if slower else
+                           "Two workers are nowhere slower than one by 3 % or more."])
 
 
 def update(results, machine):
@@ -57,7 +59,8 @@ def update(results, machine):
         return
     rows, verdict = compare(results)
     context = results.context("ablation_bench")
-    write(PAGE, "\n".join([f"Medians of one run ({machine}), one worker unless stated. Each cell has the published query's µs, IST's µs, the ratio, and "
-                           "below it how many leaf pairs each lists. Bold is a loss, against the published query or against one worker less, by 3 % or more:", "",
+    write(PAGE, "\n".join([f"Medians of one run ({machine}), one worker unless stated. Each cell has the published query's µs, IST's µs, the ratio, "
+                           "and below it how many leaf pairs each lists. "
+                           "Bold is a loss, against the published query or against one worker less, by 3 % or more:", "",
                            *table(["IST against published", *POSES.values()], rows), "", verdict, "",
                            stamp(context["commit"], context["date"][:10], "ablation_bench", machine_state(context))]))

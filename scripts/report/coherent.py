@@ -52,8 +52,8 @@ def chapter(results, pictures):
             "A *coherent* query keeps the leaf pairs that are nearly near enough, its *front*, and tests them again at the next pose in place of a "
             f"search; its answers are those of a fresh query, bit by bit, or the program that measures fails. Both answer every tick in turn, with "
             f"`slab`, one worker unless stated otherwise, and room for {number(some['room'])} pairs: contacts with their sums, pose in, sums out. "
-            f"Of each tick the least of {some['rounds']:.0f} rounds counts; times within {100 * NOISE:.0f} % of each other are equal. *Motion* is the median motion of a tick, at the corner of the "
-            "moving jaw's box that moves most.", "",
+            f"Of each tick the least of {some['rounds']:.0f} rounds counts; times within {100 * NOISE:.0f} % of each other are equal. "
+            "*Motion* is the median motion of a tick, at the corner of the moving jaw's box that moves most.", "",
             "### Coherent ticks by motion", "", _plot(motions, pictures), "", *_table(motions), "", *verdicts(motions)]
 
 
@@ -77,7 +77,8 @@ def _table(motions):
     rows = []
     for one in motions:
         (fresh, kept), (worst_fresh, worst_kept) = one.times("median"), one.times("slowest")
-        rows.append([one.title, one.step, fresh, bold_if(number(kept), one.loses("median")), worst_fresh, bold_if(number(worst_kept), one.loses("slowest")),
+        rows.append([one.title, one.step, fresh, bold_if(number(kept), one.loses("median")),
+                     worst_fresh, bold_if(number(worst_kept), one.loses("slowest")),
                      *(f"{one.run[key]:,.0f}" for key in ("by_search", "among_kept", "in_clearance"))])
     return table(["motion, voxels", "motion a tick, voxels", "fresh, median, µs", "kept, median, µs", "fresh, slowest, µs", "kept, slowest, µs",
                   "ticks by search", "by kept pairs", "in a clearance"], rows)
@@ -100,4 +101,5 @@ def _verdict(motions, kind):
         return text + ": it loses at none."
     worst = max(lost, key=lambda one: one.ratio(kind))
     named = by_reason([(one.title, one.reason(kind)) for one in lost])
-    return (text + ("." if won else " gains at no motion.") + f" **It takes longer at {len(lost)}, by up to {number(worst.ratio(kind))} times**: {named}.")
+    return (text + ("." if won else " gains at no motion.")
+            + f" **It takes longer at {len(lost)}, by up to {number(worst.ratio(kind))} times**: {named}.")

@@ -65,8 +65,8 @@ def _tails(runs):
     """A verdict on what counts."""
     worst_loop = max(run["loop_max_us"] for run in runs)
     beyond = [f"{row_name(run)} ({', '.join(own)}: {why(run, own, worst_loop)})" for run in runs if (own := own_tail(run))]
-    verdict = (f"Of what counts, in {len(runs) - len(beyond)} of {len(runs)} rows no quantile of the query exceeds that of the empty loop by more than "
-               f"{FACTOR} times and {MICROSECONDS} µs: there the tail is the machine's. ")
+    verdict = (f"Of what counts, in {len(runs) - len(beyond)} of {len(runs)} rows no quantile of the query exceeds that of the empty loop by more "
+               f"than {FACTOR} times and {MICROSECONDS} µs: there the tail is the machine's. ")
     return verdict + (f"**These exceed it**: {'; '.join(beyond)}." if beyond else "No row exceeds it.")
 
 
@@ -74,9 +74,11 @@ def _away(runs):
     """A verdict on what does not count."""
     parts = {what: [100 * run[f"{what}_away"] / run["n"] for run in runs] for what in ("over", "loop")}
     more = [f"{row_name(run)} ({run['over_away']:,.0f} and {run['loop_away']:,.0f})" for run in runs if away_more(run)]
-    return (f"Off their core for over {number(runs[0]['away_us'])} µs, and so in no quantile, were {number(min(parts['over']), 2)} to {number(max(parts['over']), 2)} % "
-            f"of the queries of a row and {number(min(parts['loop']), 2)} to {number(max(parts['loop']), 2)} % of its loops: nothing here shows how late these were. "
-            + (f"**Queries were away more often than loops**, {FACTOR} times and {100 * PART:g} % of all, in {len(more)} of {len(runs)} rows: {'; '.join(more)}; {NOT_EXPLAINED}."
+    return (f"Off their core for over {number(runs[0]['away_us'])} µs, and so in no quantile, were {number(min(parts['over']), 2)} to "
+            f"{number(max(parts['over']), 2)} % of the queries of a row and {number(min(parts['loop']), 2)} to {number(max(parts['loop']), 2)} % of "
+            "its loops: nothing here shows how late these were. "
+            + (f"**Queries were away more often than loops**, {FACTOR} times and {100 * PART:g} % of all, "
+               f"in {len(more)} of {len(runs)} rows: {'; '.join(more)}; {NOT_EXPLAINED}."
                if more else f"In no row were queries away more often than loops by over {FACTOR} times and {100 * PART:g} % of all."))
 
 
@@ -99,9 +101,10 @@ def chapter(results, _pictures):
     writing = sum(run["most_pairs"] > 0 for run in runs)
     return ["## Deadlines kept", "",
             "Processor time of a query's thread beyond the time that it was given, beside a loop that only reads the clock until the same time has "
-            f"passed; both in each cell, µs. What was off its core for over {number(runs[0]['away_us'])} µs is *away*, and in no quantile; interrupts count. *n* is what is left. "
-            "`slab`, one worker. "
+            f"passed; both in each cell, µs. What was off its core for over {number(runs[0]['away_us'])} µs is *away*, and in no quantile; "
+            "interrupts count. *n* is what is left. `slab`, one worker. "
             f"*Complete* are answers that came to their end, *pairs* the most leaf pairs of an answer; {writing} of {len(runs)} rows write some.", "",
             *table(["scene", "asks for", "given, µs", *QUANTILES, "complete", "pairs", "n", "away"], rows), "",
-            f"In the median a query ends {number(min(medians), 2)} to {number(max(medians), 2)} µs after its deadline. {_tails(runs)}", "", _away(runs), "",
+            f"In the median a query ends {number(min(medians), 2)} to {number(max(medians), 2)} µs after its deadline. {_tails(runs)}", "",
+            _away(runs), "",
             f"Without a deadline, in the median: {found}."]

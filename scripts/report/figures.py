@@ -52,7 +52,7 @@ RESTS = {
     "world_bench": [*QUERY, "src/ist/models"],
     "calls.py": [*MEASURE, "bench/python", "src/ist/capi", "src/python/ist"],
     "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/cli/engine.cpp", "src/ist/models"],
-    "mutate.sh": ["scripts/mutants", "scripts/parts.sh", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
+    "mutate.sh": ["scripts/mutants", "scripts/parts.sh", "scripts/report", "scripts/try.py", "examples", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
@@ -176,7 +176,8 @@ def stamp(commit, date, maker, more=""):
         state = "**a commit that this history does not have**"
     else:
         changed = changed_since(commit, maker)
-        state = f"**its code has changed since**, in {rooms(changed, sources_of(maker))}" if changed else "its code was the same when this was written"
+        state = (f"**its code has changed since**, in {rooms(changed, sources_of(maker))}" if changed else
+                 "its code was the same when this was written")
     return f"Measured at commit `{commit}` on {date} by `{maker}`; {state}.{' ' + more if more else ''}"
 
 
@@ -203,7 +204,8 @@ def machine_state(context):
 def is_test(name):
     """Whether ctest knows a test by that name: one that CMake adds, or a case of a suite."""
     suite, _, case = name.rpartition(".")
-    added, written = re.compile(rf"add_test\(\s*NAME {re.escape(name)}\s"), re.compile(rf"\bTEST(_F)?\({suite},\s*{case}\)")
+    added = re.compile(rf"(?:add_test\(\s*NAME|ist_add_command\() {{0,1}}{re.escape(name)}\s")
+    written = re.compile(rf"\bTEST(_F)?\({suite},\s*{case}\)")
     tests = ROOT / "tests"
     return (any(added.search(file.read_text()) for file in tests.rglob("CMakeLists.txt")) or
             bool(suite) and any(written.search(file.read_text()) for file in tests.rglob("*.cpp")))

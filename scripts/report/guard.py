@@ -27,9 +27,9 @@ def chapter(_results, _pictures):
         "## Instructions",
         "",
         f"Instructions of {len(rows)} fixed queries of the built-in jaws, as callgrind counts them: one query, one worker "
-        f"on AVX2, without building; and of {context['ticks']} ticks of {len(ticks)} scenes, in which a ball sinks on a box and slides. Counts depend on neither load nor clock, so every run of the tests "
-        f"with this compiler repeats them, and fails if one differs by over {100 * LIMIT:g} %. They are no times: a vector "
-        "instruction counts as one, and so does one that waits for memory.",
+        f"on AVX2, without building; and of {context['ticks']} ticks of {len(ticks)} scenes, in which a ball sinks on a box and slides. "
+        "Counts depend on neither load nor clock, so every run of the tests with this compiler repeats them, and fails if one differs by over "
+        f"{100 * LIMIT:g} %. They are no times: a vector instruction counts as one, and so does one that waits for memory.",
         "",
         *table(["query", "instructions", "sphere tests", "instructions a test"], rows + ticks),
         "",

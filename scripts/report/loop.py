@@ -28,9 +28,9 @@ def chapter(results, pictures):
              f"holds them closed, with contact, friction and damping, in voxels of {number(loop['voxel_size'])} mm. The lateness of a "
              "tick is the time from its scheduled to its actual begin. Its execution lasts until the wrench is written to "
              "the device. The neighbour is one thread for each core, of ordinary priority, that streams "
-             f"through {number(loop['neighbour_MB'])} MB of memory and computes. Three empty loops stand beside the loop: the first uses the loop's own "
-             f"clock, which wakes {number(loop['awake_us'])} µs before a tick and waits awake; the second sleeps until the tick, by a timer at the "
-             "loop's priority; the third sleeps in an ordinary thread. The last two show the machine's own wake-up "
+             f"through {number(loop['neighbour_MB'])} MB of memory and computes. Three empty loops stand beside the loop: the first uses the loop's "
+             f"own clock, which wakes {number(loop['awake_us'])} µs before a tick and waits awake; the second sleeps until the tick, by a timer at "
+             "the loop's priority; the third sleeps in an ordinary thread. The last two show the machine's own wake-up "
              "latency.", "", _permitted(loop), ""]
     late = _picture(pictures, runs, "late", KINDS, "loop_late", "began late by more than, µs")
     loops = {kind: KINDS[kind] for kind in KINDS if kind[0] == "loop"}
@@ -131,7 +131,8 @@ def why_missed(run, bare):
         causes.append(f"{number(long)} took over {number(bound)} µs; the longest took {number(run['execution_max_us'])} µs, and {cause}")
     else:
         causes.append(f"no tick took as long as the period, {number(run['execution_max_us'])} µs at most")
-    causes.append(f"{number(late)} began over {number(bound)} µs late, by up to {number(run['late_max_us'])} µs, and each of these skipped the ticks before it"
+    causes.append(f"{number(late)} began over {number(bound)} µs late, by up to {number(run['late_max_us'])} µs, "
+                  "and each of these skipped the ticks before it"
                   if late else f"none began over {number(bound)} µs late")
     return f"{'; '.join(causes)}; the empty loop by the same clock missed {number(bare['missed'])}"
 
@@ -143,7 +144,8 @@ def _missed_in_words(runs):
         for at, place in CONDITIONS.items():
             run = runs[kind + (at,)]
             if kind[0] == "loop" and run["missed"]:
-                missed.append(f"{KINDS[kind][0]}, {place}, {number(run['missed'])} beside {number(run['ticks'])} ticks ({why_missed(run, runs['bare', 'clock', at])})")
+                missed.append(f"{KINDS[kind][0]}, {place}, {number(run['missed'])} beside {number(run['ticks'])} ticks "
+                              f"({why_missed(run, runs['bare', 'clock', at])})")
     yield f"**Deadlines were missed**: {'; '.join(missed)}." if missed else "The loop missed no deadline."
 
 

@@ -34,10 +34,10 @@ def chapter(results, pictures):
     asked = {question: by_tolerance(results, question) for question in QUESTIONS}
     poses = len(results.runs("measure_bench", "by_accuracy", "touch"))
     return ["## How deep, how far", "",
-            "Exact touch, the distance and the depth are of triangles, so they depend on no voxels; the last two are intervals as wide as a *tolerance*. "
-            "The depth is that of the deepest point of either surface inside the other body. Each is asked afresh, by one worker. The **time** is "
-            f"the median ({touch.slowest['n']:.0f} rounds) of the slowest pose, among {poses} of the closing. Every interval agrees with that of the "
-            "finest tolerance, or the program that measures fails.", "",
+            "Exact touch, the distance and the depth are of triangles, so they depend on no voxels; the last two are intervals as wide as a "
+            "*tolerance*. The depth is that of the deepest point of either surface inside the other body. Each is asked afresh, by one worker. The "
+            f"**time** is the median ({touch.slowest['n']:.0f} rounds) of the slowest pose, among {poses} of the closing. Every interval agrees with "
+            "that of the finest tolerance, or the program that measures fails.", "",
             "### Time by tolerance", "", _plot(touch, asked, pictures), "", *_table(touch, asked), "",
             *verdicts(asked), "", *_beside(touch, asked), "",
             "### Depth from the last answer", "", *_warm(results), "", "### Other measures", "", *_others(results)]
@@ -114,7 +114,8 @@ def warm_verdict(runs, tolerance):
 
 def _others(results):
     rows = []
-    for kind, name in (("distances", "vertices of both jaws within {reach:g} mm, with their distances"), ("first_contact", "first contact, to {tolerance:g} mm"),
+    for kind, name in (("distances", "vertices of both jaws within {reach:g} mm, with their distances"),
+                       ("first_contact", "first contact, to {tolerance:g} mm"),
                        ("occlusion", "occlusion: areas, regions and depths")):
         slowest = max(results.runs("measure_bench", "measure", kind), key=lambda run: run["real_time"])
         rows.append([name.format(**slowest), slowest.parts[2], slowest["real_time"] / 1e3])

@@ -16,7 +16,8 @@ QUESTIONS = {
 USES = {
     "ist": "This library: slabs, with triangles; one worker. Its candidates are its exact pairs, a stricter answer.",
     "fcl": "OBBRSS hierarchies in double. Its distance is exact to rounding, sharper than the tolerance. Debian builds it for any x86-64, "
-           "without its own SSE code, and with assertions: a line below a table of times states their cost, where it was measured. It lists no candidates.",
+           "without its own SSE code, and with assertions: a line below a table of times states their cost, where it was measured. "
+           "It lists no candidates.",
     "fcl_within": "The same, with a distance to the tolerance: its traversal skips pairs that are nearer by at most the tolerance than "
                   "the nearest pair so far. FCL's own request has an absolute error, which does nothing in this version.",
     "embree": "rtcCollide over boxes in float; IST's exact test decides on the triangles. It takes no pose: the moving "
@@ -143,8 +144,8 @@ def standing(asked, counts, where=""):
     times, pose, winner = max((*max(wins), winner) for winner, wins in lost.items())
     places = sum(len(wins) for wins in lost.values())
     named = by_reason([(f"{winner} at {len(wins)}", reason(asked, winner, [pose for _, pose in wins])) for winner, wins in sorted(lost.items())])
-    return (f"IST is the fastest at {count - places - near} of {count} poses{where}{equal}. **It loses at {places}, by up to {number(times)} times** ({winner}, {pose}): to "
-            f"{named}.")
+    return (f"IST is the fastest at {count - places - near} of {count} poses{where}{equal}. **It loses at {places}, by up to {number(times)} times** "
+            f"({winner}, {pose}): to {named}.")
 
 
 def reason(asked, player, poses):

@@ -31,7 +31,8 @@ def chapter(results, pictures):
         lines += [f"### {title}", *within(question, context), ""] + medians(question, answers[question]) + verdict(answers[question]) + [""]
         lines += peers_elsewhere.native_fcl(question, answers[question])
     lines += plot(answers, poses, pictures) + tails(answers)
-    lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers) + peers_otherwise.avx2(results) + peers_otherwise.points(results)
+    lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers)
+    lines += peers_otherwise.avx2(results) + peers_otherwise.points(results)
     lines += sampled(answers) + peers_builds.section(results) + cannot(answers)
     return lines
 

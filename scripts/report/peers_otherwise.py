@@ -82,13 +82,15 @@ def points(results):
     players = list(dict.fromkeys(run.parts[2] for run in runs))
     rows = [["vertices", *(f"{by[players[0], pose]['points']:,.0f}" for pose in poses), ""]]
     for player in players:
-        cells = [number(by[player, pose]["p50_us"] / 1e3) + (f" ({by[player, pose]['p50_us'] / by['ist', pose]['p50_us']:.1f})" if player != "ist" else "")
+        cells = [number(by[player, pose]["p50_us"] / 1e3)
+                 + (f" ({by[player, pose]['p50_us'] / by['ist', pose]['p50_us']:.1f})" if player != "ist" else "")
                  for pose in poses]
         rows.append([player, *cells, str(int(by[player, poses[0]]["n"]))])
     return ["### How far is each vertex?", "",
             f"The vertices of both jaws {_near(runs[0])} the other one, at the closing. IST also gives the sign, the triangle and its point; "
-            "CGAL's `AABB_tree`, with its tree of points, gives the distance alone. Both are right to within rounding, or the run fails. Median, ms, and in brackets the "
-            "multiple of IST's time:", "", *table(["", *poses, "n"], rows), "", points_verdict(by, players, poses), ""]
+            "CGAL's `AABB_tree`, with its tree of points, gives the distance alone. Both are right to within rounding, or the run fails. "
+            "Median, ms, and in brackets the multiple of IST's time:", "",
+            *table(["", *poses, "n"], rows), "", points_verdict(by, players, poses), ""]
 
 
 def _near(run):
@@ -106,7 +108,8 @@ def avx2(results):
     title = ["### IST without AVX-512", ""]
     asked = asked_in(results, "avx2")
     if not asked:
-        return title + ["Not measured: the kernels that IST chooses on this processor are not those for AVX-512, or it has none for AVX2 beside them.", ""]
+        return title + ["Not measured: the kernels that IST chooses on this processor are not those for AVX-512, "
+                        "or it has none for AVX2 beside them.", ""]
     rows = []
     for question, one in asked.items():
         times = ratios(one, one, "ist_avx2", "ist")

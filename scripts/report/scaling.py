@@ -68,11 +68,11 @@ def _overlap(results, pictures):
     by_place.plot(places, [run["p99_us"] for run in runs], "--", color=style("slab")["color"], label="99 of 100")
     by_place.set(xlabel="dz, mm (0: full occlusion)", ylabel="time of a query, µs", title="Along the closing", ylim=0)
     by_pairs.plot([run["contacts"] for run in touching], [run["p50_us"] for run in touching], "D",
-                     color=COLOURS[0], label="median, against leaf pairs")
+                  color=COLOURS[0], label="median, against leaf pairs")
     slope, start = numpy.polyfit([run["contacts"] for run in touching], [run["p50_us"] for run in touching], 1)
     ends = numpy.array([0, max(run["contacts"] for run in touching)])
     by_pairs.plot(ends, start + slope * ends, "-", color="#555555",
-                     label=f"fit: {start:.0f} µs + {1e3 * slope:.0f} ns a leaf pair")
+                  label=f"fit: {start:.0f} µs + {1e3 * slope:.0f} ns a leaf pair")
     by_pairs.set(xlabel="leaf pairs", ylabel="time of a query, µs", title="Against leaf pairs", ylim=0)
     for axes in (by_place, by_pairs):
         axes.legend(fontsize=7)

@@ -47,7 +47,8 @@ def verdict(runs):
         times = {(pace, dz): runs["2", pace, dz][key] / runs["1", pace, dz][key] for pace, dz in both}
         lost = [(f"{NAMES[pace]} at {dz}", None) for pace, dz in both if is_loss(1 / times[pace, dz])]
         if lost:
-            said.append(f"In the {name} two workers are slower than one at {len(lost)} of {len(both)}, by up to {number(max(times.values()))} times: {by_reason(lost)}.")
+            said.append(f"In the {name} two workers are slower than one at {len(lost)} of {len(both)}, "
+                        f"by up to {number(max(times.values()))} times: {by_reason(lost)}.")
         else:
             said.append(f"In the {name} two workers are at no place slower than one by 3 % or more.")
     return " ".join(said)

@@ -20,12 +20,12 @@ def _cubic_verdict(leaves, time, least_ms, published):
     cubic = [name for name, power in (("voxels", leaves), ("time", time)) if _is_cubic(power)]
     said = [f"*Agrees:* cubic in l/s, more than square, {'is' if len(cubic) == 1 else 'are'} {' and '.join(cubic)}." if cubic else
             "*Differs:* neither voxels nor time are cubic in l/s.",
-            f"From 1 mm down voxels grow as (l/s)^{leaves:.2f}" + ("." if _is_cubic(leaves) else
-            ", because a surface has two dimensions and the space beside it is neither stored nor visited."),
-            f"The time to find them grows as (l/s)^{time:.2f}" + ("." if time >= SURFACE else
-            f": a part of it depends on the triangles, {number(least_ms)} ms at any voxel size."),
-            f"The article's own three counts grow as (l/s)^{published:.2f}" + ("." if _is_cubic(published) else
-            "; only the array that it fills and visits is cubic.")]
+            f"From 1 mm down voxels grow as (l/s)^{leaves:.2f}"
+            + ("." if _is_cubic(leaves) else ", because a surface has two dimensions and the space beside it is neither stored nor visited."),
+            f"The time to find them grows as (l/s)^{time:.2f}"
+            + ("." if time >= SURFACE else f": a part of it depends on the triangles, {number(least_ms)} ms at any voxel size."),
+            f"The article's own three counts grow as (l/s)^{published:.2f}"
+            + ("." if _is_cubic(published) else "; only the array that it fills and visits is cubic.")]
     return " ".join(said)
 
 
@@ -76,9 +76,10 @@ def _voxels(results, pictures):
             *table(["published size", "l/s", "published voxels", "voxels here", "ratio", "published nodes", "nodes here"], scaled), "",
             _cubic_verdict(grows["leaves"], grows["voxels_ms"], min(r["voxels_ms"] for r in runs),
                            -power([float(size) for size in published], list(published.values()))[0]) + " "
-            f"{'*Agrees:*' if all(1 / NEAR <= row[4] <= NEAR for row in scaled) else '*Differs:*'} at equal l/s this other jaw has {min(row[4] for row in scaled):.2f} to {max(row[4] for row in scaled):.2f} times as many voxels, and at size 1 "
-            f"{one['nodes'] / nodes['all']:.2f} times as many nodes: {one['nodes'] / one['leaves']:.2f} a voxel instead of {nodes['all'] / published['1']:.2f}; the article "
-            f"estimates {nodes['least'] / published['1']:.2f} at least.", ""]
+            f"{'*Agrees:*' if all(1 / NEAR <= row[4] <= NEAR for row in scaled) else '*Differs:*'} "
+            f"at equal l/s this other jaw has {min(row[4] for row in scaled):.2f} to {max(row[4] for row in scaled):.2f} times as many voxels, and "
+            f"at size 1 {one['nodes'] / nodes['all']:.2f} times as many nodes: {one['nodes'] / one['leaves']:.2f} a voxel instead of "
+            f"{nodes['all'] / published['1']:.2f}; the article estimates {nodes['least'] / published['1']:.2f} at least.", ""]
 
 
 def _octree(results, pictures):
@@ -124,16 +125,16 @@ def _volumes(results, pictures):
     made = {policy: sum(r["make_us"] for r in of if r.parts[2] != "0") for policy, of in by_policy.items()}
     dearer = made["table"] / made["simple"]
     return ["### Spheres by level (figure 9)", "", picture, "",
-            "Measured at the article's l/s of size 1. The unit is the ball round a leaf, (√3/2) π s³; at level L the article's ball is 8^L times as large, "
-            "with the leaf as level 0 (its formula's L-1 counts it as 1). The columns of `table`, `tight` and `slab` are their volumes divided by the volume of `simple`; "
-            "`slab` has the balls of `tight`, and its slabs cut them further.", "",
+            "Measured at the article's l/s of size 1. The unit is the ball round a leaf, (√3/2) π s³; at level L the article's ball is 8^L "
+            "times as large, with the leaf as level 0 (its formula's L-1 counts it as 1). The columns of `table`, `tight` and `slab` are their "
+            "volumes divided by the volume of `simple`; `slab` has the balls of `tight`, and its slabs cut them further.", "",
             *table(["level", "nodes", "`simple`, unit balls", "`table`", "`tight`", "`slab`"], rows), "",
             f"All spheres above the leaves, {number(sum(r['nodes'] for r in by_policy['simple'] if r.parts[2] != '0'))} of them, take "
             + ", ".join(f"`{p}` {number(t)} µs" for p, t in made.items()) + ", from known centres, as in a query. "
             + (f"*Agrees:* spheres by the table take {dearer:.2f} times as long to make as simple ones. " if dearer > 1.1 else
                f"*Differs:* spheres by the table take no longer to make than simple ones, {dearer:.2f} times as long. ")
-            + "`tight` and `slab` are read and unpacked, not made. The children's offset, s·2^(L-1) on each axis with L the child's level, is the one "
-            "that the article corrects; the earlier s·2^(L-2) is the same with L counted at the parent.", ""]
+            + "`tight` and `slab` are read and unpacked, not made. The children's offset, s·2^(L-1) on each axis with L the child's level, "
+            "is the one that the article corrects; the earlier s·2^(L-2) is the same with L counted at the parent.", ""]
 
 
 def _saved(results):
@@ -151,11 +152,14 @@ def _saved(results):
         rows.append([size, f"`{policy}`", place, fly["tests"], fly["p50_us"], saved["p50_us"], factor(gain), saved["octree_MB"], saved["saved_MB"]])
     verdict = "*Agrees:* saving pays." if min(gains) >= SAVED else "*Differs:* saving does not always pay."
     # A ball that is read costs memory, and one that is made costs arithmetic.
-    lost = (f" **With saved spheres these are slower**: {listing(losses)}; a saved ball is read from memory, {number(saved['ball_bytes'])} bytes a node." if losses else "")
+    lost = (f" **With saved spheres these are slower**: {listing(losses)}; a saved ball is read from memory, "
+            f"{number(saved['ball_bytes'])} bytes a node." if losses else "")
     return ["### Spheres on the fly, or saved", "",
-            f"The article's first proposal, for its own depth-first query in double: a ball of {number(saved['ball_bytes'])} bytes a node, read instead of made. "
+            f"The article's first proposal, for its own depth-first query in double: a ball of {number(saved['ball_bytes'])} bytes a node, "
+            "read instead of made. "
             "Both sides have the same spheres and list the same leaf pairs. The distance is the opening of the lower jaw, in mm.", "",
-            *table(["voxel size", "spheres", "distance", "sphere tests", "on the fly, µs", "saved, µs", "times as fast", "octree, MB", "saved spheres, MB"], rows), "",
+            *table(["voxel size", "spheres", "distance", "sphere tests", "on the fly, µs", "saved, µs", "times as fast",
+                    "octree, MB", "saved spheres, MB"], rows), "",
             f"{verdict} The query is {factor(min(gains))} to {factor(max(gains))} times as fast, and takes "
-            f"{min(sizes, key=float)} to {max(sizes, key=float)} times the octree's bytes on top.{lost} Bounds that are better than any derived from the octree (`tight`, `slab`) "
-            "can only be saved: the chapter on the query's parts has their gain.", ""]
+            f"{min(sizes, key=float)} to {max(sizes, key=float)} times the octree's bytes on top.{lost} Bounds that are "
+            "better than any derived from the octree (`tight`, `slab`) can only be saved: the chapter on the query's parts has their gain.", ""]

@@ -6,7 +6,7 @@ import pathlib
 from report.curves import crossings
 from report.draw import style
 from report.losses import listing
-from report.text import number, table
+from report.text import table
 
 POLICIES = ("simple", "table", "tight", "slab")
 PUBLISHED = json.loads((pathlib.Path(__file__).parents[2] / "perf/published.json").read_text())
@@ -78,16 +78,16 @@ def lead_verdict(rates):
     low, high = PUBLISHED["simple_wins_below"]
     simple, below = rates.leads("simple", "table", lambda d: d < low)
     beyond, above = rates.leads("table", "simple", lambda d: d > high)
-    return (f"{'*Agrees:*' if 2 * simple > below and 2 * beyond > above else '*Differs:*'} `simple` is ahead at {simple} of {below} distances below {low}, "
-            f"`table` at {beyond} of {above} above {high}.")
+    return (f"{'*Agrees:*' if 2 * simple > below and 2 * beyond > above else '*Differs:*'} `simple` is ahead at {simple} of {below} "
+            f"distances below {low}, `table` at {beyond} of {above} above {high}.")
 
 
 def lead_reason(all_rates):
     """Why `table` is ahead below the published distances, where it is."""
     low = PUBLISHED["simple_wins_below"][0]
     wins = [rates.name() for rates in all_rates for ahead, of in [rates.leads("table", "simple", lambda d: d < low)] if 2 * ahead > of]
-    return [f"Below {low} `table` is ahead with {listing(wins)}: the table is a constant array that is made at compile time, so a look-up (see the levels "
-            "above) costs less than the tests that it saves.", ""] if wins else []
+    return [f"Below {low} `table` is ahead with {listing(wins)}: the table is a constant array that is made at compile time, "
+            "so a look-up (see the levels above) costs less than the tests that it saves.", ""] if wins else []
 
 
 def _lead_lines(rates):
@@ -114,7 +114,8 @@ def _picture(own, pictures):
         plot.set(xscale="log", yscale="log", xlabel="distance opened + 0.25, mm (0.25: full occlusion)", title=f"voxels of {rates.size} mm")
     plots[0].set_ylabel("queries a second, Hz (median)")
     plots[1].legend(fontsize=7, loc="lower right")
-    return pictures.save(figure, "seed_rates", f"Queries a second by distance, policy and engine, for voxels of {' and '.join(rates.size for rates in own)} mm",
+    return pictures.save(figure, "seed_rates",
+                         f"Queries a second by distance, policy and engine, for voxels of {' and '.join(rates.size for rates in own)} mm",
                          f"n = {', '.join(f'{rates.n:.0f} queries a point at {rates.size} mm' for rates in own)}, one worker; dotted: 1000 Hz")
 
 
@@ -134,13 +135,16 @@ def rates(results, pictures):
     low, high = PUBLISHED["simple_wins_below"]
     agree = [sum(row[column] == "*Agrees*" for row in verdicts) for column in (4, 8)]
     return ["### Haptic rates by distance (figure 10)", "", _picture(own, pictures), "",
-            f"Published are {PUBLISHED['worst_hz']['table']} Hz with `table` and {PUBLISHED['worst_hz']['simple']} Hz with `simple` in the worst case, which "
-            "is *right before collision*; the text does not name which of its two voxel sizes this is. Here the pose before contact is the first distance at "
-            "which no triangles meet. Rows with l/s have the same number of voxels along the jaw as the article at that size, and distances in its units.", "",
-            *table(["voxel size", "engine", "spheres", "worst rate, Hz", "at distance", "sphere tests", "rate before contact, Hz", "sphere tests"], rows), "",
-            "The article's worst case against the depth-first query with the same spheres, on another machine. A place agrees where it is that pose or the next one, a rate "
-            f"where neither is over {NEAR} times the other:", "",
-            *table(["voxel size", "spheres", "worst at", "before contact", "right before collision", "worst rate, Hz", "published, Hz", "ratio", "as published"], verdicts), "",
+            f"Published are {PUBLISHED['worst_hz']['table']} Hz with `table` and {PUBLISHED['worst_hz']['simple']} Hz with `simple` "
+            "in the worst case, which is *right before collision*; the text does not name which of its two voxel sizes this is. Here the pose before "
+            "contact is the first distance at which no triangles meet. Rows with l/s have the same number of voxels along the jaw as the article at "
+            "that size, and distances in its units.", "",
+            *table(["voxel size", "engine", "spheres", "worst rate, Hz", "at distance", "sphere tests",
+                    "rate before contact, Hz", "sphere tests"], rows), "",
+            "The article's worst case against the depth-first query with the same spheres, on another machine. "
+            f"A place agrees where it is that pose or the next one, a rate where neither is over {NEAR} times the other:", "",
+            *table(["voxel size", "spheres", "worst at", "before contact", "right before collision",
+                    "worst rate, Hz", "published, Hz", "ratio", "as published"], verdicts), "",
             f"The place agrees in {agree[0]} of {len(verdicts)} rows, the rate in {agree[1]}.", "",
-            f"Policies: the article says that below a distance of {low} to {high} `simple` is faster than `table`, since spheres by the table cost more to make "
-            f"than they save. Here, where a lead is {100 * (NOISE - 1):.0f} % or more:", "", *leads, "", *lead_reason(all_rates)]
+            f"Policies: the article says that below a distance of {low} to {high} `simple` is faster than `table`, since spheres by the table "
+            f"cost more to make than they save. Here, where a lead is {100 * (NOISE - 1):.0f} % or more:", "", *leads, "", *lead_reason(all_rates)]

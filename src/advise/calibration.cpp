@@ -37,13 +37,13 @@ double slowest_query(Query& query, const std::vector<Eigen::Isometry3d>& poses, 
   std::vector<LeafPair> leaf_pairs(room + 1);
   std::vector<std::vector<double>> times(poses.size());
   progress.begin_stage("timing queries", options.rounds);
-  const Clock::time_point end = Clock::now() + options.time;
+  const Clock::time_point end = options.now() + options.time;
   for (std::size_t round = 0;
-       round < kLeastRounds || (round < options.rounds && Clock::now() < end); ++round) {
+       round < kLeastRounds || (round < options.rounds && options.now() < end); ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const Clock::time_point begin = Clock::now();
+      const Clock::time_point begin = options.now();
       static_cast<void>(query.leaf_pairs(poses[i], leaf_pairs));
-      times[i].push_back(microseconds(Clock::now() - begin));
+      times[i].push_back(microseconds(options.now() - begin));
     }
     progress.add(1);
   }
@@ -138,11 +138,11 @@ std::optional<SizeMeasure> Calibration::measure(double voxel_size, Progress* pro
       !can_build_tree(bodies_.moving(), build, &shown)) {
     return std::nullopt;
   }
-  const Clock::time_point begin = Clock::now();
+  const Clock::time_point begin = options_.now();
   const SphereTree fixed = build_tree(bodies_.fixed(), build, nullptr, &shown);
   const SphereTree moving = build_tree(bodies_.moving(), build, nullptr, &shown);
   SizeMeasure measured;
-  measured.build_milliseconds = 1e-3 * microseconds(Clock::now() - begin);
+  measured.build_milliseconds = 1e-3 * microseconds(options_.now() - begin);
   measured.voxel_size = voxel_size;
   measured.bytes = fixed.bytes() + moving.bytes();
 

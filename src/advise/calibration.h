@@ -39,6 +39,8 @@ struct CalibrationOptions {
   /// The most timed rounds over all poses, and the longest time for them; at least 5 rounds run.
   std::size_t rounds = 300;
   std::chrono::milliseconds time{1000};
+  /// The clock, read before and after each query; another one in tests.
+  std::chrono::steady_clock::time_point (*now)() noexcept = &std::chrono::steady_clock::now;
 };
 
 /// Measures voxel sizes on two bodies: builds both with slabs, times queries for all leaf pairs and

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
+
+#include "cli/cli11_fwd.h"
 
 namespace ist::cli {
 

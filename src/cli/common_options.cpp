@@ -1,5 +1,7 @@
 #include "cli/common_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {

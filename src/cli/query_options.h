@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cli/answers/examiner.h"
+#include "cli/cli11_fwd.h"
 #include "cli/engine.h"
 #include "cli/load_bodies.h"
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
+
+#include "cli/cli11_fwd.h"
 
 namespace ist::cli {
 

@@ -1,5 +1,6 @@
 #include "cli/words.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
 #include <optional>

@@ -13,7 +13,7 @@ function(ist_installed_place file result)
     set(place ${file})
   elseif(file STREQUAL LICENSE)
     set(place copyright)
-  elseif(file MATCHES "^src/examples/(.+)$")
+  elseif(file MATCHES "^examples/(.+)$")
     set(place examples/${CMAKE_MATCH_1})
   elseif(file MATCHES "^tests/data/scenes/(.+)$")
     set(place examples/scenes/${CMAKE_MATCH_1})
@@ -68,7 +68,7 @@ list(REMOVE_DUPLICATES pictures)
 foreach(picture IN LISTS pictures)
   ist_install_document(${picture} ${PROJECT_SOURCE_DIR}/${picture})
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
         COMPONENT ${documents_component} PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/data/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
         COMPONENT ${documents_component})

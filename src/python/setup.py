@@ -26,7 +26,7 @@ SONAME = "libist.so.0"
 LIBRARY = os.environ.get("IST_PYTHON_LIBRARY", "")
 # What the library is built from, and what of it only other things are built from.
 SOURCES = ["CMakeLists.txt", "CMakePresets.json", "LICENSE", "simd", "src"]
-OTHERS = ["cli", "examples", "python", "viewer", "__pycache__"]
+OTHERS = ["cli", "python", "viewer", "__pycache__"]
 # Others' code in the library, and Debian's packages with their licences.
 PARTS = {
     "Eigen": "libeigen3-dev",

@@ -9,6 +9,7 @@
 #include "ist/models/models.h"
 #include "query/exact/exact_tree.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 
@@ -57,8 +58,9 @@ class SphereOnBox : public ::testing::Test {
 
   const SphereTree fixed_ = exact_tree(block(), 20), moving_ = exact_tree(sphere(), 20);
   ExactBodies bodies_{fixed_, moving_};
-  // Times are nobody's matter here.
-  const CalibrationOptions options_{1, "", std::uint64_t{4} << 30, 5, std::chrono::milliseconds(1)};
+  // Times do not matter to most tests.
+  const CalibrationOptions options_{
+      .target = "", .rounds = 5, .time = std::chrono::milliseconds(1)};
 };
 
 TEST_F(SphereOnBox, MeasuresTheErrorOfAClosing) {
@@ -97,49 +99,76 @@ TEST_F(SphereOnBox, MeasuresTheWaysBeside) {
   EXPECT_EQ(Calibration(bodies_, straight, options_).measure(kSize)->error, largest);
 }
 
-// Whatever else runs: no median is less than the fastest of all, and all rounds fit into the time
-// that the measure took.
+// A clock for a calibration. It reads the clock for the build, for the end of the rounds, and then
+// before and after each query; each reading comes at a time of the test's choice.
+struct ScriptedClock {
+  static Budget::Clock::time_point now() noexcept {
+    const std::size_t at = readings++;
+    if (at == 1) return time += kBuild;
+    if (at >= 3 && at % 2 == 0) time += query_time((at - 4) / 2);
+    return time;
+  }
+  // The time of a query, by its number. In each round the poses take 101, 102 ... microseconds; in
+  // the second all take 1 ms more, in the fourth 50 less, and in the last pose 3 takes the longest.
+  static std::chrono::microseconds query_time(std::size_t query) {
+    const std::size_t round = query / Calibration::kPoses, pose = query % Calibration::kPoses;
+    const int usual = 101 + static_cast<int>(pose);
+    return std::chrono::microseconds(round == 1                ? usual + 1000
+                                     : round == 3              ? usual - 50
+                                     : round >= 4 && pose == 3 ? 5000
+                                                               : usual);
+  }
+  static constexpr std::chrono::milliseconds kBuild{250};
+  static inline std::size_t readings;
+  static inline Budget::Clock::time_point time;
+};
+
+// The median of a pose's times, at the slowest pose; no time of another round counts.
 TEST_F(SphereOnBox, MeasuresTheSlowestPose) {
-  using Clock = std::chrono::steady_clock;
-  const auto microseconds = [](Clock::duration time) {
-    return std::chrono::duration<double, std::micro>(time).count();
-  };
-  Calibration calibration(bodies_, path(), options_);
-  const auto begin = Clock::now();
+  CalibrationOptions options = options_;
+  options.now = ScriptedClock::now;
+  Calibration calibration(bodies_, path(), options);
+  ScriptedClock::readings = 0;
   const SizeMeasure measured = *calibration.measure(0.1);
-  const double whole = microseconds(Clock::now() - begin);
+  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * Calibration::kPoses);
+  EXPECT_DOUBLE_EQ(measured.build_milliseconds, 250);
+  // Pose 3 takes 104, 1104, 104, 54 and 5000. Pose 11 takes 112, 1112, 112, 62 and 112.
+  EXPECT_DOUBLE_EQ(measured.slowest_query, 112);
 
   const SphereTree fixed = tree_with_triangles(block(), 0.1);
   const SphereTree moving = tree_with_triangles(sphere(), 0.1);
   Query query(fixed, moving);
-  double slowest = 0;
   std::uint64_t most = 0;
   std::vector<LeafPair> leaf_pairs(1 << 16);
   for (const Eigen::Isometry3d& pose : calibration.poses()) {
-    double fastest = 1e9;
-    for (int i = 0; i < 2000; ++i) {
-      const auto asked = Clock::now();
-      most = std::max(most, query.leaf_pairs(pose, leaf_pairs).leaf_pairs);
-      fastest = std::min(fastest, microseconds(Clock::now() - asked));
-    }
-    slowest = std::max(slowest, fastest);
+    most = std::max(most, query.leaf_pairs(pose, leaf_pairs).leaf_pairs);
   }
   EXPECT_EQ(measured.max_leaf_pairs, most);
   EXPECT_GT(most, 0u);
-  EXPECT_GE(measured.slowest_query, 0.7 * slowest);  // the processor's clock may rise meanwhile
-  // Half of 5 rounds, or more, of the slowest pose take its median at least.
-  EXPECT_LE(3 * measured.slowest_query, whole);
+
+  // The rounds end with their time, but not before the fifth.
+  options.rounds = 300;
+  options.time = std::chrono::milliseconds(20);  // five rounds take more
+  ScriptedClock::readings = 0;
+  EXPECT_DOUBLE_EQ(Calibration(bodies_, path(), options).measure(0.1)->slowest_query, 112);
+  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * Calibration::kPoses + 1);
+  options.time = std::chrono::milliseconds(30);
+  ScriptedClock::readings = 0;
+  static_cast<void>(Calibration(bodies_, path(), options).measure(0.1));
+  EXPECT_GT(ScriptedClock::readings, 3 + 2 * 6 * Calibration::kPoses);
+  EXPECT_LT(ScriptedClock::readings, 3 + 2 * 20 * Calibration::kPoses);
 }
 
 // Jaws come up to each other in other ways than the one that is measured.
 TEST(CalibrationOfJaws, HoldsOnOtherWays) {
+  IST_SLOW();
   const SphereTree upper = exact_tree(make_jaw(Jaw::kUpper, 1), 100);
   const SphereTree lower = exact_tree(make_jaw(Jaw::kLower, 1), 100);
   ExactBodies bodies(upper, lower);
   const auto path =
       find_closing_path(bodies, shortest_open_direction(bodies.fixed_box(), bodies.moving_box()));
   ASSERT_TRUE(path);
-  Calibration calibration(bodies, *path, {1, "", std::uint64_t{4} << 30, 5, {}});
+  Calibration calibration(bodies, *path, {.target = "", .rounds = 5, .time = {}});
   const double size = 0.8, error = calibration.measure(size)->error;
 
   const SphereTree fixed = tree_with_triangles(bodies.fixed(), size);
@@ -211,6 +240,7 @@ TEST_F(SphereOnBox, MeasuresTheErrorAtPoses) {
 
 // Nothing is measured exactly where no tree can be built.
 TEST_F(SphereOnBox, SizesThatCannotBeBuilt) {
+  IST_SLOW();
   CalibrationOptions options = options_;
   options.max_memory = 1 << 20;
   Calibration calibration(bodies_, path(), options);

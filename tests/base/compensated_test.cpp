@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -30,7 +31,7 @@ TEST(CompensatedSum, FindsWhatAPlainSumLoses) {
 
 TEST(CompensatedSum, StaysWithinItsBoundOnSumsThatNearlyCancel) {
   test::Random random(1);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < test::samples(200); ++round) {
     const std::size_t half = 2 + random.below(50);
     CompensatedSum sum;
     mpq_class exact = 0, magnitude = 0;
@@ -53,7 +54,7 @@ TEST(CompensatedSum, StaysWithinItsBoundOnSumsThatNearlyCancel) {
 
 TEST(CompensatedSum, StaysWithinItsBoundOnDotProductsThatNearlyCancel) {
   test::Random random(2);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < test::samples(200); ++round) {
     const std::size_t half = 1 + random.below(50);
     CompensatedSum sum;
     mpq_class exact = 0, magnitude = 0;
@@ -77,7 +78,7 @@ TEST(CompensatedSum, StaysWithinItsBoundOnDotProductsThatNearlyCancel) {
 
 TEST(CompensatedSum, ADeterminantOfTwoProductsIsRightToTheLastBitButOne) {
   test::Random random(3);
-  for (int round = 0; round < 10'000; ++round) {
+  for (int round = 0; round < test::samples(10'000); ++round) {
     const double a = random.uniform(0.5, 2), b = random.uniform(0.5, 2), c = random.uniform(0.5, 2);
     const double d = b * c / a;  // a·d - b·c is all rounding
     CompensatedSum sum;

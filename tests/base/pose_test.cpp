@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 #include "support/rigid_pose.h"
@@ -55,7 +56,7 @@ TEST(ProjectToRigid, IdentityAndQuarterTurnsComeBackBitForBit) {
 
 TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
   test::Random random(1);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     const double error = i % 3 == 0 ? 0 : (i % 3 == 1 ? 1e-9 : 1e-6);
     Eigen::Matrix3d rotation = random_rotation(random);
     for (int k = 0; k < 9; ++k) rotation(k) += random.uniform(-error, error);
@@ -71,7 +72,7 @@ TEST(ProjectToRigid, RotationsNearlyOrthonormalBecomeSoAndStayNear) {
 
 TEST(ProjectToRigid, IsTheFormulaOfTheGuarantee) {
   test::Random random(5);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     Eigen::Matrix3d rotation = random_rotation(random);
     for (int k = 0; k < 9; ++k) rotation(k) += random.uniform(-2e-6, 2e-6);
     const Eigen::Isometry3d pose = pose_of(rotation, random.point(-100, 100));
@@ -81,7 +82,7 @@ TEST(ProjectToRigid, IsTheFormulaOfTheGuarantee) {
 
 TEST(ProjectToRigid, TheNearestRotationIsThePolarFactor) {
   test::Random random(2);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < test::samples(100); ++i) {
     // R·S with S symmetric and near the identity has the polar factor R.
     const Eigen::Matrix3d rotation = random_rotation(random);
     Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
@@ -112,7 +113,7 @@ TEST(ProjectToRigid, RefusesWhatIsFartherThanTheToleranceFromOrthonormal) {
 
 TEST(ProjectToRigid, RefusesMirrorings) {
   test::Random random(3);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < test::samples(20); ++i) {
     const Eigen::Matrix3d mirrored = -random_rotation(random);
     EXPECT_FALSE(project_to_rigid(pose_of(mirrored, Eigen::Vector3d::Zero())));
   }
@@ -141,7 +142,7 @@ TEST(ProjectToRigid, RefusesALastRowThatIsNoRigidMotions) {
 TEST(ComposeRigid, IsRightToTheDriftThatIsStated) {
   constexpr double kUnit = 0x1p-53;
   test::Random random(4);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     const auto motion = [&random] {
       const Eigen::Matrix3d rotation = random_rotation(random);
       return project_to_rigid(pose_of(rotation, random.point(-100, 100))).value();
@@ -154,7 +155,7 @@ TEST(ComposeRigid, IsRightToTheDriftThatIsStated) {
       return test::exact(Eigen::Vector3d(second.linear().row(k).transpose()));
     };
     Eigen::Vector3d shifted;
-    Eigen::Matrix3d turned;  // what is off, seen from the product: antisymmetric where it turns
+    Eigen::Matrix3d turned;  // the error of the rotation
     for (int k = 0; k < 3; ++k) {
       const mpq_class place =
           dot(row(k), test::exact(first.translation())) + mpq_class(second.translation()[k]);

@@ -84,7 +84,8 @@ TEST(CThread, IsToldWhereItsQueryIsBusy) {
       "ok");
   std::atomic<int> answered{0}, busy{0};
   run([&](int) {
-    for (int i = 0; i < 100'000 && (i < 100 || busy == 0); ++i) {
+    // Sooner or later a thread loses its core in a call, and another one finds the query busy.
+    for (int i = 0; i < 100 || busy == 0; ++i) {
       auto result = sized<ist_query_result>();
       const ist_status status =
           ist_query_leaf_pairs(query, c_shift(1.5, 0, 0).data(), nullptr, nullptr, 0, &result);
@@ -100,7 +101,6 @@ TEST(CThread, IsToldWhereItsQueryIsBusy) {
     }
   });
   EXPECT_GT(answered, 0);
-  EXPECT_GT(busy, 0);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
 }
 

@@ -12,6 +12,7 @@
 #include "ist/mesh/mesh.h"
 #include "ist/models/models.h"
 #include "listener.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
 
@@ -155,6 +156,7 @@ TEST(CBuild, IsFollowedOnTheCallersThreadAndEndsWhereItSaysSo) {
 
 // A sphere of 327,680 triangles: its files take longer than the time between two reports.
 TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
+  IST_SLOW();
   const TempDir folder;
   const std::string stl = (folder.path() / "a.stl").string(),
                     ist = (folder.path() / "a.ist").string();

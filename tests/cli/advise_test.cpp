@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -48,6 +49,7 @@ class Advise : public CliTest {
 };
 
 TEST_F(Advise, TheLargestVoxelsOfAnError) {
+  IST_SLOW();
   const CommandResult result = advise({"--error", "0.02", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(says(result.err, "12 poses: opening towards -y"));
@@ -77,6 +79,7 @@ TEST_F(Advise, TheSmallestVoxelsOfABudget) {
 
 // The table says what the lines do, and how to build what is recommended.
 TEST_F(Advise, ATable) {
+  IST_SLOW();
   const CommandResult result = advise({"--error", "0.1", "--axis", "-y"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json best = recommended(advise({"--error", "0.1", "--axis", "-y", "--json"}).out);
@@ -103,6 +106,7 @@ TEST_F(Advise, BuildCommands) {
 }
 
 TEST_F(Advise, AtPoses) {
+  IST_SLOW();
   const auto at = [&](const std::vector<double>& shifts) {
     return std::vector<std::string>{"--error", "0.05", "--json", "--poses", poses(shifts)};
   };
@@ -119,6 +123,7 @@ TEST_F(Advise, AtPoses) {
 
 // No size keeps the goal: what was measured is there, and none of it is recommended.
 TEST_F(Advise, NoAdvice) {
+  IST_SLOW();
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"--budget-us", "1e-3", "--json"}, "no voxel size keeps 0.0008 µs"},
       {{"--error", "1e-7", "--json", "--max-memory", "2M"},

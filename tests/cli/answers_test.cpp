@@ -1,6 +1,7 @@
 #include <tuple>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -80,6 +81,7 @@ TEST_F(Answers, NearIsSaidWithoutTriangles) {
 
 // One question, one answer, whatever else is asked.
 TEST_F(Answers, WithoutTrianglesVoxelsAnswerWhateverIsAsked) {
+  IST_SLOW();
   const std::string plain = tree_without_triangles("plain.ist");
   for (const auto& [shift, code, touch] :
        {std::tuple("3.9,0,0", 6, "near"), std::tuple("5.5,0,0", 0, "no")}) {
@@ -324,6 +326,7 @@ TEST_F(Answers, EverySubcommandBeginsSo) {
 
 // People are told without voxels, where nothing of them is asked.
 TEST_F(Answers, VoxelsAreMadeWhereTheyAreAskedFor) {
+  IST_SLOW();
   const CommandResult people = ist_well({"collide", ball_, ball_, "--move", "3.9,0,0"});
   EXPECT_EQ(people.err.find("voxel"), std::string::npos) << people.err;
   EXPECT_TRUE(says(people.out, "touch      yes"));

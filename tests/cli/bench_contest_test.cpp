@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/bench/bench_report.h"
@@ -82,53 +82,70 @@ TEST(BenchHeading, SaysWhereQueriesAreSoSlowThatTheirTurnsTakeLonger) {
       << bench.heading();
 }
 
-// Waits at each question, and counts them.
-auto waits(int& count, int milliseconds) {
-  return [&count, milliseconds](std::size_t) {
-    ++count;
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    return cli::Contestant::Answer{1e3 * milliseconds, std::nullopt};
-  };
-}
+// A contest of one that takes 1 ms and one that takes longer, by a clock that nothing else moves.
+struct AgainstSlow {
+  explicit AgainstSlow(int slow_milliseconds) : milliseconds(slow_milliseconds) {}
 
-// A contest of one that takes a millisecond, and counts its questions in `fast`, and a slower one.
-cli::Contest against_slow(int& fast, int& slow, int milliseconds) {
-  return {{{"touch", "fast", "", 1, waits(fast, 1)},
-           {"touch", "slow", "", 1, waits(slow, milliseconds)}},
-          {{"here", "here", Eigen::Isometry3d::Identity()}}};
-}
+  const int milliseconds;
+  int time = 0;            // ms
+  int fast = 0, slow = 0;  // questions
+  cli::Contest contest{{{"touch", "fast", "", 1, asked(fast, 1)},
+                        {"touch", "slow", "", 1, asked(slow, milliseconds)}},
+                       {{"here", "here", Eigen::Isometry3d::Identity()}},
+                       [this] { return 1e-3 * time; }};
+
+ private:
+  std::function<cli::Contestant::Answer(std::size_t)> asked(int& count, int takes) {
+    return [this, &count, takes](std::size_t) {
+      ++count;
+      time += takes;
+      return cli::Contestant::Answer{1e3 * takes, std::nullopt};
+    };
+  }
+};
 
 TEST(BenchContest, GivesEverybodyThreeTurnsHoweverLongTheyTake) {
-  int fast = 0, slow = 0;
-  cli::Contest contest = against_slow(fast, slow, 40);
+  AgainstSlow made(40);
   double last = 0;
-  contest.hold(0.01, [&](double part) {
+  made.contest.hold(0.01, [&](double part) {
     last = part;
     return true;
   });
   EXPECT_EQ(last, 1);
   // A turn is one question that does not count and one that does.
-  EXPECT_GE(slow, 2 * 3);
-  EXPECT_EQ(contest.score(1, 0).times.size(), static_cast<std::size_t>(slow / 2));
-  EXPECT_GE(contest.score(0, 0).times.size(), 3u);
-  EXPECT_GE(contest.taken(), slow * 0.04);
+  EXPECT_EQ(made.slow, 2 * 3);
+  EXPECT_EQ(made.contest.score(1, 0).times.size(), 3u);
+  EXPECT_GE(made.contest.score(0, 0).times.size(), 3u);
+  EXPECT_DOUBLE_EQ(made.contest.taken(), 1e-3 * made.time);
 }
 
 TEST(BenchContest, GivesEverybodyAsMuchTime) {
-  int fast = 0, slow = 0;
-  cli::Contest contest = against_slow(fast, slow, 20);
+  AgainstSlow made(20);
   double last = 0;
-  contest.hold(0.5, [&](double part) {
+  made.contest.hold(0.5, [&](double part) {
     EXPECT_GE(part, last);
     last = part;
     return true;
   });
   EXPECT_EQ(last, 1);
-  EXPECT_GT(fast, 10 * slow);  // 22 times; in as many turns 5.5 times
-  EXPECT_GE(contest.score(1, 0).times.size(), 3u);
-  EXPECT_EQ(contest.score(0, 0).times.median(), 1e3);
-  EXPECT_FALSE(contest.loop().empty());
-  EXPECT_GE(contest.taken(), 0.5);
+  EXPECT_GT(made.fast, 10 * made.slow);  // 22 times; in as many turns 5.5 times
+  EXPECT_GE(made.contest.score(1, 0).times.size(), 3u);
+  EXPECT_EQ(made.contest.score(0, 0).times.median(), 1e3);
+  EXPECT_FALSE(made.contest.loop().empty());
+  EXPECT_DOUBLE_EQ(made.contest.taken(), 1e-3 * made.time);
+  EXPECT_GE(made.contest.taken(), 0.5);
+}
+
+// Without a clock of its own it takes the system's.
+TEST(BenchContest, LastsAsLongAsAsked) {
+  const auto at_once = [](std::size_t) { return cli::Contestant::Answer{1, std::nullopt}; };
+  cli::Contest contest({{"touch", "fast", "", 1, at_once}},
+                       {{"here", "here", Eigen::Isometry3d::Identity()}});
+  const auto begin = std::chrono::steady_clock::now();
+  contest.hold(0.05, [](double) { return true; });
+  const std::chrono::duration<double> around = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(contest.taken(), 0.05);
+  EXPECT_LE(contest.taken(), around.count() + 1e-6);  // for rounding
 }
 
 TEST(BenchRatios, AreNotMadeOfDifferentQuestions) {

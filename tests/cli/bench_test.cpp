@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -41,6 +42,7 @@ Key key_of(const json& line) {
 }
 
 TEST_F(Bench, ComparesTheSameSpheresAndThenTheTightest) {
+  IST_SLOW();
   const CommandResult result = bench({"--voxel-size", "3", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto lines = json_lines(result.out);
@@ -177,12 +179,14 @@ TEST_F(Bench, KeepsToItsMemory) {
 
 // Four policies in three ways, each in three turns of 0.01 s, take longer than that.
 TEST_F(Bench, SaysThatItTookLongerThanAsked) {
+  IST_SLOW();
   const CommandResult result = bench({"--voxel-size", "3"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(says(result.out, " s instead of 0.01: three turns of each query are the least\n"));
 }
 
 TEST_F(Bench, RefusesBodiesThatNeverMeet) {
+  IST_SLOW();
   const std::string beside = mesh("beside.stl", moved(icosphere(2, 2), {100, 100, 100}));
   refuses({fixed_, beside}, 2, "--poses: needed, because the bodies never meet on the way");
   refuses({fixed_, moving_, "--poses", poses({50, 60})}, 3,

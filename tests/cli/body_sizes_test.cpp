@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -72,6 +73,7 @@ TEST_F(BodySizes, TreesOfDifferentUnitsAreRefused) {
 }
 
 TEST_F(BodySizes, BodiesOfVeryDifferentSizesAreWarnedOf) {
+  IST_SLOW();
   const std::string one = needle("one.stl", 4);
   const auto warning = [&](double length) {
     const CommandResult result =

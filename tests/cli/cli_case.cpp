@@ -3,10 +3,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <sstream>
-#include <thread>
+#include <system_error>
 
 #include "ist/mesh/mesh.h"
 #include "support/shapes.h"
@@ -57,39 +57,71 @@ void CliTest::leave_no_core() {
 }
 
 void CliTest::await_entries(std::size_t entries, Process& process) const {
-  while (dir_.entries() < entries && process.is_running()) {
-    std::this_thread::sleep_for(std::chrono::microseconds(100));
-  }
+  await(process, [&] { return dir_.entries() >= entries; });
 }
 
 Process CliTest::with_held_call(const std::string& call, int after,
-                                const std::vector<std::string>& arguments) const {
-  return with_call(call, after, "", arguments);
+                                const std::vector<std::string>& arguments,
+                                const std::string& terminal) const {
+  return {"/usr/bin/env", words_with_call(call, after, "stand", arguments), terminal};
 }
 
-void CliTest::await_hold(Process& process) const {
-  while (!exists("held") && process.is_running()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  std::filesystem::remove(path("held"));
+Process CliTest::with_told_call(const std::string& call, int after,
+                                const std::vector<std::string>& arguments,
+                                const std::string& terminal) const {
+  return {"/usr/bin/env", words_with_call(call, after, "tell", arguments), terminal};
 }
 
 CommandResult CliTest::with_failing_call(const std::string& call, int after,
                                          const std::vector<std::string>& arguments) const {
-  return with_call(call, after, "yes", arguments).wait();
+  return run_command("/usr/bin/env", words_with_call(call, after, "fail", arguments));
 }
 
-Process CliTest::with_call(const std::string& call, int after, const std::string& fails,
-                           const std::vector<std::string>& arguments) const {
-  std::vector<std::string> all{"LD_PRELOAD=" IST_HELD_CALLS,
-                               "ASAN_OPTIONS=verify_asan_link_order=0",
-                               "IST_HOLD=" + call,
-                               "IST_HOLD_AFTER=" + std::to_string(after),
-                               "IST_HOLD_SIGN=" + path("held"),
-                               "IST_HOLD_FAILS=" + fails,
-                               IST_COMMAND};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  return {"/usr/bin/env", all};
+void CliTest::await_hold(Process& process) const {
+  await(process, [&] { return std::filesystem::exists(sign("held")); });
+}
+
+void CliTest::release() const { signs_.write("go", ""); }
+
+Process CliTest::with_own_clock(const std::vector<std::string>& arguments) const {
+  return {"/usr/bin/env", words_with_call("none", 0, "stand", arguments)};
+}
+
+std::vector<std::string> CliTest::words_with_own_clock(
+    const std::vector<std::string>& arguments) const {
+  std::vector<std::string> words = words_with_call("none", 0, "stand", arguments);
+  words.insert(words.begin(), "/usr/bin/env");
+  return words;
+}
+
+void CliTest::set_clock(unsigned milliseconds) const {
+  std::filesystem::resize_file(sign("clock"), milliseconds);
+}
+
+void CliTest::await_heard(std::size_t signals, Process& process) const {
+  await(process, [&] {
+    std::error_code not_yet;
+    const std::uintmax_t heard = std::filesystem::file_size(sign("heard"), not_yet);
+    return (!not_yet && heard > signals) || waits_for_files();
+  });
+}
+
+std::vector<std::string> CliTest::words_with_call(const std::string& call, int after,
+                                                  const std::string& how,
+                                                  const std::vector<std::string>& arguments) const {
+  for (const char* const name : {"held", "go", "heard", "waits"}) {
+    std::filesystem::remove(sign(name));
+  }
+  signs_.write("clock", "");
+  std::vector<std::string> words{"LD_PRELOAD=" IST_HELD_CALLS,
+                                 "ASAN_OPTIONS=verify_asan_link_order=0",
+                                 "IST_HOLD=" + call,
+                                 "IST_HOLD_AFTER=" + std::to_string(after),
+                                 "IST_HOLD_HOW=" + how,
+                                 "IST_SIGNS=" + signs_.path().string(),
+                                 IST_COMMAND};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
 }
 
 std::vector<nlohmann::json> CliTest::json_lines(const std::string& text) {

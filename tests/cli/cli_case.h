@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "ist/mesh/mesh.h"
@@ -45,16 +48,48 @@ class CliTest : public ::testing::Test {
 
   /// Processes that a signal ends leave no core from now on.
   static void leave_no_core();
+  /// Waits until a condition holds, or the process has ended.
+  template <typename Holds>
+  static void await(Process& process, const Holds& holds) {
+    while (!holds() && process.is_running()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  }
   /// Waits until the folder has that number of entries, or the process has ended.
   void await_entries(std::size_t entries, Process& process) const;
-  /// Runs it with a system call that does not return any more, once it has returned `after` times.
+
+  // Calls of the command that a test holds, and the clock of its signals: support/held_calls.cpp.
+  // They are of one process at a time.
+
+  /// Starts the command, with stderr on a terminal if one is named. A call of it stands still after
+  /// it has returned `after` times.
   [[nodiscard]] Process with_held_call(const std::string& call, int after,
-                                       const std::vector<std::string>& arguments) const;
-  /// Waits until that system call does not return.
-  void await_hold(Process& process) const;
-  /// Runs it with a system call that fails by EIO, once it has succeeded `after` times.
+                                       const std::vector<std::string>& arguments,
+                                       const std::string& terminal = "") const;
+  /// Starts the command. await_hold() waits until a call of it begins after it has returned `after`
+  /// times.
+  [[nodiscard]] Process with_told_call(const std::string& call, int after,
+                                       const std::vector<std::string>& arguments,
+                                       const std::string& terminal = "") const;
+  /// Runs the command. A call of it fails after it has succeeded `after` times.
   [[nodiscard]] CommandResult with_failing_call(const std::string& call, int after,
                                                 const std::vector<std::string>& arguments) const;
+  /// Waits until the call stands still or is told.
+  void await_hold(Process& process) const;
+  /// Lets the call go on, if it stands still, and all later ones.
+  void release() const;
+
+  /// Starts the command. For the times between its signals it has a clock that begins at 0, and
+  /// stands unless set_clock() sets it. Processes with a held call have this clock too.
+  [[nodiscard]] Process with_own_clock(const std::vector<std::string>& arguments) const;
+  /// Returns a command line that does the same.
+  [[nodiscard]] std::vector<std::string> words_with_own_clock(
+      const std::vector<std::string>& arguments) const;
+  void set_clock(unsigned milliseconds) const;
+  /// Waits until the command has heard that number of signals, and goes on or waits for its files.
+  void await_heard(std::size_t signals, Process& process) const;
+  /// Returns whether a signal is about to end the command, and waits for its files until then.
+  [[nodiscard]] bool waits_for_files() const { return std::filesystem::exists(sign("waits")); }
 
   /// The lines of a text, each an object of JSON, without the header.
   static std::vector<nlohmann::json> json_lines(const std::string& text);
@@ -62,8 +97,15 @@ class CliTest : public ::testing::Test {
   const TempDir dir_;
 
  private:
-  [[nodiscard]] Process with_call(const std::string& call, int after, const std::string& fails,
-                                  const std::vector<std::string>& arguments) const;
+  [[nodiscard]] std::filesystem::path sign(const std::string& name) const {
+    return signs_.path() / name;
+  }
+  // Returns a command line, and forgets what an earlier process told.
+  [[nodiscard]] std::vector<std::string> words_with_call(
+      const std::string& call, int after, const std::string& how,
+      const std::vector<std::string>& arguments) const;
+
+  const TempDir signs_;
 };
 
 /// Whether the text is in it.

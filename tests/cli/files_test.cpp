@@ -7,6 +7,7 @@
 #include "cli/cli_case.h"
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
+#include "support/effort.h"
 #include "support/ply_file.h"
 #include "support/shapes.h"
 
@@ -264,6 +265,7 @@ TEST_F(Files, AnInputIsNeverOverwritten) {
 }
 
 TEST_F(Files, DemoMakesItsJawsAndClosesThem) {
+  IST_SLOW();
   const CommandResult result =
       ist_well({"demo", "--voxel-size", "3", "--json", "--keep", dir_.path()});
   EXPECT_EQ(result.err, "");

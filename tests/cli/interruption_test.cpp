@@ -7,10 +7,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <sstream>
 #include <thread>
+#include <utility>
 
 #include "cli/cli_case.h"
 #include "ist/tree/sphere_tree.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 
@@ -22,6 +26,10 @@ using namespace std::chrono_literals;
 class Interruption : public CliTest {
  protected:
   Interruption() { leave_no_core(); }
+  // A tree that queries do not warn of.
+  [[nodiscard]] std::string fine_tree() const {
+    return ball_tree("ball.ist", "tight", {"--voxel-size", "0.05"});
+  }
   // A query that goes on for minutes, and writes its contacts into the folder all the while.
   [[nodiscard]] std::vector<std::string> long_query(const std::string& tree) const {
     return {"approach", tree,       tree,      "--axis",     "z",
@@ -32,7 +40,7 @@ class Interruption : public CliTest {
 
 TEST_F(Interruption, OfAQueryLeavesNoContacts) {
   StabilityCase seen("faults", "signal in a query", "wrong outcomes");
-  const std::string tree = ball_tree("ball.ist", "tight", {"--voxel-size", "0.05"});
+  const std::string tree = fine_tree();
   const std::string leaf_pairs = write("c.jsonl", "older");
   const std::size_t entries = dir_.entries();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
@@ -48,18 +56,15 @@ TEST_F(Interruption, OfAQueryLeavesNoContacts) {
 }
 
 TEST_F(Interruption, OfABuildLeavesTheOlderTree) {
+  IST_SLOW();
   StabilityCase seen("faults", "SIGINT and SIGQUIT in a build", "wrong outcomes");
   const std::string ball = mesh("fine.stl", icosphere(4, 2)), tree = path("out.ist");
   const std::vector<std::string> build{"build", ball, "-o", tree, "--voxel-size", "0.02"};
   ist_well(build);
   const std::string whole = file_content(tree);
-  int early = 0, while_written = 0;
-  const auto interrupt = [&](int signal, auto&& await) {
-    dir_.write("out.ist", "older");
-    const std::size_t entries = dir_.entries();
-    Process process(IST_COMMAND, build);
-    await(process, entries);
-    const bool half = dir_.entries() > entries;
+  int early = 0;
+  // Returns whether the older tree is left.
+  const auto interrupt = [&](Process& process, int signal, std::size_t entries) {
     process.signal(signal);
     const CommandResult result = process.wait();
     const bool ended = result.exit_code == 128 + signal;
@@ -68,20 +73,32 @@ TEST_F(Interruption, OfABuildLeavesTheOlderTree) {
     const bool clean = dir_.entries() == entries && (older ? ended : file_content(tree) == whole) &&
                        (ended || result.exit_code == 0);
     seen.sample(!clean, 0, std::to_string(result.exit_code) + ": " + result.err);
-    if (older) ++(half ? while_written : early);
+    return older;
   };
-  for (int tenth = 0; tenth < 8; ++tenth) {
-    interrupt(SIGINT, [&](Process&, std::size_t) { std::this_thread::sleep_for(20ms * tenth); });
+  // At any moment, until one comes before the tree is written.
+  for (int round = 0; round < 8 || early == 0; ++round) {
+    dir_.write("out.ist", "older");
+    const std::size_t entries = dir_.entries();
+    Process process(IST_COMMAND, build);
+    std::this_thread::sleep_for(20ms * (round % 8));
+    const bool half = dir_.entries() > entries;
+    if (interrupt(process, SIGINT, entries) && !half) ++early;
   }
-  EXPECT_GT(early, 0);
   for (const int signal : {SIGINT, SIGQUIT}) {
-    while_written = 0;
-    for (int i = 0; i < 20 && while_written == 0; ++i) {
-      interrupt(signal, [&](Process& process, std::size_t entries) {
-        await_entries(entries + 1, process);
-      });
+    dir_.write("out.ist", "older");
+    const std::size_t entries = dir_.entries();
+    for (int round = 0; round < 3; ++round) {  // while it is written, or later
+      dir_.write("out.ist", "older");
+      Process process(IST_COMMAND, build);
+      await_entries(entries + 1, process);
+      interrupt(process, signal, entries);
     }
-    EXPECT_GT(while_written, 0) << signal;
+    // It is written, and waits for the disk.
+    dir_.write("out.ist", "older");
+    Process process = with_held_call("fsync", 0, build);
+    await_hold(process);
+    EXPECT_EQ(dir_.entries(), entries + 1);
+    EXPECT_TRUE(interrupt(process, signal, entries)) << signal;
   }
 }
 
@@ -100,18 +117,40 @@ TEST_F(Interruption, OfAnOcclusionLeavesAllOlderFiles) {
   }
 }
 
+// The line of a status of the system that begins with `key`, without it.
+std::string status_line(const std::filesystem::path& status, const std::string& key) {
+  std::istringstream lines(file_content(status));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(key)) return line.substr(key.size());
+  }
+  return "";
+}
+
+// The system drops a signal that a process ignores. Other signals wait while the process is
+// stopped.
 TEST_F(Interruption, LeavesIgnoredSignalsIgnored) {
-  const std::string tree = ball_tree();
+  const std::string tree = ball_tree(), id = write("id", "");
   const std::size_t entries = dir_.entries();
   std::vector<std::string> arguments = long_query(tree);
-  arguments.insert(arguments.begin(), {"-c", "trap '' INT QUIT; exec \"$@\"", "sh", IST_COMMAND});
+  arguments.insert(arguments.begin(),
+                   {"-c", "trap '' INT QUIT; echo $$ >\"$0\"; exec \"$@\"", id, IST_COMMAND});
   Process process("/bin/sh", arguments);
   await_entries(entries + 1, process);
+  const std::filesystem::path system = "/proc/" + std::to_string(std::stoi(file_content(id)));
+  process.signal(SIGSTOP);
+  await(process, [&] {
+    bool stopped = true;
+    for (const auto& thread : std::filesystem::directory_iterator(system / "task")) {
+      stopped = stopped && says(status_line(thread.path() / "status", "State:"), "stopped");
+    }
+    return stopped;
+  });
   process.signal(SIGINT);
   process.signal(SIGQUIT);
-  std::this_thread::sleep_for(50ms);
-  EXPECT_TRUE(process.is_running());
+  EXPECT_EQ(std::stoull(status_line(system / "status", "ShdPnd:"), nullptr, 16), 0u);
   process.signal(SIGTERM);
+  EXPECT_NE(std::stoull(status_line(system / "status", "ShdPnd:"), nullptr, 16), 0u);
+  process.signal(SIGCONT);
   EXPECT_EQ(process.wait().exit_code, 128 + SIGTERM);
   EXPECT_EQ(dir_.entries(), entries);
 }
@@ -123,17 +162,24 @@ class Terminal {
     EXPECT_EQ(::grantpt(descriptor_), 0);
     EXPECT_EQ(::unlockpt(descriptor_), 0);
     name = ::ptsname(descriptor_);
+    user_ = ::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    EXPECT_GE(user_, 0);
   }
-  ~Terminal() { ::close(descriptor_); }
+  ~Terminal() {
+    if (user_ >= 0) ::close(user_);
+    ::close(descriptor_);
+  }
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // Reads until that is shown, or the programs on it have ended.
-  void await(const std::string& end) {
+  // Stops it, as Ctrl-S does, or lets it go on.
+  void stop(bool stops) const { ASSERT_EQ(::tcflow(user_, stops ? TCOOFF : TCOON), 0); }
+  // Reads until the programs on it have ended.
+  void await_end() {
+    ::close(user_);
+    user_ = -1;
     char text[256];
-    while (end.empty() || !shown.ends_with(end)) {
-      const ssize_t got = ::read(descriptor_, text, sizeof text);
-      if (got <= 0) return;
+    for (ssize_t got; (got = ::read(descriptor_, text, sizeof text)) > 0;) {
       shown.append(text, static_cast<std::size_t>(got));
     }
   }
@@ -141,37 +187,52 @@ class Terminal {
   std::string name, shown;
 
  private:
-  int descriptor_;
+  int descriptor_, user_ = -1;
 };
 
+// The bar stands still after its first drawing, or after its third.
 TEST_F(Interruption, ClearsTheProgressBar) {
-  for (const int signal : {SIGINT, SIGQUIT}) {
+  IST_SLOW();
+  const std::string tree = fine_tree();
+  for (const auto& [signal, waits] : {std::pair(SIGINT, 0), {SIGQUIT, 2}}) {
     Terminal terminal;
-    Process process(IST_COMMAND, long_query(ball_tree()), terminal.name);
-    terminal.await("asking");
+    Process process =
+        with_held_call("pthread_cond_clockwait", waits, long_query(tree), terminal.name);
+    await_hold(process);
     process.signal(signal);
     EXPECT_EQ(process.wait().exit_code, 128 + signal);
-    terminal.await("");
+    terminal.await_end();
     EXPECT_TRUE(terminal.shown.ends_with("asking\r\033[K")) << terminal.shown;
   }
 }
 
+// With a bar that was drawn before, which cannot be cleared.
 TEST_F(Interruption, DoesNotWaitForATerminalThatIsStopped) {
-  const std::string tree = ball_tree();
+  IST_SLOW();
+  const std::string tree = fine_tree();
   const std::size_t entries = dir_.entries();
   Terminal terminal;
-  const int user = ::open(terminal.name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_GE(user, 0);
-  Process process(IST_COMMAND, long_query(tree), terminal.name);
-  terminal.await("asking");
-  ASSERT_EQ(::tcflow(user, TCOOFF), 0);  // as Ctrl-S does
-  std::this_thread::sleep_for(500ms);    // the bar is drawn ten times a second
+  Process process = with_held_call("pthread_cond_clockwait", 0, long_query(tree), terminal.name);
+  await_hold(process);
+  terminal.stop(true);
   process.signal(SIGINT);
-  for (int i = 0; i < 3000 && process.is_running(); ++i) std::this_thread::sleep_for(1ms);
-  EXPECT_FALSE(process.is_running());
-  ASSERT_EQ(::tcflow(user, TCOON), 0);
-  ::close(user);
   EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
+  terminal.stop(false);
+  EXPECT_EQ(dir_.entries(), entries);
+}
+
+// The thread that draws waits for the terminal, and holds the lock of the bar.
+TEST_F(Interruption, DoesNotWaitForABarThatWaitsForAStoppedTerminal) {
+  IST_SLOW();
+  const std::string tree = fine_tree();
+  const std::size_t entries = dir_.entries();
+  Terminal terminal;
+  terminal.stop(true);
+  Process process = with_told_call("fputs", 0, long_query(tree), terminal.name);
+  await_hold(process);
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
+  terminal.stop(false);
   EXPECT_EQ(dir_.entries(), entries);
 }
 

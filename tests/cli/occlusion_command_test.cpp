@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/ply_file.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -178,6 +179,7 @@ TEST_F(OcclusionCommand, NamesNothingThatItWasNotTold) {
 }
 
 TEST_F(OcclusionCommand, TeethAreToldByTheirNumbers) {
+  IST_SLOW();
   std::string labels;
   for (std::size_t i = 0; i < icosphere(4, 2).triangles.size(); ++i) labels += "36\n";
   const std::string file = write("labels.txt", labels);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/cli_case.h"
@@ -26,13 +27,14 @@ class SweepCommand : public CliTest {
   /// The content of a sweep file.
   struct Job {
     std::uint64_t count = 25, rows_per_part = 10, seed = 1;
-    std::string answers = R"("intersects", "distance")";
+    std::string answers = R"("intersects", "distance")", tolerance = "0.01";
+    std::string from = "[2, -1, -1]", to = "[5, 1, 1]";
     std::string name = "job.toml";
   };
   static std::string text_of(const Job& job) {
     return fmt::format(
         "answers = [{}]\n"
-        "tolerance = 0.01\n"
+        "tolerance = {}\n"
         "rows_per_part = {}\n"
         "[fixed]\n"
         "tree = \"ball.ist\"\n"
@@ -41,10 +43,10 @@ class SweepCommand : public CliTest {
         "[poses.box]\n"
         "seed = {}\n"
         "count = {}\n"
-        "from = [2, -1, -1]\n"
-        "to = [5, 1, 1]\n"
+        "from = {}\n"
+        "to = {}\n"
         "turns = \"any\"\n",
-        job.answers, job.rows_per_part, job.seed, job.count);
+        job.answers, job.tolerance, job.rows_per_part, job.seed, job.count, job.from, job.to);
   }
   /// Writes a sweep file, and returns its path.
   std::string sweep_file(const Job& job) const { return write(job.name, text_of(job)); }
@@ -111,7 +113,11 @@ class SweepCommand : public CliTest {
   }
   [[nodiscard]] std::vector<std::string> names(const std::string& folder) const {
     std::vector<std::string> found;
-    for (const auto& [name, bytes] : files(folder)) found.push_back(name);
+    if (!exists(folder)) return found;
+    for (const auto& entry : std::filesystem::directory_iterator(path(folder))) {
+      found.push_back(entry.path().filename());
+    }
+    std::sort(found.begin(), found.end());
     return found;
   }
   /// How many parts of a folder are there, or marks of a part.
@@ -123,6 +129,15 @@ class SweepCommand : public CliTest {
   [[nodiscard]] std::ptrdiff_t marks_in(const std::string& folder) const {
     return count_of(
         folder, [](const std::string& name) { return name.find(".start-") != std::string::npos; });
+  }
+
+  /// How many parts of a folder are begun, with a file that has its header and no name yet.
+  [[nodiscard]] std::ptrdiff_t begun_in(const std::string& folder) const {
+    return count_of(folder, [&](const std::string& name) {
+      std::error_code gone;
+      const std::uintmax_t bytes = std::filesystem::file_size(path(folder + "/" + name), gone);
+      return name.starts_with("part-") && name.ends_with(".tmp") && !gone && bytes > 0;
+    });
   }
 
   /// The object that a command prints with --json, after its header.

@@ -13,7 +13,7 @@ import pages
 from snippets import OTHER_COMPILER, SKIPPED, STUBS, WARNINGS
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCENE = HERE.parent.parent / "src/examples/probe.toml"
+SCENE = HERE.parent.parent / "examples/probe.toml"
 
 
 def run(*command, **options):

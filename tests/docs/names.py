@@ -42,7 +42,8 @@ def main():
     pages, names = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "src").glob("*/README.md")], known()
     wrong = [f"{page.relative_to(ROOT)}:{number}: there is no {name}" for page in pages for number, name in unknown(page.read_text(), names)]
     scripts = {file.name for file in (ROOT / "scripts").iterdir() if SCRIPT.fullmatch(file.name)}
-    others = {file.name for folder in ("tests", "src", "bench", "scripts") for file in (ROOT / folder).rglob("*") if SCRIPT.fullmatch(file.name)}
+    others = {file.name for folder in ("tests", "src", "bench", "examples", "scripts") for file in (ROOT / folder).rglob("*")
+              if SCRIPT.fullmatch(file.name)}
     wrong += [f"HACKING.md: {what}" for what in scripts_wrong((ROOT / "HACKING.md").read_text(), scripts, others)]
     print("\n".join(wrong), file=sys.stderr)
     print(f"{len(pages)} pages, {len(names)} names, {len(wrong)} that are not there")

@@ -141,7 +141,8 @@ class Guards(unittest.TestCase):
         head = "# Page\n\n### Each guarantee, its tests, and a mutant that they kill\n\n| guarantee | tests | mutant |\n|---|---|---|\n"
 
         def flaws(row):
-            return guards.flaws_of_guarantees(f"{head}{row}\n\n## Next\n", {"Real.Thing", "Some/Other.Thing/1"}, {"broken", "lives", "elsewhere", "proven"},
+            return guards.flaws_of_guarantees(f"{head}{row}\n\n## Next\n", {"Real.Thing", "Some/Other.Thing/1"},
+                                              {"broken", "lives", "elsewhere", "proven"},
                                               {"broken": "Real.Thing", "elsewhere": "Other.Thing", "proven": guards.PROOF})
 
         self.assertEqual(flaws("| It holds | `Real`, `Some/Other.Thing` | `broken` |"), ([], 2))
@@ -150,7 +151,8 @@ class Guards(unittest.TestCase):
         self.assertEqual(flaws("| It holds | `Real` | none |")[0], ["'It holds' names no mutant: none"])
         self.assertEqual(flaws("| It holds | `Real` | `gone` |")[0], ["'It holds' names gone, and there is no such mutant"])
         self.assertEqual(flaws("| It holds | `Real` | `proven` |"), ([], 1))
-        self.assertEqual(flaws("| It holds | `Real` | `elsewhere` |")[0], ["'It holds' names elsewhere, and Other.Thing killed it, none of its tests"])
+        self.assertEqual(flaws("| It holds | `Real` | `elsewhere` |")[0],
+                         ["'It holds' names elsewhere, and Other.Thing killed it, none of its tests"])
         self.assertEqual(flaws("| It holds | `Real` | `lives` |")[0], ["'It holds' names lives, and no test has killed it: scripts/mutate.sh lives"])
 
     def test_lines_without_a_title(self):

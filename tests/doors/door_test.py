@@ -35,8 +35,7 @@ class Door(unittest.TestCase):
         for said in (log, ran.stdout):
             times = dict(re.findall(r"\| (.+) \| ([\d.]+) \|", said))
             self.assertEqual(list(times), ["the long one", "a user's", "all"])
-            self.assertTrue(0.4 <= float(times["the long one"]) < 10, said)
-            self.assertGreaterEqual(float(times["all"]), 0.4)
+            self.assertTrue(0.4 <= float(times["the long one"]) <= float(times["all"]), said)
 
     def test_a_step_that_fails_ends_the_door_and_shows_the_end_of_the_log(self):
         for failing in ("types wrong 'echo before; false; echo after'", "types wrong 'echo before; false | cat; echo after'",

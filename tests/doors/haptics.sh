@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# I build a haptic loop: from the packages to the servo example, a scene of one's own, and a callback in C.
+# I build a haptic loop: from the packages to the example of a loop, a scene of one's own, and a callback in C.
 #
 #   haptics.sh [--without-root] [--keep]
 #
@@ -13,9 +13,9 @@ installs "the packages and a compiler, as docs/building.md says" "$(block docs/b
 documents=/usr/share/doc/ist
 [ "$way" = root ] || documents=$unpacked$documents
 
-types "the servo example, built as its CMakeLists.txt says" "cp -r $documents/examples . && cd examples
+types "the examples, built as their CMakeLists.txt says" "cp -r $documents/examples . && cd examples
 cmake -S . -B build && cmake --build build"
-types "the servo example, run" "cd examples && build/servo_loop probe.toml && build/servo_loop probe.toml --paced"
+types "the example of a loop, run" "cd examples && build/loop probe.toml && build/loop probe.toml --paced"
 pushes() { awk '/ N$/ {if ($1 > most) most = $1} END {print "at most " most " N"; exit !(most > 0.5)}' "$work/printed"; }
 step "it pushes" pushes
 

@@ -7,15 +7,12 @@ import ast
 import inspect
 import os
 import pathlib
-import pickle
 import shutil
 import signal
-import subprocess
-import sys
 import threading
 import unittest
 
-from support import kill_in_the_middle_of_a_part, make_job, sha256, sha256_by_one_process, skip
+from support import kill_in_the_middle_of_a_part, make_job, sha256, sha256_by_one_process, skip, stopped_in_part
 
 try:
     from distributed import Client, LocalCluster
@@ -78,20 +75,17 @@ class Dask(unittest.TestCase):
         self.assertEqual(len(shares), 3)
 
     def test_a_part_that_somebody_else_makes_is_waited_for(self):
-        sweep = make_job(self, 4000, 1000)
-        program = ("import pickle, sys\nsweep = pickle.load(sys.stdin.buffer)\n"
-                   "print(sweep.run(1, threads=1, progress=lambda done: done and print('begun', flush=True)).outcome)")
-        with subprocess.Popen([sys.executable, "-B", "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
-            other.stdin.write(pickle.dumps(sweep))
-            other.stdin.close()
-            self.assertEqual(other.stdout.readline(), b"begun\n")
-            other.send_signal(signal.SIGSTOP)
-            goes_on = threading.Timer(3, other.send_signal, [signal.SIGCONT])
-            goes_on.start()
-            self.assertEqual(ist.dask.run(sweep, self.client, retries=0).done, [0, 1, 2, 3])
-            self.assertTrue(goes_on.finished.is_set())
-            goes_on.join()
-            self.assertTrue(other.stdout.read().endswith(b"made\n"))
+        sweep, shares = make_job(self, 4000, 1000), []
+
+        def progress(share):
+            shares.append(share)
+            if share == 0.75:  # the other process goes on when all other parts are made
+                other.send_signal(signal.SIGCONT)
+
+        with stopped_in_part(sweep, 1) as other:
+            self.assertEqual(ist.dask.run(sweep, self.client, retries=0, progress=progress).done, [0, 1, 2, 3])
+            self.assertEqual(shares, [0.25, 0.5, 0.75, 1])
+            self.assertEqual(other.stdout.read(), b"made\n")
 
     def test_an_error_comes_out(self):
         sweep = make_job(self, 40, 10)

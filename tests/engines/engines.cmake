@@ -5,9 +5,9 @@ if(NOT TARGET ist_cli OR NOT TARGET ist_shared OR IST_SANITIZERS)
 endif()
 
 function(ist_add_engine_test name script)
-  add_test(NAME Sweep.${name} COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/${script})
-  set_tests_properties(Sweep.${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS python
-                       ENVIRONMENT "IST_LIBRARY=$<TARGET_FILE:ist_shared>;IST_COMMAND=$<TARGET_FILE:ist_cli>;PYTHONPATH=${PROJECT_SOURCE_DIR}/src/python")
+  ist_add_command(Sweep.${name} slow /usr/bin/python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/${script})
+  set_tests_properties(Sweep.${name} PROPERTIES ENVIRONMENT
+                       "IST_LIBRARY=$<TARGET_FILE:ist_shared>;IST_COMMAND=$<TARGET_FILE:ist_cli>;PYTHONPATH=${PROJECT_SOURCE_DIR}/src/python")
 endfunction()
 
 ist_add_engine_test(Dask dask_test.py)

@@ -74,7 +74,8 @@ class OneNodeSlurm:
         (self.folder / "state").mkdir()
         (self.folder / "spool").mkdir()
         file = self.folder / "slurm.conf"
-        file.write_text(CONFIGURATION.format(host=socket.gethostname().split(".")[0], folder=self.folder, ports=free_ports(2), user=getpass.getuser()))
+        file.write_text(CONFIGURATION.format(host=socket.gethostname().split(".")[0], folder=self.folder,
+                                             ports=free_ports(2), user=getpass.getuser()))
         self.environment = dict(os.environ, SLURM_CONF=str(file))
         try:
             self.start("munged", "--foreground", "--num-threads=2", f"--key-file={key}", *(
@@ -108,11 +109,12 @@ class OneNodeSlurm:
         with open(self.folder / f"{name}.out", "w", encoding="utf-8") as out:
             self.daemons.append(subprocess.Popen([program(name), *arguments], env=self.environment, stdout=out, stderr=out, stdin=subprocess.DEVNULL))
 
-    def wait(self, what, is_there, seconds=60):
+    def wait(self, what, is_there, seconds=300):
         end = time.monotonic() + seconds
         while not is_there():
             if time.monotonic() > end or any(daemon.poll() is not None for daemon in self.daemons):
-                logs = "\n".join(f"{file.name}:\n{file.read_text()[-2000:]}" for file in self.folder.glob("*.[lo]*") if file.suffix in (".log", ".out"))
+                logs = "\n".join(f"{file.name}:\n{file.read_text()[-2000:]}" for file in self.folder.glob("*.[lo]*")
+                                 if file.suffix in (".log", ".out"))
                 raise RuntimeError(f"{what} of a Slurm of one node did not come up:\n{logs}")
             time.sleep(0.1)
 

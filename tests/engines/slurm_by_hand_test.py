@@ -15,7 +15,8 @@ class SlurmByHand(unittest.TestCase):
         seen = []
         for task in range(3):
             variables = {"SLURM_ARRAY_TASK_ID": str(task), "SLURM_ARRAY_TASK_COUNT": "3", "SLURM_CPUS_PER_TASK": "2"}
-            ran = subprocess.run(["bash", script], env=path_with_command() | variables, cwd=script.parent, capture_output=True, text=True, check=False)
+            ran = subprocess.run(["bash", script], env=path_with_command() | variables, cwd=script.parent,
+                                 capture_output=True, text=True, check=False)
             self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
             seen.append(len(sweep.status().done))
         self.assertEqual(seen[-1], 7)

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import pathlib
+import pickle
 import re
 import signal
 import subprocess
@@ -91,31 +92,59 @@ def part_that(process, folder):
     return next((int(each[1]) for each in found if each), None)
 
 
-def alive(process):
-    """Whether a process is there, and more than what its parent has yet to hear of."""
+def has_states(process, states):
+    """Whether each thread of a process has one of these states, letters of Linux. T: it stands still. Z: it ended."""
     try:
-        return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
+        threads = list(pathlib.Path(f"/proc/{process}/task").iterdir())
+        return all((thread / "stat").read_text().rpartition(")")[2].split()[0] in states for thread in threads)
+    except OSError:  # the process or a thread is gone
+        return not pathlib.Path(f"/proc/{process}").exists()
 
 
-def kill_in_the_middle_of_a_part(folder, seconds=60):
+STOPS_IN_A_PART = """import os, pickle, signal, sys
+sweep, signals = pickle.load(sys.stdin.buffer), [signal.SIGSTOP]
+def progress(done):
+    if done and signals:
+        os.kill(os.getpid(), signals.pop())
+print(sweep.run(int(sys.argv[1]), threads=1, progress=progress).outcome)
+"""
+
+
+def stopped_in_part(sweep, part):
+    """Starts a process that makes a part, and stops itself in the middle of it. Returns the process; its stdout is a pipe."""
+    while True:
+        process = subprocess.Popen([sys.executable, "-B", "-c", STOPS_IN_A_PART, str(part)], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        process.stdin.write(pickle.dumps(sweep))
+        process.stdin.close()
+        os.waitpid(process.pid, os.WUNTRACED)
+        if part_that(process.pid, sweep.folder) == part and not (sweep.folder / f"part-{part:06}.npy").exists():
+            return process
+        process.kill()  # it stopped when the part was made
+        process.wait()
+        process.stdout.close()
+        for file in sweep.folder.glob(f"part-{part:06}.*"):
+            file.unlink()
+
+
+def kill_in_the_middle_of_a_part(folder):
     """Waits until a process makes a part of the folder, and kills it. Returns the process and the part, which is not there.
 
-    Raises AssertionError where no process could be killed so.
+    Raises AssertionError if no process could be killed so within eight minutes, so that a test without such a process ends.
     """
-    end = time.monotonic() + seconds
+    end = time.monotonic() + 480
     while time.monotonic() < end:
         for process in (int(each) for each in os.listdir("/proc") if each.isdigit() and int(each) != os.getpid()):
             if part_that(process, folder) is None:
                 continue
             os.kill(process, signal.SIGSTOP)
+            while not has_states(process, "TZX"):
+                time.sleep(0.001)
             part = part_that(process, folder)
             if part is None or (folder / f"part-{part:06}.npy").exists():  # it came to an end meanwhile
                 os.kill(process, signal.SIGCONT)
                 continue
             os.kill(process, signal.SIGKILL)
-            while alive(process):
+            while not has_states(process, "ZX"):
                 time.sleep(0.005)
             return process, part
         time.sleep(0.01)

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "fuzz/fuzz_target.h"
+#include "support/effort.h"
 #include "support/random.h"
 #include "support/stability.h"
 #include "support/temp_dir.h"

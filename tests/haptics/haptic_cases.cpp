@@ -9,7 +9,7 @@
 namespace ist::test {
 namespace {
 
-SphereTree tree_of(const TriangleMesh& mesh, double voxel_size) {
+SphereTree haptic_tree(const TriangleMesh& mesh, double voxel_size) {
   BuildOptions options;
   options.voxel_size = voxel_size;
   return build_tree(mesh, options);
@@ -34,9 +34,9 @@ Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
 }
 
 HapticBodies ball_over_box() {
-  SphereTree held = tree_of(icosphere(4, 5), 0.5);
+  SphereTree held = haptic_tree(icosphere(4, 5), 0.5);
   const double touching = 1e-3 * (5 + held.origin().z());
-  return {tree_of(box({-10, -10, -4}, {10, 10, 0}), 0.5), std::move(held), touching};
+  return {haptic_tree(box({-10, -10, -4}, {10, 10, 0}), 0.5), std::move(held), touching};
 }
 
 }  // namespace ist::test

@@ -8,6 +8,7 @@
 #include "haptics/human_pair.h"
 #include "ist/haptics/stability_border.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/skip.h"
 #include "support/stability.h"
 
@@ -132,8 +133,9 @@ void press_for(double voxel_size, double give, int count) {
 // diagonal is 0.346 mm, the deepest (at 1.6 N) needs 0.302 mm.
 double widest_ball(double voxel_size) { return std::sqrt(3.0) * 1e-3 * voxel_size; }
 
-// Two presses by default; with IST_EFFORT=600 an hour, with voxels of either size.
+// Two presses with IST_EFFORT=1. With 600 it is an hour, with voxels of either size.
 TEST(LongPressing, OfTheHumanPairGivesNoEnergyAndRestsStill) {
+  IST_SLOW();
   if (!HumanPair::is_there()) IST_SKIP("the scans of the human jaws are not in " << data_dir());
   const int count = samples(2);
   press_for(0.8, 0, count);

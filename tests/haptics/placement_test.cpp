@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "haptics/effects/effect_case.h"
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -29,7 +30,7 @@ double farthest_from_rigid(const Matrix3d& r) {
 
 TEST(Placement, ComesBackFromItsMotionAndGoesWhereTheMotionSays) {
   Random random(11);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < samples(20'000); ++i) {
     const Placement from = some_placement(random), to = some_placement(random);
     const Vector6 motion = six(random.point(-1, 1), random.point(-2, 2));
     ASSERT_LE((motion_between(from, from.moved(motion)) - motion).cwiseAbs().maxCoeff(), 1e-13);
@@ -88,7 +89,7 @@ TEST(Placement, StaysRigidThroughManyMoves) {
 TEST(Placement, CutsTheMotionOfHalfATurnAndKeepsItsAxis) {
   Random random(14);
   const Placement from = some_placement(random);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < samples(1000); ++i) {
     const Vector3d axis = random.direction();
     for (const double beyond : {-1e-3, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-3}) {
       const Placement to{turn(std::numbers::pi + beyond, axis) * from.rotation, from.translation};

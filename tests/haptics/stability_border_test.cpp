@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -48,7 +49,7 @@ TEST(StabilityBorder, IsTheFormula) {
 
 TEST(StabilityBorder, FallsWithDelayPeriodAndCouplingDampingAndGrowsWithTheDevices) {
   Random random(3);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < samples(1000); ++i) {
     const double b = random.uniform(1, 20), own = random.uniform(0, 0.9);
     const double period = random.uniform(1e-4, 2e-3), delay = random.uniform(0, 5e-3);
     const double largest = largest_stiffness(b, own, period, delay);
@@ -62,7 +63,7 @@ TEST(StabilityBorder, FallsWithDelayPeriodAndCouplingDampingAndGrowsWithTheDevic
 
 TEST(StabilityBorder, OfASpringIsThatOfThePassivityConditionAndWithADamperWithinIt) {
   Random random(4);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < samples(100); ++i) {
     const double b = random.uniform(0.5, 20), period = random.uniform(1e-4, 2e-3);
     const int delay = static_cast<int>(random.below(11));
     const double spring = largest_stiffness(b, 0, period, delay * period);
@@ -152,7 +153,7 @@ TEST(ClampCoupling, LeavesNothingToADeviceWithoutDamping) {
 
 TEST(ClampCoupling, WhatItGivesIsPassiveForAnythingAsked) {
   Random random(5);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < samples(100); ++i) {
     const int periods = static_cast<int>(random.below(6));
     const double period = random.uniform(1e-4, 2e-3);
     const DeviceMechanics device{.damping = random.uniform(0.1, 20),

@@ -5,6 +5,7 @@
 #include "haptics/effects/effect_case.h"
 #include "haptics/haptic_cases.h"
 #include "ist/haptics/recording.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -31,7 +32,7 @@ TEST(TickRecord, HoldsATickInPlainNumbers) {
 TEST(TickRecord, PosesComeBackBitForBit) {
   Random random(21);
   Placement placement;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < samples(500); ++i) {
     placement = placement.moved(six(random.point(-0.01, 0.01), random.point(-1, 1)));
     const TickRecord::Pose numbers = to_numbers(placement);
     EXPECT_EQ(numbers[1], placement.translation.y());

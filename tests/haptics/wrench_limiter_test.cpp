@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -63,7 +64,7 @@ TEST(WrenchLimiter, KeepsItsBoundsForAnyInput) {
   int at_the_limit = 0, at_the_slew = 0;
   WrenchLimiter guard(s);
   Vector6 last = Vector6::Zero(), wanted = last;
-  for (int i = 0; i < 200000; ++i) {
+  for (int i = 0; i < samples(200'000); ++i) {
     // Most stay for a while, so that the output arrives.
     if (random.below(10) == 0 || !wanted.allFinite()) wanted = any_wrench(random);
     const double dt = random.uniform(1e-4, 1e-2);
@@ -86,9 +87,9 @@ TEST(WrenchLimiter, KeepsItsBoundsForAnyInput) {
     ASSERT_EQ(guard.faults(), faults);
     last = output;
   }
-  EXPECT_GT(faults, 500U);
-  EXPECT_GT(at_the_limit, 5000);
-  EXPECT_GT(at_the_slew, 20000);
+  EXPECT_GT(faults, samples(300U));
+  EXPECT_GT(at_the_limit, samples(3'000));
+  EXPECT_GT(at_the_slew, samples(12'000));
 }
 
 TEST(WrenchLimiter, PassesBitForBitWhatBreaksNoLimit) {
@@ -97,7 +98,7 @@ TEST(WrenchLimiter, PassesBitForBitWhatBreaksNoLimit) {
   settings.force_slew = 2 * settings.max_force / kDt;
   settings.torque_slew = 2 * settings.max_torque / kDt;
   WrenchLimiter guard = started(settings);
-  for (int i = 0; i < 10000; ++i) {
+  for (int i = 0; i < samples(10'000); ++i) {
     Vector6 wanted;
     wanted << random.uniform(0, settings.max_force) * random.direction(),
         random.uniform(0, settings.max_torque) * random.direction();

@@ -6,6 +6,7 @@
 #include "hardware/exact_pair.h"
 #include "ist/tree/lookup_table.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -54,11 +55,11 @@ void expect_both(const Counts& counts) {
 TEST(NoMiss, AtRandomTangencies) {
   Random random(1);
   Counts counts;
-  for (int i = 0; i < 8000; ++i) {
+  for (int i = 0; i < samples(8000); ++i) {
     const int fixed_depth = static_cast<int>(random.below(17));
     const int moving_depth = static_cast<int>(random.below(17));
-    // Sizes that differ by up to 7.9, either way, and that no power of two divides.
-    // At depth 16 up to 4: a moved centre would not fit.
+    // The sizes differ by a factor of up to 7.9, either way, which is no power of two. At depth 16
+    // it is at most 4, or a moved centre would not fit.
     const int largest = moving_depth == 16 ? 5 : 6;
     const double ratio =
         std::ldexp(random.uniform(1, 1.97),
@@ -123,13 +124,13 @@ TEST(NoMiss, AtTheEndsOfAllFormats) {
   expect_both(counts);
 }
 
-// Radii of 9 and 9 ratio that need no rounding, so that nothing is to spare when the reach's and
-// the distance's last bits are cut off.
+// Radii of 9 and 9 ratio need no rounding. So nothing is to spare when the last bits of the reach
+// and the distance are cut off.
 TEST(NoMiss, WhereRadiiAreExact) {
   Random random(7);
   Counts counts;
-  for (int i = 0; i < 4000; ++i) {
-    // What the offset may err by, 0.0101 of a last bit, is added before rounding up.
+  for (int i = 0; i < samples(4000); ++i) {
+    // The largest error of the offset, 0.0101 of a last bit, is added before rounding up.
     const double radius = static_cast<double>(9216 + random.below(9216)) - 0.0102;
     const Lattice fixed_lattice = centred_lattice(15);
     const Lattice moving_lattice = centred_lattice(15, 12 * radius / 2304);
@@ -142,18 +143,18 @@ TEST(NoMiss, WhereRadiiAreExact) {
   expect_both(counts);
 }
 
-// Meshes far from the origin of their files: the frames' composition loses what doubles lose.
+// Meshes far from the origin of their files. Composing their frames loses digits of doubles.
 TEST(NoMiss, FarFromTheOrigin) {
   Random random(4);
   Counts counts;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < samples(500); ++i) {
     Lattice fixed = centred_lattice(8, 0.3), moving = centred_lattice(8, 0.41);
     const double far = std::ldexp(1, static_cast<int>(random.below(40)));
     for (double& x : fixed.corner) x += random.uniform(-far, far);
     for (double& x : moving.corner) x += random.uniform(-far, far);
     const Eigen::Matrix3d rotation = random.rotation();
     const HardwareNode a = random_node(random, 8, 0), b = random_node(random, 8, 0);
-    // Where they meet, by bisection of the exact answer along a line.
+    // The last pose on a line at which they touch, by bisection of the exact answer.
     const Eigen::Vector3d way = random.direction();
     const Eigen::Vector3d from = fixed.origin() - rotation * moving.origin();
     const double touching = last_touching(0, 1000, [&](double t) {
@@ -162,28 +163,28 @@ TEST(NoMiss, FarFromTheOrigin) {
     decide(fixed, moving, pose_of(rotation, from + touching * way), a, b, counts);
   }
   EXPECT_EQ(counts.missed, 0u);
-  EXPECT_EQ(counts.asked, 500u);
+  EXPECT_EQ(counts.asked, samples(std::size_t{500}));
 }
 
-// How far off the centres really are, of the pad. It must hold them, and be of their size: a
-// quarter of it would not do.
+// The true error of the centres, in parts of the pad. The pad must hold it and be of its size: a
+// quarter of the pad would not do.
 TEST(NoMiss, ThePadIsNeededAndIsEnough) {
   Random random(5);
   double most = 0;
   std::size_t missed_with_a_quarter = 0;
-  constexpr int kTried = 20'000;
-  for (int i = 0; i < kTried; ++i) {
+  const int tried = samples(20'000);
+  for (int i = 0; i < tried; ++i) {
     const int depth = i % 2 == 0 ? 16 : 4;
     const Lattice lattice = centred_lattice(depth);
     // Masks of four children in a plane: the radius is 9, and rounding does not add to it.
     HardwareNode fixed = random_node(random, depth, 0), moving = random_node(random, depth, 0);
     fixed.mask = 0x0F;
-    if (depth == 16) {  // where M's rounding counts most: at the root's corners
+    if (depth == 16) {  // the rounding of M counts most at the root's corners
       for (std::int32_t& x : moving.centre)
         x = random.below(2) == 0 ? kMaxCentre - 6 : 6 - kMaxCentre;
     }
     const Eigen::Matrix3d rotation = random.rotation();
-    // What is rounded down lies beyond, seen from where all is positive.
+    // Rounding down moves a centre in this direction, away from the fixed one.
     const Eigen::Isometry3d pose = pose_at(rotation, lattice, lattice, fixed, moving,
                                            Eigen::Vector3d(-1, -1, -1).normalized(), kTouching);
     QuantizedPose quantized = quantize_pose(pose, lattice, lattice);
@@ -200,17 +201,19 @@ TEST(NoMiss, ThePadIsNeededAndIsEnough) {
     if (!test_pair(pair, quantized.registers).hit) ++missed_with_a_quarter;
   }
   std::printf("[   PAD    ] %.3f of it used at most; with a quarter of it %zu of %d missed\n", most,
-              missed_with_a_quarter, kTried);
+              missed_with_a_quarter, tried);
   EXPECT_LE(most, 1);
-  EXPECT_GT(most, 0.75) << "the pad is larger than it need be, or the worst case is not here";
+  // The more samples, the worse is the worst of them.
+  EXPECT_GT(most, effort() < 1 ? 0.6 : 0.75)
+      << "the pad is larger than it need be, or the worst case is not here";
   EXPECT_GT(missed_with_a_quarter, 0u);
 }
 
-// How wide the band is in which a miss becomes a hit: README.md's sum, by level and ratio.
+// The width of the band in which a miss becomes a hit: README.md's sum, by level and ratio.
 TEST(NearMiss, IsAHitOnlyWithinThePublishedBand) {
   Random random(6);
   double widest_leaf = 0, widest_node = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < samples(4000); ++i) {
     const int level = i % 2 == 0 ? 0 : 6 + static_cast<int>(random.below(3));
     const double ratio = random.uniform(1, 2) / static_cast<double>(1u << random.below(7));
     const Lattice fixed_lattice = centred_lattice(10),

@@ -9,6 +9,7 @@
 #include "ist/tree/lookup_table.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/errors.h"
 
 namespace ist::test {
@@ -58,11 +59,11 @@ TEST(QuantizedPose, RadiiHoldTheBallAndTheErrorOfItsOffset) {
   }
 }
 
-// Bit for bit what exact arithmetic over the registers gives, rounded down, at the ends of the
-// trees.
+// Bit for bit what exact arithmetic gives with the registers, rounded down. The centres go to the
+// ends of the trees.
 TEST(QuantizedPose, MovesCentresByTheBook) {
   Random random(1);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < samples(3000); ++i) {
     const Lattice fixed = centred_lattice(16), moving = centred_lattice(16, random.uniform(1, 50));
     const QuantizedPose pose =
         quantize_pose(pose_of(random.rotation(), 12 * random.point(-1e5, 1e5)), fixed, moving);

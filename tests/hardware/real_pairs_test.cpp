@@ -12,6 +12,7 @@
 #include "query/query_cases.h"
 #include "support/closing.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/skip.h"
 
 namespace ist::test {
@@ -68,6 +69,7 @@ TEST(HardwarePairs, OfTheBuiltInJaws) {
 }
 
 TEST(HardwarePairs, OfTwoVoxelSizes) {
+  IST_SLOW();
   expect_no_miss(plain_tree(make_jaw(Jaw::kUpper, 1), 3), plain_tree(make_jaw(Jaw::kLower, 2), 1.3),
                  {0, -1.5});
   expect_no_miss(plain_tree(make_jaw(Jaw::kUpper, 1), 1.3), plain_tree(make_jaw(Jaw::kLower, 2), 3),
@@ -75,6 +77,7 @@ TEST(HardwarePairs, OfTwoVoxelSizes) {
 }
 
 TEST(HardwarePairs, OfTheHumanJaws) {
+  IST_SLOW();
   const auto fixed = data_dir() / "human_maxilla.stl", moving = data_dir() / "human_mandible.stl";
   if (!std::filesystem::exists(fixed)) IST_SKIP(fixed << " is not there");
   expect_no_miss(plain_tree(read_mesh(fixed), 0.8), plain_tree(read_mesh(moving), 0.8),

@@ -9,6 +9,7 @@
 #include "measure/body_pair.h"
 #include "query/query_cases.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 
@@ -49,6 +50,7 @@ TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
 }
 
 TEST(FirstContact, HasAStatusForEveryEnd) {
+  IST_SLOW();
   BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const auto status = [&](const Vector& from, const Vector& until) {
     const FirstContact found = first_contact(pair.query, place(from), place(until), 1e-3);
@@ -69,6 +71,7 @@ TEST(FirstContact, HasAStatusForEveryEnd) {
 
 // Along a face, nearer to it than a sixteenth of the tolerance, and then against a step.
 TEST(FirstContact, SaysWhereItGrazedBeforeTheContact) {
+  IST_SLOW();
   BodyPair pair(joined(box({-9, -2, -2}, {9, 2, 0}), box({5, -2, 0.5}, {9, 2, 2})),
                 box({-1, -1, 0}, {1, 1, 1}));
   const Motion motion = Motion::between(place({-8, 0, 1e-4}), place({8, 0, 1e-4}));
@@ -137,7 +140,7 @@ TEST(FirstContact, AlongAScrewOfMoreThanATurn) {
 TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
   Random random(83);
   int contacts = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < samples(60); ++i) {
     BodyPair pair(random_mesh(random), random_mesh(random));
     Pose from = Pose::Identity(), until = Pose::Identity();
     from.linear() = random.rotation();
@@ -168,7 +171,7 @@ TEST(FirstContact, IsNoLaterThanAnyOfManySamples) {
       EXPECT_FALSE(pair.meet(motion.at(at))) << i << ' ' << at << ' ' << to_string(found.status);
     }
   }
-  EXPECT_GT(contacts, 15);
+  EXPECT_GT(contacts, samples(15));
 }
 
 TEST(FirstContact, OfClosingJawsTakesFewDistances) {

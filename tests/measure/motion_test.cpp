@@ -6,6 +6,7 @@
 #include "ist/base/angles.h"
 #include "ist/measure/first_contact.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/errors.h"
 
 namespace ist::test {
@@ -21,7 +22,7 @@ double distance_of(const Pose& a, const Pose& b) {
 
 TEST(Angles, AreThoseOfLibm) {
   Random random(71);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const double angle = random.uniform(-100, 100) * std::ldexp(1.0, -static_cast<int>(i % 60));
     const auto [sine, cosine] = sine_cosine(angle);
     const double slack = 2e-15 * std::max(1.0, std::abs(angle));
@@ -39,7 +40,7 @@ TEST(Angles, AreThoseOfLibm) {
 
 TEST(Motion, GoesFromOnePoseToTheOther) {
   Random random(73);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < samples(300); ++i) {
     const Pose from = pose_of(random.rotation(), random.point(-9, 9));
     const double angle = i % 3 == 0 ? kPi : std::ldexp(random.uniform(0, 3), -(i % 50));
     const Pose by = pose_of(Eigen::AngleAxisd(angle, random.direction()).toRotationMatrix(),
@@ -77,7 +78,7 @@ TEST(Motion, OfAScrewTurnsAsOftenAsItIsTold) {
 
 TEST(Motion, SaysHowFarItsPointsGo) {
   Random random(79);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < samples(100); ++i) {
     const Motion motion = Motion::between(pose_of(random.rotation(), random.point(-3, 3)),
                                           pose_of(random.rotation(), random.point(-3, 3)));
     const Vector point = random.point(-2, 2);

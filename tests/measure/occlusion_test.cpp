@@ -10,6 +10,7 @@
 #include "ist/models/models.h"
 #include "measure/body_pair.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 
@@ -207,6 +208,7 @@ TEST(Occlusion, LeavesOutSmallRegionsAndWhatIsFar) {
 }
 
 TEST(Occlusion, OfFarOrLargeBodiesEnds) {
+  IST_SLOW();
   const Bite bite(icosphere(2, 1), icosphere(2, 1));
   const Occlusion far = bite.at({1e16, 3e15, 0});
   EXPECT_TRUE(far.complete);
@@ -234,6 +236,7 @@ TEST(Occlusion, SharesHangOnRegionsAloneHoweverFineTheyAreSplit) {
 }
 
 TEST(Occlusion, OfJawsHasTheSameBitsForAnyNumberOfThreadsAndTargets) {
+  IST_SLOW();
   const SphereTree upper = build_tree(make_jaw(Jaw::kUpper, 1), {.voxel_size = 1});
   const SphereTree lower = build_tree(make_jaw(Jaw::kLower, 1), {.voxel_size = 1});
   const Query query(upper, lower), plain(upper, lower, {.target = "scalar"});

@@ -10,6 +10,7 @@
 #include "query/query_cases.h"
 #include "simd/targets.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -126,6 +127,7 @@ double deepest_sample(const Bodies& bodies, const Pose& pose, double spacing) {
 }
 
 TEST(Penetration, HoldsTheDeepestOfManySamples) {
+  IST_SLOW();
   Random random(61);
   constexpr double kSpacing = 0.05, kTolerance = 0.01;
   const TriangleMesh shapes[] = {icosphere(2, 2), torus(3, 1, 18, 9), box({-2, -1, -1}, {2, 1, 1}),
@@ -133,7 +135,7 @@ TEST(Penetration, HoldsTheDeepestOfManySamples) {
   for (const TriangleMesh& a : shapes) {
     for (const TriangleMesh& b : shapes) {
       Bodies bodies(a, b);
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < samples(3); ++i) {
         Pose pose = Pose::Identity();
         pose.linear() = random.rotation();
         pose.translation() = random.uniform(0, 3) * random.direction();

@@ -8,6 +8,7 @@
 #include "ist/models/models.h"
 #include "query/query_cases.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -65,7 +66,7 @@ class PointSearchOn : public ::testing::TestWithParam<std::string> {
 
 TEST_P(PointSearchOn, FindsAmongRandomTrianglesWhatAllOfThemGive) {
   Random random(41);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < samples(60); ++i) {
     const TriangleMesh mesh = random_mesh(random);
     std::vector<Vector> points;
     for (int k = 0; k < 30; ++k) {
@@ -82,7 +83,7 @@ TEST_P(PointSearchOn, FindsOnAJawWhatAllTrianglesGive) {
   const SphereTree tree = coarse_tree(make_jaw(Jaw::kLower, 3));
   Random random(43);
   std::vector<Vector> points;
-  for (int k = 0; k < 25; ++k) {
+  for (int k = 0; k < samples(25); ++k) {
     const auto& vertices = tree.triangles()->vertices;
     points.push_back(vertices[random.below(vertices.size())] +
                      random.uniform(0, 3) * random.direction());
@@ -105,7 +106,7 @@ TEST_P(PointSearchOn, HoldsFarFromTheOriginLargeAndSmall) {
       TriangleMesh mesh = icosphere(2, 1);
       for (Vector& v : mesh.vertices) v = scale * (v + Vector(shift, -shift, shift));
       std::vector<Vector> points;
-      for (int k = 0; k < 20; ++k) {
+      for (int k = 0; k < samples(20); ++k) {
         points.push_back(
             scale * (Vector(shift, -shift, shift) + random.uniform(0, 3) * random.direction()));
       }

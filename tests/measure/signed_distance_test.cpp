@@ -12,6 +12,7 @@
 #include "ist/mesh/winding_number.h"
 #include "ist/models/models.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
 
@@ -44,7 +45,9 @@ TEST(SignedDistance, OfASphereIsItsClosedFormWithinTheFacets) {
   const SphereTree tree = body(icosphere(5, 10));
   Random random(3);
   std::vector<Vector> points;
-  for (int k = 0; k < 500; ++k) points.push_back(random.uniform(0, 20) * random.direction());
+  for (int k = 0; k < samples(500); ++k) {
+    points.push_back(random.uniform(0, 20) * random.direction());
+  }
   const auto found = signed_distance(tree, points, kInfinite);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_TRUE(found[i].is_signed);
@@ -60,7 +63,7 @@ TEST(SignedDistance, HasTheSignOfTheWindingNumber) {
         plate_with_holes(3), joined(icosphere(3, 4), inside_out(icosphere(3, 2))),
         pipe(6, 2, 3, 8)}) {
     const SphereTree tree = body(mesh);
-    const std::vector<Vector> points = points_about(mesh, 150, 2, random);
+    const std::vector<Vector> points = points_about(mesh, samples(150), 2, random);
     const auto found = signed_distance(tree, points, kInfinite);
     for (std::size_t i = 0; i < points.size(); ++i) {
       ASSERT_TRUE(found[i].is_signed);
@@ -107,13 +110,14 @@ TEST(SignedDistance, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Far away all triangles are equally near, to within rounding; what is outside the box is outside.
+// Far away all triangles are equally near, up to rounding. A point outside the box is outside the
+// body.
 TEST(SignedDistance, IsPositiveFarAway) {
   const SphereTree tree = body(box({-1, -1, 0}, {1, 1, 1e-3}));
   Random random(11);
   for (const double far : {1e3, 1e8, 1e14}) {
     std::vector<Vector> points;
-    for (int k = 0; k < 50; ++k) points.push_back(far * random.direction());
+    for (int k = 0; k < samples(50); ++k) points.push_back(far * random.direction());
     for (const SurfaceDistance& one : signed_distance(tree, points, kInfinite)) {
       EXPECT_TRUE(one.is_signed);
       EXPECT_NEAR(one.distance / far, 1, 0.01);
@@ -140,8 +144,8 @@ TEST(SignedDistance, MayBeAskedFirstByManyThreads) {
   }
 }
 
-// A closed body some of whose triangles have no area: an apex given twice, and joined; a corner on
-// a ridge; and a triangle with two equal indices on an edge.
+// Closed bodies with triangles that have no area: an apex given twice, and joined; a corner on a
+// ridge; and a triangle with two equal indices on an edge.
 TEST(SignedDistance, IsRightBesideTrianglesWithoutAnArea) {
   TriangleMesh twice;
   twice.vertices = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 2}, {0, 0, 2}};
@@ -157,7 +161,7 @@ TEST(SignedDistance, IsRightBesideTrianglesWithoutAnArea) {
   Random random(17);
   for (const TriangleMesh& mesh : {twice, ridge, needle}) {
     const SphereTree tree = body(mesh);
-    const std::vector<Vector> points = points_about(mesh, 600, 2, random);
+    const std::vector<Vector> points = points_about(mesh, samples(600), 2, random);
     const auto found = signed_distance(tree, points, kInfinite);
     std::size_t known = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -19,6 +19,7 @@
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -273,6 +274,7 @@ TEST(ReadMesh, EndsWhereItsThreadIsAsked) {
 }
 
 TEST(ReadMesh, ReadsTheSameJawFromEveryFormat) {
+  IST_SLOW();
   if (!std::filesystem::is_directory(test::data_dir()))
     IST_SKIP("no folder of real meshes at " << test::data_dir());
   const TriangleMesh mesh = read_mesh(test::data_dir() / "human_maxilla.stl");

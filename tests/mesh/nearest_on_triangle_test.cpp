@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "ist/mesh/nearest_point.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -37,7 +38,7 @@ void expect_nearest(const Corners& triangle, const Eigen::Vector3d& from, double
 
 TEST(NearestOnTriangle, IsAsNearAsTheExactNearestPoint) {
   test::Random random(1);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < test::samples(5000); ++i) {
     const Corners triangle{random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
     expect_nearest(triangle, random.point(-2, 2), 1e-12);
   }
@@ -45,7 +46,7 @@ TEST(NearestOnTriangle, IsAsNearAsTheExactNearestPoint) {
 
 TEST(NearestOnTriangle, IsRightWherePointsLieOnCornersEdgesAndAboveThem) {
   test::Random random(2);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < test::samples(5000); ++i) {
     const Corners triangle{random.point_on_grid(-2, 2, 1), random.point_on_grid(-2, 2, 1),
                            random.point_on_grid(-2, 2, 1)};  // many of them degenerate
     expect_nearest(triangle, random.point_on_grid(-3, 3, 0.5), 1e-13);
@@ -68,7 +69,7 @@ TEST(NearestOnTriangle, NamesTheFeature) {
 
 TEST(NearestOnTriangle, OfASegmentOrAPointIsThatOfTheSegmentOrThePoint) {
   test::Random random(3);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::samples(3000); ++i) {
     const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     const Eigen::Vector3d from = random.point(-2, 2);
     expect_nearest({a, a, a}, from, 1e-15);
@@ -81,7 +82,7 @@ TEST(NearestOnTriangle, OfASegmentOrAPointIsThatOfTheSegmentOrThePoint) {
 // The three corners on a line but for rounding, in any order.
 TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
   test::Random random(4);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < test::samples(5000); ++i) {
     const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     const Eigen::Vector3d between = a + random.uniform(0, 1) * (b - a);
     const Eigen::Vector3d from = random.point(-2, 2);
@@ -93,7 +94,7 @@ TEST(NearestOnTriangle, OfANeedleIsNearlyThatOfTheSegment) {
 
 TEST(NearestOnTriangle, OfASliverIsRightToAPartOfItsWidth) {
   test::Random random(5);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::samples(3000); ++i) {
     const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     const Eigen::Vector3d c = a + random.uniform(0, 1) * (b - a) + 1e-6 * random.direction();
     expect_nearest({a, b, c}, random.point(-2, 2), 1e-9);

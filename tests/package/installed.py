@@ -36,7 +36,7 @@ class Installed:
         whole = (SOURCE / "README.md").read_text()
         require(len((documents / "README.md").read_text()) > 0.97 * len(whole), "README has lost some of its text")
         examples = {name for name in files_below(documents) if name.startswith("examples/")}
-        own = SOURCE / "src/examples"
+        own = SOURCE / "examples"
         expected = {f"examples/{file.relative_to(own)}" for file in own.rglob("*") if file.is_file() and file.suffix != ".pyc"}
         expected |= {f"examples/scenes/{file.name}" for file in (SOURCE / "tests/data/scenes").iterdir()}
         require(examples == expected and len(expected) >= 7, f"the examples are {examples}")

@@ -272,20 +272,27 @@ class Packages(Installed, Pages):
         print(f"ist/ist.h pulls in {len(ours)} headers, {count} lines")
 
     def Example(self):
-        """The installed servo loop, as its CMakeLists.txt says to build it."""
+        """The installed examples, as their CMakeLists.txt says to build them."""
         folder = self.fresh("examples")
         examples = self.prefix / "share/doc/ist/examples"
         run("cmake", "-G", "Ninja", "-S", examples, "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
             f"-DCMAKE_CXX_COMPILER={self.compiler}")
         run("cmake", "--build", folder)
-        printed = run(folder / "servo_loop", examples / "probe.toml").splitlines()
+        expected = SOURCE / "tests/examples/expected"
+        for name, text in (("hello", "hello"), ("hello_c", "hello"), ("world", "world")):
+            printed = run(folder / name)
+            require(printed == (expected / f"{text}.txt").read_text(), f"{name} printed:\n{printed}")
+        printed = run(folder / "loop", examples / "probe.toml").splitlines()
         forces = [float(line.split()[0]) for line in printed[:-1]]
         require(len(forces) == 10 and printed[-1] == "1000 ticks, 0 missed", f"it printed {printed}")
         # 2 mm above the block, at 4 mm/s: it touches in the middle, and then pushes more and more.
         require(max(map(abs, forces[:4])) < 0.01, f"a force where nothing touches: {forces}")
         require(all(a < b for a, b in zip(forces[5:], forces[6:])) and forces[5] > 0.1, f"no push: {forces}")
-        lines = len((examples / "servo_loop.cpp").read_text().splitlines())
-        require(lines < 60, f"an example of {lines} lines")
+        sources = [file for file in examples.iterdir() if file.suffix in (".c", ".cpp", ".py")]
+        require(len(sources) == 5, f"the examples are {sources}")
+        for file in sources:
+            lines = len(file.read_text().splitlines())
+            require(lines <= 70, f"{file.name}, an example, has {lines} lines")
 
 
 def main():

@@ -5,7 +5,6 @@ import pty
 import re
 import select
 import subprocess
-import sys
 
 from checks import need, require, run
 
@@ -131,7 +130,7 @@ class Pages:
         os.write(terminal, f"source '{script}'\nist() {{ printf '<%s>' \"$@\"; }}\n".encode())
         os.write(terminal, b"ist occl\tup\tlower.stl --num\tf\t--json; exit\n")
         shown = b""
-        while select.select([terminal], [], [], 20)[0]:
+        while select.select([terminal], [], [], 300)[0]:
             try:
                 shown += os.read(terminal, 4096)
             except OSError:  # the shell has ended

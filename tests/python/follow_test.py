@@ -66,21 +66,24 @@ class Follow(Jaws):
     def test_parts_are_told_on_the_callers_thread(self):
         for name, call in self.calls().items():
             with self.subTest(name):
-                parts, threads, times = [], set(), []
+                # A call that ends soon is told of once. If another is, the system let the caller wait, and it is called again.
+                for _ in range(20):
+                    parts, threads = [], set()
 
-                def progress(part):
-                    parts.append(part)
-                    threads.add(threading.get_ident())
-                    times.append(time.monotonic())
+                    def progress(part):
+                        parts.append(part)
+                        threads.add(threading.get_ident())
 
-                began = time.monotonic()
-                call(progress)
-                ended = time.monotonic()
-                self.assertEqual(threads, {threading.get_ident()})
-                self.assertGreaterEqual(len(parts), 1 if ended - began < 0.06 else 2)
-                self.assertTrue(all(0 <= part <= 1 for part in parts))
-                self.assertEqual(parts, sorted(parts))
-                self.assertLess(np.median(np.diff(times)) if len(times) > 2 else 0, 0.15)
+                    began = time.monotonic()
+                    call(progress)
+                    lasted = time.monotonic() - began
+                    self.assertEqual(threads, {threading.get_ident()})
+                    self.assertTrue(all(0 <= part <= 1 for part in parts))
+                    self.assertEqual(parts, sorted(parts))
+                    if len(parts) > 1 or lasted < 0.06:
+                        break
+                else:
+                    self.fail(f"it lasts {lasted} s, and is told of once")
 
     def test_an_exception_ends_the_call_and_comes_out(self):
         for name, call in self.calls().items():
@@ -149,33 +152,39 @@ class Interrupt(unittest.TestCase):
         "build": "ist.build(ist.jaws()[0], 0.06, max_memory=16 << 30)",
         "occlusion": "query.occlusion(np.eye(4), longest_edge=0.01)",
         "rows": "query.rows(np.tile(np.eye(4), (400_000, 1, 1)), tolerance=0.001, threads=1)",
-        "to_bytes": "for _ in range(10_000): query.fixed.to_bytes()",
+        "to_bytes": "while True: query.fixed.to_bytes()",
         "prepare": "world = ist.World(contacts=-1, frontier_pairs=1024)\n    for _ in range(12): world.add(query.fixed)\n"
-                   "    for _ in range(10_000): world.prepare([]), world.prepare()",
-        "load of bytes": "bytes = query.fixed.to_bytes()\n    for _ in range(10_000): ist.load(bytes)",
+                   "    while True: world.prepare([]), world.prepare()",
+        "load of bytes": "bytes = query.fixed.to_bytes()\n    while True: ist.load(bytes)",
     }
+    # The call's third report is made while it lasts.
+    PROGRAM = """import ist, numpy as np
+from ist._follow import Follower
+query = ist.Query(*(ist.build(jaw, 0.8) for jaw in ist.jaws()))
+report, reports = Follower._report, []
+def told(self, user, part):
+    reports.append(part)
+    if len(reports) == 3:
+        print('begun', flush=True)
+    return report(self, user, part)
+Follower._report = told
+try:
+    {call}
+    print('ended by itself')
+except KeyboardInterrupt:
+    print('interrupted', query.intersects(np.eye(4)))
+"""
 
     def test_a_call_hears_it(self):
         for name, call in self.CALLS.items():
             with self.subTest(name):
-                program = (
-                    "import ist, numpy as np, sys, time\n"
-                    "query = ist.Query(*(ist.build(jaw, 0.8) for jaw in ist.jaws()))\n"
-                    "print('ready', flush=True)\n"
-                    "began = time.monotonic()\n"
-                    f"try:\n    {call}\n    print('ended by itself after', time.monotonic() - began)\n"
-                    "except KeyboardInterrupt:\n"
-                    "    print('interrupted', query.intersects(np.eye(4)))\n"
-                )
+                program = self.PROGRAM.format(call=call)
                 run = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-                self.assertEqual(run.stdout.readline(), "ready\n")
-                time.sleep(0.4)
-                sent = time.monotonic()
+                self.assertEqual(run.stdout.readline(), "begun\n")
                 run.send_signal(signal.SIGINT)
-                out, err = run.communicate(timeout=120)
+                out, err = run.communicate()
                 self.assertEqual((out, run.returncode), ("interrupted True\n", 0), err)
                 self.assertEqual(err, "")
-                self.assertLess(time.monotonic() - sent, 20)
 
     def test_freeing_leaves_it_to_the_program(self):
         class Freed(Handle):
@@ -197,11 +206,11 @@ class Threads(Jaws):
 
         def progress(part):
             entered.set()
-            leave.wait(10)
+            leave.wait()
 
         caller = threading.Thread(target=lambda: self.query.rows(np.tile(JAW_POSES[0], (10, 1, 1)), progress=progress))
         caller.start()
-        self.assertTrue(entered.wait(10))
+        entered.wait()
         try:
             for call in (lambda: self.query.intersects(JAW_POSES[0]), self.query.forget, self.query.free,
                          lambda: self.query.rows(np.eye(4)[None])):
@@ -228,38 +237,45 @@ class Threads(Jaws):
         self.assertEqual(answers, [expected] * 4)
 
     def test_other_threads_run_during_a_call(self):
-        ticks, end = [], threading.Event()
+        """Python runs on other threads alone between two reports of a call. The call ends if another thread ran often there."""
+        reports, runs, end = [], [], threading.Event()
 
-        def tick():
+        def run():
             while not end.is_set():
-                ticks.append(time.monotonic())
+                runs.append(len(reports))
                 time.sleep(0.001)
 
-        ticker = threading.Thread(target=tick)
-        ticker.start()
-        began = time.monotonic()
-        ist.build(self.meshes[0], 0.25)
-        ended = time.monotonic()
-        end.set()
-        ticker.join()
-        self.assertGreater(sum(began < each < ended for each in ticks), 10)
+        def progress(part):
+            if reports and runs.count(len(reports)) > 5:
+                raise Ended
+            reports.append(part)
+
+        other = threading.Thread(target=run)
+        other.start()
+        try:
+            with self.assertRaises(Ended):
+                self.query.rows(np.tile(JAW_POSES[1], (400_000, 1, 1)), tolerance=0.001, threads=1, progress=progress)
+        finally:
+            end.set()
+            other.join()
 
     def test_a_tree_may_be_freed_while_others_ask(self):
         tree = ist.build(box([0, 0, 0], [2, 2, 2]), 0.1)
         points = np.random.default_rng(2).normal(size=(50_000, 3))
-        seen = []
+        seen, asked = [], threading.Semaphore(0)
 
         def ask():
             try:
-                for _ in range(20):
-                    ist.signed_distance(tree, points)
+                while True:
+                    ist.signed_distance(tree, points, progress=lambda part: asked.release())
             except ist.FreedError as error:
                 seen.append(error)
 
         threads = [threading.Thread(target=ask) for _ in range(3)]
         for thread in threads:
             thread.start()
-        time.sleep(0.05)
+        for _ in threads:
+            asked.acquire()
         tree.free()
         for thread in threads:
             thread.join()

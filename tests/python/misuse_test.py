@@ -140,9 +140,9 @@ class Trees(Misuse):
         self.assertIn("freed", repr(self.tree))
         with query as same:
             same.free()
-        for call in (query.forget, lambda: query.intersects(EYE), lambda: query.rows(EYE[None]), lambda: query.distance(EYE)):
+        for call in (query.forget, lambda: query.intersects(EYE), lambda: query.rows(EYE[None]), lambda: query.distance(EYE)):  # noqa: F821
             self.refuses(ist.FreedError, "freed", call)
-        del query, same
+        del query, same  # which is why flake8 takes query for undefined in the lambdas above
 
 
 class Queries(Misuse):

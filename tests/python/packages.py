@@ -138,7 +138,7 @@ class Packages(WithoutLibrary, DebianPackage):
         root = folder / f"ist-{self.version}"
         for name in ("pyproject.toml", "setup.py", "README.md", "PKG-INFO", *modules(), *LICENCES):
             require((root / name).is_file(), f"{archive.name} lacks {name}")
-        strangers = {file.name for file in (root / "sources/src").iterdir()} & {"cli", "examples", "python", "viewer"}
+        strangers = {file.name for file in (root / "sources/src").iterdir()} & {"cli", "python", "viewer"}
         require(not strangers, f"{archive.name} holds {strangers}, which the library is not built from")
         # What CMake and the compiler have read of the project for the library that lies beside.
         lines = run("ninja", "-C", self.made, "-t", "deps").splitlines()

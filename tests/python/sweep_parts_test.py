@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import numpy as np
 import unittest
@@ -121,18 +120,24 @@ class Parts(Sweeps):
     def test_a_part_that_was_lost_three_times_is_given_up(self):
         sweep = self.job(box_poses(9, 20_001), ("distance",), "rows_per_part = 20000\ntolerance = 0.0001")
         sweep.run(1)
-        program = ("import ist\n"
+        program = ("import ist, os, signal\n"
                    f"sweep = ist.Sweep({str(sweep.path)!r})\n"
-                   "sweep.run(0, threads=1, progress=lambda done: done and print('begun', flush=True))")
-        for start in (1, 2, 3):
-            process = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE)
-            self.assertEqual(process.stdout.readline(), b"begun\n")
-            process.send_signal(signal.SIGSTOP)
-            self.assertEqual(sweep.status().missing, [0])
-            with self.assertRaisesRegex(ist.BusyError, "making this part"):
-                sweep.run(0)
-            process.kill()
-            process.communicate()
+                   "sweep.run(0, threads=1, progress=lambda done: done and os.kill(os.getpid(), signal.SIGSTOP))")
+        lost = 0
+        while lost < 3:
+            with subprocess.Popen([sys.executable, "-B", "-c", program]) as process:
+                os.waitpid(process.pid, os.WUNTRACED)  # it stops itself in the middle of the part
+                made = sweep.status().done
+                if made == [1]:
+                    self.assertEqual(sweep.status().missing, [0])
+                    with self.assertRaisesRegex(ist.BusyError, "making this part"):
+                        sweep.run(0)
+                process.kill()
+            if made != [1]:  # it stopped when the part was made, which forgets the processes before
+                self.assertEqual(made, [0, 1])
+                for file in sweep.folder.glob("part-000000.*"):
+                    file.unlink()
+            lost = lost + 1 if made == [1] else 0
         self.assertEqual(sweep.status()[:4], ([1], [], [0], []))
         self.assertEqual(sweep.run(0)[:2], (0, "given up"))
         self.assertEqual(sweep.merge(), (0, [], [0]))
@@ -151,15 +156,17 @@ class Follow(Sweeps):
         return self.job(box_poses(10, 20_000), ("distance",), "rows_per_part = 20000\ntolerance = 0.0001")
 
     def test_parts_and_merges_are_followed(self):
-        sweep, shares = self.long(), []
-        began = time.monotonic()
-        sweep.run(0, threads=1, progress=shares.append)
-        self.assertGreater(len(shares), 4 * (time.monotonic() - began))
+        sweep = self.long()
+        for attempt in range(20):  # if the system lets the caller wait for as long as the part takes, it is told once
+            shares, folder = [], self.place / f"followed {attempt}"
+            sweep.run(0, folder, threads=1, progress=shares.append)
+            if len(shares) > 1:
+                break
         self.assertEqual(shares, sorted(shares))
         self.assertTrue(0 <= shares[0] < shares[-1] <= 1)
         calls = []
-        sweep.merge(progress=calls.append)
-        sweep.status(progress=calls.append)
+        sweep.merge(folder, progress=calls.append)
+        sweep.status(folder, progress=calls.append)
         ist.Sweep(sweep.path, progress=calls.append)
         self.assertGreaterEqual(len(calls), 3)
         self.assertTrue(all(0 <= each <= 1 for each in calls))
@@ -189,13 +196,25 @@ class Follow(Sweeps):
     def test_ctrl_c(self):
         sweep = self.long()
         sweep.path.write_text(sweep.path.read_text().replace("20000", "2000000"))
-        program = (f"import ist\nsweep = ist.Sweep({str(sweep.path)!r})\nprint('ready', flush=True)\n"
-                   "try:\n    sweep.run(0, threads=1)\nexcept KeyboardInterrupt:\n    print('interrupted', sweep.status().missing)\n")
+        program = f"""import ist
+from ist._follow import Follower
+sweep = ist.Sweep({str(sweep.path)!r})
+report, reports = Follower._report, []
+def told(self, user, part):
+    if part and not any(reports):
+        print('begun', flush=True)
+    reports.append(part)
+    return report(self, user, part)
+Follower._report = told
+try:
+    sweep.run(0, threads=1)
+except KeyboardInterrupt:
+    print('interrupted', sweep.status().missing)
+"""
         process = subprocess.Popen([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(process.stdout.readline(), "ready\n")
-        time.sleep(0.4)
+        self.assertEqual(process.stdout.readline(), "begun\n")
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=120)
+        out, err = process.communicate()
         self.assertEqual((out, err, process.returncode), ("interrupted [0]\n", "", 0))
         self.assertEqual(os.listdir(sweep.folder), ["sweep.json"])
 
@@ -278,7 +297,7 @@ class Misuse(Sweeps):
         outcomes = []
         thread = threading.Thread(target=lambda: outcomes.append(sweep.run(0, progress=lambda done: begun.set())))
         thread.start()
-        self.assertTrue(begun.wait(10))
+        begun.wait()
         sweep.free()
         thread.join()
         self.assertEqual(outcomes[0][:3], (0, "made", 2000))

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 
 import numpy as np
-from support import Refusals, box, turn
+from support import Refusals, box
 
 import ist
 

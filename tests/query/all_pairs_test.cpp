@@ -15,6 +15,7 @@
 #include "query/scenes.h"
 #include "simd/lanes.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -130,7 +131,7 @@ TEST_P(AllPairsOf, VoxelSizesThatDiffer) {
                        moving = tree_of(block, fixed_is_coarse ? fine : coarse);
       AllPairs pairs(fixed, moving, GetParam());
       const double size = fixed.voxel_size() + moving.voxel_size();
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < samples(3); ++i) {
         const double margin = size * (i == 0 ? 0.1 : random.uniform(0, 2));
         const Eigen::Isometry3d pose =
             near_touch(ball, block, random.rotation(), size * random.uniform(0, 3), random);
@@ -138,7 +139,7 @@ TEST_P(AllPairsOf, VoxelSizesThatDiffer) {
       }
     }
   }
-  EXPECT_GT(found, 10'000u);
+  EXPECT_GT(found, samples(1'000u));
 }
 
 // Faces on the planes of both lattices, to the last bit: many bounds touch in a point.
@@ -149,19 +150,19 @@ TEST_P(AllPairsOf, OnTheLattice) {
     const SphereTree fixed = tree_of(a, 14), moving = tree_of(b, 12 / coarser);
     AllPairs pairs(fixed, moving, GetParam());
     Random random(2);
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < samples(12); ++i) {
       const Eigen::Matrix3d turn = quarter_turns()[random.below(24)];
       const Eigen::Vector3d at = random.point(-6, 12);
       found += pairs.check(pose_of(turn, at.array().round()), i % 2 == 0 ? 1 : 0.5);
     }
   }
-  EXPECT_GT(found, 1'000u);
+  EXPECT_GT(found, samples(250u));
 }
 
 TEST_P(AllPairsOf, RandomBodies) {
   constexpr double kCells[] = {1, 2, 5, 9, 17, 30};
   std::size_t found = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{60}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(3000 + seed);
     const TriangleMesh a = random_mesh(random), b = random_mesh(random);
@@ -174,7 +175,7 @@ TEST_P(AllPairsOf, RandomBodies) {
                            size * random.uniform(0, 2));
     }
   }
-  EXPECT_GT(found, 4'000u);
+  EXPECT_GT(found, samples(100u));
 }
 
 // A body and a speck far from it, on a grid of 40,000 cells: the pads are a sixth of a voxel, and
@@ -192,16 +193,16 @@ TEST_P(AllPairsOf, FarFromTheirFramesOrigins) {
     const SphereTree fixed = tree_of(a, 40'000), moving = tree_of(b, 35'000 / coarser);
     ASSERT_GE(fixed.depth(), 15);
     AllPairs pairs(fixed, moving, GetParam());
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < samples(4); ++i) {
       const Eigen::Vector3d at = random.uniform(0.9, 1.7) * random.direction();
       found += pairs.check(pose_of(random.rotation(), at), 0.05);
     }
   }
-  EXPECT_GT(found, 1'000u);
+  EXPECT_GT(found, samples(100u));
 }
 
-// Specks of one leaf or a few, whose balls those above them hardly exceed: where they part, the
-// rounding of each level decides, and so inner nodes need more pad than leaves.
+// Specks of one leaf or a few. The balls above hardly exceed those of the leaves, so the rounding
+// of each level decides where specks part: inner nodes need more pad than leaves.
 TEST_P(AllPairsOf, SpecksFarFromTheirFramesOrigins) {
   const auto speck = [](const Eigen::Vector3d& at, double size) {
     return triangle(at, at + Eigen::Vector3d(size, 0, 0),
@@ -215,7 +216,7 @@ TEST_P(AllPairsOf, SpecksFarFromTheirFramesOrigins) {
     const SphereTree fixed = tree_of(a, 30'000), moving = tree_of(b, 28'000);
     AllPairs pairs(fixed, moving, GetParam());
     Query query(fixed, moving, options_of(GetParam()));
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < samples(8); ++i) {
       const Eigen::Matrix3d rotation = random.rotation();
       const Eigen::Vector3d direction = random.direction();
       const auto pose = [&](double t) { return pose_of(rotation, t * direction); };
@@ -228,8 +229,8 @@ TEST_P(AllPairsOf, SpecksFarFromTheirFramesOrigins) {
       }
     }
   }
-  EXPECT_GT(found, 100u);
-  EXPECT_GT(apart, 100u);
+  EXPECT_GT(found, samples(50u));
+  EXPECT_GT(apart, samples(50u));
 }
 
 // What is near the last contact, and where the roots alone decide.
@@ -240,7 +241,7 @@ TEST_P(AllPairsOf, WhereTheLastContactEnds) {
     const SphereTree fixed = tree_of(ball, cells), moving = tree_of(block, cells);
     AllPairs pairs(fixed, moving, GetParam());
     Query query(fixed, moving, options_of(GetParam()));
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < samples(3); ++i) {
       const Eigen::Matrix3d rotation = random.rotation();
       const Eigen::Vector3d direction = random.direction();
       const auto pose = [&](double t) { return pose_of(rotation, t * direction); };

@@ -10,6 +10,7 @@
 
 #include "query/engines.h"
 #include "simd/guarded.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -48,9 +49,10 @@ INSTANTIATE_TEST_SUITE_P(Engines, EveryEngine, ::testing::ValuesIn(engines_of(al
 
 TEST_P(EveryEngine, AnswersTheSameEveryTime) {
   std::vector<FoundPairs> first;
-  for (std::uint64_t seed = 0; seed < 10; ++seed) first.push_back(ask(query_, some_pose(seed)));
+  const auto seeds = samples(std::uint64_t{10});
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) first.push_back(ask(query_, some_pose(seed)));
   for (int round = 0; round < 3; ++round) {
-    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       EXPECT_TRUE(same(ask(query_, some_pose(seed)), first[seed]));
     }
   }
@@ -63,7 +65,7 @@ TEST_P(EveryEngine, DoesNotKnowTheUnit) {
     const double unit = std::ldexp(1.0, k);
     const SphereTree fixed = tree_of(scaled(a_, unit), 16), moving = tree_of(scaled(b_, unit), 17);
     EngineQuery query(fixed, moving, GetParam());
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < samples(std::uint64_t{8}); ++seed) {
       Eigen::Isometry3d pose = some_pose(seed);
       const FoundPairs expected = ask(query_, pose);
       pose.translation() *= unit;
@@ -74,7 +76,7 @@ TEST_P(EveryEngine, DoesNotKnowTheUnit) {
       leaf_pairs += answer.leaf_pairs.size();
     }
   }
-  EXPECT_GT(leaf_pairs, 9 * 100u);
+  EXPECT_GT(leaf_pairs, 9 * samples(100u));
 }
 
 TEST_P(EveryEngine, DoesNotKnowThePlaceOfTheScene) {
@@ -83,7 +85,7 @@ TEST_P(EveryEngine, DoesNotKnowThePlaceOfTheScene) {
   const SphereTree far_moving = tree_of(moved(b_, away), 17);
   EngineQuery fixed_moved(far_fixed, moving_, GetParam());
   EngineQuery both_moved(far_fixed, far_moving, GetParam());
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{20}); ++seed) {
     Eigen::Isometry3d pose = some_pose(seed);
     for (double& x : pose.translation()) x = std::nearbyint(x * 0x1p20) * 0x1p-20;
     const FoundPairs answer = ask(query_, pose);
@@ -189,7 +191,7 @@ TEST_P(EveryEngine, MakesOneTestFarApart) {
 // leaves that is kept.
 TEST_P(EveryEngine, StatesAPadNoLargerThanDerived) {
   for (const double far : {0.0, 1.0, 1000.0}) {
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < samples(std::uint64_t{8}); ++seed) {
       Eigen::Isometry3d pose = some_pose(seed);
       pose.translation() *= 1 + far;
       const Eigen::Vector3d apart = pose * moving_.origin() - fixed_.origin();

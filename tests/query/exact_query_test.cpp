@@ -6,6 +6,7 @@
 
 #include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -99,9 +100,9 @@ TEST_F(OneVoxelPair, CubesThatOnlyAnEdgeAxisSeparates) {
   about_x << 1, 0, 0, 0, 0.6, -0.8, 0, 0.8, 0.6;
   Random random(7);
   int meeting = 0, apart = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < samples(400); ++i) {
     const Eigen::Isometry3d pose = pose_of(about_z * about_x, random.point(-1.5, 1.5));
-    // Against corners and edges sampled finely: a point in both cubes proves that they meet.
+    // Points of one cube, as a fine grid. One of them in the other cube proves that they meet.
     bool sampled = false;
     for (int s = 0; s < 9 * 9 * 9 && !sampled; ++s) {
       const Eigen::Vector3d p = pose * Eigen::Vector3d(s % 9 / 8.0, s / 9 % 9 / 8.0, s / 81 / 8.0);
@@ -111,8 +112,8 @@ TEST_F(OneVoxelPair, CubesThatOnlyAnEdgeAxisSeparates) {
     EXPECT_TRUE(meets || !sampled);
     (meets ? meeting : apart) += 1;
   }
-  EXPECT_GT(meeting, 50);
-  EXPECT_GT(apart, 50);
+  EXPECT_GT(meeting, samples(25));
+  EXPECT_GT(apart, samples(25));
 }
 
 TEST_F(OneVoxelPair, BoundsMeetToTheLastBit) {

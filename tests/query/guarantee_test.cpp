@@ -10,6 +10,7 @@
 #include "ist/query/traversal/search_pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/engines.h"
+#include "support/effort.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
 
@@ -96,7 +97,7 @@ Eigen::Isometry3d near_touch_within(const TriangleMesh& a, const TriangleMesh& b
 TEST_P(Guarantee, IsKeptForRandomBodiesNearTouching) {
   constexpr double kCells[] = {1, 1.5, 2, 3, 5, 9, 13};
   std::size_t touching = 0, free = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{40}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(1000 + seed);
     const TriangleMesh a = random_mesh(random), b = random_mesh(random);
@@ -106,12 +107,15 @@ TEST_P(Guarantee, IsKeptForRandomBodiesNearTouching) {
       (bodies.check(near_touch_within(a, b, gap, random)) > 0 ? touching : free) += 1;
     }
   }
-  EXPECT_GT(touching, 100u);
-  EXPECT_GT(free, 5u);
+  EXPECT_GT(touching, samples(50u));
+  if (effort() >= 1) {  // of few, none may be free
+    EXPECT_GT(free, 5u);
+  }
 }
 
 // Voxels that are up to a hundred times as large in one body as in the other.
 TEST_P(Guarantee, IsKeptForVoxelSizesThatDiffer) {
+  IST_SLOW();
   for (const double ratio : {1.0, 1.3, 2.0, 3.0, 8.0, 100.0}) {
     for (const bool fixed_is_coarse : {false, true}) {
       SCOPED_TRACE("ratio " + std::to_string(ratio));
@@ -122,14 +126,19 @@ TEST_P(Guarantee, IsKeptForVoxelSizesThatDiffer) {
       EXPECT_NEAR(fixed_is_coarse ? sizes[0] / sizes[1] : sizes[1] / sizes[0], ratio, 0.2 * ratio);
       Random random(static_cast<std::uint64_t>(10 * ratio));
       std::size_t leaf_pairs = 0;
-      for (int i = 0; i < 6; ++i) leaf_pairs += bodies.check(near_touch_within(a, b, 0.2, random));
-      EXPECT_GT(leaf_pairs, 0u);
+      for (int i = 0; i < samples(6); ++i) {
+        leaf_pairs += bodies.check(near_touch_within(a, b, 0.2, random));
+      }
+      if (effort() >= 1) {  // few poses may all be apart
+        EXPECT_GT(leaf_pairs, 0u);
+      }
     }
   }
 }
 
 // Bodies of one size, and up to seven of the one's voxels along a voxel of the other.
 TEST_P(Guarantee, IsKeptForCoarseVoxelsBesideFineOnes) {
+  IST_SLOW();
   const TriangleMesh ball = icosphere(1, 1), block = box({-1, -0.7, -0.5}, {1, 0.7, 0.5});
   for (const double ratio : {1.0, 1.3, 2.0, 7.0}) {
     for (const auto& [cells_a, cells_b] : {std::pair{10.0, 10 / ratio}, {10 / ratio, 10.0}}) {
@@ -137,11 +146,13 @@ TEST_P(Guarantee, IsKeptForCoarseVoxelsBesideFineOnes) {
       Judged bodies(ball, cells_a, block, cells_b, GetParam());
       Random random(static_cast<std::uint64_t>(10 * ratio));
       std::size_t leaf_pairs = 0;
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < samples(4); ++i) {
         const Eigen::Matrix3d rotation = random.rotation();
         leaf_pairs += bodies.check(pose_of(rotation, random.uniform(1, 2) * random.direction()));
       }
-      EXPECT_GT(leaf_pairs, 0u);
+      if (effort() >= 1) {  // few poses may all be apart
+        EXPECT_GT(leaf_pairs, 0u);
+      }
     }
   }
 }
@@ -204,13 +215,13 @@ Eigen::Vector3d corner_in_corner(const Lattice& fixed, const Lattice& moving,
   return at;
 }
 
-// Two lattices of any size, anywhere, a corner of one in a corner of the other by less than the
-// last bit of the translation, and then out of it by as little: a test without a pad loses some of
-// the first.
+// Two lattices of any size, anywhere. A corner of one is in a corner of the other by less than the
+// last bit of the translation, and then out of it by as little. A test without a pad loses some of
+// those that are in.
 TEST_P(Guarantee, IsKeptWhereCornersMeet) {
   const std::vector<Eigen::Matrix3d> turns = quarter_turns();
   std::size_t leaf_pairs = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{60}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(2000 + seed);
     const auto cube = [&random] {
@@ -233,7 +244,10 @@ TEST_P(Guarantee, IsKeptWhereCornersMeet) {
       bodies.check(pose_of(turn, at));
     }
   }
-  EXPECT_GT(leaf_pairs, is_implicit(GetParam().policy) ? 300u : 0u);
+  // The first seeds meet nowhere.
+  if (effort() >= 1) {
+    EXPECT_GT(leaf_pairs, is_implicit(GetParam().policy) ? samples(100u) : 0u);
+  }
 }
 
 // Moved apart until the answer is empty, and some last bits to either side of that.
@@ -280,10 +294,10 @@ class GuaranteeOfOneVoxel : public ::testing::TestWithParam<Engine> {};
 INSTANTIATE_TEST_SUITE_P(Engines, GuaranteeOfOneVoxel,
                          ::testing::ValuesIn(engines_of(SpherePolicy::kSlab, {""})), engine_name);
 
-// Two leaves that are roots, whose balls go on overlapping where a ball leaves the other's slab.
+// Two leaves that are roots. A ball leaves the other's slab while their balls still overlap.
 TEST_P(GuaranteeOfOneVoxel, IsKeptWhereSlabsAlonePart) {
   constexpr SpherePolicy kSlab = SpherePolicy::kSlab;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{60}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(4000 + seed);
     const TriangleMesh a = plate(random), b = plate(random);

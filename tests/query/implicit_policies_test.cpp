@@ -12,6 +12,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/scenes.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -67,7 +68,7 @@ TEST_P(ImplicitPolicies, FindTheSameLeafPairsOfScenes) {
 TEST_P(ImplicitPolicies, FindTheSameLeafPairsOfRandomBodies) {
   constexpr double kCells[] = {1.5, 2, 3, 5, 9, 17, 40};
   std::size_t found = 0, lost = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{60}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(5000 + seed);
     const TriangleMesh a = random_mesh(random), b = random_mesh(random);
@@ -82,8 +83,10 @@ TEST_P(ImplicitPolicies, FindTheSameLeafPairsOfRandomBodies) {
     found += bodies.found;
     lost += bodies.lost_by_published;
   }
-  EXPECT_GT(found, 10'000u);
-  EXPECT_GT(lost, 10u);
+  EXPECT_GT(found, samples(2'500u));
+  if (effort() >= 1) {  // few bodies may lose none
+    EXPECT_GT(lost, 10u);
+  }
 }
 
 SphereTree tree_of_masks(std::vector<std::vector<std::uint8_t>> masks) {

@@ -15,7 +15,7 @@
 namespace ist::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 SphereTree ball(double voxel_size, bool triangles = false) {
   return build_tree(icosphere(2, 2), {.voxel_size = voxel_size, .keep_triangles = triangles});
@@ -47,10 +47,10 @@ TEST_F(Misuse, OfManifoldOptionsThrows) {
   const auto made = [&](const ManifoldOptions& options) {
     return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });
   };
-  for (const double depth : {-2.1, 1.0, 7.0, kNan, -HUGE_VAL}) {
+  for (const double depth : {-2.1, 1.0, 7.0, kNotANumber, -HUGE_VAL}) {
     EXPECT_NE(made({.least_depth = depth}).find("least_depth"), std::string::npos) << depth;
   }
-  for (const double margin : {-0.1, 1.1, kNan, HUGE_VAL}) {
+  for (const double margin : {-0.1, 1.1, kNotANumber, HUGE_VAL}) {
     EXPECT_NE(made({.margin = margin}).find("margin"), std::string::npos) << margin;
   }
 }
@@ -91,7 +91,7 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   Query query(exact, exact);
   ContactManifold manifold(exact, exact, query.policy());
   Eigen::Isometry3d bad = pose_;
-  bad.translation().x() = kNan;
+  bad.translation().x() = kNotANumber;
   EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.leaf_pairs(bad, {}).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.leaf_pairs(bad, {}, {.tests = 10}).status, QueryStatus::kInvalidPose);
@@ -105,7 +105,7 @@ TEST_F(Misuse, OfAToleranceCountsAsZero) {
   const SphereTree exact = ball(0.25, true);
   Query query(exact, exact);
   const DistanceResult zero = query.distance(shift({5, 0, 0}), 0);
-  for (const double tolerance : {-1.0, kNan, -HUGE_VAL}) {
+  for (const double tolerance : {-1.0, kNotANumber, -HUGE_VAL}) {
     const DistanceResult found = query.distance(shift({5, 0, 0}), tolerance);
     EXPECT_EQ(found.distance.lower, zero.distance.lower) << tolerance;
     EXPECT_EQ(found.distance.upper, zero.distance.upper) << tolerance;
@@ -130,7 +130,7 @@ TEST_F(Misuse, OfAMeshIsAnErrorOfTheBuild) {
   mesh.triangles[3][1] = 100'000'000;
   EXPECT_EQ(error_name(build), "mesh-bad-index");
   mesh = icosphere(1, 1);
-  mesh.vertices[5].y() = kNan;
+  mesh.vertices[5].y() = kNotANumber;
   EXPECT_EQ(error_name(build), "mesh-not-finite");
   mesh.vertices.clear();
   mesh.triangles.clear();

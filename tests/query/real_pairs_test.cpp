@@ -14,6 +14,7 @@
 #include "query/exact/meeting_pairs.h"
 #include "query/query_cases.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/skip.h"
 
 namespace ist::test {
@@ -80,6 +81,7 @@ TEST_P(RealPairs, AgreeWithExactTriangles) {
 // To the last pair of triangles, each decided in rational numbers, and the distance to within what
 // the truth is rounded to.
 TEST_P(RealPairs, HaveTheTrianglesThatMeet) {
+  IST_SLOW();
   BuildOptions options;
   options.keep_triangles = true;
   const SphereTree fixed = tree(GetParam().fixed, options);

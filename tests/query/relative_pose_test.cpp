@@ -8,6 +8,7 @@
 
 #include "ist/base/pose.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -52,7 +53,7 @@ Accuracy accuracy(const Eigen::Isometry3d& pose, const Lattice& fixed, const Lat
 TEST(RelativePose, IsRightToItsOwnLastBitsWhereverTheSceneLies) {
   Random random(11);
   for (const double away : {0.0, 1.0, 1e3, 1e6, 1e9}) {
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < samples(200); ++i) {
       const Eigen::Vector3d fixed_corner = away * random.direction() + random.point(-1, 1);
       const Eigen::Vector3d moving_corner = away * random.direction() + random.point(-1, 1);
       const Lattice fixed = lattice_at(fixed_corner, random.uniform(0.1, 1), 3);

@@ -14,6 +14,7 @@
 #include "query/engines.h"
 #include "query/exact/mesh_distance.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/shapes.h"
 
@@ -93,17 +94,17 @@ class Resolution : public ::testing::TestWithParam<Engine> {
 INSTANTIATE_TEST_SUITE_P(Engines, Resolution, ::testing::ValuesIn(engines_of({""})), engine_name);
 
 TEST_P(Resolution, IsNoLessThanTheDistanceOfTheSurfacesInALeafPair) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{40}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(7000 + seed);
     const TriangleMesh a = random_mesh(random), b = random_mesh(random);
     look_at(a, random.uniform(1, 8), b, random.uniform(1, 8), 6, random);
   }
-  EXPECT_GT(leaf_pairs_, 2000u);
-  // No idle bound: more than the largest radii, where a bound is a cube's.
+  EXPECT_GT(leaf_pairs_, samples(500u));
+  // The bound is not idle: around cubes, surfaces come to more than the largest radii.
   const SpherePolicy policy = GetParam().policy;
   const double share = is_implicit(policy) ? 0.8 : policy == SpherePolicy::kTight ? 0.5 : 0.35;
-  EXPECT_GT(farthest_, share);
+  EXPECT_GT(farthest_, effort() < 1 ? 0.5 * share : share);  // few bodies may not come as near
 }
 
 // One leaf each, much larger than the surface in it, and a margin that exceeds both balls.

@@ -4,6 +4,7 @@
 
 #include "query/query_cases.h"
 #include "scene/scene_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -67,7 +68,7 @@ TEST(SceneFrames, ATurnedAndMovedSceneIsFeltTurned) {
   const Scene plain = tilted_scene();
   const std::vector<Vector6> expected = felt(plain);
   Random random(6);
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < samples(2); ++i) {
     const Eigen::Matrix3d turn = random.rotation();
     const Vector3d way = random.point(-200, 200);  // mm
     Scene moved = plain;

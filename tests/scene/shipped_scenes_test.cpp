@@ -7,6 +7,7 @@
 
 #include "ist/scene/make_effects.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/skip.h"
 
 namespace ist::test {
@@ -74,6 +75,7 @@ TEST(ShippedScene, ClosesTwoJawsWithAllEffects) {
 
 // A mandible on a splint: free at the start, and all four fixed bodies may be touched.
 TEST(ShippedScene, ClosesAMandibleOnASplint) {
+  IST_SLOW();
   const Scene scene = shipped("splint");
   ASSERT_EQ(scene.fixed.size(), 4u);
   EXPECT_EQ(std::get<BuiltInShape>(scene.fixed[1].source).kind, BuiltInShape::Kind::kSplint);

@@ -18,7 +18,7 @@ class Sources(unittest.TestCase):
     def includes(file):
         """The project's files that a source includes. A header of users stands for those that it gathers, and for its room."""
         for name in re.findall(r'^#include "([^"]+)"', file.read_text(), re.M):
-            for folder in ("src", "bench", "tests", "."):
+            for folder in ("src", file.relative_to(figures.ROOT).parts[0], "bench", "tests", "."):
                 found = figures.ROOT / folder / name
                 if found.exists() and found.parent == figures.ROOT / "src/ist":
                     yield from Sources.includes(found)

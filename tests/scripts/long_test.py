@@ -85,8 +85,8 @@ class Parts(unittest.TestCase):
     def test_they_run_again_where_something_else_than_a_page_or_a_result_changed(self):
         self.mend()
         self.run_parts()
-        for changed, again in (("docs/results.md", 1), ("perf/results/machine.json", 1), ("HACKING.md", 1), ("README.md", 2), ("docs/page.md", 2), ("code.cpp", 5),
-                               ("src/README.md", 5)):
+        for changed, again in (("docs/results.md", 1), ("perf/results/machine.json", 1), ("HACKING.md", 1), ("README.md", 2), ("docs/page.md", 2),
+                               ("code.cpp", 5), ("src/README.md", 5)):
             with self.subTest(changed=changed):
                 self.commit(changed)
                 self.assertEqual(len(self.run_parts("--resume")[1]), again, self.said)  # one is skipped each time
@@ -136,8 +136,11 @@ class Parts(unittest.TestCase):
         self.assertEqual(self.run_parts("--resume")[1], ["absent", "slow"])
 
     def test_no_more_run_at_once_than_may(self):
-        steps = "".join(f"{kind} {name} bash -c 'echo begin {name} >>ran; sleep 0.2; echo end {name} >>ran'\n"
-                        for kind, name in (("aside", "a"), ("aside", "b"), ("aside", "c"), ("alone", "d"), ("aside", "e")))
+        wait = "until grep -q begin.{} ran; do sleep 0.01; done; "
+        steps = "".join(f"{kind} {name} bash -c 'echo begin {name} >>ran; {wait.format(other) if other else ''}"
+                        f"sleep 0.2; echo end {name} >>ran'\n"
+                        for kind, name, other in (("aside", "a", "b"), ("aside", "b", "a"), ("aside", "c", ""),
+                                                  ("alone", "d", ""), ("aside", "e", "")))
         head = PROGRAM.format(scripts=SCRIPTS).split("stops()")[0]
         (self.folder / "long.sh").write_text(f"{head}{steps}end_parts\n")
         self.assertEqual(self.run_parts()[0], 0)
@@ -268,7 +271,8 @@ class Check(unittest.TestCase):
         long_table.ROOT, long_table.PAGE = root, page
 
     def git(self, *words):
-        return subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *words], cwd=self.root, check=True, capture_output=True, text=True).stdout
+        return subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *words], cwd=self.root,
+                              check=True, capture_output=True, text=True).stdout
 
     def write(self, name, text):
         (self.root / name).parent.mkdir(parents=True, exist_ok=True)
@@ -281,7 +285,8 @@ class Check(unittest.TestCase):
 
     def lacking(self, without="release", verdict="passed", changes=""):
         """The parts that --check names on a page with the rows of all parts but one."""
-        rows = [f"| {title} | {verdict} | – | `{self.commit}{changes}`, 2026-01-02 | 1 s |\n" for part, title in long_table.PARTS.items() if part != without]
+        rows = [f"| {title} | {verdict} | – | `{self.commit}{changes}`, 2026-01-02 | 1 s |\n" for part, title in long_table.PARTS.items()
+                if part != without]
         long_table.PAGE.parent.mkdir(exist_ok=True)
         long_table.PAGE.write_text("".join([long_table.BEGIN, "| part |\n", "|---|\n", *rows, long_table.END]))
         said = io.StringIO()

@@ -1,5 +1,5 @@
-"""What CMake says where a platform, a compiler or an emulator cannot be used, or nobody could be named by the packages: one sentence with the remedy, before
-anything is built."""
+"""What CMake says where a platform, a compiler or an emulator cannot be used, or nobody could be named by the packages: one sentence with the remedy,
+before anything is built."""
 
 import os
 import pathlib
@@ -24,7 +24,7 @@ class Refusals(unittest.TestCase):
         environment |= {"PATH": path} if path else {}
         cmake = shutil.which("cmake")
         done = subprocess.run([cmake, "-S", SOURCE, "-B", self.folder / "build", *options], env=environment,
-                              capture_output=True, text=True, timeout=120)
+                              capture_output=True, text=True, timeout=300)
         self.assertNotEqual(done.returncode, 0, done.stdout)
         return " ".join(done.stderr.partition("Call Stack")[0].split())
 

@@ -61,7 +61,7 @@ class Release(unittest.TestCase):
         (self.folder / "temporary").mkdir(exist_ok=True)
         environment = {name: value for name, value in os.environ.items() if name != "SOURCE_DATE_EPOCH"}
         return subprocess.run([(project or self.project) / "scripts/release.sh", *options], capture_output=True, text=True,
-                              timeout=120, env={**environment, "TMPDIR": str(self.folder / "temporary")})
+                              timeout=300, env={**environment, "TMPDIR": str(self.folder / "temporary")})
 
     def refused(self, code, *options, project=None):
         done = self.release(*options, project=project)
@@ -210,7 +210,7 @@ class Version(unittest.TestCase):
         self.assertEqual(re.findall(r"(?m)^### (.*)$", first[2]), ["API", "Features", "Fixes"])
 
     def test_no_other_file_has_it(self):
-        names = [SOURCE / name for folder in ("src", "simd", "scripts", "docs", "tests/package", "tests/python")
+        names = [SOURCE / name for folder in ("src", "simd", "scripts", "docs", "examples", "tests/package", "tests/python")
                  for name in (SOURCE / folder).rglob("*")]
         text = re.compile(rf"(?<![\d.]){re.escape(self.version)}(?![\d.])")
         found = []
@@ -222,7 +222,7 @@ class Version(unittest.TestCase):
 
     def test_who_looks_for_the_package_asks_for_it(self):
         minor = self.version.rpartition(".")[0]
-        files = [*(SOURCE / "docs").glob("*.md"), SOURCE / "README.md", *(SOURCE / "src/examples").rglob("CMakeLists.txt")]
+        files = [*(SOURCE / "docs").glob("*.md"), SOURCE / "README.md", *(SOURCE / "examples").rglob("CMakeLists.txt")]
         asked = {(file.name, version) for file in files for version in re.findall(r"find_package\(ist ([\d.]+)", file.read_text())}
         self.assertEqual(asked, {("building.md", minor), ("CMakeLists.txt", minor)})
 

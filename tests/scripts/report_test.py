@@ -48,7 +48,8 @@ class Bodies(unittest.TestCase):
         self.results._read["loop_bench"] = {"benchmarks": [
             {"name": "bodies/splint/iterations:1", "ticks": 100, "ticks_apart": 10, "ratio": 1.1, **times, "apart_p50_us": 0.5}]}
         self.results._read["world_bench"] = {"benchmarks": [
-            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, "bodies": 4, "pairs": 6, "voxel_size": 0.4, "tremble_voxels": 0.05, **times},
+            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, "bodies": 4, "pairs": 6,
+             "voxel_size": 0.4, "tremble_voxels": 0.05, **times},
             {"name": "world/hundred_at_rest/real_time", "real_time": 25, "bodies": 100, "moved": 0},
             {"name": "world/a_pair_apart/real_time", "real_time": 0.3, "bodies": 2, "moved": 1}]}
         self.text = "\n".join(bodies.chapter(self.results, None))
@@ -87,7 +88,8 @@ class Peers(unittest.TestCase):
         self.assertIn("By either factor it would be the fastest of those without a mark at 1 of 2 poses (truth7).", text)
 
     def test_and_where_the_greater_factor_alone_does(self):
-        self.assertIn("By the greater factor it would be the fastest of those without a mark at 1 of 2 poses (far), by the lesser one at 0.", self.with_fcl(22, 20))
+        self.assertIn("By the greater factor it would be the fastest of those without a mark at 1 of 2 poses (far), by the lesser one at 0.",
+                      self.with_fcl(22, 20))
         self.assertIn("at 2 of 2 poses (truth7, far), by the lesser one at 1 (truth7).", self.with_fcl(15, 20))
 
     def test_or_nowhere(self):
@@ -101,7 +103,8 @@ class Peers(unittest.TestCase):
         self.assertEqual(native_fcl("candidates", self.meets), [])
 
     def test_who_is_absent_stands_in_proportion_to_fcl_here(self):
-        self.assertIn(f"some {number(15 * ELSEWHERE['pqp']['p50_us']['pqp'] / ELSEWHERE['pqp']['p50_us']['fcl'])} µs here; IST takes 10.", absent({"pairs": self.meets})[0])
+        self.assertIn(f"some {number(15 * ELSEWHERE['pqp']['p50_us']['pqp'] / ELSEWHERE['pqp']['p50_us']['fcl'])} µs here; IST takes 10.",
+                      absent({"pairs": self.meets})[0])
 
     def test_what_was_not_asked_is_left_out(self):
         self.assertEqual(asked_in(self.results, "avx2"), {})

@@ -32,7 +32,8 @@ class Ladder(unittest.TestCase):
     def test_a_step_that_loses_is_bold_with_its_reason(self):
         slower = self.FASTER | {"6-slab": 600}
         said = ablation.verdict(variants("ladder", slower, {"6-slab": 800}), "0.0")
-        self.assertIn("**These lose**: slabs (**0.83**; 20 % fewer tests, at 1.50 times the time of a test: a test reads and compares two slabs", said)
+        self.assertIn("**These lose**: slabs (**0.83**; 20 % fewer tests, at 1.50 times the time of a test: "
+                      "a test reads and compares two slabs", said)
         self.assertNotIn("No step loses.", said)
 
     def test_a_loss_without_a_known_reason_says_so(self):
@@ -57,7 +58,8 @@ class Without(unittest.TestCase):
 
     def test_a_part_that_is_names_why(self):
         said = ablation.without_verdict(variants("without", self.SLOWER | {"4-slab": 80}, {"4-slab": 1250}), "0.2")
-        self.assertIn("**the query is faster without** slabs at dz = 0.0 (**0.80** times as long; with it 20 % fewer tests, at 1.56 times the time", said)
+        self.assertIn("**the query is faster without** slabs at dz = 0.0 (**0.80** times as long; with it "
+                      "20 % fewer tests, at 1.56 times the time", said)
 
 
 def both(published=1000, fast=100, two=60):
@@ -87,7 +89,8 @@ class Closing(unittest.TestCase):
     def test_where_all_is_faster_nothing_is_bold(self):
         table, verdict = self.said()
         self.assertNotIn("**", table + verdict)
-        self.assertEqual(verdict, "No cell is slower than the published query by 3 % or more. Two workers are nowhere slower than one by 3 % or more.")
+        self.assertEqual(verdict, "No cell is slower than the published query by 3 % or more. "
+                                  "Two workers are nowhere slower than one by 3 % or more.")
 
     def test_two_workers_that_are_slower_are_bold_with_both_times(self):
         table, verdict = self.said(two=130)

@@ -38,9 +38,11 @@ class Missed(unittest.TestCase):
     def test_a_long_tick_was_off_its_core_or_is_not_explained(self):
         self.assertIn("1 took over 2,000 µs; the longest took 2,500 µs, and its thread had the processor for 400 µs at most: it was off its core; "
                       "none began over 2,000 µs late", text(loop_1_noisy=tick(missed=1, longest=2500)))
-        self.assertIn("its thread had the processor for 2,400 µs at most: not explained", text(loop_1_noisy=tick(missed=1, longest=2500, processor=2400)))
+        self.assertIn("its thread had the processor for 2,400 µs at most: not explained",
+                      text(loop_1_noisy=tick(missed=1, longest=2500, processor=2400)))
         said = text(loop_1_noisy=tick(missed=4, late=5000, longest=2500, processor=2510), bare_clock_noisy=tick(missed=5))
-        self.assertIn("the longest took 2,500 µs, and its thread had the processor all that time: not explained; 2 began over 2,000 µs late, by up to 5,000 µs", said)
+        self.assertIn("the longest took 2,500 µs, and its thread had the processor all that time: not explained; "
+                      "2 began over 2,000 µs late, by up to 5,000 µs", said)
         self.assertIn("the empty loop by the same clock missed 5", said)
 
     def test_an_empty_loop_that_misses_is_no_loss_of_the_loop(self):

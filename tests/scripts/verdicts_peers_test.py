@@ -47,13 +47,15 @@ class Standing(unittest.TestCase):
                       self.said((20, 5)))
 
     def test_a_mark_is_the_reason(self):
-        for marks, reason in (({"promise": 2}, "it reads stored distances"), ({"prepared": 1}, "its mesh was moved"), ({"agree": 0}, "it gives another answer")):
+        for marks, reason in (({"promise": 2}, "it reads stored distances"), ({"prepared": 1}, "its mesh was moved"),
+                              ({"agree": 0}, "it gives another answer")):
             said = self.said((20, 5), **marks)
             self.assertIn(f"**other at 1** ({reason}", said)
             self.assertTrue(said.endswith(" No other without a mark answers."), said)
 
     def test_those_without_a_mark_win_or_lose_where_they_answer(self):
-        for times, expected in (((20, 5), "IST is the fastest at all 1 poses where one answers."), ((5, 5), "IST is the fastest at 0 of 1 poses where one answers. **It loses at 1")):
+        for times, expected in (((20, 5), "IST is the fastest at all 1 poses where one answers."),
+                                ((5, 5), "IST is the fastest at 0 of 1 poses where one answers. **It loses at 1")):
             runs = answers(times)
             runs[-1]["agree"] = 0  # the other's, at the second pose
             said = verdict(asked(runs)[1])[0]
@@ -88,7 +90,8 @@ class Builds(unittest.TestCase):
 
     @staticmethod
     def said(bounds, **other):
-        runs = [Run({"name": f"peers/build/{name}", "p50_us": 8000, "held_mb": 160, "peak_mb": 180} | more) for name, more in (("ist", {}), ("bullet", other))]
+        runs = [Run({"name": f"peers/build/{name}", "p50_us": 8000, "held_mb": 160, "peak_mb": 180} | more)
+                for name, more in (("ist", {}), ("bullet", other))]
         return peers_builds.verdict(runs, bounds)
 
     def test_who_needs_most_is_said_in_bold_with_the_reason(self):

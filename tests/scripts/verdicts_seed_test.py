@@ -130,7 +130,8 @@ class Saved(unittest.TestCase):
     def test_saving_that_loses_is_bold_with_its_reason(self):
         said = self.said(125)
         self.assertIn("| **0.80** |", said)
-        self.assertIn("**With saved spheres these are slower**: `simple` at 0.8 mm and distance 0 (**0.80**); a saved ball is read from memory, 32 bytes a node.", said)
+        self.assertIn("**With saved spheres these are slower**: `simple` at 0.8 mm and distance 0 (**0.80**); "
+                      "a saved ball is read from memory, 32 bytes a node.", said)
 
 
 class Voxels(unittest.TestCase):

@@ -55,7 +55,8 @@ class Measures(unittest.TestCase):
         return measures.verdicts({"depth": self.asked(**times)})[0]
 
     def test_what_fits_into_a_tick_is_said_plainly(self):
-        self.assertEqual(self.said(coarse=10, fine=900), "The penetration depth fits into a tick of 1,000 µs to every tolerance measured, down to 0.01 mm.")
+        self.assertEqual(self.said(coarse=10, fine=900),
+                         "The penetration depth fits into a tick of 1,000 µs to every tolerance measured, down to 0.01 mm.")
 
     def test_what_does_not_is_bold(self):
         self.assertIn("to 0.1 mm. It takes up to 5 times as long **to 0.01 mm** (the finer the tolerance", self.said(coarse=10, fine=5000))
@@ -70,7 +71,8 @@ class Measures(unittest.TestCase):
 
     def test_a_warm_start_may_gain_or_lose(self):
         cold = run("measure/depth/cold/0", real_time=100, points=1000)
-        for time, points, text in ((90, 500, "at no pose slower by 3 %"), (110, 990, "**dz = 0** (it measures nearly as many"), (110, 500, f"**dz = 0** ({NOT_EXPLAINED})"),
+        for time, points, text in ((90, 500, "at no pose slower by 3 %"), (110, 990, "**dz = 0** (it measures nearly as many"),
+                                   (110, 500, f"**dz = 0** ({NOT_EXPLAINED})"),
                                    (104, 500, "takes 1.04 to 1.04 of the time afresh")):
             self.assertIn(text, measures.warm_verdict([("0", cold, run("measure/depth/warm/0", real_time=time, points=points))], 0.01))
 

@@ -10,6 +10,7 @@
 #include "simd/made_step.h"
 #include "simd/plan_cases.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -51,14 +52,14 @@ SearchPose identity() {
   return pose;
 }
 
-// Small whole numbers, which are tested without rounding: many pairs are tangent.
+// Small whole numbers are tested without rounding. Many of the pairs are tangent.
 TEST_P(Border, TangentBoundsOverlap) {
   Random random(3);
   std::size_t found = 0, tested = 0;
   const auto small = [&](int most) {
     return static_cast<int>(random.below(static_cast<std::size_t>(2 * most + 1))) - most;
   };
-  for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+  for (int i = 0; i < samples(2000) && !HasFailure(); ++i) {
     MadeStep made(1 + random.below(9), i % 2 == 0, random);
     made.step.fixed.slab_unit = made.step.moving.slab_unit = kSlabScale;
     made.for_each([&](OctreeNode& node, BallBlock& ball, SlabBlock& slab) {
@@ -81,12 +82,12 @@ TEST_P(Border, TangentBoundsOverlap) {
   EXPECT_LT(found, tested / 2);
 }
 
-// The pads bring one pair within some last bits of its border: one operation that rounds otherwise
-// shows.
+// The pads bring one pair within a few last bits of its border. An operation that rounds
+// differently changes the answer.
 TEST_P(Border, TheLastBitDecides) {
   Random random(4);
   int overlapping = 0, separate = 0;
-  for (int i = 0; i < 6000 && !HasFailure(); ++i) {
+  for (int i = 0; i < samples(6000) && !HasFailure(); ++i) {
     const bool slabs = i % 2 == 0;
     MadeStep made(2, slabs, random);
     for (SearchSide* side : {&made.step.fixed, &made.step.moving}) {
@@ -126,8 +127,8 @@ TEST_P(Border, TheLastBitDecides) {
     const bool overlap = PairTest(scratch_->fixed[0].rows, 0, scratch_->moving, 0, slabs).overlap();
     ++(overlap ? overlapping : separate);
   }
-  EXPECT_GT(overlapping, 1000);
-  EXPECT_GT(separate, 1000);
+  EXPECT_GT(overlapping, samples(1000));
+  EXPECT_GT(separate, samples(1000));
 }
 
 // Bounds are rejected by `>`, so a pair that cannot be compared is kept.

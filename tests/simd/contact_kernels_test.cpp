@@ -16,6 +16,7 @@
 #include "simd/plan_cases.h"
 #include "simd/targets.h"
 #include "simd/terms_recorder.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -123,7 +124,7 @@ TEST_P(ContactKernels, AreTheScalarFormForGroupsOfAnyLength) {
   EXPECT_GT(counted, 40'000u);
 }
 
-// Lanes that hold anything, infinities and what is no number among them.
+// Lanes that hold any number, also infinities and NaN.
 TEST_P(ContactKernels, AreTheScalarFormForAnyBits) {
   Random random(3);
   std::vector<PackedNormal> normals;
@@ -142,7 +143,7 @@ TEST_P(ContactKernels, AreTheScalarFormForAnyBits) {
                        -std::numeric_limits<float>::infinity(),
                        std::numeric_limits<float>::quiet_NaN()};
   std::uint64_t counted = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < samples(60); ++round) {
     const SearchPose pose = random_pose(random, 0);
     ContactAdder& adder = *wanted_;
     adder.clear();
@@ -166,7 +167,7 @@ TEST_P(ContactKernels, AreTheScalarFormForAnyBits) {
     ASSERT_TRUE(same(made_->totals, wanted_->totals)) << round;
     counted += made_->totals.counted;
   }
-  EXPECT_GT(counted, 10'000u);
+  EXPECT_GT(counted, samples(std::uint64_t{5'000}));
 }
 
 // Every term as great as it can be, in one direction: in 32 bits there is room for no third more.
@@ -244,10 +245,10 @@ TEST(PairTerms, BeginToWeighWithNothing) {
   EXPECT_NEAR(weight_at(0.05, -2), whole, 1e-6);
 }
 
-// Against the definition in double, for words that are packed.
+// Against the definition in double, for packed words.
 TEST(UnpackNormal, IsThatOfPackedNormal) {
   Random random(4);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < samples(100'000); ++i) {
     const auto part = [&](std::size_t values) {
       return static_cast<std::uint32_t>(random.below(values));
     };

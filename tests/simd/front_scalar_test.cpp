@@ -9,6 +9,7 @@
 #include "ist/query/coherent/motion_bound.h"
 #include "ist/query/traversal/search_pose.h"
 #include "simd/front_cases.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -113,8 +114,8 @@ TEST(FrontScalar, GivesWhatASearchGivesAtEveryPoseWithinTheSlack) {
                             0.5 * voxel * random.uniform(0, 1);
       FrontOf front(*search, centre, extent);
       found += front.check(centre, margin);
-      // As far as the slack goes and no farther.
-      for (int k = 0; k < 12; ++k) {
+      // Poses within the slack alone.
+      for (int k = 0; k < samples(12); ++k) {
         const RelativePose at = nudged(centre, voxel * random.uniform(0, 0.5), random);
         const double need = most_apart(at, fixed, moving, margin);
         if (!(need + bound.between(centre, at, extent) <= extent)) continue;
@@ -126,9 +127,9 @@ TEST(FrontScalar, GivesWhatASearchGivesAtEveryPoseWithinTheSlack) {
       if (::testing::Test::HasFailure()) return;
     }
   }
-  EXPECT_GT(found, 50'000u);
-  EXPECT_GT(others, 10'000u);  // that the front holds besides
-  EXPECT_GT(poses, 150);
+  EXPECT_GT(found, samples(std::size_t{25'000}));
+  EXPECT_GT(others, samples(std::size_t{5'000}));  // pairs that the front holds besides
+  EXPECT_GT(poses, samples(100));
 }
 
 }  // namespace

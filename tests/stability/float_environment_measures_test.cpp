@@ -10,6 +10,7 @@
 #include "ist/models/models.h"
 #include "ist/scene.h"
 #include "stability/float_environment_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -84,6 +85,7 @@ TEST_P(FloatEnvironmentOfAJaw, ChangesNoJaw) {
 }
 
 TEST_P(FloatEnvironmentOfAJaw, ChangesNoSplint) {
+  IST_SLOW();
   changes_nothing("make_splint", 100'000,
                   [](Record& record) { record.add(make_splint(3, 5.3).vertices); });
 }

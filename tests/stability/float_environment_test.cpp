@@ -14,6 +14,7 @@
 #include "ist/voxel/voxelizer.h"
 #include "query/scenes.h"
 #include "stability/float_environment_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -205,6 +206,7 @@ TEST_P(FloatEnvironmentOfAQuery, ChangesNoContact) {
 
 // Much work, so that the second worker has its part of it: it computes as IEEE 754 has it too.
 TEST(FloatEnvironmentOfTheSecondWorker, IsNotTheCallers) {
+  IST_SLOW();
   StabilityCase wrong("arithmetic", "the second worker's rounding, FTZ and DAZ",
                       "answers that differ");
   const Scene& scene = shells();

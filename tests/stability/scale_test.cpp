@@ -8,6 +8,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/scenes.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 
@@ -154,7 +155,7 @@ TEST(Scale, PowersOfTwoChangeLengthsExactlyAndNothingElse) {
                       "numbers that are not scaled exactly");
   Scaled plain(0);
   const std::vector<double> expected = plain.ask_all();
-  EXPECT_GT(expected.size(), 10'000u);
+  EXPECT_GT(expected.size(), 5'000u);
   for (int k = -kLargest; k <= kLargest; ++k) {
     Scaled scaled(k);
     const std::vector<double>& found = scaled.ask_all();

@@ -11,6 +11,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
 #include "stability/hard_pair.h"
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {

@@ -10,12 +10,6 @@
 
 namespace ist::test {
 
-int samples(int few) {
-  const char* effort = std::getenv("IST_EFFORT");
-  const int times = effort == nullptr ? 1 : std::atoi(effort);
-  return few * (times > 1 ? times : 1);
-}
-
 StabilityCase::StabilityCase(std::string group, std::string name, std::string error)
     : group_(std::move(group)), name_(std::move(name)), error_(std::move(error)) {}
 

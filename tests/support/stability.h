@@ -5,10 +5,6 @@
 
 namespace ist::test {
 
-/// How many samples a stability test tries: `few` times the whole number in IST_EFFORT, where that
-/// is set. A run of all tests tries few; the report of perf/STABILITY.md more.
-[[nodiscard]] int samples(int few);
-
 /// One line of perf/STABILITY.md: errors that were seen in a hard case, beside what is guaranteed.
 ///
 /// Each sample that breaks its bound fails the test. At its end the case is appended, as one JSON

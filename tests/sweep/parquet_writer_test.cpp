@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ist/base/files.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/largest_allocation.h"
 #include "support/random.h"
@@ -138,7 +139,7 @@ TEST(ParquetWriter, PiecesOfAnySizeGiveTheSameBytes) {
     EXPECT_TRUE(parquet_of(layout, rows, 7, piece) == whole) << piece;
   }
   Random random(1);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < samples(20); ++i) {
     const TempDir dir;
     OutputFile file(dir.path() / "rows.parquet");
     ParquetWriter writer(file, layout, 7);

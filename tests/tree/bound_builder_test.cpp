@@ -13,6 +13,7 @@
 #include "ist/base/parallel.h"
 #include "ist/models/models.h"
 #include "ist/voxel/voxelizer.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -151,10 +152,10 @@ TEST(Bounds, OfTrianglesMuchSmallerAndMuchLargerThanVoxels) {
   expect_bounds(test::joined(small, test::triangle({0, 0, 0}, {3, 0.3, 1}, {1, 3, 2.9})), 0.4);
 }
 
-// Segments whose radius is a whole number of units, but for what their lattice coordinates round.
+// Segments whose radius is a whole number of units, up to the rounding of lattice coordinates.
 TEST(Bounds, HoldWhatRoundingHides) {
   test::Random random(2);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < test::samples(20); ++i) {
     const double from = random.uniform(1e-3, 1e-2), to = from + random.uniform(0.1, 1);
     expect_bounds(test::triangle({from, 0, 0}, {to, 0, 0}, {from, 0, 0}), to - from);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -40,7 +41,7 @@ void expect_small_balls(const Points& points) {
 
 TEST(EnclosingBall, OfRandomPoints) {
   test::Random random(1);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < test::samples(200); ++round) {
     Points points(1 + random.below(40));
     for (Vector3d& p : points) p = random.point(-1, 1);
     expect_small_balls(points);
@@ -49,7 +50,7 @@ TEST(EnclosingBall, OfRandomPoints) {
 
 TEST(EnclosingBall, OfPointsInAPlane) {
   test::Random random(2);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::samples(60); ++round) {
     const Vector3d u = random.direction(), v = random.direction(), at = random.point(-1, 1);
     Points points(1 + random.below(40));
     for (Vector3d& p : points) p = at + random.uniform(-1, 1) * u + random.uniform(-1, 1) * v;
@@ -59,7 +60,7 @@ TEST(EnclosingBall, OfPointsInAPlane) {
 
 TEST(EnclosingBall, OfPointsOnALine) {
   test::Random random(3);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::samples(60); ++round) {
     const Vector3d u = random.direction(), at = random.point(-1, 1);
     Points points(1 + random.below(40));
     for (Vector3d& p : points) p = at + random.uniform(-1, 1) * u;
@@ -69,7 +70,7 @@ TEST(EnclosingBall, OfPointsOnALine) {
 
 TEST(EnclosingBall, OfPointsOnACircleOrASphere) {
   test::Random random(4);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::samples(60); ++round) {
     Points circle(2 + random.below(39)), sphere(circle.size());
     const Vector3d at = random.point(-1, 1);
     for (std::size_t i = 0; i < circle.size(); ++i) {
@@ -85,7 +86,7 @@ TEST(EnclosingBall, OfPointsOnACircleOrASphere) {
 
 TEST(EnclosingBall, OfPointsOnAGridAndDuplicates) {
   test::Random random(5);
-  for (int round = 0; round < 200; ++round) {  // many lie on one sphere exactly
+  for (int round = 0; round < test::samples(200); ++round) {  // many lie on one sphere exactly
     Points points(1 + random.below(40));
     for (Vector3d& p : points) p = random.point_on_grid(-1, 2, 1);
     expect_small_balls(points);
@@ -100,7 +101,7 @@ TEST(EnclosingBall, OfPointsOnAGridAndDuplicates) {
 
 TEST(EnclosingBall, OfNearlyEqualPointsAndNeedles) {
   test::Random random(6);
-  for (int round = 0; round < 100; ++round) {
+  for (int round = 0; round < test::samples(100); ++round) {
     const Vector3d at = random.point(-1, 1), u = random.direction();
     Points cluster(2 + random.below(20)), needle(cluster.size());
     for (std::size_t i = 0; i < cluster.size(); ++i) {
@@ -114,7 +115,7 @@ TEST(EnclosingBall, OfNearlyEqualPointsAndNeedles) {
 
 TEST(EnclosingBall, FarFromTheOriginAndAtAnyScale) {
   test::Random random(7);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::samples(60); ++round) {
     const double scale = std::ldexp(1.0, static_cast<int>(random.below(80)) - 40);
     Points points(1 + random.below(30)), far(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -161,7 +162,7 @@ void expect_a_small_ball_round(const std::vector<Ball>& balls) {
 
 TEST(SupportOfBalls, IsThatOfTheSmallestBallRoundThem) {
   test::Random random(8);
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < test::samples(300); ++round) {
     std::vector<Ball> balls(1 + random.below(30));
     const double largest = random.uniform(0, 2);
     for (Ball& ball : balls) ball = {random.point(-1, 1), random.uniform(0, largest)};
@@ -178,10 +179,11 @@ TEST(SupportOfBalls, OfOneThatHoldsTheOthersIsThatOne) {
   EXPECT_EQ(support.size, 2);
 }
 
-// In a row and in a plane, with equal radii: the balls are those of their centres, and larger.
+// Equal balls in a row and in a plane. The ball round them is the ball round their centres,
+// enlarged by their radius.
 TEST(SupportOfBalls, OfEqualBallsInARowOrInAPlane) {
   test::Random random(9);
-  for (int round = 0; round < 100; ++round) {
+  for (int round = 0; round < test::samples(100); ++round) {
     const Vector3d u = random.direction(), v = random.direction();
     std::vector<Ball> row(2 + random.below(8)), plane(row.size());
     for (std::size_t i = 0; i < row.size(); ++i) {

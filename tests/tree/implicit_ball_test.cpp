@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ist/tree/saved_spheres.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -63,11 +64,12 @@ void expect_the_smallest_ball(const Lattice& lattice, SpherePolicy policy, int l
   EXPECT_LE(ball.radius, smallest * (1 + 4e-16) + slack);
 }
 
-// A power of two rounds nothing; thirds of a half edge do, where the table's centres have them.
+// A voxel size that is a power of two rounds nothing. The table's centres have thirds of a half
+// edge, which are rounded.
 TEST(ImplicitBall, HoldsTheCubesExactlyWhereTheVoxelSizeIsAPowerOfTwo) {
   const Lattice lattice = lattice_of(10, 0.25);
   test::Random random(1);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < test::samples(200); ++i) {
     const int level = static_cast<int>(random.below(11));
     const std::uint64_t code = random.bits() % (std::uint64_t{1} << 3 * (10 - level));
     expect_the_smallest_ball(lattice, SpherePolicy::kSimple, level, code, 255, 0);
@@ -91,7 +93,7 @@ TEST(ImplicitBall, OfEveryMaskIsTheSmallestRoundTheChildrensCubes) {
 
 TEST(ImplicitBall, HoldsTheCubesToARoundingOfTheGridsExtentAtAnySize) {
   test::Random random(2);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     const int depth = static_cast<int>(random.below(17));
     const Lattice lattice = lattice_of(
         depth, std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.below(40)) - 20));

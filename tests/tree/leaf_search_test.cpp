@@ -9,6 +9,7 @@
 #include "ist/tree/bound_builder.h"
 #include "ist/tree/nested_bounds.h"
 #include "ist/voxel/voxelizer.h"
+#include "support/effort.h"
 #include "support/exact_nesting.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -46,7 +47,7 @@ void expect_support(const Ball& ball, const Slab& slab, double partner_radius,
 
 TEST(InflatedBound, SupportsAreExactToAFewRoundings) {
   test::Random random(1);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::samples(20'000); ++i) {
     const Ball ball{random.point(-5, 5), random.uniform(0.01, 0.87)};
     Slab slab{packed_normal(random), ball.radius * random.uniform(-0.6, 0.6),
               random.uniform(0, 0.4)};

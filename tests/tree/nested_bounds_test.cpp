@@ -12,6 +12,7 @@
 #include "ist/models/models.h"
 #include "ist/tree/bound_builder.h"
 #include "ist/voxel/voxelizer.h"
+#include "support/effort.h"
 #include "support/exact_nesting.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -106,7 +107,7 @@ TEST(NestedBounds, HoldTheirLeavesOfAFlatPatch) {
 
 TEST(NestedBounds, HoldTheirLeavesOfRandomTrianglesSliversSegmentsAndPoints) {
   test::Random random(1);
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < test::samples(6); ++round) {
     TriangleMesh mesh;
     for (int i = 0; i < 12; ++i) {
       const Vector3d a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist {
@@ -53,7 +54,7 @@ TEST(PackSlab, OfAPlaneIsOneUnit) {
 // A normal is rounded by up to half a degree: the slab of a large plane across is a little thicker.
 TEST(PackSlab, OfAPlaneAcrossIsAFewUnits) {
   test::Random random(1);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < test::samples(100); ++i) {
     const Vector3d u = 0.3 * random.direction(), v = 0.3 * random.direction();
     const PackedSlab slab = pack_slab(payload({-u, u, -v, v}), {0, 0, 0}, 1);
     EXPECT_LE(slab.half, 3);

@@ -11,6 +11,7 @@
 #include "ist/tree/tree_parts.h"
 #include "ist/voxel/morton.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -56,8 +57,8 @@ TEST(ProximityBody, LiesOutsideNearTheSurface) {
   }
 }
 
-// A probe of one voxel touches the cells whose cubes its own meets, and none whose balls are apart
-// from its own.
+// A probe of one voxel touches a cell if their cubes meet. It touches none if their balls are
+// apart.
 TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
   const SphereTree tree = ball_with_proximity();
   const SphereTree body = proximity_body(tree);
@@ -74,7 +75,7 @@ TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
     QueryOptions options;
     options.policy = policy;
     Query query(body, probe, options);
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < samples(400); ++i) {
       const Vector3d at = Vector3d(5, -3, 2) + random.point(-1.7, 1.7);
       const FoundPairs answer = ask(query, shift(at - Vector3d::Constant(0.5 * kProbe)));
       std::vector<bool> found(cells.size());
@@ -90,11 +91,11 @@ TEST(ProximityBody, IsTouchedByWhatIsInItsCells) {
       ++(answer.leaf_pairs.empty() ? free : touching);
     }
   }
-  EXPECT_GT(touching, 100u);
-  EXPECT_GT(free, 100u);
+  EXPECT_GT(touching, samples(std::size_t{60}));
+  EXPECT_GT(free, samples(std::size_t{60}));
 }
 
-// By its tight bounds a cell is its centre.
+// The tight bounds of a cell are its centre.
 TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
   const SphereTree tree = ball_with_proximity();
   const SphereTree body = proximity_body(tree);
@@ -104,11 +105,11 @@ TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
   options.policy = SpherePolicy::kTight;
   Query query(body, probe, options);
   const double ball = 0.5 * std::sqrt(3.0) * kProbe;
-  // A tight ball is at most 1 % too large, and a point's is what packing rounds.
+  // A tight ball is at most 1 % too large. The ball of a point is as large as packing rounds it.
   const double slop = 0.01 * ball + 3 * 0x1p-16 * 2 * (kSize + kProbe) * 4;
   Random random(6);
   std::size_t found = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const Vector3d at =
         cells[static_cast<std::size_t>(i) % cells.size()] + random.point(-0.06, 0.06);
     std::vector<bool> overlapping(cells.size());
@@ -127,7 +128,7 @@ TEST(ProximityBody, IsTouchedAtItsCentresWhereItIsBoundTightly) {
       found += overlapping[cell] ? 1U : 0U;
     }
   }
-  EXPECT_GT(found, 500u);
+  EXPECT_GT(found, samples(std::size_t{500}));
 }
 
 // As the surface's own tree is in its mesh's coordinates, so is it, whatever both depths are.

@@ -7,6 +7,7 @@
 
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/exact.h"
 #include "support/random.h"
@@ -46,7 +47,7 @@ void expect_within_reach(const SphereTree& tree) {
 }
 
 TEST(SphereTree, NoSphereReachesFartherThanItsReach) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{3}); ++seed) {
     expect_within_reach(tree_of(random_mesh(seed, 5), 0.11));
   }
   expect_within_reach(tree_of(test::icosphere(2, 1), 0.1));
@@ -95,10 +96,10 @@ TEST(SphereTree, NoMaskReachesFartherThanItsReach) {
   }
 }
 
-// The ball that a search tests of each node holds those of all leaves below it.
+// A search tests one ball of each node. It holds the balls of all leaves below the node.
 TEST(SphereTree, ImplicitBallsAreNested) {
   std::size_t pairs = 0;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{3}); ++seed) {
     const SphereTree tree = tree_of(random_mesh(seed, 4), 0.11);
     const TreeParts& parts = tree.parts();
     const std::vector<std::uint64_t> leaves = parts.octree.codes(0);
@@ -119,7 +120,7 @@ TEST(SphereTree, ImplicitBallsAreNested) {
       }
     }
   }
-  EXPECT_GT(pairs, 5'000u);
+  EXPECT_GT(pairs, test::samples(std::size_t{5'000}));
 }
 
 TEST(SphereTree, ItsLargestLeafRadiusIsThat) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist {
@@ -69,7 +70,7 @@ TEST(SymmetricEigen, FindsTheNormalOfAPlane) {
 
 TEST(SymmetricEigen, OfRandomMatricesOfAllSizesAndShapes) {
   test::Random random(1);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < test::samples(2000); ++i) {
     const double size = std::ldexp(1.0, static_cast<int>(random.below(200)) - 100);
     Vector3d values;
     for (double& value : values) {

@@ -9,6 +9,7 @@
 #include "ist/query/reference/reference_query.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/exact/exact_tree.h"
+#include "support/effort.h"
 #include "support/exact_query.h"
 #include "support/shapes.h"
 
@@ -76,7 +77,7 @@ TEST_P(Guarantee, WhatDoesNotBelongIsFound) {
   const ExactBody fixed(fixed_mesh_, fixed_), moving(moving_mesh_, moving_);
   const ExactPair exact(fixed, moving, pose_);
   std::size_t apart = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < samples(500); ++i) {
     const LeafPair pair{static_cast<std::uint32_t>(random_.below(fixed_.leaf_count())),
                         static_cast<std::uint32_t>(random_.below(moving_.leaf_count()))};
     FoundPairs more = right;
@@ -92,7 +93,7 @@ TEST_P(Guarantee, WhatDoesNotBelongIsFound) {
       refuses(more, "is in the answer, but its bounds are");
     }
   }
-  EXPECT_GT(apart, 100u);
+  EXPECT_GT(apart, samples(std::size_t{100}));
 }
 
 TEST_P(Guarantee, TheListIsWhatItSays) {
@@ -143,7 +144,7 @@ TEST_P(Guarantee, WhatGoesMissingIsFoundWithoutTrianglesToo) {
 
 TEST_P(Guarantee, NoFalseAlarm) {
   std::size_t leaf_pairs = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < samples(60); ++i) {
     SCOPED_TRACE(i);
     const SphereTree a = exact_tree(random_mesh(random_), random_.uniform(1, 12));
     const SphereTree b = exact_tree(random_mesh(random_), random_.uniform(1, 12));
@@ -153,7 +154,7 @@ TEST_P(Guarantee, NoFalseAlarm) {
     options.policy = GetParam();
     Query query(a, b, options);
     for (int j = 0; j < 10; ++j) {
-      // Every other one on planes that both lattices may share, and far from the origin.
+      // Every other pose puts the bodies on planes that both lattices may share.
       const Eigen::Matrix3d rotation =
           j % 2 == 0 ? random_.rotation() : quarter_turns()[random_.below(24)];
       const Eigen::Vector3d near = random_.point(-3, 3);
@@ -168,24 +169,30 @@ TEST_P(Guarantee, NoFalseAlarm) {
       leaf_pairs += one.leaf_pairs.size();
     }
   }
-  EXPECT_GT(leaf_pairs, 1000u);
+  EXPECT_GT(leaf_pairs, samples(std::size_t{300}));
 }
 
-// Between lattices that coincide, the published balls of `table` lose pairs whose own overlap.
+// Between lattices that coincide, the published balls of `table` lose pairs of leaves whose own
+// balls overlap.
 TEST_P(Guarantee, BoundsThatAreNotNestedOweWhatIntersects) {
   ReferenceQuery reference(fixed_, fixed_, GetParam());
   const AnswerVerifier check(fixed_, fixed_, GetParam());
+  const bool published_nest = published_are_nested(GetParam());
   int lacking = 0;
-  for (int i = 0; i < 100; ++i) {
+  // A pair may be lost only at some poses: at most 100 are asked until one is.
+  const auto goes_on = [&](int asked) {
+    return asked < samples(100) || (!published_nest && lacking == 0 && asked < 100);
+  };
+  for (int i = 0; goes_on(i); ++i) {
     const Eigen::Isometry3d pose = pose_of(Eigen::Matrix3d::Identity(), random_.point(-1.5, 1.5));
     const FoundPairs found = ask(reference, pose);
     const auto violation = [&](bool nested) {
       return check.check(pose, std::vector{GivenAnswer{found.result, found.leaf_pairs, nested}});
     };
-    EXPECT_FALSE(violation(published_are_nested(GetParam())));
+    EXPECT_FALSE(violation(published_nest));
     lacking += violation(true) ? 1 : 0;
   }
-  EXPECT_EQ(lacking > 0, !published_are_nested(GetParam()));
+  EXPECT_EQ(lacking > 0, !published_nest);
 }
 
 // A rotation that is too long by 4e-6 would put a body far from its mesh's origin elsewhere.

@@ -10,6 +10,7 @@
 #include "ist/tree/sphere_tree.h"
 #include "ist/tree/tree_parts.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "verify/leaf_grid.h"
 
@@ -123,7 +124,7 @@ TEST(LeafGrid, FindsAllThatAreNear) {
   const double edge = tree.voxel_size();
   for (const double radius : {0.1 * edge, 0.9 * edge, 7 * edge, 100 * edge}) {
     const LeafGrid grid(tree, radius);
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < samples(50); ++i) {
       const Vector3d centre = random.point(-1.5, 1.5);
       std::multiset<std::uint32_t> found;
       grid.near(centre, radius, [&](std::uint32_t leaf) { found.insert(leaf); });

@@ -18,7 +18,8 @@ const switches = [
   '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--no-first-run',
 ];
-const patience = 60_000;
+// Milliseconds. They end a test that hangs, and nothing else.
+const patience = 240_000;
 
 /** The nearest that the built-in jaws come is at 0; below it they open. */
 export const closedBy = (dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1];
@@ -73,14 +74,60 @@ export async function closePage({faults, requests, close}) {
   assert.deepEqual(requests.filter((address) => !/^(file|blob|data):/.test(address)), []);
 }
 
-/** Waits until each answer is of the pose and the trees that are shown, or there are no trees to ask. */
-export async function ready(page) {
-  const state = await page.waitForFunction(() => {
-    const {state} = document.documentElement.dataset;
-    const answered = window.ist && (window.ist.answer() !== null || window.ist.state().trees === null);
-    return (state === 'failed' || (state === 'ready' && answered)) && state;
+/** For `before`: questions to the engine wait while `window.holds(message)` says so, until `window.release()`; `window.held()` counts them. */
+export function holding() {
+  const {Worker} = window;
+  const waiting = [];
+  window.held = () => waiting.length;
+  window.release = () => {
+    window.holds = undefined;
+    for (const send of waiting.splice(0)) send();
+  };
+  window.Worker = class extends Worker {
+    postMessage(message, ...more) {
+      if (window.holds?.(message)) waiting.push(() => super.postMessage(message, ...more));
+      else super.postMessage(message, ...more);
+    }
+  };
+}
+
+/** Waits until the page says that nothing is asked. It says so every 50 ms; what it said before this call is passed over. */
+async function resting(page, answered) {
+  await page.evaluate(() => {
+    const {dataset} = document.documentElement;
+    if (dataset.state === 'ready') dataset.state = 'busy';
   });
+  const state = await page.waitForFunction((answered) => {
+    const {state} = document.documentElement.dataset;
+    const known = !answered || (window.ist && (window.ist.answer() !== null || window.ist.state().trees === null));
+    return (state === 'failed' || (state === 'ready' && known)) && state;
+  }, answered);
   assert.equal(await state.jsonValue(), 'ready', (await messages(page)).join(' '));
+}
+
+/** Waits until each answer is of the pose and the trees that are shown, or there are no trees to ask. */
+export const ready = (page) => resting(page, true);
+
+/** Waits until all that was asked is answered. While a hand holds the body, that is not the whole answer. */
+export const settled = (page) => resting(page, false);
+
+/** Asks for something again and again until it is as wanted, and gives it. */
+export async function until(ask, wanted) {
+  for (const begun = performance.now(); ;) {
+    const found = await ask();
+    if (await wanted(found)) return found;
+    assert.ok(performance.now() - begun < patience, 'what is wanted does not come');
+  }
+}
+
+/** Takes a picture again and again until two in a row are the same: the page then has drawn its last frame. */
+export async function lastPicture(take) {
+  let before = await take();
+  return until(take, (picture) => {
+    const same = before.equals(picture);
+    before = picture;
+    return same;
+  });
 }
 
 /** The sentences that the page says now. */

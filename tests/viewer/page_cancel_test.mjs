@@ -5,7 +5,7 @@ import {readFileSync} from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, settled, showPanel} from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
 const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
@@ -13,12 +13,12 @@ stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
 });
 
-// The engine takes a minute for these, whatever machine it runs on.
+// The engine never ends these by itself.
 const slowly = inWorker(`addEventListener('message', ({data: {question, asked}}) => {
   const long = question === 'first_contact' || question === 'save_glb' || question === 'save_body' || asked?.name === 'slow.stl' ||
       asked?.seed === 5 || asked?.voxel_size < 0.3 || (question === 'occlusion' && asked.preset === 'owens') ||
       (question === 'touched' && asked.level === 0) || (question === 'collide' && asked.pose[14] === -0.25);
-  for (const begun = performance.now(); long && performance.now() - begun < 60_000;);
+  while (long);
 });`);
 
 const panelsOf = {
@@ -71,18 +71,23 @@ test('says that the depth is not known where its search was cancelled, and asks 
   const opened = await openPage(browser, '#voxel=2&panel=pose', {before: slowly});
   const {page} = opened;
   await ready(page);
-  // What is asked at each rest has no bar before a second is over: it would flicker.
+  // What is asked at each rest has no bar before a second is over: it would flicker. The timer that shows the bar says its time.
   await page.evaluate(() => {
-    const begun = performance.now();
+    const {setTimeout} = window;
+    let time = 0;
+    window.setTimeout = (call, milliseconds, ...more) => setTimeout(() => {
+      time = milliseconds;
+      call(...more);
+    }, milliseconds);
     new MutationObserver((changes) => {
-      if (changes.some(({target}) => !target.hidden)) window.barAfter ??= performance.now() - begun;
+      if (changes.some(({target}) => !target.hidden)) window.barAfter ??= time;
     }).observe(document.getElementById('progress'), {subtree: true, attributeFilter: ['hidden']});
   });
   await page.evaluate((hash) => { location.hash = hash; }, `#pose=${closedBy(-0.25)}`);
   await cancel(page, 'Finding distance and depth');
   const barAfter = await page.evaluate(() => window.barAfter);
-  assert.ok(barAfter > 1000, `${barAfter} ms`);
-  await page.waitForFunction(() => document.documentElement.dataset.state === 'ready');
+  assert.equal(barAfter, 1000);
+  await settled(page);
   assert.equal(await answer(page), null);
   const {Touch, Depth} = await readout(page);
   assert.deepEqual([Touch, Depth], ['they touch', 'not known']);
@@ -126,15 +131,15 @@ test('answers a hand while a map is made, and makes that of the pose where it re
   const {x, y, width, height} = await page.getByRole('slider', {name: 'Close along z'}).boundingBox();
   await page.mouse.move(x + width - 4, y + height / 2);
   await page.mouse.down();
-  // The map that was begun takes a minute.
-  await page.waitForFunction(() => window.ist.state().tick.touch === 'yes', null, {timeout: 20_000});
+  // The map that was begun never ends.
+  await page.waitForFunction(() => window.ist.state().tick.touch === 'yes');
   assert.equal(await page.evaluate(() => window.ist.state().dragging), true);
   await page.getByLabel('Preset').evaluate((list) => {
     list.value = 'stl';
     list.dispatchEvent(new Event('change'));
   });
   await page.mouse.up();
-  await page.waitForFunction(() => window.ist.bite()?.preset.name === 'stl', null, {timeout: 20_000});
+  await page.waitForFunction(() => window.ist.bite()?.preset.name === 'stl');
   await ready(page);
   const {line} = await answer(page);
   assert.deepEqual((await page.evaluate(() => window.ist.bite())).pose, line.pose);
@@ -147,10 +152,10 @@ test('draws while it reads a recording, and ends that too', async () => {
   const tick = (number) => ({tick: number, dt: 0.001, device: row, tool: row, wrench: [0, 0, 0, 0, 0, 0]});
   const text = (ticks) => [header, ...Array.from({length: ticks}, (_, at) => tick(at))].map((line) => `${JSON.stringify(line)}\n`).join('');
   const opened = await openPage(browser, '#voxel=2&panel=recording', {before: () => {
-    // A tick takes a millisecond to read, as many would.
+    // Each tick takes 10 ms to read: all of them take minutes.
     const {parse} = JSON;
     JSON.parse = (line, ...more) => {
-      for (const begun = performance.now(); line.startsWith('{"tick":') && performance.now() - begun < 1;);
+      for (const begun = performance.now(); line.startsWith('{"tick":') && performance.now() - begun < 10;);
       return parse(line, ...more);
     };
   }});

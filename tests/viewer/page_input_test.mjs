@@ -211,7 +211,7 @@ test('comes back to what its address says', async () => {
   await setPose(page, closedBy(-0.3));
   const {line} = await answer(page);
   assert.equal(line.spheres, 'tight');
-  const again = await openPage(browser, new URL(page.url()).hash);
+  const again = await openPage(browser, await page.evaluate(() => location.hash));
   await ready(again.page);
   assert.deepEqual(answerOf((await answer(again.page)).line), answerOf(line));
   assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Pose');

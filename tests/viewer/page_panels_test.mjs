@@ -6,7 +6,7 @@ import path from 'node:path';
 import {test} from 'node:test';
 
 import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready} from './browser.mjs';
+import {answer, answerOf, closePage, closedBy, holding, ist, linesOf, message, openPage, readout, ready} from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
 const ratio = JSON.parse(readFileSync(new URL('../../src/viewer/page/native_ratio.json', import.meta.url), 'utf8'));
@@ -57,7 +57,7 @@ test('Bodies: makes the built-in jaws of a number, as the command does', async (
     const [, {source}] = linesOf(ist(folder, 'info', path.join('seven', file), '--json'));
     assert.equal(await hash(role), source.hash);
   }
-  assert.match(page.url(), /&seed=7/);
+  assert.match(await page.evaluate(() => location.hash), /&seed=7/);
   assert.match(await panel(page, 'Bodies').textContent(), /Leaves[\d,]+/);
   await closePage(opened);
 });
@@ -80,13 +80,15 @@ test('Pose: copies the matrix that the command reads', async () => {
 });
 
 test('Accuracy: visits seven voxel sizes, or as many as it is let', async () => {
-  const opened = await openPage(browser, `#voxel=2&panel=accuracy&pose=${closedBy(-5)}`);
+  const opened = await openPage(browser, `#voxel=2&panel=accuracy&pose=${closedBy(-5)}`, {before: holding});
   const {page} = opened;
   await ready(page);
   const visit = page.getByRole('button', {name: 'Visit seven voxel sizes'});
+  await page.evaluate(() => { window.holds = ({question, asked}) => question === 'build' && asked.voxel_size === 1; });
   await visit.click();
-  await page.waitForFunction(() => window.ist.state().voxelSize === 1.4);
+  await page.waitForFunction(() => window.held() > 0);
   await page.getByRole('button', {name: 'Stop the visits'}).click();
+  await page.evaluate(() => window.release());
   await visit.waitFor();
   await ready(page);
   const fewer = await rows(page, 'Visited at this pose');

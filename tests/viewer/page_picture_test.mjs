@@ -64,7 +64,6 @@ test('draws the hand apart from the tool', async () => {
   const {page} = opened;
   const apart = await pictureOf(page);
   await page.getByLabel('Hand drawn away from the tool').fill('1');
-  await page.waitForTimeout(100);
   const off = await partOff(page, apart, await pictureOf(page));
   assert.ok(off > mostOff, `${off}`);
   await closePage(opened);

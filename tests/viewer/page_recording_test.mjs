@@ -54,15 +54,33 @@ const recordingText = () => readFileSync(path.join(folder, 'run.jsonl'), 'utf8')
 const playback = (page) => page.evaluate(() => window.ist.playback());
 const poseOf = (page) => page.evaluate(() => window.ist.state().pose);
 
-/** Plays from the start to the last tick, and gives the poses at both. */
+/** For `before`: the clock of the page stands between two frames, and goes on by 20 ms with each. */
+function frameClock() {
+  const {requestAnimationFrame} = window;
+  let frames = 0;
+  window.requestAnimationFrame = (call) => requestAnimationFrame((time) => {
+    frames += 1;
+    call(time);
+  });
+  performance.now = () => 20 * frames;
+}
+
+/** Plays from the start to the last tick, and gives the poses at both. The page has a frameClock(). */
 async function playToTheEnd(page) {
   assert.deepEqual(await playback(page), {tick: 0, last});
   const start = await poseOf(page);
   await page.getByLabel('Speed').selectOption('0.1');
+  await page.evaluate(() => {
+    window.seen = new Set();
+    const see = () => {
+      window.seen.add(window.ist.playback().tick);
+      requestAnimationFrame(see);
+    };
+    see();
+  });
   await page.getByRole('button', {name: 'Play', exact: true}).click();
-  const seen = new Set();
-  for (let tick = 0; tick < last; {tick} = await playback(page)) seen.add(tick);
-  assert.ok(seen.size > 2, 'it plays tick after tick');
+  await page.waitForFunction((last) => window.seen.has(last), last);
+  assert.ok(await page.evaluate(() => window.seen.size) > 10, 'it plays tick after tick');
   await page.getByRole('button', {name: 'Play', exact: true}).waitFor();
   await ready(page);
   return {start, end: await poseOf(page)};
@@ -89,7 +107,7 @@ async function checkPlayed(page, {start, end}) {
 const lateStrokes = (page) => page.locator('figure.plot path.late').first().getAttribute('d').then((strokes) => strokes.match(/M/g)?.length ?? 0);
 
 test('plays a file that is dropped, and a page that the command wrote, to the same last tick', async () => {
-  const opened = await openPage(browser, '#voxel=1');
+  const opened = await openPage(browser, '#voxel=1', {before: frameClock});
   const {page} = opened;
   await ready(page);
   await drop(page, 'run.jsonl', recordingText());
@@ -101,7 +119,7 @@ test('plays a file that is dropped, and a page that the command wrote, to the sa
   assert.deepEqual(await messages(page), []);
 
   const file = path.join(folder, 'run.html');
-  const inPage = await openPage(browser, '#voxel=1', {file});
+  const inPage = await openPage(browser, '#voxel=1', {file, before: frameClock});
   await ready(inPage.page);
   assert.equal(await inPage.page.getByRole('tab', {selected: true}).textContent(), 'Recording');
   const fromPage = await playToTheEnd(inPage.page);

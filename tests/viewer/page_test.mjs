@@ -7,7 +7,9 @@ import path from 'node:path';
 import {test} from 'node:test';
 
 import {interval} from '../../src/viewer/page/words.js';
-import {answer, answerOf, closePage, closedBy, ist, linesOf, message, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {
+  answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, openPage, readout, ready, setPose, settled, showPanel,
+} from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
 const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
@@ -33,20 +35,20 @@ test('lets no request leave, whoever asks', async () => {
   });
   await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
   const {page, close} = await openPage(browser);
-  const refused = await page.evaluate(async (address) => {
-    const blocked = [];
-    document.addEventListener('securitypolicyviolation', (event) => blocked.push(event.effectiveDirective));
-    await fetch(`${address}/fetch`).catch(() => {});
+  await page.evaluate((address) => {
+    window.refused = [];
+    document.addEventListener('securitypolicyviolation', (event) => window.refused.push(event.effectiveDirective));
+    fetch(`${address}/fetch`).then(() => window.refused.push('a fetch was sent'), () => {});
     new Image().src = `${address}/image`;
     const script = document.createElement('script');
     script.src = `${address}/script`;
     document.head.append(script);
     const text = `fetch('${address}/worker').then(() => postMessage('sent'), () => postMessage('worker'))`;
     const worker = new Worker(URL.createObjectURL(new Blob([text])));
-    blocked.push(await new Promise((resolve) => { worker.onmessage = ({data}) => resolve(data); }));
-    await new Promise((resolve) => { setTimeout(resolve, 300); });
-    return blocked;
+    worker.onmessage = ({data}) => window.refused.push(data);
   }, `http://127.0.0.1:${server.address().port}`);
+  await page.waitForFunction(() => window.refused.length >= 4);
+  const refused = await page.evaluate(() => window.refused);
   await close();
   await new Promise((resolve) => { server.close(resolve); });
   assert.deepEqual(refused.sort(), ['connect-src', 'img-src', 'script-src-elem', 'worker']);
@@ -82,7 +84,7 @@ test('follows a drag of the closing slider until the contacts change', async () 
   const seen = [];
   for (let dz = -1.5; dz <= 0.01; dz += 0.1) {
     await page.mouse.move(at(dz), y + height / 2);
-    await page.waitForTimeout(60);
+    await settled(page);
     seen.push(await readout(page));
   }
   // While the hand still holds the slider.
@@ -134,7 +136,10 @@ test('finds the first contact from the pose that is shown', async () => {
 });
 
 test('goes on as before where a build is cancelled', async () => {
-  const opened = await openPage(browser, '#panel=accuracy');
+  // A build of small voxels never ends by itself.
+  const opened = await openPage(browser, '#panel=accuracy', {before: inWorker(`addEventListener('message', ({data: {asked}}) => {
+    while (asked?.voxel_size < 0.3);
+  });`)});
   const {page} = opened;
   await ready(page);
   const before = await answer(page);

@@ -1,7 +1,7 @@
 // Pictures of the canvas alone, of a fixed size, and how far two of them differ. The kept ones lie in
 // pictures/; scripts/draw_page.mjs makes them anew.
 
-import {closedBy, openPage, ready} from './browser.mjs';
+import {closedBy, lastPicture, openPage, ready} from './browser.mjs';
 
 const canvas = {width: 400, height: 300};
 /** Of the picture of the whole page. */
@@ -77,8 +77,7 @@ export async function pageDrawn(browser) {
   await ready(page);
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
-  await page.waitForTimeout(1000);  // the last frame
-  return {opened, picture: await page.screenshot()};
+  return {opened, picture: await lastPicture(() => page.screenshot())};
 }
 
 /** The canvas as it is drawn now: a PNG. */

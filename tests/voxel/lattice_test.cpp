@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/random.h"
 
@@ -69,7 +70,7 @@ TEST(Lattice, RefusesExtentsOfNothingAndBeyondAllMeasure) {
 TEST(Lattice, TheSmallestSizeThatItsRefusalNamesFits) {
   test::Random random(1);
   EXPECT_EQ(error_name([] { (void)over(65536.5, 1, 1, 1); }), "voxel-size-too-small");
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     const Eigen::Vector3d extents =
         std::ldexp(1.0, static_cast<int>(random.below(60)) - 20) * random.point(0.5, 1);
     const double size = extents.maxCoeff() / 65537 / (1 + random.below(1000));
@@ -86,7 +87,7 @@ TEST(Lattice, TheSmallestSizeThatItsRefusalNamesFits) {
 
 TEST(RoundUpForPeople, GivesThreeDigitsNeverLessAndHardlyMore) {
   test::Random random(2);
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < test::samples(10'000); ++i) {
     const double size = std::ldexp(random.uniform(0.5, 1), static_cast<int>(random.below(80)) - 40);
     const double rounded = round_up_for_people(size);
     EXPECT_GE(rounded, size);

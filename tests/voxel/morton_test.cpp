@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist {
@@ -32,7 +33,7 @@ TEST(Morton, EveryIndexOfEachAxisGoesThereAndBack) {
 
 TEST(Morton, RandomCellsGoThereAndBack) {
   test::Random random(1);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < test::samples(100'000); ++i) {
     const Cell cell{random.below(1u << 16), random.below(1u << 16), random.below(1u << 16)};
     ASSERT_EQ(morton_encode(cell), interleaved(cell));
     ASSERT_EQ(morton_decode(morton_encode(cell)), cell);
@@ -48,7 +49,7 @@ TEST(Morton, OctantsCountXFirstThenYThenZ) {
 
 TEST(Morton, TheParentsCodeIsTheCodeWithoutTheOctant) {
   test::Random random(2);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::samples(1000); ++i) {
     const Cell cell{random.below(1u << 16), random.below(1u << 16), random.below(1u << 16)};
     EXPECT_EQ(morton_encode(cell) >> 3, morton_encode({cell[0] / 2, cell[1] / 2, cell[2] / 2}));
     EXPECT_EQ(morton_encode(cell) & 7, cell[0] % 2 + 2 * (cell[1] % 2) + 4 * (cell[2] % 2));

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "support/effort.h"
 #include "support/random.h"
 #include "voxel/angles.h"
 
@@ -18,7 +19,7 @@ Vector3d stored(const Vector3d& normal) { return PackedNormal(normal, 1).directi
 TEST(PackedNormal, GivesADirectionBackWithinItsError) {
   test::Random random(1);
   double worst = 0;
-  for (int i = 0; i < 300'000; ++i) {
+  for (int i = 0; i < test::samples(300'000); ++i) {
     const Vector3d normal = random.direction();
     const Vector3d back = stored(normal);
     worst = std::max(worst, angle_in_degrees(normal, back));
@@ -29,7 +30,7 @@ TEST(PackedNormal, GivesADirectionBackWithinItsError) {
 
 TEST(PackedNormal, DirectionsNearTheFoldsComeBackToo) {
   test::Random random(2);
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < test::samples(30'000); ++i) {
     Vector3d normal = random.direction();
     normal[static_cast<Eigen::Index>(random.below(3))] *= i % 4 == 0 ? 0 : 1e-4;
     normal.normalize();
@@ -48,7 +49,7 @@ TEST(PackedNormal, AxesComeBackExactly) {
 
 TEST(PackedNormal, MirroringANormalMirrorsWhatIsStored) {
   test::Random random(3);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < test::samples(100'000); ++i) {
     const Vector3d normal = random.direction();
     for (int axis = 0; axis < 3; ++axis) {
       const auto mirrored = [axis](Vector3d v) {
@@ -64,7 +65,7 @@ TEST(PackedNormal, MirroringANormalMirrorsWhatIsStored) {
 
 TEST(PackedNormal, CoherenceIsTheLengthOfTheSumByTheWeight) {
   test::Random random(4);
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < test::samples(10'000); ++i) {
     const double weight = random.uniform(0.1, 100), coherence = random.uniform(0, 1);
     const Vector3d sum = coherence * weight * random.direction();
     const PackedNormal packed(sum, weight);
@@ -90,7 +91,7 @@ TEST(PackedNormal, WhatHasNoDirectionIsZeroAndNeverNaN) {
 
 TEST(PackedNormal, AnyWordIsANormal) {
   test::Random random(5);
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < test::samples(200'000); ++i) {
     const auto word = static_cast<std::uint32_t>(random.bits());
     const PackedNormal normal = PackedNormal::from_word(word);
     ASSERT_EQ(normal.word(), word);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ist/voxel/morton.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 
@@ -51,7 +52,7 @@ void expect_the_exact_clip(const Corners& triangle, const Eigen::Vector3d& low,
 
 TEST(ClipTriangle, LeavesTheCornersOfTheExactClip) {
   test::Random random(1);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::samples(3000); ++i) {
     const double size = i % 2 == 0 ? 1 : 4;
     const Corners triangle{random.point(-size, size), random.point(-size, size),
                            random.point(-size, size)};
@@ -61,7 +62,7 @@ TEST(ClipTriangle, LeavesTheCornersOfTheExactClip) {
 
 TEST(ClipTriangle, CutsCornersAndEdgesThatLieOnThePlanesOfTheBox) {
   test::Random random(2);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::samples(3000); ++i) {
     const Corners triangle{random.point_on_grid(-2, 3, 0.5), random.point_on_grid(-2, 3, 0.5),
                            random.point_on_grid(-2, 3, 0.5)};
     expect_the_exact_clip(triangle, {0, 0, 0}, {1, 1, 1}, 1e-14);
@@ -70,7 +71,7 @@ TEST(ClipTriangle, CutsCornersAndEdgesThatLieOnThePlanesOfTheBox) {
 
 TEST(ClipTriangle, KeepsTheTurnAndTheAreas) {
   test::Random random(3);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < test::samples(1000); ++i) {
     const Corners triangle{random.point(-2, 2), random.point(-2, 2), random.point(-2, 2)};
     ClippedTriangle clipped;
     clip_triangle(triangle, {-1, -1, -1}, {1, 1, 1}, clipped);
@@ -108,7 +109,7 @@ TEST(ClipTriangle, TakesPointsAndSegments) {
 TEST(ClipTriangle, NeverLeavesMoreCornersThanThereIsRoomFor) {
   test::Random random(4);
   int most = 0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < test::samples(200'000); ++i) {
     // Slivers along the planes of the box are where rounding adds corners.
     Corners triangle{random.point(-2, 2), random.point(-2, 2), random.point(-2, 2)};
     if (i % 2 == 0) triangle[2] = triangle[0] + random.uniform(0, 1) * (triangle[1] - triangle[0]);
@@ -122,12 +123,13 @@ TEST(ClipTriangle, NeverLeavesMoreCornersThanThereIsRoomFor) {
     for (const Eigen::Vector3d& p : corners_of(clipped)) ASSERT_TRUE(p.allFinite());
     most = std::max(most, clipped.count);
   }
-  EXPECT_GE(most, 9) << "the nine corners of a triangle cut by six planes";
+  // One in some thousand triangles has nine corners: six planes cut it.
+  EXPECT_GE(most, test::effort() < 1 ? 8 : 9);
 }
 
 TEST(TriangleSlicer, GivesWhatClippingTheWholeTriangleGives) {
   test::Random random(5);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < test::samples(300); ++i) {
     const Corners triangle{random.point(0, 6), random.point(0, 6), random.point(0, 6)};
     const double pad = i % 2 == 0 ? 0 : 1e-3;
     TriangleSlicer slicer(triangle, pad);

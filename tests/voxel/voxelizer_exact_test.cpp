@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ist/voxel/voxelizer.h"
+#include "support/effort.h"
 #include "support/exact.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -68,7 +69,7 @@ TriangleMesh random_triangles(std::uint64_t seed, int count) {
 }
 
 TEST(VoxelizerExact, RandomTriangles) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::samples(std::uint64_t{4}); ++seed) {
     expect_exactly_the_voxels(random_triangles(seed, 40), 0.13);
     expect_exactly_the_voxels(random_triangles(seed, 10), 0.05);
   }
@@ -77,7 +78,7 @@ TEST(VoxelizerExact, RandomTriangles) {
 TEST(VoxelizerExact, LongSlivers) {
   test::Random random(1);
   TriangleMesh mesh;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < test::samples(60); ++i) {
     const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     add(mesh, a, b, a + random.uniform(0, 1) * (b - a) + 1e-6 * random.direction());
     add(mesh, a, b, a + 1e-6 * random.direction());
@@ -88,7 +89,7 @@ TEST(VoxelizerExact, LongSlivers) {
 TEST(VoxelizerExact, PointsSegmentsAndNeedles) {
   test::Random random(2);
   TriangleMesh mesh;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < test::samples(60); ++i) {
     const Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     add(mesh, a, a, a);
     add(mesh, a, b, b);
@@ -103,7 +104,7 @@ TEST(VoxelizerExact, CornersOnThePlanesOfTheGrid) {
   test::Random random(3);
   for (const double size : {1.0, 0.1, 0.7}) {
     TriangleMesh mesh = test::triangle({0, 0, 0}, {8 * size, 0, 0}, {0, 8 * size, 8 * size});
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < test::samples(60); ++i) {
       const auto corner = [&] { return Vector3d(size * random.point_on_grid(0, 9, 1)); };
       const Vector3d a = corner(), b = corner(), c = corner();
       add(mesh, a, b, c);

@@ -104,5 +104,6 @@ def draw(command, file):
     radius, thick = draw_bounds(places[3], triangles[order[WIDTH * chosen:WIDTH * (chosen + 1)]], axes)
     places[3].set_title("the cluster in the middle of the picture on the left, in its box, disc and ball")
     save_small_png(figure, file)
-    return (f"The {len(triangles):,} triangles of the lower jaw in the library's order, which this picture computes by the same rule: {counts[2]} nodes of 4,096 triangles, {counts[1]} of "
-            f"256 and {nodes.max() + 1:,} clusters of sixteen. One cluster lies in a box, in a ball with a radius of {radius:.2f} mm, and between two discs {thick:.2f} mm apart.")
+    return (f"The {len(triangles):,} triangles of the lower jaw in the library's order, which this picture computes by the same rule: {counts[2]} "
+            f"nodes of 4,096 triangles, {counts[1]} of 256 and {nodes.max() + 1:,} clusters of sixteen. One cluster lies in a box, in a ball with a "
+            f"radius of {radius:.2f} mm, and between two discs {thick:.2f} mm apart.")

@@ -115,6 +115,7 @@ def draw(command, file):
     out, more = draw_node(places[3], tree)
     places[3].set_title(f"above the leaves: the table's ball lacks\n{out:.4f} voxels of its leaves' balls")
     save(figure, file)
-    return (f"A voxel of {VOXEL_SIZE} mm of the lower jaw, less flat than nine in ten, with the pieces of {len(leaf.pieces)} triangles in it: its circumsphere has a radius of "
-            f"{leaf.circumradius:.3f} mm, its tight ball of {leaf.ball[1]:.3f} mm, and its slab is {thick:.3f} mm thick. On the right a node of two voxels: "
-            f"their balls (grey) stick out of the published ball (orange) by {out:.4f} voxels, and the search tests one that is {more:.4f} voxels larger (black).")
+    return (f"A voxel of {VOXEL_SIZE} mm of the lower jaw, less flat than nine in ten, with the pieces of {len(leaf.pieces)} triangles in it: its "
+            f"circumsphere has a radius of {leaf.circumradius:.3f} mm, its tight ball of {leaf.ball[1]:.3f} mm, and its slab is {thick:.3f} mm "
+            f"thick. On the right a node of two voxels: their balls (grey) stick out of the published ball (orange) by {out:.4f} voxels, and the "
+            f"search tests one that is {more:.4f} voxels larger (black).")

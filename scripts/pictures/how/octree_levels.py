@@ -68,5 +68,5 @@ def draw(command, file):
         place.set_title(f"level {level}: {len(centres):,} node{'s' * (len(centres) > 1)}{bits}")
     save_small_png(figure, file)
     count = sum(len(centres) for centres, _ in levels)
-    return (f"The octree of the lower jaw in voxels of {VOXEL} mm: {count:,} nodes, of {(8 ** (depth + 1) - 1) // 7:,} that fill space at this depth. "
-            "Red is the way down to one voxel, with the eight bits of each node on it, octant 7 first.")
+    return (f"The octree of the lower jaw in voxels of {VOXEL} mm: {count:,} nodes, of {(8 ** (depth + 1) - 1) // 7:,} that fill space at this "
+            "depth. Red is the way down to one voxel, with the eight bits of each node on it, octant 7 first.")

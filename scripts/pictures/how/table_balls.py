@@ -58,4 +58,5 @@ def draw(command, file):
     save(figure, file)
     smaller = sum(len(masks) for (square, _), masks in balls.items() if square < max(squares))
     return (f"The {len(balls)} balls of the table, by their {len(squares)} radii. Under each mask, octant 7 first, stands how many masks have "
-            f"the ball; drawn is the fullest of these nodes. {smaller} of {sum(map(len, balls.values()))} masks have a ball smaller than the circumsphere.")
+            f"the ball; drawn is the fullest of these nodes. {smaller} of {sum(map(len, balls.values()))} "
+            "masks have a ball smaller than the circumsphere.")

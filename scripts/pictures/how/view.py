@@ -37,7 +37,7 @@ class View:
                     self.add(Polygon(points, facecolor=fill, edgecolor=colour, linewidth=width, zorder=zorder + 0.1))
                 elif not face:
                     self.add(Polygon(points, fill=False, edgecolor=colour, linewidth=width if looks else 0.6 * width,
-                                                 linestyle="-" if looks else ":", zorder=zorder + (0.1 if looks else 0)))
+                                     linestyle="-" if looks else ":", zorder=zorder + (0.1 if looks else 0)))
 
     def ball(self, centre, radius, colour, zorder=3, alpha=0.13, width=1.3):
         at = self.seen(centre)[:2]
@@ -50,7 +50,7 @@ class View:
             normal = np.cross(points[1] - points[0], points[-1] - points[0])
             lit = abs(normal @ LIGHT) / max(np.linalg.norm(normal) * np.linalg.norm(LIGHT), 1e-30)
             self.add(Polygon(self.seen(points)[:, :2], facecolor=tuple((0.62 + 0.38 * lit) * np.array(face)),
-                                         edgecolor=edge, linewidth=0.5, zorder=zorder))
+                             edgecolor=edge, linewidth=0.5, zorder=zorder))
 
     def disc(self, centre, normal, radius, colour, zorder=3, alpha=0.28):
         normal = normal / np.linalg.norm(normal)

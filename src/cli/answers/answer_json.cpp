@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/answers/answer_lines.h"
 #include "cli/poses/pose_json.h"
 

@@ -1,5 +1,7 @@
 #include "cli/answers/body_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "cli/extents.h"
 #include "cli/source_file.h"
 #include "ist/tree/tree_parts.h"

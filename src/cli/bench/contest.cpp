@@ -2,31 +2,31 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "cli/bench/fixed_loop.h"
 
 namespace ist::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Long enough that a second worker, which sleeps between turns, is awake for most of it.
 constexpr double kTurn = 0.01;  // s
 constexpr int kFewestTurns = 3;
 
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 }  // namespace
 
-Contest::Contest(std::vector<Contestant> contestants, std::vector<BenchPose> poses)
-    : contestants_(std::move(contestants)),
+double Contest::system_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Contest::Contest(std::vector<Contestant> contestants, std::vector<BenchPose> poses, Clock now)
+    : now_(std::move(now)),
+      contestants_(std::move(contestants)),
       poses_(std::move(poses)),
       scores_(contestants_.size(), std::vector<Score>(poses_.size())) {}
 
 void Contest::hold(double seconds, const Proceed& proceed) {
-  const auto begin = Clock::now();
+  const double begin = now_();
   std::vector<double> spent(contestants_.size());
   std::vector<int> turns(contestants_.size());
   const auto everybody_had_turns = [&] {
@@ -34,7 +34,7 @@ void Contest::hold(double seconds, const Proceed& proceed) {
   };
   while (seconds_since(begin) < seconds || !everybody_had_turns()) {
     const auto next = static_cast<std::size_t>(std::ranges::min_element(spent) - spent.begin());
-    const auto turn = Clock::now();
+    const double turn = now_();
     loop_.add(run_fixed_loop());
     take_turn(next);
     spent[next] += seconds_since(turn);
@@ -47,7 +47,7 @@ void Contest::hold(double seconds, const Proceed& proceed) {
 void Contest::take_turn(std::size_t contestant) {
   const Contestant& asked = contestants_[contestant];
   for (std::size_t pose = 0; pose < poses_.size(); ++pose) static_cast<void>(asked.ask(pose));
-  const auto begin = Clock::now();
+  const double begin = now_();
   do {
     for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
       const Contestant::Answer answer = asked.ask(pose);

@@ -43,7 +43,12 @@ struct Score {
 /// All contestants in one run.
 class Contest {
  public:
-  Contest(std::vector<Contestant> contestants, std::vector<BenchPose> poses);
+  /// Says what time it is, in seconds since any moment.
+  using Clock = std::function<double()>;
+
+  /// @param now a test's clock; by default the system's
+  Contest(std::vector<Contestant> contestants, std::vector<BenchPose> poses,
+          Clock now = system_seconds);
 
   /// Asks everybody at all poses, in turns, until `seconds` have passed and everybody had three
   /// turns. The next turn is that of the contestant who has used the least time so far, so
@@ -63,8 +68,11 @@ class Contest {
   [[nodiscard]] const Samples& loop() const { return loop_; }
 
  private:
+  static double system_seconds();
+  [[nodiscard]] double seconds_since(double begin) const { return now_() - begin; }
   void take_turn(std::size_t contestant);
 
+  Clock now_;
   std::vector<Contestant> contestants_;
   std::vector<BenchPose> poses_;
   std::vector<std::vector<Score>> scores_;

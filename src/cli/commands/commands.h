@@ -1,6 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/cli11_fwd.h"
 
 /// The subcommands, one file each. Each function adds a subcommand's options and action to `app`.
 /// Data goes to stdout, everything else to stderr; a failure is an ist::Error or a CLI::Error,

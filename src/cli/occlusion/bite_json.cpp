@@ -1,6 +1,7 @@
 #include "cli/occlusion/bite_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cli/commit.h"
 #include "cli/poses/pose_json.h"

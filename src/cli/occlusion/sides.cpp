@@ -1,5 +1,6 @@
 #include "cli/occlusion/sides.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "cli/poses/numbers.h"

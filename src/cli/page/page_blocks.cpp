@@ -1,5 +1,6 @@
 #include "cli/page/page_blocks.h"
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "cli/occlusion/html/html_text.h"

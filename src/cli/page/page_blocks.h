@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "cli/pages/command_view.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <sstream>
 #include <string_view>

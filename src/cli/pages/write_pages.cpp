@@ -1,6 +1,7 @@
 // write_pages MAN_FOLDER COMPLETION_FILE
 // Writes the manual pages of the command and its completion for bash, at build time, by the
 // command's own description of its options.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>

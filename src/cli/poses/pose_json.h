@@ -1,14 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
-#include <vector>
+#include <nlohmann/json_fwd.hpp>
 
 namespace ist::cli {
 
-/// Returns the 16 numbers of a pose, column by column, as all JSON of the command has them.
-[[nodiscard]] inline nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose) {
-  return std::vector<double>(pose.data(), pose.data() + 16);
-}
+/// Returns the 16 numbers of a pose, column by column: the form of poses in all JSON of the
+/// command.
+[[nodiscard]] nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose);
 
 }  // namespace ist::cli

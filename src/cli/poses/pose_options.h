@@ -1,10 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "cli/cli11_fwd.h"
 
 namespace ist::cli {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "cli/commit.h"
@@ -51,22 +52,34 @@ std::size_t line_of_difference(const std::string& a, const std::string& b) {
 }  // namespace
 
 RecordingHeader::RecordingHeader(const Scene& scene, const Simulation& simulation)
-    : line_{{"recording", kFormat}, {"ist", IST_VERSION},
-            {"commit", IST_COMMIT}, {"dt", simulation.dt()},
-            {"unit", scene.unit},   {"bodies", nlohmann::ordered_json::array()},
-            {"scene", scene.text}} {
+    : line_(new nlohmann::ordered_json{{"recording", kFormat},
+                                       {"ist", IST_VERSION},
+                                       {"commit", IST_COMMIT},
+                                       {"dt", simulation.dt()},
+                                       {"unit", scene.unit},
+                                       {"bodies", nlohmann::ordered_json::array()},
+                                       {"scene", scene.text}}) {
+  nlohmann::ordered_json& bodies = line_->at("bodies");
   std::size_t number = 0;
   for (const SceneBody& body : scene.fixed) {
-    line_["bodies"].push_back(json_of_body(body, simulation, number++, false));
+    bodies.push_back(json_of_body(body, simulation, number++, false));
   }
   for (const SceneBody& body : scene.held) {
-    line_["bodies"].push_back(json_of_body(body, simulation, number++, true));
+    bodies.push_back(json_of_body(body, simulation, number++, true));
   }
 }
 
+RecordingHeader::~RecordingHeader() = default;
+RecordingHeader::RecordingHeader(RecordingHeader&&) noexcept = default;
+RecordingHeader& RecordingHeader::operator=(RecordingHeader&&) noexcept = default;
+
+std::string RecordingHeader::line() const { return line_->dump(); }
+
+double RecordingHeader::dt() const { return line_->at("dt").get<double>(); }
+
 std::vector<std::string> RecordingHeader::body_names() const {
   std::vector<std::string> names;
-  for (const auto& body : line_.at("bodies")) names.push_back(body.at("name").get<std::string>());
+  for (const auto& body : line_->at("bodies")) names.push_back(body.at("name").get<std::string>());
   return names;
 }
 
@@ -86,18 +99,19 @@ void RecordingHeader::check(const nlohmann::json& recorded,
   const auto scene = recorded.find("scene");
   if (scene == recorded.end() || !scene->is_string()) refuse(file, "no text 'scene': record again");
   const auto text = scene->get<std::string>();
-  const auto own = line_.at("scene").get<std::string>();
+  const auto own = line_->at("scene").get<std::string>();
   if (text != own) {
     refuse(file, fmt::format("it was recorded with another scene, which differs from line {} on: "
                              "give that scene, which the recording holds as 'scene'",
                              line_of_difference(text, own)));
   }
   const auto bodies = recorded.find("bodies");
-  if (bodies == recorded.end() || !bodies->is_array() || bodies->size() != line_["bodies"].size()) {
+  if (bodies == recorded.end() || !bodies->is_array() ||
+      bodies->size() != line_->at("bodies").size()) {
     refuse(file, "no array 'bodies' of the scene's: record again");
   }
   for (std::size_t i = 0; i < bodies->size(); ++i) {
-    const auto& body = line_.at("bodies")[i];
+    const auto& body = line_->at("bodies")[i];
     const nlohmann::json& then = (*bodies)[i];
     for (const auto& [name, hash, what] :
          {std::tuple("file", "hash", "file"), std::tuple("script", "script_hash", "script")}) {

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,16 @@ class RecordingHeader {
  public:
   /// Reads the bodies' files for their hashes. Throws kFileUnreadable.
   RecordingHeader(const Scene& scene, const Simulation& simulation);
+  ~RecordingHeader();
+  RecordingHeader(RecordingHeader&&) noexcept;
+  RecordingHeader& operator=(RecordingHeader&&) noexcept;
 
   /// The line, without its end.
-  [[nodiscard]] std::string line() const { return line_.dump(); }
+  [[nodiscard]] std::string line() const;
   /// The names of the bodies, by their numbers.
   [[nodiscard]] std::vector<std::string> body_names() const;
   /// The length of a tick, s.
-  [[nodiscard]] double dt() const { return line_.at("dt").get<double>(); }
+  [[nodiscard]] double dt() const;
 
   /// Checks the header of a recording that this scene is to replay. Throws kInputInvalid, naming
   /// `file` and a remedy, for a line that is no header, another version of the format, another
@@ -30,7 +34,7 @@ class RecordingHeader {
   void check(const nlohmann::json& recorded, const std::filesystem::path& file) const;
 
  private:
-  nlohmann::ordered_json line_;
+  std::unique_ptr<nlohmann::ordered_json> line_;
 };
 
 }  // namespace ist::cli

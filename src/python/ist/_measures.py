@@ -8,7 +8,7 @@ import numpy as np
 
 from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
-from ._errors import check, refuse
+from ._errors import refuse
 from ._follow import Follower
 from ._library import LIBRARY
 from ._records import (

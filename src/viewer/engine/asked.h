@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -16,8 +17,11 @@ enum class Role { kFixed, kMoving };
 /// its reader returns, throws kArgumentInvalid, naming it.
 class Asked {
  public:
-  /// Reads JSON. Throws kArgumentInvalid where it is no object.
+  /// Reads JSON. Throws kArgumentInvalid if it is not an object.
   explicit Asked(const std::string& text);
+  ~Asked();
+  Asked(const Asked&) = delete;
+  Asked& operator=(const Asked&) = delete;
 
   [[nodiscard]] double number(const char* name) const;
   [[nodiscard]] std::uint64_t count(const char* name) const;
@@ -38,7 +42,7 @@ class Asked {
   [[nodiscard]] const nlohmann::json* find(const char* name) const;
   [[noreturn]] static void refuse(const char* name, const char* wanted);
 
-  nlohmann::json members_;
+  std::unique_ptr<const nlohmann::json> members_;
 };
 
 }  // namespace ist::viewer

@@ -13,6 +13,7 @@
 #include "cli/occlusion/map_colours.h"
 #include "cli/occlusion/map_picture.h"
 #include "cli/occlusion/png_file.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/run_command.h"
 #include "support/shapes.h"
@@ -373,6 +374,7 @@ TEST(BiteHtml, TellsTheOverlapOnce) {
 }
 
 TEST(BiteHtml, OtherUnitsComeToTheSameMicrometres) {
+  IST_SLOW();
   const auto made = sphere_over_plate({0, 0, -0.05});
   const Cells in_mm = row_of(Page(made->bite).table("areas"), {"overlap"});
   made->bite.unit = "µm";  // the same numbers, as if each were a micrometre

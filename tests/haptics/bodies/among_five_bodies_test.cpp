@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "haptics/bodies/body_cases.h"
 #include "haptics/bodies/press_energy.h"
 #include "ist/haptics/simulation.h"
 #include "ist/haptics/stability_border.h"
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -140,15 +142,15 @@ void press_among(Scene scene, const std::string& name, int count) {
               ChangeStatus::kDone);
     ++(held ? released : taken);
   }
-  EXPECT_GT(felt.pressed(), 300 * count);
+  EXPECT_GT(felt.pressed(), 100 * count);
   EXPECT_GT(taken, count / 10);
   EXPECT_GT(released, count / 10);
 }
 
-// 20,000 ticks by default; with IST_EFFORT=50 a million. What friction and damping take, and bodies
-// that yield, could hide what the loop gives: half of the presses are without them.
+// 20,000 ticks with IST_EFFORT=1, a million with 50. Friction, damping and bodies that yield take
+// energy, which could hide what the loop gives. So half of the presses are without them.
 TEST(AmongFiveBodies, PressesGiveNoEnergyBack) {
-  const int count = samples(5);
+  const int count = std::max(2, samples(5));  // the ball is taken, and released
   press_among(five_bodies(), ", among five bodies", count);
   Scene smooth = five_bodies();
   smooth.friction.reset();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -42,7 +43,7 @@ TEST(HandBodies, HeldOnesMoveAsOneWithTheTool) {
   const HandBodies bodies = four_bodies(random, home);
   const Placement first = bodies.place(2, home), second = bodies.place(3, home);
   EXPECT_LT((at(first, {1, 2, 3}) - home.translation).norm(), 1e-15) << "the tool's origin";
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < samples(20); ++i) {
     const Placement tool = random_place(random);
     const Eigen::Matrix3d turn = tool.rotation * home.rotation.transpose();
     for (const auto& [body, before] : {std::pair{2, first}, std::pair{3, second}}) {
@@ -60,7 +61,7 @@ TEST(HandBodies, FramesMapHeldToFixedMeshes) {
   Random random(6);
   const Placement home = random_place(random);
   const HandBodies bodies = four_bodies(random, home);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < samples(20); ++i) {
     const Placement tool = random_place(random);
     for (const std::size_t held : {2u, 3u}) {
       const Vector3d point = random.point(-5, 5);
@@ -135,7 +136,7 @@ TEST(HandBodies, DriftIsTheMotionOfAScriptInAStep) {
     const Vector6 drift = bodies.drift(0, tool);
     bodies.set_time(time + 1e-3, 1e-3);
     const Placement next = bodies.place(0, tool);
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < samples(5); ++i) {
       const Vector3d point = random.point(-20, 20), arm = at(now, point) - tool.translation;
       const Vector3d moved = drift.head<3>() + drift.tail<3>().cross(arm);
       EXPECT_LT((at(next, point) - at(now, point) - moved).norm(), 1e-8);

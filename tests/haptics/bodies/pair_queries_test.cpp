@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "ist/haptics/tool.h"
+#include "support/effort.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -73,7 +74,7 @@ ToolContacts contacts_for(const PairQueries& queries) { return ToolContacts(quer
 TEST_F(Corner, AllPairsTogetherAreTheSumOfEach) {
   Setting all = setting({0, 1, 2});
   Random random(3);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < samples(20); ++i) {
     const Placement tool = pressed(random.point(-1.5, 0.4));
     ToolContacts together = contacts_for(all.queries);
     const auto result = all.queries.find(all.bodies, tool, {}, together);
@@ -120,7 +121,7 @@ TEST_F(Corner, SpringsOfAllPairsChangeNoFasterThanTheirRates) {
   Setting all = setting({0, 1, 2});
   Random random(7);
   double force = 0, torque = 0;  // the steepest, in parts of the bound
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < samples(60); ++i) {
     Vector3d depth = random.point(0, 0.4);
     if (i % 3 != 0) depth[i % 3] = -3;  // apart from one box, and once from the last
     const double step = kMillimetre * (i % 2 == 0 ? 0.05 : 0.005);
@@ -151,8 +152,9 @@ TEST_F(Corner, SpringsOfAllPairsChangeNoFasterThanTheirRates) {
   }
   // A sum's pairs never change all the same way at once: its bound is as far from what happens as
   // that of one pair of bodies (Policies/Lipschitz, loads).
-  EXPECT_GT(force, 1e-3);
-  EXPECT_GT(torque, 2e-4);
+  const double part = effort() < 1 ? 0.2 : 1;  // few samples may miss the steepest
+  EXPECT_GT(force, part * 1e-3);
+  EXPECT_GT(torque, part * 2e-4);
 }
 
 // A permutation of the bodies permutes the pairs; sums differ by their rounding alone.

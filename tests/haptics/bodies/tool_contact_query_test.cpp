@@ -7,6 +7,7 @@
 #include "haptics/effects/effect_case.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -69,7 +70,7 @@ TEST(BodyFrames, PutThePoseAndItsPointsWhereTheyAreInTheScene) {
     const Scenery scenery{fixed};
     const Placement tool{random.rotation(), random.point(-0.2, 0.2)};
     const Eigen::Isometry3d pose = scenery.frames.query_pose(tool);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < samples(10); ++i) {
       const Vector3d point = random.point(-10, 10);  // of the held mesh
       const Vector3d in_scene =
           tool.rotation * (kUnit * (point - scenery.frames.tool_origin)) + tool.translation;
@@ -114,7 +115,7 @@ TEST(ToolContactQuery, OfABallOnABoxIsItsClosedForm) {
 // The same pose of the bodies to each other is the same touch, wherever the scene has them.
 TEST(ToolContactQuery, TurnsWithTheScene) {
   Random random(8);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < samples(8); ++i) {
     const Placement held = pressed(0.4, random.rotation());
     const Scenery plain{Placement()};
     const ToolContacts expected = plain.contacts(held);
@@ -134,7 +135,7 @@ TEST(ToolContactQuery, TurnsWithTheScene) {
 TEST(ToolContactQuery, ItsPointsComeToTheWrenchOfAllPairs) {
   Random random(9);
   double worst_force = 0, worst_torque = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < samples(30); ++i) {
     const ToolContacts contacts = Scenery{placements()[static_cast<std::size_t>(i % 7)]}.contacts(
         pressed(random.uniform(0.05, 0.5), random.rotation()));
     Vector6 sum = Vector6::Zero();

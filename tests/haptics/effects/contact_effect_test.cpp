@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -67,7 +68,7 @@ TEST(ContactEffect, AddsToWhatIsThere) {
 
 TEST(ContactEffect, HasTheStiffnessThatDifferencesShow) {
   Random random(23);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < samples(300); ++i) {
     const EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 motion = six(random.point(-1e-6, 1e-6), random.point(-3e-5, 3e-5));
     const Response response = respond(kContact, c, motion);
@@ -79,7 +80,7 @@ TEST(ContactEffect, HasTheStiffnessThatDifferencesShow) {
 
 TEST(Response, TurnsAForceAndItsChangeIntoThoseOfTheTool) {
   Random random(24);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < samples(300); ++i) {
     const Vector3d arm = random.point(-1, 1), force = random.point(-1, 1);
     const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr(
         [&](Eigen::Index, Eigen::Index) { return random.uniform(-1, 1); });

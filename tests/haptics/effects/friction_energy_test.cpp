@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "haptics/effects/pressed_tool.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -14,7 +15,7 @@ constexpr FrictionSettings kHold{
 
 TEST(FrictionEffect, TakesWorkOnEveryPathFromItsFirstTickOn) {
   Random random(71);
-  for (int path = 0; path < 20; ++path) {
+  for (int path = 0; path < samples(20); ++path) {
     PressedTool tool(kHold, {Vector3d::Zero()}, 1);
     double work = 0;
     int slid = 0;
@@ -53,7 +54,7 @@ TEST(FrictionEffect, LosesWhatItSaysOnAClosedPath) {
 
 TEST(FrictionEffect, TakesWorkThoughTheToolTurns) {
   Random random(72);
-  for (int path = 0; path < 10; ++path) {
+  for (int path = 0; path < samples(10); ++path) {
     PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
     double work = 0, least = 0;
     Vector3d heading = Vector3d::Zero();
@@ -72,7 +73,7 @@ TEST(FrictionEffect, TakesWorkThoughTheToolTurns) {
 
 TEST(FrictionEffect, ComesToRestAfterEverySlide) {
   Random random(73);
-  for (int path = 0; path < 20; ++path) {
+  for (int path = 0; path < samples(20); ++path) {
     PressedTool tool(kHold, {{0.01, 0, 0}, {-0.01, 0.008, 0}, {0, -0.012, 0}}, 1);
     const Vector6 motion = six({random.uniform(-1, 1) * 1e-3, random.uniform(-1, 1) * 1e-3, 0},
                                {0, 0, random.uniform(-1, 1) * 0.05});

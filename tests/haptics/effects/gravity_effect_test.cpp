@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -34,7 +35,7 @@ TEST(GravityEffect, GivesBackWhatLiftingTook) {
   const Vector3d acceleration(1, -2, -9), centre(0.02, -0.01, 0.03);
   const GravityEffect gravity({.mass = 0.5, .centre = centre, .acceleration = acceleration});
   Random random(41);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < samples(100); ++i) {
     EffectCase c = random_case(random, 0);
     const Vector6 wrench = respond(gravity, c).wrench;
     for (int k = 0; k < 6; ++k) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/effects/effect_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -71,7 +72,7 @@ TEST(SnapEffect, DrawsToThePoseByTheFormula) {
 TEST(SnapEffect, IsSilentBeyondTheRadiusOrTheAngleAndSmoothThere) {
   const SnapEffect snap(settings());
   Random random(51);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < samples(200); ++i) {
     const Vector3d way = random.direction(), axis = random.direction();
     const double some = random.uniform(0, 0.9);
     for (const bool by_turn : {false, true}) {
@@ -93,7 +94,7 @@ TEST(SnapEffect, IsSilentBeyondTheRadiusOrTheAngleAndSmoothThere) {
 TEST(SnapEffect, IsWhatItsEnergyLosesOnTheWay) {
   const SnapEffect snap(settings());
   Random random(52);
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < samples(500); ++i) {
     const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
     const Vector6 wrench = respond(snap, c).wrench;
     for (int k = 0; k < 6; ++k) {
@@ -141,7 +142,7 @@ TEST(SnapEffect, HasTheStiffnessThatDifferencesShowAtThePoseAndIsPositiveEverywh
   EXPECT_NEAR(here.stiffness(0, 0), kStiffness, 1e-9);
   EXPECT_NEAR(here.stiffness(5, 5), kAngular, 1e-12);
   Random random(53);
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < samples(500); ++i) {
     const EffectCase c = at(six(random.point(-1, 1) * kRadius, random.point(-1, 1) * kAngle));
     const Response response = respond(snap, c);
     ASSERT_TRUE(is_symmetric_and_semidefinite(response.stiffness));

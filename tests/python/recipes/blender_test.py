@@ -5,7 +5,7 @@ import sys
 import unittest
 from unittest import mock
 
-from support import RECIPES, ball, block, motion, moved, np, recipe
+from support import RECIPES, ball, block, motion, np, recipe
 
 ADD_ON = "blender/ist_distance_colours.py"
 

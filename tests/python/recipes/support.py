@@ -6,7 +6,7 @@ import pathlib
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
-RECIPES = SOURCE / "src/examples/python"
+RECIPES = SOURCE / "examples/python"
 
 
 def skip(reason):

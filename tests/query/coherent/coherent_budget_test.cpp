@@ -10,7 +10,7 @@
 #include "query/coherent/kept_answers.h"
 #include "query/coherent/motions.h"
 #include "query/test_clocks.h"
-#include "support/stability.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -149,8 +149,8 @@ TEST_P(CoherentDeadline, OnEveryTickGivesAllOrAPart) {
     cut += query.cut;
     kept += query.kept_answers;
   }
-  EXPECT_GT(cut, 50);
-  EXPECT_GT(kept, 100);
+  EXPECT_GT(cut, samples(10));
+  EXPECT_GT(kept, samples(20));
 }
 
 // A limit of tests makes every query a search of its own: the same tests, the same distance.
@@ -172,7 +172,8 @@ TEST_P(CoherentDeadline, OfTestsIsThatOfAFreshQuery) {
       const Eigen::Isometry3d pose = motion.next();
       if (random.below(3) > 0) {
         const QueryResult result = query.contacts(pose, points);
-        kept += result.found == Found::kKept ? 1 : 0;
+        // How often a second worker is in time depends on the machine.
+        kept += run % 2 == 0 && result.found == Found::kKept ? 1 : 0;
         expect_same_answer(result, fresh.contacts(pose, others));
         EXPECT_TRUE(same(points.sums(), others.sums()));
         continue;
@@ -200,9 +201,9 @@ TEST_P(CoherentDeadline, OfTestsIsThatOfAFreshQuery) {
       ++(made.complete ? whole : ended);
     }
   }
-  EXPECT_GT(ended, 30);
-  EXPECT_GT(whole, 30);
-  EXPECT_GT(kept, 100);
+  EXPECT_GT(ended, samples(20));
+  EXPECT_GT(whole, samples(20));
+  EXPECT_GT(kept, samples(25));
 }
 
 }  // namespace

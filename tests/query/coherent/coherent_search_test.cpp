@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "query/coherent/front_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -106,6 +107,7 @@ TEST_P(CarriedFrontOf, LastsAtRest) {
 // A body that a device moves in steps seems to stand at most ticks. The next front is there before
 // a large step leads out of the last one.
 TEST_P(CarriedFrontOf, IsFollowedInTimeWhereABodyMovesInSteps) {
+  IST_SLOW();
   CarriedFront front(bodies_, 1 << 15);
   Eigen::Isometry3d pose = scene_.pose;
   Random random(6);

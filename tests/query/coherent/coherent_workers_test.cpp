@@ -2,10 +2,12 @@
 // those of a fresh query all the same.
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,13 +16,10 @@
 #include "query/coherent/kept_answers.h"
 #include "query/coherent/motions.h"
 #include "query/workers/stall.h"
-#include "support/stability.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
-
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 constexpr HandOver kPointsOfDelay[] = {HandOver::kSeen, HandOver::kEntered, HandOver::kClaimed,
                                        HandOver::kWorked};
@@ -40,9 +39,10 @@ class CoherentQueryThread : public ::testing::Test {
     pose_.translation()[2] += 0.01 * way_ * scene_.fixed.voxel_size();
     return answers.check_contacts(pose_, static_cast<std::size_t>(ticks_ / 200 % 2));
   }
-  // Until `done`, or for five minutes: a machine that is busy is no failure.
+  // Ticks until `done`, without a limit: on a busy machine it takes longer, and is no failure. Ends
+  // at the first wrong answer. Returns whether all answers were right.
   bool tick_until(KeptAnswers& answers, const std::function<bool(const QueryResult&)>& done) {
-    for (const auto give_up = Clock::now() + 300s; Clock::now() < give_up && !HasFailure();) {
+    while (!HasFailure()) {
       if (done(tick(answers))) return true;
     }
     return false;
@@ -105,13 +105,16 @@ TEST_F(CoherentQueryThread, AnswersWhereTheWorkerIsLate) {
     for (const HandOver point : kPointsOfDelay) {
       for (int again = 0; again < 4; ++again) {
         const Stall stall(point);
-        for (int i = 0; i < 20; ++i) answers.check(motion.next(), random);
+        // A wide front is wanted sooner or later, and then the worker stalls.
+        for (int i = 0; (i < 20 || (wide && again == 0 && !Stall::reached())) && !HasFailure(); ++i)
+          answers.check(motion.next(), random);
         const auto late = std::chrono::microseconds(random.below(300));
-        std::jthread releaser([late] {
+        const std::jthread releaser([late] {
           std::this_thread::sleep_for(late);
           Stall::release();
         });
-        for (int i = 0; i < 20 && !HasFailure(); ++i) answers.check(motion.next(), random);
+        for (int i = 0; (i < 20 || !Stall::released()) && !HasFailure(); ++i)
+          answers.check(motion.next(), random);
       }
       answers.choose(random);
     }
@@ -126,11 +129,9 @@ TEST_F(CoherentQueryThread, IsDestroyedWhereTheWorkerStalls) {
     ASSERT_TRUE(tick_until_kept(*answers));
     std::optional<Stall> stall;
     ASSERT_TRUE(tick_until_stalled(*answers, point, stall));
-    std::jthread releaser([] {
-      std::this_thread::sleep_for(20ms);
-      Stall::release();
-    });
+    ReleaseOnWait release;
     answers.reset();
+    EXPECT_EQ(release.awaited(), point != HandOver::kSeen);  // where it has entered the query
   }
   // And at any moment.
   for (int i = 0; i < 20; ++i) {
@@ -147,7 +148,8 @@ TEST_F(CoherentQueryThread, GoesOnInAChildProcessWhereTheWorkerStalls) {
   ASSERT_TRUE(tick_until_stalled(*answers, HandOver::kClaimed, stall));
   const pid_t child = fork();
   if (child == 0) {
-    alarm(60);
+    // A child that waits for ever ends with the test.
+    prctl(PR_SET_PDEATHSIG, static_cast<unsigned long>(SIGKILL));
     for (int i = 0; i < 100; ++i) tick(*answers);
     answers.reset();
     _exit(HasFailure() ? 1 : 0);
@@ -162,7 +164,7 @@ TEST_F(CoherentQueryThread, IsMovedBetweenTicks) {
     QueryOptions options = helped();
     options.workers = workers;
     KeptAnswers answers(scene_, options);
-    for (int i = 0; i < 100 && !HasFailure(); ++i) {
+    for (int i = 0; (i < 100 || answers.counts().kept <= 5) && !HasFailure(); ++i) {
       tick(answers);
       Query moved = std::move(answers.kept());
       if (i % 3 == 0) {
@@ -174,7 +176,6 @@ TEST_F(CoherentQueryThread, IsMovedBetweenTicks) {
       }
     }
     ASSERT_TRUE(tick_until_kept(answers));
-    EXPECT_GT(answers.counts().kept, 5u);
   }
   // Also where the worker has a job of it.
   KeptAnswers answers(scene_, helped());
@@ -193,11 +194,9 @@ TEST_F(CoherentQueryThread, IsReplacedWhereTheWorkerStalls) {
   ASSERT_TRUE(tick_until_kept(answers));
   std::optional<Stall> stall;
   ASSERT_TRUE(tick_until_stalled(answers, HandOver::kClaimed, stall));
-  std::jthread releaser([] {
-    std::this_thread::sleep_for(20ms);
-    Stall::release();
-  });
+  ReleaseOnWait release;
   answers.kept() = Query(scene_.fixed, scene_.moving, helped());
+  EXPECT_TRUE(release.awaited());
   EXPECT_TRUE(tick_until_kept(answers));
 }
 

@@ -9,7 +9,7 @@
 #include "ist/haptics/bodies/tool_contact_query.h"
 #include "ist/scene.h"
 #include "query/coherent/kept_answers.h"
-#include "support/stability.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -20,6 +20,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, RecordedHand, ::testing::ValuesIn(kSpherePoli
                          [](const auto& policy) { return std::string(to_string(policy.param)); });
 
 TEST_P(RecordedHand, IsAnsweredAsByAFreshQuery) {
+  IST_SLOW();
   ist::Scene file = read_scene(std::string(IST_SCENES) + "/jaws.toml");
   file.workers = 1;
   file.fixed.front().spheres = file.held.front().spheres = GetParam();

@@ -13,6 +13,7 @@
 #include "query/contacts/pair_sums.h"
 #include "query/scenes.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/skip.h"
 
 namespace ist::test {
@@ -101,6 +102,7 @@ TEST(SwappedBodies, FeelTheOppositeWhereSurfacesAreKnown) {
 }
 
 TEST(SwappedBodies, FeelTheOppositeInAHumanJaw) {
+  IST_SLOW();
   const auto poses = data_dir() / "truth_human.json";
   if (!std::filesystem::exists(poses)) IST_SKIP(poses << " is not there");
   BuildOptions options;

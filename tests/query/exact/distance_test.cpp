@@ -7,6 +7,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/mesh_distance.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -17,7 +18,8 @@ constexpr double kRounding = 1e-6;
 
 TEST(QueryDistance, HoldsTheDistance) {
   int touching = 0, apart = 0;
-  for (std::uint64_t seed = 0; seed < 40 && !::testing::Test::HasFailure(); ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{40}) && !::testing::Test::HasFailure();
+       ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const TriangleMesh a = random_mesh(random), b = random_mesh(random);
@@ -52,8 +54,8 @@ TEST(QueryDistance, HoldsTheDistance) {
       }
     }
   }
-  EXPECT_GT(touching, 15);
-  EXPECT_GT(apart, 30);
+  EXPECT_GT(touching, 0);
+  EXPECT_GT(apart, samples(10));
 }
 
 // Errors margin with the farthest vertex, of those that are there.
@@ -71,8 +73,8 @@ TEST(QueryDistance, KnowsNothingOfAVertexThatNoTriangleNames) {
   }
 }
 
-// Two rough spheres, one in the other, which are nearly as near to each other in many places: so
-// that the nearest is found late, and far from where the search began.
+// Two rough spheres, one in the other. They are nearly as near to each other in many places, so the
+// search finds the nearest place late, and far from where it began.
 TEST(QueryDistance, OfShellsThatAreNearInManyPlaces) {
   Random random(11);
   const auto rough = [&](double radius) {
@@ -80,7 +82,7 @@ TEST(QueryDistance, OfShellsThatAreNearInManyPlaces) {
     for (Eigen::Vector3d& v : mesh.vertices) v *= 1 + random.uniform(-0.02, 0.02);
     return mesh;
   };
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < samples(4); ++i) {
     const SphereTree fixed = exact_tree(rough(1.06), 60), moving = exact_tree(rough(0.95), 60);
     Query query(fixed, moving);
     for (int k = 0; k < 3; ++k) {
@@ -98,8 +100,8 @@ TEST(QueryDistance, OfShellsThatAreNearInManyPlaces) {
   }
 }
 
-// Where nearest points are corners of cubes on one line through their centres, the spheres round
-// the cubes are as far apart as they are: nothing is left but the pad.
+// The nearest points are corners of cubes, on one line through the cubes' centres. There the
+// spheres round the cubes are as far apart as the points: nothing is left but the pad.
 TEST(QueryDistance, OfCornersIsNoneTheLess) {
   const TriangleMesh mesh = joined(triangle({0, 0, 0}, {1, 0, 0.5}, {0, 0.5, 1}),
                                    triangle({1, 1, 1}, {0, 1, 0.5}, {1, 0.5, 0}));
@@ -110,7 +112,7 @@ TEST(QueryDistance, OfCornersIsNoneTheLess) {
       QueryOptions options;
       options.policy = policy;
       Query query(tree, tree, options);
-      for (int i = 0; i < 50; ++i) {
+      for (int i = 0; i < samples(50); ++i) {
         const double away = 1 + random.uniform(0, 1);  // exactly: a multiple of 2^-32
         const double distance = std::sqrt(3.0) * (away - 1);
         const Eigen::Isometry3d pose = shift({away, away, away});

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/exact.h"
 
 namespace ist::test {
@@ -61,24 +62,24 @@ TEST(Orientation, TurnsAsItIsSaid) {
 
 TEST(Orientation, OfAnyPoints) {
   Random random(1);
-  const Signs signs = expect_exact(20'000, [&] { return random.uniform(-1, 1); });
+  const Signs signs = expect_exact(samples(20'000), [&] { return random.uniform(-1, 1); });
   EXPECT_EQ(signs.zero, 0);
 }
 
 TEST(Orientation, OfPointsOnAGrid) {
   Random random(2);
   const Signs signs =
-      expect_exact(20'000, [&] { return 0.1 * static_cast<double>(random.below(3)); });
-  EXPECT_GT(signs.zero, 4'000);
-  EXPECT_GT(signs.negative, 2'000);
-  EXPECT_GT(signs.positive, 2'000);
+      expect_exact(samples(20'000), [&] { return 0.1 * static_cast<double>(random.below(3)); });
+  EXPECT_GT(signs.zero, samples(3'000));
+  EXPECT_GT(signs.negative, samples(1'500));
+  EXPECT_GT(signs.positive, samples(1'500));
 }
 
 // A fourth point in the plane of three, as well as doubles can, and some last bits off.
 TEST(Orientation, OfPointsNearlyInAPlane) {
   Random random(3);
   Signs signs;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < samples(20'000); ++i) {
     Eigen::Vector3d p[4];
     for (Eigen::Vector3d& x : p) {
       x = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
@@ -89,14 +90,14 @@ TEST(Orientation, OfPointsNearlyInAPlane) {
     for (std::size_t k = random.below(4); k > 0; --k) p[3][axis] = std::nextafter(p[3][axis], 9);
     signs.add(expect_exact(p));
   }
-  EXPECT_GT(signs.negative, 5'000);
-  EXPECT_GT(signs.positive, 5'000);
+  EXPECT_GT(signs.negative, samples(4'000));
+  EXPECT_GT(signs.positive, samples(4'000));
 }
 
 TEST(Orientation, OfNumbersOfAnySize) {
   Random random(4);
   for (const int range : {60, 200, 339}) {
-    expect_exact(3'000, [&] {
+    expect_exact(samples(3'000), [&] {
       const int exponent = static_cast<int>(random.below(2 * static_cast<std::size_t>(range)));
       return std::ldexp(random.uniform(-1, 1), exponent - range);
     });
@@ -107,11 +108,11 @@ TEST(Orientation, OfNumbersOfAnySize) {
 TEST(Orientation, OfTheLeastNumbers) {
   Random random(5);
   constexpr double kLeast = std::numeric_limits<double>::denorm_min();
-  const Signs signs =
-      expect_exact(5'000, [&] { return kLeast * (static_cast<double>(random.below(5)) - 2); });
-  EXPECT_GT(signs.negative, 1'000);
-  EXPECT_GT(signs.positive, 1'000);
-  expect_exact(5'000, [&] {
+  const Signs signs = expect_exact(
+      samples(5'000), [&] { return kLeast * (static_cast<double>(random.below(5)) - 2); });
+  EXPECT_GT(signs.negative, samples(800));
+  EXPECT_GT(signs.positive, samples(800));
+  expect_exact(samples(5'000), [&] {
     return random.below(2) == 0 ? kLeast * static_cast<double>(random.below(9))
                                 : std::ldexp(1.0, static_cast<int>(random.below(30)));
   });

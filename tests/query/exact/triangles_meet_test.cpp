@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/exact_polygon.h"
 
 namespace ist::test {
@@ -37,18 +38,18 @@ TEST(TrianglesMeet, OnAGrid) {
   int meet = 0;
   for (const std::size_t size : {2u, 3u, 4u, 6u}) {
     const auto number = [&] { return 0.1 * static_cast<double>(random.below(size)); };
-    for (int i = 0; i < 4'000 && !::testing::Test::HasFailure(); ++i) {
+    for (int i = 0; i < samples(4'000) && !::testing::Test::HasFailure(); ++i) {
       meet += expect_exact(corners(number), corners(number)) ? 1 : 0;
     }
   }
-  EXPECT_GT(meet, 3'000);
-  EXPECT_LT(meet, 13'000);
+  EXPECT_GT(meet, samples(2'000));
+  EXPECT_LT(meet, samples(14'000));
 }
 
 TEST(TrianglesMeet, InOnePlane) {
   Random random(2);
   int meet = 0;
-  for (int i = 0; i < 6'000 && !::testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < samples(6'000) && !::testing::Test::HasFailure(); ++i) {
     const auto axis = static_cast<Eigen::Index>(random.below(3));
     const auto number = [&] { return 0.1 * static_cast<double>(random.below(5)); };
     TriangleCorners a = corners(number), b = corners(number);
@@ -60,19 +61,19 @@ TEST(TrianglesMeet, InOnePlane) {
     }
     meet += expect_exact(a, b) ? 1 : 0;
   }
-  EXPECT_GT(meet, 1'000);
-  EXPECT_LT(meet, 5'500);
+  EXPECT_GT(meet, samples(500));
+  EXPECT_LT(meet, samples(5'750));
 }
 
 TEST(TrianglesMeet, WhereverTheyAre) {
   Random random(3);
   const auto number = [&] { return random.uniform(-1, 1); };
   int meet = 0;
-  for (int i = 0; i < 4'000 && !::testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < samples(4'000) && !::testing::Test::HasFailure(); ++i) {
     meet += expect_exact(corners(number), corners(number)) ? 1 : 0;
   }
-  EXPECT_GT(meet, 500);
-  EXPECT_LT(meet, 3'500);
+  EXPECT_GT(meet, samples(250));
+  EXPECT_LT(meet, samples(3'750));
 }
 
 // A corner of one brought to a face, an edge or a corner of the other, as near as doubles can.
@@ -80,7 +81,7 @@ TEST(TrianglesMeet, WhereTheLastBitDecides) {
   Random random(4);
   const auto number = [&] { return random.uniform(-1, 1); };
   int meet = 0;
-  for (int i = 0; i < 6'000 && !::testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < samples(6'000) && !::testing::Test::HasFailure(); ++i) {
     const TriangleCorners a = corners(number);
     TriangleCorners b = corners(number);
     const double u = i % 3 == 0 ? 0 : random.uniform(0, 1);
@@ -92,8 +93,8 @@ TEST(TrianglesMeet, WhereTheLastBitDecides) {
     for (std::size_t k = random.below(3); k > 0; --k) b[0][axis] = std::nextafter(b[0][axis], to);
     meet += expect_exact(a, b) ? 1 : 0;
   }
-  EXPECT_GT(meet, 1'500);
-  EXPECT_LT(meet, 5'500);
+  EXPECT_GT(meet, samples(1'000));
+  EXPECT_LT(meet, samples(5'750));
 }
 
 }  // namespace

@@ -66,13 +66,11 @@ TEST(Allocations, NorDoesOneThatTheWorkerHelpsWith) {
   std::vector<LeafPair> out(1 << 16);
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kTight, "", 2));
   EXPECT_EQ(allocations_of([&] {
-              for (const auto give_up = Clock::now() + 60s;
-                   Clock::now() < give_up && query.sharing().chunks < 200;) {
+              while (query.sharing().chunks < 200) {
                 static_cast<void>(query.leaf_pairs(scene.pose, out));
               }
             }),
             0u);
-  EXPECT_GE(query.sharing().chunks, 200u);
 }
 
 // Nor do contact points, whether there is room for all that is touched or it is merged.
@@ -122,13 +120,13 @@ TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
           clear += result.found == Found::kClear ? 1 : 0;
         }
       };
-      // How much is kept hangs on when the second worker runs.
+      // A second worker that runs late makes fewer fronts in time.
       EXPECT_EQ(allocations_of([&] {
-                  go();
-                  for (int again = 0; again < 20 && !enough(); ++again) go();
+                  do {
+                    go();
+                  } while (!enough());
                 }),
                 0u);
-      EXPECT_TRUE(enough()) << kept << ", " << clear;
     }
   }
 }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 
+#include "ist/query/workers/resident_worker.h"
 #include "query/exact/exact_tree.h"
 #include "query/quiet/world_ticks.h"
 #include "query/scenes.h"
@@ -14,7 +16,6 @@ namespace ist::test {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 // Each in a child process, begun anew, that ends at the first system call.
 class SystemCalls : public ::testing::Test {
@@ -25,29 +26,33 @@ class SystemCalls : public ::testing::Test {
   }
 };
 
-// Queries along the scene's closing, before and after the call is forbidden, and at the end
-// whether the second worker, where there is one, did its part.
+// Queries along the scene's closing, before and after system calls are forbidden. Goes on until the
+// second worker, if there is one, has done its part.
 void query_in_silence(const Scene& scene, SpherePolicy policy, int workers) {
   std::vector<LeafPair> out(1 << 16);
   Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
   const auto enough = [&](std::uint64_t helped) {
     return workers == 1 || query.sharing().chunks >= helped;
   };
-  const auto give_up = Clock::now() + 60s;
-  while (!enough(1) && Clock::now() < give_up) {  // it is there
+  while (!enough(1)) {  // it is there
     static_cast<void>(query.leaf_pairs(scene.pose, out));
   }
   const std::uint64_t helped = query.sharing().chunks + 100;
   forbid_system_calls();
-  for (int i = 0; i < 1000 || (!enough(helped) && Clock::now() < give_up); ++i) {
+  for (int i = 0; i < 1000 || !enough(helped); ++i) {
     Eigen::Isometry3d pose = scene.pose;
     pose.translation()[2] += 0.01 * (i % 100);
     static_cast<void>(query.leaf_pairs(pose, out));
   }
-  end_process(enough(helped) ? 0 : 1);
+  end_process(0);
 }
 
-// A slow way with a front that is kept and made again, by the worker where there is one.
+// Counts the parts that the second worker has done.
+std::atomic<int> parts_done{0};
+void count_part(HandOver at) noexcept { parts_done += at == HandOver::kWorked ? 1 : 0; }
+
+// A slow way with a front that is kept and made again. Goes on until it was kept often, and the
+// worker, if there is one, has made some.
 void carry_in_silence(const Scene& scene, int workers) {
   std::vector<LeafPair> out(1 << 16);
   QueryOptions options = options_of(SpherePolicy::kSlab, "", workers);
@@ -56,22 +61,27 @@ void carry_in_silence(const Scene& scene, int workers) {
   ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
   Eigen::Isometry3d pose = scene.pose;
   const double step = 0.01 * scene.fixed.voxel_size();
-  int kept = 0;
-  const auto tick = [&](int i) {
-    pose.translation()[2] += i / 500 % 2 == 0 ? step : -step;
-    const Budget budget{.deadline = Budget::Clock::now() + 1s};
+  int ticks = 0, kept = 0;
+  hand_over_hook = count_part;
+  const auto enough = [&](int much, int parts) {
+    return kept > much && (workers == 1 || parts_done >= parts);
+  };
+  const auto tick = [&] {
+    pose.translation()[2] += ticks / 500 % 2 == 0 ? step : -step;
+    const Budget budget{.deadline = Budget::Clock::now() + 1h};
     const QueryResult result =
-        i % 2 == 0 ? query.contacts(pose, points, budget) : query.leaf_pairs(pose, out);
+        ticks++ % 2 == 0 ? query.contacts(pose, points, budget) : query.leaf_pairs(pose, out);
     kept += result.found == Found::kKept ? 1 : 0;
   };
-  for (int i = 0; i < 500; ++i) tick(i);  // the worker is there, if it comes
+  for (int i = 0; i < 500 || !enough(0, 1); ++i) tick();  // the worker is there
   kept = 0;
+  const int parts = parts_done + 10;
   forbid_system_calls();
-  for (int i = 0; i < 2000; ++i) tick(i);
+  for (int i = 0; i < 2000 || !enough(500, parts); ++i) tick();
   for (int i = 0; i < 50; ++i) {
     static_cast<void>(query.contacts(i % 2 == 0 ? scene.pose : shift({2.2, 0, 0}), points));
   }
-  end_process(kept > 500 ? 0 : 1);
+  end_process(0);
 }
 
 TEST_F(SystemCalls, AreCaught) {

@@ -8,6 +8,7 @@
 #include "ist/base/error.h"
 #include "ist/tree/sphere_tree.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -50,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, ReferenceOfBalls, ::testing::ValuesIn(kSphere
 TEST_P(ReferenceOfBalls, MirrorsThePairsOfSwappedBodies) {
   ReferenceQuery swapped(moving_, fixed_, GetParam());
   std::size_t leaf_pairs = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{20}); ++seed) {
     const Eigen::Isometry3d pose = some_pose(seed);
     const FoundPairs answer = ask(query_, pose);
     FoundPairs mirrored = ask(swapped, pose.inverse());
@@ -60,12 +61,12 @@ TEST_P(ReferenceOfBalls, MirrorsThePairsOfSwappedBodies) {
     EXPECT_EQ(mirrored.result.sphere_tests, answer.result.sphere_tests);
     leaf_pairs += answer.leaf_pairs.size();
   }
-  EXPECT_GT(leaf_pairs, 100u);
+  EXPECT_GT(leaf_pairs, samples(100u));
 }
 
 TEST_P(ReferenceOfBalls, AnswersTheSameFromEitherSourceOfSpheres) {
   ReferenceQuery saved(fixed_, moving_, GetParam(), SphereSource::kSaved);
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{10}); ++seed) {
     EXPECT_TRUE(same(ask(saved, some_pose(seed)), ask(query_, some_pose(seed))));
   }
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "query/query_cases.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -20,7 +21,7 @@ RelativePose random_relative(Random& random) {
 // The fixed frame's origin in the moving frame, each number of it rounded once.
 TEST(SearchPose, IsThePoseTurnedRoundAndRoundedOnce) {
   Random random(21);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const RelativePose pose = random_relative(random);
     const SearchPose narrowed = to_float(pose, {0.5, 0.1, 0.08}, {0.5, 0.1, 0.08});
     double error = 0;
@@ -41,7 +42,7 @@ TEST(SearchPose, IsThePoseTurnedRoundAndRoundedOnce) {
 // search_pose.cpp.
 TEST(SearchPose, HasPadsThatRiseWithBodiesAndPlace) {
   Random random(22);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const RelativePose pose = random_relative(random);
     const double radius = random.uniform(1e-3, 1e3), margin = random.uniform(0, 1);
     const double u = 0x1p-24 * (radius + pose.translation.norm());
@@ -80,7 +81,7 @@ TEST(SearchPose, HasWiderInnerSlabsForLargerPartners) {
 // A larger margin, made from a smaller one, is no smaller than if it were made at once.
 TEST(SearchPose, InflatedHasAllPadsOfALargerMargin) {
   Random random(23);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < samples(2000); ++i) {
     const RelativePose pose = random_relative(random);
     const TreeLengths a{random.uniform(1, 10), random.uniform(0.1, 1), random.uniform(0.01, 1)},
         b{random.uniform(1, 10), random.uniform(0.1, 1), random.uniform(0.01, 1)};

@@ -1,8 +1,6 @@
 // Contacts that two workers find are those of one, whatever becomes of the second.
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "ist/query/workers/shared_search.h"
 #include "query/contacts/contact_cases.h"
 #include "query/scenes.h"
@@ -41,19 +39,13 @@ TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherStalls) {
   }
 }
 
-// Each time it stalls it is let go on while the caller collects its parts, or in later queries.
+// Each time it stalls it goes on while the caller collects its parts, or in later queries.
 TEST_F(SharedContactsThread, AreThoseOfOneWorkerWhereTheOtherIsLate) {
   Query query(scene_.fixed, scene_.moving, shared_);
   for (int round = 0; round < 16; ++round) {
     const Stall stall(round % 2 == 0 ? HandOver::kClaimed : HandOver::kWorked);
     ASSERT_TRUE(ask_until(query, Stall::reached));
-    std::jthread releaser([&] {
-      std::this_thread::sleep_for(round * 25us);
-      Stall::release();
-    });
-    for (int later = 0; later < 6; ++later) {
-      ASSERT_TRUE(is_right(query));
-    }
+    ASSERT_TRUE(ask_while_let_go(query, round * 25us));
   }
 }
 

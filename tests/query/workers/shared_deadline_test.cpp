@@ -89,14 +89,16 @@ class WatchedSharedSearchThread : public SharedDeadlineThread {
                                   .leaf_pairs(scene_.pose, {})
                                   .leaf_pairs;
     Watch::begin();
-    const auto give_up = Clock::now() + 300s;
+    {
+      const Stall stall(HandOver::kSeen);
+      EXPECT_EQ(ask(), all);  // once the caller does all chunks
+    }
     int alone = 0;
-    for (int i = 0; (i < 20 || search_.sharing().chunks < 50) && Clock::now() < give_up; ++i) {
+    for (int i = 0; i < 20 || search_.sharing().chunks < 50; ++i) {
       const std::uint64_t before = search_.sharing().chunks;
       EXPECT_EQ(ask(), all);
       alone += search_.sharing().chunks == before ? 1 : 0;
     }
-    EXPECT_GE(search_.sharing().chunks, 50u);
     EXPECT_LE(Watch::most_tests, 500u);  // as Budget states
     EXPECT_LE(Watch::most_pairs, 512u);
     EXPECT_GT(Watch::most_tests, 250u);
@@ -164,15 +166,12 @@ TEST_F(SharedDeadlineThread, EndsTheSearchAtTheFirstLookAfterIt) {
     return within_shared;
   };
   std::vector<LeafPair> out(1 << 20);
-  int shared = 0;
-  const auto give_up = Clock::now() + 300s;
-  for (int round = 0; round < 3 || (shared < 20 && Clock::now() < give_up); ++round) {
+  for (int round = 0, shared = 0; (round < 3 || shared < 20) && !HasFailure(); ++round) {
     shared +=
         ends([&](const Budget& budget) { return query.leaf_pairs(scene_.pose, out, budget); });
     shared +=
         ends([&](const Budget& budget) { return query.contacts(scene_.pose, points, budget); });
   }
-  EXPECT_GE(shared, 20);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "query/exact/exact_tree.h"
 #include "query/scenes.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "support/stability.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/random.h"
 
 namespace ist::test {
@@ -15,7 +16,7 @@ namespace {
 // length, wherever both lie.
 TEST(BodyPose, IsComposedWithoutRegardToThePlace) {
   Random random(0);
-  for (int turn = 0; turn < 300; ++turn) {
+  for (int turn = 0; turn < samples(300); ++turn) {
     const double place = std::ldexp(1.0, static_cast<int>(random.below(45U)));
     const Eigen::Vector3d there = place * random.direction();
     const auto pose = [&](const Eigen::Vector3d& by) {

@@ -12,6 +12,7 @@
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/world/world_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -31,7 +32,7 @@ bool roots_meet(const SphereTree& a, const SphereTree& b, const Eigen::Isometry3
 // Two bodies, anywhere, as far apart as their roots can be and still meet.
 TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
   Random random(0);
-  for (int turn = 0; turn < 200 && !::testing::Test::HasFailure(); ++turn) {
+  for (int turn = 0; turn < samples(200) && !::testing::Test::HasFailure(); ++turn) {
     const double size = std::ldexp(1.0, static_cast<int>(random.below(20U)) - 10);
     const SphereTree a = ball_of_cubes(size), b = ball_of_cubes(size * random.uniform(0.1, 1));
     const double place =
@@ -63,7 +64,7 @@ TEST(BroadPhase, HoldsPairsWhoseRootsTouchToTheLastBit) {
 // search in float: their bounding radii, and the pad of inner nodes.
 TEST(BroadPhase, HoldsBallsThatTouchWithTheirPads) {
   Random random(2);
-  for (int turn = 0; turn < 200 && !::testing::Test::HasFailure(); ++turn) {
+  for (int turn = 0; turn < samples(200) && !::testing::Test::HasFailure(); ++turn) {
     const double size = std::ldexp(1.0, static_cast<int>(random.below(20U)) - 10);
     const SphereTree a = ball_of_cubes(size), b = ball_of_cubes(size * random.uniform(0.1, 1));
     const double radii = a.bounding_radius() + b.bounding_radius();
@@ -101,7 +102,7 @@ TEST(BroadPhase, FindsWhatAllPairsTell) {
     for (std::size_t i = 0; i < count; ++i) broad.add();
     std::vector<BodyBall> balls(count);
     std::vector<bool> there(count, false);
-    for (int tick = 0; tick < 30; ++tick) {
+    for (int tick = 0; tick < samples(30); ++tick) {
       for (BodyIndex body = 0; body < count; ++body) {
         if (tick > 0 && random.below(3U) > 0) continue;
         there[body] = random.below(10U) > 0;

@@ -8,6 +8,7 @@
 #include "query/exact/exact_tree.h"
 #include "query/exact/mesh_distance.h"
 #include "query/world/world_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -23,7 +24,8 @@ double distance_of(const World& world, const std::vector<PlacedTree>& bodies, Bo
 
 TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
   int touching = 0, apart = 0, unasked = 0;
-  for (std::uint64_t seed = 0; seed < 30 && !::testing::Test::HasFailure(); ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{30}) && !::testing::Test::HasFailure();
+       ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const double extent = seed % 3 == 0 ? 3 : 20;
@@ -55,15 +57,16 @@ TEST(WorldDistance, HoldsTheLeastOfAllPairs) {
       unasked += 21 - static_cast<int>(found.pairs.size());
     }
   }
-  EXPECT_GT(touching, 4);
-  EXPECT_GT(apart, 10);
-  EXPECT_GT(unasked, 400);  // most pairs are left out by their roots
+  EXPECT_GT(touching, 0);
+  EXPECT_GT(apart, 0);
+  EXPECT_GT(unasked, samples(200));  // most pairs are left out by their roots
 }
 
 // The same with some pairs that were not prepared: they count with their roots.
 TEST(WorldDistance, CountsPairsThatWereNotPrepared) {
   int wide = 0;
-  for (std::uint64_t seed = 0; seed < 20 && !::testing::Test::HasFailure(); ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{20}) && !::testing::Test::HasFailure();
+       ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const std::vector<PlacedTree> bodies = scattered(random, 6, 8);
@@ -88,13 +91,13 @@ TEST(WorldDistance, CountsPairsThatWereNotPrepared) {
       EXPECT_EQ(pair.result.distance.upper, pair.roots.upper);
     }
   }
-  EXPECT_GT(wide, 10);
+  EXPECT_GT(wide, 0);
 }
 
 // With room for a few pairs alone, the others count with the least of their roots.
 TEST(WorldDistance, CountsPairsThatHaveNoRoom) {
   Random random(1);
-  for (int turn = 0; turn < 20 && !::testing::Test::HasFailure(); ++turn) {
+  for (int turn = 0; turn < samples(20) && !::testing::Test::HasFailure(); ++turn) {
     std::vector<PlacedTree> bodies = scattered(random, 9, 4);
     WorldOptions options = small_world();
     options.most_near = turn % 2 == 0 ? 1 : 0;

@@ -10,6 +10,7 @@
 #include "query/exact/exact_tree.h"
 #include "query/exact/meeting_pairs.h"
 #include "query/world/world_cases.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -58,7 +59,8 @@ void expect_answer_of_a_query(World& world, const std::vector<PlacedTree>& bodie
 
 TEST(World, AnswersAsAQueryOfEachPair) {
   int meeting = 0;
-  for (std::uint64_t seed = 0; seed < 6 && !::testing::Test::HasFailure(); ++seed) {
+  for (std::uint64_t seed = 0; seed < samples(std::uint64_t{6}) && !::testing::Test::HasFailure();
+       ++seed) {
     Random random(seed);
     const std::vector<PlacedTree> bodies = scattered(random, 8, 4);
     WorldOptions options = small_world();
@@ -72,7 +74,7 @@ TEST(World, AnswersAsAQueryOfEachPair) {
       }
     }
   }
-  EXPECT_GT(meeting, 10);
+  EXPECT_GT(meeting, 0);
 }
 
 TEST(World, ListsPairsInOrder) {
@@ -120,7 +122,7 @@ TEST(World, PermutesItsAnswersWithItsBodies) {
   const std::vector<PlacedTree> bodies = scattered(random, 14, 7);
   World world = world_of(bodies);
   const WorldAnswers expected = answers_of(world);
-  for (int turn = 0; turn < 4; ++turn) {
+  for (int turn = 0; turn < samples(4); ++turn) {
     std::vector<BodyIndex> at(bodies.size());  // by the new number, the old one
     std::iota(at.begin(), at.end(), BodyIndex{0});
     for (std::size_t i = at.size(); i > 1; --i) std::swap(at[i - 1], at[random.below(i)]);

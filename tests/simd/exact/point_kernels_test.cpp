@@ -9,6 +9,7 @@
 #include "query/query_cases.h"
 #include "simd/exact/cluster_cases.h"
 #include "simd/targets.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -64,7 +65,7 @@ class PointKernels : public ::testing::TestWithParam<std::string> {
 // Points near and far, on the surface and in a corner.
 std::vector<Vector> points_of(const TriangleMesh& mesh, Random& random) {
   std::vector<Vector> points;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < samples(40); ++i) {
     const Vector& at = mesh.vertices[random.below(mesh.vertices.size())];
     points.push_back(at +
                      std::ldexp(1.0, -static_cast<int>(random.below(40))) * random.direction());

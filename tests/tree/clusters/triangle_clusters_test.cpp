@@ -8,6 +8,7 @@
 #include "ist/base/parallel.h"
 #include "ist/tree/clusters/triangle_order.h"
 #include "query/query_cases.h"
+#include "support/effort.h"
 #include "support/random.h"
 #include "support/shapes.h"
 
@@ -25,7 +26,7 @@ std::vector<TriangleMesh> meshes() {
                                    icosphere(3, 10),
                                    moved(icosphere(2, 1e-6), {1e3, -1e3, 5}),
                                    torus(20, 3, 90, 40)};
-  for (int i = 0; i < 10; ++i) all.push_back(random_mesh(random));
+  for (int i = 0; i < samples(10); ++i) all.push_back(random_mesh(random));
   return all;
 }
 
@@ -170,7 +171,7 @@ TEST(TriangleClusters, AreTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(same(many, TriangleClusters(mesh, {0, 0, 0})));
 }
 
-// Whatever the file's axes are, a cluster is as small.
+// The size of the clusters does not depend on the file's axes.
 TEST(TriangleClusters, AreAsSmallInTurnedFrames) {
   const auto sizes = [](const TriangleMesh& mesh) {
     const TriangleClusters clusters(mesh, {0, 0, 0});
@@ -185,7 +186,7 @@ TEST(TriangleClusters, AreAsSmallInTurnedFrames) {
   TriangleMesh long_one = mesh;
   for (Vector& v : long_one.vertices) v[0] *= 1.5;
   Random random(3);
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < samples(5); ++i) {
     EXPECT_NEAR(sizes(turned(long_one, random.rotation())) / sizes(long_one), 1, 0.01);
   }
 }

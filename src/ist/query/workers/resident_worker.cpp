@@ -210,10 +210,15 @@ ResidentWorker::Usage ResidentWorker::usage() noexcept {
           Nanoseconds(cpu_used.load(std::memory_order_relaxed))};
 }
 
+bool ResidentWorker::is_there() noexcept { return task.load() == Task::kRunning; }
+
 Job::Job(Run run, void* context) noexcept : run_(run), context_(context), process_(getpid()) {}
 
 void Job::wait_idle() const noexcept {
-  while (busy() && process_ == getpid()) std::this_thread::sleep_for(50us);
+  while (busy() && process_ == getpid()) {
+    idle_naps.fetch_add(1, std::memory_order_relaxed);
+    std::this_thread::sleep_for(50us);
+  }
 }
 
 }  // namespace ist

@@ -86,6 +86,9 @@ class ResidentWorker {
   };
   [[nodiscard]] static Usage usage() noexcept;
 
+  /// Returns whether the thread is there. After the last object is gone it leaves within a nap.
+  [[nodiscard]] static bool is_there() noexcept;
+
  private:
   // One thread more than TBB would have, so that the loops of a build do not lose one.
   ScopedThreadLimit limit_{thread_count() + 1};
@@ -106,6 +109,9 @@ inline std::atomic<void (*)(HandOver) noexcept> hand_over_hook{nullptr};
 /// A test's schedule in place of that of worker_schedule.h: while this is true the worker polls all
 /// the time, so that every offer finds it awake. Only the worker reads it.
 inline std::atomic<bool> always_awake{false};
+
+/// The number of naps of all Job::wait_idle() calls so far. A test sees by it that a thread waits.
+inline std::atomic<std::uint64_t> idle_naps{0};
 
 /// Calls the hook for the point `at`. Jobs call it for kClaimed and kWorked.
 inline void hand_over(HandOver at) noexcept {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <concepts>
+
+namespace ist::test {
+
+/// The share of its samples that a property test draws: IST_EFFORT, or 1 if it is not set. The fast
+/// tests set 0.2, long runs 20 and more. A value that is not a positive number ends the program.
+[[nodiscard]] double effort();
+
+/// The number of samples that a property test draws: `all` times `effort()`, rounded up. Use it as
+/// the end of the loop over seeds, random poses or rounds. Expectations on totals must scale with
+/// it too.
+[[nodiscard]] double scaled_by_effort(double all);
+template <std::integral Count>
+[[nodiscard]] Count samples(Count all) {
+  return static_cast<Count>(scaled_by_effort(static_cast<double>(all)));
+}
+
+}  // namespace ist::test
+
+/// Leaves a test that takes long even with one sample to runs with full effort. Write it as the
+/// first line of the test.
+#define IST_SLOW() \
+  if (ist::test::effort() < 1) GTEST_SKIP() << "slow: it runs with IST_EFFORT=1 or more"
