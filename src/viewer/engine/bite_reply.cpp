@@ -70,8 +70,8 @@ ordered_json side_of(const cli::BiteBody& body, const Eigen::Isometry3d& placing
 void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress, Reply& reply) {
   const cli::Bite bite = bite_of(bodies, asked, progress);
   const std::vector<cli::MapBand> bands = cli::map_bands(bite);
-  reply.json()["bite"] = cli::json_of(bite);
-  reply.json()["bands"] = ordered_json::array();
+  reply.json["bite"] = cli::json_of(bite);
+  reply.json["bands"] = ordered_json::array();
   for (const cli::MapBand& band : bands) {
     ordered_json line{{"from", nullptr},
                       {"to", band.to},
@@ -79,12 +79,12 @@ void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress
                       {"words", band.words},
                       {"below_scan_error", band.below_scan_error}};
     if (std::isfinite(band.from)) line["from"] = band.from;
-    reply.json()["bands"].push_back(line);
+    reply.json["bands"].push_back(line);
   }
-  reply.json()["bare"] = web_colour(cli::kBareSurface);
+  reply.json["bare"] = web_colour(cli::kBareSurface);
   const cli::OpenedBook book = cli::opened(bite, kBookGap * bite.units_per_mm);
-  reply.json()["fixed"] = side_of(bite.fixed, book.fixed, bands, reply);
-  reply.json()["moving"] = side_of(bite.moving, book.moving, bands, reply);
+  reply.json["fixed"] = side_of(bite.fixed, book.fixed, bands, reply);
+  reply.json["moving"] = side_of(bite.moving, book.moving, bands, reply);
 }
 
 std::vector<std::uint8_t> coloured_glb(const cli::Bodies& bodies, const Asked& asked,

@@ -66,7 +66,7 @@ EMSCRIPTEN_KEEPALIVE const char* ist_page_answer(const char* question, const cha
     progress.watch([&progress] { tell_progress(progress.stage(), progress.fraction()); });
     last_reply() = {};
     last_reply() = session().answer(question, Asked(asked), progress);
-    return keep({{"answer", last_reply().json()}});
+    return keep({{"answer", last_reply().json}});
   } catch (const ist::Error& error) {
     return keep_error(to_string(error.code()), error.what());
   } catch (const std::bad_alloc&) {

@@ -25,9 +25,9 @@ void fill_slabs(const SphereTree& tree, int level, Reply& reply) {
       halves.push_back(static_cast<float>(slab.half));
     }
   }
-  reply.json()["normals"] = reply.array(std::move(normals));
-  reply.json()["offsets"] = reply.array(std::move(offsets));
-  reply.json()["halves"] = reply.array(std::move(halves));
+  reply.json["normals"] = reply.array(std::move(normals));
+  reply.json["offsets"] = reply.array(std::move(offsets));
+  reply.json["halves"] = reply.array(std::move(halves));
 }
 
 }  // namespace
@@ -44,8 +44,8 @@ void fill_level(const SphereTree& tree, SpherePolicy policy, int level, Reply& r
     for (int axis = 0; axis < 3; ++axis) centres.push_back(static_cast<float>(centre[axis]));
     radii.push_back(static_cast<float>(ball.radius));
   }
-  reply.json()["centres"] = reply.array(std::move(centres));
-  reply.json()["radii"] = reply.array(std::move(radii));
+  reply.json["centres"] = reply.array(std::move(centres));
+  reply.json["radii"] = reply.array(std::move(radii));
   if (policy == SpherePolicy::kSlab) fill_slabs(tree, level, reply);
 }
 

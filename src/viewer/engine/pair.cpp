@@ -89,11 +89,11 @@ void Pair::tick(const Eigen::Isometry3d& pose, double stiffness, Reply& reply) {
   const IntersectionResult touch = query_.intersects(pose);
   const DistanceResult distance = query_.distance(pose, kSeen * bodies_.extent());
   const QueryResult pairs = query_.contacts(pose, manifold_);
-  reply.json() = {
+  reply.json = {
       {"touch", to_string(touch.answer)},          {"distance_lower", distance.distance.lower},
       {"distance_upper", distance.distance.upper}, {"leaf_pairs", pairs.leaf_pairs},
       {"sphere_tests", pairs.sphere_tests},        {"resolution", pairs.resolution}};
-  reply.json()["contacts"] = contacts_of(manifold_, stiffness, reply);
+  reply.json["contacts"] = contacts_of(manifold_, stiffness, reply);
 }
 
 Pair& Pairs::of(std::optional<SpherePolicy> policy) {

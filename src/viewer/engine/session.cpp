@@ -48,11 +48,11 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
   if (question == "tick") {
     pairs().of(asked.policy()).tick(asked.pose("pose"), asked.number("stiffness"), reply);
   } else if (question == "collide") {
-    reply.json() = pairs().of(asked.policy()).collide(asked.pose("pose"));
+    reply.json = pairs().of(asked.policy()).collide(asked.pose("pose"));
   } else if (question == "occlusion") {
     fill_bite(whole(), asked, progress, reply);
   } else if (question == "save_glb") {
-    reply.json()["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
+    reply.json["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
   } else if (question == "make_jaws") {
     return make_jaws(asked);
   } else if (question == "open") {
@@ -73,7 +73,7 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
     return save_body(asked);
   } else if (question == "memory") {
     // A count that is an int, and is read as one without a sign.
-    reply.json()["in_use"] = static_cast<std::uint32_t>(mallinfo().uordblks);
+    reply.json["in_use"] = static_cast<std::uint32_t>(mallinfo().uordblks);
   } else {
     refuse(fmt::format("{}: the engine has no such question", question));
   }
@@ -108,8 +108,8 @@ Reply Session::make_jaws(const Asked& asked) {
   std::filesystem::remove(upper);
   std::filesystem::remove(lower);
   Reply reply;
-  reply.json()["fixed"] = fixed.facts(reply);
-  reply.json()["moving"] = moving.facts(reply);
+  reply.json["fixed"] = fixed.facts(reply);
+  reply.json["moving"] = moving.facts(reply);
   take(Role::kFixed, std::move(fixed));
   take(Role::kMoving, std::move(moving));
   return reply;
@@ -125,7 +125,7 @@ Reply Session::open(const Asked& asked) {
   const Role role = asked.role();
   PageBody read(file_of(role, asked.text("name")), asked.unit());
   Reply reply;
-  reply.json() = read.facts(reply);
+  reply.json = read.facts(reply);
   take(role, std::move(read));
   return reply;
 }
@@ -148,10 +148,10 @@ Reply Session::build(const Asked& asked, Progress& progress) {
   pairs_ = std::move(pairs);
   recorded_.reset();
   Reply reply;
-  reply.json() = {{"fixed", fixed.tree_facts()}, {"moving", moving.tree_facts()}};
-  reply.json()["policies"] = nlohmann::ordered_json::array();
+  reply.json = {{"fixed", fixed.tree_facts()}, {"moving", moving.tree_facts()}};
+  reply.json["policies"] = nlohmann::ordered_json::array();
   for (const SpherePolicy policy : kSpherePolicies) {
-    if (policy <= pairs_->bodies().policy) reply.json()["policies"].push_back(to_string(policy));
+    if (policy <= pairs_->bodies().policy) reply.json["policies"].push_back(to_string(policy));
   }
   return reply;
 }
@@ -162,10 +162,10 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
   const FirstContact found =
       ist::first_contact(pairs().of({}).query(), motion, asked.number("tolerance"));
   Reply reply;
-  reply.json() = {{"status", to_string(found.status)},
-                  {"lower", found.lower},
-                  {"upper", found.upper},
-                  {"pose", cli::pose_json(motion.at(found.upper))}};
+  reply.json = {{"status", to_string(found.status)},
+                {"lower", found.lower},
+                {"upper", found.upper},
+                {"pose", cli::pose_json(motion.at(found.upper))}};
   return reply;
 }
 
@@ -187,8 +187,8 @@ Reply Session::touched(const Asked& asked) {
                     asked.pose("pose"), last);
   const StepFront none, &at = fronts.empty() ? none : fronts.back();
   Reply reply;
-  reply.json()["fixed"] = reply.array(nodes_in(at.fixed));
-  reply.json()["moving"] = reply.array(nodes_in(at.moving));
+  reply.json["fixed"] = reply.array(nodes_in(at.fixed));
+  reply.json["moving"] = reply.array(nodes_in(at.moving));
   return reply;
 }
 
@@ -204,12 +204,12 @@ const std::vector<StepFront>& Session::recorded(const Asked& asked) {
 
 Reply Session::fronts(const Asked& asked) {
   Reply reply;
-  reply.json()["steps"] = nlohmann::ordered_json::array();
+  reply.json["steps"] = nlohmann::ordered_json::array();
   for (const StepFront& front : recorded(asked)) {
-    reply.json()["steps"].push_back({{"fixed_level", front.fixed_level},
-                                     {"moving_level", front.moving_level},
-                                     {"tests", front.tests},
-                                     {"pairs", front.pairs}});
+    reply.json["steps"].push_back({{"fixed_level", front.fixed_level},
+                                   {"moving_level", front.moving_level},
+                                   {"tests", front.tests},
+                                   {"pairs", front.pairs}});
   }
   return reply;
 }
@@ -222,9 +222,9 @@ Reply Session::front(const Asked& asked) {
   }
   const StepFront& front = fronts[step];
   Reply reply;
-  reply.json() = {{"fixed_level", front.fixed_level}, {"moving_level", front.moving_level}};
-  reply.json()["fixed"] = reply.array(front.fixed);
-  reply.json()["moving"] = reply.array(front.moving);
+  reply.json = {{"fixed_level", front.fixed_level}, {"moving_level", front.moving_level}};
+  reply.json["fixed"] = reply.array(front.fixed);
+  reply.json["moving"] = reply.array(front.moving);
   return reply;
 }
 
@@ -232,7 +232,7 @@ Reply Session::save_body(const Asked& asked) {
   const PageBody& saved = present(asked.role());
   if (!saved.tree()) refuse("the tree is not built: build it first");
   Reply reply;
-  reply.json()["bytes"] = reply.array(bytes_of(tree_to_bytes(*saved.tree())));
+  reply.json["bytes"] = reply.array(bytes_of(tree_to_bytes(*saved.tree())));
   return reply;
 }
 
