@@ -204,10 +204,11 @@ async function short(use) {
   }
 }
 
-/** Does what needs memory, with more and more of it until there is enough; where it ends, `check` is called. */
+/** Calls `what` with more and more memory until it fits. After each end it calls `check`, which may take all the memory it needs. */
 function untilItFits(memory, what, check) {
   let ended = 0;
-  for (memory.limit = memory.bytes; ; memory.limit += 4e6) {
+  for (let limit = memory.bytes; ; limit = Math.max(limit, memory.bytes) + 4e6) {
+    memory.limit = limit;
     try {
       what();
       return ended;
@@ -216,6 +217,7 @@ function untilItFits(memory, what, check) {
       assert.match(error.message, /memory is full/);
     }
     ended += 1;
+    memory.limit = Infinity;
     check();
   }
 }

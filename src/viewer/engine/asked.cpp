@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
@@ -11,18 +10,15 @@
 namespace ist::viewer {
 
 Asked::Asked(const std::string& text)
-    : members_(std::make_unique<const nlohmann::json>(
-          nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false))) {
-  if (!members_->is_object()) {
+    : members_(nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false)) {
+  if (!members_.is_object()) {
     throw Error(ErrorCode::kArgumentInvalid, "the page asked without members");
   }
 }
 
-Asked::~Asked() = default;
-
 const nlohmann::json* Asked::find(const char* name) const {
-  const auto found = members_->find(name);
-  return found == members_->end() || found->is_null() ? nullptr : &*found;
+  const auto found = members_.find(name);
+  return found == members_.end() || found->is_null() ? nullptr : &*found;
 }
 
 void Asked::refuse(const char* name, const char* wanted) {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -17,11 +16,8 @@ enum class Role { kFixed, kMoving };
 /// its reader returns, throws kArgumentInvalid, naming it.
 class Asked {
  public:
-  /// Reads JSON. Throws kArgumentInvalid if it is not an object.
+  /// Reads JSON. Throws kArgumentInvalid where it is no object.
   explicit Asked(const std::string& text);
-  ~Asked();
-  Asked(const Asked&) = delete;
-  Asked& operator=(const Asked&) = delete;
 
   [[nodiscard]] double number(const char* name) const;
   [[nodiscard]] std::uint64_t count(const char* name) const;
@@ -42,7 +38,7 @@ class Asked {
   [[nodiscard]] const nlohmann::json* find(const char* name) const;
   [[noreturn]] static void refuse(const char* name, const char* wanted);
 
-  std::unique_ptr<const nlohmann::json> members_;
+  nlohmann::json members_;
 };
 
 }  // namespace ist::viewer

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "ist/base/error.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/tree_parts.h"
