@@ -31,8 +31,15 @@ const safe = (script) => script.replaceAll(/<\/(script|style)/gi, '<\\/$1').repl
 
 async function pageScript() {
   const {outputFiles, metafile} = await build({
-    entryPoints: [join(page, 'main.js')], bundle: true, write: false, minify: true, format: 'iife', target,
-    legalComments: 'none', outdir: here, logLevel: 'warning',
+    entryPoints: [join(page, 'main.js')],
+    bundle: true,
+    write: false,
+    minify: true,
+    format: 'iife',
+    target,
+    legalComments: 'none',
+    outdir: here,
+    logLevel: 'warning',
     metafile: true,
   });
   const names = Object.keys(metafile.inputs).map((file) => file.match(/.*node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1]);
@@ -44,7 +51,8 @@ async function workerScript(engine) {
   const texts = [readFileSync(join(engine, 'engine.js'), 'utf8'), readFileSync(join(page, 'worker.js'), 'utf8')];
   // The engine's factory is a global of this script, as it is of a classic one.
   const classic = texts[0].replace(/^export default createEngine;?\s*$/m, '').replaceAll('import.meta.url', 'self.location.href');
-  return (await transform([classic, texts[1]].join('\n'), {minifyWhitespace: true, minifySyntax: true, target, legalComments: 'none'})).code;
+  return (await transform([classic, texts[1]].join('\n'), {minifyWhitespace: true, minifySyntax: true, target, legalComments: 'none'}))
+    .code;
 }
 
 async function styleSheet() {
@@ -55,8 +63,10 @@ async function styleSheet() {
 function notices() {
   const licence = (file) => readFileSync(file, 'utf8').trim();
   const text = [
-    'IST', licence(join(here, '../../LICENSE')),
-    'three.js', licence(join(here, 'node_modules/three/LICENSE')),
+    'IST',
+    licence(join(here, '../../LICENSE')),
+    'three.js',
+    licence(join(here, 'node_modules/three/LICENSE')),
     licence(join(here, 'notices.txt')),
   ].join('\n\n');
   return text.replaceAll('<', '(').replaceAll('>', ')');
@@ -65,8 +75,13 @@ function notices() {
 const script = await pageScript();
 const style = await styleSheet();
 const parts = {
-  SCRIPT_HASH: hash(script), STYLE_HASH: hash(style), STYLE: style, NOTICES: notices(), SCRIPT: script,
-  WORKER: packed(await workerScript(values.engine)), ENGINE: packed(readFileSync(join(values.engine, 'engine.wasm'))),
+  SCRIPT_HASH: hash(script),
+  STYLE_HASH: hash(style),
+  STYLE: style,
+  NOTICES: notices(),
+  SCRIPT: script,
+  WORKER: packed(await workerScript(values.engine)),
+  ENGINE: packed(readFileSync(join(values.engine, 'engine.wasm'))),
 };
 // Each part once, in one pass: a part's own text is never searched for the name of another.
 const html = readFileSync(join(page, 'index.html'), 'utf8').replaceAll(/@([A-Z_]+)@/g, (whole, name) => parts[name] ?? whole);

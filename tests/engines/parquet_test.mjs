@@ -22,7 +22,7 @@ const parquetFile = (name) => path.join(folder, `${name}.parquet`);
 /** The bytes of a column's values in the packed rows. */
 function bytesOf(rows, {offset, type}, stride) {
   const size = arrays[type].BYTES_PER_ELEMENT;
-  const bytes = Buffer.alloc(rows.length / stride * size);
+  const bytes = Buffer.alloc((rows.length / stride) * size);
   for (let row = 0; row * stride < rows.length; ++row) {
     rows.copy(bytes, row * size, row * stride + offset, row * stride + offset + size);
   }
@@ -68,8 +68,10 @@ async function readByHyparquet(name) {
     file,
     onChunk: ({columnName, columnData, rowStart}) => pieces.get(columnName).push({rowStart, columnData}),
   });
-  assertSameNumbers(name, [...pieces.values()].map((column) =>
-    column.sort((a, b) => a.rowStart - b.rowStart).map(({columnData}) => columnData)));
+  assertSameNumbers(
+    name,
+    [...pieces.values()].map((column) => column.sort((a, b) => a.rowStart - b.rowStart).map(({columnData}) => columnData)),
+  );
 }
 
 const duckdbTypes = {uint64: 'UBIGINT', int32: 'INTEGER', float64: 'DOUBLE'};
@@ -81,10 +83,19 @@ async function readByDuckdb(name) {
   const about = await connection.run(`select created_by, num_rows, num_row_groups from parquet_file_metadata(${file})`);
   assert.deepEqual((await about.getRows())[0], ['ist', BigInt(table.rows), BigInt(table.groups)]);
   const result = await connection.run(`select * from read_parquet(${file})`);
-  assert.deepEqual(result.columnNames(), table.columns.map((column) => column.name));
-  assert.deepEqual(result.columnTypes().map(String), table.columns.map(({type}) => duckdbTypes[type]));
+  assert.deepEqual(
+    result.columnNames(),
+    table.columns.map((column) => column.name),
+  );
+  assert.deepEqual(
+    result.columnTypes().map(String),
+    table.columns.map(({type}) => duckdbTypes[type]),
+  );
   const chunks = await result.fetchAllChunks();
-  assertSameNumbers(name, table.columns.map((_, i) => chunks.map((chunk) => chunk.getColumnVector(i).items)));
+  assertSameNumbers(
+    name,
+    table.columns.map((_, i) => chunks.map((chunk) => chunk.getColumnVector(i).items)),
+  );
 }
 
 for (const name of Object.keys(tables)) {

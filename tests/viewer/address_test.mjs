@@ -6,9 +6,11 @@ import {makeAddress} from '../../src/viewer/page/state/address.js';
 /** An address that is written with each step of a clock, for some seconds. */
 function written(seconds, stepMilliseconds) {
   let time = 0;
-  const found = [], calls = [];
+  const found = [],
+    calls = [];
   const set = makeAddress((fragment) => found.push({time, fragment}), {
-    now: () => time, later: (call, milliseconds) => calls.push({at: time + milliseconds, call}),
+    now: () => time,
+    later: (call, milliseconds) => calls.push({at: time + milliseconds, call}),
   });
   const run = () => {
     for (const due of calls.filter(({at}) => at <= time)) {

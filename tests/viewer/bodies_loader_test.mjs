@@ -12,7 +12,8 @@ const file = (role, name, unit) => ({role, name, content: new Blob(['solid']), u
 
 /** A loader over an engine that answers as it is said to, or throws what it is given. */
 function made(answers) {
-  const said = [], asked = [];
+  const said = [],
+    asked = [];
   const store = makeStore({bodies: {fixed: null, moving: null}, trees: null, policy: null, pose: [], home: [], dragging: false});
   const ask = async (name, question) => {
     asked.push([name, question]);
@@ -61,14 +62,17 @@ test('another engine gets what this one had: files, their units, and the voxel s
   const {loader} = made({make_jaws: () => jaws, open: ({name, unit}) => facts(name, 100, unit), build: () => trees});
   const restored = async () => {
     const again = [];
-    await loader.restore(async (name, {bytes, ...question}) => { again.push([name, question]); });
+    await loader.restore(async (name, {bytes, ...question}) => {
+      again.push([name, question]);
+    });
     return again;
   };
   await loader.makeJaws(3);
   assert.deepEqual(await restored(), [['make_jaws', {seed: 3}]]);
   await loader.open(file('moving', 'other.stl', 'mm'));
   await loader.build(0.5);
-  const opened = ['open', {role: 'moving', name: 'other.stl', unit: 'mm'}], built = ['build', {voxel_size: 0.5}];
+  const opened = ['open', {role: 'moving', name: 'other.stl', unit: 'mm'}],
+    built = ['build', {voxel_size: 0.5}];
   assert.deepEqual(await restored(), [['make_jaws', {seed: 3}], opened, built]);
   await loader.open(file('fixed', 'first.stl'));
   assert.deepEqual(await restored(), [opened, ['open', {role: 'fixed', name: 'first.stl', unit: undefined}]]);
@@ -93,7 +97,8 @@ test('bodies that cannot be in one unit get a warning, others get none', async (
   const pairs = [
     [['mm', 110], ['m', 110], /^a\.stl is in mm, and b\.stl in m\. .*convert one of them, and open it again/],
     [[null, 110], ['inch', 4.3], /^a\.stl is 26 times as large as b\.stl: one of them may be in metres or inches/],
-    [['mm', 110], [null, 110], null], [['m', 0.11], ['m', 0.02], null],
+    [['mm', 110], [null, 110], null],
+    [['m', 0.11], ['m', 0.02], null],
   ];
   for (const [fixed, moving, sentence] of pairs) {
     const bodies = {'a.stl': fixed, 'b.stl': moving};

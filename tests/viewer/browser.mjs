@@ -15,8 +15,11 @@ export const axeFile = require.resolve('axe-core/axe.min.js');
 
 // SwiftShader draws where there is no GPU; the rest keeps the browser from asking its maker.
 const switches = [
-  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-  '--disable-background-networking', '--no-first-run',
+  '--no-sandbox',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--disable-background-networking',
+  '--no-first-run',
 ];
 // Milliseconds. They end a test that hangs, and nothing else.
 const patience = 240_000;
@@ -38,7 +41,8 @@ export async function openPage(browser, fragment = '', {file = process.env.IST_P
   const context = await browser.newContext({viewport: {width: 1200, height: 800}, ...window});
   context.setDefaultTimeout(patience);
   const page = await context.newPage();
-  const faults = [], requests = [];
+  const faults = [],
+    requests = [];
   page.on('console', (message) => {
     if (['error', 'warning'].includes(message.type()) && !isDrawingTalk(message.text())) faults.push(message.text());
   });
@@ -71,7 +75,10 @@ function isDrawingTalk(text) {
 export async function closePage({faults, requests, close}) {
   await close();
   assert.deepEqual(faults, []);
-  assert.deepEqual(requests.filter((address) => !/^(file|blob|data):/.test(address)), []);
+  assert.deepEqual(
+    requests.filter((address) => !/^(file|blob|data):/.test(address)),
+    [],
+  );
 }
 
 /** For `before`: questions to the engine wait while `window.holds(message)` says so, until `window.release()`; `window.held()` counts them. */
@@ -162,6 +169,9 @@ export function answer(page) {
 
 /** What a person reads below the picture: Touch, Distance, Depth, Force, Contacts. */
 export function readout(page) {
-  return page.evaluate(() => Object.fromEntries([...document.querySelectorAll('#readout dt')]
-      .map((name) => [name.textContent, name.nextElementSibling.textContent])));
+  return page.evaluate(() =>
+    Object.fromEntries(
+      [...document.querySelectorAll('#readout dt')].map((name) => [name.textContent, name.nextElementSibling.textContent]),
+    ),
+  );
 }

@@ -9,13 +9,22 @@ import path from 'node:path';
 
 /** Runs the command in a folder, and gives what it prints. */
 export function ist(folder, ...words) {
-  const {IST_PAGE} = process.env, page = IST_PAGE ? {IST_PAGE: path.resolve(IST_PAGE)} : {};
-  return execFileSync(process.env.IST_COMMAND, words,
-      {cwd: folder, env: {...process.env, ...page}, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28});
+  const {IST_PAGE} = process.env,
+    page = IST_PAGE ? {IST_PAGE: path.resolve(IST_PAGE)} : {};
+  return execFileSync(process.env.IST_COMMAND, words, {
+    cwd: folder,
+    env: {...process.env, ...page},
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'pipe'],
+    maxBuffer: 1 << 28,
+  });
 }
 
 export function linesOf(text) {
-  return text.trimEnd().split('\n').map((line) => JSON.parse(line));
+  return text
+    .trimEnd()
+    .split('\n')
+    .map((line) => JSON.parse(line));
 }
 
 /** An answer without the keys that are a machine's. */

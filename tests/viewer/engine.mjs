@@ -26,8 +26,7 @@ export async function startEngine(folder) {
 
   /** Answers a question, or throws its error with its code. */
   function ask(question, asked) {
-    const text = engine.ccall('ist_page_answer', 'string', ['string', 'string'],
-        [question, JSON.stringify(asked)]);
+    const text = engine.ccall('ist_page_answer', 'string', ['string', 'string'], [question, JSON.stringify(asked)]);
     const reply = JSON.parse(text);
     if (reply.error) throw Object.assign(new Error(reply.error.text), {code: reply.error.code});
     return withArrays(reply.answer);

@@ -3,15 +3,28 @@ import {test} from 'node:test';
 
 import {makeEngineClient} from '../../src/viewer/page/engine/engine_client.js';
 
-const wait = () => new Promise((resolve) => { setTimeout(resolve); });
+const wait = () =>
+  new Promise((resolve) => {
+    setTimeout(resolve);
+  });
 
 /** A client of Workers that answer what the test says, when it says so. */
 function client({restore = async () => {}, lazy = false} = {}) {
-  const workers = [], bars = [], lost = [];
+  const workers = [],
+    bars = [],
+    lost = [];
   const start = () => {
-    const worker = {asked: [], ended: false, postMessage: (message) => worker.asked.push(message), terminate: () => { worker.ended = true; }};
+    const worker = {
+      asked: [],
+      ended: false,
+      postMessage: (message) => worker.asked.push(message),
+      terminate: () => {
+        worker.ended = true;
+      },
+    };
     Object.assign(worker, {
-      say: (data) => worker.onmessage({data}), ready: () => worker.say({ready: true, version: 'v', target: 't'}),
+      say: (data) => worker.onmessage({data}),
+      ready: () => worker.say({ready: true, version: 'v', target: 't'}),
       answer: (answer) => worker.say({id: worker.asked.at(-1).id, answer, milliseconds: 1}),
       names: () => worker.asked.map(({question}) => question),
     });
@@ -21,14 +34,29 @@ function client({restore = async () => {}, lazy = false} = {}) {
   const progress = {begin: (...words) => bars.push(words), advance: () => {}, end: () => bars.push('end')};
   return {...makeEngineClient({start, progress, restore, onLost: (error) => lost.push(error.message), lazy}), workers, bars, lost};
 }
-const codeOf = (asked) => asked.then(() => 'answered', ({code}) => code);
+const codeOf = (asked) =>
+  asked.then(
+    () => 'answered',
+    ({code}) => code,
+  );
 
 test('questions are asked one after the other; a later one of a name replaces the one that waits', async () => {
-  const {ask, workers: [worker], busy} = client();
-  const first = ask('a', {}), old = codeOf(ask('tick', {at: 1}, {latest: true})), last = ask('b', {}), tick = ask('tick', {at: 2}, {latest: true, first: true});
+  const {
+    ask,
+    workers: [worker],
+    busy,
+  } = client();
+  const first = ask('a', {}),
+    old = codeOf(ask('tick', {at: 1}, {latest: true})),
+    last = ask('b', {}),
+    tick = ask('tick', {at: 2}, {latest: true, first: true});
   assert.deepEqual([worker.names(), await old], [[], 'replaced']);
   worker.ready();
-  for (const [asked, name] of [[tick, 'tick'], [first, 'a'], [last, 'b']]) {
+  for (const [asked, name] of [
+    [tick, 'tick'],
+    [first, 'a'],
+    [last, 'b'],
+  ]) {
     assert.equal(worker.names().at(-1), name);
     worker.answer(name);
     assert.equal(await asked, name);
@@ -37,19 +65,30 @@ test('questions are asked one after the other; a later one of a name replaces th
 });
 
 test('the bar of what is often asked knows that it is seldom long', () => {
-  const {ask, workers: [worker], bars} = client();
+  const {
+    ask,
+    workers: [worker],
+    bars,
+  } = client();
   worker.ready();
   ask('a', {}, {doing: 'A'});
   ask('b', {}, {doing: 'B', seldomLong: true});
   worker.answer();
-  assert.deepEqual(bars.filter((each) => each !== 'end'), [['A', true, undefined], ['B', true, true]]);
+  assert.deepEqual(
+    bars.filter((each) => each !== 'end'),
+    [
+      ['A', true, undefined],
+      ['B', true, true],
+    ],
+  );
 });
 
 test('what is cancelled ends with its Worker; the next one gets the bodies before it is asked', async () => {
   const made = client({restore: (again) => again('bodies', {})});
   const {ask, workers, cancel} = made;
   workers[0].ready();
-  const lost = codeOf(ask('long', {})), waits = ask('tick', {});
+  const lost = codeOf(ask('long', {})),
+    waits = ask('tick', {});
   cancel();
   assert.deepEqual([await lost, workers.length, workers[0].ended], ['cancelled', 2, true]);
   cancel();
@@ -73,7 +112,10 @@ test('a lazy client starts its Worker when it is asked, and has it restored firs
   workers[0].answer('map');
   assert.equal(await map, 'map');
   assert.deepEqual(workers[0].names(), ['bodies', 'map']);
-  assert.deepEqual(bars.filter((each) => each !== 'end').map(([words]) => words), ['Starting a second engine', 'Mapping']);
+  assert.deepEqual(
+    bars.filter((each) => each !== 'end').map(([words]) => words),
+    ['Starting a second engine', 'Mapping'],
+  );
   const again = ask('map', {});
   workers[0].answer('again');
   assert.equal(await again, 'again');
@@ -82,7 +124,8 @@ test('a lazy client starts its Worker when it is asked, and has it restored firs
 
 test('what a lazy client drops ends with its Worker, and the rest is asked of another', async () => {
   const {ask, workers, drop, busy} = client({lazy: true});
-  const map = codeOf(ask('map', {})), glb = ask('glb', {});
+  const map = codeOf(ask('map', {})),
+    glb = ask('glb', {});
   workers[0].ready();
   await wait();
   assert.deepEqual(workers[0].names(), ['map']);
@@ -99,11 +142,16 @@ test('what a lazy client drops ends with its Worker, and the rest is asked of an
 
 test('a Worker that still gets bodies ends where they are old, and no other gets those', async () => {
   const reads = [];
-  const {ask, workers, drop, cancel} = client({lazy: true, restore: async (again) => {
-    const of = reads.length;
-    await new Promise((resolve) => { reads.push(resolve); });
-    await again('bodies', {of});
-  }});
+  const {ask, workers, drop, cancel} = client({
+    lazy: true,
+    restore: async (again) => {
+      const of = reads.length;
+      await new Promise((resolve) => {
+        reads.push(resolve);
+      });
+      await again('bodies', {of});
+    },
+  });
   const old = codeOf(ask('map', {}));
   workers[0].ready();
   drop();

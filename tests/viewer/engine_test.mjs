@@ -14,7 +14,8 @@ import {answerOf, ist as istIn, linesOf} from './command.mjs';
 import {startEngine} from './engine.mjs';
 
 const folder = mkdtempSync(path.join(tmpdir(), 'ist-page-'));
-const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
+const upper = 'upper_jaw.stl',
+  lower = 'lower_jaw.stl';
 const shifts = [-5, -2, -1.5, -0.6, 0];
 const poses = shifts.map((dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1]);
 let engine;
@@ -47,7 +48,10 @@ test('refuses questions before there are bodies, and unknown ones', () => {
 
 test('describes the built-in jaws as the command describes their files', () => {
   const bodies = engine.ask('make_jaws', {seed: 1});
-  for (const [role, file] of [['fixed', upper], ['moving', lower]]) {
+  for (const [role, file] of [
+    ['fixed', upper],
+    ['moving', lower],
+  ]) {
     assert.deepEqual(bodies[role].info, linesOf(ist('info', file, '--json'))[1]);
     assert.equal(bodies[role].triangles.length, 3 * bodies[role].info.triangles);
     assert.equal(bodies[role].positions.length, 3 * bodies[role].info.vertices);
@@ -59,8 +63,7 @@ for (const size of [2, 0.8, 0.4]) {
     engine.ask('make_jaws', {seed: 1});
     const trees = engine.ask('build', {voxel_size: size});
     assert.deepEqual(trees.policies, ['simple', 'table', 'tight', 'slab']);
-    const [header, ...lines] = linesOf(ist('collide', upper, lower, '--voxel-size', `${size}`,
-        '--poses', 'poses.json', '--json'));
+    const [header, ...lines] = linesOf(ist('collide', upper, lower, '--voxel-size', `${size}`, '--poses', 'poses.json', '--json'));
     assert.equal(lines.length, poses.length);
     poses.forEach((pose, i) => {
       const answer = engine.ask('collide', {pose});
@@ -69,8 +72,9 @@ for (const size of [2, 0.8, 0.4]) {
       assert.ok(answer.microseconds > 0);
     });
     for (const policy of ['simple', 'table', 'tight']) {
-      const [, line] = linesOf(ist('collide', upper, lower, '--voxel-size', `${size}`, '--move',
-          '0,0,-0.6', '--spheres', policy, '--json'));
+      const [, line] = linesOf(
+        ist('collide', upper, lower, '--voxel-size', `${size}`, '--move', '0,0,-0.6', '--spheres', policy, '--json'),
+      );
       assert.deepEqual(answerOf(engine.ask('collide', {pose: poses[3], policy}).line), answerOf(line));
     }
   });
@@ -96,11 +100,12 @@ test('follows each stage of a build', () => {
   assert.ok(engine.stages.size >= 3, [...engine.stages].join());
 });
 
-test('times a query by a clock that is coarser than a browser\'s', async () => {
-  const {hrtime} = process, step = 1e6;  // the engine's clock in node, ns; browsers' step by 0.1 ms
+test("times a query by a clock that is coarser than a browser's", async () => {
+  const {hrtime} = process,
+    step = 1e6; // the engine's clock in node, ns; browsers' step by 0.1 ms
   process.hrtime = () => {
     const [seconds, nanoseconds] = hrtime();
-    return [seconds, nanoseconds - nanoseconds % step];
+    return [seconds, nanoseconds - (nanoseconds % step)];
   };
   try {
     const coarse = await startEngine(process.env.IST_ENGINE);
@@ -146,9 +151,13 @@ test('ticks as the query answers', () => {
 });
 
 test('steps through a query front by front, down to its leaf pairs', () => {
-  for (const [voxels, other] of [[0.8, null], [0.8, 1.6]]) {
+  for (const [voxels, other] of [
+    [0.8, null],
+    [0.8, 1.6],
+  ]) {
     engine.ask('make_jaws', {seed: 1});
-    if (other !== null) {  // a coarse tree beside a fine one
+    if (other !== null) {
+      // a coarse tree beside a fine one
       ist('build', lower, '-o', 'coarse.ist', '--voxel-size', `${other}`, '--no-triangles');
       assert.equal(engine.open('moving', 'coarse.ist', readFileSync(path.join(folder, 'coarse.ist'))).rebuilds, false);
     }
@@ -158,12 +167,18 @@ test('steps through a query front by front, down to its leaf pairs', () => {
       const {line} = engine.ask('collide', {pose: poses[3], policy});
       const {steps} = engine.ask('fronts', {pose: poses[3], policy});
       assert.equal(steps.at(-1).pairs, line.leaf_pairs);
-      assert.equal(steps.reduce((sum, step) => sum + step.tests, 1), line.sphere_tests);
+      assert.equal(
+        steps.reduce((sum, step) => sum + step.tests, 1),
+        line.sphere_tests,
+      );
       const front = engine.ask('front', {pose: poses[3], policy, step: steps.length - 1});
       assert.equal(front.fixed.length, line.leaf_pairs);
       assert.equal(front.fixed_level + front.moving_level, 0);
       const touched = engine.ask('touched', {pose: poses[3], policy, level: 0});
-      assert.deepEqual([...touched.moving], [...new Set(front.moving)].sort((a, b) => a - b));
+      assert.deepEqual(
+        [...touched.moving],
+        [...new Set(front.moving)].sort((a, b) => a - b),
+      );
       const level = engine.ask('level', {role: 'moving', policy, level: 2});
       const inner = engine.ask('touched', {pose: poses[3], policy, level: 2});
       assert.ok(inner.moving.at(-1) < level.radii.length);
@@ -171,7 +186,10 @@ test('steps through a query front by front, down to its leaf pairs', () => {
       const before = steps.findIndex((step) => step.moving_level === 2 && step.fixed_level === 2);
       if (before < 0) continue;
       const at = engine.ask('front', {pose: poses[3], policy, step: before});
-      assert.deepEqual([...inner.moving], [...new Set(at.moving)].sort((a, b) => a - b));
+      assert.deepEqual(
+        [...inner.moving],
+        [...new Set(at.moving)].sort((a, b) => a - b),
+      );
     }
   }
   assert.throws(() => engine.ask('front', {pose: poses[3], policy: 'slab', step: 99}), /steps/);
@@ -191,7 +209,7 @@ test('finds the first contact on the way', () => {
 async function short(use) {
   const {grow} = WebAssembly.Memory.prototype;
   const memory = {bytes: 0, limit: Infinity};
-  WebAssembly.Memory.prototype.grow = function(pages) {
+  WebAssembly.Memory.prototype.grow = function (pages) {
     if (this.buffer.byteLength + pages * 65536 > memory.limit) throw new RangeError('Maximum memory size exceeded');
     const before = grow.call(this, pages);
     memory.bytes = this.buffer.byteLength;
@@ -222,48 +240,63 @@ function untilItFits(memory, what, check) {
   }
 }
 
-test('says so where memory ends while a tree is built, and keeps the trees before', () => short((small, memory) => {
-  small.ask('make_jaws', {seed: 1});
-  small.ask('build', {voxel_size: 2});
-  const {line} = small.ask('collide', {pose: poses[3]});
-  const tree = Buffer.from(small.ask('save_body', {role: 'fixed'}).bytes);
-  // It ends at the first body, then at the second.
-  const ended = untilItFits(memory, () => small.ask('build', {voxel_size: 0.8}), () => {
-    assert.deepEqual(answerOf(small.ask('collide', {pose: poses[3]}).line), answerOf(line));
-    assert.ok(tree.equals(small.ask('save_body', {role: 'fixed'}).bytes), 'the tree is the one that answers');
-  });
-  assert.ok(ended > 5, `${ended} times`);
-  assert.equal(small.ask('collide', {pose: poses[3]}).line.voxel_size[0], 0.8);
-}));
+test('says so where memory ends while a tree is built, and keeps the trees before', () =>
+  short((small, memory) => {
+    small.ask('make_jaws', {seed: 1});
+    small.ask('build', {voxel_size: 2});
+    const {line} = small.ask('collide', {pose: poses[3]});
+    const tree = Buffer.from(small.ask('save_body', {role: 'fixed'}).bytes);
+    // It ends at the first body, then at the second.
+    const ended = untilItFits(
+      memory,
+      () => small.ask('build', {voxel_size: 0.8}),
+      () => {
+        assert.deepEqual(answerOf(small.ask('collide', {pose: poses[3]}).line), answerOf(line));
+        assert.ok(tree.equals(small.ask('save_body', {role: 'fixed'}).bytes), 'the tree is the one that answers');
+      },
+    );
+    assert.ok(ended > 5, `${ended} times`);
+    assert.equal(small.ask('collide', {pose: poses[3]}).line.voxel_size[0], 0.8);
+  }));
 
-test('says so where memory ends while a body is read or described, and keeps the body before', () => short((small, memory) => {
-  ist('build', lower, '-o', 'bare.ist', '--voxel-size', '0.4', '--no-triangles');
-  const bare = readFileSync(path.join(folder, 'bare.ist'));
-  small.ask('make_jaws', {seed: 1});
-  small.ask('build', {voxel_size: 2});
-  const {header, line} = small.ask('collide', {pose: poses[3]});
-  const ended = untilItFits(memory, () => small.open('moving', 'bare.ist', bare), () => {
-    const again = small.ask('collide', {pose: poses[3]});
-    assert.deepEqual([again.header, answerOf(again.line)], [header, answerOf(line)]);
-  });
-  assert.ok(ended > 5, `${ended} times`);
-  assert.throws(() => small.ask('collide', {pose: poses[3]}), /not built/);
-}));
+test('says so where memory ends while a body is read or described, and keeps the body before', () =>
+  short((small, memory) => {
+    ist('build', lower, '-o', 'bare.ist', '--voxel-size', '0.4', '--no-triangles');
+    const bare = readFileSync(path.join(folder, 'bare.ist'));
+    small.ask('make_jaws', {seed: 1});
+    small.ask('build', {voxel_size: 2});
+    const {header, line} = small.ask('collide', {pose: poses[3]});
+    const ended = untilItFits(
+      memory,
+      () => small.open('moving', 'bare.ist', bare),
+      () => {
+        const again = small.ask('collide', {pose: poses[3]});
+        assert.deepEqual([again.header, answerOf(again.line)], [header, answerOf(line)]);
+      },
+    );
+    assert.ok(ended > 5, `${ended} times`);
+    assert.throws(() => small.ask('collide', {pose: poses[3]}), /not built/);
+  }));
 
-test('refuses bad files with the command\'s sentence, and goes on', () => {
+test("refuses bad files with the command's sentence, and goes on", () => {
   engine.ask('make_jaws', {seed: 1});
-  const bad = [['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated', /copy or export it again/],
+  const bad = [
+    ['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), 'mesh-truncated', /copy or export it again/],
     ['text.obj', Buffer.from('v 0 0 0\nv 1 0 nan\n'), 'mesh-not-finite', /repair the mesh/],
     ['empty.ply', Buffer.alloc(0), 'mesh-empty', /export the mesh again/],
     ['points.obj', Buffer.from('v 0 0 0\nv 1 0 0\nv 0 1 0\n'), 'mesh-points-only', /export the surface as polygons/],
-    ['tree.ist', Buffer.from('ISTTREE1 nothing'), 'not-a-mesh', /convert the mesh/]];
+    ['tree.ist', Buffer.from('ISTTREE1 nothing'), 'not-a-mesh', /convert the mesh/],
+  ];
   for (const [name, bytes, code, whatToDo] of bad) {
-    assert.throws(() => engine.open('fixed', name, bytes), (error) => {
-      assert.ok(error.message.startsWith(`fixed/${name}: `), error.message);
-      assert.equal(error.code, code);
-      assert.match(error.message, whatToDo);
-      return true;
-    });
+    assert.throws(
+      () => engine.open('fixed', name, bytes),
+      (error) => {
+        assert.ok(error.message.startsWith(`fixed/${name}: `), error.message);
+        assert.equal(error.code, code);
+        assert.match(error.message, whatToDo);
+        return true;
+      },
+    );
   }
   for (const pose of [[1], Array(16).fill(null), [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]]) {
     engine.ask('build', {voxel_size: 2});

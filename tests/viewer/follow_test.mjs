@@ -6,22 +6,43 @@ import {followPose, isHere} from '../../src/viewer/page/follow.js';
 import {makeStore} from '../../src/viewer/page/state/store.js';
 
 const body = {rebuilds: true, unit: 'mm'};
-const rested = 400;  // milliseconds, after which a pose has rested
+const rested = 400; // milliseconds, after which a pose has rested
 
 /** The page's answers, of an engine whose questions wait until the test answers them. */
 function followed(change = {}) {
-  const said = [], asked = [];
+  const said = [],
+    asked = [];
   const store = makeStore({
-    bodies: {fixed: body, moving: body}, trees: null, pose: [1], dragging: false, policy: null, stiffness: 0.1, tick: null, answer: null,
-    cancelled: null, bite: null, wantsMap: false, preset: 'scan', reach: 2, unit: null, frame: '', ...change,
+    bodies: {fixed: body, moving: body},
+    trees: null,
+    pose: [1],
+    dragging: false,
+    policy: null,
+    stiffness: 0.1,
+    tick: null,
+    answer: null,
+    cancelled: null,
+    bite: null,
+    wantsMap: false,
+    preset: 'scan',
+    reach: 2,
+    unit: null,
+    frame: '',
+    ...change,
   });
-  const ask = (name, question) => new Promise((resolve, reject) => { asked.push({name, question, resolve, reject}); });
+  const ask = (name, question) =>
+    new Promise((resolve, reject) => {
+      asked.push({name, question, resolve, reject});
+    });
   const dropped = [];
-  const measurer = {ask, drop: (name) => {
-    dropped.push(name);
-    for (const each of asked.filter((each) => each.name === name)) each.reject(new EngineError('replaced', 'replaced'));
-    asked.splice(0, asked.length, ...asked.filter((each) => each.name !== name));
-  }};
+  const measurer = {
+    ask,
+    drop: (name) => {
+      dropped.push(name);
+      for (const each of asked.filter((each) => each.name === name)) each.reject(new EngineError('replaced', 'replaced'));
+      asked.splice(0, asked.length, ...asked.filter((each) => each.name !== name));
+    },
+  };
   const {settled} = followPose({engine: {ask}, measurer, store, say: (text) => said.push(text)});
   const take = (name) => {
     const at = asked.findIndex((each) => each.name === name);
@@ -31,13 +52,22 @@ function followed(change = {}) {
   };
   return {store, said, asked, take, settled, dropped};
 }
-const wait = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+const wait = (milliseconds) =>
+  new Promise((resolve) => {
+    setTimeout(resolve, milliseconds);
+  });
 
 test('a tick is asked with each pose, the whole answer where it rests', async () => {
   const {store, asked, take, settled} = followed();
   store.set({trees: {}});
   store.set({pose: [2], dragging: true});
-  assert.deepEqual(asked.map(({name, question}) => [name, question.pose]), [['tick', [1]], ['tick', [2]]]);
+  assert.deepEqual(
+    asked.map(({name, question}) => [name, question.pose]),
+    [
+      ['tick', [1]],
+      ['tick', [2]],
+    ],
+  );
   await wait(rested);
   assert.equal(asked.length, 2, 'a hand still drags it');
   store.set({dragging: false});
@@ -95,7 +125,8 @@ test('answers of trees that went are passed over, without a word', async () => {
   const {store, said, take} = followed();
   store.set({trees: {}});
   await wait(rested);
-  const tick = take('tick'), answer = take('collide');
+  const tick = take('tick'),
+    answer = take('collide');
   store.set({trees: null});
   tick.reject(new EngineError('argument-invalid', 'the trees are not built'));
   answer.resolve({line: {}});

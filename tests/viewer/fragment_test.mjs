@@ -6,7 +6,13 @@ import {translation} from '../../src/viewer/page/pose.js';
 
 const panels = ['pose', 'occlusion'];
 const state = {
-  panel: 'occlusion', pose: translation([0.1, 0, -1.5]), voxelSize: 0.4, policy: 'tight', preset: 'owens', theme: 'dark', seed: 7,
+  panel: 'occlusion',
+  pose: translation([0.1, 0, -1.5]),
+  voxelSize: 0.4,
+  policy: 'tight',
+  preset: 'owens',
+  theme: 'dark',
+  seed: 7,
 };
 
 test('a state comes back from its fragment, bit for bit in the pose', () => {

@@ -7,17 +7,32 @@ import {makeStore} from '../../src/viewer/page/state/store.js';
 
 /** The picture's keys, without a browser: what a key does, and whether the page took it. */
 function picture() {
-  const listeners = {}, done = [];
-  const surface = {setAttribute: () => {}, addEventListener: (name, listener) => { listeners[name] = listener; }};
+  const listeners = {},
+    done = [];
+  const surface = {
+    setAttribute: () => {},
+    addEventListener: (name, listener) => {
+      listeners[name] = listener;
+    },
+  };
   const stage = {
-    drawn: true, surface, circle: (...by) => done.push(by.map(Math.sign)), frameAll: () => done.push('all'),
+    drawn: true,
+    surface,
+    circle: (...by) => done.push(by.map(Math.sign)),
+    frameAll: () => done.push('all'),
   };
   globalThis.document = {addEventListener: () => {}};
   const store = makeStore({bodies: {moving: {extent: 1000}}, pose: [...identity], dragging: false});
   listenToKeys({store, stage, history: {}});
   const press = (key, more = {}) => {
     let taken = false;
-    listeners.keydown({key, preventDefault: () => { taken = true; }, ...more});
+    listeners.keydown({
+      key,
+      preventDefault: () => {
+        taken = true;
+      },
+      ...more,
+    });
     return taken;
   };
   return {store, done, press, listeners};
@@ -26,7 +41,14 @@ const shiftKey = true;
 
 test('arrows turn the view; plus and minus change its distance, also where Shift makes the plus', () => {
   const {store, done, press} = picture();
-  for (const [key, more, wanted] of [['ArrowLeft', {}, [-1, 0, 1]], ['ArrowUp', {}, [0, -1, 1]], ['+', {}, [0, 0, 1]], ['+', {shiftKey}, [0, 0, 1]], ['-', {}, [0, 0, 1]], ['Home', {}, 'all']]) {
+  for (const [key, more, wanted] of [
+    ['ArrowLeft', {}, [-1, 0, 1]],
+    ['ArrowUp', {}, [0, -1, 1]],
+    ['+', {}, [0, 0, 1]],
+    ['+', {shiftKey}, [0, 0, 1]],
+    ['-', {}, [0, 0, 1]],
+    ['Home', {}, 'all'],
+  ]) {
     assert.equal(press(key, more), true);
     assert.deepEqual(done.pop(), wanted);
   }
@@ -44,7 +66,13 @@ test('with Shift arrows move the body, until Shift is let go', () => {
   assert.deepEqual(done, []);
 });
 
-test('other keys are the browser\'s', () => {
+test("other keys are the browser's", () => {
   const {press} = picture();
-  for (const [key, more] of [['a', {}], ['Tab', {shiftKey}], ['ArrowLeft', {ctrlKey: true}], ['+', {metaKey: true}]]) assert.equal(press(key, more), false);
+  for (const [key, more] of [
+    ['a', {}],
+    ['Tab', {shiftKey}],
+    ['ArrowLeft', {ctrlKey: true}],
+    ['+', {metaKey: true}],
+  ])
+    assert.equal(press(key, more), false);
 });

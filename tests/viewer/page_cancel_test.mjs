@@ -5,10 +5,25 @@ import {readFileSync} from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, ist, inWorker, message, openPage, readout, ready, setPose, settled, showPanel} from './browser.mjs';
+import {
+  answer,
+  answerOf,
+  closePage,
+  closedBy,
+  ist,
+  inWorker,
+  message,
+  openPage,
+  readout,
+  ready,
+  setPose,
+  settled,
+  showPanel,
+} from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
-const lower = 'lower_jaw.stl', turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
+const lower = 'lower_jaw.stl',
+  turned = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, -0.6, 1];
 stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
 });
@@ -22,12 +37,20 @@ const slowly = inWorker(`addEventListener('message', ({data: {question, asked}})
 });`);
 
 const panelsOf = {
-  'Making the built-in jaws': ['Bodies', async (page) => {
-    await page.getByLabel('Built-in jaws, number').fill('5');
-    await page.getByRole('button', {name: 'Make these jaws'}).click();
-  }],
-  'Reading slow.stl': ['Bodies', (page) => page.locator('.body.moving input[type=file]')
-      .setInputFiles({name: 'slow.stl', mimeType: 'model/stl', buffer: readFileSync(path.join(folder, lower))})],
+  'Making the built-in jaws': [
+    'Bodies',
+    async (page) => {
+      await page.getByLabel('Built-in jaws, number').fill('5');
+      await page.getByRole('button', {name: 'Make these jaws'}).click();
+    },
+  ],
+  'Reading slow.stl': [
+    'Bodies',
+    (page) =>
+      page
+        .locator('.body.moving input[type=file]')
+        .setInputFiles({name: 'slow.stl', mimeType: 'model/stl', buffer: readFileSync(path.join(folder, lower))}),
+  ],
   'Building both trees': ['Accuracy', (page) => page.getByRole('slider', {name: 'Voxel size'}).press('Home')],
   'Reading the trees': ['Tree', (page) => page.getByRole('slider', {name: 'Level'}).press('Home')],
   'Looking for the first contact': ['Pose', (page) => page.getByRole('button', {name: 'First contact'}).click()],
@@ -75,15 +98,21 @@ test('says that the depth is not known where its search was cancelled, and asks 
   await page.evaluate(() => {
     const {setTimeout} = window;
     let time = 0;
-    window.setTimeout = (call, milliseconds, ...more) => setTimeout(() => {
-      time = milliseconds;
-      call(...more);
-    }, milliseconds);
+    window.setTimeout = (call, milliseconds, ...more) =>
+      setTimeout(() => {
+        time = milliseconds;
+        call(...more);
+      }, milliseconds);
     new MutationObserver((changes) => {
       if (changes.some(({target}) => !target.hidden)) window.barAfter ??= time;
     }).observe(document.getElementById('progress'), {subtree: true, attributeFilter: ['hidden']});
   });
-  await page.evaluate((hash) => { location.hash = hash; }, `#pose=${closedBy(-0.25)}`);
+  await page.evaluate(
+    (hash) => {
+      location.hash = hash;
+    },
+    `#pose=${closedBy(-0.25)}`,
+  );
   await cancel(page, 'Finding distance and depth');
   const barAfter = await page.evaluate(() => window.barAfter);
   assert.equal(barAfter, 1000);
@@ -151,14 +180,16 @@ test('draws while it reads a recording, and ends that too', async () => {
   const header = {recording: 2, ist: '1.2.3', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
   const tick = (number) => ({tick: number, dt: 0.001, device: row, tool: row, wrench: [0, 0, 0, 0, 0, 0]});
   const text = (ticks) => [header, ...Array.from({length: ticks}, (_, at) => tick(at))].map((line) => `${JSON.stringify(line)}\n`).join('');
-  const opened = await openPage(browser, '#voxel=2&panel=recording', {before: () => {
-    // Each tick takes 10 ms to read: all of them take minutes.
-    const {parse} = JSON;
-    JSON.parse = (line, ...more) => {
-      for (const begun = performance.now(); line.startsWith('{"tick":') && performance.now() - begun < 10;);
-      return parse(line, ...more);
-    };
-  }});
+  const opened = await openPage(browser, '#voxel=2&panel=recording', {
+    before: () => {
+      // Each tick takes 10 ms to read: all of them take minutes.
+      const {parse} = JSON;
+      JSON.parse = (line, ...more) => {
+        for (const begun = performance.now(); line.startsWith('{"tick":') && performance.now() - begun < 10;);
+        return parse(line, ...more);
+      };
+    },
+  });
   const {page} = opened;
   await ready(page);
   const file = (name, ticks) => ({name, mimeType: 'text/plain', buffer: Buffer.from(text(ticks))});

@@ -6,10 +6,26 @@ import {readFileSync, truncateSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
 
-import {answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, messages, openPage, readout, ready, setPose, showPanel} from './browser.mjs';
+import {
+  answer,
+  answerOf,
+  closePage,
+  closedBy,
+  inWorker,
+  ist,
+  linesOf,
+  message,
+  messages,
+  openPage,
+  readout,
+  ready,
+  setPose,
+  showPanel,
+} from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
-const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
+const upper = 'upper_jaw.stl',
+  lower = 'lower_jaw.stl';
 const coarse = '#voxel=2&panel=bodies';
 stage(() => {
   ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
@@ -31,9 +47,17 @@ test('says what is wrong with each bad file and what to do, and keeps the bodies
   ist(folder, 'build', lower, '-o', 'whole.ist', '--voxel-size', '2');
   writeFileSync(path.join(folder, 'cut.ist'), readFileSync(path.join(folder, 'whole.ist')).subarray(0, 3000));
   const bad = [
-    ['half.stl', readFileSync(path.join(folder, upper)).subarray(0, 5000), /byte 5000: the file ends after 98 of the \d+ facets.*; copy or export it again$/],
+    [
+      'half.stl',
+      readFileSync(path.join(folder, upper)).subarray(0, 5000),
+      /byte 5000: the file ends after 98 of the \d+ facets.*; copy or export it again$/,
+    ],
     ['empty.ply', '', /the file is empty; export the mesh again$/],
-    ['numbers.obj', 'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n', /line 2: the coordinate 'nan' is not finite.*; repair the mesh where it was made$/],
+    [
+      'numbers.obj',
+      'v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n',
+      /line 2: the coordinate 'nan' is not finite.*; repair the mesh where it was made$/,
+    ],
     ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n', /3 vertices, but no face; export the surface as polygons$/],
     ['cut.ist', readFileSync(path.join(folder, 'cut.ist')), /it has 3000 bytes and should have \d+: copy or build it again$/],
     ['jaw.step', 'ISO-10303-21;', /in no supported format: STL, .*; convert the mesh to one of them$/],
@@ -62,7 +86,8 @@ test('opens files that are chosen as the command opens them', async () => {
   const opened = await openPage(browser, coarse);
   const {page} = opened;
   await ready(page);
-  const small = scaled(lower, 0.5), large = scaled(upper, 0.5);
+  const small = scaled(lower, 0.5),
+    large = scaled(upper, 0.5);
   writeFileSync(path.join(folder, 'small.stl'), small);
   writeFileSync(path.join(folder, 'large.stl'), large);
   await field(page, 'fixed').setInputFiles(fileOf('large.stl', large));
@@ -72,8 +97,7 @@ test('opens files that are chosen as the command opens them', async () => {
   await page.waitForFunction(() => window.ist.state().trees !== null);
   await ready(page);
   const found = await answer(page);
-  const [header, line] = linesOf(ist(folder, 'collide', 'large.stl', 'small.stl', '--voxel-size',
-      `${found.line.voxel_size[0]}`, '--json'));
+  const [header, line] = linesOf(ist(folder, 'collide', 'large.stl', 'small.stl', '--voxel-size', `${found.line.voxel_size[0]}`, '--json'));
   assert.deepEqual(answerOf(found.line), answerOf(line));
   assert.deepEqual({...found.header, commit: ''}, {...header, commit: ''});
   await closePage(opened);
@@ -86,14 +110,17 @@ test('takes two meshes that are dropped together, the first as fixed', async () 
   await page.getByLabel('Unit of the files you open').selectOption('mm');
   const names = ['first.stl', 'second.stl'];
   const contents = [scaled(upper, 0.25), scaled(lower, 0.25)].map((bytes) => bytes.toString('base64'));
-  await page.evaluate(({names, contents}) => {
-    const dropped = new DataTransfer();
-    contents.forEach((text, at) => {
-      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-      dropped.items.add(new File([bytes], names[at]));
-    });
-    document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
-  }, {names, contents});
+  await page.evaluate(
+    ({names, contents}) => {
+      const dropped = new DataTransfer();
+      contents.forEach((text, at) => {
+        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+        dropped.items.add(new File([bytes], names[at]));
+      });
+      document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
+    },
+    {names, contents},
+  );
   await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'second.stl' && window.ist.state().trees !== null);
   await ready(page);
   const {fixed, moving} = await page.evaluate(() => window.ist.state().bodies);
@@ -135,10 +162,14 @@ test('refuses files that no page can hold, and goes on', async () => {
   const opened = await openPage(browser, coarse);
   const {page} = opened;
   await ready(page);
-  const mesh = path.join(folder, 'large.ply'), recording = path.join(folder, 'large.jsonl');
-  for (const [file, bytes] of [[mesh, 1.2e9], [recording, 6e8]]) {
+  const mesh = path.join(folder, 'large.ply'),
+    recording = path.join(folder, 'large.jsonl');
+  for (const [file, bytes] of [
+    [mesh, 1.2e9],
+    [recording, 6e8],
+  ]) {
     writeFileSync(file, '');
-    truncateSync(file, bytes);  // takes no place on the disk
+    truncateSync(file, bytes); // takes no place on the disk
   }
   await field(page, 'moving').setInputFiles(mesh);
   assert.match(await message(page, /^large\.ply: it has 1,200 MB/), /make its mesh coarser/);
@@ -151,13 +182,15 @@ test('refuses files that no page can hold, and goes on', async () => {
 });
 
 test('says so where memory ends while bodies are built, and builds the next ones', async () => {
-  const mostBytes = 110e6;  // voxels of 0.8 mm need 100 MB, of 0.2 mm over 200
-  const opened = await openPage(browser, '#voxel=0.8&panel=accuracy', {before: inWorker(`
+  const mostBytes = 110e6; // voxels of 0.8 mm need 100 MB, of 0.2 mm over 200
+  const opened = await openPage(browser, '#voxel=0.8&panel=accuracy', {
+    before: inWorker(`
     const {grow} = WebAssembly.Memory.prototype;
     WebAssembly.Memory.prototype.grow = function(pages) {
       if (this.buffer.byteLength + pages * 65536 > ${mostBytes}) throw new RangeError('Maximum memory size exceeded');
       return grow.call(this, pages);
-    };`)});
+    };`),
+  });
   const {page} = opened;
   await ready(page);
   const before = await answer(page);
@@ -175,9 +208,11 @@ test('says so where memory ends while bodies are built, and builds the next ones
 });
 
 test('goes on where the engine itself ends', async () => {
-  const opened = await openPage(browser, coarse, {before: inWorker(`addEventListener('message', ({data}) => {
+  const opened = await openPage(browser, coarse, {
+    before: inWorker(`addEventListener('message', ({data}) => {
     if (data.question === 'open' && data.asked.name === 'fatal.stl') Float32Array.prototype.slice = () => { throw new RangeError('Array buffer allocation failed'); };
-  });`)});
+  });`),
+  });
   const {page} = opened;
   await ready(page);
   const before = await answer(page);
@@ -215,7 +250,12 @@ test('comes back to what its address says', async () => {
   await ready(again.page);
   assert.deepEqual(answerOf((await answer(again.page)).line), answerOf(line));
   assert.equal(await again.page.getByRole('tab', {selected: true}).textContent(), 'Pose');
-  await again.page.evaluate((hash) => { location.hash = hash; }, `#voxel=2&panel=save&pose=${closedBy(-0.6)}`);
+  await again.page.evaluate(
+    (hash) => {
+      location.hash = hash;
+    },
+    `#voxel=2&panel=save&pose=${closedBy(-0.6)}`,
+  );
   await again.page.waitForFunction(() => window.ist.state().voxelSize === 2);
   await ready(again.page);
   const pasted = (await answer(again.page)).line;
@@ -227,8 +267,13 @@ test('comes back to what its address says', async () => {
 
 test('starts with its defaults where the address is wrong, and says so', async () => {
   const wrong = [
-    ['pose', '1,0,0'], ['pose', Array(16).fill('nan').join()], ['pose', '2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1'],
-    ['voxel', '-1'], ['voxel', 'many'], ['policy', 'round'], ['panel', 'none'],
+    ['pose', '1,0,0'],
+    ['pose', Array(16).fill('nan').join()],
+    ['pose', '2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1'],
+    ['voxel', '-1'],
+    ['voxel', 'many'],
+    ['policy', 'round'],
+    ['panel', 'none'],
   ];
   for (const [name, value] of wrong) {
     const opened = await openPage(browser, `#${name}=${value}`);
@@ -250,12 +295,17 @@ test('keeps an error before people where warnings follow it', async () => {
   await field(page, 'moving').setInputFiles(fileOf('empty.ply', ''));
   const error = await message(page, 'empty.ply');
   for (const panel of ['a', 'b', 'c', 'd']) {
-    await page.evaluate((hash) => { location.hash = hash; }, `#panel=${panel}`);
+    await page.evaluate((hash) => {
+      location.hash = hash;
+    }, `#panel=${panel}`);
     await message(page, `panel=${panel},`);
   }
   const [first, ...warnings] = await messages(page);
   assert.equal(first, error);
-  assert.deepEqual(warnings.map((each) => /panel=(.)/.exec(each)[1]), ['b', 'c', 'd']);
+  assert.deepEqual(
+    warnings.map((each) => /panel=(.)/.exec(each)[1]),
+    ['b', 'c', 'd'],
+  );
   await closePage(opened);
 });
 
@@ -284,7 +334,11 @@ test('shows the bodies of the data in it, whatever their names', async () => {
   ist(folder, 'build', lower, '-o', 'lower.ist', ...voxels);
   const tree = (file) => readFileSync(path.join(folder, file)).toString('base64');
   const file = pageWith({
-    format: 1, made_by: 'ist 1.2.3', kind: 'bodies', pose: closedBy(-0.6), missing: ['</script><b>One</b> is not here.'],
+    format: 1,
+    made_by: 'ist 1.2.3',
+    kind: 'bodies',
+    pose: closedBy(-0.6),
+    missing: ['</script><b>One</b> is not here.'],
     bodies: [
       {role: 'fixed', name: '</script><script>fault()</script>.stl', tree: tree('upper.ist')},
       {role: 'moving', name: 'scans/of $& today/lower.stl', tree: tree('lower.ist')},
@@ -294,7 +348,10 @@ test('shows the bodies of the data in it, whatever their names', async () => {
   await ready(opened.page);
   await message(opened.page, '</script><b>One</b> is not here.');
   await showPanel(opened.page, 'Bodies');
-  for (const [role, name] of [['fixed', '</script><script>fault()</script>.stl'], ['moving', 'scans/of $& today/lower.stl']]) {
+  for (const [role, name] of [
+    ['fixed', '</script><script>fault()</script>.stl'],
+    ['moving', 'scans/of $& today/lower.stl'],
+  ]) {
     assert.equal(await opened.page.locator(`.body.${role} strong`).textContent(), name);
   }
   assert.match(await opened.page.locator('#subject').textContent(), /^<.script>.* and scans.of \$& today.lower\.stl$/);
@@ -311,7 +368,7 @@ test('shows the bite that the command measured, with the settings that it was as
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
   const [, line] = linesOf(ist(folder, ...asked, '--json'));
-  assert.deepEqual({...await page.evaluate(() => window.ist.bite()), commit: ''}, {...line, commit: ''});
+  assert.deepEqual({...(await page.evaluate(() => window.ist.bite())), commit: ''}, {...line, commit: ''});
   assert.equal(await page.getByLabel('Preset').inputValue(), 'stl');
   assert.equal(await page.getByLabel('Patient frame').inputValue(), 'lps');
   assert.equal(await page.getByLabel('Reach of the search').getAttribute('aria-valuetext'), '3 mm');
@@ -336,7 +393,10 @@ test('shows the built-in jaws where the data in it is newer, damaged or of no tr
     ['{"format": 1, "made_by": "ist', /cut off or damaged/],
     [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', bodies: [{role: 'fixed', name: 'a', tree: '*'}]}, /damaged/],
     [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', bodies: [body('fixed'), body('moving')]}, /^a\/of \$&b\.ist: /],
-    [{format: 1, made_by: 'ist 1.2.3', kind: 'bite', occlusion: {preset: 'scan', reach: NaN}, bodies: [body('fixed'), body('moving')]}, /no preset or reach/],
+    [
+      {format: 1, made_by: 'ist 1.2.3', kind: 'bite', occlusion: {preset: 'scan', reach: NaN}, bodies: [body('fixed'), body('moving')]},
+      /no preset or reach/,
+    ],
     ['{"format": 1, "made_by": "ist 1.2.3", "kind": "bite", "pose": [NaN], "bodies": []}', /damaged/],
     [{format: 1, made_by: 'ist 1.2.3', kind: 'bodies', pose: Array(16).fill(null), bodies: [body('fixed'), body('moving')]}, /pose/],
   ];

@@ -7,12 +7,15 @@ import {after, before, test} from 'node:test';
 import {closePage, inWorker, openPage, ready, startBrowser} from './browser.mjs';
 
 // Answers of a drag: where memory is looked at first and last.
-const early = 200, late = 1000;
+const early = 200,
+  late = 1000;
 // Bytes: of the engine's memory, of what it holds, and of what the page's own objects hold.
 const mostGrowth = {heap: 1e6, held: 2e5, objects: 1e6};
 let browser;
 
-before(async () => { browser = await startBrowser(); });
+before(async () => {
+  browser = await startBrowser();
+});
 after(() => browser?.close());
 
 /** Milliseconds from the opening of the page to what it painted first; undefined before. */
@@ -37,7 +40,9 @@ test('makes the map and the depth again after the pose rests', async () => {
   await ready(page);
   const slider = page.getByRole('slider', {name: 'Close along z'});
   await slider.evaluate((element) => {
-    element.addEventListener('input', () => { window.shown = [window.ist.bite(), window.ist.answer()]; });
+    element.addEventListener('input', () => {
+      window.shown = [window.ist.bite(), window.ist.answer()];
+    });
   });
   const begun = performance.now();
   await slider.press('ArrowRight');
@@ -54,7 +59,7 @@ test('answers a drag at 0.4 mm a thousand times, in the same memory', async () =
   const {x, y, width, height} = await page.getByRole('slider', {name: 'Close along z'}).boundingBox();
   // Closes and opens the jaws, once in sixty places.
   let moves = 0;
-  const place = () => x + width * (0.85 + 0.14 * Math.sin(Math.PI * moves / 30));
+  const place = () => x + width * (0.85 + 0.14 * Math.sin((Math.PI * moves) / 30));
   const client = await page.context().newCDPSession(page);
   await client.send('Performance.enable');
   const memory = async () => {
@@ -67,7 +72,7 @@ test('answers a drag at 0.4 mm a thousand times, in the same memory', async () =
   await page.mouse.down();
   const answers = () => page.evaluate(() => window.ist.tickTimes().count);
   const dragUntil = async (count) => {
-    while (await answers() < count) {
+    while ((await answers()) < count) {
       for (let each = 0; each < 10; each++) {
         moves += 1;
         await page.mouse.move(place(), y + height / 2);
@@ -79,7 +84,9 @@ test('answers a drag at 0.4 mm a thousand times, in the same memory', async () =
   const last = await dragUntil(late);
   await page.mouse.up();
   const {count, p50, p99, max} = await page.evaluate(() => window.ist.tickTimes());
-  console.log(`${count} answers: median ${p50.toFixed(1)} ms, p99 ${p99.toFixed(1)} ms, longest ${max.toFixed(1)} ms; memory ${JSON.stringify(first)} to ${JSON.stringify(last)} bytes`);
+  console.log(
+    `${count} answers: median ${p50.toFixed(1)} ms, p99 ${p99.toFixed(1)} ms, longest ${max.toFixed(1)} ms; memory ${JSON.stringify(first)} to ${JSON.stringify(last)} bytes`,
+  );
   for (const [name, most] of Object.entries(mostGrowth)) {
     assert.ok(first[name] > 1e6, `${name}: ${first[name]}`);
     assert.ok(last[name] - first[name] <= most, `${name} went from ${first[name]} to ${last[name]} bytes`);

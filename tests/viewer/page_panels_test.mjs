@@ -18,21 +18,26 @@ const panel = (page, name) => page.getByRole('tabpanel', {name, exact: true});
 
 /** The names and values that a panel lists. */
 function facts(page, name) {
-  return panel(page, name).evaluate((element) => Object.fromEntries(
-      [...element.querySelectorAll('dt')].map((each) => [each.textContent, each.nextElementSibling.textContent])));
+  return panel(page, name).evaluate((element) =>
+    Object.fromEntries([...element.querySelectorAll('dt')].map((each) => [each.textContent, each.nextElementSibling.textContent])),
+  );
 }
 
 /** The cells of a table of a panel, row by row. */
 function rows(page, caption) {
-  return page.getByRole('region', {name: caption}).evaluate((element) =>
-    [...element.querySelectorAll('tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent)));
+  return page
+    .getByRole('region', {name: caption})
+    .evaluate((element) => [...element.querySelectorAll('tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent)));
 }
 
 test('Bodies: what ist info says of both, and their trees', async () => {
   const opened = await openPage(browser, '#voxel=2&panel=bodies');
   const {page} = opened;
   await ready(page);
-  for (const [role, file] of [['fixed', 'upper_jaw.stl'], ['moving', 'lower_jaw.stl']]) {
+  for (const [role, file] of [
+    ['fixed', 'upper_jaw.stl'],
+    ['moving', 'lower_jaw.stl'],
+  ]) {
     const [, info] = linesOf(ist(folder, 'info', file, '--json'));
     const text = await page.locator(`.body.${role}`).textContent();
     for (const sentence of infoSentences({unit: null, ...info})) assert.ok(text.includes(sentence), `${sentence} in: ${text}`);
@@ -53,7 +58,10 @@ test('Bodies: makes the built-in jaws of a number, as the command does', async (
   mkdirSync(path.join(folder, 'seven'));
   ist(folder, 'demo', '--seed', '7', '--voxel-size', '2', '--keep', 'seven');
   const hash = (role) => page.evaluate((role) => window.ist.state().bodies[role].info.source.hash, role);
-  for (const [role, file] of [['fixed', 'upper_jaw.stl'], ['moving', 'lower_jaw.stl']]) {
+  for (const [role, file] of [
+    ['fixed', 'upper_jaw.stl'],
+    ['moving', 'lower_jaw.stl'],
+  ]) {
     const [, {source}] = linesOf(ist(folder, 'info', path.join('seven', file), '--json'));
     assert.equal(await hash(role), source.hash);
   }
@@ -72,7 +80,9 @@ test('Pose: copies the matrix that the command reads', async () => {
   writeFileSync(path.join(folder, 'pose.txt'), await page.evaluate(() => navigator.clipboard.readText()));
   const [, line] = linesOf(ist(folder, 'collide', 'upper_jaw.stl', 'lower_jaw.stl', '--voxel-size', '2', '--matrix', 'pose.txt', '--json'));
   assert.deepEqual(answerOf((await answer(page)).line), answerOf(line));
-  await page.evaluate(() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); });
+  await page.evaluate(() => {
+    navigator.clipboard.writeText = () => Promise.reject(new Error('no'));
+  });
   await page.getByRole('button', {name: 'Copy the matrix'}).click();
   await message(page, /does not let the page copy: the matrix is selected/);
   assert.match(await page.evaluate(() => getSelection().toString()), /^1 0 0 0\n0 1 0 0\n0 0 1 -0\.6\n/);
@@ -84,7 +94,9 @@ test('Accuracy: visits seven voxel sizes, or as many as it is let', async () => 
   const {page} = opened;
   await ready(page);
   const visit = page.getByRole('button', {name: 'Visit seven voxel sizes'});
-  await page.evaluate(() => { window.holds = ({question, asked}) => question === 'build' && asked.voxel_size === 1; });
+  await page.evaluate(() => {
+    window.holds = ({question, asked}) => question === 'build' && asked.voxel_size === 1;
+  });
   await visit.click();
   await page.waitForFunction(() => window.held() > 0);
   await page.getByRole('button', {name: 'Stop the visits'}).click();
@@ -97,7 +109,10 @@ test('Accuracy: visits seven voxel sizes, or as many as it is let', async () => 
   await visit.waitFor();
   await ready(page);
   const sizes = (await rows(page, 'Visited at this pose')).map(([, size]) => Number(size));
-  assert.deepEqual(sizes.sort((a, b) => b - a), [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3]);
+  assert.deepEqual(
+    sizes.sort((a, b) => b - a),
+    [2, 1.4, 1, 0.7, 0.5, 0.4, 0.3],
+  );
   await closePage(opened);
 });
 
@@ -108,9 +123,16 @@ test('Accuracy: the numbers of the answer, a point for each voxel size and polic
   const {line} = await answer(page);
   const said = await facts(page, 'Accuracy');
   assert.match(said['Time of a query'], /^[\d.,]+ µs, the median of groups of 20 and more$/);
-  assert.deepEqual([said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said.Depth], [
-    count(line.sphere_tests), count(line.leaf_pairs), `${short(line.resolution)} mm`,
-    interval(line.distance_lower, line.distance_upper, 'mm'), interval(line.depth_lower, line.depth_upper, 'mm')]);
+  assert.deepEqual(
+    [said['Sphere tests'], said['Leaf pairs'], said.Resolution, said.Distance, said.Depth],
+    [
+      count(line.sphere_tests),
+      count(line.leaf_pairs),
+      `${short(line.resolution)} mm`,
+      interval(line.distance_lower, line.distance_upper, 'mm'),
+      interval(line.depth_lower, line.depth_upper, 'mm'),
+    ],
+  );
   assert.ok((await panel(page, 'Accuracy').textContent()).includes(`takes ${short(ratio.ratio, 2)} times as long as the program itself`));
   const points = () => panel(page, 'Accuracy').locator('circle.point').count();
   assert.equal(await points(), 1);
@@ -135,17 +157,27 @@ test('Tree: nodes of a level, policies beside each other, and a query front by f
   const {line} = await answer(page);
   await page.getByLabel('tight', {exact: true}).check();
   const level = page.getByRole('region', {name: 'Level 4'});
-  await level.getByRole('row', {name: /^tight / }).waitFor();
+  await level.getByRole('row', {name: /^tight /}).waitFor();
   const nodes = await page.evaluate(() => ['fixed', 'moving'].map((role) => window.ist.state().trees[role].nodes[4]));
   for (const row of await rows(page, 'Level 4')) assert.equal(row[1], nodes.map(count).join(' and '));
   await page.getByLabel('tight', {exact: true}).uncheck();
   await page.getByLabel('Show', {exact: true}).selectOption('query');
   const first = page.getByRole('region', {name: 'This step'}).getByRole('row', {name: /^slab /});
   await first.waitFor();
-  const tests = (await first.textContent());
+  const tests = await first.textContent();
   await page.getByRole('slider', {name: 'Step of the query'}).press('End');
-  await page.getByRole('region', {name: 'This step'}).getByRole('cell', {name: count(line.leaf_pairs), exact: true}).first().waitFor();
-  assert.notEqual(await page.getByRole('region', {name: 'This step'}).getByRole('row', {name: /^slab /}).textContent(), tests);
+  await page
+    .getByRole('region', {name: 'This step'})
+    .getByRole('cell', {name: count(line.leaf_pairs), exact: true})
+    .first()
+    .waitFor();
+  assert.notEqual(
+    await page
+      .getByRole('region', {name: 'This step'})
+      .getByRole('row', {name: /^slab /})
+      .textContent(),
+    tests,
+  );
   await closePage(opened);
 });
 
@@ -170,7 +202,10 @@ test('Contacts: the deepest ones, and the force and the torque of all', async ()
   assert.ok(Math.abs(stiffer / force - 100) < 1e-6, '0.1 to 10 N/mm³');
   assert.ok((await facts(page, 'Contacts'))['Force on the moving body (green)'].startsWith(`${short(stiffer, 3)} N (`));
   const listed = await rows(page, 'deepest');
-  assert.deepEqual(listed.map(([, depth]) => depth), depths.slice(0, 10).map((depth) => short(depth, 3)));
+  assert.deepEqual(
+    listed.map(([, depth]) => depth),
+    depths.slice(0, 10).map((depth) => short(depth, 3)),
+  );
   await closePage(opened);
 });
 
@@ -180,7 +215,9 @@ test('Occlusion: the legend, the areas and the regions of the bite, grey where t
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
   const {bands, bite} = await page.evaluate(() => {
-    const {bite: {bands, bite}} = window.ist.state();
+    const {
+      bite: {bands, bite},
+    } = window.ist.state();
     return {bands, bite};
   });
   const legend = await page.locator('.map-legend li').allTextContents();

@@ -6,13 +6,27 @@ import {readFileSync} from 'node:fs';
 import {after, before, test} from 'node:test';
 
 import {
-  answer, axeFile, closePage, closedBy, lastPicture, message, openPage, readout, ready, setPose, showPanel, startBrowser, until,
+  answer,
+  axeFile,
+  closePage,
+  closedBy,
+  lastPicture,
+  message,
+  openPage,
+  readout,
+  ready,
+  setPose,
+  showPanel,
+  startBrowser,
+  until,
 } from './browser.mjs';
 
 const coarse = '#voxel=2&panel=pose';
 let browser;
 
-before(async () => { browser = await startBrowser(); });
+before(async () => {
+  browser = await startBrowser();
+});
 after(() => browser?.close());
 
 const panels = (page) => page.getByRole('tab').allTextContents();
@@ -20,8 +34,9 @@ const panels = (page) => page.getByRole('tab').allTextContents();
 /** The serious faults that axe finds in what is shown. */
 async function faultsOf(page) {
   const found = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
-  return found.violations.filter(({impact}) => ['serious', 'critical'].includes(impact))
-      .map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target.join(' ')).join(', ')}`);
+  return found.violations
+    .filter(({impact}) => ['serious', 'critical'].includes(impact))
+    .map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target.join(' ')).join(', ')}`);
 }
 
 for (const theme of ['light', 'dark']) {
@@ -71,10 +86,11 @@ test('does all by keys', async () => {
   const {page} = opened;
   await ready(page);
   const {keyboard} = page;
-  const focused = () => page.evaluate(() => {
-    const {activeElement: at} = document;
-    return at.getAttribute('aria-label') ?? at.labels?.[0]?.textContent ?? at.textContent;
-  });
+  const focused = () =>
+    page.evaluate(() => {
+      const {activeElement: at} = document;
+      return at.getAttribute('aria-label') ?? at.labels?.[0]?.textContent ?? at.textContent;
+    });
   /** Goes on by the tabulator to what is named so. */
   const tabTo = async (name) => {
     for (let i = 0; i < 60; i++) {
@@ -129,7 +145,7 @@ async function upwardHandle(page) {
     const {data, width} = canvas.getImageData(0, 0, image.width, image.height);
     const blue = [];
     for (let at = 0; at < data.length; at += 4) {
-      if (data[at] < 40 && data[at + 1] < 40 && data[at + 2] > 200) blue.push([at / 4 % width, Math.floor(at / 4 / width)]);
+      if (data[at] < 40 && data[at + 1] < 40 && data[at + 2] > 200) blue.push([(at / 4) % width, Math.floor(at / 4 / width)]);
     }
     return blue[0] && {x: blue[0][0], y: blue[0][1]};
   }, png);
@@ -170,8 +186,8 @@ test('fits 400 pixels, and follows a finger', async () => {
       width: document.documentElement.scrollWidth,
       // A table may be wider than the screen, where it scrolls by itself.
       overlong: [...document.querySelectorAll('button, input, select, textarea, p, h2, h3, dd')]
-          .filter((each) => each.checkVisibility() && !each.closest('table') && each.getBoundingClientRect().right > 401)
-          .map((each) => each.outerHTML.slice(0, 80)),
+        .filter((each) => each.checkVisibility() && !each.closest('table') && each.getBoundingClientRect().right > 401)
+        .map((each) => each.outerHTML.slice(0, 80)),
     }));
     assert.ok(width <= 400, `${title} is ${width} pixels wide`);
     assert.deepEqual(overlong, [], title);
@@ -187,14 +203,17 @@ test('fits 400 pixels, and follows a finger', async () => {
 });
 
 test('turns the picture by a finger', async () => {
-  const opened = await openPage(browser, '#voxel=2&panel=save', {window: {viewport: {width: 400, height: 800}, hasTouch: true, isMobile: true}});
+  const opened = await openPage(browser, '#voxel=2&panel=save', {
+    window: {viewport: {width: 400, height: 800}, hasTouch: true, isMobile: true},
+  });
   const {page} = opened;
   await ready(page);
   const picture = () => page.locator('canvas').screenshot();
   const before = await lastPicture(picture);
   const {x, y} = await page.locator('canvas').boundingBox();
   const client = await page.context().newCDPSession(page);
-  const touch = (type, dx) => client.send('Input.dispatchTouchEvent', {type, touchPoints: dx === null ? [] : [{x: x + 100 + dx, y: y + 60}]});
+  const touch = (type, dx) =>
+    client.send('Input.dispatchTouchEvent', {type, touchPoints: dx === null ? [] : [{x: x + 100 + dx, y: y + 60}]});
   await touch('touchStart', 0);
   for (let dx = 10; dx <= 100; dx += 10) await touch('touchMove', dx);
   await touch('touchEnd', null);
@@ -204,17 +223,22 @@ test('turns the picture by a finger', async () => {
 });
 
 /** For browsers that give no WebGL2 from the call of that number on. */
-const drawsUntil = (calls) => ({content: `{
+const drawsUntil = (calls) => ({
+  content: `{
   const {getContext} = HTMLCanvasElement.prototype;
   let calls = 0;
   HTMLCanvasElement.prototype.getContext = function(kind, ...more) {
     if (String(kind).startsWith('webgl') && ++calls > ${calls}) return null;
     return getContext.call(this, kind, ...more);
   };
-}`});
+}`,
+});
 
 // The library that draws complains by itself.
-for (const [how, calls, complaint] of [['it has no WebGL2', 0, /^$/], ['it gives none after all', 1, /^THREE\.WebGLRenderer: [^,]*creating WebGL context\.$/]]) {
+for (const [how, calls, complaint] of [
+  ['it has no WebGL2', 0, /^$/],
+  ['it gives none after all', 1, /^THREE\.WebGLRenderer: [^,]*creating WebGL context\.$/],
+]) {
   test(`answers where nothing can be drawn, and says so: ${how}`, async () => {
     const opened = await openPage(browser, coarse, {before: drawsUntil(calls)});
     const {page} = opened;
@@ -249,7 +273,8 @@ test('says so where the picture is lost, and draws on when it comes back', async
   await ready(page);
   await page.evaluate(() => window.taken.restoreContext());
   await message(page, /The picture is back/);
-  while (await page.locator('#messages .message').count() > 0) await page.getByRole('button', {name: 'Close this message'}).first().click();
+  while ((await page.locator('#messages .message').count()) > 0)
+    await page.getByRole('button', {name: 'Close this message'}).first().click();
   await until(picture, (again) => before.equals(again));
   await closePage(opened);
 });

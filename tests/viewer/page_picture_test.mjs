@@ -21,10 +21,15 @@ function assertSame(name, off, drawn) {
     writeFileSync(file, drawn);
   }
   console.log(`${name}: ${(100 * off).toFixed(3)} % of the pixels differ`);
-  assert.ok(off <= mostOff, `${(100 * off).toFixed(2)} % of the pixels differ: see ${file}. Where that is meant, draw it anew by scripts/draw_page.mjs`);
+  assert.ok(
+    off <= mostOff,
+    `${(100 * off).toFixed(2)} % of the pixels differ: see ${file}. Where that is meant, draw it anew by scripts/draw_page.mjs`,
+  );
 }
 
-before(async () => { browser = await startBrowser(); });
+before(async () => {
+  browser = await startBrowser();
+});
 after(() => browser?.close());
 
 for (const view of views) {
@@ -53,14 +58,20 @@ test('tells its pictures apart', async () => {
   const {page} = opened;
   const drawn = await pictureOf(page);
   const others = await Promise.all(views.map(({name}) => partOff(page, kept(name), drawn)));
-  assert.deepEqual(others.map((off) => off > mostOff), views.map((view) => view !== contacts));
+  assert.deepEqual(
+    others.map((off) => off > mostOff),
+    views.map((view) => view !== contacts),
+  );
   await page.getByLabel('See through the bodies').uncheck();
-  assert.ok(await partOff(page, drawn, await pictureOf(page)) > mostOff, 'bodies that are seen through');
+  assert.ok((await partOff(page, drawn, await pictureOf(page))) > mostOff, 'bodies that are seen through');
   await closePage(opened);
 });
 
 test('draws the hand apart from the tool', async () => {
-  const opened = await openView(browser, views.find(({name}) => name === 'recording'));
+  const opened = await openView(
+    browser,
+    views.find(({name}) => name === 'recording'),
+  );
   const {page} = opened;
   const apart = await pictureOf(page);
   await page.getByLabel('Hand drawn away from the tool').fill('1');

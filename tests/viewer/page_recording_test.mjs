@@ -28,26 +28,32 @@ plan = [{ time = 0, move = [0, 0, 0] }, { time = 0.3, move = [0, 0, 5] }]
 [effects.contact]
 stiffness = 2000
 `;
-const last = 299, lateTick = 100, missingTick = 200;
+const last = 299,
+  lateTick = 100,
+  missingTick = 200;
 let written;
 
 stage(() => {
   writeFileSync(path.join(folder, 'scene.toml'), scene);
   ist(folder, 'run', 'scene.toml', '--unpaced', '--record', 'measured.jsonl');
   // How long a tick took is the machine's: here one takes longer than a period, and one is missed.
-  written = linesOf(readFileSync(path.join(folder, 'measured.jsonl'), 'utf8')).filter(({tick}) => tick !== missingTick)
-      .map((line) => line.tick === undefined ? line : {...line, late_microseconds: 0, microseconds: line.tick === lateTick ? 1500 : 40});
+  written = linesOf(readFileSync(path.join(folder, 'measured.jsonl'), 'utf8'))
+    .filter(({tick}) => tick !== missingTick)
+    .map((line) => (line.tick === undefined ? line : {...line, late_microseconds: 0, microseconds: line.tick === lateTick ? 1500 : 40}));
   writeFileSync(path.join(folder, 'run.jsonl'), written.map((line) => `${JSON.stringify(line)}\n`).join(''));
   ist(folder, 'view', 'run.jsonl', '--scene', 'scene.toml', '-o', 'run.html');
   ist(folder, 'view', 'run.jsonl', '-o', 'bodiless.html');
 });
 
 async function drop(page, name, text) {
-  await page.evaluate(({name, text}) => {
-    const dropped = new DataTransfer();
-    dropped.items.add(new File([text], name));
-    document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
-  }, {name, text});
+  await page.evaluate(
+    ({name, text}) => {
+      const dropped = new DataTransfer();
+      dropped.items.add(new File([text], name));
+      document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
+    },
+    {name, text},
+  );
 }
 
 const recordingText = () => readFileSync(path.join(folder, 'run.jsonl'), 'utf8');
@@ -58,10 +64,11 @@ const poseOf = (page) => page.evaluate(() => window.ist.state().pose);
 function frameClock() {
   const {requestAnimationFrame} = window;
   let frames = 0;
-  window.requestAnimationFrame = (call) => requestAnimationFrame((time) => {
-    frames += 1;
-    call(time);
-  });
+  window.requestAnimationFrame = (call) =>
+    requestAnimationFrame((time) => {
+      frames += 1;
+      call(time);
+    });
   performance.now = () => 20 * frames;
 }
 
@@ -80,7 +87,7 @@ async function playToTheEnd(page) {
   });
   await page.getByRole('button', {name: 'Play', exact: true}).click();
   await page.waitForFunction((last) => window.seen.has(last), last);
-  assert.ok(await page.evaluate(() => window.seen.size) > 10, 'it plays tick after tick');
+  assert.ok((await page.evaluate(() => window.seen.size)) > 10, 'it plays tick after tick');
   await page.getByRole('button', {name: 'Play', exact: true}).waitFor();
   await ready(page);
   return {start, end: await poseOf(page)};
@@ -104,7 +111,12 @@ async function checkPlayed(page, {start, end}) {
 }
 
 /** The strokes on the time axis of a plot, one for each late tick. */
-const lateStrokes = (page) => page.locator('figure.plot path.late').first().getAttribute('d').then((strokes) => strokes.match(/M/g)?.length ?? 0);
+const lateStrokes = (page) =>
+  page
+    .locator('figure.plot path.late')
+    .first()
+    .getAttribute('d')
+    .then((strokes) => strokes.match(/M/g)?.length ?? 0);
 
 test('plays a file that is dropped, and a page that the command wrote, to the same last tick', async () => {
   const opened = await openPage(browser, '#voxel=1', {before: frameClock});
@@ -139,20 +151,29 @@ test('says of a tick that it is late, and what the hand felt', async () => {
   const {page} = opened;
   await ready(page);
   const scrub = page.getByRole('slider', {name: 'Tick', exact: true});
-  const facts = () => page.evaluate(() => Object.fromEntries([...document.querySelectorAll('#panels dt')]
-      .filter((name) => name.checkVisibility()).map((name) => [name.textContent, name.nextElementSibling.textContent])));
+  const facts = () =>
+    page.evaluate(() =>
+      Object.fromEntries(
+        [...document.querySelectorAll('#panels dt')]
+          .filter((name) => name.checkVisibility())
+          .map((name) => [name.textContent, name.nextElementSibling.textContent]),
+      ),
+    );
   await scrub.fill(`${lateTick}`);
   assert.match((await facts()).Took, /1500 µs \(late\)|1,500 µs \(late\)/);
   await page.getByRole('button', {name: 'On a tick'}).click();
   assert.doesNotMatch((await facts()).Took, /late/);
-  await scrub.fill(`${missingTick}`);  // the tick after the one that is missing
+  await scrub.fill(`${missingTick}`); // the tick after the one that is missing
   assert.deepEqual(await playback(page), {tick: missingTick + 1, last});
   assert.match((await facts()).Took, /late/);
   await scrub.fill(`${last - 1}`);
   const {wrench} = written.at(-1);
   const force = Math.hypot(...wrench.slice(0, 3));
   assert.ok(force > 0.1);
-  assert.ok(Math.abs(parseFloat((await facts()).Force.replace('−', '-')) - force) < 0.01 * force, `${(await facts()).Force}, not ${force} N`);
+  assert.ok(
+    Math.abs(parseFloat((await facts()).Force.replace('−', '-')) - force) < 0.01 * force,
+    `${(await facts()).Force}, not ${force} N`,
+  );
   await ready(page);
   await closePage(opened);
 });
@@ -163,13 +184,18 @@ test('draws tool and hand apart where the hand draws it', async () => {
   const apart = page.getByRole('slider', {name: 'Hand drawn away from the tool'});
   const scrub = page.getByRole('slider', {name: 'Tick', exact: true});
   const pictures = [];
-  for (const [tick, times] of [[0, 50], [0, 1], [last - 1, 50], [last - 1, 1]]) {
+  for (const [tick, times] of [
+    [0, 50],
+    [0, 1],
+    [last - 1, 50],
+    [last - 1, 1],
+  ]) {
     await scrub.fill(`${tick}`);
     await apart.fill(`${times}`);
     pictures.push(await pictureOf(page));
   }
   // At the start the hand is where the tool is; at the end it is farther on.
-  assert.ok(await partOff(page, pictures[0], pictures[1]) <= mostOff);
+  assert.ok((await partOff(page, pictures[0], pictures[1])) <= mostOff);
   const off = await partOff(page, pictures[2], pictures[3]);
   assert.ok(off > 0.03, `${off}`);
   await closePage(opened);

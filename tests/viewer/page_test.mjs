@@ -8,11 +8,25 @@ import {test} from 'node:test';
 
 import {interval} from '../../src/viewer/page/words.js';
 import {
-  answer, answerOf, closePage, closedBy, inWorker, ist, linesOf, message, openPage, readout, ready, setPose, settled, showPanel,
+  answer,
+  answerOf,
+  closePage,
+  closedBy,
+  inWorker,
+  ist,
+  linesOf,
+  message,
+  openPage,
+  readout,
+  ready,
+  setPose,
+  settled,
+  showPanel,
 } from './browser.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
-const upper = 'upper_jaw.stl', lower = 'lower_jaw.stl';
+const upper = 'upper_jaw.stl',
+  lower = 'lower_jaw.stl';
 const turned = [Math.cos(0.02), 0, -Math.sin(0.02), 0, 0, 1, 0, 0, Math.sin(0.02), 0, Math.cos(0.02), 0, 0.5, -0.25, -1.2, 1];
 const poses = [closedBy(-5), closedBy(-1.5), closedBy(-0.6), closedBy(0), turned];
 stage(() => {
@@ -33,12 +47,17 @@ test('lets no request leave, whoever asks', async () => {
     asked.push(request.url);
     response.writeHead(200, {'Access-Control-Allow-Origin': '*'}).end();
   });
-  await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
+  await new Promise((resolve) => {
+    server.listen(0, '127.0.0.1', resolve);
+  });
   const {page, close} = await openPage(browser);
   await page.evaluate((address) => {
     window.refused = [];
     document.addEventListener('securitypolicyviolation', (event) => window.refused.push(event.effectiveDirective));
-    fetch(`${address}/fetch`).then(() => window.refused.push('a fetch was sent'), () => {});
+    fetch(`${address}/fetch`).then(
+      () => window.refused.push('a fetch was sent'),
+      () => {},
+    );
     new Image().src = `${address}/image`;
     const script = document.createElement('script');
     script.src = `${address}/script`;
@@ -50,15 +69,16 @@ test('lets no request leave, whoever asks', async () => {
   await page.waitForFunction(() => window.refused.length >= 4);
   const refused = await page.evaluate(() => window.refused);
   await close();
-  await new Promise((resolve) => { server.close(resolve); });
+  await new Promise((resolve) => {
+    server.close(resolve);
+  });
   assert.deepEqual(refused.sort(), ['connect-src', 'img-src', 'script-src-elem', 'worker']);
   assert.deepEqual(asked, []);
 });
 
 for (const size of [2, 0.8, 0.4]) {
   test(`answers at five poses as the command does, voxels of ${size} mm`, async () => {
-    const [header, ...lines] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', `${size}`,
-        '--poses', 'poses.json', '--json'));
+    const [header, ...lines] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', `${size}`, '--poses', 'poses.json', '--json'));
     const opened = await openPage(browser, `#voxel=${size}&panel=pose`);
     await ready(opened.page);
     for (const [at, pose] of poses.entries()) {
@@ -112,7 +132,9 @@ test('shows at rest what the command answers, not what a frame of a drag knows',
   for (const dz of [-1.5, -4]) {
     await setPose(page, closedBy(dz));
     const [, line] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '0.8', '--move', `0,0,${dz}`, '--json'));
-    const {tick} = await page.evaluate(() => ({tick: {lower: window.ist.state().tick.distance_lower, upper: window.ist.state().tick.distance_upper}}));
+    const {tick} = await page.evaluate(() => ({
+      tick: {lower: window.ist.state().tick.distance_lower, upper: window.ist.state().tick.distance_upper},
+    }));
     assert.notDeepEqual(tick, {lower: line.distance_lower, upper: line.distance_upper});
     assert.equal((await readout(page)).Distance, interval(line.distance_lower, line.distance_upper, 'mm'));
     const title = await page.locator('#readout dd').nth(1).getAttribute('title');
@@ -137,15 +159,17 @@ test('finds the first contact from the pose that is shown', async () => {
 
 test('goes on as before where a build is cancelled', async () => {
   // A build of small voxels never ends by itself.
-  const opened = await openPage(browser, '#panel=accuracy', {before: inWorker(`addEventListener('message', ({data: {asked}}) => {
+  const opened = await openPage(browser, '#panel=accuracy', {
+    before: inWorker(`addEventListener('message', ({data: {asked}}) => {
     while (asked?.voxel_size < 0.3);
-  });`)});
+  });`),
+  });
   const {page} = opened;
   await ready(page);
   const before = await answer(page);
   const voxels = page.getByRole('slider', {name: 'Voxel size'});
   await voxels.focus();
-  await page.keyboard.press('Home');  // the smallest
+  await page.keyboard.press('Home'); // the smallest
   await page.getByRole('button', {name: 'Cancel'}).click();
   await page.getByRole('button', {name: 'Cancel'}).waitFor({state: 'hidden'});
   await ready(page);
@@ -164,8 +188,7 @@ test('saves what the command reads and writes', async () => {
   const {page} = opened;
   await ready(page);
   const saved = async (name) => {
-    const [download] = await Promise.all([
-      page.waitForEvent('download'), page.getByRole('button', {name, exact: true}).click()]);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', {name, exact: true}).click()]);
     const file = path.join(folder, `saved-${download.suggestedFilename()}`);
     await download.saveAs(file);
     return file;
@@ -176,12 +199,25 @@ test('saves what the command reads and writes', async () => {
   assert.deepEqual(answerOf(ours), answerOf(line));
   const [, again] = linesOf(ist(folder, 'collide', upper, lower, '--voxel-size', '0.8', '--matrix', await saved('Matrix'), '--json'));
   assert.deepEqual(answerOf(again), answerOf(line));
-  for (const [name, mesh] of [['Fixed tree', upper], ['Moving tree', lower]]) {
+  for (const [name, mesh] of [
+    ['Fixed tree', upper],
+    ['Moving tree', lower],
+  ]) {
     ist(folder, 'build', mesh, '-o', 'built.ist', '--voxel-size', '0.8');
     assert.ok(readFileSync(path.join(folder, 'built.ist')).equals(readFileSync(await saved(name))), name);
   }
-  assert.equal(readFileSync(await saved('Both bodies')).subarray(0, 4).toString(), 'glTF');
-  assert.equal(readFileSync(await saved('Picture')).subarray(1, 4).toString(), 'PNG');
+  assert.equal(
+    readFileSync(await saved('Both bodies'))
+      .subarray(0, 4)
+      .toString(),
+    'glTF',
+  );
+  assert.equal(
+    readFileSync(await saved('Picture'))
+      .subarray(1, 4)
+      .toString(),
+    'PNG',
+  );
   await page.getByRole('button', {name: 'Bite', exact: true}).click();
   assert.match(await message(page, /no map of this pose/), /open the panel Occlusion/);
   await showPanel(page, 'Occlusion');

@@ -20,7 +20,7 @@ test('no value and one value still make an axis', () => {
   assert.ok(from < 0 && to > 0);
 });
 
-test('places and values are each other\'s inverse', () => {
+test("places and values are each other's inverse", () => {
   for (const logarithmic of [false, true]) {
     const scale = {from: 0.5, to: 80, logarithmic};
     assert.equal(partAt(scale, 0.5), 0);
@@ -32,7 +32,11 @@ test('places and values are each other\'s inverse', () => {
 test('ticks are round, inside and not too many', () => {
   assert.deepEqual(ticksOf({from: 0, to: 1, logarithmic: false}, 5), [0, 0.2, 0.4, 0.6, 0.8, 1]);
   assert.deepEqual(ticksOf({from: 0.5, to: 60, logarithmic: true}, 5), [0.5, 1, 2, 5, 10, 20, 50]);
-  for (const scale of [{from: 1e-5, to: 3e6, logarithmic: true}, {from: -7, to: 1234, logarithmic: false}, {from: 1, to: 2, logarithmic: true}]) {
+  for (const scale of [
+    {from: 1e-5, to: 3e6, logarithmic: true},
+    {from: -7, to: 1234, logarithmic: false},
+    {from: 1, to: 2, logarithmic: true},
+  ]) {
     const ticks = ticksOf(scale, 5);
     assert.ok(ticks.length >= 2 && ticks.length <= 12, String(ticks));
     assert.ok(ticks.every((tick) => tick >= scale.from && tick <= scale.to));

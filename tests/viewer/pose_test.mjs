@@ -2,7 +2,17 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {
-  fromSixNumbers, identity, inverse, isRigid, matrixText, moved, multiply, parseMatrix, toSixNumbers, transformed, translation,
+  fromSixNumbers,
+  identity,
+  inverse,
+  isRigid,
+  matrixText,
+  moved,
+  multiply,
+  parseMatrix,
+  toSixNumbers,
+  transformed,
+  translation,
 } from '../../src/viewer/page/pose.js';
 
 const near = (a, b, to = 1e-12) => a.forEach((value, at) => assert.ok(Math.abs(value - b[at]) <= to, `${at}: ${value} and ${b[at]}`));
@@ -19,7 +29,10 @@ test('a body turns about its middle, which only the shift moves', () => {
 });
 
 test('looking straight up, the six numbers still make the same pose', () => {
-  for (const turn of [[25, 90, 0], [25, -90, 0]]) {
+  for (const turn of [
+    [25, 90, 0],
+    [25, -90, 0],
+  ]) {
     const pose = fromSixNumbers({shift: [0, 0, 0], turn}, [1, 2, 3]);
     near(fromSixNumbers(toSixNumbers(pose, [1, 2, 3]), [1, 2, 3]), pose, 1e-7);
   }

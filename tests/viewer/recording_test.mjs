@@ -11,10 +11,19 @@ import {toolPath} from '../../src/viewer/page/recording/tool_path.js';
 const header = {recording: 2, ist: '1.2.3', commit: 'c', dt: 0.001, unit: 0.001, bodies: [{name: 'fixed'}, {name: 'held'}], scene: ''};
 const row = (z) => [0, 0, z, 1, 0, 0, 0, 1, 0, 0, 0, 1];
 const tick = (number, more = {}) => ({
-  tick: number, dt: 0.001, device: row(0), tool: row(0.001 * number), wrench: [3, 0, 4, 0, 0, 0], contacts: 5, held: false, fault: false,
-  late_microseconds: 1, microseconds: 40, ...more,
+  tick: number,
+  dt: 0.001,
+  device: row(0),
+  tool: row(0.001 * number),
+  wrench: [3, 0, 4, 0, 0, 0],
+  contacts: 5,
+  held: false,
+  fault: false,
+  late_microseconds: 1,
+  microseconds: 40,
+  ...more,
 });
-const text = (...lines) => lines.map((line) => typeof line === 'string' ? line : JSON.stringify(line)).join('\n') + '\n';
+const text = (...lines) => lines.map((line) => (typeof line === 'string' ? line : JSON.stringify(line))).join('\n') + '\n';
 
 test('ticks are read, with their force and time', () => {
   const {ticks, dt, cutOff} = parseRecording(text(header, tick(0), tick(1)));
@@ -32,7 +41,10 @@ test('a row is a position, and a rotation column by column', () => {
 
 test('ticks after missing ones, and those longer than a period, are late', () => {
   const {ticks} = parseRecording(text(header, tick(0), tick(1), tick(4), tick(5, {microseconds: 1200})));
-  assert.deepEqual(ticks.map(({late}) => late), [false, false, true, true]);
+  assert.deepEqual(
+    ticks.map(({late}) => late),
+    [false, false, true, true],
+  );
 });
 
 test('a tick without a device keeps its place', () => {
@@ -84,8 +96,19 @@ test('a recording that is cut off plays to there', () => {
 });
 
 test('a held body goes with the tool; what is taken goes on with it from where it was', () => {
-  const recording = parseRecording(text(header, tick(0), tick(1), {tick: 2, attach: 'piece', status: 'done'}, tick(2), tick(3),
-      {tick: 4, release: 'piece', status: 'touching'}, {tick: 4, release: 'piece', status: 'done'}, tick(4)));
+  const recording = parseRecording(
+    text(
+      header,
+      tick(0),
+      tick(1),
+      {tick: 2, attach: 'piece', status: 'done'},
+      tick(2),
+      tick(3),
+      {tick: 4, release: 'piece', status: 'touching'},
+      {tick: 4, release: 'piece', status: 'done'},
+      tick(4),
+    ),
+  );
   const bodies = [
     {name: 'held', held: true, pose: translation([0, 0, -0.5]), in_tool: translation([0, 0, -0.5])},
     {name: 'piece', held: false, pose: translation([1, 0, 0])},
@@ -93,16 +116,23 @@ test('a held body goes with the tool; what is taken goes on with it from where i
   const [held, piece] = spansOf(bodies, recording);
   const z = (spans, at) => placeAt(spans, at, recording.ticks[at].tool)[14];
   assert.ok(Math.abs(z(held, 3) + 0.497) < 1e-12);
-  assert.deepEqual([0, 1, 2, 3, 4].map((at) => Number(z(piece, at).toFixed(9))), [0, 0, 0.001, 0.002, 0.002]);
+  assert.deepEqual(
+    [0, 1, 2, 3, 4].map((at) => Number(z(piece, at).toFixed(9))),
+    [0, 0, 0.001, 0.002, 0.002],
+  );
 });
 
 test('poses in metres become mesh units of the fixed body', () => {
-  assert.deepEqual(relative(translation([0, 0, 0.01]), translation([0, 0, 0.012]), 0.001).map((value) => Number(value.toFixed(9))), translation([0, 0, 2]));
+  assert.deepEqual(
+    relative(translation([0, 0, 0.01]), translation([0, 0, 0.012]), 0.001).map((value) => Number(value.toFixed(9))),
+    translation([0, 0, 2]),
+  );
 });
 
 test('a scene of two bodies places them, the tool at the middle of the root cube', () => {
-  const scene = 'unit = "mm"\n[fixed]\nshape = "upper jaw"\nseed = 3\nvoxel_size = 0.5\n[held]\nshape = "lower jaw"\nseed = 3\nvoxel_size = 0.5\n' +
-      'translation = [0, 0, -5]  # open\n[effects.contact]\n';
+  const scene =
+    'unit = "mm"\n[fixed]\nshape = "upper jaw"\nseed = 3\nvoxel_size = 0.5\n[held]\nshape = "lower jaw"\nseed = 3\nvoxel_size = 0.5\n' +
+    'translation = [0, 0, -5]  # open\n[effects.contact]\n';
   const found = sceneBodies({...header, scene});
   assert.equal(found.held.shape, 'lower jaw');
   assert.equal(found.fixed.seed, 3);
@@ -110,7 +140,10 @@ test('a scene of two bodies places them, the tool at the middle of the root cube
   const [fixed, held] = placedByScene(found, {fixed: facts, moving: facts}, header);
   assert.deepEqual(fixed.pose, [...identity]);
   // 100 / 0.5 voxels lie in a cube of 256: 128 mm.
-  assert.deepEqual(held.in_tool.map((value) => Number(value.toFixed(9))), translation([-0.054, -0.064, -0.064]));
+  assert.deepEqual(
+    held.in_tool.map((value) => Number(value.toFixed(9))),
+    translation([-0.054, -0.064, -0.064]),
+  );
   const tool = translation([0.054, 0.064, 0.059]);
   multiply(tool, held.in_tool).forEach((value, at) => assert.ok(Math.abs(value - held.pose[at]) < 1e-12));
   assert.equal(sceneBodies({...header, scene: '[[fixed]]\nvoxel_size = 1\n[[fixed]]\nvoxel_size = 1\n[held]\nvoxel_size = 1\n'}), null);
@@ -118,11 +151,17 @@ test('a scene of two bodies places them, the tool at the middle of the root cube
 
 test('the clock finds the tick of a time', () => {
   const {ticks} = parseRecording(text(header, tick(0), tick(1), tick(5)));
-  assert.deepEqual([-1, 0, 0.0009, 0.0011, 0.004, 0.005, 9].map((time) => indexAt(ticks, time)), [0, 0, 0, 1, 1, 2, 2]);
+  assert.deepEqual(
+    [-1, 0, 0.0009, 0.0011, 0.004, 0.005, 9].map((time) => indexAt(ticks, time)),
+    [0, 0, 0, 1, 1, 2, 2],
+  );
 });
 
 test('the way of the tool has its middle and its size, of an hour too', () => {
-  const {points, middle, size} = toolPath([0, 0.03].map((z) => ({tool: translation([0.001, 0, z])})), 1000);
+  const {points, middle, size} = toolPath(
+    [0, 0.03].map((z) => ({tool: translation([0.001, 0, z])})),
+    1000,
+  );
   assert.deepEqual(points, [1, 0, 0, 1, 0, 30]);
   assert.deepEqual([middle, size], [[1, 0, 15], 15]);
   assert.equal(toolPath([{tool: [...identity]}], 1000).size, 1);

@@ -5,24 +5,49 @@ import {infoSentences, interval, short} from '../../src/viewer/page/words.js';
 import {wrenchAtMiddle} from '../../src/viewer/page/wrench.js';
 
 test('numbers are short, and tell their size', () => {
-  assert.deepEqual([0, 1.38654, -0.6, 12345.6, 1e-7, 2e9, NaN].map((value) => short(value)), ['0', '1.387', '−0.6', '12,346', '1.00e−7', '2.00e9', '–']);
-  assert.equal(interval(0.2840, 0.2949, 'mm'), '0.284 to 0.2949 mm');
+  assert.deepEqual(
+    [0, 1.38654, -0.6, 12345.6, 1e-7, 2e9, NaN].map((value) => short(value)),
+    ['0', '1.387', '−0.6', '12,346', '1.00e−7', '2.00e9', '–'],
+  );
+  assert.equal(interval(0.284, 0.2949, 'mm'), '0.284 to 0.2949 mm');
   assert.equal(interval(0.28400001, 0.28400004, 'mm'), '0.284 mm');
   assert.equal(interval(null, null, 'mm'), 'not known');
 });
 
 test('sentences describe a body', () => {
-  const mesh = {kind: 'mesh', triangles: 12, vertices: 8, components: 1, boundary_edges: 4, extent: [1, 2, 3], closed: false, consistent: true, unit: null};
+  const mesh = {
+    kind: 'mesh',
+    triangles: 12,
+    vertices: 8,
+    components: 1,
+    boundary_edges: 4,
+    extent: [1, 2, 3],
+    closed: false,
+    consistent: true,
+    unit: null,
+  };
   assert.deepEqual(infoSentences(mesh), [
-    'A mesh of 12 triangles and 8 vertices, 1 component.', 'Extent 1 × 2 × 3; the file names no unit, so millimetres are assumed.',
+    'A mesh of 12 triangles and 8 vertices, 1 component.',
+    'Extent 1 × 2 × 3; the file names no unit, so millimetres are assumed.',
     'Open (4 border edges), wound consistently: its inside is assumed from the winding.',
   ]);
   const tree = {kind: 'tree', triangles: false, voxels: 9, voxel_size: 0.5, extent: [1, 2, 3], closed: null, unit: 'mm'};
   assert.match(infoSentences(tree).join(' '), /A tree of 9 voxels of 0.5, without triangles.* Extent 1 × 2 × 3 mm\.$/);
-  assert.equal(infoSentences({...tree, triangles: true, voxels: 1})[0], 'A mesh, kept in a tree of one voxel: the page builds its own tree.');
+  assert.equal(
+    infoSentences({...tree, triangles: true, voxels: 1})[0],
+    'A mesh, kept in a tree of one voxel: the page builds its own tree.',
+  );
 });
 
-test('a wrench about the contacts\' middle does the same as about another point', () => {
-  const contacts = {positions: [0, 0, 0, 2, 0, 0], normals: [], depths: [], weights: [1, 1], force: [0, 0, 3], torque: [0, -3, 0], about: [0, 0, 0]};
+test("a wrench about the contacts' middle does the same as about another point", () => {
+  const contacts = {
+    positions: [0, 0, 0, 2, 0, 0],
+    normals: [],
+    depths: [],
+    weights: [1, 1],
+    force: [0, 0, 3],
+    torque: [0, -3, 0],
+    about: [0, 0, 0],
+  };
   assert.deepEqual(wrenchAtMiddle(contacts), {at: [1, 0, 0], force: [0, 0, 3], torque: [0, 0, 0]});
 });

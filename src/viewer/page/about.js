@@ -8,13 +8,19 @@ import {element} from './ui/element.js';
 export function openAbout(engine) {
   const {version, target} = engine.figures();
   const notices = element('pre', {hidden: true, tabindex: 0, 'aria-label': 'Notices of third parties'});
-  openDialog('About this page',
-      element('p', {}, 'IST finds where rigid triangle meshes touch, how deep, and how far apart. The engine is in this page, and no request leaves it.'),
-      element('p', {}, version ? `${version}, instruction set ${target}.` : 'The engine has not started yet.'),
-      element('p', {}, element('strong', {}, 'Research software, not a medical device.'), ' It has not been validated for any clinical use.'),
-      button('Licences and notices', () => {
-        notices.textContent = document.getElementById('ist-notices')?.textContent ?? '';
-        notices.hidden = !notices.hidden;
-      }),
-      notices);
+  openDialog(
+    'About this page',
+    element(
+      'p',
+      {},
+      'IST finds where rigid triangle meshes touch, how deep, and how far apart. The engine is in this page, and no request leaves it.',
+    ),
+    element('p', {}, version ? `${version}, instruction set ${target}.` : 'The engine has not started yet.'),
+    element('p', {}, element('strong', {}, 'Research software, not a medical device.'), ' It has not been validated for any clinical use.'),
+    button('Licences and notices', () => {
+      notices.textContent = document.getElementById('ist-notices')?.textContent ?? '';
+      notices.hidden = !notices.hidden;
+    }),
+    notices,
+  );
 }

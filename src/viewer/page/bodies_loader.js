@@ -60,14 +60,27 @@ export function makeBodiesLoader({store, say, ask}) {
     const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
     Object.assign(kept, {seed, files: {}, built: false});
     homes = {};
-    store.set({bodies, jaws: seed, seed, home: [...identity], trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: null});
+    store.set({
+      bodies,
+      jaws: seed,
+      seed,
+      home: [...identity],
+      trees: null,
+      tick: null,
+      answer: null,
+      cancelled: null,
+      bite: null,
+      unit: null,
+    });
   }
 
   /** @param {BodyFile} file */
   async function open(file) {
     if (file.content.size > mostBytes) {
-      throw new Error(`${file.name}: it has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
-          'make its mesh coarser, or ask the command, ist, which has no such limit.');
+      throw new Error(
+        `${file.name}: it has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
+          'make its mesh coarser, or ask the command, ist, which has no such limit.',
+      );
     }
     const bytes = await bytesOf(file);
     const read = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
@@ -78,9 +91,20 @@ export function makeBodiesLoader({store, say, ask}) {
     if (kept.files.fixed && kept.files.moving) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
     // A pose that the bodies before came with says nothing of two others.
-    const {home} = store.get(), both = homes[file.role === 'fixed' ? 'moving' : 'fixed'] === home;
+    const {home} = store.get(),
+      both = homes[file.role === 'fixed' ? 'moving' : 'fixed'] === home;
     homes = both ? {} : {...homes, [file.role]: home};
-    store.set({bodies, jaws: null, home: both ? [...identity] : home, trees: null, tick: null, answer: null, cancelled: null, bite: null, unit: file.unit ?? null});
+    store.set({
+      bodies,
+      jaws: null,
+      home: both ? [...identity] : home,
+      trees: null,
+      tick: null,
+      answer: null,
+      cancelled: null,
+      bite: null,
+      unit: file.unit ?? null,
+    });
     for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }
@@ -92,22 +116,31 @@ export function makeBodiesLoader({store, say, ask}) {
   function compare({fixed, moving}) {
     if (!fixed || !moving) return false;
     if (fixed.unit !== null && moving.unit !== null && fixed.unit !== moving.unit) {
-      say(`${fixed.name} is in ${unitWord(fixed.unit)}, and ${moving.name} in ${unitWord(moving.unit)}. Both must be in one unit; nothing is converted: ` +
-          'convert one of them, and open it again.', 'warning');
+      say(
+        `${fixed.name} is in ${unitWord(fixed.unit)}, and ${moving.name} in ${unitWord(moving.unit)}. Both must be in one unit; nothing is converted: ` +
+          'convert one of them, and open it again.',
+        'warning',
+      );
       return true;
     }
     const [small, large] = fixed.extent < moving.extent ? [fixed, moving] : [moving, fixed];
     if (large.extent <= farApart * small.extent) return false;
-    say(`${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres or inches. ` +
-        'Both must be in one unit; nothing is converted.', 'warning');
+    say(
+      `${large.name} is ${short(large.extent / small.extent, 2)} times as large as ${small.name}: one of them may be in metres or inches. ` +
+        'Both must be in one unit; nothing is converted.',
+      'warning',
+    );
     return true;
   }
 
   /** @param {BodyFacts} body */
   function suspect({name, unit, extent}) {
     if (unit !== null || extent >= 1) return;
-    say(`${name} is ${short(extent)} long, and no unit is known of it, so millimetres are assumed. If these are metres, ` +
-        'choose metres as the unit of the files you open, and open it again.', 'warning');
+    say(
+      `${name} is ${short(extent)} long, and no unit is known of it, so millimetres are assumed. If these are metres, ` +
+        'choose metres as the unit of the files you open, and open it again.',
+      'warning',
+    );
   }
 
   /** @param {number} [wanted] */
@@ -119,7 +152,15 @@ export function makeBodiesLoader({store, say, ask}) {
       const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
       Object.assign(kept, {voxelSize, built: true});
       const {policy} = store.get();
-      store.set({trees, voxelSize, policy: policy && trees.policies.includes(policy) ? policy : null, tick: null, answer: null, cancelled: null, bite: null});
+      store.set({
+        trees,
+        voxelSize,
+        policy: policy && trees.policies.includes(policy) ? policy : null,
+        tick: null,
+        answer: null,
+        cancelled: null,
+        bite: null,
+      });
     } catch (error) {
       const text = faultText(error);
       // The trees of before still answer, and are what the panels show.
@@ -137,7 +178,7 @@ export function makeBodiesLoader({store, say, ask}) {
     for (const file of files) await open(file);
     store.set({pose, home: pose, dragging: false});
     await build().catch((error) => {
-      if (faultText(error) !== null) throw error;  // who cancels the trees still sees the bodies
+      if (faultText(error) !== null) throw error; // who cancels the trees still sees the bodies
     });
   }
 
@@ -165,6 +206,8 @@ async function bytesOf({name, content}) {
   try {
     return await content.arrayBuffer();
   } catch (error) {
-    throw new Error(`${name}: the browser cannot read it (${faultText(error)}). It may have changed since you chose it, or memory is short: choose it again.`);
+    throw new Error(
+      `${name}: the browser cannot read it (${faultText(error)}). It may have changed since you chose it, or memory is short: choose it again.`,
+    );
   }
 }

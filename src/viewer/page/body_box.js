@@ -13,7 +13,8 @@ const known = new WeakMap();
 function boxOf(facts) {
   const found = known.get(facts);
   if (found) return found;
-  const least = [Infinity, Infinity, Infinity], greatest = [-Infinity, -Infinity, -Infinity];
+  const least = [Infinity, Infinity, Infinity],
+    greatest = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < facts.positions.length; i++) {
     least[i % 3] = Math.min(least[i % 3], facts.positions[i]);
     greatest[i % 3] = Math.max(greatest[i % 3], facts.positions[i]);

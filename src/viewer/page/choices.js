@@ -21,7 +21,10 @@ export const presets = [
  */
 export function unitChoices(none) {
   return [
-    {value: '', words: none}, {value: 'mm', words: 'millimetres'}, {value: 'm', words: 'metres'}, {value: 'inch', words: 'inches'},
+    {value: '', words: none},
+    {value: 'mm', words: 'millimetres'},
+    {value: 'm', words: 'metres'},
+    {value: 'inch', words: 'inches'},
     {value: 'µm', words: 'micrometres'},
   ];
 }

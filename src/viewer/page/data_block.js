@@ -68,12 +68,13 @@ export function readDataBlock(text) {
     return refused('The data in this page is of no known format: write the page again with ist view.');
   }
   if (data.format > newestFormat) {
-    return refused(`The data in this page is of format ${data.format} and was made by a newer version (${data.made_by}); ` +
-        `this page reads format ${newestFormat}: write the page again with the version of IST that it is to be opened with.`);
+    return refused(
+      `The data in this page is of format ${data.format} and was made by a newer version (${data.made_by}); ` +
+        `this page reads format ${newestFormat}: write the page again with the version of IST that it is to be opened with.`,
+    );
   }
   const fault = faultOf(data);
-  return fault ? refused(`The data in this page is damaged (${fault}): write the page again with ist view.`) :
-                 {data, problem: null};
+  return fault ? refused(`The data in this page is damaged (${fault}): write the page again with ist view.`) : {data, problem: null};
 }
 
 /**
@@ -100,7 +101,8 @@ function faultOf(data) {
   if (!kinds.includes(data.kind)) return `its kind is ${JSON.stringify(data.kind)}, not one of ${kinds.join(', ')}`;
   if (!Array.isArray(data.bodies) || (data.kind !== 'recording' && data.bodies.length === 0)) return 'it lists no bodies';
   const {missing} = data;
-  if (missing !== undefined && !(Array.isArray(missing) && missing.every((each) => typeof each === 'string'))) return 'what is missing is not said in sentences';
+  if (missing !== undefined && !(Array.isArray(missing) && missing.every((each) => typeof each === 'string')))
+    return 'what is missing is not said in sentences';
   for (const [index, body] of data.bodies.entries()) {
     if (body?.role !== 'fixed' && body?.role !== 'moving') return `body ${index} has no role`;
     if (typeof body.name !== 'string' || typeof body.tree !== 'string') return `body ${index} has no name or tree`;

@@ -43,8 +43,11 @@ export function followPose({engine, measurer, store, say}) {
   async function tick() {
     const {pose, policy, stiffness, trees} = store.get();
     if (!trees) return;
-    const found = await engine.ask('tick', {pose, policy: policy ?? undefined, stiffness: stiffness * perUnit(store.get())},
-        {latest: true, first: true});
+    const found = await engine.ask(
+      'tick',
+      {pose, policy: policy ?? undefined, stiffness: stiffness * perUnit(store.get())},
+      {latest: true, first: true},
+    );
     if (store.get().trees === trees) store.set({tick: found});
   }
 
@@ -52,7 +55,11 @@ export function followPose({engine, measurer, store, say}) {
     const {pose, policy, trees} = store.get();
     if (!trees) return;
     try {
-      const found = await engine.ask('collide', {pose, policy: policy ?? undefined}, {latest: true, doing: 'Finding distance and depth', seldomLong: true});
+      const found = await engine.ask(
+        'collide',
+        {pose, policy: policy ?? undefined},
+        {latest: true, doing: 'Finding distance and depth', seldomLong: true},
+      );
       if (store.get().trees === trees) store.set({answer: {...found, pose, policy}});
     } catch (error) {
       // Whoever cancels an answer wants no other at this pose.
@@ -70,7 +77,9 @@ export function followPose({engine, measurer, store, say}) {
       const bite = await measurer.ask('occlusion', biteQuestion(state), {latest: true, doing: 'Measuring the distances of both bodies'});
       const now = store.get();
       // A map of settings that were changed meanwhile would pass for one of theirs.
-      const same = ['preset', 'reach', 'unit', 'frame'].every((key) => now[/** @type {keyof State} */ (key)] === state[/** @type {keyof State} */ (key)]);
+      const same = ['preset', 'reach', 'unit', 'frame'].every(
+        (key) => now[/** @type {keyof State} */ (key)] === state[/** @type {keyof State} */ (key)],
+      );
       if (now.trees === trees && same) store.set({bite: {...bite, pose}});
     } catch (error) {
       // Whoever cancels a map wants no other, until they ask for it.

@@ -4,7 +4,8 @@ import {moved} from './pose.js';
 
 /** @typedef {import('./context.js').Context} Context */
 
-const turn = 0.08, zoom = 0.9;
+const turn = 0.08,
+  zoom = 0.9;
 
 /** @param {Pick<Context, 'store' | 'stage' | 'history'>} context */
 export function listenToKeys({store, stage, history}) {
@@ -20,7 +21,10 @@ export function listenToKeys({store, stage, history}) {
   const {surface} = stage;
   surface.tabIndex = 0;
   surface.setAttribute('role', 'img');
-  surface.setAttribute('aria-label', 'Both bodies in 3D. Arrow keys turn the view, plus and minus zoom; with Shift, arrow keys and Page Up and Down move the moving body.');
+  surface.setAttribute(
+    'aria-label',
+    'Both bodies in 3D. Arrow keys turn the view, plus and minus zoom; with Shift, arrow keys and Page Up and Down move the moving body.',
+  );
   surface.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     // On many keyboards the plus is reached by Shift.
@@ -36,8 +40,12 @@ export function listenToKeys({store, stage, history}) {
     const step = (store.get().bodies.moving?.extent ?? 100) / 1000;
     /** @type {Record<string, number[]>} */
     const ways = {
-      ArrowLeft: [-step, 0, 0], ArrowRight: [step, 0, 0], ArrowUp: [0, 0, step], ArrowDown: [0, 0, -step],
-      PageUp: [0, step, 0], PageDown: [0, -step, 0],
+      ArrowLeft: [-step, 0, 0],
+      ArrowRight: [step, 0, 0],
+      ArrowUp: [0, 0, step],
+      ArrowDown: [0, 0, -step],
+      PageUp: [0, step, 0],
+      PageDown: [0, -step, 0],
     };
     if (!ways[key]) return false;
     store.set({pose: moved(store.get().pose, ways[key]), dragging: true});
@@ -47,14 +55,30 @@ export function listenToKeys({store, stage, history}) {
   /** @param {string} key */
   function moveView(key) {
     switch (key) {
-      case 'ArrowLeft': stage.circle(-turn, 0, 1); return true;
-      case 'ArrowRight': stage.circle(turn, 0, 1); return true;
-      case 'ArrowUp': stage.circle(0, -turn, 1); return true;
-      case 'ArrowDown': stage.circle(0, turn, 1); return true;
-      case '+': case '=': stage.circle(0, 0, zoom); return true;
-      case '-': stage.circle(0, 0, 1 / zoom); return true;
-      case 'Home': stage.frameAll(); return true;
-      default: return false;
+      case 'ArrowLeft':
+        stage.circle(-turn, 0, 1);
+        return true;
+      case 'ArrowRight':
+        stage.circle(turn, 0, 1);
+        return true;
+      case 'ArrowUp':
+        stage.circle(0, -turn, 1);
+        return true;
+      case 'ArrowDown':
+        stage.circle(0, turn, 1);
+        return true;
+      case '+':
+      case '=':
+        stage.circle(0, 0, zoom);
+        return true;
+      case '-':
+        stage.circle(0, 0, 1 / zoom);
+        return true;
+      case 'Home':
+        stage.frameAll();
+        return true;
+      default:
+        return false;
     }
   }
 }

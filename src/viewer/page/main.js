@@ -50,9 +50,29 @@ function byId(id) {
 /** @returns {import('./context.js').State} */
 function firstState() {
   return {
-    bodies: {fixed: null, moving: null}, jaws: null, trees: null, pose: translation(startShift), home: [...identity], dragging: false,
-    voxelSize: null, policy: null, stiffness: 0.1, tick: null, answer: null, cancelled: null, bite: null, preset: 'scan', reach: 2, unit: null, fileUnit: null,
-    frame: '', wantsMap: false, book: false, theme: null, panel: 'pose', seed: 1,
+    bodies: {fixed: null, moving: null},
+    jaws: null,
+    trees: null,
+    pose: translation(startShift),
+    home: [...identity],
+    dragging: false,
+    voxelSize: null,
+    policy: null,
+    stiffness: 0.1,
+    tick: null,
+    answer: null,
+    cancelled: null,
+    bite: null,
+    preset: 'scan',
+    reach: 2,
+    unit: null,
+    fileUnit: null,
+    frame: '',
+    wantsMap: false,
+    book: false,
+    theme: null,
+    panel: 'pose',
+    seed: 1,
   };
 }
 
@@ -85,7 +105,8 @@ async function main() {
     },
   });
   const measurer = makeEngineClient({
-    start: () => startEngine(texts), lazy: true,
+    start: () => startEngine(texts),
+    lazy: true,
     progress: makeBar(() => measurer.cancel()),
     restore: (ask) => loader.restore(ask, false),
     onLost: (error) => {
@@ -99,8 +120,14 @@ async function main() {
   const context = {engine, measurer, store, stage, loader, history, say, readRecording: makeReadRecording(makeBar)};
   const recording = makeRecordingPanel(context);
   const panels = [
-    makeBodiesPanel(context), makePosePanel(context), makeAccuracyPanel(context), makeTreePanel(context),
-    makeContactsPanel(context), makeOcclusionPanel(context), recording, makeSavePanel(context),
+    makeBodiesPanel(context),
+    makePosePanel(context),
+    makeAccuracyPanel(context),
+    makeTreePanel(context),
+    makeContactsPanel(context),
+    makeOcclusionPanel(context),
+    recording,
+    makeSavePanel(context),
   ];
   const show = makeTabs(byId('tabs'), byId('panels'), panels, (panel) => store.set({panel}));
   const {settled} = followPose(context);
@@ -111,7 +138,8 @@ async function main() {
   store.subscribe(['bodies'], ({bodies}) => {
     stage.setBody('fixed', bodies.fixed);
     stage.setBody('moving', bodies.moving);
-    byId('subject').textContent = bodies.fixed && bodies.moving ? `${bodies.fixed.name} and ${bodies.moving.name}` : 'where two bodies touch';
+    byId('subject').textContent =
+      bodies.fixed && bodies.moving ? `${bodies.fixed.name} and ${bodies.moving.name}` : 'where two bodies touch';
   });
   store.subscribe(['bodies'], () => measurer.drop());
   store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
@@ -128,12 +156,20 @@ async function main() {
     for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
   });
   let opened = false;
-  exposeTestSurface({store, engine, busy: () => engine.busy() || measurer.busy(), settled, opened: () => opened, playback: recording.progress, picture: stage.picture});
+  exposeTestSurface({
+    store,
+    engine,
+    busy: () => engine.busy() || measurer.busy(),
+    settled,
+    opened: () => opened,
+    playback: recording.progress,
+    picture: stage.picture,
+  });
 
   const panelIds = panels.map((panel) => panel.id);
   const {change, problems} = readFragment(location.hash, panelIds);
   const {data, problem} = readDataBlock(byId('ist-data').textContent ?? 'null');
-  for (const each of [...problems, ...problem ? [problem] : [], ...data?.missing ?? []]) say(each, 'warning');
+  for (const each of [...problems, ...(problem ? [problem] : []), ...(data?.missing ?? [])]) say(each, 'warning');
   store.set(change);
   show(store.get().panel);
   stage.setPose(store.get().pose);
@@ -141,12 +177,13 @@ async function main() {
   opened = true;
   // An address that somebody pastes over this one; the page's own changes of it make no such event.
   window.addEventListener('hashchange', async () => {
-    const pasted = readFragment(location.hash, panelIds), {seed, voxelSize, ...others} = pasted.change;
+    const pasted = readFragment(location.hash, panelIds),
+      {seed, voxelSize, ...others} = pasted.change;
     for (const each of pasted.problems) say(each, 'warning');
     store.set(others);
     const {jaws} = store.get();
     const remade = jaws !== null && seed !== undefined && seed !== jaws;
-    if (remade && !await loader.makeJaws(seed)) return;
+    if (remade && !(await loader.makeJaws(seed))) return;
     if (remade || (voxelSize && voxelSize !== store.get().voxelSize)) await loader.build(voxelSize ?? undefined);
   });
 }

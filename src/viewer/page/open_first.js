@@ -19,13 +19,13 @@ export async function openFirst(context, data, asked, onRecording) {
   const {store, loader, stage, history, say} = context;
   let opened = false;
   try {
-    opened = data !== null && await openData(context, data, asked, onRecording);
+    opened = data !== null && (await openData(context, data, asked, onRecording));
   } catch (error) {
     const text = faultText(error);
     if (text) say(`${text} The built-in jaws are shown instead.`, 'error');
   }
   if (!opened) {
-    if (!await loader.makeJaws(store.get().seed)) return;
+    if (!(await loader.makeJaws(store.get().seed))) return;
     stage.frameAll();
     await buildFirst(loader, asked);
   }
@@ -50,11 +50,11 @@ async function openData(context, data, asked, onRecording) {
     const {preset, reach, unit, frame} = data.occlusion;
     store.set({preset: asked.preset ?? preset, reach, frame: frame ?? '', panel: asked.panel ?? 'occlusion'});
     for (const body of data.bodies) {
-      if (!await loader.open({...fileOf(body), unit})) return false;
+      if (!(await loader.open({...fileOf(body), unit}))) return false;
     }
   } else {
     for (const body of data.bodies) {
-      if (!await loader.open(fileOf(body))) return false;
+      if (!(await loader.open(fileOf(body)))) return false;
     }
     store.set({panel: asked.panel ?? 'bodies'});
   }
@@ -72,7 +72,7 @@ async function openData(context, data, asked, onRecording) {
  */
 async function buildFirst(loader, {voxelSize}) {
   const wanted = voxelSize ?? undefined;
-  if (!await loader.build(wanted) && wanted !== undefined) await loader.build();
+  if (!(await loader.build(wanted)) && wanted !== undefined) await loader.build();
 }
 
 /**
@@ -85,7 +85,7 @@ async function buildFirst(loader, {voxelSize}) {
 export async function openDropped({store, loader, stage, history}, file, at, of) {
   // Of two the first is fixed; one alone takes the place of the body that moves.
   const role = of > 1 && at === 0 ? 'fixed' : 'moving';
-  if (!await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined})) return;
+  if (!(await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined}))) return;
   if (at < of - 1) return;
   store.set({pose: store.get().home, dragging: false});
   history.forget();

@@ -38,8 +38,22 @@ export function multiply(a, b) {
 export function inverse(pose) {
   const [xx, xy, xz, , yx, yy, yz, , zx, zy, zz, , tx, ty, tz] = pose;
   return [
-    xx, yx, zx, 0, xy, yy, zy, 0, xz, yz, zz, 0,
-    -(xx * tx + xy * ty + xz * tz), -(yx * tx + yy * ty + yz * tz), -(zx * tx + zy * ty + zz * tz), 1,
+    xx,
+    yx,
+    zx,
+    0,
+    xy,
+    yy,
+    zy,
+    0,
+    xz,
+    yz,
+    zz,
+    0,
+    -(xx * tx + xy * ty + xz * tz),
+    -(yx * tx + yy * ty + yz * tz),
+    -(zx * tx + zy * ty + zz * tz),
+    1,
   ];
 }
 
@@ -102,10 +116,22 @@ export function fromSixNumbers({shift, turn}, centre) {
   const [cx, cy, cz] = turn.map((angle) => Math.cos(angle * degree));
   const [sx, sy, sz] = turn.map((angle) => Math.sin(angle * degree));
   const rotation = [
-    cz * cy, sz * cy, -sy, 0,
-    cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx, 0,
-    cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx, 0,
-    0, 0, 0, 1,
+    cz * cy,
+    sz * cy,
+    -sy,
+    0,
+    cz * sy * sx - sz * cx,
+    sz * sy * sx + cz * cx,
+    cy * sx,
+    0,
+    cz * sy * cx + sz * sx,
+    sz * sy * cx - cz * sx,
+    cy * cx,
+    0,
+    0,
+    0,
+    0,
+    1,
   ];
   const turned = transformed(rotation, centre);
   for (let axis = 0; axis < 3; axis++) rotation[12 + axis] = centre[axis] + shift[axis] - turned[axis];
@@ -121,9 +147,10 @@ export function toSixNumbers(pose, centre) {
   const place = transformed(pose, centre);
   const level = Math.hypot(pose[0], pose[1]);
   // Looking along x straight up or down, turns about x and z are the same: all is given to x.
-  const turn = level > 1e-9 ?
-    [Math.atan2(pose[6], pose[10]), Math.atan2(-pose[2], level), Math.atan2(pose[1], pose[0])] :
-    [Math.atan2(-pose[9], pose[5]), Math.atan2(-pose[2], level), 0];
+  const turn =
+    level > 1e-9
+      ? [Math.atan2(pose[6], pose[10]), Math.atan2(-pose[2], level), Math.atan2(pose[1], pose[0])]
+      : [Math.atan2(-pose[9], pose[5]), Math.atan2(-pose[2], level), 0];
   return {shift: place.map((value, axis) => value - centre[axis]), turn: turn.map((angle) => angle / degree)};
 }
 
@@ -134,10 +161,16 @@ export function toSixNumbers(pose, centre) {
  * @returns {Pose}
  */
 export function parseMatrix(text) {
-  const rows = text.trim().split(/[\n;]/).map((line) => line.trim()).filter((line) => /\d/.test(line));
+  const rows = text
+    .trim()
+    .split(/[\n;]/)
+    .map((line) => line.trim())
+    .filter((line) => /\d/.test(line));
   const numbers = (text.match(/[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|\bnan\b|\binf(?:inity)?\b/gi) ?? []).map(Number);
   if (numbers.length !== 16) {
-    throw new Error(`A pose has 16 numbers, and this text has ${numbers.length}: paste them column by column in one line, or as four rows of four.`);
+    throw new Error(
+      `A pose has 16 numbers, and this text has ${numbers.length}: paste them column by column in one line, or as four rows of four.`,
+    );
   }
   if (!numbers.every(Number.isFinite)) {
     throw new Error('One of the 16 numbers is not finite: a pose has finite numbers only.');
@@ -146,11 +179,15 @@ export function parseMatrix(text) {
   const pose = written ? transposed(numbers) : numbers;
   if (isRigid(pose)) return pose;
   if (isRigid(transposed(pose))) {
-    throw new Error(written ?
-      'These rows are a pose written column by column: put the 16 numbers in one line.' :
-      'These 16 numbers are a pose written row by row: put them in four lines of four.');
+    throw new Error(
+      written
+        ? 'These rows are a pose written column by column: put the 16 numbers in one line.'
+        : 'These 16 numbers are a pose written row by row: put them in four lines of four.',
+    );
   }
-  throw new Error('These 16 numbers are no rigid pose: the first three columns must be at right angles and of length 1, and the last row 0 0 0 1.');
+  throw new Error(
+    'These 16 numbers are no rigid pose: the first three columns must be at right angles and of length 1, and the last row 0 0 0 1.',
+  );
 }
 
 /**

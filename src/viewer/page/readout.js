@@ -19,14 +19,23 @@ export function makeReadout(place, store) {
   const shiftOf = (/** @type {import('./protocol.js').Pose} */ pose) => toSixNumbers(pose, middleOf(store.get().bodies.moving)).shift[2];
   const position = () => shiftOf(store.get().pose) - shiftOf(store.get().home);
   const closing = slider({
-    label: 'Close along z', min: -5, max: 0, value: 0,
+    label: 'Close along z',
+    min: -5,
+    max: 0,
+    value: 0,
     words: (value) => `${short(value, 3)} ${unitWord(unitOf(store.get()))}`,
     onInput: (value) => store.set({pose: moved(store.get().pose, [0, 0, value - position()]), dragging: true}),
     onChange: () => store.set({dragging: false}),
   });
-  const touch = cell('Touch'), distance = cell('Distance'), depth = cell('Depth'), force = cell('Force'), contacts = cell('Contacts');
-  place.append(closing.element, element('dl', {class: 'readout'},
-      ...[touch, distance, depth, force, contacts].map((each) => each.element)));
+  const touch = cell('Touch'),
+    distance = cell('Distance'),
+    depth = cell('Depth'),
+    force = cell('Force'),
+    contacts = cell('Contacts');
+  place.append(
+    closing.element,
+    element('dl', {class: 'readout'}, ...[touch, distance, depth, force, contacts].map((each) => each.element)),
+  );
 
   const fill = () => {
     const state = store.get();
@@ -36,13 +45,19 @@ export function makeReadout(place, store) {
     closing.range(-span, 0);
     closing.set(position());
     // A tick's distance is only as close as a person sees; at rest all is the command's.
-    const rested = isHere(state, answer), unknown = !rested && isHere(state, state.cancelled);
+    const rested = isHere(state, answer),
+      unknown = !rested && isHere(state, state.cancelled);
     const known = answer && rested ? answer.line : tick;
-    touch.set(known ? touchWords[/** @type {keyof typeof touchWords} */ (known.touch)] ?? known.touch : '…');
+    touch.set(known ? (touchWords[/** @type {keyof typeof touchWords} */ (known.touch)] ?? known.touch) : '…');
     touch.element.dataset.touch = known?.touch ?? '';
-    distance.set(known ? interval(known.distance_lower, known.distance_upper, unit) : '…', answer && rested ? inFull(answer.line, 'distance') : '');
-    depth.set(unknown ? 'not known' : answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…',
-        unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? inFull(answer.line, 'depth') : '');
+    distance.set(
+      known ? interval(known.distance_lower, known.distance_upper, unit) : '…',
+      answer && rested ? inFull(answer.line, 'distance') : '',
+    );
+    depth.set(
+      unknown ? 'not known' : answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…',
+      unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? inFull(answer.line, 'depth') : '',
+    );
     depth.element.classList.toggle('stale', !rested && !unknown);
     force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
     contacts.set(tick ? count(tick.contacts.depths.length) : '…');
@@ -56,7 +71,7 @@ export function makeReadout(place, store) {
  * @returns {number} how far the slider opens: 5 of a jaw's 110, a round number for any body
  */
 export function closingSpan(extent) {
-  const rough = extent * 5 / 110;
+  const rough = (extent * 5) / 110;
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * ([1, 2, 5, 10].find((each) => each * power >= rough * 0.7) ?? 10);
 }

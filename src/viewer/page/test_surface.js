@@ -47,7 +47,8 @@ export function exposeTestSurface({store, engine, busy, settled, opened, playbac
     },
     heap: () => engine.figures().heap,
     memory: async () => (await engine.ask('memory', {})).in_use,
-    playback, picture,
+    playback,
+    picture,
   };
   Object.assign(window, {ist: Object.freeze(surface)});
   const {dataset} = document.documentElement;

@@ -2,8 +2,8 @@
 
 /** @typedef {import('./protocol.js').Line} Line */
 
-const units = {mm: 'mm', m: 'm', inch: 'in', 'µm': 'µm', um: 'µm', cm: 'cm'};
-const millimetres = {mm: 1, m: 1000, inch: 25.4, 'µm': 1e-3, um: 1e-3, cm: 10};
+const units = {mm: 'mm', m: 'm', inch: 'in', µm: 'µm', um: 'µm', cm: 'cm'};
+const millimetres = {mm: 1, m: 1000, inch: 25.4, µm: 1e-3, um: 1e-3, cm: 10};
 
 /**
  * @param {number} value
@@ -67,16 +67,22 @@ export function infoSentences(info) {
   if (info.kind === 'tree' && info.voxels === 1 && info.triangles) {
     sentences.push('A mesh, kept in a tree of one voxel: the page builds its own tree.');
   } else if (info.kind === 'tree') {
-    sentences.push(`A tree of ${count(info.voxels)} voxels of ${short(info.voxel_size)}, ` + (info.triangles ?
-      'which keeps its triangles: the page builds its own.' : 'without triangles: touch is known to voxels alone, and it cannot be built again.'));
+    sentences.push(
+      `A tree of ${count(info.voxels)} voxels of ${short(info.voxel_size)}, ` +
+        (info.triangles
+          ? 'which keeps its triangles: the page builds its own.'
+          : 'without triangles: touch is known to voxels alone, and it cannot be built again.'),
+    );
   } else {
     const parts = info.components === 1 ? '1 component' : `${count(info.components)} components`;
     sentences.push(`A mesh of ${count(info.triangles)} triangles and ${count(info.vertices)} vertices, ${parts}.`);
   }
   if (Array.isArray(info.extent)) {
     const named = info.unit ? ` ${unitWord(info.unit)}` : '';
-    sentences.push(`Extent ${info.extent.map((/** @type {number} */ side) => short(side)).join(' × ')}${named}` +
-        (info.unit ? '.' : '; the file names no unit, so millimetres are assumed.'));
+    sentences.push(
+      `Extent ${info.extent.map((/** @type {number} */ side) => short(side)).join(' × ')}${named}` +
+        (info.unit ? '.' : '; the file names no unit, so millimetres are assumed.'),
+    );
   }
   if (typeof info.closed === 'boolean') {
     const wound = info.consistent === false ? 'not wound consistently' : 'wound consistently';

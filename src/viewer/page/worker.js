@@ -19,7 +19,7 @@ const arrayKinds = {Float32Array, Float64Array, Uint32Array, Uint8Array};
 // Milliseconds between two messages of progress: nobody sees more.
 const leastBetween = 50;
 
-const fullText = 'the page\'s memory is full: take larger voxels or a coarser mesh, or use the command';
+const fullText = "the page's memory is full: take larger voxels or a coarser mesh, or use the command";
 
 /** @type {Engine | undefined} */
 let engine;
@@ -40,8 +40,7 @@ function withArrays(value, moved) {
     moved.push(copy.buffer);
     return copy;
   }
-  return Object.fromEntries(
-      Object.entries(value).map(([name, member]) => [name, withArrays(member, moved)]));
+  return Object.fromEntries(Object.entries(value).map(([name, member]) => [name, withArrays(member, moved)]));
 }
 
 /** @param {ArrayBuffer} bytes */
@@ -84,7 +83,7 @@ function answer({id, question, asked}) {
   let sent = asked;
   let path = '';
   // The engine names the file by its path, and people know it by its name.
-  const asNamed = (/** @type {string} */ text) => path ? text.split(path).join(/** @type {any} */ (asked).name) : text;
+  const asNamed = (/** @type {string} */ text) => (path ? text.split(path).join(/** @type {any} */ (asked).name) : text);
   try {
     if (question === 'open') {
       const file = fileOf(asked);
@@ -92,14 +91,13 @@ function answer({id, question, asked}) {
       running.FS.writeFile(path, new Uint8Array(/** @type {any} */ (asked).bytes), {canOwn: true});
       sent = {...asked, name: file.name, bytes: undefined};
     }
-    const text = running.ccall('ist_page_answer', 'string', ['string', 'string'],
-        [question, JSON.stringify(sent)]);
+    const text = running.ccall('ist_page_answer', 'string', ['string', 'string'], [question, JSON.stringify(sent)]);
     const reply = JSON.parse(text);
     /** @type {ArrayBuffer[]} */
     const moved = [];
-    const message = reply.error ? {id, error: {code: reply.error.code, text: asNamed(reply.error.text)}} :
-      {id, answer: withArrays(reply.answer, moved), milliseconds: performance.now() - begun,
-        heap: running.HEAPU8.buffer.byteLength};
+    const message = reply.error
+      ? {id, error: {code: reply.error.code, text: asNamed(reply.error.text)}}
+      : {id, answer: withArrays(reply.answer, moved), milliseconds: performance.now() - begun, heap: running.HEAPU8.buffer.byteLength};
     postMessage(message, {transfer: moved});
   } catch (error) {
     // The engine itself ended: only a new one can go on.

@@ -80,7 +80,10 @@ export function makeEngineClient({start, progress, restore, onLost, lazy = false
   let queue = [];
   /** @type {Waiting | null} */
   let running = null;
-  let ready = false, restoring = false, lastId = 0, lives = 0;
+  let ready = false,
+    restoring = false,
+    lastId = 0,
+    lives = 0;
   /** @type {EngineFigures} */
   const figures = {version: '', target: '', heap: null, tickTimes: []};
   /** @type {Worker | null} none: it is started when something is asked */
@@ -167,7 +170,7 @@ export function makeEngineClient({start, progress, restore, onLost, lazy = false
     const life = lives;
     try {
       // What a Worker that is gone was to get, no other gets.
-      await restore((name, asked) => life === lives ? ask(name, asked, byRestore) : new Promise(() => {}));
+      await restore((name, asked) => (life === lives ? ask(name, asked, byRestore) : new Promise(() => {})));
       if (life !== lives) return;
       restoring = false;
       pump();
@@ -204,7 +207,7 @@ export function makeEngineClient({start, progress, restore, onLost, lazy = false
    * @param {string} code
    */
   function end(which, code) {
-    const lost = [...running ? [running] : [], ...queue].filter((each) => each.options !== byRestore && which(each));
+    const lost = [...(running ? [running] : []), ...queue].filter((each) => each.options !== byRestore && which(each));
     queue = queue.filter((each) => !lost.includes(each));
     if (running !== null && lost.includes(running)) {
       running = null;
@@ -216,7 +219,7 @@ export function makeEngineClient({start, progress, restore, onLost, lazy = false
 
   /** @param {EngineError} error */
   function fail(error) {
-    const lost = [...queue, ...running ? [running] : []];
+    const lost = [...queue, ...(running ? [running] : [])];
     queue = [];
     running = null;
     for (const each of lost) each.reject(new EngineError('cancelled', error.message));

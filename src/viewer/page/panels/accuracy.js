@@ -30,53 +30,82 @@ export function makeAccuracyPanel({store, loader}) {
   let visited = [];
   const scale = () => scaleFor(store.get().bodies.moving?.extent ?? 110);
   const voxel = slider({
-    label: 'Voxel size', min: 0.2, max: 2, logarithmic: true, value: 0.4,
+    label: 'Voxel size',
+    min: 0.2,
+    max: 2,
+    logarithmic: true,
+    value: 0.4,
     words: (value) => `${short(value, 3)} ${unitWord(unitOf(store.get()))}`,
     onInput: () => {},
     onChange: async (value) => {
       await loader.build(Number(value.toPrecision(3)));
-      fill();  // a build that was refused or cancelled left the trees of before
+      fill(); // a build that was refused or cancelled left the trees of before
     },
   });
   const policy = select({
-    label: 'Policy', value: 'slab', choices: policyChoices(all),
+    label: 'Policy',
+    value: 'slab',
+    choices: policyChoices(all),
     onChange: (value) => store.set({policy: /** @type {Policy} */ (value)}),
   });
-  const numbers = element('div', {'aria-live': 'polite'}), points = element('div');
+  const numbers = element('div', {'aria-live': 'polite'}),
+    points = element('div');
   const curve = plot({
     label: 'Error, the resolution, over the time of a query, of the voxel sizes and policies visited at this pose',
-    xLabel: 'time of a query, µs', yLabel: 'resolution', logX: true, logY: true,
+    xLabel: 'time of a query, µs',
+    yLabel: 'resolution',
+    logX: true,
+    logY: true,
   });
   /** @type {(() => void) | null} ends the visits that are made now */
   let stop = null;
   const tourButton = button(tourWords, async () => {
     if (stop) return stop();
-    const stopped = new Promise((resolve) => { stop = () => resolve('stopped'); });
+    const stopped = new Promise((resolve) => {
+      stop = () => resolve('stopped');
+    });
     tourButton.textContent = 'Stop the visits';
     for (const size of tour) {
-      if (!await loader.build(size * scale())) break;
-      if (await Promise.race([stopped, nextAnswer()]) === 'stopped') break;
+      if (!(await loader.build(size * scale()))) break;
+      if ((await Promise.race([stopped, nextAnswer()])) === 'stopped') break;
     }
     stop = null;
     tourButton.textContent = tourWords;
   });
-  const nextAnswer = () => new Promise((resolve) => {
-    const end = store.subscribe(['answer', 'cancelled'], ({answer, cancelled}) => {
-      if (!answer && !cancelled) return;
-      end();
-      resolve(answer ? 'answered' : 'stopped');
+  const nextAnswer = () =>
+    new Promise((resolve) => {
+      const end = store.subscribe(['answer', 'cancelled'], ({answer, cancelled}) => {
+        if (!answer && !cancelled) return;
+        end();
+        resolve(answer ? 'answered' : 'stopped');
+      });
     });
-  });
 
-  const panel = element('div', {},
-      element('h2', {}, 'Accuracy against time'),
-      element('p', {}, 'Smaller voxels tell touching from near more sharply, and take longer. Two surfaces in a leaf pair are no farther apart than the resolution.'),
-      voxel.element, policy.element, numbers, curve.element, points,
-      element('div', {class: 'row'}, tourButton, button('Forget the points', () => {
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Accuracy against time'),
+    element(
+      'p',
+      {},
+      'Smaller voxels tell touching from near more sharply, and take longer. Two surfaces in a leaf pair are no farther apart than the resolution.',
+    ),
+    voxel.element,
+    policy.element,
+    numbers,
+    curve.element,
+    points,
+    element(
+      'div',
+      {class: 'row'},
+      tourButton,
+      button('Forget the points', () => {
         visited = [];
         draw();
-      })),
-      element('p', {class: 'quiet'}, ratioWords()));
+      }),
+    ),
+    element('p', {class: 'quiet'}, ratioWords()),
+  );
 
   const draw = () => {
     const {answer} = store.get();
@@ -84,11 +113,18 @@ export function makeAccuracyPanel({store, loader}) {
       const points = visited.filter((each) => each.policy === name);
       if (points.length === 0) return [];
       const current = points.findIndex((each) => answer?.line.spheres === name && each.voxelSize === answer.line.voxel_size[0]);
-      return [{
-        name, colour: policies[name].colour, current,
-        points: points.map((each) => /** @type {[number, number]} */ ([each.microseconds, each.resolution])),
-        words: points.map((each) => `${name}, voxels of ${short(each.voxelSize, 3)}: ${short(each.microseconds, 3)} µs, resolution ${short(each.resolution, 3)}`),
-      }];
+      return [
+        {
+          name,
+          colour: policies[name].colour,
+          current,
+          points: points.map((each) => /** @type {[number, number]} */ ([each.microseconds, each.resolution])),
+          words: points.map(
+            (each) =>
+              `${name}, voxels of ${short(each.voxelSize, 3)}: ${short(each.microseconds, 3)} µs, resolution ${short(each.resolution, 3)}`,
+          ),
+        },
+      ];
     });
     curve.set(series);
     points.replaceChildren(...(visited.length > 0 ? [visitedTable(visited, unitWord(unitOf(store.get())))] : []));
@@ -162,12 +198,22 @@ function answerFacts(answer, unit) {
  */
 function visitedTable(visited, unit) {
   const rows = [...visited].sort((a, b) => b.voxelSize - a.voxelSize || a.microseconds - b.microseconds);
-  return table('Visited at this pose', ['policy', `voxels, ${unit}`, 'time, µs', `resolution, ${unit}`],
-      rows.map(({policy, voxelSize, microseconds, resolution}) => [policy, short(voxelSize, 3), short(microseconds, 3), short(resolution, 3)]));
+  return table(
+    'Visited at this pose',
+    ['policy', `voxels, ${unit}`, 'time, µs', `resolution, ${unit}`],
+    rows.map(({policy, voxelSize, microseconds, resolution}) => [
+      policy,
+      short(voxelSize, 3),
+      short(microseconds, 3),
+      short(resolution, 3),
+    ]),
+  );
 }
 
 function ratioWords() {
   if (ratio.ratio === null) return 'How much slower this page is than the program itself is not measured yet.';
-  return `In a page the engine takes ${short(ratio.ratio, 2)} times as long as the program itself, ` +
-      `which took ${short(/** @type {any} */ (ratio.native_microseconds), 3)} µs (${ratio.machine}, commit ${ratio.commit}).`;
+  return (
+    `In a page the engine takes ${short(ratio.ratio, 2)} times as long as the program itself, ` +
+    `which took ${short(/** @type {any} */ (ratio.native_microseconds), 3)} µs (${ratio.machine}, commit ${ratio.commit}).`
+  );
 }

@@ -35,23 +35,46 @@ export function makeBodiesPanel({store, loader, stage, history}) {
     await loader.build();
     stage.frameAll();
   };
-  const number = numberField({label: 'Built-in jaws, number', value: seed, min: 0, max: 999_999_999, step: 1, onChange: (value) => { seed = value; }});
+  const number = numberField({
+    label: 'Built-in jaws, number',
+    value: seed,
+    min: 0,
+    max: 999_999_999,
+    step: 1,
+    onChange: (value) => {
+      seed = value;
+    },
+  });
   const parts = {fixed: element('section'), moving: element('section')};
-  const panel = element('div', {},
-      element('h2', {}, 'Bodies'),
-      element('p', {}, 'Nothing that you open leaves this page: the engine is in it.'),
-      element('div', {class: 'row'},
-          number.element,
-          button('Make these jaws', async () => {
-            if (await loader.makeJaws(seed)) await settle();
-          })),
-      select({
-        label: 'Unit of the files you open', value: '', choices: unitChoices('as the file says, else millimetres'),
-        onChange: (value) => store.set({fileUnit: value === '' ? null : value}),
-      }).element,
-      ...roles.map((role) => element('section', {class: `body ${role}`},
-          element('h3', {}, titles[role]), parts[role],
-          fileField(`Open another (${endings.replaceAll(',', ' ')})`, endings, (file) => open(role, file)))));
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Bodies'),
+    element('p', {}, 'Nothing that you open leaves this page: the engine is in it.'),
+    element(
+      'div',
+      {class: 'row'},
+      number.element,
+      button('Make these jaws', async () => {
+        if (await loader.makeJaws(seed)) await settle();
+      }),
+    ),
+    select({
+      label: 'Unit of the files you open',
+      value: '',
+      choices: unitChoices('as the file says, else millimetres'),
+      onChange: (value) => store.set({fileUnit: value === '' ? null : value}),
+    }).element,
+    ...roles.map((role) =>
+      element(
+        'section',
+        {class: `body ${role}`},
+        element('h3', {}, titles[role]),
+        parts[role],
+        fileField(`Open another (${endings.replaceAll(',', ' ')})`, endings, (file) => open(role, file)),
+      ),
+    ),
+  );
 
   const fill = (/** @type {Readonly<State>} */ state) => {
     for (const role of roles) parts[role].replaceChildren(...bodyLines(state, role));

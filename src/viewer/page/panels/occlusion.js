@@ -13,32 +13,59 @@ export function makeOcclusionPanel({store, stage}) {
   const view = makeMapView(stage, store);
   const preset = select({label: 'Preset', value: store.get().preset, choices: presets, onChange: (value) => store.set({preset: value})});
   const reach = slider({
-    label: 'Reach of the search', min: 0.5, max: 5, step: 0.5, value: store.get().reach,
-    words: (value) => `${value} mm`, onInput: () => {}, onChange: (value) => store.set({reach: value}),
+    label: 'Reach of the search',
+    min: 0.5,
+    max: 5,
+    step: 0.5,
+    value: store.get().reach,
+    words: (value) => `${value} mm`,
+    onInput: () => {},
+    onChange: (value) => store.set({reach: value}),
   });
   const unit = select({
-    label: 'Unit of the meshes', value: '', choices: unitChoices('millimetres, assumed'),
+    label: 'Unit of the meshes',
+    value: '',
+    choices: unitChoices('millimetres, assumed'),
     onChange: (value) => store.set({unit: value === '' ? null : value}),
   });
   const frame = select({
-    label: 'Patient frame', value: store.get().frame,
-    choices: [{value: '', words: 'not known: sides are +x and −x'}, {value: 'lps', words: 'LPS: +x is left'}, {value: 'ras', words: 'RAS: +x is right'}],
+    label: 'Patient frame',
+    value: store.get().frame,
+    choices: [
+      {value: '', words: 'not known: sides are +x and −x'},
+      {value: 'lps', words: 'LPS: +x is left'},
+      {value: 'ras', words: 'RAS: +x is right'},
+    ],
     onChange: (value) => store.set({frame: value}),
   });
   // Closed, the bodies hide the surfaces that face each other.
-  let opens = true, seen = false;
+  let opens = true,
+    seen = false;
   const book = checkbox('Open both bodies like a book', opens, (on) => {
     opens = on;
     store.set({book: on});
   });
   const state = element('p', {class: 'map-state', 'aria-live': 'polite'});
   const again = button('Make the map', () => store.set({wantsMap: true}));
-  const answer = element('div'), caveat = element('p', {class: 'caveat'});
-  const panel = element('div', {},
-      element('h2', {}, 'Occlusion map'),
-      element('p', {}, 'Each vertex by its signed distance from the other body: negative inside. The presets are published limits, and none is a clinical recommendation.'),
-      preset.element, book.element, state, again, answer, caveat,
-      element('details', {}, element('summary', {}, 'Reach, unit and sides'), reach.element, unit.element, frame.element));
+  const answer = element('div'),
+    caveat = element('p', {class: 'caveat'});
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Occlusion map'),
+    element(
+      'p',
+      {},
+      'Each vertex by its signed distance from the other body: negative inside. The presets are published limits, and none is a clinical recommendation.',
+    ),
+    preset.element,
+    book.element,
+    state,
+    again,
+    answer,
+    caveat,
+    element('details', {}, element('summary', {}, 'Reach, unit and sides'), reach.element, unit.element, frame.element),
+  );
 
   const fill = () => {
     const now = store.get();
@@ -49,29 +76,44 @@ export function makeOcclusionPanel({store, stage}) {
     unit.set(now.unit ?? '');
     frame.set(now.frame);
     const stale = bite !== null && bite.pose !== now.pose;
-    const possible = now.trees !== null && measurable(now), cancelled = possible && seen && !now.wantsMap;
+    const possible = now.trees !== null && measurable(now),
+      cancelled = possible && seen && !now.wantsMap;
     again.hidden = !cancelled;
-    state.textContent = !now.trees ? 'The map comes when the trees are built.' :
-      !measurable(now) ? 'A map needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.' :
-        cancelled && (stale || !bite) ? 'The map was cancelled.' :
-        stale ? 'Grey: the map of another pose. It is made again where the pose rests.' :
-          bite ? 'The map is of this pose.' : 'The map is being made.';
+    state.textContent = !now.trees
+      ? 'The map comes when the trees are built.'
+      : !measurable(now)
+        ? 'A map needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.'
+        : cancelled && (stale || !bite)
+          ? 'The map was cancelled.'
+          : stale
+            ? 'Grey: the map of another pose. It is made again where the pose rests.'
+            : bite
+              ? 'The map is of this pose.'
+              : 'The map is being made.';
     answer.classList.toggle('stale', stale);
   };
   const fillBite = () => {
     const {bite} = store.get();
     const word = unitWord(unitOf(store.get()));
     caveat.textContent = bite ? bite.bite.caveat : '';
-    answer.replaceChildren(...(bite ? [
-      legend(bite, word), areaFacts(bite.bite, word),
-      regionTable(bite.bite, 'fixed', word, view.flyTo), regionTable(bite.bite, 'moving', word, view.flyTo),
-    ] : []));
+    answer.replaceChildren(
+      ...(bite
+        ? [
+            legend(bite, word),
+            areaFacts(bite.bite, word),
+            regionTable(bite.bite, 'fixed', word, view.flyTo),
+            regionTable(bite.bite, 'moving', word, view.flyTo),
+          ]
+        : []),
+    );
     fill();
   };
   store.subscribe(['bite', 'bodies'], fillBite);
   store.subscribe(['pose', 'trees', 'preset', 'reach', 'unit', 'frame', 'book', 'wantsMap'], fill);
   return {
-    id: 'occlusion', title: 'Occlusion', element: panel,
+    id: 'occlusion',
+    title: 'Occlusion',
+    element: panel,
     shown() {
       seen = true;
       store.set({wantsMap: true, book: opens});

@@ -17,12 +17,19 @@ const names = {fixed: 'fixed', moving: 'moving'};
  */
 export function legend({bite, bands, bare}, unit) {
   const {preset, scanner_band_micrometres: band} = bite;
-  return element('figure', {class: 'map-legend'},
-      element('figcaption', {}, `${preset.name}: ${preset.source}. Scanner band ± ${short(band)} µm, assumed.`),
-      element('ul', {},
-          ...bands.map(({colour, words, below_scan_error: below}) =>
-            element('li', {}, swatch(colour, below), `${words}${below ? ' (hatched: below the error assumed for scanning)' : ''}`)),
-          element('li', {}, swatch(bare, false), `beyond, to the reach of ${short(bite.reach)} ${unit} and farther`)));
+  return element(
+    'figure',
+    {class: 'map-legend'},
+    element('figcaption', {}, `${preset.name}: ${preset.source}. Scanner band ± ${short(band)} µm, assumed.`),
+    element(
+      'ul',
+      {},
+      ...bands.map(({colour, words, below_scan_error: below}) =>
+        element('li', {}, swatch(colour, below), `${words}${below ? ' (hatched: below the error assumed for scanning)' : ''}`),
+      ),
+      element('li', {}, swatch(bare, false), `beyond, to the reach of ${short(bite.reach)} ${unit} and farther`),
+    ),
+  );
 }
 
 /**
@@ -47,20 +54,31 @@ export function areaFacts(bite, unit) {
     ['Touch', bite.touch],
     ['Distance', interval(bite.distance_lower, bite.distance_upper, unit)],
     ['Depth', interval(bite.depth_lower, bite.depth_upper, unit)],
-    ...bite.fixed.areas.map((/** @type {Line} */ area, /** @type {number} */ at) => /** @type {[string, string]} */ (
-      [`Area nearer than ${short(area.micrometres)} µm`, `${short(area.area)} and ${short(bite.moving.areas[at].area)} ${square}`])),
+    ...bite.fixed.areas.map(
+      (/** @type {Line} */ area, /** @type {number} */ at) =>
+        /** @type {[string, string]} */ ([
+          `Area nearer than ${short(area.micrometres)} µm`,
+          `${short(area.area)} and ${short(bite.moving.areas[at].area)} ${square}`,
+        ]),
+    ),
     ['Area in each other', `${both((side) => short(side.penetrating_area))} ${square}`],
     ['Depth integral', `${both((side) => short(side.depth_integral))} ${unit}³`],
     ['Regions', both((side) => count(side.regions.length))],
   ];
-  for (const [title, key] of [['Shares by side', 'sides'], ['Shares front to back', 'fore_aft']]) {
+  for (const [title, key] of [
+    ['Shares by side', 'sides'],
+    ['Shares front to back', 'fore_aft'],
+  ]) {
     const shares = bite.fixed[key]?.per_cent;
     if (shares) lines.push([title, shareWords(shares)]);
   }
-  return element('div', {},
-      element('p', {class: 'quiet'}, 'Where there are two numbers, the first is the fixed body\'s. Shares are geometric; they are no forces.'),
-      facts(lines),
-      element('ul', {class: 'checks'}, ...bite.checks.map((/** @type {string} */ check) => element('li', {}, `${check}.`))));
+  return element(
+    'div',
+    {},
+    element('p', {class: 'quiet'}, "Where there are two numbers, the first is the fixed body's. Shares are geometric; they are no forces."),
+    facts(lines),
+    element('ul', {class: 'checks'}, ...bite.checks.map((/** @type {string} */ check) => element('li', {}, `${check}.`))),
+  );
 }
 
 /** @param {Record<string, number>} shares */
@@ -82,13 +100,17 @@ export function regionTable(bite, role, unit, onPick) {
   if (regions.length === 0) return element('p', {}, `${title}: none at this pose.`);
   const other = bite[role === 'fixed' ? 'moving' : 'fixed'].regions;
   const rows = regions.map((region, at) => ({region, at})).sort((a, b) => b.region.area - a.region.area);
-  return table(`${title} (d ≤ ${short(bite.contact)} ${unit})`,
-      ['#', `area, ${unit}²`, `least d, ${unit}`, 'share', 'faces'],
-      rows.map(({region, at}) => [
-        look(`Look at region ${at + 1} of the ${names[role]} body`, String(at + 1), () => onPick(role, region.closest)),
-        short(region.area, 3), short(region.least_distance, 3), `${short(100 * region.share, 3)} %`,
-        region.partner === null || !other[region.partner] ? 'unpaired' : `region ${region.partner + 1}`,
-      ]));
+  return table(
+    `${title} (d ≤ ${short(bite.contact)} ${unit})`,
+    ['#', `area, ${unit}²`, `least d, ${unit}`, 'share', 'faces'],
+    rows.map(({region, at}) => [
+      look(`Look at region ${at + 1} of the ${names[role]} body`, String(at + 1), () => onPick(role, region.closest)),
+      short(region.area, 3),
+      short(region.least_distance, 3),
+      `${short(100 * region.share, 3)} %`,
+      region.partner === null || !other[region.partner] ? 'unpaired' : `region ${region.partner + 1}`,
+    ]),
+  );
 }
 
 /**

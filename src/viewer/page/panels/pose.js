@@ -36,7 +36,8 @@ export function makePosePanel({store, stage, engine, history, say}) {
     shift: axes.map((name, axis) => numberField({label: `Shift ${name}`, value: 0, onChange: (value) => setNumber('shift', axis, value)})),
     turn: axes.map((name, axis) => numberField({label: `Turn ${name}, °`, value: 0, onChange: (value) => setNumber('turn', axis, value)})),
   };
-  const undo = button('Undo', history.undo, {title: 'Control and Z'}), redo = button('Redo', history.redo, {title: 'Control, Shift and Z'});
+  const undo = button('Undo', history.undo, {title: 'Control and Z'}),
+    redo = button('Redo', history.redo, {title: 'Control, Shift and Z'});
 
   const firstContact = async () => {
     const {pose, bodies} = store.get();
@@ -44,8 +45,11 @@ export function makePosePanel({store, stage, engine, history, say}) {
     // Apart here, the body closes on to where the slider ends.
     const further = Math.max(0, homeShift() - six().shift[2]);
     try {
-      const found = await engine.ask('first_contact', {from: moved(pose, [0, 0, -far]), to: moved(pose, [0, 0, further]), tolerance},
-          {doing: 'Looking for the first contact along z'});
+      const found = await engine.ask(
+        'first_contact',
+        {from: moved(pose, [0, 0, -far]), to: moved(pose, [0, 0, further]), tolerance},
+        {doing: 'Looking for the first contact along z'},
+      );
       if (found.status === 'contact') {
         store.set({pose: found.pose, dragging: false});
         say(`First contact: within ${short(tolerance * (far + further), 2)} ${unitWord(unitOf(store.get()))} of this pose.`);
@@ -78,21 +82,46 @@ export function makePosePanel({store, stage, engine, history, say}) {
     }
   };
 
-  const panel = element('div', {},
-      element('h2', {}, 'Pose of the moving body'),
-      element('div', {class: 'row'},
-          button('First contact', firstContact, {primary: true, title: 'Moves the body along z from far away to where it touches first'}),
-          undo, redo, button('As it came', () => store.set({pose: store.get().home, dragging: false}))),
-      select({
-        label: 'Handles in the picture', value: 'translate',
-        choices: [{value: 'translate', words: 'shift'}, {value: 'rotate', words: 'turn'}],
-        onChange: (mode) => gizmo.setMode(/** @type {'translate' | 'rotate'} */ (mode)),
-      }).element,
-      element('fieldset', {}, element('legend', {}, 'Six numbers: turned about x, y, then z through its middle, then shifted'),
-          element('div', {class: 'grid three'}, ...fields.shift.map((each) => each.element), ...fields.turn.map((each) => each.element))),
-      element('div', {class: 'control'}, element('label', {for: matrixId}, 'Matrix: four rows of four, or 16 numbers column by column in one line'), matrix),
-      element('div', {class: 'row'}, button('Copy the matrix', copyMatrix), button('Take this matrix', takeMatrix)),
-      element('p', {class: 'quiet'}, 'In the picture: arrow keys turn the view, + and − come nearer and go farther; with Shift, arrow keys and Page Up and Down move the body.'));
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Pose of the moving body'),
+    element(
+      'div',
+      {class: 'row'},
+      button('First contact', firstContact, {primary: true, title: 'Moves the body along z from far away to where it touches first'}),
+      undo,
+      redo,
+      button('As it came', () => store.set({pose: store.get().home, dragging: false})),
+    ),
+    select({
+      label: 'Handles in the picture',
+      value: 'translate',
+      choices: [
+        {value: 'translate', words: 'shift'},
+        {value: 'rotate', words: 'turn'},
+      ],
+      onChange: (mode) => gizmo.setMode(/** @type {'translate' | 'rotate'} */ (mode)),
+    }).element,
+    element(
+      'fieldset',
+      {},
+      element('legend', {}, 'Six numbers: turned about x, y, then z through its middle, then shifted'),
+      element('div', {class: 'grid three'}, ...fields.shift.map((each) => each.element), ...fields.turn.map((each) => each.element)),
+    ),
+    element(
+      'div',
+      {class: 'control'},
+      element('label', {for: matrixId}, 'Matrix: four rows of four, or 16 numbers column by column in one line'),
+      matrix,
+    ),
+    element('div', {class: 'row'}, button('Copy the matrix', copyMatrix), button('Take this matrix', takeMatrix)),
+    element(
+      'p',
+      {class: 'quiet'},
+      'In the picture: arrow keys turn the view, + and − come nearer and go farther; with Shift, arrow keys and Page Up and Down move the body.',
+    ),
+  );
 
   const fill = (/** @type {Readonly<State>} */ {dragging}) => {
     const numbers = six();
@@ -111,9 +140,13 @@ export function makePosePanel({store, stage, engine, history, say}) {
 /** @param {string} status */
 function firstContactWords(status) {
   switch (status) {
-    case 'none': return 'Nothing touches on the way along z to this pose: turn or shift the body so that they meet.';
-    case 'grazing': return 'On the way the bodies come as near as rounding can tell, without meeting for certain: shift the body a little.';
-    case 'touches-at-start': return 'They touch even far away along z: their sizes may differ, or z is not the way they close.';
-    default: return `There is no first contact along z: ${status.replaceAll('-', ' ')}.`;
+    case 'none':
+      return 'Nothing touches on the way along z to this pose: turn or shift the body so that they meet.';
+    case 'grazing':
+      return 'On the way the bodies come as near as rounding can tell, without meeting for certain: shift the body a little.';
+    case 'touches-at-start':
+      return 'They touch even far away along z: their sizes may differ, or z is not the way they close.';
+    default:
+      return `There is no first contact along z: ${status.replaceAll('-', ' ')}.`;
   }
 }

@@ -44,11 +44,24 @@ export function makeRecordingPanel(context) {
   let seen = false;
 
   const play = button('Play', () => playback?.toggle(), {primary: true});
-  const scrub = slider({label: 'Tick', min: 0, max: 1, step: 1, value: 0, words: tickWords, onInput: (at) => {
-    playback?.pause();
-    playback?.jump(at);
-  }});
-  const speed = select({label: 'Speed', value: '1', choices: speeds.map((value) => ({value, words: `${value} ×`})), onChange: (value) => playback?.setSpeed(Number(value))});
+  const scrub = slider({
+    label: 'Tick',
+    min: 0,
+    max: 1,
+    step: 1,
+    value: 0,
+    words: tickWords,
+    onInput: (at) => {
+      playback?.pause();
+      playback?.jump(at);
+    },
+  });
+  const speed = select({
+    label: 'Speed',
+    value: '1',
+    choices: speeds.map((value) => ({value, words: `${value} ×`})),
+    onChange: (value) => playback?.setSpeed(Number(value)),
+  });
   const pick = (/** @type {number} */ time) => opened && playback?.jump(indexAt(opened.recording.ticks, time));
   const time = {xLabel: 'time, s', lines: true, onPick: pick};
   const plots = {
@@ -57,22 +70,55 @@ export function makeRecordingPanel(context) {
     distance: plot({...time, label: 'Distance over time', yLabel: 'distance'}),
   };
   let apart = handApart;
-  const apartSlider = slider({label: 'Hand drawn away from the tool', min: 1, max: 50, step: 1, value: apart, words: (value) => value === 1 ? 'as it is' : `${value} times as far`, onInput: (value) => {
-    apart = value;
-    playback?.jump(playback.at());
-  }});
-  const now = element('div'), head = element('p');
-  const player = element('div', {hidden: true},
-      head, element('div', {class: 'row'}, play, button('Back a tick', () => step(-1)), button('On a tick', () => step(1))),
-      scrub.element, speed.element, apartSlider.element, now,
-      element('h3', {}, 'Force on the hand'), plots.force.element,
-      element('h3', {}, 'Leaf pairs'), plots.contacts.element,
-      element('h3', {}, 'Distance, asked here'), plots.distance.element,
-      element('p', {class: 'quiet'}, 'Short strokes on the time axis are late ticks. The body in its own colour is the tool, the faint pink one is where the hand draws it to.'));
-  const panel = element('div', {},
-      element('h2', {}, 'Recording'),
-      element('p', {}, 'Plays what ist run SCENE --record run.jsonl wrote: how a hand moved one body against the other, and what it felt.'),
-      fileField('Open a recording (.jsonl)', '.jsonl,.json,.csv,.txt', (file) => openFile(file)), player);
+  const apartSlider = slider({
+    label: 'Hand drawn away from the tool',
+    min: 1,
+    max: 50,
+    step: 1,
+    value: apart,
+    words: (value) => (value === 1 ? 'as it is' : `${value} times as far`),
+    onInput: (value) => {
+      apart = value;
+      playback?.jump(playback.at());
+    },
+  });
+  const now = element('div'),
+    head = element('p');
+  const player = element(
+    'div',
+    {hidden: true},
+    head,
+    element(
+      'div',
+      {class: 'row'},
+      play,
+      button('Back a tick', () => step(-1)),
+      button('On a tick', () => step(1)),
+    ),
+    scrub.element,
+    speed.element,
+    apartSlider.element,
+    now,
+    element('h3', {}, 'Force on the hand'),
+    plots.force.element,
+    element('h3', {}, 'Leaf pairs'),
+    plots.contacts.element,
+    element('h3', {}, 'Distance, asked here'),
+    plots.distance.element,
+    element(
+      'p',
+      {class: 'quiet'},
+      'Short strokes on the time axis are late ticks. The body in its own colour is the tool, the faint pink one is where the hand draws it to.',
+    ),
+  );
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Recording'),
+    element('p', {}, 'Plays what ist run SCENE --record run.jsonl wrote: how a hand moved one body against the other, and what it felt.'),
+    fileField('Open a recording (.jsonl)', '.jsonl,.json,.csv,.txt', (file) => openFile(file)),
+    player,
+  );
 
   /** @param {number} at */
   function tickWords(at) {
@@ -99,21 +145,33 @@ export function makeRecordingPanel(context) {
   function open(next) {
     playback?.pause();
     opened = next;
-    const {recording: {ticks}, scene} = next;
+    const {
+      recording: {ticks},
+      scene,
+    } = next;
     bodiesThen = store.get().bodies;
     player.hidden = false;
     head.textContent = headWords(next.recording);
     scrub.range(0, ticks.length - 1);
     playback = makePlayback(ticks, show);
-    const late = {name: 'late ticks', colour: 'var(--series-2)', ticks: true, points: ticks.filter((tick) => tick.late).map((tick) => /** @type {[number, number]} */ ([tick.time, 0]))};
+    const late = {
+      name: 'late ticks',
+      colour: 'var(--series-2)',
+      ticks: true,
+      points: ticks.filter((tick) => tick.late).map((tick) => /** @type {[number, number]} */ ([tick.time, 0])),
+    };
     plots.force.set([{name: 'force', colour: 'var(--series-1)', points: ticks.map((tick) => [tick.time, tick.force])}, late]);
-    plots.contacts.set([{name: 'leaf pairs', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.contacts ?? NaN])}, late]);
+    plots.contacts.set([
+      {name: 'leaf pairs', colour: 'var(--series-3)', points: ticks.map((tick) => [tick.time, tick.contacts ?? NaN])},
+      late,
+    ]);
     plots.distance.set([]);
     arrange();
-    if (scene) askDistances().catch((error) => {
-      const text = faultText(error);
-      if (text) say(text, 'error');
-    });
+    if (scene)
+      askDistances().catch((error) => {
+        const text = faultText(error);
+        if (text) say(text, 'error');
+      });
   }
 
   function arrange() {
@@ -123,11 +181,18 @@ export function makeRecordingPanel(context) {
       for (const role of roles) stage.fade(role, 1);
       return;
     }
-    const {scene, recording: {ticks}} = opened;
+    const {
+      scene,
+      recording: {ticks},
+    } = opened;
     for (const role of roles) stage.fade(role, scene ? 1 : 0);
     if (scene) {
       const {moving} = store.get().bodies;
-      view.set(moving, scene.others.map((other) => other.facts), moving?.extent ?? 1);
+      view.set(
+        moving,
+        scene.others.map((other) => other.facts),
+        moving?.extent ?? 1,
+      );
       playback?.jump(playback.at());
       stage.frameAll();
       return;
@@ -142,10 +207,14 @@ export function makeRecordingPanel(context) {
   /** @param {number} at */
   const poseAt = (at) => {
     if (!opened?.scene) return null;
-    const {scene, recording: {ticks}} = opened;
+    const {
+      scene,
+      recording: {ticks},
+    } = opened;
     const {tool, device} = ticks[at];
     const fixed = placeAt(scene.spans[scene.fixed], at, tool);
-    const place = (/** @type {number} */ body, /** @type {Pose} */ frame) => relative(fixed, placeAt(scene.spans[body], at, frame), scene.metresPerUnit);
+    const place = (/** @type {number} */ body, /** @type {Pose} */ frame) =>
+      relative(fixed, placeAt(scene.spans[body], at, frame), scene.metresPerUnit);
     return {
       tool: place(scene.moving, tool),
       hand: device && awayFrom(place(scene.moving, tool), place(scene.moving, device), apart),
@@ -190,7 +259,8 @@ export function makeRecordingPanel(context) {
       if (!poses || opened !== mine) return;
       const {distance_lower: distance} = await engine.ask('tick', {pose: poses.tool, stiffness: 0});
       lower.push([ticks[at].time, distance]);
-      if (lower.length % 25 === 0 || at + every >= ticks.length) plots.distance.set([{name: `distance, ${unit}`, colour: 'var(--series-4)', points: [...lower]}]);
+      if (lower.length % 25 === 0 || at + every >= ticks.length)
+        plots.distance.set([{name: `distance, ${unit}`, colour: 'var(--series-4)', points: [...lower]}]);
     }
     if (playback) plots.distance.mark(ticks[playback.at()].time);
   }
@@ -204,8 +274,14 @@ export function makeRecordingPanel(context) {
   });
 
   return {
-    id: 'recording', title: 'Recording', element: panel, open, openFile,
-    progress: () => opened && playback && {tick: opened.recording.ticks[playback.at()].tick, last: opened.recording.ticks[opened.recording.ticks.length - 1].tick},
+    id: 'recording',
+    title: 'Recording',
+    element: panel,
+    open,
+    openFile,
+    progress: () =>
+      opened &&
+      playback && {tick: opened.recording.ticks[playback.at()].tick, last: opened.recording.ticks[opened.recording.ticks.length - 1].tick},
     shown() {
       seen = true;
       arrange();
@@ -225,13 +301,17 @@ function headWords({ticks, header, dt}) {
   /** @type {import('../protocol.js').Line[]} */
   const bodies = header.bodies;
   const scripted = bodies.filter(({script}) => script).map(({name}) => name);
-  return `${count(ticks.length)} ticks of ${short(dt * 1e6)} µs by ist ${header.ist}: ${bodies.map((body) => body.file ?? body.name).join(', ')}.` +
-      (scripted.length > 0 ? ` The page does not play the script of ${scripted.join(', ')}: it is drawn, and its distance asked, where it began.` : '');
+  return (
+    `${count(ticks.length)} ticks of ${short(dt * 1e6)} µs by ist ${header.ist}: ${bodies.map((body) => body.file ?? body.name).join(', ')}.` +
+    (scripted.length > 0
+      ? ` The page does not play the script of ${scripted.join(', ')}: it is drawn, and its distance asked, where it began.`
+      : '')
+  );
 }
 
 /** @param {Pose} pose */
 function scaled(pose) {
-  return [...identity].map((_, at) => at >= 12 && at < 15 ? pose[at] * frameScale : pose[at]);
+  return [...identity].map((_, at) => (at >= 12 && at < 15 ? pose[at] * frameScale : pose[at]));
 }
 
 /**
@@ -241,7 +321,7 @@ function scaled(pose) {
  * @returns {Pose} the hand's, shifted away from the tool
  */
 function awayFrom(tool, hand, times) {
-  return hand.map((value, at) => at >= 12 && at < 15 ? tool[at] + times * (value - tool[at]) : value);
+  return hand.map((value, at) => (at >= 12 && at < 15 ? tool[at] + times * (value - tool[at]) : value));
 }
 
 /**

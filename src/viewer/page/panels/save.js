@@ -16,7 +16,10 @@ export function makeSavePanel({store, stage, engine, measurer, say}) {
    * @param {string} about
    * @param {() => Promise<void> | void} save
    */
-  const line = (label, about, save) => element('div', {class: 'save-line'},
+  const line = (label, about, save) =>
+    element(
+      'div',
+      {class: 'save-line'},
       button(label, async () => {
         try {
           await save();
@@ -24,7 +27,9 @@ export function makeSavePanel({store, stage, engine, measurer, say}) {
           const text = faultText(error);
           if (text) say(text, 'error');
         }
-      }), element('span', {}, about));
+      }),
+      element('span', {}, about),
+    );
 
   const savePicture = async () => download('ist.png', await stage.picture());
   const savePose = () => download('pose.json', json([{pose: store.get().pose}]));
@@ -32,8 +37,11 @@ export function makeSavePanel({store, stage, engine, measurer, say}) {
   const saveAnswer = () => {
     const {answer, cancelled} = store.get();
     if (!answer || !isHere(store.get(), answer)) {
-      throw new Error(isHere(store.get(), cancelled) ? 'The answer at this pose was cancelled: move the body a little, and it is asked again.' :
-        'The answer at this pose is not there yet: wait until the pose rests.');
+      throw new Error(
+        isHere(store.get(), cancelled)
+          ? 'The answer at this pose was cancelled: move the body a little, and it is asked again.'
+          : 'The answer at this pose is not there yet: wait until the pose rests.',
+      );
     }
     download('answer.jsonl', new Blob([`${JSON.stringify(answer.header)}\n${JSON.stringify(answer.line)}\n`]));
   };
@@ -43,7 +51,8 @@ export function makeSavePanel({store, stage, engine, measurer, say}) {
     download('bite.json', json(bite.bite));
   };
   const saveGlb = async () => {
-    if (!measurable(store.get())) throw new Error('GLB needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.');
+    if (!measurable(store.get()))
+      throw new Error('GLB needs the triangles of both bodies, and one of these trees holds none: open its mesh instead.');
     const {bytes} = await measurer.ask('save_glb', biteQuestion(store.get()), {doing: 'Writing both bodies as GLB'});
     download('bite.glb', blob(bytes));
   };
@@ -52,17 +61,24 @@ export function makeSavePanel({store, stage, engine, measurer, say}) {
     const {bytes} = await engine.ask('save_body', {role}, {doing: `Writing the tree of the ${role} body`});
     download(`${(store.get().bodies[role]?.name ?? role).replace(/\.[^.]*$/, '')}.ist`, blob(bytes));
   };
-  const panel = element('div', {},
-      element('h2', {}, 'Save'),
-      line('Picture', 'ist.png, as it is drawn', savePicture),
-      line('Pose', 'pose.json, which ist collide --poses reads', savePose),
-      line('Matrix', 'pose.txt, which --matrix reads', saveMatrix),
-      line('Answer', 'answer.jsonl, the lines of ist collide --json', saveAnswer),
-      line('Bite', 'bite.json, as ist occlusion writes it', saveBite),
-      line('Both bodies', 'bite.glb, in the colours of the map, metres, y up', saveGlb),
-      line('Fixed tree', '.ist, as ist build writes it', () => saveTree('fixed')),
-      line('Moving tree', '.ist, as ist build writes it', () => saveTree('moving')),
-      element('p', {class: 'quiet'}, 'The address of this page holds the pose and the settings: copy it to come back to them. A mesh of a face or of jaws identifies a patient.'));
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'Save'),
+    line('Picture', 'ist.png, as it is drawn', savePicture),
+    line('Pose', 'pose.json, which ist collide --poses reads', savePose),
+    line('Matrix', 'pose.txt, which --matrix reads', saveMatrix),
+    line('Answer', 'answer.jsonl, the lines of ist collide --json', saveAnswer),
+    line('Bite', 'bite.json, as ist occlusion writes it', saveBite),
+    line('Both bodies', 'bite.glb, in the colours of the map, metres, y up', saveGlb),
+    line('Fixed tree', '.ist, as ist build writes it', () => saveTree('fixed')),
+    line('Moving tree', '.ist, as ist build writes it', () => saveTree('moving')),
+    element(
+      'p',
+      {class: 'quiet'},
+      'The address of this page holds the pose and the settings: copy it to come back to them. A mesh of a face or of jaws identifies a patient.',
+    ),
+  );
   return {id: 'save', title: 'Save', element: panel, shown: () => {}, hidden: () => {}};
 }
 

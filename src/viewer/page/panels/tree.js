@@ -18,38 +18,82 @@ const long = {doing: 'Reading the trees', seldomLong: true};
 /** @type {import('../context.js').MakePanel} */
 export function makeTreePanel({store, engine, stage, say}) {
   const view = makeTreeView(stage);
-  let seen = false, level = 4, stepping = false, step = 0, asked = 0;
+  let seen = false,
+    level = 4,
+    stepping = false,
+    step = 0,
+    asked = 0;
   /** @type {Policy[]} */
   let chosen = ['slab'];
   /** @type {Step[]} */
   let steps = [];
-  const levels = slider({label: 'Level, 0 are the leaves', min: 0, max: 9, step: 1, value: level, words: (value) => `level ${value}`, onInput: (value) => {
-    level = value;
-    later();
-  }});
-  const boxes = all.map((policy) => checkbox(policy, chosen.includes(policy), (on) => {
-    chosen = all.filter((each) => each === policy ? on : chosen.includes(each));
-    later();
-  }));
+  const levels = slider({
+    label: 'Level, 0 are the leaves',
+    min: 0,
+    max: 9,
+    step: 1,
+    value: level,
+    words: (value) => `level ${value}`,
+    onInput: (value) => {
+      level = value;
+      later();
+    },
+  });
+  const boxes = all.map((policy) =>
+    checkbox(policy, chosen.includes(policy), (on) => {
+      chosen = all.filter((each) => (each === policy ? on : chosen.includes(each)));
+      later();
+    }),
+  );
   const mode = select({
-    label: 'Show', value: 'level',
-    choices: [{value: 'level', words: 'all nodes of a level'}, {value: 'query', words: 'one query, front by front'}],
+    label: 'Show',
+    value: 'level',
+    choices: [
+      {value: 'level', words: 'all nodes of a level'},
+      {value: 'query', words: 'one query, front by front'},
+    ],
     onChange: (value) => {
       stepping = value === 'query';
       arrange();
       later();
     },
   });
-  const stepSlider = slider({label: 'Step of the query', min: 0, max: 1, step: 1, value: 0, words: stepWords, onInput: (value) => {
-    step = value;
-    later();
-  }});
-  const note = element('p', {'aria-live': 'polite'}), numbers = element('div');
-  const policyBoxes = element('fieldset', {}, element('legend', {}, 'Policies, side by side'), element('div', {class: 'row'}, ...boxes.map((box) => box.element)));
-  const panel = element('div', {},
-      element('h2', {}, 'The tree'),
-      element('p', {}, 'A query goes down both trees, level by level, and keeps the pairs of nodes that overlap. Nodes that overlap another are orange.'),
-      mode.element, policyBoxes, levels.element, stepSlider.element, note, numbers);
+  const stepSlider = slider({
+    label: 'Step of the query',
+    min: 0,
+    max: 1,
+    step: 1,
+    value: 0,
+    words: stepWords,
+    onInput: (value) => {
+      step = value;
+      later();
+    },
+  });
+  const note = element('p', {'aria-live': 'polite'}),
+    numbers = element('div');
+  const policyBoxes = element(
+    'fieldset',
+    {},
+    element('legend', {}, 'Policies, side by side'),
+    element('div', {class: 'row'}, ...boxes.map((box) => box.element)),
+  );
+  const panel = element(
+    'div',
+    {},
+    element('h2', {}, 'The tree'),
+    element(
+      'p',
+      {},
+      'A query goes down both trees, level by level, and keeps the pairs of nodes that overlap. Nodes that overlap another are orange.',
+    ),
+    mode.element,
+    policyBoxes,
+    levels.element,
+    stepSlider.element,
+    note,
+    numbers,
+  );
   const arrange = () => {
     levels.element.hidden = stepping;
     stepSlider.element.hidden = !stepping;
@@ -89,12 +133,21 @@ export function makeTreePanel({store, engine, stage, say}) {
       rows.push(found.row);
     }
     view.draw(columns, pose, store.get().bodies);
-    note.textContent = policies.length === 0 ? 'Choose a policy that both trees have.' :
-      columns.some((column) => column.only) && !stepping ? `A level of more than ${count(mostDrawn)} nodes shows those alone that overlap another.` :
-        stepping && steps.length === 0 ? 'The two roots do not overlap here: the query ends at once. Close the bodies.' : '';
-    numbers.replaceChildren(policies.length === 0 ? '' : stepping ?
-      table('This step', ['policy', 'tests', 'pairs that overlap', 'nodes, fixed and moving'], rows) :
-      table(`Level ${level}`, ['policy', 'nodes, fixed and moving', 'of them touched'], rows));
+    note.textContent =
+      policies.length === 0
+        ? 'Choose a policy that both trees have.'
+        : columns.some((column) => column.only) && !stepping
+          ? `A level of more than ${count(mostDrawn)} nodes shows those alone that overlap another.`
+          : stepping && steps.length === 0
+            ? 'The two roots do not overlap here: the query ends at once. Close the bodies.'
+            : '';
+    numbers.replaceChildren(
+      policies.length === 0
+        ? ''
+        : stepping
+          ? table('This step', ['policy', 'tests', 'pairs that overlap', 'nodes, fixed and moving'], rows)
+          : table(`Level ${level}`, ['policy', 'nodes, fixed and moving', 'of them touched'], rows),
+    );
   }
 
   /** @param {Policy} policy */
@@ -107,7 +160,11 @@ export function makeTreePanel({store, engine, stage, say}) {
     const many = fixed.radii.length + moving.radii.length > mostDrawn;
     return {
       column: {policy, fixed, moving, touched, only: many ? touched : null},
-      row: [policy, `${count(fixed.radii.length)} and ${count(moving.radii.length)}`, `${count(touched.fixed.length)} and ${count(touched.moving.length)}`],
+      row: [
+        policy,
+        `${count(fixed.radii.length)} and ${count(moving.radii.length)}`,
+        `${count(touched.fixed.length)} and ${count(touched.moving.length)}`,
+      ],
     };
   }
 
@@ -139,7 +196,9 @@ export function makeTreePanel({store, engine, stage, say}) {
     later();
   });
   return {
-    id: 'tree', title: 'Tree', element: panel,
+    id: 'tree',
+    title: 'Tree',
+    element: panel,
     shown() {
       seen = true;
       later();

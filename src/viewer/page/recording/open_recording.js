@@ -38,7 +38,10 @@ export async function openRecordingFile(content, name, {loader, store, say, read
   const {header} = recording;
   const scene = sceneBodies(header);
   const missing = (/** @type {string} */ why) => {
-    say(`The recording comes without its bodies (${why}): their frames alone are drawn. Write a page with its bodies: ist view run.jsonl --scene SCENE.toml -o run.html.`, 'warning');
+    say(
+      `The recording comes without its bodies (${why}): their frames alone are drawn. Write a page with its bodies: ist view run.jsonl --scene SCENE.toml -o run.html.`,
+      'warning',
+    );
     return {recording, scene: null};
   };
   if (!scene) return missing('its scene is of more than two bodies, or of trees');
@@ -50,7 +53,10 @@ export async function openRecordingFile(content, name, {loader, store, say, read
   const {fixed, moving} = store.get().bodies;
   if (!fixed || !moving) return missing('no bodies are open');
   if (!jaws) {
-    for (const [facts, body] of /** @type {[BodyFacts, any][]} */ ([[fixed, header.bodies[0]], [moving, header.bodies[1]]])) {
+    for (const [facts, body] of /** @type {[BodyFacts, any][]} */ ([
+      [fixed, header.bodies[0]],
+      [moving, header.bodies[1]],
+    ])) {
       if (!body.hash || facts.info.source?.hash !== body.hash) return missing(`${body.file ?? body.name} is not open here`);
     }
   }
@@ -65,7 +71,8 @@ export async function openRecordingFile(content, name, {loader, store, say, read
  */
 export async function openRecordingData(data, context) {
   const {loader, store, say, readRecording} = context;
-  const text = data.recording ?? '', name = 'the recording';
+  const text = data.recording ?? '',
+    name = 'the recording';
   if (data.bodies.length === 0) return openRecordingFile(text, name, context);
   const recording = await readRecording(text, name);
   if (recording.cutOff) say(recording.cutOff, 'warning');
@@ -74,8 +81,10 @@ export async function openRecordingData(data, context) {
   if (fixed < 0 || moving < 0) return {recording, scene: null};
   const metresPerUnit = /** @type {number} */ (data.metres_per_unit);
   const placed = data.bodies.map((body) => ({
-    name: recording.header.bodies[body.index ?? 0]?.name ?? body.name, held: Boolean(body.held),
-    pose: /** @type {Pose} */ (body.pose), in_tool: body.in_tool,
+    name: recording.header.bodies[body.index ?? 0]?.name ?? body.name,
+    held: Boolean(body.held),
+    pose: /** @type {Pose} */ (body.pose),
+    in_tool: body.in_tool,
   }));
   const spans = spansOf(placed, recording);
   /** @type {Scene['others']} */

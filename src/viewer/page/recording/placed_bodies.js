@@ -18,7 +18,7 @@ import {inverse, multiply} from '../pose.js';
 export function spansOf(bodies, {ticks, changes}) {
   return bodies.map((body) => {
     /** @type {Span[]} */
-    const spans = [{from: 0, held: body.held, pose: body.held ? body.in_tool ?? multiply(inverse(ticks[0].tool), body.pose) : body.pose}];
+    const spans = [{from: 0, held: body.held, pose: body.held ? (body.in_tool ?? multiply(inverse(ticks[0].tool), body.pose)) : body.pose}];
     for (const change of changes) {
       if (change.body !== body.name || change.status !== 'done') continue;
       const last = spans[spans.length - 1];

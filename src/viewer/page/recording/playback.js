@@ -16,8 +16,11 @@
  * @returns {Playback}
  */
 export function makePlayback(ticks, onTick) {
-  let at = 0, speed = 1, playing = false;
-  let begun = 0, from = 0;
+  let at = 0,
+    speed = 1,
+    playing = false;
+  let begun = 0,
+    from = 0;
   const last = ticks.length - 1;
   const restart = () => {
     begun = performance.now();
@@ -25,7 +28,7 @@ export function makePlayback(ticks, onTick) {
   };
   const turn = () => {
     if (!playing) return;
-    at = indexAt(ticks, from + (performance.now() - begun) / 1000 * speed);
+    at = indexAt(ticks, from + ((performance.now() - begun) / 1000) * speed);
     if (at >= last) playing = false;
     onTick(at, playing);
     if (playing) requestAnimationFrame(turn);
@@ -63,7 +66,8 @@ export function makePlayback(ticks, onTick) {
  * @returns {number} index of the last tick that began by then
  */
 export function indexAt(ticks, time) {
-  let low = 0, high = ticks.length - 1;
+  let low = 0,
+    high = ticks.length - 1;
   while (low < high) {
     const middle = Math.ceil((low + high) / 2);
     if (ticks[middle].time <= time) low = middle;

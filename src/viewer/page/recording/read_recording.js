@@ -18,9 +18,11 @@ const patience = 30;
 export function makeReadRecording(makeBar) {
   /** @type {object | null} */
   let reading = null;
-  const bar = makeBar(() => { reading = null; });
+  const bar = makeBar(() => {
+    reading = null;
+  });
   return async (from, name) => {
-    const mine = reading = {};
+    const mine = (reading = {});
     const goOn = () => {
       if (reading !== mine) throw new EngineError('cancelled', 'cancelled');
     };
@@ -35,7 +37,9 @@ export function makeReadRecording(makeBar) {
         if (done) return value;
         if (performance.now() - drawn < patience) continue;
         bar.advance('', value);
-        await new Promise((resolve) => { setTimeout(resolve); });
+        await new Promise((resolve) => {
+          setTimeout(resolve);
+        });
         goOn();
         drawn = performance.now();
       }
@@ -53,7 +57,9 @@ export function makeReadRecording(makeBar) {
 async function textOf(from) {
   if (typeof from === 'string') return from;
   if (from.size > mostBytes) {
-    throw new Error(`It has ${Math.round(from.size / 1e6)} MB, and ${mostBytes / 1e6} MB are the most that a page reads: record fewer --seconds.`);
+    throw new Error(
+      `It has ${Math.round(from.size / 1e6)} MB, and ${mostBytes / 1e6} MB are the most that a page reads: record fewer --seconds.`,
+    );
   }
   try {
     return await from.text();

@@ -87,7 +87,8 @@ export function* recordingSteps(text) {
 function* linesOf(text) {
   let number = 0;
   for (let begin = 0; begin < text.length;) {
-    const found = text.indexOf('\n', begin), end = found < 0 ? text.length : found + 1;
+    const found = text.indexOf('\n', begin),
+      end = found < 0 ? text.length : found + 1;
     const line = text.slice(begin, end);
     number += 1;
     if (line.trim() !== '') yield {line, number, end};
@@ -102,23 +103,35 @@ function* linesOf(text) {
  */
 function headerOf(line, number) {
   if (!line.trimStart().startsWith('{')) {
-    throw new Error(/^tick,/.test(line) ?
-      'This recording is CSV, which does not say of what it is: record JSON lines, ist run SCENE --record run.jsonl.' :
-      'This is no recording of ist run: its first line is no JSON. Record one by ist run SCENE --record run.jsonl.');
+    throw new Error(
+      /^tick,/.test(line)
+        ? 'This recording is CSV, which does not say of what it is: record JSON lines, ist run SCENE --record run.jsonl.'
+        : 'This is no recording of ist run: its first line is no JSON. Record one by ist run SCENE --record run.jsonl.',
+    );
   }
   const header = parsed(line, number);
   if (header.recording === undefined) {
-    throw new Error('tick' in header ?
-      'This recording is of version 1, which has no header: record the scene again with this version of ist.' :
-      'This is no recording of ist run: its first line has no recording version. Record one by ist run SCENE --record run.jsonl.');
+    throw new Error(
+      'tick' in header
+        ? 'This recording is of version 1, which has no header: record the scene again with this version of ist.'
+        : 'This is no recording of ist run: its first line has no recording version. Record one by ist run SCENE --record run.jsonl.',
+    );
   }
   if (header.recording !== version) {
-    throw new Error(`This recording is of version ${header.recording}, and the page reads version ${version}: ` +
-        (header.recording > version ? 'open it in a page of the version of ist that wrote it.' : 'record the scene again with this version of ist.'));
+    throw new Error(
+      `This recording is of version ${header.recording}, and the page reads version ${version}: ` +
+        (header.recording > version
+          ? 'open it in a page of the version of ist that wrote it.'
+          : 'record the scene again with this version of ist.'),
+    );
   }
-  const named = Array.isArray(header.bodies) && header.bodies.every((/** @type {unknown} */ body) => typeof (/** @type {any} */ (body)?.name) === 'string');
+  const named =
+    Array.isArray(header.bodies) &&
+    header.bodies.every((/** @type {unknown} */ body) => typeof (/** @type {any} */ (body)?.name) === 'string');
   if (!(header.dt > 0) || !(header.unit > 0) || !named) {
-    throw new Error('The header of this recording is damaged: it needs dt and unit (numbers above 0) and bodies with names. Record the scene again.');
+    throw new Error(
+      'The header of this recording is damaged: it needs dt and unit (numbers above 0) and bodies with names. Record the scene again.',
+    );
   }
   return header;
 }
@@ -166,25 +179,36 @@ function changeOf(line, before) {
 function tickOf(line, number, before) {
   const previous = before[before.length - 1];
   const row = (/** @type {unknown} */ value) => Array.isArray(value) && value.length === 12 && value.every(Number.isFinite);
-  if (!Number.isInteger(line.tick) || !(line.dt > 0) || !Array.isArray(line.wrench) || line.wrench.length !== 6 ||
-      (line.tool !== null && !row(line.tool)) || (line.device !== null && !row(line.device))) {
-    throw new Error(`Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null) and wrench (6 numbers). Record the scene again.`);
+  if (
+    !Number.isInteger(line.tick) ||
+    !(line.dt > 0) ||
+    !Array.isArray(line.wrench) ||
+    line.wrench.length !== 6 ||
+    (line.tool !== null && !row(line.tool)) ||
+    (line.device !== null && !row(line.device))
+  ) {
+    throw new Error(
+      `Line ${number} of the recording is no tick: it needs tick, dt, tool, device (12 numbers each, or null) and wrench (6 numbers). Record the scene again.`,
+    );
   }
-  const wrench = line.wrench.map((/** @type {unknown} */ value) => typeof value === 'number' ? value : 0);
+  const wrench = line.wrench.map((/** @type {unknown} */ value) => (typeof value === 'number' ? value : 0));
   if (previous !== undefined && line.tick <= previous.tick) {
-    throw new Error(`Line ${number} of the recording is damaged: tick ${line.tick} comes after tick ${previous.tick}. Record the scene again.`);
+    throw new Error(
+      `Line ${number} of the recording is damaged: tick ${line.tick} comes after tick ${previous.tick}. Record the scene again.`,
+    );
   }
   const first = before.length ? before[0].tick : line.tick;
   return {
     tick: line.tick,
     time: (line.tick - first) * line.dt,
     device: line.device && poseOfRow(line.device),
-    tool: line.tool ? poseOfRow(line.tool) : previous?.tool ?? [...identity],
+    tool: line.tool ? poseOfRow(line.tool) : (previous?.tool ?? [...identity]),
     wrench,
     force: Math.hypot(wrench[0], wrench[1], wrench[2]),
     torque: Math.hypot(wrench[3], wrench[4], wrench[5]),
     contacts: line.contacts ?? null,
-    late: (previous !== undefined && line.tick > previous.tick + 1) || (line.late_microseconds ?? 0) + (line.microseconds ?? 0) > line.dt * 1e6,
+    late:
+      (previous !== undefined && line.tick > previous.tick + 1) || (line.late_microseconds ?? 0) + (line.microseconds ?? 0) > line.dt * 1e6,
     held: line.held === true,
     fault: line.fault === true,
     microseconds: line.microseconds ?? NaN,

@@ -66,7 +66,7 @@ function rootCentre({info}, voxelSize) {
  * @param {number} metresPerUnit
  */
 function inMetres(pose, metresPerUnit) {
-  return pose.map((value, at) => at >= 12 && at < 15 ? value * metresPerUnit : value);
+  return pose.map((value, at) => (at >= 12 && at < 15 ? value * metresPerUnit : value));
 }
 
 /**
@@ -119,9 +119,21 @@ function turned(quaternion) {
   const length = Math.hypot(...quaternion) || 1;
   const [w, x, y, z] = quaternion.map((value) => value / length);
   return [
-    1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y), 0,
-    2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x), 0,
-    2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y), 0,
-    0, 0, 0, 1,
+    1 - 2 * (y * y + z * z),
+    2 * (x * y + w * z),
+    2 * (x * z - w * y),
+    0,
+    2 * (x * y - w * z),
+    1 - 2 * (x * x + z * z),
+    2 * (y * z + w * x),
+    0,
+    2 * (x * z + w * y),
+    2 * (y * z - w * x),
+    1 - 2 * (x * x + y * y),
+    0,
+    0,
+    0,
+    0,
+    1,
   ];
 }

@@ -1,7 +1,9 @@
 /** The address of the page: it follows the state, but not each of its changes. */
 
 // Browsers refuse an address that changes too often, the strictest after 100 times in 30 s.
-const free = 20, span = 30_000, slow = 1000;
+const free = 20,
+  span = 30_000,
+  slow = 1000;
 
 /**
  * @param {(fragment: string) => void} write

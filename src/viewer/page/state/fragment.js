@@ -37,16 +37,16 @@ export function readFragment(fragment, panels) {
     if (found) Object.assign(change, found);
     else problems.push(`The address gives ${name}=${text.slice(0, 60)}, which is not ${wanted}: the page starts without it.`);
   };
-  take('panel', `one of ${panels.join(', ')}`, (text) => panels.includes(text) ? {panel: text} : null);
+  take('panel', `one of ${panels.join(', ')}`, (text) => (panels.includes(text) ? {panel: text} : null));
   take('pose', 'a pose (16 numbers, column by column, that turn and shift)', (text) => {
-    const pose = text.split(',').map((each) => each.trim() === '' ? NaN : Number(each));
+    const pose = text.split(',').map((each) => (each.trim() === '' ? NaN : Number(each)));
     return isRigid(pose) ? {pose} : null;
   });
-  take('voxel', 'a voxel size above 0', (text) => Number(text) > 0 && Number.isFinite(Number(text)) ? {voxelSize: Number(text)} : null);
-  take('policy', `one of ${policies.join(', ')}`, (text) => policies.includes(text) ? {policy: text} : null);
-  take('preset', `one of ${presets.join(', ')}`, (text) => presets.includes(text) ? {preset: text} : null);
-  take('theme', 'dark or light', (text) => themes.includes(text) ? {theme: text} : null);
-  take('seed', 'a whole number', (text) => /^\d{1,9}$/.test(text) ? {seed: Number(text)} : null);
+  take('voxel', 'a voxel size above 0', (text) => (Number(text) > 0 && Number.isFinite(Number(text)) ? {voxelSize: Number(text)} : null));
+  take('policy', `one of ${policies.join(', ')}`, (text) => (policies.includes(text) ? {policy: text} : null));
+  take('preset', `one of ${presets.join(', ')}`, (text) => (presets.includes(text) ? {preset: text} : null));
+  take('theme', 'dark or light', (text) => (themes.includes(text) ? {theme: text} : null));
+  take('seed', 'a whole number', (text) => (/^\d{1,9}$/.test(text) ? {seed: Number(text)} : null));
   return {change, problems};
 }
 

@@ -28,16 +28,21 @@ export function slider({label, min, max, step, value, logarithmic, words, onInpu
     const part = logarithmic ? Math.log(of / min) / Math.log(max / min) : (of - min) / (max - min);
     return Math.round(Math.min(1, Math.max(0, part)) * ways);
   };
-  const fromWay = (/** @type {number} */ way) =>
-    logarithmic ? min * (max / min) ** (way / ways) : min + (max - min) * way / ways;
+  const fromWay = (/** @type {number} */ way) => (logarithmic ? min * (max / min) ** (way / ways) : min + ((max - min) * way) / ways);
   const stepped = step !== undefined;
   const input = element('input', {
-    id, type: 'range',
-    min: stepped ? min : 0, max: stepped ? max : ways, step: stepped ? step : 1,
-    oninput: () => { show(read()); onInput(read()); },
+    id,
+    type: 'range',
+    min: stepped ? min : 0,
+    max: stepped ? max : ways,
+    step: stepped ? step : 1,
+    oninput: () => {
+      show(read());
+      onInput(read());
+    },
     onchange: () => onChange?.(read()),
   });
-  const read = () => stepped ? input.valueAsNumber : fromWay(input.valueAsNumber);
+  const read = () => (stepped ? input.valueAsNumber : fromWay(input.valueAsNumber));
   /** @param {number} of */
   const show = (of) => {
     output.value = words(of);
@@ -92,7 +97,13 @@ export function select({label, choices, value, onChange}) {
 export function numberField({label, value, min, max, step = 'any', onChange}) {
   const id = newId('number');
   const input = element('input', {
-    id, type: 'number', min, max, step, inputmode: 'decimal', value,
+    id,
+    type: 'number',
+    min,
+    max,
+    step,
+    inputmode: 'decimal',
+    value,
     onchange: () => {
       if (input.validity.valid && Number.isFinite(input.valueAsNumber)) onChange(input.valueAsNumber);
       else input.reportValidity();
@@ -125,6 +136,8 @@ export function checkbox(label, value, onChange) {
   const input = element('input', {type: 'checkbox', checked: value, onchange: () => onChange(input.checked)});
   return {
     element: element('label', {class: 'check'}, input, label),
-    set: (to) => { input.checked = to; },
+    set: (to) => {
+      input.checked = to;
+    },
   };
 }

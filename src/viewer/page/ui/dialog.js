@@ -8,9 +8,13 @@ import {element, newId} from './element.js';
  */
 export function openDialog(title, ...content) {
   const id = newId('dialog');
-  const dialog = element('dialog', {'aria-labelledby': id, onclose: () => dialog.remove()},
-      element('h2', {id}, title), ...content,
-      element('form', {method: 'dialog'}, element('button', {class: 'primary'}, 'Close')));
+  const dialog = element(
+    'dialog',
+    {'aria-labelledby': id, onclose: () => dialog.remove()},
+    element('h2', {id}, title),
+    ...content,
+    element('form', {method: 'dialog'}, element('button', {class: 'primary'}, 'Close')),
+  );
   document.body.append(dialog);
   dialog.showModal();
 }

@@ -11,11 +11,13 @@ import {element, newId} from './element.js';
 export function fileField(label, accept, onFile) {
   const id = newId('file');
   const input = element('input', {
-    id, type: 'file', accept,
+    id,
+    type: 'file',
+    accept,
     onchange: () => {
       const file = input.files?.[0];
       if (file) onFile(file);
-      input.value = '';  // so that the same file can be chosen again
+      input.value = ''; // so that the same file can be chosen again
     },
   });
   return element('div', {class: 'control'}, element('label', {for: id}, label), input);
@@ -39,7 +41,7 @@ export function takeDrops(place, onFiles) {
   place.addEventListener('drop', (event) => {
     event.preventDefault();
     place.classList.remove('dropping');
-    const files = [...event.dataTransfer?.files ?? []];
+    const files = [...(event.dataTransfer?.files ?? [])];
     if (files.length > 0) onFiles(files);
   });
 }

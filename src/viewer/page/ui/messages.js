@@ -18,9 +18,13 @@ export function makeMessages(place) {
     for (const shown of [...place.children]) {
       if (shown.querySelector('p')?.textContent === text) shown.remove();
     }
-    const message = element('div', {class: `message ${kind}`, role: kind === 'error' ? 'alert' : 'status'},
-        element('strong', {}, heads[kind]), element('p', {}, text),
-        element('button', {type: 'button', 'aria-label': 'Close this message', onclick: () => message.remove()}, '×'));
+    const message = element(
+      'div',
+      {class: `message ${kind}`, role: kind === 'error' ? 'alert' : 'status'},
+      element('strong', {}, heads[kind]),
+      element('p', {}, text),
+      element('button', {type: 'button', 'aria-label': 'Close this message', onclick: () => message.remove()}, '×'),
+    );
     if (place.children.length >= most) place.querySelector(`.${kinds.find((each) => place.querySelector(`.${each}`))}`)?.remove();
     place.append(message);
   };

@@ -42,7 +42,7 @@ export function plot(options) {
     drawing.classList.add('picked');
     drawing.addEventListener('pointerdown', (event) => {
       const box = drawing.getBoundingClientRect();
-      const part = ((event.clientX - box.left) / box.width * width - left) / across;
+      const part = (((event.clientX - box.left) / box.width) * width - left) / across;
       onPick(valueAt(scaleX, Math.min(1, Math.max(0, part))));
     });
   }
@@ -50,11 +50,21 @@ export function plot(options) {
   /** @param {Series[]} series */
   const set = (series) => {
     const points = series.filter((each) => !each.ticks).flatMap((each) => each.points);
-    scaleX = scaleOf(series.flatMap((each) => each.points.map(([x]) => x)), Boolean(options.logX));
-    const scaleY = scaleOf(points.map(([, y]) => y), Boolean(options.logY));
+    scaleX = scaleOf(
+      series.flatMap((each) => each.points.map(([x]) => x)),
+      Boolean(options.logX),
+    );
+    const scaleY = scaleOf(
+      points.map(([, y]) => y),
+      Boolean(options.logY),
+    );
     const x = (/** @type {number} */ value) => left + across * partAt(scaleX, value);
     const y = (/** @type {number} */ value) => top + down * (1 - partAt(scaleY, value));
-    drawing.replaceChildren(...axes(scaleX, scaleY, x, y, options), ...series.flatMap((each) => drawn(each, x, y, Boolean(options.lines))), cursor);
+    drawing.replaceChildren(
+      ...axes(scaleX, scaleY, x, y, options),
+      ...series.flatMap((each) => drawn(each, x, y, Boolean(options.lines))),
+      cursor,
+    );
     legend.replaceChildren(...(series.length < 2 ? [] : series.map(legendEntry)));
   };
   set([]);
@@ -102,11 +112,16 @@ function axes(scaleX, scaleY, x, y, {xLabel, yLabel}) {
  */
 function drawn({points, colour, words, ticks, current}, x, y, lines) {
   if (ticks) {
-    const strokes = thinned(points, 200).map(([at]) => `M${x(at).toFixed(1)} ${top + down}v-7`).join('');
+    const strokes = thinned(points, 200)
+      .map(([at]) => `M${x(at).toFixed(1)} ${top + down}v-7`)
+      .join('');
     return [svgElement('path', {class: 'late', d: strokes, stroke: colour})];
   }
   if (lines) {
-    const shown = thinned(points.filter(([, value]) => Number.isFinite(value)), across);
+    const shown = thinned(
+      points.filter(([, value]) => Number.isFinite(value)),
+      across,
+    );
     const path = shown.map(([at, value], i) => `${i ? 'L' : 'M'}${x(at).toFixed(1)} ${y(value).toFixed(1)}`).join('');
     return [svgElement('path', {class: 'line', d: path, stroke: colour})];
   }
@@ -114,8 +129,13 @@ function drawn({points, colour, words, ticks, current}, x, y, lines) {
     const [cx, cy] = [x(at), y(value)];
     // What has no place, as 0 on a logarithmic axis, is not drawn.
     if (!Number.isFinite(cx) || !Number.isFinite(cy)) return [];
-    return [svgElement('circle', {class: i === current ? 'point current' : 'point', cx, cy, r: i === current ? 6 : 4, fill: colour},
-        svgElement('title', {}, words?.[i] ?? `${short(at)}, ${short(value)}`))];
+    return [
+      svgElement(
+        'circle',
+        {class: i === current ? 'point current' : 'point', cx, cy, r: i === current ? 6 : 4, fill: colour},
+        svgElement('title', {}, words?.[i] ?? `${short(at)}, ${short(value)}`),
+      ),
+    ];
   });
 }
 

@@ -73,8 +73,8 @@ export function thinned(points, buckets) {
   /** @type {[number, number][]} */
   const kept = [];
   for (let bucket = 0; bucket < buckets; bucket++) {
-    const begin = Math.floor(bucket * points.length / buckets);
-    const end = Math.floor((bucket + 1) * points.length / buckets);
+    const begin = Math.floor((bucket * points.length) / buckets);
+    const end = Math.floor(((bucket + 1) * points.length) / buckets);
     let [least, greatest] = [begin, begin];
     for (let i = begin; i < end; i++) {
       if (points[i][1] < points[least][1]) least = i;

@@ -3,7 +3,8 @@
 import {element, newId} from './element.js';
 
 // What takes less long shows no bar, which would only flicker. What is often asked, and seldom long, waits longer.
-const patience = 300, longPatience = 1000;
+const patience = 300,
+  longPatience = 1000;
 
 /**
  * @typedef {object} Progress
@@ -35,7 +36,12 @@ export function makeProgress(place, onCancel) {
       cancel.hidden = !cancellable;
       clearTimeout(waiting);
       if (seldomLong) shown.hidden = true;
-      waiting = setTimeout(() => { shown.hidden = false; }, seldomLong ? longPatience : patience);
+      waiting = setTimeout(
+        () => {
+          shown.hidden = false;
+        },
+        seldomLong ? longPatience : patience,
+      );
     },
     advance(stage, part) {
       words.textContent = stage ? `${doing}: ${stage}` : doing;

@@ -11,11 +11,17 @@ import {element} from './element.js';
  * @returns {HTMLElement} it scrolls sideways where it is wider than its place
  */
 export function table(caption, head, rows) {
-  return element('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
-      element('table', {},
-          element('caption', {}, caption),
-          element('thead', {}, element('tr', {}, ...head.map((cell) => element('th', {scope: 'col'}, cell)))),
-          element('tbody', {}, ...rows.map((row) => element('tr', {}, ...row.map((cell) => element('td', {}, cell)))))));
+  return element(
+    'div',
+    {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
+    element(
+      'table',
+      {},
+      element('caption', {}, caption),
+      element('thead', {}, element('tr', {}, ...head.map((cell) => element('th', {scope: 'col'}, cell)))),
+      element('tbody', {}, ...rows.map((row) => element('tr', {}, ...row.map((cell) => element('td', {}, cell))))),
+    ),
+  );
 }
 
 /**
@@ -23,6 +29,9 @@ export function table(caption, head, rows) {
  * @returns {HTMLElement}
  */
 export function facts(lines) {
-  return element('dl', {class: 'facts'},
-      ...lines.map(([name, value]) => element('div', {}, element('dt', {}, name), element('dd', {}, value))));
+  return element(
+    'dl',
+    {class: 'facts'},
+    ...lines.map(([name, value]) => element('div', {}, element('dt', {}, name), element('dd', {}, value))),
+  );
 }

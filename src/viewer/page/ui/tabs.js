@@ -12,10 +12,19 @@ import {element} from './element.js';
  * @returns {(id: string) => void}  shows a panel
  */
 export function makeTabs(bar, place, panels, onPick) {
-  const tabs = panels.map((panel) => element('button', {
-    type: 'button', role: 'tab', id: `tab-${panel.id}`, 'aria-controls': `panel-${panel.id}`,
-    onclick: () => onPick(panel.id),
-  }, panel.title));
+  const tabs = panels.map((panel) =>
+    element(
+      'button',
+      {
+        type: 'button',
+        role: 'tab',
+        id: `tab-${panel.id}`,
+        'aria-controls': `panel-${panel.id}`,
+        onclick: () => onPick(panel.id),
+      },
+      panel.title,
+    ),
+  );
   for (const panel of panels) {
     panel.element.id = `panel-${panel.id}`;
     panel.element.classList.add('panel');
@@ -28,8 +37,8 @@ export function makeTabs(bar, place, panels, onPick) {
   bar.addEventListener('keydown', (event) => {
     const at = tabs.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
     const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
-    const next = event.key === 'Home' ? 0 : event.key === 'End' ? tabs.length - 1 :
-      step === undefined ? -1 : (at + step + tabs.length) % tabs.length;
+    const next =
+      event.key === 'Home' ? 0 : event.key === 'End' ? tabs.length - 1 : step === undefined ? -1 : (at + step + tabs.length) % tabs.length;
     if (next < 0) return;
     event.preventDefault();
     onPick(panels[next].id);

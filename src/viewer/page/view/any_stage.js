@@ -21,7 +21,13 @@ export function makeAnyStage(surface, say) {
       // A browser that has WebGL2 may still give none, as where many pages draw.
     }
   }
-  surface.append(element('p', {class: 'no-drawing'}, 'This browser draws nothing in 3D: it has no WebGL2, or it is switched off, or too many pages draw. All numbers are here; for the picture close other pages and load this one again, switch hardware acceleration on, or use another browser.'));
+  surface.append(
+    element(
+      'p',
+      {class: 'no-drawing'},
+      'This browser draws nothing in 3D: it has no WebGL2, or it is switched off, or too many pages draw. All numbers are here; for the picture close other pages and load this one again, switch hardware acceleration on, or use another browser.',
+    ),
+  );
   return makeNoStage(surface);
 }
 
@@ -38,9 +44,26 @@ function makeNoStage(surface) {
   const nothing = () => {};
   return {
     drawn: false,
-    fixedFrame: new Group(), movingFrame: new Group(), camera: new Camera(), surface,
-    render: nothing, setBody: nothing, setPose: nothing, colour: nothing, fade: nothing, place: nothing,
-    flyTo: nothing, fit: nothing, frameAll: nothing, circle: nothing, bounds: () => new Box3(), orbit: nothing, setBackground: nothing,
-    picture: () => Promise.reject(new Error('This browser draws nothing in 3D (it has no WebGL2), so there is no picture to save: open the page in another browser.')),
+    fixedFrame: new Group(),
+    movingFrame: new Group(),
+    camera: new Camera(),
+    surface,
+    render: nothing,
+    setBody: nothing,
+    setPose: nothing,
+    colour: nothing,
+    fade: nothing,
+    place: nothing,
+    flyTo: nothing,
+    fit: nothing,
+    frameAll: nothing,
+    circle: nothing,
+    bounds: () => new Box3(),
+    orbit: nothing,
+    setBackground: nothing,
+    picture: () =>
+      Promise.reject(
+        new Error('This browser draws nothing in 3D (it has no WebGL2), so there is no picture to save: open the page in another browser.'),
+      ),
   };
 }

@@ -22,7 +22,8 @@ export function makeBalls({level, touched, only, colour}) {
   const material = new THREE.MeshStandardMaterial({roughness: 0.8, transparent: true, opacity: slabs ? 0.85 : 0.5, depthWrite: slabs});
   const mesh = new THREE.InstancedMesh(slabs ? disc : ball, material, count);
   mesh.frustumCulled = false;
-  const own = new THREE.Color(colour), matrix = new THREE.Matrix4();
+  const own = new THREE.Color(colour),
+    matrix = new THREE.Matrix4();
   for (let i = 0; i < count; i++) {
     const node = only ? only[i] : i;
     mesh.setMatrixAt(i, slabs ? discMatrix(level, node, matrix) : ballMatrix(level, node, matrix));
@@ -52,8 +53,11 @@ function ballMatrix({centres, radii}, node, matrix) {
   return matrix.makeScale(radius, radius, radius).setPosition(centres[3 * node], centres[3 * node + 1], centres[3 * node + 2]);
 }
 
-const axis = new THREE.Vector3(0, 0, 1), normal = new THREE.Vector3(), centre = new THREE.Vector3();
-const turn = new THREE.Quaternion(), scale = new THREE.Vector3();
+const axis = new THREE.Vector3(0, 0, 1),
+  normal = new THREE.Vector3(),
+  centre = new THREE.Vector3();
+const turn = new THREE.Quaternion(),
+  scale = new THREE.Vector3();
 
 /**
  * @param {Level} level

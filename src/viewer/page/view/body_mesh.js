@@ -28,8 +28,11 @@ export function makeBodyMesh(ownColour) {
   mesh.matrixAutoUpdate = false;
   mesh.matrix.fromArray([...identity]);
   mesh.visible = false;
-  let faded = 1, known = false;
-  const show = () => { mesh.visible = known && faded > 0; };
+  let faded = 1,
+    known = false;
+  const show = () => {
+    mesh.visible = known && faded > 0;
+  };
   return {
     object: mesh,
     setFacts(facts) {
@@ -65,7 +68,7 @@ export function makeBodyMesh(ownColour) {
       mesh.matrix.fromArray(pose);
       mesh.matrixWorldNeedsUpdate = true;
     },
-    bounds: () => known && mesh.geometry.boundingBox ? mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix) : new THREE.Box3(),
+    bounds: () => (known && mesh.geometry.boundingBox ? mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix) : new THREE.Box3()),
     dispose() {
       mesh.geometry.dispose();
       material.dispose();
@@ -74,7 +77,9 @@ export function makeBodyMesh(ownColour) {
 }
 
 /** Screen colours by the light that they stand for, of 255: what the renderer takes. */
-const byLight = Uint8Array.from({length: 256}, (_, value) => Math.round(255 * new THREE.Color().setRGB(value / 255, 0, 0, THREE.SRGBColorSpace).r));
+const byLight = Uint8Array.from({length: 256}, (_, value) =>
+  Math.round(255 * new THREE.Color().setRGB(value / 255, 0, 0, THREE.SRGBColorSpace).r),
+);
 
 /** @param {Uint8Array} colours */
 function linear(colours) {

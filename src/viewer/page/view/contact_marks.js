@@ -16,8 +16,11 @@ import {wrenchAtMiddle} from '../wrench.js';
 
 const most = 4096;
 // Apart, and deep in each other: apart for the colour-blind too.
-const shallow = new THREE.Color(0x56b4e9), deep = new THREE.Color(0xd55e00), chosenColour = new THREE.Color(0xf0e442);
-const forceColour = 0x009e73, torqueColour = 0xcc79a7;
+const shallow = new THREE.Color(0x56b4e9),
+  deep = new THREE.Color(0xd55e00),
+  chosenColour = new THREE.Color(0xf0e442);
+const forceColour = 0x009e73,
+  torqueColour = 0xcc79a7;
 
 /**
  * @param {Stage} stage
@@ -37,7 +40,8 @@ export function makeContactMarks(stage) {
   normals.renderOrder = 1;
   const lines = new THREE.BufferAttribute(new Float32Array(6 * most), 3);
   normals.geometry.setAttribute('position', lines);
-  const force = arrow(forceColour), torque = arrow(torqueColour);
+  const force = arrow(forceColour),
+    torque = arrow(torqueColour);
   group.add(dots, normals, force, torque);
   stage.fixedFrame.add(group);
   let chosen = -1;
@@ -63,7 +67,8 @@ export function makeContactMarks(stage) {
     lines.needsUpdate = true;
     stage.render();
   };
-  const matrix = new THREE.Matrix4(), colour = new THREE.Color();
+  const matrix = new THREE.Matrix4(),
+    colour = new THREE.Color();
   /**
    * @param {Contacts} contacts
    * @param {number} count

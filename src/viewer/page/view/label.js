@@ -28,7 +28,7 @@ export function makeLabel(text, height) {
     pen.fillText(text, 256, 48);
   }
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
-  sprite.scale.set(height * 512 / 96, height, 1);
+  sprite.scale.set((height * 512) / 96, height, 1);
   sprite.renderOrder = 5;
   return sprite;
 }

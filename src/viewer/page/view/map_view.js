@@ -25,7 +25,8 @@ export function makeMapView(stage, store) {
   const material = new THREE.MeshBasicMaterial({color: dotColour, depthTest: false, transparent: true});
   const dot = new THREE.SphereGeometry(1, 12, 8);
   stage.fixedFrame.add(dots);
-  let seen = false, opened = false;
+  let seen = false,
+    opened = false;
 
   const colour = () => {
     const {bite, pose} = store.get();
@@ -48,9 +49,10 @@ export function makeMapView(stage, store) {
   /** @param {BiteAt} bite */
   const viewer = ({pose, fixed}) => {
     const {bodies} = store.get();
-    const from = middleOf(bodies.fixed), to = transformed(pose, middleOf(bodies.moving));
+    const from = middleOf(bodies.fixed),
+      to = transformed(pose, middleOf(bodies.moving));
     const way = to.map((value, axis) => value - from[axis]);
-    const axis = way.reduce((best, value, at) => Math.abs(value) > Math.abs(way[best]) ? at : best, 0);
+    const axis = way.reduce((best, value, at) => (Math.abs(value) > Math.abs(way[best]) ? at : best), 0);
     const facing = [0, 0, 0];
     facing[axis] = Math.sign(way[axis]) || 1;
     return rotated(fixed.place, facing);

@@ -18,7 +18,9 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {() => void} clear
  */
 
-const handColour = 0xcc79a7, otherColour = 0xb9c2a8, pathColour = 0x0072b2;
+const handColour = 0xcc79a7,
+  otherColour = 0xb9c2a8,
+  pathColour = 0x0072b2;
 
 /**
  * @param {Stage} stage
@@ -31,7 +33,8 @@ export function makePlayerView(stage) {
   let hand = null;
   /** @type {BodyMesh[]} */
   let others = [];
-  const toolFrame = frame(0.12), handFrame = frame(0.08);
+  const toolFrame = frame(0.12),
+    handFrame = frame(0.08);
   const path = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: pathColour}));
   path.frustumCulled = false;
   const empty = () => {

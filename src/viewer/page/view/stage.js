@@ -59,7 +59,8 @@ export function makeStage(surface, say) {
   lamp.position.set(0.35, 0.5, 1);
   camera.add(lamp, lamp.target);
   scene.add(camera, sky);
-  const fixedFrame = new THREE.Group(), movingFrame = new THREE.Group();
+  const fixedFrame = new THREE.Group(),
+    movingFrame = new THREE.Group();
   movingFrame.matrixAutoUpdate = false;
   scene.add(fixedFrame, movingFrame);
   const bodies = {
@@ -73,7 +74,10 @@ export function makeStage(surface, say) {
   controls.addEventListener('change', () => render());
 
   renderer.domElement.addEventListener('webglcontextlost', () => {
-    say('The picture stands still: the browser took its memory for graphics away. All numbers go on. If the picture does not come back, load the page again.', 'warning');
+    say(
+      'The picture stands still: the browser took its memory for graphics away. All numbers go on. If the picture does not come back, load the page again.',
+      'warning',
+    );
   });
   renderer.domElement.addEventListener('webglcontextrestored', () => {
     say('The picture is back.', 'note');
@@ -131,7 +135,12 @@ export function makeStage(surface, say) {
 
   return {
     drawn: true,
-    fixedFrame, movingFrame, camera, surface: renderer.domElement, render, bounds,
+    fixedFrame,
+    movingFrame,
+    camera,
+    surface: renderer.domElement,
+    render,
+    bounds,
     setBody(role, facts) {
       bodies[role].setFacts(facts);
       render();
@@ -176,7 +185,9 @@ export function makeStage(surface, say) {
       const {x, y, z} = new THREE.Vector3().setFromSpherical(arm);
       look(controls.target.clone(), new THREE.Vector3(z, x, y), arm.radius);
     },
-    orbit(on) { controls.enabled = on; },
+    orbit(on) {
+      controls.enabled = on;
+    },
     setBackground(background) {
       scene.background = new THREE.Color(background);
       render();
@@ -184,7 +195,10 @@ export function makeStage(surface, say) {
     picture() {
       draw();
       return new Promise((resolve, reject) => {
-        renderer.domElement.toBlob((blob) => blob ? resolve(blob) : reject(new Error('The browser made no picture: make its window smaller.')), 'image/png');
+        renderer.domElement.toBlob(
+          (blob) => (blob ? resolve(blob) : reject(new Error('The browser made no picture: make its window smaller.'))),
+          'image/png',
+        );
       });
     },
   };
@@ -200,14 +214,15 @@ function distanceOf(box, from, camera) {
   const right = new THREE.Vector3().crossVectors(camera.up, from).normalize();
   if (right.lengthSq() === 0) right.set(1, 0, 0);
   const up = new THREE.Vector3().crossVectors(from, right);
-  const middle = box.getCenter(new THREE.Vector3()), slope = Math.tan(camera.fov * Math.PI / 360);
+  const middle = box.getCenter(new THREE.Vector3()),
+    slope = Math.tan((camera.fov * Math.PI) / 360);
   let distance = 0;
   for (const x of [box.min.x, box.max.x]) {
     for (const y of [box.min.y, box.max.y]) {
       for (const z of [box.min.z, box.max.z]) {
         const corner = new THREE.Vector3(x, y, z).sub(middle);
         const across = Math.max(Math.abs(corner.dot(up)), Math.abs(corner.dot(right)) / camera.aspect);
-        distance = Math.max(distance, 1.03 * across / slope + corner.dot(from));
+        distance = Math.max(distance, (1.03 * across) / slope + corner.dot(from));
       }
     }
   }
