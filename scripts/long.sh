@@ -12,7 +12,7 @@
 #   threads, kills, pressing, coherent, five-bodies, stability     hard cases with more samples still
 #   cloudcompare, blender, doors                what other programs and new users do with it
 #   mutants          scripts/mutate.sh: the tests notice deliberate faults
-#   fuzz-1 to 6      each fuzzer for 30 minutes
+#   fuzz-1 to 6      each fuzzer for 5 minutes, six times
 #
 #   scripts/long.sh                 every part anew
 #   scripts/long.sh --resume        the parts that do not count at this commit

@@ -204,7 +204,7 @@ def machine_state(context):
 def is_test(name):
     """Whether ctest knows a test by that name: one that CMake adds, or a case of a suite."""
     suite, _, case = name.rpartition(".")
-    added = re.compile(rf"(?:add_test\(\s*NAME|ist_add_command\() {{0,1}}{re.escape(name)}\s")
+    added = re.compile(rf"(?:add_test\(\s*NAME |ist_add_command\(){re.escape(name)}\s")
     written = re.compile(rf"\bTEST(_F)?\({suite},\s*{case}\)")
     tests = ROOT / "tests"
     return (any(added.search(file.read_text()) for file in tests.rglob("CMakeLists.txt")) or

@@ -21,5 +21,7 @@ template <std::integral Count>
 
 /// Leaves a test that takes long even with one sample to runs with full effort. Write it as the
 /// first line of the test.
-#define IST_SLOW() \
-  if (ist::test::effort() < 1) GTEST_SKIP() << "slow: it runs with IST_EFFORT=1 or more"
+#define IST_SLOW()                                                                          \
+  do {                                                                                      \
+    if (ist::test::effort() < 1) GTEST_SKIP() << "slow: it runs with IST_EFFORT=1 or more"; \
+  } while (false)
