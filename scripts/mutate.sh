@@ -6,11 +6,12 @@
 #   scripts/mutate.sh               every mutant
 #   scripts/mutate.sh NAME...       those whose names contain one of these words
 #   scripts/mutate.sh --missing     those that were not run at this commit, as after a run that was cut short
+#   scripts/mutate.sh --fast [NAME...]   by the tests of scripts/test.sh alone, which writes nothing
 #   scripts/mutate.sh --list        their names, and what each breaks
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
-  -h | --help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  -h | --help) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
   --list) ;;
   *) scripts/setup.sh --hardware --package ;;
 esac

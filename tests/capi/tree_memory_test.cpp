@@ -195,6 +195,7 @@ TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
 }
 
 TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
+  IST_SLOW();
   ist_tree *tree = c_tree(icosphere(6, 10), 0.1), *back = nullptr;
   const std::vector<unsigned char> bytes = bytes_of(tree);
   std::vector<unsigned char> memory(bytes.size(), 7);

@@ -8,6 +8,7 @@
 
 #include "ist/capi/ist_world.h"
 #include "listener.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -59,6 +60,7 @@ class CWorldPrepare : public ::testing::Test {
 };
 
 TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
+  IST_SLOW();
   const ist_body_pair first[] = {{0, 1}};
   ASSERT_EQ(name(ist_world_prepare_with_progress(world_, first, 1, nullptr)), "ok");
   ask_contacts(nullptr);

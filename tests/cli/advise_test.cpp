@@ -65,6 +65,7 @@ TEST_F(Advise, TheLargestVoxelsOfAnError) {
 
 // A budget of seconds is kept, whatever else runs; so it is the memory that ends the search.
 TEST_F(Advise, TheSmallestVoxelsOfABudget) {
+  IST_SLOW();
   for (const char* workers : {"1", "2"}) {
     const CommandResult result =
         advise({"--budget-us", "1e7", "--json", "--workers", workers, "--max-memory", "2M"});
@@ -93,6 +94,7 @@ TEST_F(Advise, ATable) {
 
 // What is printed can be given to a shell as it is, and writes two trees.
 TEST_F(Advise, BuildCommands) {
+  IST_SLOW();
   std::filesystem::create_directories(path("it's left"));
   std::filesystem::create_directories(path("right"));
   std::filesystem::copy(fixed_, path("it's left/jaw.stl"));
@@ -156,6 +158,7 @@ TEST_F(Advise, WhatIsNoUse) {
 }
 
 TEST_F(Advise, BodiesThatAreNoUse) {
+  IST_SLOW();
   const std::string tree = ball_tree();
   for (const auto& [fixed, moving] : {std::pair(tree, moving_), std::pair(fixed_, tree)}) {
     const CommandResult result = ist({"advise", fixed, moving, "--error", "0.1"});

@@ -257,6 +257,7 @@ TEST_F(Answers, MaxTestsStopsAndSaysHowFar) {
 }
 
 TEST_F(Answers, TouchingFailsWhereItIsAskedTo) {
+  IST_SLOW();
   const auto code = [&](const std::string& shift, const std::string& body) {
     return ist({"collide", body, body, "--move", shift + ",0,0", "--fail-if-touching"}).exit_code;
   };
@@ -303,6 +304,7 @@ TEST_F(Answers, TheFirstLineSaysOfWhat) {
 }
 
 TEST_F(Answers, EverySubcommandBeginsSo) {
+  IST_SLOW();
   const std::string tree = ball_tree();
   const std::vector<std::vector<std::string>> asked = {
       {"demo", "--voxel-size", "8"},

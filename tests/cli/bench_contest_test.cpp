@@ -15,7 +15,7 @@
 namespace ist::test {
 namespace {
 
-cli::Samples samples(const std::vector<double>& times) {
+cli::Samples times_of(const std::vector<double>& times) {
   cli::Samples all;
   for (const double time : times) all.add(time);
   return all;
@@ -24,17 +24,17 @@ cli::Samples samples(const std::vector<double>& times) {
 TEST(BenchNoise, IsNamedWhereTheMachineIsNotQuiet) {
   cli::Machine machine;
   machine.load = {{0.1, 2, 3}};
-  const cli::Samples steady = samples(std::vector<double>(100, 200.0));
+  const cli::Samples steady = times_of(std::vector<double>(100, 200.0));
   EXPECT_EQ(cli::noise_of(machine, steady), std::nullopt);
   machine.load = {{0.8, 0, 0}};
   EXPECT_TRUE(says(cli::noise_of(machine, steady).value(), "other work took 0.8 cores"));
   std::vector<double> some = std::vector<double>(90, 200.0);
   some.insert(some.end(), 10, 300.0);
-  const std::string both = cli::noise_of(machine, samples(some)).value();
+  const std::string both = cli::noise_of(machine, times_of(some)).value();
   EXPECT_TRUE(says(both, "other work took 0.8 cores"));
   EXPECT_TRUE(says(both, "1.50 times as long at times: ratios are rough"));
   machine.load.reset();  // where the system does not tell
-  const std::string unsteady = cli::noise_of(machine, samples(some)).value();
+  const std::string unsteady = cli::noise_of(machine, times_of(some)).value();
   EXPECT_FALSE(says(unsteady, "other work"));
   EXPECT_TRUE(says(unsteady, "ratios hold"));
 }
@@ -49,7 +49,7 @@ struct QuietBench {
     setting.seconds = 6;
   }
   cli::BenchSetting setting;
-  cli::Samples loop = samples(std::vector<double>(100, 200.0));
+  cli::Samples loop = times_of(std::vector<double>(100, 200.0));
   double taken = 6.1;
 
   [[nodiscard]] std::string heading() const { return cli::bench_heading(setting, loop, taken); }
@@ -70,7 +70,7 @@ TEST(BenchHeading, SaysWhereTheMachineIsNotQuiet) {
   EXPECT_TRUE(
       says(bench.heading(), "\ntwo bodies\nnot a quiet machine: other work took 0.8 cores"));
   bench.setting.machine.load = {{0.1, 0, 0}};
-  bench.loop = samples({200, 200, 200, 300, 300});
+  bench.loop = times_of({200, 200, 200, 300, 300});
   EXPECT_TRUE(says(bench.heading(), "\nnot a quiet machine: a fixed loop took 1.50 times as long"));
 }
 

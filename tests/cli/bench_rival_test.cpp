@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/cli_case.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace ist::test {
@@ -50,6 +51,7 @@ TEST_F(BenchRival, IsAskedTheSameQuestions) {
 }
 
 TEST_F(BenchRival, IsNamedWithItsVersion) {
+  IST_SLOW();
   const CommandResult result = bench({fixed_, moving_, "--voxel-size", "0.5"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(says(result.out, "\nbeside fake 1.2, in one thread\n"));

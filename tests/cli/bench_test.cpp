@@ -114,6 +114,7 @@ TEST_F(Bench, ShowsRatiosFirst) {
 }
 
 TEST_F(Bench, ClosesTheUsersBodies) {
+  IST_SLOW();
   const CommandResult result = bench({fixed_, moving_, "--voxel-size", "0.2", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json header = json::parse(result.out.substr(0, result.out.find('\n')));
@@ -128,6 +129,7 @@ TEST_F(Bench, ClosesTheUsersBodies) {
 }
 
 TEST_F(Bench, TakesPosesWithMostAndFewestPairs) {
+  IST_SLOW();
   const std::string ball = ball_tree("ball.ist", "slab", {"--no-triangles"});
   const CommandResult result = bench({ball, ball, "--poses", poses({9, 1, 3.5}), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -144,6 +146,7 @@ TEST_F(Bench, TakesPosesWithMostAndFewestPairs) {
 }
 
 TEST_F(Bench, TakesPosesOfTheBuiltInJaws) {
+  IST_SLOW();
   const CommandResult result = bench({"--voxel-size", "3", "--poses", poses({200, 0}), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   std::map<std::string, json> listed;

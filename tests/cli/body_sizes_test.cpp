@@ -29,6 +29,7 @@ class BodySizes : public CliTest {
 };
 
 TEST_F(BodySizes, QueriesChooseVoxelsOfTheSmallerBody) {
+  IST_SLOW();
   const std::string large = needle("large.stl", 4), small = needle("small.stl", 1);
   const std::string built = tree("built.ist", "");
   const std::string said =

@@ -2,6 +2,7 @@
 
 #include "cli/cli_case.h"
 #include "simd/dispatch.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -44,6 +45,7 @@ class Engines : public CliTest {
 };
 
 TEST_F(Engines, EveryTargetAnswersAlike) {
+  IST_SLOW();
   for (const char* spheres : {"table", "slab"}) {
     const auto expected = answers(ist_well(question({"--spheres", spheres})));
     ASSERT_EQ(expected.size(), 4u);
@@ -75,6 +77,7 @@ TEST_F(Engines, TheEnvironmentNamesATarget) {
 }
 
 TEST_F(Engines, TwoWorkersAnswerLikeOne) {
+  IST_SLOW();
   const auto leaf_pairs = [this] { return file_content(path("contacts.jsonl")); };
   for (const char* spheres : {"simple", "slab"}) {
     const auto ask = [&](const std::string& workers) {

@@ -104,6 +104,7 @@ TEST_F(Faults, ADiskThatIsFullAtTheRenameLeavesTheOlderFile) {
 }
 
 TEST_F(Faults, AReadOnlyFolderIsLeftAsItWas) {
+  IST_SLOW();
   // Permissions do not bind root, unless it gives up what sets it above them.
   const std::string bound =
       ::geteuid() == 0 ? "exec setpriv --bounding-set -dac_override --" : "exec";
@@ -127,6 +128,7 @@ TEST_F(Faults, AReadOnlyFolderIsLeftAsItWas) {
 }
 
 TEST_F(Faults, MemoryThatEndsIsNamedWithTheRemedy) {
+  IST_SLOW();
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
 #endif

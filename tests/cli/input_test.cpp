@@ -1,5 +1,6 @@
 #include "cli/cli_case.h"
 #include "support/data_dir.h"
+#include "support/effort.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "support/skip.h"
@@ -44,6 +45,7 @@ TEST_F(Input, MeshesThatAreNone) {
 
 // No option changes the readers' limits, so the file is wrong, and not the usage.
 TEST_F(Input, MeshesBeyondTheReadersLimits) {
+  IST_SLOW();
   const std::string model = threemf_model(icosphere(1, 1));
   const std::string bomb = write("bomb.3mf", as_zip("3D/3dmodel.model", model, true, 0xF0000000u));
   refuses({"info", bomb}, bomb, "[mesh-too-large]");

@@ -10,6 +10,7 @@
 #include "cli/formats/csv_writer.h"
 #include "cli/poses/numbers.h"
 #include "ist/mesh/mesh.h"
+#include "support/effort.h"
 #include "support/german_locale.h"
 #include "support/shapes.h"
 
@@ -19,6 +20,7 @@ namespace {
 class CommandLocale : public GermanLocale {};
 
 TEST_F(CommandLocale, OfTheEnvironmentChangesNoOutput) {
+  IST_SLOW();
   const std::string ball = folder_.path() / "ball.stl";
   write_stl(icosphere(2, 2), ball);
   for (const std::vector<std::string>& arguments :

@@ -342,6 +342,7 @@ TEST_F(OcclusionCommand, FlatMeshesAndStrangeSizesAreRefused) {
 
 // In inches, presets are still micrometres.
 TEST_F(OcclusionCommand, UnitsAreSaidAndPresetsKeepTheirs) {
+  IST_SLOW();
   const json mm = asked({"--move", "0,0,1.8", "--unit", "mm"}),
              inch = asked({"--move", "0,0,1.8", "--unit", "inch"});
   EXPECT_EQ(mm["unit_assumed"], false);

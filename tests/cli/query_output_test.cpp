@@ -137,6 +137,7 @@ TEST_F(QueryOutput, WarningsStayOutOfTheData) {
 }
 
 TEST_F(QueryOutput, EveryPolicyAndATableForPeople) {
+  IST_SLOW();
   const std::string tree = ball_tree("ball.ist", "slab"), list = poses({0, 3.9});
   for (const SpherePolicy policy : kSpherePolicies) {
     const std::string spheres(to_string(policy));

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "cli/run_case.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -108,6 +109,7 @@ TEST_F(RunRecord, ReplayGivesTheSameBytes) {
 // Also of what the clock stopped now and then, as the recording says; here every fourth tick that
 // presses.
 TEST_F(RunRecord, ReplayOfARunThatWasStoppedGivesTheSameBytes) {
+  IST_SLOW();
   const std::string scene = all_effects(), whole = path("whole.jsonl"), first = path("first.jsonl"),
                     again = path("again.jsonl");
   ist_well(run(scene, {"--unpaced", "--record", whole}));

@@ -92,6 +92,7 @@ TEST_F(Run, WarnsOfACouplingThatIsClamped) {
 
 // Its clock stands still for 50 ms or more: no machine keeps the 50 deadlines meanwhile.
 TEST_F(Run, MissedDeadlinesEndWithTheirOwnCode) {
+  IST_SLOW();
   for (const std::string allowed : {"20", "1000000"}) {
     const std::string file = path(allowed + ".jsonl");
     Process process = with_held_call(

@@ -189,6 +189,7 @@ TEST_F(SweepCommand, ASignalWhileTreesAreLoadedLeavesNoPart) {
 // moment. At last an end in peace. A process that is killed may leave temporary files; marks go
 // with the part.
 TEST_F(SweepCommand, KillsLeaveWholePartsAndTheSameTable) {
+  IST_SLOW();
   StabilityCase seen("faults", "SIGKILL in a sweep", "wrong outcomes");
   const std::string job = sweep_file(
       {.count = 6000, .rows_per_part = 200, .answers = R"("intersects", "penetration")"});

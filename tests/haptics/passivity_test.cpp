@@ -4,6 +4,7 @@
 
 #include "haptics/wall_press.h"
 #include "ist/haptics/stability_border.h"
+#include "support/effort.h"
 
 namespace ist::test {
 namespace {
@@ -75,6 +76,7 @@ TEST(Passivity, OfAPushEndsBeyondTheBorder) {
 }
 
 TEST(Passivity, OfATurnHoldsWithinTheBorder) {
+  IST_SLOW();
   const Wall wall = stop_wall();
   for (const PressSettings& settings : points(kRates, {1e-3, 2e-3}, 2e-5))
     expect_passive(wall, settings);

@@ -64,6 +64,7 @@ void expect_no_miss(const SphereTree& fixed, const SphereTree& moving,
 }
 
 TEST(HardwarePairs, OfTheBuiltInJaws) {
+  IST_SLOW();
   expect_no_miss(plain_tree(make_jaw(Jaw::kUpper, 1), 1), plain_tree(make_jaw(Jaw::kLower, 2), 1),
                  {0, -1.5, -3});
 }

@@ -214,6 +214,7 @@ TEST(Penetration, IsNoneHoweverFarBodiesAre) {
 // The real pair as stored. Its deepest vertices are known from VTK's implicit distance: 1.0214 mm
 // of the mandible, 1.0523 of the maxilla.
 TEST(Penetration, OfTheRealJawsHoldsTheDepthOfTheirVertices) {
+  IST_SLOW();
   const std::filesystem::path folder = data_dir();
   if (!std::filesystem::exists(folder)) IST_SKIP("no real meshes at " << folder);
   Bodies jaws(read_mesh(folder / "human_maxilla.stl"), read_mesh(folder / "human_mandible.stl"), 2);

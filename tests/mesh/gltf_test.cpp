@@ -11,6 +11,7 @@
 
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/mesh_files.h"
 #include "support/shapes.h"
@@ -223,6 +224,7 @@ TEST(Gltf, RefusesAVertexThatIsNotFinite) {
 
 // A file of some kilobytes that places one mesh so often that no memory would do.
 TEST(Gltf, RefusesAMeshThatIsPlacedTooOften) {
+  IST_SLOW();
   const TriangleMesh ball = test::icosphere(5, 1);
   std::string roots, nodes;
   for (int i = 0; i < 500; ++i) {

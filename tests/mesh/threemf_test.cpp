@@ -10,6 +10,7 @@
 
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/largest_allocation.h"
 #include "support/mesh_files.h"
@@ -304,6 +305,7 @@ TEST(ThreeMf, RefusesAnArchiveThatUnpacksToTooMuch) {
 }
 
 TEST(ThreeMf, RefusesComponentsThatMultiply) {
+  IST_SLOW();
   std::string objects;
   for (int id = 2; id < 12; ++id) {
     objects += "<object id=\"" + std::to_string(id) + "\"><components>";

@@ -13,6 +13,7 @@
 #include "ist/scene.h"
 #include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
+#include "support/effort.h"
 #include "support/errors.h"
 #include "support/german_locale.h"
 #include "support/mesh_files.h"
@@ -113,6 +114,7 @@ TEST_F(Locale, ScenesWarnAlike) {
 }
 
 TEST_F(Locale, MeasuresAndWorldsAreRefusedAlike) {
+  IST_SLOW();
   const SphereTree tree = build_tree(icosphere(1, 1), {.voxel_size = 0.2, .keep_triangles = true});
   Query query(tree, tree);
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

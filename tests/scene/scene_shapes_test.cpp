@@ -9,6 +9,7 @@
 #include "ist/query/query.h"
 #include "ist/scene.h"
 #include "ist/tree/sphere_tree.h"
+#include "support/effort.h"
 #include "support/errors.h"
 
 namespace ist::test {
@@ -100,6 +101,7 @@ TEST(SceneShape, IsAFossaOverTheOrigin) {
 }
 
 TEST(SceneShape, IsAFossaInWhichACondyleTurns) {
+  IST_SLOW();
   // Where the fossae of a scene stand: round the condyles, which turn in them.
   TriangleMesh fossae = make_shape({.kind = Kind::kFossa, .radius = 7, .thickness = 2});
   TriangleMesh left = fossae;

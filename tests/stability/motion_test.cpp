@@ -175,6 +175,7 @@ TEST(GapsOfTwoVoxelSizes, Intersect) {
 
 // Two jaws of one patient, in voxels of 1.6 mm.
 TEST(MotionOfRealJaws, ChangesNoFasterThanItsRates) {
+  IST_SLOW();
   const auto upper = data_dir() / "human_maxilla.stl", lower = data_dir() / "human_mandible.stl";
   if (!std::filesystem::exists(upper)) IST_SKIP(upper << " is not there");
   const TriangleMesh maxilla = read_mesh(upper), mandible = read_mesh(lower);

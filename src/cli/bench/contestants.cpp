@@ -16,7 +16,6 @@ namespace ist::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Answer = Contestant::Answer;
 
 double microseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
@@ -39,7 +38,7 @@ Contestant leaf_pairs(const Asked& asked, const char* way, const char* engine, S
   return {"leaf pairs", way, std::string(to_string(policy)), workers,
           [made, poses = asked.poses](std::size_t pose) {
             const Engine::Answer answer = made->ask(poses[pose].pose);
-            return Answer{answer.microseconds, answer.result.leaf_pairs};
+            return Contestant::Answer{answer.microseconds, answer.result.leaf_pairs};
           }};
 }
 
@@ -60,7 +59,7 @@ class Trembling {
     }
   }
 
-  Answer tick(std::size_t pose) {
+  Contestant::Answer tick(std::size_t pose) {
     Place& place = places_[pose];
     Eigen::Isometry3d at = poses_[pose].pose;
     const double turn = 2 * std::numbers::pi * (place.ticks++ % kTicks) / kTicks;
@@ -105,7 +104,7 @@ void add_exact(const Asked& asked, std::vector<Contestant>& all) {
   all.push_back(exact(asked, "touch", [](Query& query, const Eigen::Isometry3d& pose) {
     const auto begin = Clock::now();
     static_cast<void>(query.intersects(pose));
-    return Answer{microseconds_since(begin), std::nullopt};
+    return Contestant::Answer{microseconds_since(begin), std::nullopt};
   }));
   all.push_back(exact(asked, "triangle pairs",
                       [pairs = std::vector<TrianglePair>(1 << 12)](
@@ -114,7 +113,8 @@ void add_exact(const Asked& asked, std::vector<Contestant>& all) {
                           const auto begin = Clock::now();
                           const TrianglePairsResult result = query.triangle_pairs(pose, pairs);
                           const double time = microseconds_since(begin);
-                          if (!result.truncated) return Answer{time, result.triangle_pairs};
+                          if (!result.truncated)
+                            return Contestant::Answer{time, result.triangle_pairs};
                           pairs.resize(2 * result.triangle_pairs);
                           query.forget();
                         }
@@ -122,7 +122,7 @@ void add_exact(const Asked& asked, std::vector<Contestant>& all) {
   all.push_back(exact(asked, "distance", [](Query& query, const Eigen::Isometry3d& pose) {
     const auto begin = Clock::now();
     static_cast<void>(query.distance(pose, 0));
-    return Answer{microseconds_since(begin), std::nullopt};
+    return Contestant::Answer{microseconds_since(begin), std::nullopt};
   }));
 }
 

@@ -24,7 +24,7 @@ namespace {
 constexpr double kMostSteps = 1e6;
 constexpr double kDefaultSteps = 20;
 // As sharp as a person reads: a micrometre of a jaw of 100 mm.
-constexpr double kDefaultTolerance = 1e-5;
+constexpr double kContactTolerance = 1e-5;
 
 struct ApproachArguments {
   QueryOptions query;
@@ -124,7 +124,7 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
                                           : "first contact: not known without triangles");
     return;
   }
-  const double tolerance = options.first_contact.value_or(kDefaultTolerance * bodies.extent());
+  const double tolerance = options.first_contact.value_or(kContactTolerance * bodies.extent());
   const FirstContact found = find_first_contact(bodies, path, tolerance);
   options.query.json ? print_first_contact_json(found, path) : print_first_contact(found, path);
 }

@@ -70,7 +70,7 @@ Rows ask(Engine& engine) {
   return rows;
 }
 
-void print_json(const Engine& engine, SpherePolicy policy, double size, const Rows& rows) {
+void print_rows_json(const Engine& engine, SpherePolicy policy, double size, const Rows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const nlohmann::ordered_json line{{"voxel_size", size},
                                       {"spheres", to_string(policy)},
@@ -110,7 +110,7 @@ void close_jaws(const SphereTree& upper, const SphereTree& lower, bool json) {
   for (const auto& [name, options] : asked) {
     Engine engine(name, upper, lower, options);
     rows.push_back(ask(engine));
-    if (json) print_json(engine, options.policy, size, rows.back());
+    if (json) print_rows_json(engine, options.policy, size, rows.back());
   }
   if (json) return;
   fmt::print("{:>6} {:>13} {:>10} {:>10} {:>10} {:>10} {:>7}\n", "dz", "published µs", "leaf pairs",

@@ -13,12 +13,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kPageFormat = 1;
 
 }  // namespace
 
 ordered_json empty_block(const char* kind) {
-  return {{"format", kFormat},
+  return {{"format", kPageFormat},
           {"made_by", version_words()},
           {"kind", kind},
           {"bodies", ordered_json::array()}};

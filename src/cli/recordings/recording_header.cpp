@@ -15,7 +15,7 @@ namespace ist::cli {
 namespace {
 
 // 1 had no header.
-constexpr int kFormat = 2;
+constexpr int kRecordingFormat = 2;
 
 void add_file(nlohmann::ordered_json& line, const char* name, const char* hash,
               const std::filesystem::path& file) {
@@ -52,7 +52,7 @@ std::size_t line_of_difference(const std::string& a, const std::string& b) {
 }  // namespace
 
 RecordingHeader::RecordingHeader(const Scene& scene, const Simulation& simulation)
-    : line_(new nlohmann::ordered_json{{"recording", kFormat},
+    : line_(new nlohmann::ordered_json{{"recording", kRecordingFormat},
                                        {"ist", IST_VERSION},
                                        {"commit", IST_COMMIT},
                                        {"dt", simulation.dt()},
@@ -91,10 +91,10 @@ void RecordingHeader::check(const nlohmann::json& recorded,
            "no header of a recording: give a file that --record wrote as JSON lines, with version "
            "0.2 or later");
   }
-  if (*format != kFormat) {
+  if (*format != kRecordingFormat) {
     refuse(file, fmt::format("a recording of format {}, and this version replays {}: replay it "
                              "with the version that recorded it",
-                             format->dump(), kFormat));
+                             format->dump(), kRecordingFormat));
   }
   const auto scene = recorded.find("scene");
   if (scene == recorded.end() || !scene->is_string()) refuse(file, "no text 'scene': record again");

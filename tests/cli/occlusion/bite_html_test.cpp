@@ -281,6 +281,7 @@ TEST(BiteHtml, SaysTheCaveatVerbatim) {
 }
 
 TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
+  IST_SLOW();
   const auto made = full_bite();
   constexpr const char* kSides = R"(\b(left|right|anterior|posterior|front|back|mesial|distal)\b)";
   EXPECT_FALSE(Page(made->bite).holds(kSides));

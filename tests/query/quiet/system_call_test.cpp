@@ -8,6 +8,7 @@
 #include "query/exact/exact_tree.h"
 #include "query/quiet/world_ticks.h"
 #include "query/scenes.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "support/skip.h"
 #include "support/system_calls.h"
@@ -166,6 +167,7 @@ TEST_F(SystemCalls, AWorldMakesNone) {
 }
 
 TEST_F(SystemCalls, ACallerWithASecondWorkerMakesNone) {
+  IST_SLOW();
   EXPECT_EXIT(query_in_silence(jaws(), SpherePolicy::kTight, 2), ::testing::ExitedWithCode(0), "");
 }
 
