@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Debian packages for ARM64 on another machine, builds a user's program with them, and runs it by qemu.
 #
-#   scripts/arm64_package.sh      needs scripts/setup.sh --cross
+#   scripts/arm64_package.sh      needs scripts/setup.sh --cross --package
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in

@@ -27,7 +27,7 @@ while [ $# -gt 0 ]; do
 done
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls tests/fuzz/corpus)
 
-scripts/setup.sh --fuzz
+scripts/setup.sh --tests --fuzz
 echo "== preset fuzz"
 cmake --preset fuzz >/dev/null
 if ! cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" >build/fuzz.log; then

@@ -6,7 +6,7 @@ writes the table of hashes to docs/guarantees.md. Ends with 1, and writes nothin
   scripts/golden_table.py --check   ends with 1 where the table in the page is another; names the targets that this
                                     processor lacks, which are not compared
 
-scripts/setup.sh --cross installs what it needs.
+scripts/setup.sh --tests --cross installs what it needs.
 """
 import os
 import re

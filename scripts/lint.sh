@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks the style of the code by the settings at the root that editors read too: .clang-format, .flake8 and
-# .prettierrc.json; and by .clang-tidy, which takes 20 minutes on two cores.
+# .prettierrc.json; and by .clang-tidy, which takes half an hour on two cores.
 #
 #   scripts/lint.sh                    all but clang-tidy, on every file
 #   scripts/lint.sh TOOL [FILE ...]    clang-format, flake8, prettier or clang-tidy, on these files, or on every file
@@ -17,12 +17,12 @@ lint() {
   local tool=$1 files=("${@:2}")
   case $tool in
     clang-format)
-      command -v clang-format >/dev/null || missing clang-format "scripts/setup.sh --lint"
+      command -v clang-format >/dev/null || missing clang-format "scripts/setup.sh --style"
       [ ${#files[@]} -gt 0 ] || mapfile -t files < <(tracked '*.h' '*.cpp' '*.c')
       clang-format --dry-run -Werror "${files[@]}"
       ;;
     flake8)
-      command -v flake8 >/dev/null || missing flake8 "scripts/setup.sh --lint"
+      command -v flake8 >/dev/null || missing flake8 "scripts/setup.sh --style"
       [ ${#files[@]} -gt 0 ] || mapfile -t files < <(tracked '*.py')
       flake8 "${files[@]}"
       ;;
@@ -34,8 +34,8 @@ lint() {
       ;;
     clang-tidy)
       command -v run-clang-tidy-14 >/dev/null || missing clang-tidy "scripts/setup.sh --lint"
-      # clang reads what clang compiles, several files at once, as the tests do.
-      cmake --preset clang14 -B build/tidy -DIST_CLI=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+      # clang reads commands for clang, one a file.
+      cmake --preset clang14 -B build/tidy -DIST_CLI=ON -DIST_UNITY=OFF -DIST_CLI_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
       cmake --build build/tidy --target ist_commit
       run-clang-tidy-14 -quiet -p build/tidy -j"$(nproc)" "${files[@]}"
       ;;

@@ -73,6 +73,7 @@ suite() {
 as_users_build="base_test mesh_test tree_test query_test search_test"
 installed() { scripts/setup.sh --all --lint --cross --cloudcompare --blender --slurm --doors; }
 
+$list || "$0" --list "${chosen[@]}" >/dev/null  # refuses unknown words before hours of work
 $list || installed >build/long/setup.log 2>&1 || { cat build/long/setup.log; exit 1; }
 alone suite suite
 alone samples built samples
@@ -97,7 +98,7 @@ aside coherent more test 11 coherent_test 'Policies/CoherentQuery*:CoherentQuery
 aside five-bodies more test 50 haptics_test 'AmongFiveBodies.PressesGiveNoEnergyBack'
 settle 0
 alone release release
-alone mutants scripts/mutate.sh
+alone mutants scripts/mutate.sh --missing
 for door in scans haptics script cycles; do
   also[doors-$door]=$pages
   alone doors-$door tests/doors/$door.sh

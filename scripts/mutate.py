@@ -67,10 +67,11 @@ def configure(fast):
 
 
 def fast_tests():
-    """What scripts/test.sh runs: the names of its tests, and of the programs and scripts that they run."""
+    """What scripts/test.sh runs: the names of its tests, and of their programs, which may not be built yet, and scripts."""
     listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1", "-L", "^fast$"], check=True, capture_output=True)
     tests = json.loads(listed.stdout)["tests"]
-    return {test["name"] for test in tests}, {Path(word).name for test in tests for word in test.get("command", [])}
+    names = {test["name"] for test in tests}
+    return names, {name.split(".")[0] for name in names} | {Path(word).name for test in tests for word in test.get("command", [])}
 
 
 def only(tests, fast):
@@ -204,6 +205,9 @@ def main():
     missing = words == ["--missing"]
     chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)
               or (missing and known.get(m.name, {}).get("commit") != now)]
+    if missing and not chosen:
+        print("every mutant has run at this commit")
+        return
     if not chosen:
         fail(f"no mutant is named like {' or '.join(words)}; --list names them")
     copy_sources()

@@ -13,6 +13,6 @@ cd "$(dirname "$0")/.."
 case ${1:-} in
   -h | --help) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
   --list) ;;
-  *) scripts/setup.sh --hardware --package ;;
+  *) scripts/setup.sh --tests --hardware --package ;;
 esac
 exec python3 scripts/mutate.py "$@"

@@ -20,7 +20,7 @@ class NotComparable(Exception):
 def run(program, folder):
     """Returns the program's output under callgrind, which leaves a file per query in the folder."""
     if shutil.which("valgrind") is None:
-        raise NotComparable("valgrind is not installed: scripts/setup.sh does that")
+        raise NotComparable("valgrind is not installed: scripts/setup.sh --package does that")
     if not pathlib.Path(program).exists():
         raise NotComparable(f"{program} is not built. It needs valgrind's headers when cmake configures")
     ran = subprocess.run(

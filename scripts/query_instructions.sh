@@ -27,7 +27,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 if [ -z "$program" ]; then
-  scripts/setup.sh >&2
+  scripts/setup.sh --tests --package >&2
   cmake --preset test >/dev/null
   cmake --build --preset test --target query_instructions | tail -n 1 >&2
   program=build/test/tests/query_instructions

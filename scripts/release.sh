@@ -54,7 +54,7 @@ if [ -n "$stale" ]; then
   $despite || fail "figures or long runs are older than their code: make these anew, or a draft by --despite-figures"
   say "figures or long runs are older than their code: this is a draft"
 fi
-scripts/setup.sh --viewer --python --docs
+scripts/setup.sh --viewer --python --docs --package
 
 work=$(mktemp -d)
 whole=''

@@ -7,7 +7,8 @@
 #   scripts/setup.sh --bench     also builds the benchmarks and draws the plots
 #   scripts/setup.sh --peers     also builds the libraries that bench/peers compares with
 #   scripts/setup.sh --fuzz      also builds the fuzzers
-#   scripts/setup.sh --lint      also checks style: clang-tidy, clang-format, flake8, prettier by npm, pre-commit
+#   scripts/setup.sh --style     also checks style by clang-format and flake8
+#   scripts/setup.sh --lint      also checks style by clang-tidy too, and before each commit
 #   scripts/setup.sh --hardware  also simulates and synthesises the circuit
 #   scripts/setup.sh --oracles   also reads and measures the command's files by other tools
 #   scripts/setup.sh --python    also makes and tests the Python package
@@ -27,7 +28,7 @@ set -euo pipefail
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libpng-dev)
-tests=(libgtest-dev libgmp-dev libassimp-dev python3 python3-numpy locales)
+tests=(libgtest-dev libgmp-dev libassimp-dev python3 python3-numpy locales git dpkg-dev)
 bench=(libbenchmark-dev python3-matplotlib)
 cross=(clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
   libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64
@@ -35,14 +36,15 @@ cross=(clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
 arguments=()
 for argument in "$@"; do
   case $argument in
-    --all) arguments+=(--tests --oracles --python --sweep --docs --viewer --hardware --package) ;;
+    --all) arguments+=(--tests --oracles --python --sweep --docs --viewer --hardware --package --style) ;;
     *) arguments+=("$argument") ;;
   esac
 done
 for argument in "${arguments[@]}"; do
   case $argument in
     --tests) packages+=("${tests[@]}") ;;
-    --lint) packages+=(clang-tidy-14 clang-format-14 flake8 pre-commit) ;;
+    --style) packages+=(clang-format flake8) ;;
+    --lint) packages+=(clang-format flake8 clang-tidy-14 pre-commit) ;;
     --bench) packages+=("${bench[@]}") ;;
     --peers) packages+=("${bench[@]}" libfcl-dev libembree-dev
       libbullet-dev libcgal-dev libopenvdb-dev) ;;
@@ -66,7 +68,7 @@ for argument in "${arguments[@]}"; do
       viewer=true
       ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,26s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,27s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

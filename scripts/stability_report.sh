@@ -15,7 +15,7 @@ case ${1:-} in
   -h | --help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
   *) echo "stability_report: unknown option $1; see --help" >&2; exit 2 ;;
 esac
-scripts/setup.sh --bench >&2
+scripts/setup.sh --tests --bench >&2
 cmake --preset test >/dev/null
 programs=(stability_test load_test search_test fuzz_test cli_test)
 cmake --build --preset test --target "${programs[@]}" | tail -n 1 >&2

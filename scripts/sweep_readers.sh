@@ -18,7 +18,9 @@ if ! cmp -s $sources/package-lock.json $packages/package-lock.json; then
   mkdir -p $packages
   cp $sources/package.json $sources/package-lock.json $packages
   npm ci --prefix $packages --no-audit --no-fund >$packages/install.log 2>&1 ||
-    { cat $packages/install.log; rm $packages/package-lock.json; exit 1; }
+    { rm $packages/package-lock.json
+      echo "sweep_readers: npm ci failed ($(grep -m 1 'npm ERR\|npm error' $packages/install.log)): check the network, and run this again; see $packages/install.log" >&2
+      exit 1; }
 fi
 ln -sfn "$PWD/$packages/node_modules" tests/engines/node_modules
 echo "sweep_readers: everything is installed"

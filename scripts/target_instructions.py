@@ -3,7 +3,7 @@
 docs/performance.md: by qemu, which counts alike for x86-64 and ARM64; those of `avx3`, which it does not know, one by one
 on this machine, which needs AVX-512.
 
-  scripts/target_instructions.py     builds, counts and writes; scripts/setup.sh --cross installs what it needs
+  scripts/target_instructions.py     builds, counts and writes; scripts/setup.sh --tests --cross installs what it needs
 """
 import os
 import subprocess

@@ -14,6 +14,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/run_preset.sh
+export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data}
 few=${IST_EFFORT:-0.2} all=${IST_EFFORT:-1}
 what=${1:-fast}
 [ $# -le 1 ] || [ "$what" = --long ] || { echo "test: one word at a time, and \"$2\" is a second one; see --help" >&2; exit 2; }
@@ -31,7 +32,9 @@ fast() {
   configure test "-DIST_FEW_TARGETS=$(instruction_sets)"
   build test tests_fast
   echo "left out: four fifths of the random samples, sanitizers, WebAssembly, and $(count slow) slow, $(count oracle) oracle," \
-    "$(count page) page and $(count package) package tests; scripts/test.sh --all runs them"
+    "$(count page) page and $(count package) package tests, and $(grep -rh '^  IST_SLOW();' tests | wc -l) slow cases of fast" \
+    "programs; scripts/test.sh --all runs them"
+  [ -d "$IST_DATA_DIR" ] || echo "left out: tests of real meshes, because there is no folder $IST_DATA_DIR (IST_DATA_DIR)"
   echo "left out: $(count long) long tests; scripts/test.sh --long runs them"
   IST_EFFORT=$few tests fast
 }
@@ -56,15 +59,16 @@ labelled() {  # the rest of the test preset: arguments for ctest
   IST_EFFORT=$all tests "$@"
 }
 
-everything=(--tests --oracles --python --sweep --docs --viewer --hardware --package)
 case $what in
   fast) fast ;;
   thread) scripts/setup.sh --tests; threads ;;
   sanitize) scripts/setup.sh --tests; sanitize ;;
   page) scripts/setup.sh --tests --viewer; page; labelled test -L '^page$' ;;
-  slow | oracle | package | long) scripts/setup.sh "${everything[@]}"; labelled test -L "^$what\$" ;;
+  slow | package) scripts/setup.sh --all; labelled test -L "^$what\$" ;;
+  oracle) scripts/setup.sh --all; scripts/sweep_readers.sh; labelled test -L '^oracle$' ;;
+  long) scripts/setup.sh --all; page; labelled test -L '^long$' ;;
   --all)
-    scripts/setup.sh "${everything[@]}"
+    scripts/setup.sh --all
     threads
     sanitize
     golden

@@ -14,7 +14,7 @@ case ${1:-} in
   *[!0-9]*) echo "tick_instructions: '$1' is no number of ticks; see --help" >&2; exit 2 ;;
   *) ticks=$1 ;;
 esac
-scripts/setup.sh --bench >&2
+scripts/setup.sh --bench --package >&2
 cmake --preset bench >/dev/null
 cmake --build --preset bench --target tick_instructions | tail -n 1 >&2
 

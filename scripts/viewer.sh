@@ -21,7 +21,8 @@ packages=build/viewer/packages
 if ! cmp -s src/viewer/package-lock.json "$packages/installed"; then
   mkdir -p "$packages"
   cp src/viewer/package.json src/viewer/package-lock.json "$packages"
-  logged npm ci --prefix "$packages" --no-audit --no-fund
+  npm ci --prefix "$packages" --no-audit --no-fund >"$log" 2>&1 ||
+    { echo "viewer: npm ci failed ($(grep -m 1 'npm ERR\|npm error' "$log")): check the network, and run this again; see $log" >&2; exit 1; }
   cp src/viewer/package-lock.json "$packages/installed"
 fi
 ln -sfn "$PWD/$packages/node_modules" src/viewer/node_modules

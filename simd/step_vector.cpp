@@ -27,10 +27,11 @@ template <bool kLower, class Run>
 Advanced Specialised(const SearchStep& step, Measured measured, const Run& run) {
   const auto measure = [&]<bool kSlabs>() {
     switch (measured) {
+      case Measured::kBoth:
+        if constexpr (kLower) return run.template operator()<kSlabs, Measured::kBoth>();
+        [[fallthrough]];
       case Measured::kUpper:
         return run.template operator()<kSlabs, Measured::kUpper>();
-      case Measured::kBoth:
-        return run.template operator() < kSlabs, kLower ? Measured::kBoth : Measured::kUpper > ();
       default:
         return run.template operator()<kSlabs, Measured::kNothing>();
     }

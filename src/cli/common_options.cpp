@@ -8,6 +8,7 @@ namespace ist::cli {
 
 std::vector<std::string> policy_names() {
   std::vector<std::string> names;
+  names.reserve(kSpherePolicies.size());
   for (const SpherePolicy policy : kSpherePolicies) {
     names.emplace_back(to_string(policy));
   }

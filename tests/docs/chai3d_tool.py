@@ -64,7 +64,7 @@ def main():
         print("chai3d_tool: skipped: IST_CHAI3D is not set; it names a built source tree of CHAI3D 3.3")
         return SKIPPED
     if not arguments.itself and shutil.which(OTHER_COMPILER) is None:
-        print(f"chai3d_tool: {OTHER_COMPILER} is not installed: scripts/setup.sh does that", file=sys.stderr)
+        print(f"chai3d_tool: {OTHER_COMPILER} is not installed: scripts/setup.sh --package does that", file=sys.stderr)
         return 1 if os.environ.get("IST_REQUIRE_ALL") == "1" else SKIPPED
     folder = arguments.work / ("chai3d_itself" if arguments.itself else "chai3d_tool")
     shutil.rmtree(folder, ignore_errors=True)

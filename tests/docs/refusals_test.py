@@ -3,6 +3,7 @@
 import contextlib
 import io
 import pathlib
+import shutil
 import tempfile
 import unittest
 
@@ -105,6 +106,7 @@ class Snippets(unittest.TestCase):
         self.assertEqual(self.reads(first + block("python", "print(__file__[-6:])\n") + block("", "own.py\n"))["compared"], 1)
         self.refuses(first + block("python", "print(one)\n"), "line 5", "NameError")
 
+    @unittest.skipUnless(shutil.which(snippets.OTHER_COMPILER), "scripts/setup.sh --package installs the other compiler")
     def test_code_that_is_compiled_alone(self):
         note = NOTE.format("compiled, since a library is missing")
         with_stub = "#include <chai3d.h>\nvoid set(chai3d::cWorld& world) { world.setLocalPos({1.0, 2.0, 3.0}); }\n"

@@ -243,7 +243,7 @@ def main():
     except pages.PageError as wrong:
         print(f"{arguments.page.name}, {wrong}", file=sys.stderr)
         return 1
-    missing = [f"{tool} is not installed: scripts/setup.sh does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
+    missing = [f"{tool} is not installed: scripts/setup.sh --package does that" for tool in (OTHER_COMPILER, *C_COMPILERS)
                if shutil.which(tool) is None]
     missing += [f"{PYTHON} has no {name}: scripts/setup.sh --oracles --python installs it" for name in missing_modules(page)]
     if not VIEW.exists() and any(block.language == "sh" and "ist view " in block.text for block in page.blocks):

@@ -26,7 +26,7 @@ def require(holds, text):
 def need(*tools):
     for tool in tools:
         if shutil.which(tool) is None:
-            raise Missing(f"{tool} is not installed: scripts/setup.sh does that, some of it with --package")
+            raise Missing(f"{tool} is not installed: scripts/setup.sh --package does that")
 
 
 def ends(test):

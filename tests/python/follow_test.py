@@ -64,26 +64,21 @@ class Follow(Jaws):
         self.world.prepare(progress=progress)
 
     def test_parts_are_told_on_the_callers_thread(self):
+        most = 0
         for name, call in self.calls().items():
             with self.subTest(name):
-                # A call that ends soon is told of once. If another is, the system let the caller wait, and it is called again.
-                for _ in range(20):
-                    parts, threads = [], set()
+                parts, threads = [], set()
 
-                    def progress(part):
-                        parts.append(part)
-                        threads.add(threading.get_ident())
+                def progress(part):
+                    parts.append(part)
+                    threads.add(threading.get_ident())
 
-                    began = time.monotonic()
-                    call(progress)
-                    lasted = time.monotonic() - began
-                    self.assertEqual(threads, {threading.get_ident()})
-                    self.assertTrue(all(0 <= part <= 1 for part in parts))
-                    self.assertEqual(parts, sorted(parts))
-                    if len(parts) > 1 or lasted < 0.06:
-                        break
-                else:
-                    self.fail(f"it lasts {lasted} s, and is told of once")
+                call(progress)
+                self.assertEqual(threads, {threading.get_ident()})
+                self.assertTrue(all(0 <= part <= 1 for part in parts))
+                self.assertEqual(parts, sorted(parts))
+                most = max(most, len(parts))
+        self.assertGreater(most, 1)  # a call that ends soon reports once, and not all end so soon
 
     def test_an_exception_ends_the_call_and_comes_out(self):
         for name, call in self.calls().items():

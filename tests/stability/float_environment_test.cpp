@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -221,16 +220,13 @@ TEST(FloatEnvironmentOfTheSecondWorker, IsNotTheCallers) {
       query.emplace(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab, "", 2));
     }
     const std::uint64_t enough = query->sharing().chunks + 4;
-    using Clock = std::chrono::steady_clock;
-    for (const auto give_up = Clock::now() + std::chrono::minutes(2);
-         query->sharing().chunks < enough && Clock::now() < give_up;) {
+    while (query->sharing().chunks < enough) {
       {
         HostArithmetic host(rounding, kFlushToZero | kDenormalsAreZero);
         answer.result = query->leaf_pairs(scene.pose, answer.leaf_pairs);
       }
       wrong.sample(same(answer, expected) ? 0 : 1, 0);
     }
-    EXPECT_GE(query->sharing().chunks, enough);
   }
 }
 

@@ -90,7 +90,8 @@ TEST_P(Motion, OfFacesOnLatticePlanesChangesNoFasterThanItsRates) {
   MotionCases cases("faces on lattice planes", GetParam());
   const Body block(box({-2, -2, -1}, {2, 2, 1}), 0.5), cube(box({-1, -1, -1}, {1, 1, 1}), 0.5);
   const Vector3d x = Vector3d::UnitX(), z = Vector3d::UnitZ();
-  EXPECT_GT(sweep_all(block, cube, GetParam(), shift({0, 0, 1}), z, 9, samples(200), cases), 1u);
+  EXPECT_GT(sweep_all(block, cube, GetParam(), shift({0, 0, 1}), z, 9, samples(200), cases),
+            least(10u, 1u));
   Sweep sweep(block.exact, cube.exact, block.plain, cube.plain, GetParam(), cases);
   // Along a face from one voxel's edge over the next: 0.5 mm in coarser steps.
   sweep.along(line(shift({0.24, 0, 2}), x, 0.5 / samples(100), samples(100)));

@@ -10,11 +10,18 @@ namespace ist::test {
 
 /// The number of samples that a property test draws: `all` times `effort()`, rounded up. Use it as
 /// the end of the loop over seeds, random poses or rounds. Expectations on totals must scale with
-/// it too.
+/// it too, or use `least`.
 [[nodiscard]] double scaled_by_effort(double all);
 template <std::integral Count>
 [[nodiscard]] Count samples(Count all) {
   return static_cast<Count>(scaled_by_effort(static_cast<double>(all)));
+}
+
+/// The total that a property test must exceed to have tried anything: `full` with all samples,
+/// `few` with less.
+template <typename Total>
+[[nodiscard]] Total least(Total full, Total few) {
+  return effort() < 1 ? few : full;
 }
 
 }  // namespace ist::test

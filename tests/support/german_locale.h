@@ -23,7 +23,7 @@ class GermanLocale : public ::testing::Test {
   void SetUp() override {
     const std::string made = folder_.path() / kName;
     if (!std::filesystem::exists("/usr/share/i18n/locales/de_DE")) {
-      IST_SKIP("no sources of locales are here: scripts/setup.sh installs them");
+      IST_SKIP("no sources of locales are here: scripts/setup.sh --tests installs them");
     }
     const CommandResult made_it =
         run_command("/usr/bin/localedef",

@@ -47,6 +47,7 @@ std::vector<BenchPose> poses_among(const std::filesystem::path& file,
   Engine engine(kEngineNames.front(), fixed, moving,
                 {.policy = std::min(fixed.tightest(), moving.tightest())});
   std::vector<std::uint64_t> pairs;
+  pairs.reserve(poses.size());
   for (const Eigen::Isometry3d& pose : poses) pairs.push_back(engine.ask(pose).result.leaf_pairs);
   const auto [fewest, most] = std::ranges::minmax_element(pairs);
   if (pairs.empty() || *most == 0) {

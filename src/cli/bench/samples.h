@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -19,7 +20,7 @@ class Samples {
   [[nodiscard]] double quantile(double part) const {
     std::vector<double> times = times_;
     const auto last = static_cast<double>(times.size() - 1);
-    const auto at = times.begin() + static_cast<std::ptrdiff_t>(part * last + 0.5);
+    const auto at = times.begin() + std::lround(part * last);
     std::nth_element(times.begin(), at, times.end());
     return *at;
   }

@@ -189,6 +189,7 @@ void run(const OcclusionArguments& options) {
     }
   }
   std::vector<OutputFile*> files;
+  files.reserve(outputs.size());
   for (const Output& output : outputs) files.push_back(output.file.get());
   OutputFile::commit_all(files);
   if (options.json) {

@@ -123,7 +123,7 @@ void run(const RunArguments& options) {
   if (!options.replay.empty()) return replay_ticks(built, scene, options);
 
   ServoOptions servo;
-  servo.ticks = static_cast<std::uint64_t>(scene.rate * scene.seconds + 0.5);
+  servo.ticks = static_cast<std::uint64_t>(std::llround(scene.rate * scene.seconds));
   servo.paced = !options.unpaced;
   servo.real_time.cpu = options.cpu;
   StoppableRun stoppable(options.record, scene, *built.simulation);

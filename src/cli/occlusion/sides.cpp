@@ -13,7 +13,7 @@ using Vector = Eigen::Vector3d;
 
 std::optional<Vector> triple(const std::string& text, const std::string& option) {
   if (text.empty()) return std::nullopt;
-  const std::optional<Vector> given = vector_of(text);
+  std::optional<Vector> given = vector_of(text);
   refuse_if(!given, option, text + ": give x,y,z, such as 1,0,0");
   return given;
 }

@@ -45,7 +45,7 @@ void ShareEstimate::add(double seconds) {
 }
 
 std::string ShareEstimate::text() const {
-  const std::string done = fmt::format("{} of {} done", parts_ - left_, parts_);
+  std::string done = fmt::format("{} of {} done", parts_ - left_, parts_);
   if (left_ == 0 || made_ == 0) return done;
   return fmt::format(
       "{}, about {} left", done,

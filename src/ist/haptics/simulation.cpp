@@ -218,7 +218,7 @@ std::optional<HandChange> detail::SimulationState::next_change(const Budget& bud
 // Moves the tool from its last complete pose. Empty if there is no finite motion.
 std::optional<Vector6> detail::SimulationState::move(
     const VirtualCoupling::Stretch& stretch) noexcept {
-  const std::optional<Vector6> found = tool.motion(input(), effects, coupling, stretch, step_scale);
+  std::optional<Vector6> found = tool.motion(input(), effects, coupling, stretch, step_scale);
   if (!found) return found;
   tool_pose = tool_pose.moved(*found);
   motion = found;

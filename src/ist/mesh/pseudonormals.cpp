@@ -179,7 +179,7 @@ Vector Pseudonormals::beyond(const TriangleMesh& mesh, std::uint32_t triangle, s
                              const Vector& at) const noexcept {
   for (int step = 0; step < kMostWithoutArea; ++step) {
     const std::array<Vector, 3> t = corners(mesh, triangle);
-    const Vector normal = unit_normal(t);
+    Vector normal = unit_normal(t);
     if (!is_zero(normal)) return normal;
     std::uint32_t next = kNone;
     double least = HUGE_VAL;

@@ -42,8 +42,10 @@ std::optional<FreeStart::Flaw> FreeStart::flaw(double distance) noexcept {
 }
 
 std::optional<double> FreeStart::open_distance() noexcept {
-  for (double distance = voxel_; distance <= farthest_; distance += voxel_) {
+  double distance = voxel_;
+  while (distance <= farthest_) {
     if (!flaw(distance) && !flaw(distance + voxel_)) return distance + voxel_;
+    distance += voxel_;
   }
   return std::nullopt;
 }

@@ -58,6 +58,7 @@ class Check {
 
 std::vector<std::string> names_of(const std::map<std::string, bool>& held) {
   std::vector<std::string> names;
+  names.reserve(held.size());
   for (const auto& [name, is_held] : held) names.push_back(name);
   return names;
 }

@@ -29,7 +29,7 @@ void refuse_beyond(const TableReader& coupling, std::string_view key, double lim
                 fmt::format("lower it, or raise '{}' in [safety]", key));
 }
 
-CouplingSettings read_coupling(TableReader coupling, const SafetySettings& safety) {
+CouplingSettings read_coupling(const TableReader& coupling, const SafetySettings& safety) {
   CouplingSettings usual;
   usual.max_force = std::min(usual.max_force, safety.max_force);
   usual.max_torque = std::min(usual.max_torque, safety.max_torque);

@@ -145,7 +145,8 @@ void verify_lattice(const TreeReader& reader, const Lattice& lattice) {
 bool is_valid(const PackedBall& ball) { return ball.r > 0; }
 
 bool is_valid(const PackedSlab& slab) {
-  const int x = slab.nx, y = slab.ny, z = slab.nz;
+  const auto x = static_cast<int>(slab.nx), y = static_cast<int>(slab.ny),
+             z = static_cast<int>(slab.nz);
   return x >= -127 && y >= -127 && z >= -127 && x * x + y * y + z * z <= 128 * 128 &&
          slab.offset >= -127 && slab.half > 0;
 }

@@ -12,26 +12,26 @@ namespace ist::viewer {
 /// The two bodies' names in the page.
 enum class Role { kFixed, kMoving };
 
-/// A question's members, as the page sends them. A member that is missing, or of another kind than
-/// its reader returns, throws kArgumentInvalid, naming it.
+/// The members of a question from the page. A reader throws kArgumentInvalid, with the member's
+/// name, if the member is missing or of another kind.
 class Asked {
  public:
-  /// Reads JSON. Throws kArgumentInvalid where it is no object.
+  /// Reads JSON. Throws kArgumentInvalid if it is no object.
   explicit Asked(const std::string& text);
 
   [[nodiscard]] double number(const char* name) const;
   [[nodiscard]] std::uint64_t count(const char* name) const;
   [[nodiscard]] std::string text(const char* name) const;
-  /// The text, or "" where the member is missing.
+  /// The text, or "" if the member is missing.
   [[nodiscard]] std::string text_or_none(const char* name) const;
-  /// The number, or nothing where it is null or missing.
+  /// The number, or nothing if it is null or missing.
   [[nodiscard]] std::optional<double> number_or_none(const char* name) const;
-  /// 16 numbers, column by column. Throws kPoseInvalid for one that is no rigid motion.
+  /// 16 numbers, column by column. Throws kPoseInvalid if they are no rigid motion.
   [[nodiscard]] Eigen::Isometry3d pose(const char* name) const;
   [[nodiscard]] Role role() const;
-  /// The policy of that name; nothing where the member is missing.
+  /// The policy of that name, or nothing if the member is missing.
   [[nodiscard]] std::optional<SpherePolicy> policy() const;
-  /// The unit; kUnknown where the member is missing.
+  /// The unit, or kUnknown if the member is missing.
   [[nodiscard]] LengthUnit unit() const;
 
  private:

@@ -142,7 +142,7 @@ void press_among(Scene scene, const std::string& name, int count) {
               ChangeStatus::kDone);
     ++(held ? released : taken);
   }
-  EXPECT_GT(felt.pressed(), 100 * count);
+  EXPECT_GT(felt.pressed(), least(300, 100) * count);
   EXPECT_GT(taken, count / 10);
   EXPECT_GT(released, count / 10);
 }

@@ -74,7 +74,7 @@ TEST(World, AnswersAsAQueryOfEachPair) {
       }
     }
   }
-  EXPECT_GT(meeting, 0);
+  EXPECT_GT(meeting, least(10, 0));
 }
 
 TEST(World, ListsPairsInOrder) {

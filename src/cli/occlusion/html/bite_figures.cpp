@@ -37,10 +37,10 @@ std::string side_at(const Bite& bite, const Eigen::Vector3d& direction) {
 }
 
 std::string edge_names(const Bite& bite, const BiteView& view) {
-  return text_at(kWidth - 10, kHeight / 2, "end", side_at(bite, view.across)) +
-         text_at(10, kHeight / 2, "start", side_at(bite, -view.across)) +
-         text_at(kWidth / 2, 20, "middle", side_at(bite, view.up)) +
-         text_at(kWidth / 2, kHeight - 8, "middle", side_at(bite, -view.up));
+  return text_at(kWidth - 10, kHeight / 2.0, "end", side_at(bite, view.across)) +
+         text_at(10, kHeight / 2.0, "start", side_at(bite, -view.across)) +
+         text_at(kWidth / 2.0, 20, "middle", side_at(bite, view.up)) +
+         text_at(kWidth / 2.0, kHeight - 8, "middle", side_at(bite, -view.up));
 }
 
 // A bar of 1, 2 or 5 times a power of ten millimetres, about a sixth of the picture.

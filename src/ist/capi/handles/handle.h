@@ -29,6 +29,8 @@ template <typename T>
       T::kKind, object.get(), [](void* taken) noexcept { delete static_cast<T*>(taken); });
   if (handle == 0) return fail_by_handle(call, IST_TOO_MANY_HANDLES, "", T::kName);
   static_cast<void>(object.release());
+  // The pointer is a number, never an address.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
   *out = reinterpret_cast<typename T::Handle*>(static_cast<std::uintptr_t>(handle));
   return IST_OK;
 }

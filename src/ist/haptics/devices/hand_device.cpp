@@ -106,9 +106,11 @@ void HandDevice::write(const Vector6& wrench, double dt) noexcept {
     const double begin = time_;
     const double steps = std::ceil((until - begin) / longest);
     const double h = (until - begin) / steps;
-    for (double i = 0; i < steps; ++i) {
-      time_ = begin + i * h;
+    double done = 0;
+    while (done < steps) {
+      time_ = begin + done * h;
       step(h);
+      ++done;
     }
     time_ = until;
   }

@@ -27,8 +27,8 @@ std::optional<double> rounded(std::string_view word) {
     // A number that is too small becomes zero; only one too large is an error.
     double wide = 0;
     const std::errc wide_error = from_chars(digits, wide).ec;
-    const bool tiny = wide_error == std::errc() ? std::abs(wide) < 1
-                                                : digits.find_first_of("-", 1) != digits.npos;
+    const bool tiny =
+        wide_error == std::errc() ? std::abs(wide) < 1 : digits.find('-', 1) != digits.npos;
     return tiny ? 0 : kNotFinite;
   }
   if (error != std::errc()) return {};

@@ -13,7 +13,7 @@ namespace {
 Eigen::Vector3d newell_normal(std::span<const std::uint32_t> corners,
                               std::span<const Eigen::Vector3d> vertices) {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d origin = vertices[corners[0]];
+  const Eigen::Vector3d& origin = vertices[corners[0]];
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     normal += (vertices[corners[i]] - origin).cross(vertices[corners[i + 1]] - origin);
   return normal;

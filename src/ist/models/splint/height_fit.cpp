@@ -16,7 +16,8 @@ constexpr int kParts = 6;
 constexpr std::size_t kPartCorners = (kParts + 1) * (kParts + 2) / 2;
 
 constexpr std::size_t part_corner(int i, int j) {
-  return static_cast<std::size_t>(i * (2 * kParts + 3 - i) / 2 + j);
+  const int at = i * (2 * kParts + 3 - i) / 2 + j;
+  return static_cast<std::size_t>(at);
 }
 
 // The shares of the triangle's corners in a part's corner, in kParts-ths.

@@ -45,7 +45,8 @@ WorldState::Answers::Answers(std::size_t most)
 void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
   Body& body = bodies[index];
   const double* const numbers = pose.matrix().data();
-  // Bit by bit, so that what is not a number is compared as all else.
+  // Bit by bit, so that a NaN equals itself.
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   if (std::memcmp(body.given.data(), numbers, sizeof body.given) == 0) return;
   std::copy_n(numbers, body.given.size(), body.given.begin());
   stale = true;
