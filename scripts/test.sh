@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up this machine, builds, and runs tests.
 #
-#   scripts/test.sh            the fast tests, with a fifth of the random samples: 11 minutes on two cores from nothing
+#   scripts/test.sh            the fast tests, with a fifth of the random samples: 10 minutes on two cores from nothing
 #   scripts/test.sh --all      the rest that a landing needs: threads under ThreadSanitizer; readers and vector code
 #                              under AddressSanitizer and UndefinedBehaviorSanitizer; golden answers in WebAssembly; the
 #                              page; packages; other tools as oracles; and every test with all its samples
