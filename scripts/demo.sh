@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh >&2
-cmake --preset release -DIST_UNITY=ON >/dev/null  # half the time
+cmake --preset release -DIST_UNITY=ON >/dev/null  # takes three quarters of the time
 cmake --build --preset release --target ist_cli >&2
 ist=build/release/ist
 [ $# -eq 0 ] || exec $ist demo "$@"

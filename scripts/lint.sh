@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks the style of the code by the settings at the root that editors read too: .clang-format, .flake8 and
-# .prettierrc.json; and by .clang-tidy, which takes half an hour on two cores.
+# .prettierrc.json; and by .clang-tidy, which takes over 20 minutes on two cores.
 #
 #   scripts/lint.sh                    all but clang-tidy, on every file
 #   scripts/lint.sh TOOL [FILE ...]    clang-format, flake8, prettier or clang-tidy, on these files, or on every file

@@ -67,7 +67,7 @@ def configure(fast):
 
 
 def fast_tests():
-    """What scripts/test.sh runs: the names of its tests, and of their programs, which may not be built yet, and scripts."""
+    """The names of the fast tests, and of the programs and scripts that they run. Not all programs need be built."""
     listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1", "-L", "^fast$"], check=True, capture_output=True)
     tests = json.loads(listed.stdout)["tests"]
     names = {test["name"] for test in tests}
@@ -204,9 +204,9 @@ def main():
     now, known = commit(), results()
     missing = words == ["--missing"]
     chosen = [m for m in MUTANTS if not words or any(word in m.name for word in words)
-              or (missing and known.get(m.name, {}).get("commit") != now)]
+              or (missing and (known.get(m.name, {}).get("commit") != now or known[m.name]["killed_by"] is None))]
     if missing and not chosen:
-        print("every mutant has run at this commit")
+        print("tests have killed every mutant at this commit")
         return
     if not chosen:
         fail(f"no mutant is named like {' or '.join(words)}; --list names them")

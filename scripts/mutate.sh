@@ -5,7 +5,7 @@
 #
 #   scripts/mutate.sh               every mutant
 #   scripts/mutate.sh NAME...       those whose names contain one of these words
-#   scripts/mutate.sh --missing     those that were not run at this commit, as after a run that was cut short
+#   scripts/mutate.sh --missing     those that no test has killed at this commit, as after a run that was cut short
 #   scripts/mutate.sh --fast [NAME...]   by the tests of scripts/test.sh alone, which writes nothing
 #   scripts/mutate.sh --list        their names, and what each breaks
 set -euo pipefail

@@ -1,4 +1,4 @@
-"""What scripts/setup.sh and scripts/test.sh refuse: one line with the remedy."""
+"""Refusals of setup.sh, test.sh and lint.sh: one line with the remedy."""
 
 import pathlib
 import shutil
@@ -25,7 +25,7 @@ class Refusals(unittest.TestCase):
         (self.bin / name).chmod(0o755)
 
     def refused(self, code, script, *words):
-        """The last line of a script that ends with this code."""
+        """Runs a script that must end with this code. Returns its one line of errors."""
         ran = subprocess.run([SCRIPTS / script, *words], env={"PATH": str(self.bin)}, capture_output=True, text=True, check=False)
         self.assertEqual(ran.returncode, code, ran.stderr)
         lines = ran.stderr.splitlines()

@@ -22,7 +22,7 @@ namespace ist {
 
 /// The smallest ball round a set of points or balls, and those of them that determine it.
 template <typename Site>
-struct Support {  // NOLINT(bugprone-reserved-identifier): clang-tidy 14 means its own name
+struct Support {  // NOLINT(bugprone-reserved-identifier): clang-tidy 14 adds the name
   Site sites[4];
   int count = 0;
   Eigen::Vector3d centre;

@@ -129,7 +129,7 @@ class WorkerLoop {
                                          std::memory_order_relaxed))
       return;
     hand_over(HandOver::kEntered);
-    Job& job = *reinterpret_cast<Job*>(mail);  // NOLINT(performance-no-int-to-ptr): it was one
+    Job& job = *reinterpret_cast<Job*>(mail);  // NOLINT(performance-no-int-to-ptr)
     {
       const ScopedFloatEnvironment environment;
       job.run_(job.context_);
