@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "ist/base/parallel.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/query.h"
-#include "ist/tree/clusters/triangle_clusters.h"
 #include "support/bodies.h"
 
 namespace ist::bench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ist/mesh/mesh.h"
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 namespace ist::bench {
 

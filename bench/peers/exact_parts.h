@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 namespace ist::bench {
 

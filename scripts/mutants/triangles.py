@@ -4,9 +4,9 @@ from .mutant import Mutant, EXACT, CONTACTS, MEASURE
 
 MUTANTS = [
     Mutant("touching-triangles-apart", "triangles whose projections share an end are apart",
-           [(EXACT + "triangles_meet.cpp", "if (less(*a_high, *b_low) || less(*b_high, *a_low)) return true;",
+           [("src/ist/mesh/triangles_meet.cpp", "if (less(*a_high, *b_low) || less(*b_high, *a_low)) return true;",
              "if (!less(*b_low, *a_high) || less(*b_high, *a_low)) return true;")],
-           ["exact_test TrianglesMeet*"]),
+           ["mesh_test TrianglesMeet*"]),
     Mutant("places-where-they-round", "triangles decided in float forget the rounding of the bodies' frames",
            [(EXACT + "exact_search.cpp", "rounded_up(2 * moved_error(pose.rigid) + frames)",
              "rounded_up(0 * frames)")], ["exact_test", "stability_test *Shapes*:*Place*"]),
@@ -14,7 +14,7 @@ MUTANTS = [
            [("src/ist/query/query_distance.cpp", "const double off = bodies.margin;", "const double off = 0 * bodies.margin;")],
            ["stability_test *Place*:*Shapes*"]),
     Mutant("predicate-without-bound", "the sign of a determinant counts at any size",
-           [(EXACT + "orientation.cpp", "kBound3 = 8 * kRounding", "kBound3 = 0 * kRounding")],
+           [("src/ist/mesh/orientation.cpp", "kBound3 = 8 * kRounding", "kBound3 = 0 * kRounding")],
            ["exact_test"]),
     Mutant("distance-stops-early", "an axis that almost separates two triangles counts as separating",
            [(EXACT + "triangle_distance.cpp", "constexpr double kRounding = 1 + 0x1p-40;",

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ist/tree/clusters/triangle_clusters.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "simd/exact/point_step.h"
 
 /// The interface of the kernels that search two trees of triangle clusters. Lengths are in mesh

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ist/tree/clusters/triangle_clusters.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 
 /// The interface of the kernels that look for the triangle that is nearest to a point. Lengths are
 /// in mesh units.

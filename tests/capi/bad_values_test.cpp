@@ -173,7 +173,7 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(built([](auto& o) { o.spheres = -1; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.drop_triangles = 2; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.proximity = -1; }), "argument-invalid");
-  EXPECT_EQ(built([](auto& o) { o.reserved = 1; }), "argument-invalid");
+  EXPECT_EQ(built([](auto& o) { o.no_weld = 2; }), "argument-invalid");
   EXPECT_EQ(built([](auto& o) { o.struct_size = 0; }), "struct-size");
 
   const auto queried = [&](auto change) {

@@ -13,7 +13,7 @@
 SIZE(ist_status, 4);
 SIZE(ist_mesh*, 8);
 
-SIZE(ist_mesh_info, 120);
+SIZE(ist_mesh_info, 128);
 AT(ist_mesh_info, struct_size, 0);
 AT(ist_mesh_info, vertices, 8);
 AT(ist_mesh_info, triangles, 16);
@@ -26,6 +26,7 @@ AT(ist_mesh_info, consistent, 60);
 AT(ist_mesh_info, box_min, 64);
 AT(ist_mesh_info, box_max, 88);
 AT(ist_mesh_info, signed_volume, 112);
+AT(ist_mesh_info, self_intersections, 120);
 
 SIZE(ist_build_options, 48);
 AT(ist_build_options, struct_size, 0);
@@ -33,7 +34,7 @@ AT(ist_build_options, voxel_size, 8);
 AT(ist_build_options, spheres, 16);
 AT(ist_build_options, drop_triangles, 20);
 AT(ist_build_options, proximity, 24);
-AT(ist_build_options, reserved, 28);
+AT(ist_build_options, no_weld, 28);
 AT(ist_build_options, max_memory, 32);
 AT(ist_build_options, progress, 40);
 
@@ -173,8 +174,9 @@ AT(ist_surface_distance, distance, 0);
 AT(ist_surface_distance, closest, 8);
 AT(ist_surface_distance, triangle, 32);
 AT(ist_surface_distance, is_signed, 36);
+AT(ist_surface_distance, self_intersecting, 38);
 
-SIZE(ist_penetration, 104);
+SIZE(ist_penetration, 112);
 AT(ist_penetration, lower, 8);
 AT(ist_penetration, upper, 16);
 AT(ist_penetration, point, 24);
@@ -185,6 +187,8 @@ AT(ist_penetration, complete, 80);
 AT(ist_penetration, not_closed, 84);
 AT(ist_penetration, narrowest, 88);
 AT(ist_penetration, points, 96);
+AT(ist_penetration, self_intersecting, 104);
+AT(ist_penetration, reserved, 108);
 
 SIZE(ist_motion, 88);
 AT(ist_motion, from, 8);
@@ -204,7 +208,7 @@ AT(ist_first_contact, grazed, 44);
 AT(ist_first_contact, triangles_known, 48);
 AT(ist_first_contact, fixed, 52);
 AT(ist_first_contact, moving, 56);
-AT(ist_first_contact, reserved, 60);
+AT(ist_first_contact, self_intersecting, 60);
 AT(ist_first_contact, narrowest, 64);
 AT(ist_first_contact, distances, 72);
 

@@ -131,6 +131,30 @@ TEST_F(CMeasure, PenetrationIsThatOfCppAndGoesOnFromTheLast) {
   EXPECT_EQ(name(ist_query_free(open)), "ok");
 }
 
+TEST_F(CMeasure, ASurfaceThatIntersectsItself_SaysSo) {
+  const TriangleMesh two = joined(box({0, 0, 0}, {2, 2, 2}), box({1.5, 0.5, 0.5}, {3.5, 1.5, 1.5}));
+  ist_tree* tree = c_tree(two, 0.5);
+  std::uint64_t pairs = 0;
+  ASSERT_EQ(name(ist_tree_self_intersections(tree, &pairs)), "ok");
+  EXPECT_EQ(pairs, build_tree(two, {.voxel_size = 0.5}).self_intersections());
+  EXPECT_GT(pairs, 0u);
+  const double point[] = {1.75, 1, 1};
+  ist_surface_distance found;
+  ASSERT_EQ(name(ist_tree_signed_distance(tree, point, 1, INFINITY, nullptr, &found)), "ok");
+  EXPECT_EQ(found.distance, -0.25);
+  EXPECT_EQ(found.is_signed, 1);
+  EXPECT_EQ(found.self_intersecting, 1);
+  ist_query* query = c_query(tree, c_tree(moved(icosphere(1, 0.1), {1.75, 1, 1}), 0.05));
+  auto depth = sized<ist_penetration>();
+  const auto pose = down_by(0, 0, 0);
+  ASSERT_EQ(
+      name(ist_query_penetration(query, pose.data(), 0.01, nullptr, nullptr, nullptr, &depth)),
+      "ok");
+  EXPECT_NEAR(depth.lower, 0.25, 0.11);
+  EXPECT_EQ(depth.self_intersecting, IST_FIXED_SELF_INTERSECTING);
+  EXPECT_EQ(name(ist_query_free(query)), "ok");
+}
+
 TEST_F(CMeasure, FirstContactIsThatOfCpp) {
   const auto from = down_by(0, 0, 12), to = down_by(0, 0, 0);
   auto motion = sized<ist_motion>();

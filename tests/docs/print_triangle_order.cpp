@@ -2,8 +2,8 @@
 // oracle of the order by which scripts/pictures/how/triangle_order.py draws them.
 #include <fmt/format.h>
 
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/mesh/mesh.h"
-#include "ist/tree/clusters/triangle_clusters.h"
 
 int main(int, char** argv) {
   const ist::TriangleClusters clusters(ist::read_mesh(argv[1]), {0, 0, 0});

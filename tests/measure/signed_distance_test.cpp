@@ -5,16 +5,17 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <thread>
 
 #include "ist/base/parallel.h"
-#include "ist/mesh/winding_number.h"
 #include "ist/models/models.h"
 #include "query/query_cases.h"
+#include "support/data_dir.h"
 #include "support/effort.h"
 #include "support/errors.h"
 #include "support/shapes.h"
+#include "support/skip.h"
+#include "support/solid_angle.h"
 
 namespace ist::test {
 namespace {
@@ -36,9 +37,48 @@ std::vector<Vector> points_about(const TriangleMesh& mesh, int count, double far
 }
 
 bool lies_inside(const TriangleMesh& mesh, const Vector& p) {
-  std::vector<std::uint32_t> all(mesh.triangles.size());
-  std::iota(all.begin(), all.end(), 0U);
-  return winding_number(mesh, all, p).value() > 0;
+  return std::lround(winding_by_angles(mesh, p)) != 0;
+}
+
+// Signs at points about the surface, and just off its vertices, against the sum of solid angles.
+void expect_signs(const TriangleMesh& mesh, bool self_intersecting, Random& random) {
+  const SphereTree tree = body(mesh);
+  EXPECT_EQ(tree.orientation(), Orientation::kOutward);
+  EXPECT_EQ(tree.self_intersections() > 0, self_intersecting);
+  for (const double far : {2.0, 0.1, 1e-3}) {
+    const std::vector<Vector> points = points_about(mesh, samples(150), far, random);
+    const auto found = signed_distance(tree, points, kInfinite);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_TRUE(found[i].is_signed);
+      EXPECT_EQ(found[i].self_intersecting, self_intersecting);
+      EXPECT_EQ(found[i].distance < 0, lies_inside(*tree.triangles(), points[i]))
+          << points[i].transpose();
+    }
+  }
+}
+
+// A cube of which one vertex is doubled, off by `by`: two slivers fold over.
+TriangleMesh folded_cube(const Vector& by) {
+  TriangleMesh mesh = box({0, 0, 0}, {10, 10, 10});
+  const Vector corner(10, 10, 10);
+  std::vector<std::uint32_t> ends;  // of an edge at the corner
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (mesh.vertices[v] == corner || mesh.vertices[v] == Vector(10, 10, 0)) ends.push_back(v);
+  }
+  mesh.vertices.push_back(corner + by);
+  const auto middle = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  for (const auto& [from, to] : {std::pair(ends[0], ends[1]), std::pair(ends[1], ends[0])}) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      Triangle& triangle = mesh.triangles[t];
+      const auto at = std::find(triangle.begin(), triangle.end(), from) - triangle.begin();
+      if (at == 3 || triangle[static_cast<std::size_t>(at + 1) % 3] != to) continue;
+      const std::uint32_t third = triangle[static_cast<std::size_t>(at + 2) % 3];
+      triangle = {from, middle, third};
+      mesh.triangles.push_back({middle, to, third});
+      break;
+    }
+  }
+  return mesh;
 }
 
 TEST(SignedDistance, OfASphereIsItsClosedFormWithinTheFacets) {
@@ -70,6 +110,142 @@ TEST(SignedDistance, HasTheSignOfTheWindingNumber) {
       EXPECT_EQ(found[i].distance < 0, lies_inside(mesh, points[i])) << points[i].transpose();
     }
   }
+}
+
+TEST(SignedDistance, OverlappingParts_AreOneBody) {
+  Random random(6);
+  const TriangleMesh two = joined(box({0, 0, 0}, {2, 2, 2}), box({1.5, 0.5, 0.5}, {3.5, 1.5, 1.5}));
+  expect_signs(two, true, random);
+  expect_signs(joined(icosphere(3, 4), moved(icosphere(3, 4), {3, 1, 0.5})), true, random);
+  expect_signs(joined(two, moved(icosphere(2, 1), {1.7, 1, 1})), true, random);
+  const auto found =
+      signed_distance(body(two, 0.1), std::vector<Vector>{{1.4, 1, 1}, {1.75, .45, 1}}, kInfinite);
+  EXPECT_NEAR(found[0].distance, -0.1, 1e-15) << "the nearest triangle is inside the other part";
+  EXPECT_NEAR(found[1].distance, -0.05, 1e-15);
+}
+
+TEST(SignedDistance, Folds_DoNotTurnTheSign) {
+  Random random(8);
+  for (const double size : {1.0, 1e-3, 1e-6, 1e-9}) {
+    for (int k = 0; k < samples(20); ++k) {
+      const TriangleMesh cube = folded_cube(size * random.direction());
+      const SphereTree tree = body(joined(cube, moved(box({0, 0, 0}, {9, 9, 9}), {30, 30, 30})));
+      std::vector<Vector> points;
+      for (int n = 0; n < 100; ++n) {
+        points.push_back(Vector(10, 10, 10) + random.uniform(2 * size, 9) * random.direction());
+      }
+      const auto found = signed_distance(tree, points, kInfinite);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(found[i].distance < 0, lies_inside(*tree.triangles(), points[i]))
+            << points[i].transpose() << " size " << size;
+      }
+    }
+  }
+}
+
+TEST(SignedDistance, SurfacesThatTouchThemselves_HaveCertainSigns) {
+  Random random(9);
+  const TriangleMesh cube = box({0, 0, 0}, {2, 2, 2});
+  // Corners and edges at one position are welded.
+  for (const Vector& by : {Vector(2, 2, 2), Vector(2, 2, 0)}) {
+    expect_signs(joined(cube, moved(cube, by)), false, random);
+  }
+  for (const Vector& by : {Vector(2, 0, 0), Vector(2, 1, 0.5), Vector(2, 2, 1)}) {
+    expect_signs(joined(cube, moved(cube, by)), true, random);
+  }
+  // A wall inside, of two opposite faces.
+  TriangleMesh wall = cube;
+  const auto first = static_cast<std::uint32_t>(wall.vertices.size());
+  for (const Vector& v : {Vector(1, 0.5, 0.5), Vector(1, 1.5, 0.5), Vector(1, 1, 1.5)}) {
+    wall.vertices.push_back(v);
+  }
+  wall.triangles.push_back({first, first + 1, first + 2});
+  wall.triangles.push_back({first, first + 2, first + 1});
+  const auto found = signed_distance(
+      body(wall), std::vector<Vector>{{0.9, 1, 1}, {1.1, 1, 1}, {3, 1, 1}}, kInfinite);
+  EXPECT_LT(found[0].distance, 0);
+  EXPECT_LT(found[1].distance, 0);
+  EXPECT_GT(found[2].distance, 0);
+}
+
+TEST(SignedDistance, NestedBodies_AreInsideByWinding) {
+  Random random(10);
+  expect_signs(joined(icosphere(3, 4), icosphere(2, 2)), false, random);
+  expect_signs(joined(icosphere(3, 4), joined(icosphere(2, 2), icosphere(1, 1))), false, random);
+  expect_signs(inside_out(joined(icosphere(3, 4), inside_out(icosphere(2, 2)))), false, random);
+}
+
+// Points about every closed mesh of the data folder, dirty ones included.
+TEST(SignedDistance, RealMeshes_HaveTheSignsOfSolidAngles) {
+  IST_SLOW();
+  if (!std::filesystem::is_directory(data_dir())) {
+    IST_SKIP("no folder of real meshes at " << data_dir());
+  }
+  Random random(12);
+  int closed = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data_dir())) {
+    if (entry.path().extension() != ".stl" || entry.path().string().ends_with("bad_input"))
+      continue;
+    TriangleMesh mesh;
+    try {
+      mesh = read_mesh(entry.path());
+    } catch (const Error&) {
+      continue;
+    }
+    if (orient_outward(mesh).orientation != Orientation::kOutward) continue;
+    ++closed;
+    const SphereTree tree = build_tree(mesh, {.voxel_size = 2, .spheres = SpherePolicy::kSimple});
+    const std::vector<Vector> points = points_about(mesh, 1500, 4, random);
+    const auto found = signed_distance(tree, points, kInfinite);
+    int wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::abs(found[i].distance) < 1e-6) continue;
+      wrong += (found[i].distance < 0) == lies_inside(mesh, points[i]) ? 0 : 1;
+    }
+    EXPECT_EQ(wrong, 0) << entry.path();
+  }
+  EXPECT_GE(closed, 4);
+}
+
+// The triangles of a mesh with corners of their own, as renderers store them.
+TriangleMesh soup_of(const TriangleMesh& mesh) {
+  TriangleMesh soup;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : t) soup.vertices.push_back(mesh.vertices[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+TEST(SignedDistance, ArraysOfSeparateTriangles_AreWelded) {
+  Random random(13);
+  const TriangleMesh ball = icosphere(3, 4), soup = soup_of(ball);
+  const SphereTree tree = body(soup), whole = body(ball);
+  EXPECT_EQ(tree.orientation(), Orientation::kOutward);
+  EXPECT_EQ(tree.triangles()->vertices.size(), soup.vertices.size());
+  const std::vector<Vector> points = points_about(ball, samples(200), 5, random);
+  const auto found = signed_distance(tree, points, kInfinite),
+             expected = signed_distance(whole, points, kInfinite);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(found[i].distance, expected[i].distance);
+    EXPECT_EQ(found[i].triangle, expected[i].triangle);
+  }
+  // A distance for each vertex of the caller's.
+  const auto map = distance_map(tree, body(box({-3, -3, -3}, {3, 3, 3})),
+                                Eigen::Isometry3d::Identity(), kInfinite);
+  ASSERT_EQ(map.size(), soup.vertices.size());
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector& v = soup.vertices[3 * t + k];
+      for (std::size_t other = 0; other < 3 * t; other += 17) {
+        if (soup.vertices[other] != v) continue;
+        EXPECT_EQ(map[other].distance, map[3 * t + k].distance);
+      }
+    }
+  }
+  const SphereTree apart = build_tree(soup, {.voxel_size = 0.5, .weld = false});
+  EXPECT_EQ(apart.orientation(), Orientation::kAssumed);
 }
 
 TEST(SignedDistance, IsNotANumberBeyondTheReach) {

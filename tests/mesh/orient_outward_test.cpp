@@ -36,9 +36,68 @@ TEST(OrientOutward, LeavesCavities) {
   // A stone in the cavity of a shell is right as it is, too.
   const TriangleMesh stone = test::joined(shell, test::icosphere(0, 0.1));
   expect_oriented(stone, stone, Orientation::kOutward, 0);
-  // Only the outermost component is turned, whatever it holds.
-  const TriangleMesh wrong = test::joined(test::inside_out(test::icosphere(1, 5)), kBall);
-  expect_oriented(wrong, test::joined(test::icosphere(1, 5), kBall), Orientation::kOutward, 1);
+  // A solid in a solid is right as it is, too.
+  const TriangleMesh solids = test::joined(test::icosphere(1, 5), kBall);
+  expect_oriented(solids, solids, Orientation::kOutward, 0);
+}
+
+TEST(OrientOutward, TurnsWhatLiesInATurnedComponent) {
+  const TriangleMesh shell = test::joined(test::icosphere(1, 5), test::inside_out(kBall));
+  const TriangleMesh stone = test::joined(shell, test::icosphere(0, 0.1));
+  const TriangleMesh solids = test::joined(test::icosphere(1, 5), kBall);
+  for (const TriangleMesh& mesh : {shell, stone, solids}) {
+    const std::size_t parts = check_mesh(mesh).components;
+    expect_oriented(test::inside_out(mesh), mesh, Orientation::kOutward, parts);
+    // Beside a body that is right, and after it in the file.
+    const TriangleMesh other = test::moved(shell, {20, 0, 0});
+    expect_oriented(test::joined(other, test::inside_out(mesh)), test::joined(other, mesh),
+                    Orientation::kOutward, parts);
+  }
+  // An open part inside is turned with the rest.
+  const TriangleMesh strip = test::moved(test::open_strip(2), {2, 0, 0});
+  expect_oriented(test::inside_out(test::joined(shell, strip)), test::joined(shell, strip),
+                  Orientation::kAssumed, 3);
+}
+
+TEST(OrientOutward, APartThatSticksOut_IsNoCavity) {
+  const TriangleMesh bar = test::box({-1, -1, -1}, {9, 1, 1});
+  const TriangleMesh two = test::joined(test::icosphere(1, 5), bar);
+  expect_oriented(test::joined(test::icosphere(1, 5), test::inside_out(bar)), two,
+                  Orientation::kOutward, 1);
+  // Its box lies in the other's box.
+  const TriangleMesh tilted =
+      test::joined(test::box({-5, -5, -5}, {5, 5, 5}), test::moved(kBall, {4.5, 0, 0}));
+  expect_oriented(tilted, tilted, Orientation::kOutward, 0);
+}
+
+TEST(OrientOutward, ManyCavities_TakeNoTimeForEachTriangleOfTheShell) {
+  TriangleMesh mesh = test::icosphere(5, 50);
+  const TriangleMesh cavity = test::inside_out(test::icosphere(0, 0.5));
+  std::size_t cavities = 0;
+  for (int x = -8; x <= 8; ++x) {
+    for (int y = -8; y <= 8; ++y) {
+      for (int z = -8; z <= 8; ++z, ++cavities) {
+        const TriangleMesh there = test::moved(cavity, {3.0 * x, 3.0 * y, 3.0 * z});
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), there.vertices.begin(), there.vertices.end());
+        for (const Triangle& t : there.triangles) {
+          mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        }
+      }
+    }
+  }
+  expect_oriented(mesh, mesh, Orientation::kOutward, 0);
+  expect_oriented(test::inside_out(mesh), mesh, Orientation::kOutward, cavities + 1);
+}
+
+TEST(OrientOutward, EndsIfAskedTo) {
+  const TriangleMesh mesh =
+      test::inside_out(test::joined(test::icosphere(3, 5), test::inside_out(kBall)));
+  TriangleMesh copy = mesh;
+  Progress progress;
+  progress.stop();
+  EXPECT_THROW(static_cast<void>(orient_outward(copy, &progress)), Error);
+  EXPECT_EQ(copy.triangles, mesh.triangles);
 }
 
 TEST(OrientOutward, IsNotFooledByABoxRoundTheOther) {
@@ -57,8 +116,7 @@ TEST(OrientOutward, NeitherUnitNorPlaceMatters) {
       shell = test::moved(shell, {place, -place, place});
       for (Eigen::Vector3d& v : shell.vertices) v *= s;
       expect_oriented(shell, shell, Orientation::kOutward, 0);
-      expect_oriented(test::inside_out(shell), test::joined(test::icosphere(1, 5), kBall),
-                      Orientation::kOutward, 1);
+      expect_oriented(test::inside_out(shell), shell, Orientation::kOutward, 2);
     }
   }
 }

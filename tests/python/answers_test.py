@@ -137,6 +137,33 @@ class Verbs(Jaws):
         query = ist.Query(ist.build((vertices, faces), 0.25), ist.build((vertices, faces[:-1]), 0.25))
         self.assertEqual(query.penetration(pose_of([0, 0, 1], 0.1, [0.5, 0, 0]), 0.01).not_closed, "moving")
 
+    def test_a_soup_of_triangles_is_welded(self):
+        vertices, faces = box([0, 0, 0], [2, 2, 2])
+        soup = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3), np.arange(36).reshape(-1, 3)
+        tree = ist.build(soup, voxel_size=0.5)
+        self.assertTrue(tree.outward)
+        self.assertEqual(len(tree.vertices), 36)
+        found = ist.signed_distance(tree, [[1, 1, 1.5], [1, 1, 4]])
+        self.assertEqual(found["distance"].tolist(), [-0.5, 2])
+        self.assertFalse(ist.build(soup, voxel_size=0.5, weld=False).outward)
+
+    def test_a_surface_that_intersects_itself_says_so(self):
+        (a, f), (b, g) = box([0, 0, 0], [2, 2, 2]), box([1.5, 0.5, 0.5], [3.5, 1.5, 1.5])
+        tree = ist.build((np.vstack([a, b]), np.vstack([f, np.asarray(g) + len(a)])), voxel_size=0.5)
+        self.assertGreater(tree.self_intersections, 0)
+        found = ist.signed_distance(tree, [[1.75, 1, 1], [1.4, 1, 1], [2.2, 1, 1], [2.2, 0.4, 1]])
+        np.testing.assert_allclose(found["distance"], [-0.25, -0.1, -0.2, 0.1], rtol=0, atol=1e-15)
+        self.assertTrue((found["is_signed"] == 1).all() and (found["self_intersecting"] == 1).all())
+        small = ist.build(box([-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]), voxel_size=0.1)
+        query = ist.Query(tree, small)
+        pose = np.eye(4)
+        pose[:3, 3] = 1.75, 1, 1
+        depth = query.penetration(pose, 1e-6)
+        self.assertEqual((depth.self_intersecting, depth.complete), ("fixed", True))
+        self.assertGreater(depth.lower, 0)
+        self.assertEqual(query.first_contact(pose, np.eye(4), 1e-3).outcome, "inside at start")
+        self.assertEqual(small.self_intersections, 0)
+
     def test_signed_distances(self):
         tree = ist.build(box([0, 0, 0], [2, 2, 2]), 0.25)
         found = ist.signed_distance(tree, [[1, 1, 1.5], [1, 1, 4], [9, 9, 9]], reach=3)

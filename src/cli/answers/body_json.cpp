@@ -27,6 +27,14 @@ void add_measures(ordered_json& line, const Eigen::Vector3d& extent,
   line["source"] = json_of(source);
 }
 
+ordered_json places(const MeshReport& report) {
+  ordered_json list = ordered_json::array();
+  for (const SelfIntersection& one : report.first_self_intersections) {
+    list.push_back({{"triangles", one.triangles}, {"near", numbers(one.near)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 ordered_json mesh_json(const std::string& file, const MeshReport& report,
@@ -41,6 +49,8 @@ ordered_json mesh_json(const std::string& file, const MeshReport& report,
                     {"duplicate_triangles", report.duplicate_triangles},
                     {"degenerate_triangles", report.degenerate_triangles},
                     {"inconsistent_edges", report.inconsistent_edges},
+                    {"self_intersections", report.self_intersections},
+                    {"first_self_intersections", places(report)},
                     {"box_min", numbers(report.box_min)},
                     {"box_max", numbers(report.box_max)},
                     {"warnings", warnings(report)}};
@@ -63,6 +73,8 @@ ordered_json tree_json(const std::string& file, const SphereTree& tree,
       {"orientation", tree.orientation() == Orientation::kOutward ? "outward" : "assumed"},
       {"triangles", tree.triangles() != nullptr},
       {"proximity", tree.has_proximity()}};
+  line["self_intersections"] = nullptr;
+  if (triangles) line["self_intersections"] = triangles->self_intersections;
   add_measures(line, box_of(tree).sizes(), triangles, tree.source());
   line["levels"] = ordered_json::array();
   for (const LevelStatistics& level : levels) {

@@ -78,6 +78,9 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
                                       found.depth.certain->upper - found.depth.certain->lower,
                                       questions_.max_tests ? ": allow more --max-tests" : ""));
   }
+  if (found.depth.certain || (found.inside && *found.inside != Inside::kNone)) {
+    note_self_intersections(found);
+  }
   find_contacts(pose, found);
   if (questions_.triangle_pairs) count_triangles(pose, found);
   return found;
@@ -130,6 +133,16 @@ void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const
     return;
   }
   found.inside = inside;
+}
+
+void Examiner::note_self_intersections(Findings& found) const {
+  for (const bool moving : {false, true}) {
+    const std::uint64_t pairs = (moving ? query_.moving() : query_.fixed()).self_intersections();
+    if (pairs == 0) continue;
+    found.notes.push_back(
+        fmt::format("{} intersects itself in {} pair{} of triangles: inside is by winding numbers",
+                    moving ? "MOVING" : "FIXED", pairs, pairs == 1 ? "" : "s"));
+  }
 }
 
 void Examiner::find_contacts(const Eigen::Isometry3d& pose, Findings& found) {

@@ -60,6 +60,7 @@ class Examiner {
   void find_touch(const Eigen::Isometry3d& pose, Findings& found);
   void find_inside(const Eigen::Isometry3d& pose, Findings& found) const;
   void find_distance(const Eigen::Isometry3d& pose, Findings& found);
+  void note_self_intersections(Findings& found) const;
   void find_contacts(const Eigen::Isometry3d& pose, Findings& found);
   void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
 

@@ -31,6 +31,13 @@ void print_topology(const MeshReport& report, LengthUnit unit) {
     if (unit != LengthUnit::kUnknown) fmt::print(" {}³", to_string(unit));
   }
   fmt::print("\n");
+  if (report.self_intersections == 0) return;
+  fmt::print("{} pair{} of triangles intersect{}, first:\n", report.self_intersections,
+             report.self_intersections == 1 ? "" : "s", report.self_intersections == 1 ? "s" : "");
+  for (const SelfIntersection& one : report.first_self_intersections) {
+    fmt::print("  triangles {} and {} near ({:g}, {:g}, {:g})\n", one.triangles[0],
+               one.triangles[1], one.near[0], one.near[1], one.near[2]);
+  }
 }
 
 void print_source(const MeshSource& source) {

@@ -48,6 +48,7 @@ ist_mesh_info mesh_info_of(const Mesh& mesh) {
   std::copy_n(report.box_min.data(), 3, info.box_min);
   std::copy_n(report.box_max.data(), 3, info.box_max);
   info.signed_volume = report.signed_volume;
+  info.self_intersections = report.self_intersections;
   return info;
 }
 

@@ -23,25 +23,25 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
                      known.spheres);
   }
   const auto is_flag = [](std::int32_t value) { return value == 0 || value == 1; };
-  if (!is_flag(known.drop_triangles) || !is_flag(known.proximity) || known.reserved != 0) {
+  if (!is_flag(known.drop_triangles) || !is_flag(known.proximity) || !is_flag(known.no_weld)) {
     return call.fail(IST_ARGUMENT_INVALID,
-                     "options->drop_triangles is {}, proximity is {} and reserved is {}: pass 0 or "
-                     "1 for the first two and 0 for the last",
-                     known.drop_triangles, known.proximity, known.reserved);
+                     "options->drop_triangles is {}, proximity is {} and no_weld is {}: pass 0 or "
+                     "1 for each",
+                     known.drop_triangles, known.proximity, known.no_weld);
   }
   options.voxel_size = known.voxel_size;
   options.spheres = policy_of(known.spheres).value_or(options.spheres);
   options.keep_triangles = known.drop_triangles == 0;
   options.proximity = known.proximity == 1;
+  options.weld = known.no_weld == 0;
   if (known.max_memory > 0) options.max_memory = known.max_memory;
   return read_follower(call, known.progress, follower);
 }
 
 // The stages that a build begins.
 unsigned stages_of(const BuildOptions& options) {
-  constexpr unsigned kVoxelsAndOctree = 4;
-  return kVoxelsAndOctree + (is_implicit(options.spheres) ? 0U : 1U) +
-         (options.proximity ? 1U : 0U);
+  constexpr unsigned kAlways = 5;
+  return kAlways + (is_implicit(options.spheres) ? 0U : 1U) + (options.proximity ? 1U : 0U);
 }
 
 ist_tree_info tree_info_of(const Tree& object) {
@@ -213,6 +213,17 @@ ist_status ist_tree_get_mesh(const ist_tree* tree, ist_mesh** mesh) IST_NOEXCEPT
       return call.fail(IST_TRIANGLES_MISSING, "the tree keeps no triangles: build it with them");
     }
     return give(call, std::make_unique<Mesh>(Mesh{*kept}), mesh);
+  });
+}
+
+ist_status ist_tree_self_intersections(const ist_tree* tree, uint64_t* pairs) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"pairs", pairs}})) return missing;
+    *pairs = 0;
+    const Held<Tree> held(call, "tree", tree);
+    if (held.status() != IST_OK) return held.status();
+    *pairs = held->tree->self_intersections();
+    return IST_OK;
   });
 }
 

@@ -6,7 +6,7 @@
  * Measures of two bodies that take milliseconds: signed distances of points, penetration depth,
  * first contact along a motion, occlusion; and answers at many poses. The conventions of ist_c.h
  * apply. Measures need trees with triangles (IST_TRIANGLES_MISSING), allocate memory, and use all
- * cores for many points. The first call for a tree takes 0.3 us per triangle more.
+ * cores for many points. The first call for a tree takes 1.2 us per triangle more.
  */
 
 #include "ist/capi/ist_c.h"
@@ -23,7 +23,8 @@ typedef struct ist_surface_distance {
   double distance;   /**< negative inside; NaN beyond the reach */
   double closest[3]; /**< the surface's nearest point; NaN beyond the reach */
   uint32_t triangle; /**< the triangle that holds it, or IST_NO_TRIANGLE */
-  int32_t is_signed; /**< 0: the nearest point is at an open border; the distance is positive */
+  int16_t is_signed; /**< 0: the nearest point is at an open border; the distance is positive */
+  int16_t self_intersecting; /**< 1: the surface intersects itself (ist_tree_self_intersections) */
 } ist_surface_distance;
 
 /** Measures the distances of `count` points, 3 mesh coordinates each, from the surface of a tree.
@@ -51,19 +52,27 @@ enum {
   IST_MOVING_NOT_CLOSED = 2 /**< the moving body */
 };
 
+/** The bodies whose surfaces intersect themselves, to be added up. */
+enum {
+  IST_FIXED_SELF_INTERSECTING = 1, /**< the fixed body's */
+  IST_MOVING_SELF_INTERSECTING = 2 /**< the moving body's */
+};
+
 /** How deep two bodies are in each other; lengths in mesh units. */
 typedef struct ist_penetration {
-  size_t struct_size;  /**< the size of this struct, bytes */
-  double lower,        /**< the depth is no less; 0: the bodies may be apart */
-      upper;           /**< and no more; 0: the bodies do not intersect */
-  double point[3];     /**< of a surface, `lower` deep; fixed mesh coordinates */
-  double direction[3]; /**< from there to the other surface's nearest point, of unit length */
-  int32_t of_moving;   /**< 1: the point lies on the moving surface */
-  uint32_t triangle;   /**< of that surface, the one that holds the point */
-  int32_t complete;    /**< 1: the interval is no wider than the tolerance, or `narrowest` */
-  int32_t not_closed;  /**< IST_CLOSED, or why there is no answer */
-  double narrowest;    /**< no tolerance below this width can be reached at this pose */
-  uint64_t points;     /**< points of which the distance was measured */
+  size_t struct_size;        /**< the size of this struct, bytes */
+  double lower,              /**< the depth is no less; 0: the bodies may be apart */
+      upper;                 /**< and no more; 0: the bodies do not intersect */
+  double point[3];           /**< of a surface, `lower` deep; fixed mesh coordinates */
+  double direction[3];       /**< from there to the other surface's nearest point, of unit length */
+  int32_t of_moving;         /**< 1: the point lies on the moving surface */
+  uint32_t triangle;         /**< of that surface, the one that holds the point */
+  int32_t complete;          /**< 1: the interval is no wider than the tolerance, or `narrowest` */
+  int32_t not_closed;        /**< IST_CLOSED, or why there is no answer */
+  double narrowest;          /**< no tolerance below this width can be reached at this pose */
+  uint64_t points;           /**< points of which the distance was measured */
+  int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
+  int32_t reserved;          /**< zero */
 } ist_penetration;
 
 /** Bounds the depth of the deepest point of either surface inside the other body by an interval no
@@ -102,19 +111,19 @@ enum {
 
 /** The first contact along a motion; lengths in mesh units. */
 typedef struct ist_first_contact {
-  size_t struct_size;      /**< the size of this struct, bytes */
-  double lower,            /**< the motion's parameter, 0 to 1, before which none intersect */
-      upper;               /**< where the contact is at the latest; 1: none is known */
-  double distance_lower,   /**< the surfaces at `lower` are no nearer */
-      distance_upper;      /**< and no farther apart */
-  int32_t outcome;         /**< IST_FIRST_... */
-  int32_t grazed;          /**< 1: surfaces grazed before: the interval may be wider */
-  int32_t triangles_known; /**< 1: the triangles intersect at `upper` */
-  uint32_t fixed,          /**< the fixed mesh's triangle, where known */
-      moving;              /**< the moving mesh's */
-  int32_t reserved;        /**< zero */
-  double narrowest;        /**< the least tolerance that is reached here */
-  uint64_t distances;      /**< asked for */
+  size_t struct_size;        /**< the size of this struct, bytes */
+  double lower,              /**< the motion's parameter, 0 to 1, before which none intersect */
+      upper;                 /**< where the contact is at the latest; 1: none is known */
+  double distance_lower,     /**< the surfaces at `lower` are no nearer */
+      distance_upper;        /**< and no farther apart */
+  int32_t outcome;           /**< IST_FIRST_... */
+  int32_t grazed;            /**< 1: surfaces grazed before: the interval may be wider */
+  int32_t triangles_known;   /**< 1: the triangles intersect at `upper` */
+  uint32_t fixed,            /**< the fixed mesh's triangle, where known */
+      moving;                /**< the moving mesh's */
+  int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
+  double narrowest;          /**< the least tolerance that is reached here */
+  uint64_t distances;        /**< asked for */
 } ist_first_contact;
 
 /** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes

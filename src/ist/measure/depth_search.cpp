@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "ist/base/ordered_vector.h"
-#include "ist/measure/point_side.h"
 
 namespace ist {
 namespace {
@@ -110,7 +109,7 @@ DepthSearch::Measured DepthSearch::measure(std::uint32_t side, const Vector& at,
   ++points_;
   const SurfaceInBody& of = sides_[side];
   const NearestTriangle nearest = *of.search.nearest(at, HUGE_VAL, hint);
-  const Side side_there = side_of(*of.body.parts().triangles, nearest, at);
+  const Side side_there = of.body.parts().triangles->side_of(at, nearest.triangle, nearest.on);
   const double distance = std::sqrt(nearest.square);
   return {side_there == Side::kOutside ? -distance : distance, side_there != Side::kUnknown,
           nearest};

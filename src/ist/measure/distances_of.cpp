@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "ist/base/parallel.h"
-#include "ist/measure/point_side.h"
 
 namespace ist {
 namespace {
@@ -20,17 +19,17 @@ constexpr std::size_t kAtOnce = 1 << 14;
 
 SurfaceDistance with_sign(const LeafTriangles& body, const NearestTriangle& nearest,
                           const Vector& point) {
-  const Side side = side_of(body, nearest, point);
+  const Side side = body.side_of(point, nearest.triangle, nearest.on);
   const double distance = std::sqrt(nearest.square);
   return {side == Side::kInside ? -distance : distance, nearest.on.point, nearest.triangle,
-          side != Side::kUnknown};
+          side != Side::kUnknown, !body.sides().self_intersections().pairs.empty()};
 }
 
 }  // namespace
 
 SurfaceDistance beyond_reach() {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  return {kNone, {kNone, kNone, kNone}, SurfaceDistance::kNoTriangle, false};
+  return {kNone, {kNone, kNone, kNone}, SurfaceDistance::kNoTriangle, false, false};
 }
 
 std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSearch& search,

@@ -7,6 +7,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/measure/distances_of.h"
 #include "ist/mesh/components.h"
+#include "ist/mesh/weld.h"
 
 namespace ist {
 
@@ -19,6 +20,7 @@ bool measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector
   };
   DisjointSets sets(points.size());
   std::vector<bool> used(points.size());
+  const std::vector<std::uint32_t> first_at = first_at_position(side.surface.triangles()->vertices);
   for (const Triangle& t : side.surface.triangles()->triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = t[i], b = t[(i + 1) % 3];
@@ -49,6 +51,10 @@ bool measure_far_inside(const SurfaceInBody& side, std::span<const Eigen::Vector
   std::erase_if(all, [&](std::uint32_t v) { return !inside[sets.find(v)]; });
   const std::vector<SurfaceDistance> rest = measured(all);
   for (std::size_t k = 0; k < rest.size(); ++k) distances[all[k]] = rest[k];
+  // Of welded vertices only the first is used.
+  for (std::uint32_t v = 0; v < points.size(); ++v) {
+    if (!used[v] && used[first_at[v]]) distances[v] = distances[first_at[v]];
+  }
   return rest.size() == all.size();
 }
 

@@ -79,6 +79,8 @@ class Advance {
       name_triangles(0);
       return end(ContactStatus::kTouchesAtStart, 0, 0);
     }
+    found_.fixed_self_intersecting = query_.fixed().self_intersections() > 0;
+    found_.moving_self_intersecting = query_.moving().self_intersections() > 0;
     if (is_inside_other(query_, motion_.at(0))) return end(ContactStatus::kInsideAtStart, 0, 0);
     double at = 0;
     while (at < 1) {

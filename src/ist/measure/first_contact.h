@@ -71,6 +71,9 @@ struct FirstContact {
   DistanceInterval distance{0, 0};  ///< of the surfaces at `lower`, mesh units
   /// The least tolerance that is reached here, mesh units: rounding.
   double narrowest = 0;
+  /// Whether the surface of a body intersects itself: SphereTree::self_intersections(). Only
+  /// kInsideAtStart depends on it. False if the bodies touch at the start.
+  bool fixed_self_intersecting = false, moving_self_intersecting = false;
   std::uint64_t distances = 0;  ///< distances that were asked for
   std::uint64_t verdicts = 0;   ///< exact questions whether triangles intersect
 };

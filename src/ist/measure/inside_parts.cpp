@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ist/measure/point_side.h"
-
 namespace ist {
 
 bool is_any_inside(const SurfaceInBody& side) {
@@ -12,9 +10,9 @@ bool is_any_inside(const SurfaceInBody& side) {
   const auto& points = side.surface.parts().triangles->component_points();
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
     const Eigen::Vector3d at = side.to_body(point);
-    if (is_beyond(body, at)) return false;
+    if (body.sides().is_beyond(at)) return false;
     const auto nearest = side.search.nearest(at, HUGE_VAL);
-    return nearest && side_of(body, *nearest, at) == Side::kInside;
+    return nearest && body.side_of(at, nearest->triangle, nearest->on) == Side::kInside;
   });
 }
 

@@ -75,6 +75,8 @@ Penetration penetration(Query& query, const Eigen::Isometry3d& pose, double tole
       0x1p-44 * (size_of(fixed) + size_of(moving) + rigid->translation().cwiseAbs().maxCoeff());
   result.complete = true;
   result.narrowest = 4 * rounding;
+  result.fixed_self_intersecting = fixed.self_intersections() > 0;
+  result.moving_self_intersecting = moving.self_intersections() > 0;
   const bool meet = surfaces.answer == Answer::kYes;
   if (!meet && !is_any_inside(sides[0]) && !is_any_inside(sides[1])) return result;
 

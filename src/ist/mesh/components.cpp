@@ -38,6 +38,12 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
   return uses;
 }
 
+bool is_balanced(std::span<const EdgeUse> edge) {
+  const auto forward =
+      std::count_if(edge.begin(), edge.end(), [](const EdgeUse& use) { return use.forward; });
+  return 2 * forward == static_cast<std::ptrdiff_t>(edge.size());
+}
+
 std::vector<Component> components_of(const TriangleMesh& mesh) {
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
   DisjointSets sets(mesh.triangles.size());
@@ -60,7 +66,7 @@ std::vector<Component> components_of(const TriangleMesh& mesh) {
       components[component].box.extend(mesh.vertices[vertex]);
   }
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    if (edge.size() != 2 || edge[0].forward == edge[1].forward)
+    if (!is_balanced(edge))
       components[component_of_set[sets.find(edge[0].triangle)]].closed = false;
   });
   return components;

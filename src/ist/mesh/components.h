@@ -39,6 +39,9 @@ void for_each_edge(std::span<const EdgeUse> uses, Body&& body) {
   }
 }
 
+/// Returns whether as many triangles traverse an edge one way as the other.
+[[nodiscard]] bool is_balanced(std::span<const EdgeUse> edge);
+
 /// Disjoint sets of numbers, with union and find. The representative of a set is its lowest number.
 class DisjointSets {
  public:
@@ -64,7 +67,7 @@ class DisjointSets {
 struct Component {
   std::vector<std::uint32_t> triangles;  ///< indices, in the order of the mesh
   Eigen::AlignedBox3d box;
-  /// Whether each edge is shared by exactly two triangles that traverse it in opposite directions.
+  /// Whether as many triangles traverse each edge one way as the other.
   bool closed = true;
 };
 

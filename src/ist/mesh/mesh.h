@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ist/base/api.h"
+#include "ist/base/progress.h"
 
 namespace ist {
 
@@ -21,7 +22,7 @@ static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) &&
 
 /// Says how the outer side of a mesh is known.
 enum class Orientation : std::uint8_t {
-  kOutward,  ///< every component is closed and consistent: the outside is known
+  kOutward,  ///< every component is closed: the outside is known
   kAssumed,  ///< some component is not: the file's winding is trusted
 };
 
@@ -58,6 +59,12 @@ struct TriangleMesh {
 /// Errors: kFileUnwritable, and kMeshNotFinite for a coordinate beyond float.
 IST_API void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file);
 
+/// Two triangles of a mesh that meet beyond the corners and edges that they share.
+struct SelfIntersection {
+  std::array<std::uint32_t, 2> triangles;  ///< the lower index first
+  Eigen::Vector3d near;                    ///< the middle of the overlap of their boxes, mesh units
+};
+
 /// The counts of a mesh's elements and defects. Vertices count as one only if they share an index,
 /// even where their positions are equal.
 ///
@@ -73,6 +80,10 @@ struct MeshReport {
   /// Triangles with two equal indices, or no area: |cross product| at most 1e-12 of the longest
   /// side squared.
   std::size_t degenerate_triangles = 0;
+  /// Pairs of triangles that meet beyond the corners and edges that they share. Triangles that only
+  /// touch count, degenerate ones do not. Of more than 2^20 pairs some are not counted.
+  std::size_t self_intersections = 0;
+  std::vector<SelfIntersection> first_self_intersections;  ///< at most 8, by their indices
   std::size_t components = 0;       ///< sets of triangles connected by vertices
   std::size_t open_components = 0;  ///< components with a boundary edge
   bool closed = false;              ///< every edge belongs to exactly two triangles
@@ -86,32 +97,38 @@ struct MeshReport {
 /// triangle, for a mesh that no tree can be built of. build_tree() calls it. Cost: 2 ns a triangle.
 IST_API void require_valid(const TriangleMesh& mesh);
 
-/// Checks the topology of a mesh. Does not search for self-intersections.
-/// Cost: O(t log t), some 40 ms for 100,000 triangles.
+/// Checks the topology of a mesh, and finds its self-intersections exactly.
+/// Cost: O(t log t), some 150 ms for 100,000 triangles.
 [[nodiscard]] IST_API MeshReport check_mesh(const TriangleMesh& mesh);
 
 /// Returns a sentence for people for each kind of defect; empty for a mesh without defects.
 [[nodiscard]] IST_API std::vector<std::string> warnings(const MeshReport& report);
 
+/// Makes all triangles use the first vertex at each position, so that triangles whose corners have
+/// equal coordinates are neighbours. All vertices and triangles keep their numbers. A triangle with
+/// two corners at one position gets two equal indices. Cost: 50 ns a vertex.
+IST_API void weld(TriangleMesh& mesh);
+
 /// The result of orient_outward().
 struct OrientationResult {
   Orientation orientation = Orientation::kAssumed;  ///< of the mesh after the turns
-  std::size_t turned_components = 0;                ///< components turned outward; worth a warning
+  std::size_t turned_components = 0;                ///< components turned; worth a warning
 };
 
-/// Turns inside-out components outward, so that their normals can be trusted.
+/// Turns a mesh that is inside out, so that its normals can be trusted.
 ///
-/// A component is a set of triangles connected by edges. It is closed and consistent if each of its
-/// edges is shared by exactly two triangles that traverse it in opposite directions. Such a
-/// component of negative volume is turned unless it lies inside another one, where it bounds a
-/// cavity and is right as it is. (Inside: by the other's winding number round one vertex, from a
-/// ray; if the other is open, by the ray's crossings.) Components that are not closed and
-/// consistent, or whose volume has no certain sign, stay as they are and make the result
-/// `kAssumed`. Triangles with two equal indices are ignored.
+/// A component is a set of triangles connected by edges. It is closed if as many of its triangles
+/// traverse each edge one way as the other. An outermost closed component of negative volume is
+/// turned, with all components inside it. So a cavity stays a cavity, and a solid inside a solid
+/// stays one. A component lies inside another if all its vertices do, by exact winding numbers; if
+/// the other is open, by the crossings of a ray. Components that are not closed, or have a volume
+/// without a certain sign, make the result `kAssumed`. Triangles with two equal indices stay.
 ///
-/// Neither the unit nor the position of the mesh matters. Cost: O(t), some 20 ms for 100,000
-/// triangles; in addition, O(triangles of the surrounding components) for each component of
-/// negative volume.
-[[nodiscard]] IST_API OrientationResult orient_outward(TriangleMesh& mesh);
+/// Neither the unit nor the position of the mesh matters. `progress` may be nullptr; it can end the
+/// call, as Progress says, and then the mesh is as it was.
+/// Cost: 0.2 µs a triangle; if a component has a negative volume, 0.3 µs a triangle and core, and
+/// some µs for each vertex inside another component.
+[[nodiscard]] IST_API OrientationResult orient_outward(TriangleMesh& mesh,
+                                                       Progress* progress = nullptr);
 
 }  // namespace ist

@@ -12,6 +12,7 @@
 #include "ist/base/ordered_vector.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
+#include "ist/mesh/self_intersections.h"
 
 namespace ist {
 namespace {
@@ -64,6 +65,24 @@ void count_components(const TriangleMesh& mesh, std::span<const EdgeUse> uses, M
   });
   report.components = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   report.open_components = static_cast<std::size_t>(std::count(open.begin(), open.end(), true));
+}
+
+Eigen::AlignedBox3d box_of(const TriangleMesh& mesh, std::uint32_t triangle) {
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t v : mesh.triangles[triangle]) box.extend(mesh.vertices[v]);
+  return box;
+}
+
+void add_self_intersections(const TriangleMesh& mesh, MeshReport& report) {
+  constexpr std::size_t kListed = 8;
+  const TriangleClusters clusters(mesh, mesh.vertices[mesh.triangles[0][0]]);
+  const auto pairs = find_self_intersections(mesh, clusters).pairs;
+  report.self_intersections = pairs.size();
+  for (std::size_t k = 0; k < std::min(kListed, pairs.size()); ++k) {
+    const Eigen::AlignedBox3d overlap =
+        box_of(mesh, pairs[k][0]).intersection(box_of(mesh, pairs[k][1]));
+    report.first_self_intersections.push_back({pairs[k], overlap.center()});
+  }
 }
 
 // Returns the sum of signed tetrahedron volumes (determinants / 6) relative to a vertex of the
@@ -125,6 +144,7 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
   report.degenerate_triangles = static_cast<std::size_t>(
       std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
                     [&mesh](const Triangle& t) { return is_degenerate(mesh, t); }));
+  if (!mesh.triangles.empty()) add_self_intersections(mesh, report);
   report.closed = report.edges > 0 && report.boundary_edges == 0 && report.non_manifold_edges == 0;
   report.consistent = report.inconsistent_edges == 0;
   if (!mesh.vertices.empty()) {
@@ -154,6 +174,14 @@ std::vector<std::string> warnings(const MeshReport& report) {
   warn(report.duplicate_triangles, "1 triangle repeats an earlier one.",
        "{} triangles repeat an earlier one.");
   warn(report.degenerate_triangles, "1 triangle has no area.", "{} triangles have no area.");
+  if (report.self_intersections > 0) {
+    const SelfIntersection& first = report.first_self_intersections.front();
+    sentences.push_back(fmt::format(
+        "The surface intersects itself: {} pair{} of triangles, first {} and {} near ({:g}, {:g}, "
+        "{:g}). Inside is decided by winding numbers.",
+        report.self_intersections, report.self_intersections == 1 ? "" : "s", first.triangles[0],
+        first.triangles[1], first.near[0], first.near[1], first.near[2]));
+  }
   if (report.closed && report.consistent && report.signed_volume < 0)
     sentences.emplace_back("The surface is inside out: its volume is negative.");
   return sentences;

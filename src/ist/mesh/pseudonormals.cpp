@@ -84,7 +84,7 @@ std::vector<bool> Pseudonormals::join_neighbours(const TriangleMesh& mesh,
       across_[edge[1].triangle][edge_of(mesh, edge[1])] = edge[0].triangle;
       return;
     }
-    closed_ = false;
+    closed_ = closed_ && is_balanced(edge);
     is_open[edge[0].low] = is_open[edge[0].high] = true;
   });
   // A triangle with two equal indices stands on an edge of others, if on any.

@@ -32,7 +32,7 @@ class Pseudonormals {
   [[nodiscard]] std::optional<Eigen::Vector3d> at(const TriangleMesh& mesh, std::uint32_t triangle,
                                                   const NearestPoint& on) const noexcept;
 
-  /// Returns whether two triangles share each edge, once each way.
+  /// Returns whether as many triangles traverse each edge one way as the other.
   [[nodiscard]] bool closed() const noexcept { return closed_; }
 
  private:

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ist/base/float_environment.h"
 #include "ist/base/rigid_move.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/winding_number.h"
 #include "ist/query/query.h"
@@ -15,8 +17,10 @@ namespace detail {
 struct InsideState {
   struct Body {
     explicit Body(const TriangleMesh& of) : mesh(of) {
+      if (!mesh.triangles.empty()) {
+        clusters.emplace(mesh, mesh.vertices[mesh.triangles[0][0]]);
+      }
       for (const Component& component : components_of(mesh)) {
-        triangles.insert(triangles.end(), component.triangles.begin(), component.triangles.end());
         points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
         box.extend(component.box);
       }
@@ -25,14 +29,14 @@ struct InsideState {
     [[nodiscard]] bool holds(const Body& inner, const RigidMove& to_this) const noexcept {
       const auto inside = [&](const Eigen::Vector3d& point) {
         const Eigen::Vector3d there = to_this(point);
-        return box.contains(there) && winding_number(mesh, triangles, there).value_or(0) != 0;
+        return box.contains(there) && WindingNumber(mesh, *clusters).at(there).value_or(0) != 0;
       };
       return !inner.points.empty() && std::all_of(inner.points.begin(), inner.points.end(), inside);
     }
 
     const TriangleMesh& mesh;
-    std::vector<std::uint32_t> triangles;  // of all components
-    std::vector<Eigen::Vector3d> points;   // one a component
+    std::optional<TriangleClusters> clusters;
+    std::vector<Eigen::Vector3d> points;  // one a component
     Eigen::AlignedBox3d box;
   };
 

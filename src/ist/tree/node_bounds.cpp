@@ -6,8 +6,8 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/symmetric_eigen.h"
 #include "ist/tree/enclosing_ball.h"
-#include "ist/tree/symmetric_eigen.h"
 
 namespace ist {
 namespace {

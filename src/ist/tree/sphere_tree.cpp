@@ -71,10 +71,7 @@ TreeParts measured(TreeParts parts) {
 
 const LeafTriangles::Lazy& LeafTriangles::made() const {
   std::call_once(lazy_->once, [this] {
-    lazy_->normals.emplace(mesh);
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t v : triangle) lazy_->box.extend(mesh.vertices[v]);
-    }
+    lazy_->sides.emplace(mesh, clusters);
     for (const Component& component : components_of(mesh)) {
       lazy_->component_points.push_back(mesh.vertices[mesh.triangles[component.triangles[0]][0]]);
     }
@@ -98,6 +95,15 @@ Eigen::Vector3d SphereTree::origin() const noexcept {
 double SphereTree::bounding_radius() const noexcept { return parts_->bounding_radius; }
 const TriangleMesh* SphereTree::triangles() const noexcept {
   return parts_->triangles ? &parts_->triangles->mesh : nullptr;
+}
+
+std::uint64_t SphereTree::self_intersections() const {
+  const ScopedFloatEnvironment environment;
+  if (!parts_->triangles) {
+    throw Error(ErrorCode::kTrianglesMissing,
+                "the tree holds no triangles: build it with keep_triangles");
+  }
+  return parts_->triangles->sides().self_intersections().pairs.size();
 }
 
 std::vector<Eigen::Vector3d> SphereTree::leaf_centres() const {

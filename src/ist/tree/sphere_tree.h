@@ -145,6 +145,10 @@ class IST_API SphereTree {
   /// The triangles that the tree was built with keep_triangles to hold, as oriented at build; null
   /// where it was built without.
   [[nodiscard]] const TriangleMesh* triangles() const noexcept;
+  /// The number of pairs of its triangles that meet beyond the corners and edges that they share,
+  /// as check_mesh() counts them. The first call for a tree, or the first signed distance or depth,
+  /// takes 1.2 µs a triangle and core. Throws kTrianglesMissing.
+  [[nodiscard]] std::uint64_t self_intersections() const;
   /// The mesh's file and unit, as BuildOptions::source told them.
   [[nodiscard]] const MeshSource& source() const noexcept;
   /// Whether the tree holds proximity voxels (BuildOptions::proximity).
@@ -173,7 +177,10 @@ struct BuildOptions {
   /// For exact answers: 48 bytes a triangle for its clusters, 25 for the mesh, and 4 for each leaf
   /// that it meets: 80 with large voxels, 150 with 0.2 mm on a jaw of 107,000 triangles.
   bool keep_triangles = true;
-  bool proximity = false;                             ///< proximity voxels besides surface voxels
+  bool proximity = false;  ///< proximity voxels besides surface voxels
+  /// Vertices at exactly one position count as one, as in files: weld(). Without it, triangles are
+  /// neighbours only if they share indices.
+  bool weld = true;
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
   MeshSource source = {};                             ///< kept by the tree; nothing is converted
 };
@@ -189,8 +196,8 @@ struct BuildReport {
   std::size_t turned_components = 0;  ///< closed components that were inside out
 };
 
-/// Builds a tree from a mesh: turns it outward, finds its voxels, folds them into an octree and
-/// makes the bounds that are saved.
+/// Builds a tree from a mesh: welds it, turns it outward, finds its voxels, folds them into an
+/// octree and makes the bounds that are saved.
 ///
 /// @param mesh     the surface, mesh units
 /// @param options  voxel size, bounds, memory

@@ -78,7 +78,8 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
     begin = std::chrono::steady_clock::now();
     if (progress != nullptr) progress->check();
   };
-  const OrientationResult oriented = orient_outward(mesh);
+  if (options.weld) weld(mesh);
+  const OrientationResult oriented = orient_outward(mesh, progress);
   if (report != nullptr) report->turned_components = oriented.turned_components;
   end_stage("orientation");
 

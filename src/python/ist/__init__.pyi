@@ -89,6 +89,8 @@ class Tree:
     @property
     def outward(self) -> bool: ...
     @property
+    def self_intersections(self) -> int: ...
+    @property
     def origin(self) -> F8: ...
     @property
     def vertices(self) -> F8: ...
@@ -111,6 +113,7 @@ def build(
     spheres: Spheres = "default",
     keep_triangles: bool = True,
     proximity: bool = False,
+    weld: bool = True,
     max_memory: int = 4 << 30,
     progress: Optional[Follow] = None,
 ) -> Tree: ...
@@ -165,6 +168,7 @@ class Penetration(NamedTuple):
     not_closed: Optional[Literal["fixed", "moving"]]
     narrowest: float
     points: int
+    self_intersecting: Optional[Literal["fixed", "moving", "both"]]
 
 class FirstContact(NamedTuple):
     outcome: Literal["contact", "none", "grazing", "touches at start", "inside at start", "stopped"]
@@ -175,6 +179,7 @@ class FirstContact(NamedTuple):
     grazed: bool
     narrowest: float
     distances: int
+    self_intersecting: Optional[Literal["fixed", "moving", "both"]]
 
 class BodyOcclusion(NamedTuple):
     distances: Records

@@ -129,6 +129,7 @@ class Penetration(NamedTuple):
     not_closed: Optional[str]  # "fixed" or "moving": that body has no certain inside, and there is no answer
     narrowest: float
     points: int  # points of which the distance was measured
+    self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
 
 
 class FirstContact(NamedTuple):
@@ -142,6 +143,7 @@ class FirstContact(NamedTuple):
     grazed: bool
     narrowest: float
     distances: int  # asked for
+    self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
 
 
 class BodyOcclusion(NamedTuple):

@@ -29,6 +29,7 @@ PROTOTYPES = {
     "ist_tree_from_memory_with_progress": (c_int32, [c_void_p, c_size_t, c_void_p, c_void_p]),
     "ist_tree_get_mesh": (c_int32, [c_void_p, c_void_p]),
     "ist_tree_get_info": (c_int32, [c_void_p, c_void_p]),
+    "ist_tree_self_intersections": (c_int32, [c_void_p, c_void_p]),
     "ist_tree_copy_leaf_centres": (c_int32, [c_void_p, c_void_p, c_size_t]),
     "ist_tree_free": (c_int32, [c_void_p]),
     "ist_query_create": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),

@@ -27,6 +27,7 @@ from ._tree import need_tree
 
 OUTCOMES = (None, "contact", "none", "grazing", "touches at start", "inside at start", "stopped")
 NOT_CLOSED = (None, "fixed", "moving")
+SELF_INTERSECTING = (None, "fixed", "moving", "both")
 QUESTIONS = {"intersects": 1, "leaf_pairs": 2, "distance": 4, "contacts": 8, "penetration": 16}
 
 
@@ -74,6 +75,7 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
             NOT_CLOSED[result.not_closed],
             result.narrowest,
             result.points,
+            SELF_INTERSECTING[result.self_intersecting],
         )
     finally:
         self._lock.release()
@@ -104,6 +106,7 @@ def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, pro
             result.grazed == 1,
             result.narrowest,
             result.distances,
+            SELF_INTERSECTING[result.self_intersecting],
         )
     finally:
         self._lock.release()
@@ -257,7 +260,7 @@ def occlusion_of(
 def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):
     """The distances of points, (N, 3) mesh coordinates, from the surface of a tree: an array of SURFACE_DISTANCE.
 
-    Negative inside; NaN beyond `reach`. is_signed is 0 where the nearest point lies at an open border.
+    Negative inside; NaN beyond `reach`. is_signed is 0 if the nearest point lies at an open border. self_intersecting is 1 if the surface intersects itself.
 
     >>> import ist
     >>> box = ist.build(([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), 0.5)

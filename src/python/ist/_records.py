@@ -11,7 +11,7 @@ import numpy as np
 LEAF_PAIR = np.dtype([("fixed", "u4"), ("moving", "u4")])
 TRIANGLE_PAIR = np.dtype([("fixed", "u4"), ("moving", "u4")])
 CONTACT = np.dtype([("position", "f8", 3), ("normal", "f8", 3), ("depth", "f8"), ("weight", "f8")])
-SURFACE_DISTANCE = np.dtype([("distance", "f8"), ("closest", "f8", 3), ("triangle", "u4"), ("is_signed", "i4")])
+SURFACE_DISTANCE = np.dtype([("distance", "f8"), ("closest", "f8", 3), ("triangle", "u4"), ("is_signed", "i2"), ("self_intersecting", "i2")])
 CONTACT_REGION = np.dtype(
     [
         ("area", "f8"),
@@ -98,7 +98,7 @@ class BuildOptions(Sized):
         ("spheres", c_int32),
         ("drop_triangles", c_int32),
         ("proximity", c_int32),
-        ("reserved", c_int32),
+        ("no_weld", c_int32),
         ("max_memory", c_uint64),
         ("progress", POINTER(Progress)),
     ]
@@ -225,6 +225,8 @@ class PenetrationResult(Sized):
         ("not_closed", c_int32),
         ("narrowest", c_double),
         ("points", c_uint64),
+        ("self_intersecting", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -252,7 +254,7 @@ class FirstContactResult(Sized):
         ("triangles_known", c_int32),
         ("fixed", c_uint32),
         ("moving", c_uint32),
-        ("reserved", c_int32),
+        ("self_intersecting", c_int32),
         ("narrowest", c_double),
         ("distances", c_uint64),
     ]

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/mesh/mesh.h"
-#include "ist/tree/clusters/triangle_clusters.h"
 #include "simd/exact/cluster_step.h"
 
 namespace ist::test {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <set>
 
+#include "ist/mesh/triangles_meet.h"
 #include "ist/query/exact/moved_triangles.h"
 #include "ist/query/exact/triangle_distance.h"
-#include "ist/query/exact/triangles_meet.h"
 #include "simd/dispatch.h"
 #include "simd/exact/cluster_cases.h"
 #include "simd/targets.h"

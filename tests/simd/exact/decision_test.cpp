@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 #include "simd/dispatch.h"
 #include "simd/exact/triangle_lanes.h"
 #include "simd/targets.h"

@@ -12,6 +12,12 @@
 namespace ist::capi {
 namespace {
 
+template <class Found>
+std::int32_t self_intersecting(const Found& found) {
+  return (found.fixed_self_intersecting ? IST_FIXED_SELF_INTERSECTING : 0) +
+         (found.moving_self_intersecting ? IST_MOVING_SELF_INTERSECTING : 0);
+}
+
 ist_penetration penetration_of(const Penetration& found) {
   ist_penetration out{};
   out.lower = found.lower;
@@ -24,6 +30,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.not_closed = not_closed_code(found);
   out.narrowest = found.narrowest;
   out.points = found.points;
+  out.self_intersecting = self_intersecting(found);
   return out;
 }
 
@@ -52,6 +59,7 @@ ist_first_contact first_contact_of(const FirstContact& found) {
   }
   out.narrowest = found.narrowest;
   out.distances = found.distances;
+  out.self_intersecting = self_intersecting(found);
   return out;
 }
 static_assert(static_cast<int>(FirstContact::Status::kContact) + IST_FIRST_CONTACT ==
@@ -75,6 +83,7 @@ ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept 
   copy(found.closest, out.closest);
   out.triangle = found.triangle;
   out.is_signed = found.is_signed;
+  out.self_intersecting = found.self_intersecting;
   return out;
 }
 static_assert(IST_CLOSED == 0 && IST_FIXED_NOT_CLOSED == 1 && IST_MOVING_NOT_CLOSED == 2);

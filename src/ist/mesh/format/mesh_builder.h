@@ -9,6 +9,7 @@
 
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "ist/mesh/weld.h"
 
 namespace ist {
 
@@ -27,11 +28,10 @@ class MeshBuilder {
   [[nodiscard]] TriangleMesh finish();
 
  private:
-  [[nodiscard]] std::size_t slot_of(const Eigen::Vector3d& point) const;
-  void double_slots();
+  void make_room();
 
   TriangleMesh mesh_;
-  std::vector<std::uint32_t> slots_;  // a hash table of vertices, a power of two, linear probing
+  PositionTable places_;
 };
 
 /// The largest number of corners of a face; a face with more is refused, because triangulation is

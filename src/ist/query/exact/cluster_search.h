@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/exact/cluster_budget.h"
-#include "ist/tree/clusters/triangle_clusters.h"
 #include "simd/exact/cluster_step.h"
 
 namespace ist {

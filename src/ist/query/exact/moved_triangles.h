@@ -5,7 +5,7 @@
 
 #include "ist/base/rigid_move.h"
 #include "ist/mesh/mesh.h"
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 namespace ist {
 

@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/query/exact/cluster_budget.h"
-#include "ist/tree/clusters/triangle_clusters.h"
 #include "simd/exact/cluster_step.h"
 
 namespace ist {

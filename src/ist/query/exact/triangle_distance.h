@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 namespace ist {
 

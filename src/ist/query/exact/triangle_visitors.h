@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "ist/mesh/triangles_meet.h"
 #include "ist/query/exact/moved_triangles.h"
-#include "ist/query/exact/triangles_meet.h"
 #include "ist/query/results.h"
 #include "simd/exact/cluster_step.h"
 

@@ -1,4 +1,4 @@
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 #include <gtest/gtest.h>
 

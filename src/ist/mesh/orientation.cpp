@@ -1,9 +1,9 @@
-#include "ist/query/exact/orientation.h"
+#include "ist/mesh/orientation.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "ist/query/exact/whole_number.h"
+#include "ist/mesh/whole_number.h"
 
 namespace ist {
 namespace {

@@ -1,4 +1,4 @@
-#include "ist/tree/symmetric_eigen.h"
+#include "ist/base/symmetric_eigen.h"
 
 #include <gtest/gtest.h>
 

@@ -73,6 +73,8 @@ class TriangleClusters {
     return rest < kClusterWidth ? rest : kClusterWidth;
   }
 
+  /// The origin of the tree's frame, in mesh coordinates.
+  [[nodiscard]] const Eigen::Vector3d& origin() const noexcept { return origin_; }
   /// The axes of the tree's frame: the columns of an orthogonal matrix, in mesh coordinates.
   [[nodiscard]] const Eigen::Matrix3d& axes() const noexcept { return axes_; }
   /// A power of two. Coordinates of centres are whole multiples of it, no more than 2^22 of them:
@@ -82,6 +84,7 @@ class TriangleClusters {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  Eigen::Vector3d origin_;
   Eigen::Matrix3d axes_;
   double grid_;
   std::uint32_t triangle_count_;

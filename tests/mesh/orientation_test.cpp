@@ -1,4 +1,4 @@
-#include "ist/query/exact/orientation.h"
+#include "ist/mesh/orientation.h"
 
 #include <gtest/gtest.h>
 

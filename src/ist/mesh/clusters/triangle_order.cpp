@@ -1,4 +1,4 @@
-#include "ist/tree/clusters/triangle_order.h"
+#include "ist/mesh/clusters/triangle_order.h"
 
 #include <algorithm>
 #include <array>

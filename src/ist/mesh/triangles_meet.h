@@ -15,4 +15,11 @@ using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 /// where they lie in one plane. Allocates nothing.
 [[nodiscard]] bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 
+/// Tests exactly whether two triangles with the same first corner have another point in common.
+/// Both must have area.
+[[nodiscard]] bool fans_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+
+/// Tests exactly whether the corners of a triangle do not lie on one line.
+[[nodiscard]] bool has_area(const TriangleCorners& triangle) noexcept;
+
 }  // namespace ist

@@ -1,9 +1,9 @@
-#include "ist/query/exact/triangles_meet.h"
+#include "ist/mesh/triangles_meet.h"
 
 #include <algorithm>
 #include <span>
 
-#include "ist/query/exact/orientation.h"
+#include "ist/mesh/orientation.h"
 
 namespace ist {
 namespace {
@@ -55,15 +55,6 @@ bool meet_in_a_plane(std::span<const Eigen::Vector3d> a, std::span<const Eigen::
   return true;
 }
 
-bool has_area(const TriangleCorners& t) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::Index u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const auto shadow = [&](std::size_t i) { return Eigen::Vector2d(t[i][u], t[i][v]); };
-    if (orientation(shadow(0), shadow(1), shadow(2)) != 0) return true;
-  }
-  return false;
-}
-
 using Sides = std::array<int, 3>;
 
 Sides sides_of(const TriangleCorners& points, const TriangleCorners& of) {
@@ -75,25 +66,29 @@ bool on_one_side(const Sides& sides) {
   return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
 }
 
+// Returns whether the segment from u to v meets `t`, which has area. `side_u` and `side_v` are the
+// sides of t's plane on which u and v lie.
+bool edge_meets(const Eigen::Vector3d& u, const Eigen::Vector3d& v, int side_u, int side_v,
+                const TriangleCorners& t) {
+  if (side_u * side_v > 0) return false;
+  if (side_u == 0 && side_v == 0) {
+    const Eigen::Vector3d edge[] = {u, v};
+    return meet_in_a_plane(edge, t);
+  }
+  // The line pierces the plane; inside the triangle if it passes all edges on one side.
+  const int first = orientation(u, v, t[0], t[1]);
+  const int second = orientation(u, v, t[1], t[2]);
+  if (first * second < 0) return false;
+  const int third = orientation(u, v, t[2], t[0]);
+  return first * third >= 0 && second * third >= 0;
+}
+
 // Returns whether an edge of `a` meets `b`, which has area. `sides` holds the sides of b's plane on
 // which a's corners lie.
 bool an_edge_meets(const TriangleCorners& a, const TriangleCorners& b, const Sides& sides) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    if (sides[i] * sides[j] > 0) continue;
-    if (sides[i] == 0 && sides[j] == 0) {
-      const Eigen::Vector3d edge[] = {a[i], a[j]};
-      if (meet_in_a_plane(edge, b)) return true;
-      continue;
-    }
-    // The line pierces the plane; inside the triangle if it passes all edges on one side.
-    const int first = orientation(a[i], a[j], b[0], b[1]);
-    const int second = orientation(a[i], a[j], b[1], b[2]);
-    if (first * second < 0) continue;
-    const int third = orientation(a[i], a[j], b[2], b[0]);
-    if (first * third >= 0 && second * third >= 0) return true;
-  }
-  return false;
+  return edge_meets(a[0], a[1], sides[0], sides[1], b) ||
+         edge_meets(a[1], a[2], sides[1], sides[2], b) ||
+         edge_meets(a[2], a[0], sides[2], sides[0], b);
 }
 
 // Tests two triangles without area by their edges.
@@ -111,6 +106,26 @@ bool edges_meet(const TriangleCorners& a, const TriangleCorners& b) {
 }
 
 }  // namespace
+
+bool has_area(const TriangleCorners& t) noexcept {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::Index u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto shadow = [&](std::size_t i) { return Eigen::Vector2d(t[i][u], t[i][v]); };
+    if (orientation(shadow(0), shadow(1), shadow(2)) != 0) return true;
+  }
+  return false;
+}
+
+bool fans_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  const OrientedPlane of_a(a[0], a[1], a[2]), of_b(b[0], b[1], b[2]);
+  const int b1 = of_a.side_of(b[1]), b2 = of_a.side_of(b[2]);
+  if (b1 * b2 > 0) return false;
+  const int a1 = of_b.side_of(a[1]), a2 = of_b.side_of(a[2]);
+  if (a1 * a2 > 0) return false;
+  // What they have in common is convex and holds the corner. If it holds more, it reaches the edge
+  // of one triangle that is opposite the corner.
+  return edge_meets(a[1], a[2], a1, a2, b) || edge_meets(b[1], b[2], b1, b2, a);
+}
 
 bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) noexcept {
   for (const Eigen::Vector3d& corner : a) {

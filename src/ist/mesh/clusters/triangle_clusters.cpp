@@ -1,4 +1,4 @@
-#include "ist/tree/clusters/triangle_clusters.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
-#include "ist/tree/clusters/triangle_order.h"
-#include "ist/tree/symmetric_eigen.h"
+#include "ist/base/symmetric_eigen.h"
+#include "ist/mesh/clusters/triangle_order.h"
 
 namespace ist {
 namespace {
@@ -143,7 +143,7 @@ std::uint32_t up(std::uint32_t count) { return (count + kClusterWidth - 1) / kCl
 }  // namespace
 
 TriangleClusters::TriangleClusters(const TriangleMesh& mesh, const Vector& origin)
-    : triangle_count_(static_cast<std::uint32_t>(mesh.triangles.size())) {
+    : origin_(origin), triangle_count_(static_cast<std::uint32_t>(mesh.triangles.size())) {
   counts_.push_back(up(triangle_count_));
   while (counts_.back() > 1 || counts_.size() < 2) counts_.push_back(up(counts_.back()));
 

@@ -1,4 +1,4 @@
-#include "ist/tree/clusters/triangle_clusters.h"
+#include "ist/mesh/clusters/triangle_clusters.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "ist/base/parallel.h"
-#include "ist/tree/clusters/triangle_order.h"
+#include "ist/mesh/clusters/triangle_order.h"
 #include "query/query_cases.h"
 #include "support/effort.h"
 #include "support/random.h"

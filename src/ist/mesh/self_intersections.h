@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ist/mesh/clusters/triangle_clusters.h"
+#include "ist/mesh/mesh.h"
+
+namespace ist {
+
+/// The pairs of triangles of one mesh that have a point in common beyond the corners and the edges
+/// that they share by index. Triangles that only touch count. Triangles without area do not.
+struct SelfIntersections {
+  /// Of more pairs the search ends.
+  static constexpr std::size_t kMost = 1 << 20;
+
+  /// The lower triangle of each pair first, in ascending order.
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  bool complete = true;  ///< else there are more pairs
+};
+
+/// Finds them exactly. `clusters` hold the mesh's triangles.
+/// Cost: 0.8 µs a triangle and core for a mesh without any; the same result for any number of
+/// threads. A cancellation point.
+[[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh,
+                                                        const TriangleClusters& clusters);
+
+}  // namespace ist
