@@ -109,6 +109,13 @@ TEST_F(Pose, OfItkTurnsInItsOrder) {
   }
 }
 
+TEST_F(Pose, AnAxisHasAnyLengthButZero) {
+  const Eigen::Matrix4d expected = asked({"--turn", "1,2,2,30"});
+  for (const char* turn : {"1e-300,2e-300,2e-300,30", "1e300,2e300,2e300,30"}) {
+    EXPECT_LE((asked({"--turn", turn}) - expected).cwiseAbs().maxCoeff(), 1e-15) << turn;
+  }
+}
+
 TEST_F(Pose, BadOnesAreRefused) {
   for (const char* move : {"1,2", "1,2,x", "1,2,3,4", "nan,0,0", "", "inf,0,0"}) {
     if (*move != '\0') refuses({"--move", move}, 2, "give x,y,z in mesh units");

@@ -91,6 +91,20 @@ TEST(Motion, SaysHowFarItsPointsGo) {
   }
 }
 
+TEST(Motion, HasADirectionOfAnyLength) {
+  const Vector axis(1, 2, 2);
+  const auto end = [&](double length) {
+    return Motion::screw(Pose::Identity(), {1, 0, 0}, length * axis, 0.5, 3).at(1);
+  };
+  for (const double length : {1e-300, 1e-170, 1e-20, 1e20, 1e170, 1e300}) {
+    EXPECT_LE((end(length).matrix() - end(1).matrix()).cwiseAbs().maxCoeff(), 1e-15) << length;
+  }
+  Pose near = Pose::Identity(), far = Pose::Identity();
+  far.translation() = Vector(0, 3e-200, 4e-200);
+  const Vector end_of_way = Motion::between(near, far).at(1).translation();
+  EXPECT_LE(((end_of_way - far.translation()) / 1e-200).norm(), 1e-14);
+}
+
 TEST(Motion, RefusesWhatIsNone) {
   Pose sheared = Pose::Identity();
   sheared(0, 1) = 1;

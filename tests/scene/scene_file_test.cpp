@@ -357,6 +357,12 @@ TEST_F(SceneFile, TakesQuaternionsOfAnyLength) {
     EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(),
               2e-15);
   }
+  const auto rotation = [&](const std::string& quaternion) {
+    const std::string line = "radius = 5\nquaternion = " + quaternion;
+    return read(replaced(kSoundScene, "radius = 5", line)).held.front().rotation;
+  };
+  EXPECT_LT((rotation("[3e-201, -7e-201, 2e-201, 9e-201]") - rotation("[3, -7, 2, 9]")).norm(),
+            1e-15);
 }
 
 }  // namespace

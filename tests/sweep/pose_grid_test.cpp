@@ -43,6 +43,17 @@ TEST(PoseGrid, TheLastAxisGoesFastest) {
   }
 }
 
+TEST(PoseGrid, ADirectionHasAnyLengthButZero) {
+  const auto last = [](double length) {
+    const Eigen::Vector3d along = length * Eigen::Vector3d(1, 2, 2);
+    return all_of(PoseGrid({move(along, 0, 3, 2), turn(along, {1, 0, 0}, 0, 90, 2)})).back();
+  };
+  const Eigen::Isometry3d expected = last(1);
+  for (const double length : {1e-300, 1e-170, 1e170, 1e300}) {
+    EXPECT_LE((last(length).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-14) << length;
+  }
+}
+
 TEST(PoseGrid, EndsAreExact) {
   const PoseGrid::Axis axis = move(Eigen::Vector3d::UnitZ(), 0.1, 0.7, 50);
   EXPECT_EQ(PoseGrid::value_of(axis, 0), 0.1);

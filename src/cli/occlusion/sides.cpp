@@ -5,6 +5,7 @@
 
 #include "cli/poses/numbers.h"
 #include "cli/refusals.h"
+#include "ist/base/direction.h"
 
 namespace ist::cli {
 namespace {
@@ -21,9 +22,9 @@ std::optional<Vector> triple(const std::string& text, const std::string& option)
 std::optional<Vector> direction(const std::string& text, const std::string& option) {
   const std::optional<Vector> given = triple(text, option);
   if (!given) return std::nullopt;
-  const double length = given->norm();
-  refuse_if(!(length > 0) || !(length < 1e150), option, text + ": it is no direction");
-  return Vector(*given / length);
+  const std::optional<Direction> towards = direction_of(*given);
+  refuse_if(!towards, option, text + ": it is no direction");
+  return towards->unit;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "cli/poses/pose_file.h"
 #include "cli/refusals.h"
 #include "ist/base/angles.h"
+#include "ist/base/direction.h"
 #include "ist/base/pose.h"
 
 namespace ist::cli {
@@ -58,10 +59,10 @@ Eigen::Isometry3d turn_named(const std::string& text) {
   refuse_if(!degrees || degrees->size() != 1, "--turn", text + ": " + how);
   std::optional<Eigen::Vector3d> axis = vector_of(word);
   if (!axis) axis = axis_named(word, "--turn");
-  const double length = axis->norm();
-  refuse_if(!(length > 0) || !std::isfinite(length), "--turn", text + ": the axis has no length");
+  const std::optional<Direction> along = direction_of(*axis);
+  refuse_if(!along, "--turn", text + ": the axis has no length");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = rotation(*axis / length, of_degrees(degrees->front()));
+  pose.linear() = rotation(along->unit, of_degrees(degrees->front()));
   pose.translation() = *point - pose.linear() * *point;
   return pose;
 }

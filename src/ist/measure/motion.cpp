@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ist/base/angles.h"
+#include "ist/base/direction.h"
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
@@ -46,8 +48,9 @@ Motion Motion::between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& t
   const Vector shift =
       last.translation() - last.linear() * first.linear().transpose() * first.translation();
   if (!(sine > 0)) {
-    motion.along_ = std::sqrt(dot_in_order(shift, shift));
-    if (motion.along_ > 0) store(scaled(1 / motion.along_, shift), motion.axis_);
+    const std::optional<Direction> way = direction_of(shift);
+    motion.along_ = way ? way->length : 0;
+    if (way) store(way->unit, motion.axis_);
     return motion;
   }
   // Where the axis is, by the shift across it: c = (u + cot(angle / 2) axis × u) / 2.
@@ -66,22 +69,23 @@ Motion Motion::screw(const Eigen::Isometry3d& from, const Vector& point, const V
                      double angle, double along) {
   const ScopedFloatEnvironment environment;
   const Eigen::Isometry3d first = require_rigid(from, "from");
-  const double length = std::sqrt(dot_in_order(direction, direction));
   require_near(first.translation().cwiseAbs().maxCoeff(), "from");
   require_near(point.cwiseAbs().maxCoeff(), "point");
-  require_near(length, "direction");
   require_near(angle, "angle");
   require_near(along, "along");
-  if (!(length > 0)) {
-    throw Error(ErrorCode::kArgumentInvalid,
-                "screw: the axis' direction has no length: give another, or a translation");
+  const std::optional<Direction> towards = direction_of(direction);
+  if (!towards) {
+    throw Error(
+        ErrorCode::kArgumentInvalid,
+        fmt::format("direction: ({}, {}, {}) is {}: give another, or a translation", direction[0],
+                    direction[1], direction[2], direction.allFinite() ? "0" : "not finite"));
   }
   Motion motion;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) motion.rotation_[i][j] = first.linear()(i, j);
     motion.translation_[i] = first.translation()[i];
   }
-  const Vector axis = scaled(1 / length, direction);
+  const Vector& axis = towards->unit;
   const Vector centre = difference(point, scaled(dot_in_order(axis, point), axis));
   store(axis, motion.axis_);
   store(centre, motion.centre_);

@@ -148,15 +148,19 @@ Eigen::Vector3d TableReader::vector(std::string_view key, const NumberRange& ran
 
 Eigen::Matrix3d TableReader::rotation(std::string_view key) {
   constexpr std::string_view kWhat = "[w, x, y, z], a quaternion: [1, 0, 0, 0] is no turn";
-  constexpr double kLeastSquare = 1e-12;
   constexpr NumberRange kRange{-1e3, 1e3, ""};
   note(key, fmt::format("[w, x, y, z], {} each", kRange.values()), {}, "no turn");
   if (!has(key)) return Eigen::Matrix3d::Identity();
-  const auto [w, x, y, z] = numbers<4>(key, kRange, kWhat);
-  const double square = w * w + x * x + y * y + z * z;
-  if (square < kLeastSquare) fail_value(key, kWhat);
-  // Divided by the square instead of the length: the quaternion may have any length.
-  const double s = 2 / square;
+  std::array<double, 4> given = numbers<4>(key, kRange, kWhat);
+  double largest = 0;
+  for (const double part : given) largest = std::max(largest, std::abs(part));
+  if (largest == 0) fail_value(key, kWhat);
+  // The quaternion may have any length but 0. A power of two scales it: no square underflows.
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  for (double& part : given) part = std::ldexp(part, -exponent);
+  const auto [w, x, y, z] = given;
+  const double s = 2 / (w * w + x * x + y * y + z * z);
   Eigen::Matrix3d turn;
   turn << 1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
       s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x),      //

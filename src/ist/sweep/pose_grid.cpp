@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ist/base/angles.h"
+#include "ist/base/direction.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/sweep/bit_text.h"
 #include "ist/sweep/turn.h"
@@ -40,7 +41,7 @@ Eigen::Isometry3d composed(const Eigen::Isometry3d& second, const Eigen::Isometr
 
 PoseGrid::PoseGrid(std::vector<Axis> axes) : axes_(std::move(axes)) {
   for (Axis& axis : axes_) {
-    axis.direction = scaled(1 / length_in_order(axis.direction), axis.direction);
+    if (const auto along = direction_of(axis.direction)) axis.direction = along->unit;
     count_ *= axis.count;
   }
 }

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "ist/base/direction.h"
 #include "ist/base/float_environment.h"
-#include "ist/base/ordered_vector.h"
 #include "ist/scene/table_reader.h"
 #include "ist/scene/toml_document.h"
 #include "ist/sweep/file_hash.h"
@@ -25,7 +25,7 @@ constexpr double kMany = std::numeric_limits<double>::infinity();
 constexpr NumberRange kPlaces{-1e12, 1e12, "in mesh units"};
 constexpr NumberRange kSmallTurn{0, 90, "degrees"};
 constexpr NumberRange kTurn{-360, 360, "degrees"};
-constexpr NumberRange kDirection{-1e6, 1e6, ""};
+constexpr NumberRange kDirection{-1e300, 1e300, ""};
 constexpr NumberRange kTolerance{0, 1e12, "in mesh units"};
 constexpr NumberRange kPush{0, 2, "mean voxel sizes"};
 constexpr NumberRange kSpring{-1e12, 1e12, "N/mm³"};
@@ -96,7 +96,7 @@ PoseGrid::Axis read_axis(TableReader& table) {
   }
   const std::string_view key = axis.turns ? "turn" : "move";
   axis.direction = table.vector(key, kDirection);
-  if (!(length_in_order(axis.direction) > 1e-6)) {
+  if (!direction_of(axis.direction)) {
     table.fail(key, fmt::format("'{}' in {} has no length", key, table.name()),
                "give a direction, such as [0, 0, 1]");
   }
