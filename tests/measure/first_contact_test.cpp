@@ -256,6 +256,21 @@ TEST(FirstContact, OfFarPosesIsNoneOrRefused) {
   }
 }
 
+// Rounding is large at the first poses, and small near the contact: there alone it counts.
+TEST(FirstContact, IsSharpHoweverFarTheBodiesBegin) {
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  for (const double far : {1e2, 2e4, 1e6, 1e8}) {
+    const Motion motion = Motion::between(place({far, 0.2, 0.3}), place({-1, 0.2, 0.3}));
+    const FirstContact found = first_contact(pair.query, motion, 1e-3);
+    expect_contact(pair, motion, 1e-3, found);
+    EXPECT_LE(found.narrowest, 1e-3) << far;
+    const double truth = (far - 1) / (far + 1);
+    EXPECT_LE(found.lower, truth);
+    EXPECT_GE(found.upper, truth * (1 - 1e-15));
+    EXPECT_LE((found.upper - found.lower) * (far + 1), 1.001e-3) << far;
+  }
+}
+
 TEST(FirstContact, RefusesWhatIsNoQuestion) {
   BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
   for (const double tolerance : {-1.0, std::nan("")}) {

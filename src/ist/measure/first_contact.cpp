@@ -59,6 +59,7 @@ class Advance {
       : query_(query),
         motion_(motion),
         options_(options),
+        wanted_(tolerance),
         way_(longest_way(motion, *query.moving().triangles())) {
     const auto size = [](const SphereTree& tree) {
       return tree.bounding_radius() + tree.origin().cwiseAbs().maxCoeff();
@@ -66,8 +67,7 @@ class Advance {
     // Of a pose on the way: the longest way of a point counts too.
     rounding_ = 0x1p-42 * (size(query.fixed()) + size(query.moving()) + way_ +
                            motion.at(0).translation().cwiseAbs().maxCoeff());
-    found_.narrowest = rounding_ / kStuck;
-    tolerance_ = std::max(tolerance, found_.narrowest);
+    limit_tolerance(0);
   }
 
   FirstContact run() {
@@ -130,6 +130,12 @@ class Advance {
   [[nodiscard]] double step(double at, double by) const {
     return by < way_ * (1 - at) ? at + by / way_ : 1;
   }
+  // Rounding of a distance at one pose limits the tolerance there. It says nothing about the next
+  // pose: rounding is less where the bodies are near.
+  void limit_tolerance(double narrowest) {
+    found_.narrowest = (narrowest + rounding_) / kStuck;
+    tolerance_ = std::max(wanted_, found_.narrowest);
+  }
   // No more than the distance of the surfaces, and little less.
   double distance_at(double at) {
     double sharp = kSharp * found_.distance.lower;
@@ -138,8 +144,7 @@ class Advance {
       const DistanceResult asked = query_.distance(motion_.at(at), sharp);
       ++found_.distances;
       found_.distance = asked.distance;
-      found_.narrowest = std::max(found_.narrowest, (asked.narrowest + rounding_) / kStuck);
-      tolerance_ = std::max(tolerance_, found_.narrowest);
+      limit_tolerance(asked.narrowest);
       if (sharp <= kSharp * std::max(found_.distance.upper, kStuck * tolerance_)) break;
       sharp = kSharp * found_.distance.upper;
     } while (found_.distances < options_.budget.tests);
@@ -158,7 +163,8 @@ class Advance {
   Query& query_;
   const Motion& motion_;
   const FirstContactOptions& options_;
-  double way_;  // of the point that goes farthest
+  double wanted_;  // the tolerance that the caller gave
+  double way_;     // of the point that goes farthest
   double rounding_ = 0, tolerance_ = 0;
   FirstContact found_;
   std::pair<double, double> graze_{0, 0};

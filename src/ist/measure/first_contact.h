@@ -69,7 +69,7 @@ struct FirstContact {
   /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
   DistanceInterval distance{0, 0};  ///< of the surfaces at `lower`, mesh units
-  /// The least tolerance that is reached here, mesh units: rounding.
+  /// The least tolerance that is reached at the last pose of the search, mesh units: rounding.
   double narrowest = 0;
   /// Whether the surface of a body intersects itself: SphereTree::self_intersections(). Only
   /// kInsideAtStart depends on it. False if the bodies touch at the start.
