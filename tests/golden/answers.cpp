@@ -208,7 +208,7 @@ constexpr std::array kAnswers = {
     GoldenAnswers{"contacts and sums", 0xbdbf09ba4a0bc60a, hash_contacts},
     GoldenAnswers{"distances", 0x88d3de200769fcb7, hash_distances},
     GoldenAnswers{"triangle pairs", 0xf4fb385f0075206d, hash_triangle_pairs},
-    GoldenAnswers{"penetration depths", 0x87490ea55096e33c, hash_depths},
+    GoldenAnswers{"penetration depths", 0x2adc10e0063bd7f3, hash_depths},
     GoldenAnswers{"first contact", 0x4945cf639b972958, hash_first_contact},
     GoldenAnswers{"distance maps", 0x0b43056e86f61326, hash_distance_maps},
     GoldenAnswers{"occlusion", 0x816fa098faf3e09c, hash_occlusion},

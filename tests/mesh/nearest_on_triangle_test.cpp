@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "ist/mesh/nearest_point.h"
 #include "support/effort.h"
@@ -98,6 +99,22 @@ TEST(NearestOnTriangle, OfASliverIsRightToAPartOfItsWidth) {
     const Eigen::Vector3d a = random.point(-1, 1), b = random.point(-1, 1);
     const Eigen::Vector3d c = a + random.uniform(0, 1) * (b - a) + 1e-6 * random.direction();
     expect_nearest({a, b, c}, random.point(-2, 2), 1e-9);
+  }
+}
+
+// Points that are as near to the sliver as it is wide, and farther: the foot matters there.
+TEST(NearestOnTriangle, OfAThinSliverIsAsNearAsTheExactNearestPoint) {
+  test::Random random(6);
+  for (int i = 0; i < test::samples(6000); ++i) {
+    const double wide = std::pow(0.1, random.uniform(2, 8));
+    Eigen::Vector3d at[3] = {random.point(-1, 1), random.point(-1, 1), {}};
+    at[2] = at[0] + random.uniform(0, 1) * (at[1] - at[0]) + wide * random.direction();
+    const Corners triangle = {at[i % 3], at[(i + 1) % 3], at[(i + 2) % 3]};
+    const double u = random.uniform(0, 1), v = random.uniform(0, 1);
+    const Eigen::Vector3d on = at[0] + std::min(u, v) * (at[1] - at[0]) +
+                               (std::max(u, v) - std::min(u, v)) * (at[2] - at[0]);
+    const double off = wide * std::pow(10.0, random.uniform(-2, 3));
+    expect_nearest(triangle, on + off * random.direction(), 2e-15);
   }
 }
 
