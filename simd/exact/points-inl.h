@@ -82,10 +82,12 @@ HWY_INLINE SquareBounds BoundTriangles(const Triangles& t, const Points& p, Floa
   for (std::size_t i = 1; i < 3; ++i) {
     side = hn::Min(side, FusedDot(FusedCross(edge[i], from[i]), normal));
   }
-  const auto plane =
-      hn::And(hn::Gt(side, zero),
-              hn::Gt(area, hn::Mul(hn::Mul(lengths[0], lengths[1]), hn::Set(d, kPlaneSine))));
-  const FloatVec height = hn::Div(FusedDot(from[0], normal), hn::Max(area, tiny));
+  const FloatVec sharpest =
+      hn::Max(hn::Max(hn::Mul(lengths[0], lengths[1]), hn::Mul(lengths[1], lengths[2])),
+              hn::Mul(lengths[2], lengths[0]));
+  const FloatVec least_area = hn::Max(hn::Mul(sharpest, hn::Set(d, kPlaneSine)), tiny);
+  const auto plane = hn::And(hn::Gt(side, zero), hn::Gt(area, least_area));
+  const FloatVec height = hn::Div(FusedDot(from[0], normal), area);
   const Points foot = {hn::Mul(height, normal.x), hn::Mul(height, normal.y),
                        hn::Mul(height, normal.z)};
   take(plane, foot, FusedDot(foot, foot));
@@ -102,7 +104,11 @@ HWY_INLINE SquareBounds BoundTriangles(const Triangles& t, const Points& p, Floa
 inline std::uint32_t NearTriangles(const TriangleCluster& cluster, const ClusterPoint& point,
                                    float& far, float* squares) {
   const FloatTag d;
-  const Points p = {hn::Set(d, point.at[0]), hn::Set(d, point.at[1]), hn::Set(d, point.at[2])};
+  const float unit_back = 1 / point.unit;
+  const FloatVec unit = hn::Set(d, point.unit), back = hn::Set(d, unit_back * unit_back);
+  const FloatVec error = hn::Set(d, point.error * point.unit);
+  const Points p = {hn::Set(d, point.at[0] * point.unit), hn::Set(d, point.at[1] * point.unit),
+                    hn::Set(d, point.at[2] * point.unit)};
   Sixteen least;
   FloatVec most = hn::Set(d, far);
   for (std::size_t k = 0; k < kParts; ++k) {
@@ -110,13 +116,15 @@ inline std::uint32_t NearTriangles(const TriangleCluster& cluster, const Cluster
     Triangles t;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const auto& from = cluster.corner[corner];
-      t.corner[corner] = {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at),
-                          hn::Load(d, from[2] + at)};
+      t.corner[corner] = {hn::Mul(hn::Load(d, from[0] + at), unit),
+                          hn::Mul(hn::Load(d, from[1] + at), unit),
+                          hn::Mul(hn::Load(d, from[2] + at), unit)};
     }
-    const SquareBounds bounds = BoundTriangles(t, p, hn::Set(d, point.error));
-    least.part[k] = bounds.least;
-    most = hn::IfThenElse(hn::Lt(bounds.most, most), bounds.most, most);
-    hn::StoreU(bounds.least, d, squares + at);
+    const SquareBounds bounds = BoundTriangles(t, p, error);
+    least.part[k] = hn::Mul(bounds.least, back);
+    const FloatVec farthest = hn::Add(hn::Mul(bounds.most, back), hn::Set(d, kSquareUnderflow));
+    most = hn::IfThenElse(hn::Lt(farthest, most), farthest, most);
+    hn::StoreU(least.part[k], d, squares + at);
   }
   far = hn::GetLane(hn::MinOfLanes(d, most));
   return ~BitsOf(least > Set16(far)) & kAllLanes;

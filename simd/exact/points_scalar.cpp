@@ -39,14 +39,16 @@ struct SquareBounds {
 // the triangle does. It should be the nearest point, and need not be.
 SquareBounds bound_triangle(const LaneTriangle& t, const LanePoint& p, float error) {
   LanePoint from[3], edge[3], way{};
+  float length[3];  // squares
   for (std::size_t i = 0; i < 3; ++i) {
     from[i] = p - t[i];
     edge[i] = t[(i + 1) % 3] - t[i];
+    length[i] = dot(edge[i], edge[i]);
   }
   float square = HUGE_VALF, more = error;
   for (std::size_t i = 0; i < 3; ++i) {
-    const float length = std::max(dot(edge[i], edge[i]), kLeastSquare);
-    const float part = std::min(std::max(dot(from[i], edge[i]) / length, 0.0F), 1.0F);
+    const float along = dot(from[i], edge[i]) / std::max(length[i], kLeastSquare);
+    const float part = std::min(std::max(along, 0.0F), 1.0F);
     LanePoint here;
     for (std::size_t k = 0; k < 3; ++k) here[k] = from[i][k] - part * edge[i][k];
     if (!(dot(here, here) < square)) continue;
@@ -58,8 +60,10 @@ SquareBounds bound_triangle(const LaneTriangle& t, const LanePoint& p, float err
   const float side =
       std::min(std::min(dot(cross(edge[0], from[0]), normal), dot(cross(edge[1], from[1]), normal)),
                dot(cross(edge[2], from[2]), normal));
-  if (side > 0 && area > (dot(edge[0], edge[0]) * dot(edge[1], edge[1])) * kPlaneSine) {
-    const float height = dot(from[0], normal) / std::max(area, kLeastSquare);
+  const float sharpest =
+      std::max(std::max(length[0] * length[1], length[1] * length[2]), length[2] * length[0]);
+  if (side > 0 && area > std::max(sharpest * kPlaneSine, kLeastSquare)) {
+    const float height = dot(from[0], normal) / area;
     for (std::size_t k = 0; k < 3; ++k) way[k] = height * normal[k];
     square = dot(way, way);
     more = kPlaneError * error;
@@ -85,15 +89,17 @@ std::uint32_t near_nodes_scalar(const NodeBlock& nodes, const TreePoint& point, 
 
 std::uint32_t near_triangles_scalar(const TriangleCluster& cluster, const ClusterPoint& point,
                                     float& far, float* squares) {
-  const LanePoint p = {point.at[0], point.at[1], point.at[2]};
+  const float unit = point.unit, back = (1 / unit) * (1 / unit);
+  const LanePoint p = {point.at[0] * unit, point.at[1] * unit, point.at[2] * unit};
   for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
     LaneTriangle t;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      for (std::size_t i = 0; i < 3; ++i) t[corner][i] = cluster.corner[corner][i][lane];
+      for (std::size_t i = 0; i < 3; ++i) t[corner][i] = cluster.corner[corner][i][lane] * unit;
     }
-    const SquareBounds bounds = bound_triangle(t, p, point.error);
-    squares[lane] = bounds.least;
-    if (bounds.most < far) far = bounds.most;
+    const SquareBounds bounds = bound_triangle(t, p, point.error * unit);
+    squares[lane] = bounds.least * back;
+    const float most = bounds.most * back + kSquareUnderflow;
+    if (most < far) far = most;
   }
   std::uint32_t near = 0;
   for (std::uint32_t lane = 0; lane < kClusterWidth; ++lane) {

@@ -127,6 +127,7 @@ class PointSearch::Descent {
       size += std::abs(along);
     }
     point.error = rounded_up(4 * error_ + double{kPointRounding} * size);
+    point.unit = unit_for(block.radius[lane]);
     alignas(64) float squares[kClusterWidth];
     const std::uint32_t near = search_.kernels_.near_triangles(cluster, point, far_, squares);
     if (candidate_count_ > candidates_.size() - kClusterWidth) measure_candidates();
