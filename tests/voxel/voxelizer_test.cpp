@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ist/base/parallel.h"
+#include "ist/voxel/triangle_bins.h"
 #include "support/errors.h"
 #include "support/random.h"
 #include "support/shapes.h"
@@ -164,6 +165,65 @@ TEST(VoxelizerMemory, ARefusalNamesASizeThatFitsTheSameLimit) {
     // Not a size much larger than need be: what it takes is near what is allowed.
     EXPECT_GE(100 * (set.codes.size() * 46 + set.triangles.ids.size() * 6), limit);
     EXPECT_LE(set.codes.size() * 42 + set.triangles.ids.size() * 6, limit);
+  }
+}
+
+// A certain least number of pairs refuses the absurd size: no block is searched for it, and the
+// size that is named comes from a few blocks of each size that is tried.
+TEST(VoxelizerMemory, AnAbsurdSizeIsRefusedBeforeTheWork) {
+  const TriangleMesh mesh = test::icosphere(3, 1);
+  for (const bool keep : {true, false}) {
+    for (const double size : {1e-4, 4e-5}) {
+      Progress progress;
+      std::uint64_t steps = 0;
+      progress.watch([&] { ++steps; });
+      const VoxelizerOptions options{size, keep, 64u << 20, 26};
+      const auto error = test::error_of([&] { (void)voxelize(mesh, options, &progress); });
+      ASSERT_TRUE(error);
+      EXPECT_EQ(error->code(), ErrorCode::kMemoryLimit);
+      EXPECT_EQ(steps, 0U) << "no stage began";
+      const std::string what = error->what(), before = "use a voxel size of ";
+      ASSERT_NE(what.find(before), std::string::npos) << what;
+      VoxelizerOptions advised = options;
+      advised.voxel_size = std::stod(what.substr(what.find(before) + before.size()));
+      EXPECT_TRUE(can_voxelize(mesh, advised)) << what;
+      advised.voxel_size *= 0.85;
+      EXPECT_FALSE(can_voxelize(mesh, advised)) << "not much larger than it must be";
+    }
+  }
+}
+
+// A size that is a little too small is known when the voxels so far need too much.
+TEST(VoxelizerMemory, TheSearchForVoxelsEndsWhereTheyNeedTooMuch) {
+  const TriangleMesh mesh = test::icosphere(3, 1);
+  const ScopedThreadLimit one(1);
+  const VoxelizerOptions options{0.002, true, 16u << 20, 100};
+  Progress progress;
+  double most = 0;
+  progress.watch([&] { most = std::max(most, progress.fraction()); });
+  EXPECT_FALSE(can_voxelize(mesh, options, &progress));
+  EXPECT_LT(most, 0.2);
+  VoxelizerOptions more = options;
+  more.max_memory = 1u << 30;
+  EXPECT_TRUE(can_voxelize(mesh, more));
+}
+
+TEST(PairCounts, HoldTheTrueNumberOfPairs) {
+  test::Random random(9);
+  for (int i = 0; i < 40; ++i) {
+    TriangleMesh mesh =
+        test::triangle(random.point_on_grid(0, 9, 0.01), random.point_on_grid(0, 9, 0.01),
+                       random.point_on_grid(0, 9, 0.01));
+    const double flat = random.uniform(0, 1) < 0.3 ? 0 : 1;
+    for (Vector3d& v : mesh.vertices) v[i % 3] *= flat;
+    mesh = test::joined(mesh, mesh);
+    const PairCounts counts(mesh);
+    for (const double size : {0.05, 0.3, 2.0}) {
+      const VoxelSet set = voxelize(mesh, {size, true});
+      const auto pairs = static_cast<double>(set.triangles.ids.size());
+      EXPECT_LE(counts.least(size), pairs);
+      EXPECT_GE(counts.least(size), 0.4 * counts.expected(size) - 60 - 60 / size);
+    }
   }
 }
 

@@ -32,12 +32,16 @@ double cells_of(double extent, double voxel_size) {
 
 }  // namespace
 
-double round_up_for_people(double size) {
-  const std::string text = fmt::format("{:.2e}", size);
+double round_up_for_people(double size, int digits) {
+  const std::string text = fmt::format("{:.{}e}", size, digits - 1);
   const double rounded = number(text);
   if (rounded >= size) return rounded;
-  const std::string last_digit = "0.01" + text.substr(text.find('e'));
-  return number(fmt::format("{:.2e}", rounded + number(last_digit)));
+  std::string last_digit = text;
+  std::fill(last_digit.begin(), last_digit.begin() + static_cast<std::ptrdiff_t>(text.find('e')),
+            '0');
+  last_digit[1] = '.';
+  last_digit[text.find('e') - 1] = '1';
+  return number(fmt::format("{:.{}e}", rounded + number(last_digit), digits - 1));
 }
 
 std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max,

@@ -71,7 +71,8 @@ struct Lattice {
 [[nodiscard]] std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min,
                                                 const Eigen::Vector3d& box_max, double voxel_size);
 
-/// Returns `size` rounded up to three significant digits, for the remedy in an error text.
-[[nodiscard]] double round_up_for_people(double size);
+/// Returns `size` rounded up to some significant digits, 2 or more, for the remedy in an error
+/// text.
+[[nodiscard]] double round_up_for_people(double size, int digits = 3);
 
 }  // namespace ist

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
@@ -89,16 +90,16 @@ LatticeMesh::LatticeMesh(const TriangleMesh& mesh, const Lattice& lattice, doubl
                  });
 }
 
-double expected_pairs(const TriangleMesh& mesh, double cube_edge) {
-  double areas = 0, extents = 0;
+PairCounts::PairCounts(const TriangleMesh& mesh) noexcept
+    : triangles_(static_cast<double>(mesh.triangles.size())) {
   for (const Triangle& t : mesh.triangles) {
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
                           &c = mesh.vertices[t[2]];
-    areas += 0.5 * sum_in_order((b - a).cross(c - a).cwiseAbs());
-    extents += sum_in_order(a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c));
+    const Eigen::Vector3d twice = cross_in_order(difference(b, a), difference(c, a)).cwiseAbs();
+    projections_ += 0.5 * sum_in_order(twice);
+    sections_ += 0.5 * std::max(length_in_order(twice) / std::numbers::sqrt2, twice.maxCoeff());
+    extents_ += sum_in_order(a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c));
   }
-  return areas / (cube_edge * cube_edge) + extents / cube_edge +
-         static_cast<double>(mesh.triangles.size());
 }
 
 TriangleBins bin_triangles(const LatticeMesh& mesh, std::uint32_t cells, double pad) {

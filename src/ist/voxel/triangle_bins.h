@@ -64,12 +64,28 @@ void for_each_cell(const Cell& block, const Eigen::Vector3d& low, const Eigen::V
       for (std::uint32_t x = first[0]; x <= last[0]; ++x) visit(x, y, z);
 }
 
-/// Returns the expected number of pairs of triangle and cube. Averaged over all positions of the
-/// grid, a convex flat polygon intersects (area of its three projections)/s² + (its three
-/// extents)/s + 1 cubes of edge s.
+/// Counts pairs of triangle and cube on a grid of any size, without a look for them.
 ///
 /// Source: Steiner's formula; L. A. Santaló, Integral Geometry and Geometric Probability, 1976.
-[[nodiscard]] double expected_pairs(const TriangleMesh& mesh, double cube_edge);
+class PairCounts {
+ public:
+  /// Cost: 5 ns a triangle.
+  explicit PairCounts(const TriangleMesh& mesh) noexcept;
+
+  /// Returns the number to expect. Averaged over all positions of the grid, a convex flat polygon
+  /// intersects (area of its three projections)/s² + (its three extents)/s + 1 cubes of edge s.
+  [[nodiscard]] double expected(double edge) const noexcept {
+    return projections_ / (edge * edge) + extents_ / edge + triangles_;
+  }
+  /// Returns a number that no position of the grid goes below. A plane has at most an area of
+  /// √2 s² in a cube of edge s, and a cube covers s² of a projection along an axis.
+  [[nodiscard]] double least(double edge) const noexcept {
+    return std::max(triangles_, (1 - 1e-3) * sections_ / (edge * edge));
+  }
+
+ private:
+  double projections_ = 0, extents_ = 0, sections_ = 0, triangles_ = 0;
+};
 
 /// The largest number of triangles of a mesh that bin_triangles accepts.
 inline constexpr std::size_t kMaxTriangles = (std::size_t{1} << 28) - 1;

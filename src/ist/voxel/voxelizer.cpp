@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <memory>
@@ -66,57 +67,144 @@ struct BlockSurvey {
 };
 
 // The bytes of one block: its survey and its entries in the prefix sums.
-constexpr double kBlockBytes = sizeof(BlockSurvey) + 2 * sizeof(std::uint64_t);
+constexpr double kBlockBytes =
+    sizeof(BlockSurvey) + sizeof(std::unique_ptr<BlockSurvey>) + 2 * sizeof(std::uint64_t);
 
 // All voxels and pairs of voxel and triangle, before any result is allocated.
 struct Survey {
   TriangleBins bins;
-  std::size_t triangles;  // number in the mesh
-  std::vector<BlockSurvey> blocks;
+  std::vector<std::unique_ptr<BlockSurvey>> blocks;
   std::vector<std::uint64_t> first_voxel;  // index of each block's first voxel, and the total
   std::vector<std::uint64_t> first_pair;   // index of each block's first pair, and the total
   [[nodiscard]] std::uint64_t voxels() const { return first_voxel.back(); }
   [[nodiscard]] std::uint64_t pairs() const { return first_pair.back(); }
 };
 
-// Finds all voxels and pairs. Returns nullopt if the blocks alone need more than `max_bytes`.
-std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, double max_bytes,
+// How much there is of all that takes memory.
+struct Counts {
+  double blocks = 0, voxels = 0, pairs = 0;
+};
+
+// The memory of a mesh's voxels: what is allowed, and what they need.
+class Memory {
+ public:
+  Memory(const TriangleMesh& mesh, const VoxelizerOptions& options)
+      : options_(options), pairs_(mesh), triangles_(static_cast<double>(mesh.triangles.size())) {}
+
+  [[nodiscard]] double needed(const Counts& counts) const {
+    const double own = sizeof(std::uint64_t) + sizeof(PackedNormal) +
+                       (options_.keep_triangles ? sizeof(std::uint32_t) : 0);
+    const double own_pairs = options_.keep_triangles ? sizeof(std::uint32_t) : 0;
+    return counts.blocks * kBlockBytes +
+           counts.voxels * (own + static_cast<double>(options_.bytes_per_voxel)) +
+           counts.pairs * (sizeof(BlockCell) + own_pairs) +
+           triangles_ * static_cast<double>(options_.bytes_per_triangle);
+  }
+  // `spare`: by how much the counts may be too small, as a part of them.
+  [[nodiscard]] bool holds(const Counts& counts, double spare = 0) const {
+    const double by = 1 + spare;
+    return by * counts.voxels <= kMaxCount && by * counts.pairs <= kMaxCount &&
+           by * needed(counts) <= static_cast<double>(options_.max_memory);
+  }
+  // Returns false if it is certain, without a look at any voxel, that voxels of one size do not
+  // fit: so many pairs has a surface of this area at least. The triangles' keys are sorted by
+  // blocks, and stored three times meanwhile.
+  [[nodiscard]] bool may_hold(double voxel_size) const {
+    const double keys = pairs_.expected(voxel_size * TriangleBins::kEdge);
+    return 3 * sizeof(std::uint64_t) * keys <= static_cast<double>(options_.max_memory) &&
+           holds({.pairs = pairs_.least(voxel_size)});
+  }
+  // Returns the counts to expect. Voxels are no more than pairs.
+  [[nodiscard]] Counts expected(double voxel_size) const {
+    const double pairs = pairs_.expected(voxel_size);
+    return {pairs_.expected(voxel_size * TriangleBins::kEdge), pairs, pairs};
+  }
+
+ private:
+  const VoxelizerOptions& options_;
+  PairCounts pairs_;
+  double triangles_;
+};
+
+// The bins of a mesh, and the counts of one block after the other.
+class Surveyor {
+ public:
+  Surveyor(const LatticeMesh& mesh, const Lattice& lattice, const TriangleBins& bins)
+      : mesh_(mesh), lattice_(lattice), bins_(bins) {}
+
+  // Finds the voxels of a block. Returns their number, and the number of pairs.
+  Counts survey(std::size_t b, BlockSurvey& block) {
+    const Cell place = morton_decode(bins_.codes[b]);
+    cells_.clear();
+    for (const std::uint32_t t : bins_.triangles[b]) {
+      const std::size_t before = cells_.size();
+      for_each_voxel(mesh_.box(t), place, lattice_, [&](BlockCell cell) {
+        const std::size_t code = morton_in_block(cell);
+        block.occupied[code / 64] |= std::uint64_t{1} << code % 64;
+        cells_.push_back(cell);
+      });
+      block.cells_of.push_back(static_cast<std::uint16_t>(cells_.size() - before));
+    }
+    block.cells.assign(cells_.begin(), cells_.end());
+    std::uint64_t voxels = 0;
+    for (const std::uint64_t word : block.occupied) {
+      voxels += static_cast<std::uint64_t>(std::popcount(word));
+    }
+    return {1, static_cast<double>(voxels), static_cast<double>(cells_.size())};
+  }
+
+ private:
+  const LatticeMesh& mesh_;
+  const Lattice& lattice_;
+  const TriangleBins& bins_;
+  std::vector<BlockCell> cells_;
+};
+
+// Adds up counts of several threads. Sums of whole numbers do not depend on their order.
+class SharedCounts {
+ public:
+  // Returns all counts so far.
+  Counts add(const Counts& more) {
+    const auto plus = [](std::atomic<std::uint64_t>& sum, double count) {
+      const auto by = static_cast<std::uint64_t>(count);
+      return static_cast<double>(sum.fetch_add(by, std::memory_order_relaxed) + by);
+    };
+    return {plus(blocks_, more.blocks), plus(voxels_, more.voxels), plus(pairs_, more.pairs)};
+  }
+
+ private:
+  std::atomic<std::uint64_t> blocks_{0}, voxels_{0}, pairs_{0};
+};
+
+// Finds all voxels and pairs. Returns nullopt as soon as they need too much memory.
+std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, const Memory& memory,
                              Progress& progress) {
   progress.begin_stage("sorting triangles into blocks", 0);
-  Survey result{
-      bin_triangles(mesh, lattice.cells, lattice.pad()), mesh.triangle_count(), {}, {}, {}};
+  Survey result{bin_triangles(mesh, lattice.cells, lattice.pad()), {}, {}, {}};
   const std::size_t blocks = result.bins.codes.size();
-  if (static_cast<double>(blocks) * kBlockBytes > max_bytes) return std::nullopt;
+  if (!memory.holds({.blocks = static_cast<double>(blocks)})) return std::nullopt;
   progress.begin_stage("finding surface voxels", blocks);
   result.blocks.resize(blocks);
   result.first_voxel.resize(blocks + 1);
   result.first_pair.resize(blocks + 1);
+  SharedCounts found;
+  std::atomic<bool> full{false};
   parallel_for(blocks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
     progress.check();
-    std::vector<BlockCell> cells;
+    if (full.load(std::memory_order_relaxed)) return;
+    Surveyor surveyor(mesh, lattice, result.bins);
+    Counts more;
     for (std::size_t b = begin; b < end; ++b) {
-      BlockSurvey& block = result.blocks[b];
-      const Cell place = morton_decode(result.bins.codes[b]);
-      cells.clear();
-      for (const std::uint32_t t : result.bins.triangles[b]) {
-        const std::size_t before = cells.size();
-        for_each_voxel(mesh.box(t), place, lattice, [&](BlockCell cell) {
-          const std::size_t code = morton_in_block(cell);
-          block.occupied[code / 64] |= std::uint64_t{1} << code % 64;
-          cells.push_back(cell);
-        });
-        block.cells_of.push_back(static_cast<std::uint16_t>(cells.size() - before));
-      }
-      block.cells.assign(cells.begin(), cells.end());
-      std::uint64_t voxels = 0;
-      for (const std::uint64_t word : block.occupied) {
-        voxels += static_cast<std::uint64_t>(std::popcount(word));
-      }
-      result.first_voxel[b + 1] = voxels;
-      result.first_pair[b + 1] = cells.size();
+      result.blocks[b] = std::make_unique<BlockSurvey>();
+      const Counts of_block = surveyor.survey(b, *result.blocks[b]);
+      result.first_voxel[b + 1] = static_cast<std::uint64_t>(of_block.voxels);
+      result.first_pair[b + 1] = static_cast<std::uint64_t>(of_block.pairs);
+      more = {more.blocks + 1, more.voxels + of_block.voxels, more.pairs + of_block.pairs};
     }
+    if (!memory.holds(found.add(more))) full.store(true, std::memory_order_relaxed);
     progress.add(end - begin);
   });
+  if (full || !memory.holds(found.add({}))) return std::nullopt;
   for (std::size_t b = 0; b < blocks; ++b) {
     result.first_voxel[b + 1] += result.first_voxel[b];
     result.first_pair[b + 1] += result.first_pair[b];
@@ -124,66 +212,99 @@ std::optional<Survey> survey(const LatticeMesh& mesh, const Lattice& lattice, do
   return result;
 }
 
-double bytes_needed(const Survey& survey, const VoxelizerOptions& options) {
-  const auto voxels = static_cast<double>(survey.voxels());
-  const auto pairs = static_cast<double>(survey.pairs());
-  if (voxels > kMaxCount || pairs > kMaxCount) return HUGE_VAL;
-  const double own = sizeof(std::uint64_t) + sizeof(PackedNormal) +
-                     (options.keep_triangles ? sizeof(std::uint32_t) : 0);
-  const double own_pairs = options.keep_triangles ? sizeof(std::uint32_t) : 0;
-  return static_cast<double>(survey.blocks.size()) * kBlockBytes +
-         voxels * (own + static_cast<double>(options.bytes_per_voxel)) +
-         pairs * (sizeof(BlockCell) + own_pairs) +
-         static_cast<double>(survey.triangles) * static_cast<double>(options.bytes_per_triangle);
-}
-
-// Estimates the survey's memory, before the survey is made: keys of the bins, stored twice while
-// they are joined, and a cell for each pair.
-double survey_bytes(const TriangleMesh& mesh, double voxel_size) {
-  return 3 * sizeof(std::uint64_t) * expected_pairs(mesh, voxel_size * TriangleBins::kEdge) +
-         sizeof(BlockCell) * expected_pairs(mesh, voxel_size);
-}
-
 // Returns the survey at one voxel size, or nullopt if the voxels would not fit.
 std::optional<Survey> fitting_survey(const TriangleMesh& mesh, const Lattice& lattice,
-                                     const VoxelizerOptions& options, Progress& progress) {
-  const auto limit = static_cast<double>(options.max_memory);
-  if (survey_bytes(mesh, lattice.voxel_size) > limit) return std::nullopt;
+                                     const Memory& memory, Progress& progress) {
+  if (!memory.may_hold(lattice.voxel_size)) return std::nullopt;
+  return survey(LatticeMesh(mesh, lattice), lattice, memory, progress);
+}
+
+// Returns whether voxels of one size would fit, by some of their blocks: each so many-th. Where
+// these are not all, a twentieth of the memory is to spare.
+bool seems_to_fit(const TriangleMesh& mesh, const Lattice& lattice, const Memory& memory,
+                  const Progress& progress) {
+  constexpr std::size_t kBlocks = 1024;
+  constexpr double kSpare = 0.05;
+  if (!memory.may_hold(lattice.voxel_size)) return false;
   const LatticeMesh lattice_mesh(mesh, lattice);
-  std::optional<Survey> result = survey(lattice_mesh, lattice, limit, progress);
-  if (result && bytes_needed(*result, options) > limit) result.reset();
-  return result;
+  const TriangleBins bins = bin_triangles(lattice_mesh, lattice.cells, lattice.pad());
+  const std::size_t blocks = bins.codes.size(), each = (blocks + kBlocks - 1) / kBlocks;
+  const std::size_t looks = (blocks + each - 1) / each;
+  SharedCounts found;
+  parallel_for(looks, TriangleBins::kBlocksARange, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    Surveyor surveyor(lattice_mesh, lattice, bins);
+    for (std::size_t k = begin; k < end; ++k) {
+      BlockSurvey block;
+      found.add(surveyor.survey(k * each, block));
+    }
+  });
+  const Counts seen = found.add({});
+  const double all = static_cast<double>(blocks) / static_cast<double>(looks);
+  return memory.holds({static_cast<double>(blocks), all * seen.voxels, all * seen.pairs},
+                      each > 1 ? kSpare : 0);
+}
+
+// Returns a voxel size near the one from which on the expected counts fit.
+double expected_size(const Memory& memory, double least, double most) {
+  constexpr double kNear = 1.05;
+  while (least * kNear < most) {
+    const double middle = std::sqrt(least * most);
+    (memory.holds(memory.expected(middle)) ? most : least) = middle;
+  }
+  return most;
 }
 
 [[noreturn]] void refuse(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box,
-                         const VoxelizerOptions& options, Progress& progress) {
+                         const VoxelizerOptions& options, const Memory& memory,
+                         const Progress& progress) {
+  constexpr double kNear = 1.02;
+  double step = 1.1;
   const auto fits = [&](double size) {
-    const Lattice lattice = make_lattice(box.min(), box.max(), size);
-    return fitting_survey(mesh, lattice, options, progress).has_value();
+    return seems_to_fit(mesh, make_lattice(box.min(), box.max(), size), memory, progress);
   };
-  const double one_voxel = box.sizes().maxCoeff();
-  double too_small = options.voxel_size, enough = too_small;
-  while (enough < one_voxel && !fits(enough = std::min(one_voxel, 2 * enough))) too_small = enough;
-  if (!fits(enough)) {
-    throw Error(
-        ErrorCode::kMemoryLimit,
-        fmt::format("the mesh has {} triangles, and needs more than the allowed {} bytes of "
-                    "memory with voxels of any size: allow more memory, or simplify it",
-                    mesh.triangles.size(), options.max_memory));
+  const double one_voxel = std::max(options.voxel_size, box.sizes().maxCoeff());
+  double too_small = options.voxel_size;
+  double enough = expected_size(memory, too_small, one_voxel);
+  if (fits(enough)) {
+    for (double next = enough; next > options.voxel_size;) {
+      next = std::max(options.voxel_size, next / step);
+      step = std::min(2.0, step * step);
+      too_small = next;
+      if (next == options.voxel_size || !fits(next)) break;
+      enough = next;
+    }
+  } else {
+    do {
+      if (enough >= one_voxel) {
+        throw Error(
+            ErrorCode::kMemoryLimit,
+            fmt::format("the mesh has {} triangles, and needs more than the allowed {} bytes of "
+                        "memory with voxels of any size: allow more memory, or simplify it",
+                        mesh.triangles.size(), options.max_memory));
+      }
+      too_small = enough;
+      enough = std::min(one_voxel, step * enough);
+      step = std::min(2.0, step * step);
+    } while (!fits(enough));
   }
-  for (int step = 0; step < 6; ++step) {
+  while (enough > kNear * too_small) {
     const double middle = std::sqrt(too_small * enough);
     (fits(middle) ? enough : too_small) = middle;
   }
-  double named = round_up_for_people(enough);
-  while (!fits(named)) named = round_up_for_people(1.01 * named);
+  double named = round_up_for_people(enough, 2);
+  while (!fits(named)) named = round_up_for_people(1.01 * named, 2);
+  const Counts expected = memory.expected(options.voxel_size);
+  const std::string needs =
+      expected.pairs > kMaxCount
+          ? fmt::format("some {:.2g} pairs of voxel and triangle, and the limit is 2^32",
+                        expected.pairs)
+          : fmt::format("more than the allowed {} bytes of memory, some {:.2g}: allow more memory",
+                        options.max_memory, memory.needed(expected));
   throw Error(
       ErrorCode::kMemoryLimit,
-      fmt::format(
-          "voxel size {} needs more than the allowed {} bytes of memory, or more than 2^32 "
-          "voxels or pairs of voxel and triangle: allow more memory, or use a voxel size of "
-          "{} or larger",
-          options.voxel_size, options.max_memory, named));
+      fmt::format("voxel size {} needs {}{} use a voxel size of {} or larger", options.voxel_size,
+                  needs, expected.pairs > kMaxCount ? ":" : ", or", named));
 }
 
 // Sums the normals in the voxels of one block, and writes the voxels to their places.
@@ -193,7 +314,7 @@ class BlockWriter {
       : mesh_(mesh), survey_(survey), set_(set) {}
 
   void write(std::size_t b) {
-    const BlockSurvey& block = survey_.blocks[b];
+    const BlockSurvey& block = *survey_.blocks[b];
     const std::uint64_t code = survey_.bins.codes[b];
     std::uint16_t voxels = 0;
     for (std::size_t word = 0; word < block.occupied.size(); ++word) {
@@ -259,7 +380,7 @@ class BlockWriter {
       sum.triangles = 0;
     }
     first -= sums_.size();
-    const BlockSurvey& block = survey_.blocks[b];
+    const BlockSurvey& block = *survey_.blocks[b];
     const auto triangles = survey_.bins.triangles[b];
     std::size_t pair = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -315,8 +436,9 @@ VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
   }
   VoxelSet set;
   set.lattice = make_lattice(box.min(), box.max(), options.voxel_size);
-  const std::optional<Survey> found = fitting_survey(mesh, set.lattice, options, shown);
-  if (!found) refuse(mesh, box, options, shown);
+  const Memory memory(mesh, options);
+  const std::optional<Survey> found = fitting_survey(mesh, set.lattice, memory, shown);
+  if (!found) refuse(mesh, box, options, memory, shown);
 
   const LatticeMesh lattice_mesh(mesh, set.lattice);
   const std::size_t blocks = found->bins.codes.size();
@@ -343,8 +465,8 @@ bool can_voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options, Pro
   const Eigen::AlignedBox3d box = bounding_box(mesh);
   if (mesh.triangles.size() > kMaxTriangles) return false;
   if (lattice_flaw(box.min(), box.max(), options.voxel_size)) return false;
-  return fitting_survey(mesh, make_lattice(box.min(), box.max(), options.voxel_size), options,
-                        progress != nullptr ? *progress : unseen)
+  return fitting_survey(mesh, make_lattice(box.min(), box.max(), options.voxel_size),
+                        Memory(mesh, options), progress != nullptr ? *progress : unseen)
       .has_value();
 }
 

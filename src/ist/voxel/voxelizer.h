@@ -27,13 +27,15 @@ struct VoxelizerOptions {
 ///
 /// Cost: O(triangles + pairs of voxel and triangle) time and O(voxels) memory, + O(pairs) with
 /// keep_triangles; some 50 ns a pair on one core.
-/// Errors: those of make_lattice, and kMemoryLimit, thrown before the memory is allocated, with the
-/// smallest voxel size that would fit.
+/// Errors: those of make_lattice, and kMemoryLimit, with the memory to expect and the smallest
+/// voxel size that would fit, rounded up to two digits. It is thrown before the memory is
+/// allocated: at once, if the surface's area needs too many pairs, else as soon as the voxels found
+/// need too much.
 [[nodiscard]] VoxelSet voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options,
                                 Progress* progress = nullptr);
 
 /// Whether voxelize() would succeed: neither the lattice nor the memory forbids it.
-/// Cost: the time to find the voxels, a tenth of a whole build.
+/// Cost: the time to find the voxels that fit, at most a tenth of a whole build.
 [[nodiscard]] bool can_voxelize(const TriangleMesh& mesh, const VoxelizerOptions& options,
                                 Progress* progress = nullptr);
 
