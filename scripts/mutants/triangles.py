@@ -51,7 +51,7 @@ MUTANTS = [
            [(MEASURE + "point_search.cpp", "far_ = std::min(far_, rounded_up(square));", "far_ = std::min(far_, rounded_up(0.998 * square));")],
            ["measure_test *PointSearch*"]),
     Mutant("node-as-its-middle", "a node's bound on the depth is the depth of its centre",
-           [(MEASURE + "depth_search.cpp", "push({measured.depth + radius,", "push({measured.depth,")], ["measure_test Penetration*"]),
+           [(MEASURE + "depth_search.cpp", "push({std::min(measured.depth + radius, in_box),", "push({measured.depth,")], ["measure_test Penetration*"]),
     Mutant("corners-do-not-bound", "the bound on a piece's depth lies half way between its centre's depth and its corners' bound",
            [(MEASURE + "depth_search.cpp", "std::min(measured.depth + radius, farthest)",
              "std::min(measured.depth + radius, 0.5 * (farthest + measured.depth))")],

@@ -188,7 +188,7 @@ AT(ist_penetration, not_closed, 84);
 AT(ist_penetration, narrowest, 88);
 AT(ist_penetration, points, 96);
 AT(ist_penetration, self_intersecting, 104);
-AT(ist_penetration, reserved, 108);
+AT(ist_penetration, capped, 108);
 
 SIZE(ist_motion, 88);
 AT(ist_motion, from, 8);

@@ -231,6 +231,78 @@ TEST(Penetration, OfTheRealJawsHoldsTheDepthOfTheirVertices) {
   EXPECT_NEAR(deepest(distance_map(jaws.fixed, jaws.moving, Pose::Identity(), 2)), 1.05233, 1e-5);
 }
 
+// Turned by an angle that no face is along an axis of the mesh.
+Eigen::Matrix3d askew() {
+  return (Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized())).toRotationMatrix();
+}
+
+TEST(Penetration, OfACubeInALongBarIsExact) {
+  for (const double length : {10.0, 1e3, 1e6}) {
+    const TriangleMesh bar = box({-0.5 * length, -0.5, -0.5}, {0.5 * length, 0.5, 0.5});
+    const TriangleMesh cube = box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+    for (const Eigen::Matrix3d& turn : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), askew()}) {
+      Bodies bodies(turned(bar, turn), turned(cube, turn), std::max(0.5, 1e-4 * length));
+      const Penetration found = bodies.at(place(turn * Vector(1, 0.2, 0.75)), 1e-3);
+      EXPECT_TRUE(found.complete) << length;
+      EXPECT_FALSE(found.capped);
+      EXPECT_LE(found.lower, 0.25) << length;
+      EXPECT_GE(found.upper, 0.25) << length;
+      EXPECT_LE(found.upper - found.lower, std::max(1e-3, found.narrowest) * (1 + 1e-9));
+      EXPECT_LT(found.points, 100'000U) << length;
+    }
+  }
+}
+
+// Of a prism with many sides each side is a needle.
+TEST(Penetration, OfABallInAPrismOfNeedlesIsItsClosedForm) {
+  for (const int quarter : {100, 1000}) {
+    for (const Eigen::Matrix3d& turn : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), askew()}) {
+      Bodies bodies(turned(cylinder(quarter, 1, 100), turn), icosphere(4, 1));
+      for (const double off : {0.0, 1.0}) {
+        const Penetration found = bodies.at(place(turn * Vector(off, 0, 50)), 1e-3);
+        EXPECT_TRUE(found.complete) << quarter << ' ' << off;
+        EXPECT_FALSE(found.capped);
+        EXPECT_NEAR(found.lower, 1, 0.01) << "the ball's pole, or the prism's side";
+        EXPECT_LT(found.points, 1'000U * static_cast<unsigned>(quarter)) << quarter << ' ' << off;
+      }
+    }
+  }
+}
+
+TEST(Penetration, OfFacesOnEachOtherEnds) {
+  Bodies bodies(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  for (const Vector& at : {Vector(0, 0, 1), Vector(0.3, 0.2, 1), Vector(1, 0.5, 0.5)}) {
+    const Penetration found = bodies.at(place(at), 1e-6);
+    EXPECT_TRUE(found.complete) << at.transpose();
+    EXPECT_EQ(found.lower, 0);
+    EXPECT_LE(found.upper, 1e-6);
+    EXPECT_LT(found.points, 10'000U);
+  }
+}
+
+TEST(Penetration, DoesNotDependOnEarlierQuestions) {
+  const auto bodies = [] { return Bodies(cylinder(100, 1, 20), icosphere(3, 1)); };
+  const Pose poses[] = {place({1, 0, 10}), place({0, 0, 10}), place({0.5, 0.2, 0})};
+  PenetrationOptions few;
+  few.budget.tests = 50;
+  for (const Pose& pose : poses) {
+    Bodies fresh = bodies(), used = bodies();
+    const Penetration truth = fresh.at(pose, 1e-3);
+    for (const Pose& before : poses) {
+      static_cast<void>(used.at(before, 1e-4, few));
+      static_cast<void>(used.at(before, 1e-2));
+      static_cast<void>(used.query.distance(before, 1e-3));
+      const Penetration found = used.at(pose, 1e-3);
+      EXPECT_EQ(found.lower, truth.lower);
+      EXPECT_EQ(found.upper, truth.upper);
+      EXPECT_EQ(found.complete, truth.complete);
+      EXPECT_EQ(found.capped, truth.capped);
+      EXPECT_EQ(found.points, truth.points);
+      EXPECT_EQ(found.triangle, truth.triangle);
+    }
+  }
+}
+
 TEST(Penetration, SaysWhatIsNoQuestion) {
   const TriangleMesh closed = box({0, 0, 0}, {1, 1, 1});
   Bodies open_fixed(open_strip(3), closed), open_moving(closed, open_strip(3));

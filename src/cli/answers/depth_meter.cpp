@@ -63,6 +63,7 @@ Depth DepthMeter::at(const Eigen::Isometry3d& pose, bool near, const Budget& bud
     const Penetration found = penetration(query_, pose, tolerance_, {.budget = budget});
     depth.certain = {found.lower, found.upper};
     depth.complete = found.complete;
+    depth.capped = found.capped;
     if (found.upper == 0) {
       depth.at_vertices = depth.area = 0;
       return depth;

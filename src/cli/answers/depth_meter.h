@@ -14,6 +14,7 @@ struct Depth {
   /// The penetration depth; empty where a body is open, or holds no triangles.
   std::optional<DistanceInterval> certain{};
   bool complete = true;  ///< that interval is as narrow as the tolerance, or as rounding allows
+  bool capped = false;   ///< the search ended after 4 million pieces of triangles
   /// The depth of the deepest vertex of either body; empty with open bodies that are not near.
   std::optional<double> at_vertices{};
   /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty

@@ -74,9 +74,12 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
     found.notes.push_back("no certain depth: " + depth_->why_none());
   }
   if (found.depth.certain && !found.depth.complete && questions_.depth) {
+    const char* const why = found.depth.capped     ? ": the search ended after 4 million pieces"
+                            : questions_.max_tests ? ": allow more --max-tests"
+                                                   : "";
     found.notes.push_back(fmt::format("depth: asked to {:g}, reached {:.3g}{}", depth_tolerance_,
                                       found.depth.certain->upper - found.depth.certain->lower,
-                                      questions_.max_tests ? ": allow more --max-tests" : ""));
+                                      why));
   }
   if (found.depth.certain || (found.inside && *found.inside != Inside::kNone)) {
     note_self_intersections(found);

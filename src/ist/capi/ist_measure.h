@@ -72,14 +72,14 @@ typedef struct ist_penetration {
   double narrowest;          /**< no tolerance below this width can be reached at this pose */
   uint64_t points;           /**< points of which the distance was measured */
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
-  int32_t reserved;          /**< zero */
+  int32_t capped; /**< 1: the search ended after 4 million pieces of triangles; `complete` is 0 */
 } ist_penetration;
 
 /** Bounds the depth of the deepest point of either surface inside the other body by an interval no
  * wider than `tolerance`. `last` may be an earlier answer, from which the search goes on in less
  * time, or NULL. Of `budget` the tests are points; where it ends the search, `complete` is 0
- * and the interval wider. Errors: IST_POSE_INVALID, IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 5 to
- * 10 ms for jaws in occlusion. */
+ * and the interval wider. Without a budget, only `capped` ends it early. Errors: IST_POSE_INVALID,
+ * IST_ARGUMENT_INVALID, IST_CANCELLED. Cost: 5 to 10 ms for jaws in occlusion. */
 IST_C_API ist_status ist_query_penetration(ist_query* query, const double pose[16],
                                            double tolerance, const ist_penetration* last,
                                            const ist_budget* budget, const ist_progress* progress,

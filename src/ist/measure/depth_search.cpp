@@ -9,12 +9,12 @@ namespace ist {
 namespace {
 
 using Vector = Eigen::Vector3d;
-// Pieces that are kept; of more the search ends.
-constexpr std::size_t kMostPieces = 1 << 22;
 // Points between two looks at the clock.
 constexpr std::uint64_t kLook = 32;
 // Points between two questions whether to go on.
 constexpr std::uint64_t kAsk = 1024;
+// The least height of a piece that is quartered, as a part of its longest edge.
+constexpr double kLeastHeight = 1.0 / 4;
 
 double distance_between(const Vector& a, const Vector& b) {
   const Vector way = difference(a, b);
@@ -25,6 +25,21 @@ Vector middle(const Vector& a, const Vector& b) { return scaled(0.5, sum(a, b));
 
 Vector middle(const std::array<Vector, 3>& t) {
   return scaled(1.0 / 3, sum(sum(t[0], t[1]), t[2]));
+}
+
+// The longest edge of a long and thin piece: from this corner to the next one. Nothing for other
+// pieces.
+std::optional<std::size_t> edge_to_cut(const std::array<Vector, 3>& t) {
+  double longest = 0;  // a square
+  std::size_t edge = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double square = square_in_order(difference(t[(i + 1) % 3], t[i]));
+    if (square > longest) edge = i;
+    longest = std::max(longest, square);
+  }
+  const Vector area = cross_in_order(difference(t[1], t[0]), difference(t[2], t[0]));
+  const double most = (kLeastHeight * longest) * (kLeastHeight * longest);
+  return square_in_order(area) < most ? std::optional(edge) : std::nullopt;
 }
 
 }  // namespace
@@ -57,7 +72,8 @@ bool DepthSearch::run(double tolerance) {
 }
 
 bool DepthSearch::goes_on(double first_bound) {
-  if (points_ >= budget_.tests || pieces_.size() > kMostPieces) return false;
+  capped_ = pieces_.size() > kMostPieces;
+  if (points_ >= budget_.tests || capped_) return false;
   if (points_ - looked_ >= kLook) {
     looked_ = points_;
     if (budget_.is_past()) return false;
@@ -73,11 +89,19 @@ double DepthSearch::bound() const noexcept {
   return std::max({least(), left, dropped_});
 }
 
-// Puts the children of a node, or the quarters of a piece, in its place.
+// Puts the children of a node, or the parts of a piece, in its place. Quarters of a long and thin
+// piece would be as long and thin: such a piece is cut in two.
 void DepthSearch::open(const Item& item) {
   if (item.level == kPiece) {
     const Piece piece = pieces_[item.index];
     const Corners& t = piece.corner;
+    if (const std::optional<std::size_t> edge = edge_to_cut(t)) {
+      const Vector &a = t[*edge], &b = t[(*edge + 1) % 3], &c = t[(*edge + 2) % 3];
+      const Vector cut = middle(a, b);
+      add_piece(item.side, {{a, cut, c}, piece.triangle}, item.middle);
+      add_piece(item.side, {{cut, b, c}, piece.triangle}, item.middle);
+      return;
+    }
     const Corners between = {middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])};
     add_piece(item.side, {between, piece.triangle}, item.middle);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -136,6 +160,26 @@ double DepthSearch::distance_to(std::uint32_t side, std::uint32_t triangle, cons
   return distance_between(p, nearest_on_triangle({v[t[0]], v[t[1]], v[t[2]]}, p).point);
 }
 
+// Returns how deep a point lies in the box round the body, and hence in the body at most: whoever
+// leaves the box leaves the body. Negative outside the box.
+double DepthSearch::depth_in_box(std::uint32_t side, const Vector& at) const {
+  const Eigen::AlignedBox3d& box = sides_[side].body.parts().triangles->box();
+  const Vector above = difference(at, box.min()), below = difference(box.max(), at);
+  return std::min({above[0], above[1], above[2], below[0], below[1], below[2]});
+}
+
+// Returns the most of any point of a piece: below each face of the box, a corner is the deepest.
+double DepthSearch::depth_in_box(std::uint32_t side, const Corners& corners) const {
+  const Eigen::AlignedBox3d& box = sides_[side].body.parts().triangles->box();
+  double least = HUGE_VAL;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double a = corners[0][i], b = corners[1][i], c = corners[2][i];
+    least =
+        std::min({least, std::max({a, b, c}) - box.min()[i], box.max()[i] - std::min({a, b, c})});
+  }
+  return least;
+}
+
 void DepthSearch::push(const Item& item) {
   if (drops(item.bound)) return;
   heap_.push_back(item);
@@ -162,6 +206,8 @@ void DepthSearch::add_node(std::uint32_t side, int level, std::uint32_t index,
   }
   const Vector at = sides_[side].to_body(centre);
   const double radius = double{block.radius[lane]} + rounding_;
+  const double in_box = depth_in_box(side, at) + radius;
+  if (drops(in_box)) return;
   if (parent != nullptr && drops_below(*parent, side, at, radius)) return;
   const Measured measured =
       parent != nullptr ? measure(side, at, parent->triangle) : measure(side, at, {});
@@ -171,7 +217,7 @@ void DepthSearch::add_node(std::uint32_t side, int level, std::uint32_t index,
     const Vector there = middle(corners(side, triangle));
     offer(side, triangle, there, measure(side, there, measured.nearest.triangle));
   }
-  push({measured.depth + radius,
+  push({std::min(measured.depth + radius, in_box),
         {at, measured.depth, measured.nearest.triangle},
         side,
         index,
@@ -180,6 +226,8 @@ void DepthSearch::add_node(std::uint32_t side, int level, std::uint32_t index,
 
 void DepthSearch::add_piece(std::uint32_t side, const Piece& piece, const Middle& parent) {
   const Corners& t = piece.corner;
+  const double in_box = depth_in_box(side, t) + rounding_;
+  if (drops(in_box)) return;
   const Vector at = middle(t);
   double radius = 0;
   for (const Vector& corner : t) radius = std::max(radius, distance_between(corner, at));
@@ -194,7 +242,7 @@ void DepthSearch::add_piece(std::uint32_t side, const Piece& piece, const Middle
     if (far > farthest) corner = i;
     farthest = std::max(far, farthest);
   }
-  const double bound = std::min(measured.depth + radius, farthest) + rounding_;
+  const double bound = std::min(std::min(measured.depth + radius, farthest) + rounding_, in_box);
   if (drops(bound)) return;
   offer(side, piece.triangle, t[corner], measure(side, t[corner], measured.nearest.triangle));
   pieces_.push_back(piece);

@@ -15,8 +15,8 @@
 namespace ist {
 
 /// Finds the point of one or more surfaces that lies deepest inside the other body: branch and
-/// bound over clusters of triangles, triangles, and their quarters, the one with the largest bound
-/// first.
+/// bound over clusters of triangles, triangles, and pieces of triangles. The one with the largest
+/// bound comes first.
 class DepthSearch {
  public:
   /// @param rounding of a distance that is measured, and of a point that is moved
@@ -36,12 +36,17 @@ class DepthSearch {
   void begin_at(std::size_t side, std::uint32_t triangle, const Eigen::Vector3d& near);
   /// Searches until the depth is known to within `tolerance`. Returns whether it is.
   bool run(double tolerance);
+  /// Returns whether the search ended because it kept kMostPieces pieces.
+  [[nodiscard]] bool capped() const noexcept { return capped_; }
 
   /// Returns the deepest point so far.
   [[nodiscard]] const std::optional<Point>& deepest() const noexcept { return deepest_; }
   /// Returns what no point is deeper than.
   [[nodiscard]] double bound() const noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+
+  /// Pieces of triangles that a search keeps at most: 4 million.
+  static constexpr std::size_t kMostPieces = 1 << 22;
 
  private:
   using Corners = std::array<Eigen::Vector3d, 3>;
@@ -82,6 +87,8 @@ class DepthSearch {
   [[nodiscard]] bool drops(double bound) noexcept;
   [[nodiscard]] double distance_to(std::uint32_t side, std::uint32_t triangle,
                                    const Eigen::Vector3d& p) const;
+  [[nodiscard]] double depth_in_box(std::uint32_t side, const Eigen::Vector3d& at) const;
+  [[nodiscard]] double depth_in_box(std::uint32_t side, const Corners& corners) const;
   void push(const Item& item);
   [[nodiscard]] bool drops_below(const Middle& parent, std::uint32_t side,
                                  const Eigen::Vector3d& at, double radius);
@@ -101,6 +108,7 @@ class DepthSearch {
   std::vector<Piece> pieces_;
   std::optional<Point> deepest_;
   std::uint64_t points_ = 0, looked_ = 0, asked_ = 0;
+  bool capped_ = false;
 };
 
 }  // namespace ist

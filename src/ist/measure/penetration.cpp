@@ -87,6 +87,7 @@ Penetration penetration(Query& query, const Eigen::Isometry3d& pose, double tole
              of_moving ? RigidMove(Eigen::Isometry3d::Identity()) : to_moving);
   }
   result.complete = search.run(tolerance);
+  result.capped = search.capped();
   result.points = search.points();
   result.upper = search.bound();
   if (const auto& deepest = search.deepest()) {

@@ -23,6 +23,7 @@ struct Penetration {
 
   Status status = Status::kDone;  ///< other than kDone: all numbers are 0
   bool complete = false;          ///< the interval is no wider than the tolerance, or `narrowest`
+  bool capped = false;            ///< the search ended after 4 million pieces of triangles
   double lower = 0,               ///< the depth is no less, mesh units; 0: the bodies may be apart
       upper = 0;                  ///< and no more; 0: the bodies do not intersect
   /// A point of a surface that is `lower` deep, to within rounding; fixed coordinates. Zero where
@@ -61,8 +62,10 @@ struct PenetrationOptions {
 /// also the distance of its corners from the triangle that is nearest to its middle: a distance
 /// from one triangle is a convex function. Allocates. Cost: 5 to 10 ms for jaws in occlusion to
 /// 0.01 mm, hardly less from the last answer; the first time for a tree, 1.2 µs a triangle more.
-/// The search ends incomplete after 4 million pieces of triangles, which it may need where the side
-/// of many points is unknown.
+/// Without a budget the search ends in one of two ways. Either the interval is complete, or the
+/// search kept 4 million pieces of triangles (2^22): then `capped` is true. Surfaces that lie on
+/// each other may need so many, and points whose side is unknown. The answer depends on the bodies,
+/// the pose, the tolerance and `last`, and on no earlier question.
 /// Throws kTrianglesMissing, and kArgumentInvalid for a tolerance that is negative or NaN.
 [[nodiscard]] IST_API Penetration penetration(Query& query, const Eigen::Isometry3d& pose,
                                               double tolerance,

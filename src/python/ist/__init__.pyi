@@ -168,7 +168,8 @@ class Penetration(NamedTuple):
     not_closed: Optional[Literal["fixed", "moving"]]
     narrowest: float
     points: int
-    self_intersecting: Optional[Literal["fixed", "moving", "both"]]
+    self_intersecting: Optional[Literal["fixed", "moving", "both"]] = ...
+    capped: bool = ...
 
 class FirstContact(NamedTuple):
     outcome: Literal["contact", "none", "grazing", "touches at start", "inside at start", "stopped"]

@@ -129,7 +129,8 @@ class Penetration(NamedTuple):
     not_closed: Optional[str]  # "fixed" or "moving": that body has no certain inside, and there is no answer
     narrowest: float
     points: int  # points of which the distance was measured
-    self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
+    self_intersecting: Optional[str] = None  # "fixed", "moving" or "both": that surface intersects itself
+    capped: bool = False  # the search ended after 4 million pieces of triangles, and `complete` is False
 
 
 class FirstContact(NamedTuple):

@@ -76,6 +76,7 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
             result.narrowest,
             result.points,
             SELF_INTERSECTING[result.self_intersecting],
+            result.capped == 1,
         )
     finally:
         self._lock.release()

@@ -226,7 +226,7 @@ class PenetrationResult(Sized):
         ("narrowest", c_double),
         ("points", c_uint64),
         ("self_intersecting", c_int32),
-        ("reserved", c_int32),
+        ("capped", c_int32),
     ]
 
 

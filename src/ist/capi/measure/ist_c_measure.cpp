@@ -31,6 +31,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.narrowest = found.narrowest;
   out.points = found.points;
   out.self_intersecting = self_intersecting(found);
+  out.capped = found.capped;
   return out;
 }
 
