@@ -22,7 +22,7 @@ try:
         pose[2, 3] = -down
 
         # Touch is exact. The distance lies between two ends, which are at most 0.001 mm apart.
-        touch = "yes" if query.intersects(pose) else "no"
+        touch = {True: "yes", False: "no", None: "unknown"}[query.intersects(pose)]
         gap = query.distance(pose, 0.001)
         print(f"lower jaw down by {down:.1f} mm: touch {touch}, {gap.lower:.3f} to {gap.upper:.3f} mm apart")
 except ist.Error as error:

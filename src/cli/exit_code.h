@@ -33,8 +33,8 @@ inline constexpr ExitMeaning kExitMeanings[] = {
 };
 
 /// A failure with an exit code of its own: a result that breaks the guarantee, more missed
-/// deadlines than --allow-missed, bodies that touch where they must not, or a sweep that a signal
-/// ended.
+/// deadlines than --allow-missed, bodies that touch, or may, where they must not, or a sweep that a
+/// signal ended.
 struct Failure : std::runtime_error {
   Failure(ExitCode code, const std::string& what) : std::runtime_error(what), exit_code(code) {}
 

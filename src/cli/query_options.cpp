@@ -128,7 +128,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->type_name("FILE");
   command.add_flag(
       "--fail-if-touching", options.fail_if_touching,
-      "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose");
+      "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose; 1 where "
+      "that is unknown");
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
   add_engine_options(command, options);

@@ -112,6 +112,7 @@ Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
 }
 
 void fail_where_they_meet(Meeting meeting) {
+  if (meeting == Meeting::kUnknown) throw Failure(kFailed, to_string(meeting));
   if (meeting != Meeting::kNone) throw Failure(kTouching, to_string(meeting));
 }
 

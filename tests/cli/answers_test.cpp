@@ -235,8 +235,8 @@ TEST_F(Answers, MaxTestsStopsAndSaysHowFar) {
       EXPECT_GE(line["distance_upper"], all[i]["distance_lower"]);
       EXPECT_LE(line["depth_lower"], all[i]["depth_upper"]);
       EXPECT_GE(line["depth_upper"], all[i]["depth_lower"]);
-      EXPECT_TRUE(line["touch"] == "near" || line["touch"] == all[i]["touch"]);
-      EXPECT_EQ(line["touch"] == "near", has_note(line, "stopped: "));
+      EXPECT_TRUE(line["touch"] == "unknown" || line["touch"] == all[i]["touch"]);
+      EXPECT_EQ(line["touch"] == "unknown", has_note(line, "stopped: "));
       EXPECT_TRUE(line["triangle_pairs"].is_null() ||
                   line["triangle_pairs"] == all[i]["triangle_pairs"]);
       EXPECT_EQ(line["contacts"].is_null(), line["complete"] == false);
@@ -276,6 +276,24 @@ TEST_F(Answers, TouchingFailsWhereItIsAskedTo) {
       ist({"approach", tree, tree, "--axis", "x", "--from", "9", "--to", "3", "--fail-if-touching"})
           .exit_code,
       6);
+}
+
+TEST_F(Answers, UnknownFailsWhereTouchingDoes) {
+  const auto asked = [&](const char* tests) {
+    return ist({"collide", ball_, ball_, "--move", "3.9,0,0", "--voxel-size", "0.5", "--max-tests",
+                tests, "--fail-if-touching"});
+  };
+  const CommandResult unknown = asked("1");
+  EXPECT_EQ(unknown.exit_code, 1) << unknown.out;
+  EXPECT_TRUE(says(unknown.out, "touch      unknown"));
+  EXPECT_TRUE(says(unknown.err,
+                   "ist: whether the bodies touch is unknown: allow more --max-tests\n"));
+  EXPECT_EQ(asked("1000000").exit_code, 6);
+  // A touch at another pose is certain.
+  EXPECT_EQ(ist({"collide", ball_, ball_, "--poses", list_, "--voxel-size", "0.5", "--max-tests",
+                 "40", "--fail-if-touching"})
+                .exit_code,
+            1);
 }
 
 TEST_F(Answers, ContradictionsAreRefused) {

@@ -121,7 +121,8 @@ void QueryChecks::check_invalid(Query& query, ContactManifold& points,
           "a pose that is none is searched, within a budget");
   require(query.distance(pose, 0).status == QueryStatus::kInvalidPose,
           "a pose that is none has a gap");
-  require(query.intersects(pose).status == QueryStatus::kInvalidPose,
+  require(query.intersects(pose).status == QueryStatus::kInvalidPose &&
+              query.intersects(pose).answer == ist::Answer::kUnknown,
           "bodies touch at a pose that is none");
   require(query.contacts(pose, points).status == QueryStatus::kInvalidPose &&
               points.points().empty() && points.sums().weight == 0 &&
@@ -209,7 +210,7 @@ void QueryChecks::check_exact(Query& scalar, Query& best, const Asked& asked,
             "a pair is of no triangle");
   }
   const ist::Answer found = best.intersects(pose).answer;
-  require(found != ist::Answer::kNear, "triangles decide nothing");
+  require(found == ist::Answer::kYes || found == ist::Answer::kNo, "triangles decide nothing");
   if (!built_) return;
   require((found == ist::Answer::kYes) == !pairs.empty(), "intersects() says otherwise");
   require(pairs.empty() || asked.result.leaf_pairs > 0, "triangles meet, and no leaves do");

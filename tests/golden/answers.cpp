@@ -144,7 +144,8 @@ std::uint64_t hash_distances(const std::string& target) {
       const DistanceResult found = query.distance(closing(step), tolerance);
       hasher.add(found.distance.lower).add(found.distance.upper).add(found.sphere_tests);
     }
-    hasher.add(static_cast<int>(query.intersects(closing(step)).answer));
+    hasher.add(static_cast<int>(query.intersects(closing(step)).answer) -
+               static_cast<int>(ist::Answer::kNo));
   }
   return hasher.value();
 }

@@ -93,12 +93,36 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   Eigen::Isometry3d bad = pose_;
   bad.translation().x() = kNotANumber;
   EXPECT_EQ(query.intersects(bad).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.intersects(bad).answer, Answer::kUnknown);
+  EXPECT_FALSE(query.intersects(bad).complete);
   EXPECT_EQ(query.leaf_pairs(bad, {}).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.leaf_pairs(bad, {}, {.tests = 10}).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.contacts(bad, manifold).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
   EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
+}
+
+TEST_F(Misuse, AResultWithoutAnAnswerIsUnknown) {
+  EXPECT_EQ(IntersectionResult().answer, Answer::kUnknown);
+  EXPECT_FALSE(IntersectionResult().complete);
+  EXPECT_EQ(Answer{}, Answer::kUnknown);  // so is memory of zeros
+  EXPECT_STREQ(to_string(Answer::kUnknown), "unknown");
+  EXPECT_STREQ(to_string(Answer::kNo), "no");
+  EXPECT_STREQ(to_string(Answer::kNear), "near");
+  EXPECT_STREQ(to_string(Answer::kYes), "yes");
+}
+
+// Bounds alone say near where they overlap. A budget that ends before says nothing.
+TEST_F(Misuse, OfABudgetWithoutTrianglesIsUnknownAndNeverNo) {
+  Query query(tree_, tree_);
+  bool unknown = false, near = false;
+  for (std::uint64_t tests = 0; tests < 4000; tests += 1 + tests / 8) {
+    const IntersectionResult found = query.intersects(pose_, {.tests = tests});
+    EXPECT_EQ(found.answer, found.complete ? Answer::kNear : Answer::kUnknown) << tests;
+    (found.complete ? near : unknown) = true;
+  }
+  EXPECT_TRUE(unknown && near);
 }
 
 TEST_F(Misuse, OfAToleranceCountsAsZero) {

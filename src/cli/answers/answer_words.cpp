@@ -15,6 +15,8 @@ std::string word_of(Answer touch, int width) {
       return painted(fmt::format("{:<{}}", "yes", width), TextColour::kRed);
     case Answer::kNear:
       return painted(fmt::format("{:<{}}", "near", width), TextColour::kYellow);
+    case Answer::kUnknown:
+      return painted(fmt::format("{:<{}}", "unknown", width), TextColour::kYellow);
     default:
       return fmt::format("{:<{}}", "no", width);
   }
@@ -77,13 +79,13 @@ void print_rows(const std::vector<PoseAnswer>& answers) {
   for (const PoseAnswer& answer : answers) {
     wide = std::max(wide, words_of(answer.findings.depth).size());
   }
-  fmt::print("{:>12} {:<5} {:<24} {:<{}} {:>9}{}\n", path ? "displacement" : "index", "touch",
+  fmt::print("{:>12} {:<7} {:<24} {:<{}} {:>9}{}\n", path ? "displacement" : "index", "touch",
              "distance", "depth", wide, "area", triangles ? " triangles" : "");
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const Findings& found = answers[i].findings;
     fmt::print("{:>12} {} {:<24} {:<{}} {:>9}",
                path ? fmt::format("{:.6g}", *answers[i].displacement) : fmt::format("{}", i),
-               word_of(found.touch, 5), found.distance ? words_of(*found.distance) : "-",
+               word_of(found.touch, 7), found.distance ? words_of(*found.distance) : "-",
                words_of(found.depth), wide, words_of(found.depth.area));
     if (triangles) fmt::print(" {:>9}", words_of(found.triangle_pairs));
     const std::string rest = rest_of(found);

@@ -30,6 +30,8 @@ const char* to_string(Meeting meeting) {
       return "one body lies in the other";
     case Meeting::kMayTouch:
       return "the bodies may touch";
+    case Meeting::kUnknown:
+      return "whether the bodies touch is unknown: allow more --max-tests";
     default:
       return "the bodies are apart";
   }
@@ -38,7 +40,8 @@ const char* to_string(Meeting meeting) {
 Meeting Findings::meeting() const {
   if (touch == Answer::kYes) return Meeting::kTouch;
   if (inside && *inside != Inside::kNone) return Meeting::kInside;
-  return touch == Answer::kNear ? Meeting::kMayTouch : Meeting::kNone;
+  if (touch == Answer::kNear) return Meeting::kMayTouch;
+  return touch == Answer::kUnknown ? Meeting::kUnknown : Meeting::kNone;
 }
 
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
@@ -105,14 +108,13 @@ void Examiner::find_distance(const Eigen::Isometry3d& pose, Findings& found) {
 void Examiner::find_touch(const Eigen::Isometry3d& pose, Findings& found) {
   const IntersectionResult result = query_.intersects(pose, budget_);
   found.touch = result.answer;
-  // Within a budget nothing is called free that is not known to have a distance.
-  const bool free = found.touch == Answer::kNo && found.distance->lower > 0;
-  if (questions_.max_tests && found.touch != Answer::kYes && !free) found.touch = Answer::kNear;
-  if (found.touch != Answer::kNear) return;
-  found.notes.push_back(questions_.max_tests
-                            ? fmt::format("stopped: {:.3g} to {:.3g} apart", found.distance->lower,
-                                          found.distance->upper)
-                            : fmt::format("at most {:.3g} apart", found.distance->upper));
+  if (found.touch == Answer::kUnknown) {
+    found.notes.push_back(fmt::format("stopped: {:.3g} to {:.3g} apart: allow more --max-tests",
+                                      found.distance->lower, found.distance->upper));
+  }
+  if (found.touch == Answer::kNear) {
+    found.notes.push_back(fmt::format("at most {:.3g} apart", found.distance->upper));
+  }
 }
 
 void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const {

@@ -22,14 +22,14 @@ struct Questions {
 };
 
 /// How bodies meet, from not at all to certainly.
-enum class Meeting : std::uint8_t { kNone, kMayTouch, kInside, kTouch };
+enum class Meeting : std::uint8_t { kNone, kUnknown, kMayTouch, kInside, kTouch };
 /// Returns a clause: "the bodies touch".
 [[nodiscard]] const char* to_string(Meeting meeting);
 
 /// Everything known of two bodies at one pose, in mesh units. A member is empty where it cannot be
 /// known or was not asked for; `notes` say why.
 struct Findings {
-  Answer touch = Answer::kNo;
+  Answer touch = Answer::kUnknown;
   std::optional<Inside> inside{};
   std::optional<std::uint64_t> triangle_pairs{};
   std::optional<DistanceInterval> distance{};

@@ -38,8 +38,8 @@ void add_collide(CLI::App& app) {
   add_query_options(*command, options->query);
   add_pose_options(*command, options->pose, Poses::kMany);
   add_example(*command,
-              "touch is yes or no by triangles; near where there are none, or where --max-tests "
-              "ended the search.\n"
+              "touch is yes or no by triangles, near by voxels alone, and unknown where "
+              "--max-tests ended the search.\n"
               "Examples: ist collide upper.stl lower.stl\n"
               "          ist collide upper.stl lower.stl --move 0,0,-1.5 --turn x,2@0,40,0");
   command->callback([options] { run(*options); });

@@ -28,7 +28,7 @@ void add_rows(CsvWriter& table, const Bite& bite, const BiteBody& body, const ch
 std::string first_line(const Bite& bite) {
   const Findings& found = bite.findings;
   const bool yes = found.touch == Answer::kYes;
-  std::string line = "touch " + (yes ? painted("yes", TextColour::kRed) : "no");
+  std::string line = "touch " + (yes ? painted("yes", TextColour::kRed) : to_string(found.touch));
   if (found.inside && *found.inside != Inside::kNone) {
     line += fmt::format(", the {} body lies inside the other", to_string(*found.inside));
   }

@@ -361,10 +361,10 @@ IST_C_API ist_status ist_query_distance(ist_query* query, const double pose[16],
 
 /** The answer of ist_query_intersects. */
 enum {
-  IST_ANSWER_UNKNOWN = 0, /**< after an error */
+  IST_ANSWER_UNKNOWN = 0, /**< no answer: after an error, or the budget ended the search */
   IST_ANSWER_NO = 1,      /**< the surfaces are apart; one body may lie inside the other */
-  IST_ANSWER_NEAR = 2, /**< open: without triangles bounds of leaves overlap, or the budget ended */
-  IST_ANSWER_YES = 3   /**< triangles have a point in common, exactly */
+  IST_ANSWER_NEAR = 2,    /**< bounds of leaves overlap, and a tree has no triangles to decide by */
+  IST_ANSWER_YES = 3      /**< triangles have a point in common, exactly */
 };
 
 /** Decides whether the bodies intersect: an IST_ANSWER_... Errors: IST_POSE_INVALID. [real time] */

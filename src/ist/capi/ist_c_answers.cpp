@@ -21,7 +21,8 @@ static_assert(sizeof(ist_triangle_pair) == sizeof(TrianglePair) &&
 static_assert(static_cast<int>(Found::kFresh) == IST_FOUND_FRESH &&
               static_cast<int>(Found::kKept) == IST_FOUND_KEPT &&
               static_cast<int>(Found::kClear) == IST_FOUND_CLEAR);
-static_assert(answer_of(Answer::kNo) == IST_ANSWER_NO &&
+static_assert(answer_of(Answer::kUnknown) == IST_ANSWER_UNKNOWN &&
+              answer_of(Answer::kNo) == IST_ANSWER_NO &&
               answer_of(Answer::kNear) == IST_ANSWER_NEAR &&
               answer_of(Answer::kYes) == IST_ANSWER_YES);
 

@@ -82,7 +82,7 @@ static_assert(spheres_of(SpherePolicy::kSimple) == IST_SPHERES_SIMPLE &&
 
 /// Converts an answer to its IST_ANSWER_...
 [[nodiscard]] constexpr std::int32_t answer_of(Answer answer) noexcept {
-  return static_cast<std::int32_t>(answer) + IST_ANSWER_NO;
+  return static_cast<std::int32_t>(answer);
 }
 /// Converts a contact, and sums.
 [[nodiscard]] ist_contact contact_of(const Contact& contact) noexcept;

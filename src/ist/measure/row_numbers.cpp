@@ -20,7 +20,7 @@ RowNumbers numbers_of(const PoseRow& row, double stiffness) {
   };
   if (row.intersects) {
     count(*row.intersects);
-    numbers.intersects = static_cast<std::int32_t>(row.intersects->answer) + 1;
+    numbers.intersects = static_cast<std::int32_t>(row.intersects->answer);
   }
   if (row.leaf_pairs) {
     count(*row.leaf_pairs);

@@ -14,7 +14,7 @@ struct RowNumbers {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   bool pose_is_valid = true;
-  /// 0: unknown, or not asked; 1: no; 2: near; 3: yes
+  /// Of Answer; kUnknown where nothing was asked.
   std::int32_t intersects = 0;
   bool complete = false;        ///< every search ended and every tolerance was reached
   std::int32_t not_closed = 0;  ///< 0: both bodies are; 1: the fixed one is not; 2: the moving one

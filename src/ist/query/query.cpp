@@ -39,9 +39,9 @@ class AnyLeafPair : public MeteredVisitor {
 }  // namespace
 
 const char* to_string(Answer answer) noexcept {
-  constexpr std::array kNames = {"no", "near", "yes"};
+  constexpr std::array kNames = {"unknown", "no", "near", "yes"};
   const auto at = static_cast<std::size_t>(answer);
-  return at < kNames.size() ? kNames[at] : "unknown";
+  return at < kNames.size() ? kNames[at] : kNames[0];
 }
 
 const char* to_string(QueryStatus status) noexcept {
@@ -63,16 +63,16 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget
   const ScopedFloatEnvironment environment;
   detail::QueryState& s = *state_;
   const detail::Use use(s);
-  if (!use) return {.status = QueryStatus::kBusy, .complete = false};
+  if (!use) return {.status = QueryStatus::kBusy};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
-  IntersectionResult result{.sphere_tests = 1};
+  if (!bodies) return {.status = QueryStatus::kInvalidPose};
+  IntersectionResult result{.answer = Answer::kNo, .complete = true, .sphere_tests = 1};
   if (!bodies->roots.overlap) return result;
   if (s.exact) {
     const ExactSearch::Any any = s.exact->any({*project_to_rigid(pose), bodies->relative}, budget);
     result.sphere_tests += any.tests;
     result.complete = any.complete;
-    result.answer = any.found ? Answer::kYes : any.complete ? Answer::kNo : Answer::kNear;
+    result.answer = any.found ? Answer::kYes : any.complete ? Answer::kNo : Answer::kUnknown;
     return result;
   }
   const SearchPose from = s.to_float(*bodies);
@@ -85,8 +85,10 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget
     QueryResult of_pairs;
     s.set_pad(2 * s.pad_of(from), of_pairs);
     result.resolution = of_pairs.resolution;
+    result.answer = Answer::kNear;
+  } else if (!whole) {
+    result.answer = Answer::kUnknown;
   }
-  if (any.found() || !whole) result.answer = Answer::kNear;
   return result;
 }
 

@@ -78,10 +78,11 @@ class IST_API Query {
   Query& operator=(Query&&) noexcept;  ///< as the constructor
 
   /// Tests whether the bodies intersect. Ends at the first certain answer: exact where both trees
-  /// have triangles, else kNo or kNear.
+  /// have triangles, else kNo or kNear. kUnknown where
+  /// the status is another than kDone.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
-  /// @param budget ends the search early: the answer is then kNear
+  /// @param budget ends the search early: the answer is then kUnknown
   ///
   /// Cost: 2 to 70 µs for jaws, 0.3 µs where the triangles that met last still meet.
   [[nodiscard]] IntersectionResult intersects(const Eigen::Isometry3d& pose,

@@ -125,23 +125,23 @@ struct DistanceResult {
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
 };
 
-/// Whether two bodies intersect.
+/// Whether two bodies intersect. The numbers are the IST_ANSWER_... of C.
 enum class Answer : std::uint8_t {
-  kNo,    ///< the surfaces are apart; one body may lie inside the other (InsideTest)
-  kNear,  ///< bounds of leaves overlap, and there are no triangles to decide by; or a budget ended
-          ///< the search before the bodies were known to intersect or to be apart
-  kYes,   ///< triangles have a point in common, exactly
+  kUnknown,  ///< there is no answer: after an error, or after a budget that ended the search
+  kNo,       ///< the surfaces are apart; one body may lie inside the other (InsideTest)
+  kNear,     ///< bounds of leaves overlap, and there are no triangles to decide by
+  kYes,      ///< triangles have a point in common, exactly
 };
 
-/// Returns "no", "near" or "yes".
+/// Returns "unknown", "no", "near" or "yes".
 [[nodiscard]] IST_API const char* to_string(Answer answer) noexcept;
 
 /// The answer of Query::intersects.
 struct IntersectionResult {
-  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: no answer
-  Answer answer = Answer::kNo;     ///< exact where both trees have triangles; kNo after an error
-  bool complete = true;            ///< no budget ended the search
-  double resolution = 0;           ///< with kNear, complete: the surfaces are no farther apart
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: the answer is kUnknown
+  Answer answer = Answer::kUnknown;  ///< exact where both trees have triangles
+  bool complete = false;             ///< no budget ended the search, and no error
+  double resolution = 0;             ///< with kNear: the surfaces are no farther apart
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
 };
 

@@ -134,8 +134,8 @@ class Query(Lone):
     def intersects(self, pose, *, tests=0, seconds=0.0):
         """Whether the bodies intersect: exact where both trees have triangles.
 
-        None: voxels overlap, and there are no triangles to ask, or a limit ended the search. False also where one body lies
-        inside the other. p_fixed = pose @ p_moving.
+        None is not a no: voxels overlap, and there are no triangles to ask, or a limit ended the search. False also where one
+        body lies inside the other. p_fixed = pose @ p_moving.
         """
         budget, limit = self._begin(pose, tests, seconds)
         try:

@@ -77,7 +77,7 @@
 
 /**
  * @typedef {object} Tick
- * @property {string} touch          "no", "near" or "yes"
+ * @property {string} touch          "unknown", "no", "near" or "yes"
  * @property {number} distance_lower
  * @property {number} distance_upper
  * @property {number} leaf_pairs

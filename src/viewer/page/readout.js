@@ -9,7 +9,7 @@ import {count, interval, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 
-const touchWords = {yes: 'they touch', no: 'apart', near: 'near: voxels alone are known'};
+const touchWords = {yes: 'they touch', no: 'apart', near: 'near: voxels alone are known', unknown: 'not known'};
 
 /**
  * @param {HTMLElement} place

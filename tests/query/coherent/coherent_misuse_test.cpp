@@ -140,6 +140,7 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
       EXPECT_EQ(result.leaf_pairs, 0u);
     }
     EXPECT_EQ(query.intersects(pose_).status, QueryStatus::kBusy);
+    EXPECT_EQ(query.intersects(pose_).answer, ist::Answer::kUnknown);
     EXPECT_EQ(query.distance(pose_, 0.1).status, QueryStatus::kBusy);
     EXPECT_EQ(query.triangle_pairs(pose_, triangles).status, QueryStatus::kBusy);
     EXPECT_STREQ(to_string(QueryStatus::kBusy), "busy");

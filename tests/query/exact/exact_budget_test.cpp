@@ -40,7 +40,7 @@ TEST_F(ExactBudget, OfTestsEndsIntersectsInDoubtAndNeverInError) {
         const IntersectionResult found = query.intersects(meets ? meeting_ : apart_, tests(most));
         EXPECT_LE(found.sphere_tests, allowed(most));
         (found.complete ? decided : undecided) = true;
-        EXPECT_EQ(found.answer, !found.complete ? Answer::kNear
+        EXPECT_EQ(found.answer, !found.complete ? Answer::kUnknown
                                 : meets         ? Answer::kYes
                                                 : Answer::kNo);
       }
@@ -125,7 +125,7 @@ TEST_F(ExactBudget, OfTimeIsLookedAtOftenEnough) {
     query.forget();
     glances = 0;
     const IntersectionResult met = query.intersects(meeting_, budget);
-    EXPECT_EQ(met.answer, met.complete ? Answer::kYes : Answer::kNear);
+    EXPECT_EQ(met.answer, met.complete ? Answer::kYes : Answer::kUnknown);
     EXPECT_LE(met.sphere_tests, 500 * (static_cast<std::uint64_t>(glances) + 1));
     glances = 0;
     query.forget();

@@ -73,7 +73,7 @@ TEST_F(WorldBudget, OfTimeEndsTheWholeCall) {
     EXPECT_LE(LateClock::looks, looks + 8);
     const auto touch = world_.intersects(LateClock::budget_of(0));
     for (const PairIntersection& pair : touch.pairs) {
-      EXPECT_EQ(pair.result.answer, ist::Answer::kNear);
+      EXPECT_EQ(pair.result.answer, ist::Answer::kUnknown);
       EXPECT_FALSE(pair.result.complete);
     }
     const auto felt = world_.contacts(LateClock::budget_of(0));

@@ -189,6 +189,9 @@ TEST(World, GivesTheStatusOfAPoseToItsPairsAlone) {
   for (const auto& pair : after.pairs) {
     EXPECT_EQ(pair.status, is_of_3(pair.bodies) ? QueryStatus::kInvalidPose : QueryStatus::kDone);
   }
+  for (const PairIntersection& pair : world.intersects().pairs) {
+    EXPECT_EQ(pair.result.answer == ist::Answer::kUnknown, is_of_3(pair.bodies));
+  }
   for (const auto& pair : world.contacts().pairs) {
     EXPECT_EQ(pair.result.status, pair.status);
     EXPECT_EQ(pair.manifold == nullptr, is_of_3(pair.bodies));

@@ -51,8 +51,7 @@ void set_leaf_pairs(const QueryResult& result, ist_world_pair& out) {
 ist_world_pair convert(const NearPair& pair) { return pair_of(pair); }
 ist_world_pair convert(const PairIntersection& pair) {
   ist_world_pair out = asked(pair);
-  const bool known = pair.result.status == QueryStatus::kDone;
-  out.answer = known ? answer_of(pair.result.answer) : IST_ANSWER_UNKNOWN;
+  out.answer = answer_of(pair.result.answer);
   out.resolution = pair.result.resolution;
   return out;
 }

@@ -9,9 +9,8 @@ namespace ist {
 
 /// Gives a pair that was not asked its result: the status, and what the roots tell.
 inline void leave(const PairAtPose& at, PairIntersection& pair) noexcept {
-  pair.result = {.status = at.near.status, .complete = false};
+  pair.result = {.status = at.near.status};
   if (at.near.status != QueryStatus::kInvalidPose) pair.result.sphere_tests = 1;
-  if (at.near.status == QueryStatus::kDone) pair.result.answer = Answer::kNear;
 }
 inline void leave(const PairAtPose& at, QueryResult& result) noexcept {
   result = {.status = at.near.status, .complete = false};
