@@ -134,8 +134,7 @@ QuantizedPose quantize_pose(const Eigen::Isometry3d& pose, const Lattice& fixed,
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
   if (!rigid) {
     throw Error(ErrorCode::kPoseInvalid,
-                "the pose is not a rigid motion: give 16 finite numbers, a rotation, a translation "
-                "and the last row 0 0 0 1");
+                fmt::format("the pose is not a rigid motion: {}", why_not_rigid(pose)));
   }
   const Motion motion = frame_motion(*rigid, fixed, moving);
   const double pad = std::ceil(pad_of(motion, moving) / kLsb);

@@ -21,14 +21,19 @@ Vector origin_of(const Lattice& lattice) {
 }  // namespace
 
 Rigidity rigidity_of(const Eigen::Isometry3d& pose) {
-  constexpr Number kLimit = 1e-5;
-  constexpr Number kRounding = 1e-14;  // of entries in double
+  constexpr Number kMostError = 1e-3, kMostScale = 1e-5;
+  constexpr Number kRounding = 1e-14;       // of entries in double
+  constexpr Number kScaleRounding = 1e-11;  // of minors in double
   const Eigen::Matrix4d& m = pose.matrix();
   if (!m.allFinite() || m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) return Rigidity::kNone;
   const Matrix rotation = pose.linear().cast<Number>();
   const Number off = (rotation.transpose() * rotation - Matrix::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= kLimit + kRounding) || rotation.determinant() < 0) return Rigidity::kNone;
-  return off < kLimit - kRounding ? Rigidity::kRigid : Rigidity::kEither;
+  if (!(off <= kMostError + kRounding) || rotation.determinant() < 0) return Rigidity::kNone;
+  const Vector stretches = Eigen::JacobiSVD<Matrix>(rotation).singularValues();  // descending
+  const Number scale = std::max(stretches[2] - 1, 1 - stretches[0]);
+  if (scale > kMostScale + kScaleRounding) return Rigidity::kNone;
+  const bool is_rigid = off < kMostError - kRounding && scale < kMostScale - kScaleRounding;
+  return is_rigid ? Rigidity::kRigid : Rigidity::kEither;
 }
 
 FrameMotion frame_motion(const Eigen::Isometry3d& pose, const Lattice& fixed,

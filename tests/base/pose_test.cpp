@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "support/effort.h"
 #include "support/exact.h"
@@ -22,6 +23,27 @@ Eigen::Isometry3d pose_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d
 
 Eigen::Matrix3d random_rotation(test::Random& random) {
   return Eigen::AngleAxisd(random.uniform(-3, 3), random.direction()).toRotationMatrix();
+}
+
+Eigen::Isometry3d still(const Eigen::Matrix3d& rotation) {
+  return pose_of(rotation, Eigen::Vector3d::Zero());
+}
+
+bool says(const Eigen::Matrix3d& rotation, const char* part) {
+  return std::string(why_not_rigid(still(rotation))).find(part) != std::string::npos;
+}
+
+// A symmetric matrix near the identity, of trace 3.
+Eigen::Matrix3d stretch_without_scale(test::Random& random, double size) {
+  Eigen::Matrix3d stretch = Eigen::Matrix3d::Zero();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      stretch(row, column) = stretch(column, row) = random.uniform(-size, size);
+    }
+  }
+  const double mean = stretch.trace() / 3;
+  for (int i = 0; i < 3; ++i) stretch(i, i) += 1 - mean;
+  return stretch;
 }
 
 // The largest entry of |RᵀR - I|, its sums exact.
@@ -101,14 +123,102 @@ TEST(ProjectToRigid, TheNearestRotationIsThePolarFactor) {
 
 TEST(ProjectToRigid, RefusesWhatIsFartherThanTheToleranceFromOrthonormal) {
   for (int k = 0; k < 9; ++k) {
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    rotation(k) += 4e-6;  // RᵀR moves by twice as much on the diagonal
-    EXPECT_TRUE(project_to_rigid(pose_of(rotation, Eigen::Vector3d::Zero()))) << k;
-    rotation = Eigen::Matrix3d::Identity();
-    rotation(k) += 1e-4;
-    EXPECT_FALSE(project_to_rigid(pose_of(rotation, Eigen::Vector3d::Zero()))) << k;
+    for (const double sign : {-1.0, 1.0}) {
+      Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+      rotation(k) += sign * 4.9e-4;  // RᵀR moves by twice as much on the diagonal
+      EXPECT_TRUE(project_to_rigid(still(rotation))) << k;
+      EXPECT_STREQ(why_not_rigid(still(rotation)), "") << k;
+      rotation = Eigen::Matrix3d::Identity();
+      rotation(k) += sign * 1.1e-3;
+      EXPECT_FALSE(project_to_rigid(still(rotation))) << k;
+      EXPECT_TRUE(says(rotation, "farther than 1e-3 from orthonormal")) << k;
+    }
   }
-  EXPECT_FALSE(project_to_rigid(pose_of(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero())));
+  EXPECT_FALSE(project_to_rigid(still(Eigen::Matrix3d::Zero())));
+  EXPECT_TRUE(says(Eigen::Matrix3d::Zero(), "orthonormal"));
+  EXPECT_TRUE(says(Eigen::Matrix3d::Constant(1e200), "orthonormal"));
+}
+
+// A pose that is rough in all ways at once: R·S with S symmetric and without a scale.
+TEST(ProjectToRigid, RoughRotationsBecomeTheirPolarFactor) {
+  test::Random random(6);
+  int rough = 0;
+  for (int i = 0; i < test::samples(300); ++i) {
+    const Eigen::Matrix3d rotation = random_rotation(random);
+    const Eigen::Isometry3d pose =
+        pose_of(rotation * stretch_without_scale(random, 3e-4), random.point(-100, 100));
+    const auto rigid = project_to_rigid(pose);
+    ASSERT_TRUE(rigid) << why_not_rigid(pose);
+    EXPECT_LE((rigid->linear() - rotation).cwiseAbs().maxCoeff(), 4e-15);
+    EXPECT_LE(distance_from_orthonormal(rigid->linear()), 1e-15);
+    EXPECT_EQ(rigid->matrix(), test::rigid_pose(pose).matrix());
+    rough += rotation_error(pose) > 3e-4 ? 1 : 0;
+  }
+  EXPECT_GT(rough, test::samples(300) / 4);
+}
+
+TEST(ProjectToRigid, AProductOfManyFloatRotationsIsAccepted) {
+  const Eigen::Matrix3f step =
+      Eigen::AngleAxisf(0.01F, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  Eigen::Matrix3f product = step;
+  for (int i = 1; i < 3000; ++i) product = product * step;
+  const Eigen::Isometry3d pose = still(product.cast<double>());
+  EXPECT_GT(rotation_error(pose), 1e-5);
+  const auto rigid = project_to_rigid(pose);
+  ASSERT_TRUE(rigid) << rotation_error(pose);
+  EXPECT_LE((rigid->linear() - pose.linear()).cwiseAbs().maxCoeff(), rotation_error(pose));
+}
+
+TEST(ProjectToRigid, RefusesAScaleAndNamesIt) {
+  test::Random random(7);
+  for (int i = 0; i < test::samples(40); ++i) {
+    const Eigen::Matrix3d rotation = random_rotation(random);
+    for (const double scale : {1 + 9e-6, 1 - 9e-6, 1 + 4e-6, 1.0}) {
+      const auto rigid = project_to_rigid(still(scale * rotation));
+      ASSERT_TRUE(rigid) << scale;
+      EXPECT_LE((rigid->linear() - rotation).cwiseAbs().maxCoeff(), 2e-15);
+    }
+    for (const double scale :
+         {1 + 1.1e-5, 1 - 1.1e-5, 1.0001, 0.9996, 1.0005, 1.001, 0.99, 2.0, 0.001, 25.4, 1e9}) {
+      EXPECT_FALSE(project_to_rigid(still(scale * rotation))) << scale;
+      EXPECT_TRUE(says(scale * rotation, "scale")) << scale;
+    }
+    // Beside a scale a rotation may be rough: a scale is what all directions share.
+    const Eigen::Matrix3d rough = rotation * stretch_without_scale(random, 1e-4);
+    EXPECT_TRUE(project_to_rigid(still((1 + 5e-6) * rough)));
+    EXPECT_TRUE(says(1.0003 * rough, "scale"));
+    EXPECT_TRUE(says(0.9997 * rough, "scale"));
+    EXPECT_TRUE(says(3 * rough, "scale"));
+  }
+}
+
+TEST(ProjectToRigid, NamesWhatElseIsWrong) {
+  Eigen::Isometry3d bad = Eigen::Isometry3d::Identity();
+  bad(3, 0) = 0.1;
+  EXPECT_NE(std::string(why_not_rigid(bad)).find("last row"), std::string::npos);
+  bad(0, 0) = std::nan("");
+  EXPECT_NE(std::string(why_not_rigid(bad)).find("not finite"), std::string::npos);
+  EXPECT_TRUE(says(Eigen::Vector3d(1, 1, -1).asDiagonal(), "mirrors"));
+  EXPECT_TRUE(says(Eigen::Vector3d(2, 2, -2).asDiagonal(), "mirrors"));
+}
+
+TEST(RotationError, IsTheLargestEntryOfTheGramMatrixLessOne) {
+  test::Random random(8);
+  EXPECT_EQ(rotation_error(Eigen::Isometry3d::Identity()), 0);
+  for (int i = 0; i < test::samples(100); ++i) {
+    Eigen::Matrix3d rotation = random_rotation(random);
+    const double size = i % 2 == 0 ? 1e-4 : 0.5;
+    for (int k = 0; k < 9; ++k) rotation(k) += random.uniform(-size, size);
+    EXPECT_NEAR(rotation_error(pose_of(rotation, random.point(-1e9, 1e9))),
+                distance_from_orthonormal(rotation), 1e-14);
+  }
+  for (const double bad : {std::nan(""), HUGE_VAL, 1e200}) {
+    for (int k = 0; k < 9; ++k) {
+      Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+      rotation(k) = bad;
+      EXPECT_EQ(rotation_error(still(rotation)), HUGE_VAL) << bad << " at " << k;
+    }
+  }
 }
 
 TEST(ProjectToRigid, RefusesMirrorings) {

@@ -131,6 +131,8 @@ TEST_F(Pose, BadOnesAreRefused) {
   refuses({"--matrix", write("m.txt", "1 2 3")}, 3, "m.txt: give 4 lines of 4 finite numbers");
   refuses({"--matrix", write("m.txt", "1 0 0 0 0 1 0 0 0 0 2 0 0 0 0 1")}, 3, "not a rigid motion");
   refuses({"--matrix", write("m.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 nan")}, 3, "finite");
+  refuses({"--matrix", write("m.txt", "1.0001 0 0 0 0 1.0001 0 0 0 0 1.0001 0 0 0 0 1")}, 3,
+          "not a rigid motion: its scale");
 }
 
 TEST_F(Pose, OtherTransformsOfItkAreRefused) {

@@ -139,6 +139,7 @@ TEST_P(EveryEngine, TellsAPoseThatIsNoRigidMotion) {
   add(Eigen::Matrix3d::Zero());
   add(Eigen::Vector3d(1, 1, -1).asDiagonal());
   add(1.001 * Eigen::Matrix3d::Identity());
+  add(1.0001 * Eigen::Matrix3d::Identity());
   add(Eigen::Matrix3d::Constant(1e200));
   for (const Eigen::Isometry3d& pose : poses) {
     Guarded<LeafPair> out(64, 0);
@@ -162,6 +163,12 @@ TEST_P(EveryEngine, ProjectsARotationThatIsNearlyOne) {
   const FoundPairs answer = ask(query_, rough);
   EXPECT_EQ(answer.result.status, QueryStatus::kDone);
   EXPECT_EQ(answer.leaf_pairs, ask(query_, pose).leaf_pairs);
+  Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
+  stretch(0, 1) = stretch(1, 0) = 4e-4;
+  rough.linear() = pose.linear() * stretch;
+  const FoundPairs rougher = ask(query_, rough);
+  EXPECT_EQ(rougher.result.status, QueryStatus::kDone);
+  EXPECT_EQ(rougher.leaf_pairs, ask(query_, pose).leaf_pairs);
 }
 
 TEST_P(EveryEngine, MakesOneTestFarApart) {

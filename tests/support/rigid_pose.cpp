@@ -1,6 +1,7 @@
 #include "support/rigid_pose.h"
 
 #include <array>
+#include <cmath>
 
 #include "ist/tree/tree_parts.h"
 #include "support/exact.h"
@@ -29,6 +30,17 @@ Rows nearer(const Rows& r) {
   return next;
 }
 
+// Whether an entry of RᵀR - I exceeds 1e-5.
+bool is_rough(const Rows& r) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double gram = in_order(r[0][i] * r[0][j], r[1][i] * r[1][j], r[2][i] * r[2][j]);
+      if (std::abs(gram - (i == j ? 1.0 : 0.0)) > 1e-5) return true;
+    }
+  }
+  return false;
+}
+
 // The root cube's centre in mesh coordinates.
 ExactPoint origin_of(const SphereTree& tree) {
   const Lattice& lattice = tree.parts().lattice;
@@ -45,6 +57,7 @@ Eigen::Isometry3d rigid_pose(const Eigen::Isometry3d& pose) {
   for (std::size_t i = 0; i < 9; ++i) {
     rows[i / 3][i % 3] = pose(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
   }
+  if (is_rough(rows)) rows = nearer(rows);
   rows = nearer(nearer(nearer(rows)));
   Eigen::Isometry3d rigid = pose;
   for (std::size_t i = 0; i < 9; ++i) {

@@ -110,8 +110,8 @@ Eigen::Isometry3d require_rigid(const std::filesystem::path& file, const Eigen::
   const auto rigid = project_to_rigid(pose);
   if (!rigid) {
     refuse(ErrorCode::kPoseInvalid, file,
-           "not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the last "
-           "row 0 0 0 1 (row by row)");
+           fmt::format("not a rigid motion: {} (the 16 numbers are row by row)",
+                       why_not_rigid(pose)));
   }
   return *rigid;
 }

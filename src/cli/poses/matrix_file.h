@@ -10,7 +10,7 @@ namespace ist::cli {
 /// AffineTransform, MatrixOffsetTransformBase, Rigid3DTransform, VersorRigid3DTransform,
 /// Euler3DTransform and TranslationTransform, in three dimensions.
 ///
-/// Throws kInputInvalid for another content, kPoseInvalid for a matrix that is rigid to no 1e-5.
+/// Throws kInputInvalid for another content, kPoseInvalid for a matrix that project_to_rigid() refuses.
 [[nodiscard]] Eigen::Isometry3d read_matrix(const std::filesystem::path& file);
 
 }  // namespace ist::cli

@@ -81,9 +81,8 @@ std::vector<Eigen::Isometry3d> read_poses(const std::filesystem::path& file) {
     }
     if (!project_to_rigid(matrix)) {
       fail(ErrorCode::kPoseInvalid, file,
-           place +
-               ": not a rigid motion: the rotation must be orthonormal to 1e-5 and not mirror, the "
-               "last row 0 0 0 1 (the 16 numbers are column by column)");
+           fmt::format("{}: not a rigid motion: {} (the 16 numbers are column by column)", place,
+                       why_not_rigid(matrix)));
     }
   }
   return poses;

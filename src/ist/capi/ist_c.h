@@ -26,8 +26,10 @@
  *
  * Poses are double[16] in column-major order: [0..2], [4..6] and [8..10] are the images of the x, y
  * and z axes, [12..14] is the translation, and [3], [7], [11], [15] are 0, 0, 0, 1. A query's pose
- * maps moving mesh coordinates to fixed mesh coordinates. A pose that is not finite, or deviates
- * from a rigid motion by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit.
+ * maps moving mesh coordinates to fixed mesh coordinates. A rotation within 1e-3 of orthonormal, by
+ * the largest entry of |R^T R - I|, is projected to the nearest rotation; `rotation_error` in
+ * results says how far it was. A pose that is farther off, is not finite, mirrors, or has a scale
+ * that differs from 1 by more than 1e-5, gives IST_POSE_INVALID. Both meshes share a unit.
  *
  * Real time. Functions marked [real time] allocate no memory, wait for nothing and make no system
  * call. Two exceptions: in a library loaded by dlopen() a thread's first error may allocate memory

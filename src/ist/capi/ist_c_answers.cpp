@@ -70,7 +70,7 @@ ist_status ist_query_leaf_pairs(ist_query* query, const double pose[16], const i
     if (held.status() != IST_OK) return held.status();
     const ist::QueryResult found = held->query.leaf_pairs(
         to_isometry(pose), {reinterpret_cast<ist::LeafPair*>(pairs), capacity}, allowed);
-    if (const ist_status wrong = status_of(call, found.status)) return wrong;
+    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     ist_query_result values = result_of(found);
     values.written = std::min<std::uint64_t>(found.leaf_pairs, capacity);
     values.truncated = found.truncated;
@@ -93,7 +93,7 @@ ist_status ist_query_contacts(ist_query* query, const double pose[16], const ist
     if (!held->manifold) return not_prepared(call);
     const ist::QueryResult found =
         held->query.contacts(to_isometry(pose), *held->manifold, allowed);
-    if (const ist_status wrong = status_of(call, found.status)) return wrong;
+    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     const std::span<const ist::Contact> made = held->manifold->points();
     ist_query_result values = result_of(found);
     values.contacts = made.size();
@@ -143,7 +143,7 @@ ist_status ist_query_distance(ist_query* query, const double pose[16], double to
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
     const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance, allowed);
-    if (const ist_status wrong = status_of(call, found.status)) return wrong;
+    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
                  0, found.narrowest},
                 *result);
@@ -162,7 +162,7 @@ ist_status ist_query_intersects(ist_query* query, const double pose[16], const i
     const Held<QueryObject> held(call, "query", query);
     if (held.status() != IST_OK) return held.status();
     const ist::IntersectionResult found = held->query.intersects(to_isometry(pose), allowed);
-    if (const ist_status wrong = status_of(call, found.status)) return wrong;
+    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     *answer = answer_of(found.answer);
     return IST_OK;
   });
@@ -182,7 +182,7 @@ ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
     if (held.status() != IST_OK) return held.status();
     const ist::TrianglePairsResult found = held->query.triangle_pairs(
         to_isometry(pose), {reinterpret_cast<ist::TrianglePair*>(pairs), capacity}, allowed);
-    if (const ist_status wrong = status_of(call, found.status)) return wrong;
+    if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     ist_triangle_pairs_result values{};
     values.pairs = found.triangle_pairs;
     values.written = std::min<std::uint64_t>(found.triangle_pairs, capacity);

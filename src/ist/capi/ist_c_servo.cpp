@@ -182,7 +182,7 @@ ist_status ist_servo_on_tick(ist_servo* servo, const double pose[16], double for
                                std::span<double, 3>(force, 3), std::span<double, 3>(torque, 3));
     if (tick != ist::ServoTick::kFault) return IST_OK;
     if (!ist::Placement::from(to_isometry(pose))) {
-      return status_of(call, ist::QueryStatus::kInvalidPose);
+      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
     }
     return call.fail(
         IST_SERVO_FAULT,

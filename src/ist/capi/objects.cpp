@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ist/base/pose.h"
+
 namespace ist::capi {
 
 Eigen::Isometry3d to_isometry(const double pose[16]) noexcept {
@@ -55,15 +57,14 @@ ist_status not_prepared(const Call& call) {
                    "the query was created without contacts: create it with a number of them");
 }
 
-ist_status status_of(const Call& call, QueryStatus status) {
+ist_status status_of(const Call& call, QueryStatus status, const double* pose) {
   switch (status) {
     case QueryStatus::kDone:
       return IST_OK;
     case QueryStatus::kInvalidPose:
-      return call.fail(
-          IST_POSE_INVALID,
-          "pose is not a rigid motion: pass finite numbers, with 0 0 0 1 as the last row and a "
-          "rotation that is orthonormal to 1e-5");
+      return call.fail(IST_POSE_INVALID, "pose is not a rigid motion: {}",
+                       pose != nullptr ? why_not_rigid(to_isometry(pose))
+                                       : "set the poses of both bodies first");
     case QueryStatus::kNoTriangles:
       return call.fail(IST_TRIANGLES_MISSING,
                        "a tree has no triangles: build both trees with them");

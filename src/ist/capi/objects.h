@@ -109,7 +109,9 @@ struct CQueryOptions {
 ist_status not_prepared(const Call& call);
 
 /// Converts a query's status; stores the message of an error.
-[[nodiscard]] ist_status status_of(const Call& call, QueryStatus status);
+/// @param pose the pose that was asked about, or NULL
+[[nodiscard]] ist_status status_of(const Call& call, QueryStatus status,
+                                   const double* pose = nullptr);
 
 /// Implements every ..._get_info by `info_of(object)`.
 template <typename T, SizedStruct Info, typename Body>

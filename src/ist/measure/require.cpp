@@ -21,7 +21,7 @@ Eigen::Isometry3d require_rigid(const Eigen::Isometry3d& pose, std::string_view 
   const std::optional<Eigen::Isometry3d> projected = project_to_rigid(pose);
   if (projected) return *projected;
   throw Error(ErrorCode::kPoseInvalid,
-              fmt::format("{}: it is no rigid motion: give a rotation and a shift", name));
+              fmt::format("{}: it is no rigid motion: {}", name, why_not_rigid(pose)));
 }
 
 void require_tolerance(double tolerance) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ist/base/pose.h"
 #include "ist/scene/ranges.h"
 #include "ist/scene/scene_lines.h"
 #include "ist/scene/scene_parts.h"
@@ -48,7 +49,8 @@ class Check {
     }
     if (!Placement::from(Placement{body.rotation}.isometry()) || !body.translation.allFinite()) {
       fail_at(scene_, table + ".quaternion",
-              "the pose of the body is no rigid motion: give finite numbers and a rotation");
+              fmt::format("the pose of the body is no rigid motion: {}",
+                          why_not_rigid(Placement{body.rotation, body.translation}.isometry())));
     }
   }
 
@@ -165,7 +167,9 @@ void check_effects(const Check& check, const Scene& scene) {
   }
   if (scene.snap) {
     if (!Placement::from(scene.snap->pose.isometry())) {
-      fail_at(scene, "effects.snap", "its pose is no rigid motion: give a rotation");
+      fail_at(scene, "effects.snap",
+              fmt::format("its pose is no rigid motion: {}",
+                          why_not_rigid(scene.snap->pose.isometry())));
     }
     check.length("effects.snap.radius", scene.snap->radius);
     check.numbers("effects.snap", *scene.snap, kSnapKeys);

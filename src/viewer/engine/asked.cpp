@@ -64,9 +64,7 @@ Eigen::Isometry3d Asked::pose(const char* name) const {
   }
   if (!project_to_rigid(pose)) {
     throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("{}: it is no rigid motion: give a rotation within 1e-5 of one that "
-                            "keeps lengths, finite numbers, and 0 0 0 1 as its last row",
-                            name));
+                fmt::format("{}: it is no rigid motion: {}", name, why_not_rigid(pose)));
   }
   return pose;
 }

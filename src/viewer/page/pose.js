@@ -11,8 +11,9 @@
 export const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 const degree = Math.PI / 180;
-// As the engine takes them: it makes a rotation this near to one exact, and refuses others.
-const orthonormalTo = 1e-5;
+// The engine makes a rotation this near to orthonormal exact, and refuses a scale beyond its limit.
+const orthonormalTo = 1e-3;
+const scaleTo = 1e-5;
 
 /**
  * @param {readonly number[]} a
@@ -89,6 +90,19 @@ export function moved(pose, shift) {
 }
 
 /**
+ * @param {number[][]} gram
+ * @param {number} square
+ * @param {number} sign
+ * @returns {boolean} whether all eigenvalues of sign * (gram - square I) are above 0, by the leading minors
+ */
+function allBeyond(gram, square, sign) {
+  const [a, b, c] = gram.map((row, i) => row.map((entry, k) => sign * (entry - (i === k ? square : 0))));
+  const minor = a[0] * b[1] - a[1] * b[0];
+  const whole = c[2] * minor - c[1] * (a[0] * b[2] - a[2] * b[0]) + c[0] * (a[1] * b[2] - a[2] * b[1]);
+  return a[0] > 0 && minor > 0 && whole > 0;
+}
+
+/**
  * @param {unknown} numbers
  * @returns {boolean} whether the engine takes them as a pose
  */
@@ -97,11 +111,10 @@ export function isRigid(numbers) {
   if (numbers[3] !== 0 || numbers[7] !== 0 || numbers[11] !== 0 || numbers[15] !== 1) return false;
   const columns = [0, 4, 8].map((at) => numbers.slice(at, at + 3));
   const dot = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  for (let i = 0; i < 3; i++) {
-    for (let k = i; k < 3; k++) {
-      if (Math.abs(dot(columns[i], columns[k]) - (i === k ? 1 : 0)) > 2 * orthonormalTo) return false;
-    }
-  }
+  const gram = columns.map((one) => columns.map((other) => dot(one, other)));
+  const off = (/** @type {number} */ i, /** @type {number} */ k) => Math.abs(gram[i][k] - (i === k ? 1 : 0));
+  for (let i = 0; i < 3; i++) for (let k = i; k < 3; k++) if (off(i, k) > orthonormalTo) return false;
+  if (allBeyond(gram, (1 + scaleTo) ** 2, 1) || allBeyond(gram, (1 - scaleTo) ** 2, -1)) return false;
   const [a, b, c] = columns;
   const handed = dot([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], c);
   return handed > 0;

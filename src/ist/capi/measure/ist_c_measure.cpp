@@ -175,7 +175,7 @@ ist_status ist_query_penetration(ist_query* query, const double pose[16], double
     });
     if (!whole) return cancelled(call);
     if (found.status == ist::Penetration::Status::kInvalidPose) {
-      return status_of(call, ist::QueryStatus::kInvalidPose);
+      return status_of(call, ist::QueryStatus::kInvalidPose, pose);
     }
     write_sized(penetration_of(found), *result);
     return IST_OK;

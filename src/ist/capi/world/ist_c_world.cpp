@@ -55,7 +55,7 @@ ist_status prepare(const char* function, ist_world* world, const ist_body_pair* 
 
 }  // namespace
 
-ist_status status_of_world(const Call& call, QueryStatus status) {
+ist_status status_of_world(const Call& call, QueryStatus status, const double* pose) {
   if (status == QueryStatus::kNoSuchBody) {
     return call.fail(IST_ARGUMENT_INVALID, "no body has this number: pass one that was added");
   }
@@ -63,7 +63,7 @@ ist_status status_of_world(const Call& call, QueryStatus status) {
     return call.fail(IST_NOT_PREPARED,
                      "the world is not prepared: call ist_world_prepare after the last body");
   }
-  return status_of(call, status);
+  return status_of(call, status, pose);
 }
 
 }  // namespace ist::capi
@@ -142,7 +142,7 @@ ist_status ist_world_set_pose(ist_world* world, uint32_t body, const double pose
     if (const ist_status missing = call.need({{"pose", pose}})) return missing;
     const Held<WorldObject> held(call, "world", world);
     if (held.status() != IST_OK) return held.status();
-    return status_of_world(call, held->world.set_pose(body, to_isometry(pose)));
+    return status_of_world(call, held->world.set_pose(body, to_isometry(pose)), pose);
   });
 }
 

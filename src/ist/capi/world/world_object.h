@@ -22,6 +22,8 @@ struct WorldObject {
 };
 
 /// Converts the status of a whole answer; stores the message of an error.
-[[nodiscard]] ist_status status_of_world(const Call& call, QueryStatus status);
+/// @param pose the pose that was asked about, or NULL
+[[nodiscard]] ist_status status_of_world(const Call& call, QueryStatus status,
+                                         const double* pose = nullptr);
 
 }  // namespace ist::capi

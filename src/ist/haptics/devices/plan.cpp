@@ -7,6 +7,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 
 namespace ist {
 
@@ -21,7 +22,8 @@ std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint) {
                        before->time);
   }
   if (!Placement::from(waypoint.pose.isometry())) {
-    return "the pose is no rigid motion: give finite numbers and a rotation orthonormal to 1e-5";
+    return fmt::format("the pose is no rigid motion: {}",
+                       why_not_rigid(waypoint.pose.isometry()));
   }
   // The trace is 1 + 2 cos(turn), as good as its entries.
   constexpr double kRounding = 1e-4;

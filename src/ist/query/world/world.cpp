@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ist/base/error.h"
+#include "ist/base/pose.h"
 #include "ist/query/world/world_state.h"
 #include "simd/dispatch.h"
 
@@ -54,9 +55,8 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
     throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("world: the pose of '{}' is no rigid motion: give a rotation within "
-                            "1e-5 of orthonormal, finite numbers, and a last row of 0 0 0 1",
-                            name));
+                fmt::format("world: the pose of '{}' is no rigid motion: {}", name,
+                            why_not_rigid(pose)));
   }
   if (index == s.bodies.capacity()) {
     s.broad.reserve(2 * index + 8);
