@@ -27,10 +27,11 @@ std::vector<PoseAnswer> ask(Engines& engines, Examiner& examiner,
   progress.begin_stage("asking", static_cast<std::uint64_t>(repeat) * poses.size());
   for (int round = 0; round < repeat; ++round) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const auto& [pose, displacement] = poses[i];
+      const auto& [pose, displacement, rotation_error] = poses[i];
       if (round == 0) {
         answers[i] = {pose, displacement, examiner.at(pose),
                       std::vector<EngineAnswer>(engines.size())};
+        answers[i].findings.rotation_error = rotation_error;
       }
       for (std::size_t e = 0; e < engines.size(); ++e) {
         const Engine::Answer given = engines[e].ask(pose);

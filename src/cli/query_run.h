@@ -14,6 +14,7 @@ namespace ist::cli {
 struct AskedPose {
   Eigen::Isometry3d pose;
   std::optional<double> displacement{};
+  double rotation_error = 0;  ///< of the matrix that was given
 };
 
 /// Asks people's questions once at each pose, and runs every engine `repeat` times round the whole

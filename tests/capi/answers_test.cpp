@@ -266,6 +266,50 @@ TEST_F(CAnswers, AreTheSameWithAPushDistance) {
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
+TEST_F(CAnswers, SayHowFarThePoseWas) {
+  Eigen::Isometry3d rough = poses().front();
+  rough.linear() *= Eigen::Vector3d(1 + 1e-4, 1, 1 - 1e-4).asDiagonal();
+  const double error = rotation_error(rough);
+  EXPECT_GT(error, 1e-4);
+  auto result = sized<ist_query_result>();
+  ASSERT_EQ(name(ist_query_leaf_pairs(c_query_, rough.data(), nullptr, nullptr, 0, &result)), "ok");
+  EXPECT_EQ(result.rotation_error, error);
+  result = sized<ist_query_result>();
+  ASSERT_EQ(
+      name(ist_query_contacts(c_query_, rough.data(), nullptr, nullptr, 0, nullptr, &result)),
+      "ok");
+  EXPECT_EQ(result.rotation_error, error);
+  auto distance = sized<ist_distance_result>();
+  ASSERT_EQ(name(ist_query_distance(c_query_, rough.data(), 1, nullptr, &distance)), "ok");
+  EXPECT_EQ(distance.rotation_error, error);
+  auto met = sized<ist_triangle_pairs_result>();
+  ASSERT_EQ(name(ist_query_triangle_pairs(c_query_, rough.data(), nullptr, nullptr, 0, &met)),
+            "ok");
+  EXPECT_EQ(met.rotation_error, error);
+  auto depth = sized<ist_penetration>();
+  ASSERT_EQ(name(ist_query_penetration(c_query_, rough.data(), 1, nullptr, nullptr, nullptr,
+                                       &depth)),
+            "ok");
+  EXPECT_EQ(depth.rotation_error, error);
+  auto motion = sized<ist_motion>();
+  const Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+  motion.from = start.data();
+  motion.to = rough.data();
+  auto contact = sized<ist_first_contact>();
+  ASSERT_EQ(name(ist_query_first_contact(c_query_, &motion, 1, nullptr, nullptr, &contact)), "ok");
+  EXPECT_EQ(contact.rotation_error, error);
+}
+
+TEST_F(CAnswers, NameAScale) {
+  Eigen::Isometry3d scaled = Eigen::Isometry3d::Identity();
+  scaled.linear() *= 1.0001;
+  std::int32_t answer = IST_ANSWER_NO;
+  EXPECT_EQ(name(ist_query_intersects(c_query_, scaled.data(), nullptr, &answer)), "pose-invalid");
+  EXPECT_EQ(answer, IST_ANSWER_UNKNOWN);
+  EXPECT_NE(std::string(ist_last_error_message()).find("scale"), std::string::npos)
+      << ist_last_error_message();
+}
+
 TEST_F(CAnswers, AreTheSameCertainOnes) {
   std::vector<TrianglePair> pairs(1 << 12);
   std::vector<ist_triangle_pair> c_pairs(1 << 12);
@@ -284,6 +328,7 @@ TEST_F(CAnswers, AreTheSameCertainOnes) {
     EXPECT_EQ(distance.sphere_tests, wanted.sphere_tests);
     EXPECT_EQ(distance.complete, wanted.complete ? 1 : 0);
     EXPECT_EQ(distance.narrowest, wanted.narrowest);
+    EXPECT_EQ(distance.rotation_error, wanted.rotation_error);
     ASSERT_EQ(name(ist_query_distance(c_query_, pose.data(), 9, nullptr, &distance)), "ok");
     EXPECT_EQ(distance.complete, 1);
 

@@ -80,7 +80,7 @@ SIZE(ist_leaf_pair, 8);
 AT(ist_leaf_pair, fixed, 0);
 AT(ist_leaf_pair, moving, 4);
 
-SIZE(ist_query_result, 88);
+SIZE(ist_query_result, 96);
 AT(ist_query_result, struct_size, 0);
 AT(ist_query_result, leaf_pairs, 8);
 AT(ist_query_result, contacts, 16);
@@ -95,6 +95,7 @@ AT(ist_query_result, distance_upper, 64);
 AT(ist_query_result, resolution, 72);
 AT(ist_query_result, found, 80);
 AT(ist_query_result, reserved, 84);
+AT(ist_query_result, rotation_error, 88);
 
 SIZE(ist_budget, 24);
 AT(ist_budget, struct_size, 0);
@@ -117,7 +118,7 @@ AT(ist_contact_sums, spring_force, 72);
 AT(ist_contact_sums, spring_torque, 96);
 AT(ist_contact_sums, about, 120);
 
-SIZE(ist_distance_result, 48);
+SIZE(ist_distance_result, 56);
 AT(ist_distance_result, struct_size, 0);
 AT(ist_distance_result, lower, 8);
 AT(ist_distance_result, upper, 16);
@@ -125,18 +126,20 @@ AT(ist_distance_result, sphere_tests, 24);
 AT(ist_distance_result, complete, 32);
 AT(ist_distance_result, reserved, 36);
 AT(ist_distance_result, narrowest, 40);
+AT(ist_distance_result, rotation_error, 48);
 
 SIZE(ist_triangle_pair, 8);
 AT(ist_triangle_pair, fixed, 0);
 AT(ist_triangle_pair, moving, 4);
 
-SIZE(ist_triangle_pairs_result, 40);
+SIZE(ist_triangle_pairs_result, 48);
 AT(ist_triangle_pairs_result, struct_size, 0);
 AT(ist_triangle_pairs_result, pairs, 8);
 AT(ist_triangle_pairs_result, written, 16);
 AT(ist_triangle_pairs_result, sphere_tests, 24);
 AT(ist_triangle_pairs_result, truncated, 32);
 AT(ist_triangle_pairs_result, complete, 36);
+AT(ist_triangle_pairs_result, rotation_error, 40);
 
 SIZE(ist_servo_options, 48);
 AT(ist_servo_options, struct_size, 0);
@@ -176,7 +179,7 @@ AT(ist_surface_distance, triangle, 32);
 AT(ist_surface_distance, is_signed, 36);
 AT(ist_surface_distance, self_intersecting, 38);
 
-SIZE(ist_penetration, 112);
+SIZE(ist_penetration, 120);
 AT(ist_penetration, lower, 8);
 AT(ist_penetration, upper, 16);
 AT(ist_penetration, point, 24);
@@ -189,6 +192,7 @@ AT(ist_penetration, narrowest, 88);
 AT(ist_penetration, points, 96);
 AT(ist_penetration, self_intersecting, 104);
 AT(ist_penetration, capped, 108);
+AT(ist_penetration, rotation_error, 112);
 
 SIZE(ist_motion, 88);
 AT(ist_motion, from, 8);
@@ -198,7 +202,7 @@ AT(ist_motion, direction, 48);
 AT(ist_motion, angle, 72);
 AT(ist_motion, along, 80);
 
-SIZE(ist_first_contact, 80);
+SIZE(ist_first_contact, 88);
 AT(ist_first_contact, lower, 8);
 AT(ist_first_contact, upper, 16);
 AT(ist_first_contact, distance_lower, 24);
@@ -211,6 +215,7 @@ AT(ist_first_contact, moving, 56);
 AT(ist_first_contact, self_intersecting, 60);
 AT(ist_first_contact, narrowest, 64);
 AT(ist_first_contact, distances, 72);
+AT(ist_first_contact, rotation_error, 80);
 
 SIZE(ist_occlusion_options, 72);
 AT(ist_occlusion_options, reach, 8);

@@ -41,6 +41,7 @@ class QueryOutput : public CliTest {
     std::map<std::string, Type> keys = {
         {"index", Type::number_unsigned},
         {"pose", Type::array},
+        {"rotation_error", Type::number_float},
         {"engine", Type::string},
         {"spheres", Type::string},
         {"target", Type::string},

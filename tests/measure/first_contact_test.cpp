@@ -49,6 +49,16 @@ TEST(FirstContact, OfBoxesIsWhereTheirFacesMeet) {
   EXPECT_LT(least.narrowest, 1e-5);
 }
 
+TEST(FirstContact, SaysHowFarThePosesWere) {
+  BodyPair pair(box({0, 0, 0}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1}));
+  Pose from = place({0.3, 0.2, 4}), to = place({0.3, 0.2, -2});
+  EXPECT_EQ(first_contact(pair.query, from, to, 0.1).rotation_error, 0);
+  from(0, 1) = 2e-4;
+  EXPECT_EQ(first_contact(pair.query, from, to, 0.1).rotation_error, 2e-4);
+  to(1, 0) = 3e-4;
+  EXPECT_EQ(first_contact(pair.query, from, to, 0.1).rotation_error, 3e-4);
+}
+
 TEST(FirstContact, HasAStatusForEveryEnd) {
   IST_SLOW();
   BodyPair pair(box({-2, -2, -2}, {2, 2, 2}), box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));

@@ -66,6 +66,15 @@ TEST(Penetration, OfSpheresIsTheirClosedForm) {
   expect_consistent(bodies, place({0, 1.5, 0}), inside, 1e-3);
 }
 
+TEST(Penetration, SaysHowFarThePoseWas) {
+  Bodies bodies(icosphere(2, 4), icosphere(2, 2));
+  Pose rough = place({5, 0, 0});
+  for (const double skew : {0.0, 5e-4, 0.2}) {
+    rough(0, 1) = skew;
+    EXPECT_NEAR(bodies.at(rough, 1).rotation_error, skew, 1e-15);
+  }
+}
+
 TEST(Penetration, OfBoxesIsExact) {
   Bodies bodies(box({0, 0, 0}, {4, 4, 4}), box({0, 0, 0}, {1, 1, 1}));
   const Penetration face = bodies.at(place({1.5, 1.5, 3.5}), 1e-6);

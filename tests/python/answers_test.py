@@ -107,6 +107,20 @@ class Verbs(Jaws):
         apart = np.linalg.norm(self.upper.leaf_centres[pairs["fixed"]] - moved[pairs["moving"]], axis=1)
         self.assertLess(apart.max(), 2 * 0.8 * np.sqrt(3))
 
+    def test_answers_say_how_far_the_pose_was(self):
+        pose = JAW_POSES[1].copy()
+        pose[:3, :3] = pose[:3, :3] @ np.diag([1 + 2e-4, 1, 1 - 2e-4])
+        error = np.abs(pose[:3, :3].T @ pose[:3, :3] - np.eye(3)).max()
+        self.assertGreater(error, 1e-4)
+        for answer in (self.query.leaf_pairs(pose), self.query.leaf_pairs(pose, most=5), self.query.contacts(pose),
+                       self.query.distance(pose, 0.1), self.query.triangle_pairs(pose), self.query.penetration(pose, 0.1),
+                       self.query.first_contact(np.eye(4), pose, 0.1)):
+            self.assertAlmostEqual(answer.rotation_error, error, places=14, msg=type(answer).__name__)
+        self.assertEqual(self.query.distance(np.eye(4)).rotation_error, 0)
+        pose[:3, :3] = 1.0001 * np.eye(3)
+        with self.assertRaisesRegex(ist.InputError, "scale"):
+            self.query.intersects(pose)
+
     def test_a_limit_ends_a_search(self):
         stopped = self.query.leaf_pairs(JAW_POSES[2], tests=200)
         self.assertFalse(stopped.complete)

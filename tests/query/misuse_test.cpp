@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
+#include "ist/base/pose.h"
 #include "ist/query/query.h"
 #include "ist/query/reference/reference_query.h"
 #include "query/query_cases.h"
@@ -101,6 +103,36 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
   EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
+}
+
+// So does a result at a pose that is refused.
+TEST_F(Misuse, OfARoughPoseSaysHowFarItWas) {
+  const SphereTree exact = ball(0.25, true);
+  Query query(exact, exact), without(tree_, tree_);
+  ContactManifold manifold(exact, exact, query.policy());
+  for (const double skew : {0.0, 1e-7, 4e-4, 0.1}) {
+    Eigen::Isometry3d rough = pose_;
+    rough(0, 1) = skew;
+    const bool is_rigid = skew < 1e-3;
+    const auto expect = [&](QueryStatus status, double error) {
+      EXPECT_EQ(status, is_rigid ? QueryStatus::kDone : QueryStatus::kInvalidPose) << skew;
+      EXPECT_EQ(error, rotation_error(rough)) << skew;
+      EXPECT_NEAR(error, std::max(skew, skew * skew), 1e-15);
+    };
+    const auto expect_of = [&](const auto& result) {
+      expect(result.status, result.rotation_error);
+    };
+    expect_of(query.intersects(rough));
+    expect_of(without.intersects(rough));
+    expect_of(query.leaf_pairs(rough, {}));
+    expect_of(query.leaf_pairs(rough, {}, {.tests = 10}));
+    expect_of(query.contacts(rough, manifold));
+    expect_of(query.distance(rough, 0.1));
+    expect_of(without.distance(rough, 0.1));
+    expect_of(query.triangle_pairs(rough, {}));
+    expect_of(ReferenceQuery(exact, exact, SpherePolicy::kSlab).leaf_pairs(rough, {}));
+    EXPECT_EQ(query.intersects(rough).answer, is_rigid ? Answer::kYes : Answer::kUnknown);
+  }
 }
 
 TEST_F(Misuse, AResultWithoutAnAnswerIsUnknown) {

@@ -37,6 +37,7 @@ struct Findings {
   Depth depth;
   std::optional<std::uint64_t> contacts{};  ///< contact points
   std::optional<double> contact_depth{};    ///< of the deepest of them
+  double rotation_error = 0;                ///< of the given pose
   std::vector<std::string> notes{};         ///< for people, a few words each
 
   [[nodiscard]] Meeting meeting() const;

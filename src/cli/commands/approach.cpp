@@ -36,12 +36,12 @@ struct ApproachArguments {
 
 // The straight way of the moving body: `start` is where it is named to be.
 struct Path {
-  Eigen::Isometry3d start;
+  GivenPose start;
   Eigen::Vector3d axis;
   double from, to;
 
   [[nodiscard]] Eigen::Isometry3d at(double displacement) const {
-    Eigen::Isometry3d pose = start;
+    Eigen::Isometry3d pose = start.pose;
     pose.translation() += displacement * axis;
     return pose;
   }
@@ -63,7 +63,7 @@ std::vector<AskedPose> poses_along(const Path& path, const std::optional<double>
   std::vector<AskedPose> poses;
   for (int i = 0; i <= steps; ++i) {
     const double displacement = path.from + (path.to < path.from ? -i : i) * step;
-    poses.push_back({path.at(displacement), displacement});
+    poses.push_back({path.at(displacement), displacement, path.start.rotation_error});
   }
   return poses;
 }

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
@@ -22,7 +23,9 @@ void run(const CollideArguments& options) {
   refuse_to_overwrite(query.contacts, {query.files.fixed, query.files.moving, options.pose.matrix,
                                        options.pose.poses});
   std::vector<AskedPose> poses;
-  for (const Eigen::Isometry3d& pose : options.pose.poses_named()) poses.push_back({pose});
+  for (const GivenPose& given : options.pose.poses_named()) {
+    poses.push_back({given.pose, std::nullopt, given.rotation_error});
+  }
   const Bodies bodies = load_bodies(query.body_files());
   if (!query.json && poses.size() == 1) echo_pose(options.pose, poses.front().pose);
   const Meeting meeting = run_queries(bodies, poses, query);

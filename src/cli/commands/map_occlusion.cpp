@@ -169,12 +169,14 @@ void run(const OcclusionArguments& options) {
   const std::vector<Output> outputs = outputs_of(options);
   refuse_if(outputs.empty() && !options.json, "-o",
             "name a file that ends in .vtp, .ply, .glb, .csv, .json or .html, or give --json");
-  const Eigen::Isometry3d pose = options.pose.poses_named().front();
+  const auto [pose, rotation_error] = options.pose.poses_named().front();
   const Bodies bodies = load_bodies(options.files);
   if (!options.json) echo_pose(options.pose, pose);
-  const Bite bite = [&] {
+  const Bite bite = [&, pose = pose, error = rotation_error] {
     ProgressBar progress;
-    return make_bite(bodies, sources_of(bodies, options.files), pose, questions, progress);
+    Bite made = make_bite(bodies, sources_of(bodies, options.files), pose, questions, progress);
+    made.findings.rotation_error = error;
+    return made;
   }();
   BiteSelection selection;
   if (!options.side.empty()) {

@@ -56,7 +56,7 @@ nlohmann::ordered_json block_of_bodies(const ViewArguments& options) {
   const NamedTree fixed = named("fixed", bodies.fixed, options.fixed);
   if (options.moving.empty()) return body_alone_block(fixed);
   return bodies_block(fixed, named("moving", bodies.moving, options.moving),
-                      options.pose.poses_named().front());
+                      options.pose.poses_named().front().pose);
 }
 
 nlohmann::ordered_json block_of(const ViewArguments& options) {

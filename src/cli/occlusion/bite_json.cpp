@@ -95,6 +95,7 @@ ordered_json json_of(const Bite& bite) {
       {"schema", 1}, {"version", IST_VERSION}, {"commit", IST_COMMIT}, {"unit", bite.unit}};
   out["unit_assumed"] = bite.unit_assumed;
   out["pose"] = pose_json(bite.pose);
+  out["rotation_error"] = bite.findings.rotation_error;
   out["reach"] = bite.reach;
   out["preset"] = {{"name", bite.preset->name},
                    {"micrometres", bite.preset->micrometres},

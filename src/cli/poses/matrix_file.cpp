@@ -116,7 +116,7 @@ Eigen::Isometry3d require_rigid(const std::filesystem::path& file, const Eigen::
   return *rigid;
 }
 
-Eigen::Isometry3d read_itk(const std::filesystem::path& file, const std::string& content) {
+GivenPose read_itk(const std::filesystem::path& file, const std::string& content) {
   const Value type = value_of(content, "Transform:"), parameters = value_of(content, "Parameters:"),
               fixed = value_of(content, "FixedParameters:");
   if (type.count > 1) {
@@ -145,12 +145,12 @@ Eigen::Isometry3d read_itk(const std::filesystem::path& file, const std::string&
   Eigen::Isometry3d to_moving = Eigen::Isometry3d::Identity();
   to_moving.linear() = made->matrix;
   to_moving.translation() = made->shift + c - made->matrix * c;
-  return require_rigid(file, to_moving).inverse();
+  return {require_rigid(file, to_moving).inverse(), rotation_error(to_moving)};
 }
 
 }  // namespace
 
-Eigen::Isometry3d read_matrix(const std::filesystem::path& file) {
+GivenPose read_matrix(const std::filesystem::path& file) {
   const std::string content = InputFile(file).read_rest();
   if (content.starts_with(kItk)) return read_itk(file, content);
   const auto numbers = numbers_of(content);
@@ -161,7 +161,7 @@ Eigen::Isometry3d read_matrix(const std::filesystem::path& file) {
   }
   Eigen::Isometry3d pose;
   pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers->data());
-  return require_rigid(file, pose);
+  return {require_rigid(file, pose), rotation_error(pose)};
 }
 
 }  // namespace ist::cli

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <filesystem>
+
+#include "cli/poses/given_pose.h"
 
 namespace ist::cli {
 
@@ -10,7 +11,8 @@ namespace ist::cli {
 /// AffineTransform, MatrixOffsetTransformBase, Rigid3DTransform, VersorRigid3DTransform,
 /// Euler3DTransform and TranslationTransform, in three dimensions.
 ///
-/// Throws kInputInvalid for another content, kPoseInvalid for a matrix that project_to_rigid() refuses.
-[[nodiscard]] Eigen::Isometry3d read_matrix(const std::filesystem::path& file);
+/// The pose is rigid. Throws kInputInvalid for another content, and kPoseInvalid for a matrix that
+/// project_to_rigid() refuses.
+[[nodiscard]] GivenPose read_matrix(const std::filesystem::path& file);
 
 }  // namespace ist::cli

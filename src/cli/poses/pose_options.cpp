@@ -83,8 +83,14 @@ bool PoseOptions::is_named() const {
   return !move.empty() || !turn.empty() || !matrix.empty() || !poses.empty();
 }
 
-std::vector<Eigen::Isometry3d> PoseOptions::poses_named() const {
-  if (!poses.empty()) return read_poses(poses);
+std::vector<GivenPose> PoseOptions::poses_named() const {
+  if (!poses.empty()) {
+    std::vector<GivenPose> given;
+    for (const Eigen::Isometry3d& pose : read_poses(poses)) {
+      given.push_back({pose, rotation_error(pose)});
+    }
+    return given;
+  }
   if (!matrix.empty()) return {read_matrix(matrix)};
   Eigen::Isometry3d pose =
       turn.empty() ? Eigen::Isometry3d(Eigen::Isometry3d::Identity()) : turn_named(turn);
@@ -94,7 +100,7 @@ std::vector<Eigen::Isometry3d> PoseOptions::poses_named() const {
     pose.translation() += *shift;
   }
   refuse_if(!project_to_rigid(pose), "--move, --turn", "too far away for a double");
-  return {pose};
+  return {{pose, rotation_error(pose)}};
 }
 
 void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {

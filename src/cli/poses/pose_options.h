@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/cli11_fwd.h"
+#include "cli/poses/given_pose.h"
 
 namespace ist::cli {
 
@@ -21,7 +22,7 @@ struct PoseOptions {
   [[nodiscard]] bool is_named() const;
   /// Returns one pose, or those of the file. Throws CLI::ValidationError for words that are no
   /// motion, and as read_poses() and read_matrix().
-  [[nodiscard]] std::vector<Eigen::Isometry3d> poses_named() const;
+  [[nodiscard]] std::vector<GivenPose> poses_named() const;
 };
 
 /// How many poses a command takes.

@@ -289,6 +289,7 @@ typedef struct ist_query_result {
   double resolution;      /**< greatest distance between the surfaces in a leaf pair */
   int32_t found;          /**< IST_FOUND_...; only sphere_tests and the distance depend on it */
   int32_t reserved;       /**< zero */
+  double rotation_error;  /**< of the given pose: the largest entry of |R^T R - I| */
 } ist_query_result;
 
 /** The limits of one query, with one contract for every function that takes them. A search never
@@ -352,6 +353,7 @@ typedef struct ist_distance_result {
   int32_t complete;      /**< 1: the interval is no wider than the tolerance */
   int32_t reserved;      /**< zero */
   double narrowest;      /**< no tolerance below this width can be reached at this pose */
+  double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
 } ist_distance_result;
 
 /** Bounds the distance between the surfaces by an interval no wider than `tolerance`, or
@@ -387,6 +389,7 @@ typedef struct ist_triangle_pairs_result {
   uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
   int32_t truncated;     /**< 1: the array was too short and holds the first pairs */
   int32_t complete;      /**< 0: the budget ended the search; there may be more pairs */
+  double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
 } ist_triangle_pairs_result;
 
 /** Finds all pairs of triangles with a common point, exactly, sorted as leaf pairs are. Errors:

@@ -40,6 +40,7 @@ ist_query_result result_of(const QueryResult& found) {
   }
   result.resolution = found.resolution;
   result.found = static_cast<std::int32_t>(found.found);
+  result.rotation_error = found.rotation_error;
   return result;
 }
 
@@ -145,7 +146,7 @@ ist_status ist_query_distance(ist_query* query, const double pose[16], double to
     const ist::DistanceResult found = held->query.distance(to_isometry(pose), tolerance, allowed);
     if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     write_sized({0, found.distance.lower, found.distance.upper, found.sphere_tests, found.complete,
-                 0, found.narrowest},
+                 0, found.narrowest, found.rotation_error},
                 *result);
     return IST_OK;
   });
@@ -189,6 +190,7 @@ ist_status ist_query_triangle_pairs(ist_query* query, const double pose[16],
     values.sphere_tests = found.sphere_tests;
     values.truncated = found.truncated;
     values.complete = found.complete;
+    values.rotation_error = found.rotation_error;
     write_sized(values, *result);
     return IST_OK;
   });

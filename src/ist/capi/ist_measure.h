@@ -73,6 +73,7 @@ typedef struct ist_penetration {
   uint64_t points;           /**< points of which the distance was measured */
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
   int32_t capped; /**< 1: the search ended after 4 million pieces of triangles; `complete` is 0 */
+  double rotation_error; /**< of the given pose: the largest entry of |R^T R - I| */
 } ist_penetration;
 
 /** Bounds the depth of the deepest point of either surface inside the other body by an interval no
@@ -124,6 +125,7 @@ typedef struct ist_first_contact {
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
   double narrowest;          /**< the least tolerance that is reached here */
   uint64_t distances;        /**< asked for */
+  double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
 } ist_first_contact;
 
 /** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes

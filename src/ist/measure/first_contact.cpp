@@ -67,6 +67,7 @@ class Advance {
     // Of a pose on the way: the longest way of a point counts too.
     rounding_ = 0x1p-42 * (size(query.fixed()) + size(query.moving()) + way_ +
                            motion.at(0).translation().cwiseAbs().maxCoeff());
+    found_.rotation_error = motion.rotation_error();
     limit_tolerance(0);
   }
 

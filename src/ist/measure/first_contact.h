@@ -32,6 +32,9 @@ class IST_API Motion {
   /// `points` in moving coordinates. Cost: 5 ns a point.
   [[nodiscard]] double longest_way(std::span<const Eigen::Vector3d> points) const noexcept;
 
+  /// How far the rotations of the given poses were from orthonormal: the larger rotation_error().
+  [[nodiscard]] double rotation_error() const noexcept { return rotation_error_; }
+
  private:
   Motion() = default;
 
@@ -41,7 +44,7 @@ class IST_API Motion {
   // alignment of Eigen's types depends on the instruction set.
   double rotation_[3][3], translation_[3];  // of the first pose
   double axis_[3], centre_[3], across_[3];
-  double angle_, along_;
+  double angle_, along_, rotation_error_;
 };
 
 /// When a moving body first meets the fixed one.
@@ -76,6 +79,7 @@ struct FirstContact {
   bool fixed_self_intersecting = false, moving_self_intersecting = false;
   std::uint64_t distances = 0;  ///< distances that were asked for
   std::uint64_t verdicts = 0;   ///< exact questions whether triangles intersect
+  double rotation_error = 0;    ///< Motion::rotation_error()
 };
 /// Returns the status' name, such as "touches-at-start", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(FirstContact::Status status) noexcept;

@@ -9,6 +9,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/first_contact.h"
 #include "ist/measure/require.h"
@@ -45,6 +46,7 @@ Motion Motion::between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& t
   const Vector imaginary = turn.vec();
   const double sine = std::sqrt(dot_in_order(imaginary, imaginary));  // of half the angle
   Motion motion = screw(from, Vector(0, 0, 0), Vector(0, 0, 1), 0, 0);
+  motion.rotation_error_ = std::max(motion.rotation_error_, ist::rotation_error(to));
   const Vector shift =
       last.translation() - last.linear() * first.linear().transpose() * first.translation();
   if (!(sine > 0)) {
@@ -92,6 +94,7 @@ Motion Motion::screw(const Eigen::Isometry3d& from, const Vector& point, const V
   store(cross_in_order(axis, centre), motion.across_);
   motion.angle_ = angle;
   motion.along_ = along;
+  motion.rotation_error_ = ist::rotation_error(from);
   return motion;
 }
 

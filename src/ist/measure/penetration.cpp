@@ -50,6 +50,7 @@ Penetration penetration(Query& query, const Eigen::Isometry3d& pose, double tole
   require_triangles(moving, "moving");
   require_tolerance(tolerance);
   Penetration result;
+  result.rotation_error = rotation_error(pose);
   const std::optional<Eigen::Isometry3d> rigid = project_to_rigid(pose);
   if (!rigid) {
     result.status = DepthStatus::kInvalidPose;

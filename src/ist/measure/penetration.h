@@ -21,7 +21,7 @@ struct Penetration {
     kBusy,             ///< another thread is using the query
   };
 
-  Status status = Status::kDone;  ///< other than kDone: all numbers are 0
+  Status status = Status::kDone;  ///< other than kDone: all numbers but `rotation_error` are 0
   bool complete = false;          ///< the interval is no wider than the tolerance, or `narrowest`
   bool capped = false;            ///< the search ended after 4 million pieces of triangles
   double lower = 0,               ///< the depth is no less, mesh units; 0: the bodies may be apart
@@ -41,6 +41,8 @@ struct Penetration {
   /// inside the body.
   bool fixed_self_intersecting = false, moving_self_intersecting = false;
   std::uint64_t points = 0;  ///< points of which the distance was measured
+  /// How far the rotation of the given pose was from orthonormal (rotation_error).
+  double rotation_error = 0;
 };
 /// Returns the status' name, such as "fixed-not-closed", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(Penetration::Status status) noexcept;

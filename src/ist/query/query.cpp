@@ -65,8 +65,10 @@ IntersectionResult Query::intersects(const Eigen::Isometry3d& pose, const Budget
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose};
-  IntersectionResult result{.answer = Answer::kNo, .complete = true, .sphere_tests = 1};
+  const double off = rotation_error(pose);
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .rotation_error = off};
+  IntersectionResult result{
+      .answer = Answer::kNo, .complete = true, .sphere_tests = 1, .rotation_error = off};
   if (!bodies->roots.overlap) return result;
   if (s.exact) {
     const ExactSearch::Any any = s.exact->any({*project_to_rigid(pose), bodies->relative}, budget);
@@ -124,8 +126,9 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   }
   const double margin = reducer.scale().margin;
   const std::optional<detail::Approach> bodies = s.approach(pose, margin);
-  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  if (!bodies) return detail::invalid_pose(pose);
   QueryResult result = s.root_result(bodies->roots, margin);
+  result.rotation_error = rotation_error(pose);
   if (!bodies->roots.overlap) return result;
 
   const SearchPose from = s.to_float(*bodies);
@@ -150,8 +153,11 @@ TrianglePairsResult Query::triangle_pairs(const Eigen::Isometry3d& pose,
   if (!use) return {.status = QueryStatus::kBusy, .complete = false};
   if (!s.exact) return {.status = QueryStatus::kNoTriangles, .complete = false};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
-  TrianglePairsResult result{.sphere_tests = 1};
+  const double off = rotation_error(pose);
+  if (!bodies) {
+    return {.status = QueryStatus::kInvalidPose, .complete = false, .rotation_error = off};
+  }
+  TrianglePairsResult result{.sphere_tests = 1, .rotation_error = off};
   if (!bodies->roots.overlap) return result;
   const ExactSearch::End end =
       s.exact->pairs({*project_to_rigid(pose), bodies->relative}, budget, out);

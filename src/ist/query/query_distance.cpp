@@ -62,8 +62,10 @@ DistanceResult Query::distance(const Eigen::Isometry3d& pose, double tolerance,
   const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy};
   const std::optional<detail::Approach> bodies = s.approach(pose, s.triangle_error(pose));
-  if (!bodies) return {.status = QueryStatus::kInvalidPose};
-  DistanceResult result{.distance = bodies->roots.distance, .sphere_tests = 1};
+  const double off = rotation_error(pose);
+  if (!bodies) return {.status = QueryStatus::kInvalidPose, .rotation_error = off};
+  DistanceResult result{
+      .distance = bodies->roots.distance, .sphere_tests = 1, .rotation_error = off};
   if (s.exact) {
     s.nearest_triangles(pose, *bodies, tolerance, budget, result);
   } else {

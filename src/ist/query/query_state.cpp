@@ -117,8 +117,9 @@ QueryResult QueryState::root_result(const RootTest& roots, double margin) const 
 QueryResult QueryState::list(const Eigen::Isometry3d& pose, const Budget& budget,
                              LeafPairSink& sink) noexcept {
   const std::optional<Approach> bodies = approach(pose);
-  if (!bodies) return {.status = QueryStatus::kInvalidPose, .complete = false};
+  if (!bodies) return invalid_pose(pose);
   QueryResult result = root_result(bodies->roots);
+  result.rotation_error = rotation_error(pose);
   if (!bodies->roots.overlap) return result;
   search<PairLister>(*bodies, to_float(*bodies), budget,
                      budget.is_limited() ? Measured::kBoth : Measured::kNothing, sink, result);

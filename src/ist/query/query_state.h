@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/query/coherent/coherent_search.h"
 #include "ist/query/exact/exact_search.h"
 #include "ist/query/query.h"
@@ -22,6 +23,13 @@ struct Approach {
   RootTest roots;
   double margin;  ///< added to the radius sum of every test
 };
+
+/// Returns the result at a pose that is no rigid motion.
+[[nodiscard]] inline QueryResult invalid_pose(const Eigen::Isometry3d& pose) noexcept {
+  return {.status = QueryStatus::kInvalidPose,
+          .complete = false,
+          .rotation_error = rotation_error(pose)};
+}
 
 /// The memory of a Query, and the steps that its verbs share.
 struct QueryState {

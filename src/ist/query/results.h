@@ -93,6 +93,9 @@ struct QueryResult {
   /// and the rounding error that the tests allow for.
   double pad = 0;
   Found found = Found::kFresh;  ///< the way to the answer, which does not change it
+  /// How far the rotation of the given pose was from orthonormal (rotation_error). The answer is that
+  /// of the nearest rotation.
+  double rotation_error = 0;
 };
 
 /// A pair of triangles that have a point in common, by their indices in the two meshes.
@@ -111,6 +114,7 @@ struct TrianglePairsResult {
   bool truncated = false;                   ///< the span was too short and holds the first pairs
   std::uint64_t triangle_pairs = 0;  ///< pairs that intersect and were found, in the span or not
   std::uint64_t sphere_tests = 0;    ///< as Budget::tests counts them
+  double rotation_error = 0;         ///< as QueryResult has it
 };
 
 /// The answer of Query::distance.
@@ -123,6 +127,7 @@ struct DistanceResult {
   /// resolution.
   double narrowest = 0;
   std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
+  double rotation_error = 0;       ///< as QueryResult has it
 };
 
 /// Whether two bodies intersect. The numbers are the IST_ANSWER_... of C.
@@ -142,7 +147,8 @@ struct IntersectionResult {
   Answer answer = Answer::kUnknown;  ///< exact where both trees have triangles
   bool complete = false;             ///< no budget ended the search, and no error
   double resolution = 0;             ///< with kNear: the surfaces are no farther apart
-  std::uint64_t sphere_tests = 0;  ///< as Budget::tests counts them
+  std::uint64_t sphere_tests = 0;    ///< as Budget::tests counts them
+  double rotation_error = 0;         ///< as QueryResult has it
 };
 
 /// How often the second worker of a query helped, since the query was made.

@@ -130,6 +130,7 @@ class LeafPairs(NamedTuple):
     distance: Optional[Tuple[float, float]]
     resolution: float
     sphere_tests: int
+    rotation_error: float
 
 class Contacts(NamedTuple):
     contacts: Records
@@ -139,6 +140,7 @@ class Contacts(NamedTuple):
     area: float
     sphere_tests: int
     memory_of_sums: bytearray
+    rotation_error: float
     @property
     def sums(self) -> Records: ...
     def wrench(self, stiffness: float) -> Tuple[F8, F8, F8]: ...
@@ -149,6 +151,7 @@ class Distance(NamedTuple):
     complete: bool
     narrowest: float
     sphere_tests: int
+    rotation_error: float
 
 class TrianglePairs(NamedTuple):
     pairs: Records
@@ -156,6 +159,7 @@ class TrianglePairs(NamedTuple):
     complete: bool
     truncated: bool
     sphere_tests: int
+    rotation_error: float
 
 class Penetration(NamedTuple):
     lower: float
@@ -170,6 +174,7 @@ class Penetration(NamedTuple):
     points: int
     self_intersecting: Optional[Literal["fixed", "moving", "both"]] = ...
     capped: bool = ...
+    rotation_error: float = ...
 
 class FirstContact(NamedTuple):
     outcome: Literal["contact", "none", "grazing", "touches at start", "inside at start", "stopped"]
@@ -181,6 +186,7 @@ class FirstContact(NamedTuple):
     narrowest: float
     distances: int
     self_intersecting: Optional[Literal["fixed", "moving", "both"]]
+    rotation_error: float
 
 class BodyOcclusion(NamedTuple):
     distances: Records

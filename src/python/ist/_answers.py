@@ -20,6 +20,7 @@ class LeafPairs(NamedTuple):
     distance: Optional[Tuple[float, float]]  # the surfaces' distance lies between, where it is known
     resolution: float  # the surfaces in a pair are no farther apart
     sphere_tests: int
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
 class Contacts(NamedTuple):
@@ -32,6 +33,7 @@ class Contacts(NamedTuple):
     area: float  # sum of the weights of all leaf pairs, mesh units²
     sphere_tests: int
     memory_of_sums: bytearray  # of `sums`, which is made of it when somebody asks
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|; NaN of a pair of a world
 
     @property
     def sums(self):
@@ -53,6 +55,7 @@ class Distance(NamedTuple):
     complete: bool  # the interval is no wider than the tolerance
     narrowest: float  # no tolerance below this width can be reached here
     sphere_tests: int
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
 class TrianglePairs(NamedTuple):
@@ -63,6 +66,7 @@ class TrianglePairs(NamedTuple):
     complete: bool
     truncated: bool
     sphere_tests: int
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
 class WorldPairs(NamedTuple):
@@ -131,6 +135,7 @@ class Penetration(NamedTuple):
     points: int  # points of which the distance was measured
     self_intersecting: Optional[str] = None  # "fixed", "moving" or "both": that surface intersects itself
     capped: bool = False  # the search ended after 4 million pieces of triangles, and `complete` is False
+    rotation_error: float = 0.0  # of the given pose: the largest entry of |RᵀR - I|
 
 
 class FirstContact(NamedTuple):
@@ -145,6 +150,7 @@ class FirstContact(NamedTuple):
     narrowest: float
     distances: int  # asked for
     self_intersecting: Optional[str]  # "fixed", "moving" or "both": that surface intersects itself
+    rotation_error: float  # of the given poses, the larger one
 
 
 class BodyOcclusion(NamedTuple):

@@ -77,6 +77,7 @@ def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, prog
             result.points,
             SELF_INTERSECTING[result.self_intersecting],
             result.capped == 1,
+            result.rotation_error,
         )
     finally:
         self._lock.release()
@@ -108,6 +109,7 @@ def first_contact(self, start, stop, tolerance, *, distances=0, seconds=0.0, pro
             result.narrowest,
             result.distances,
             SELF_INTERSECTING[result.self_intersecting],
+            result.rotation_error,
         )
     finally:
         self._lock.release()

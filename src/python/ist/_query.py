@@ -162,9 +162,9 @@ class Query(Lone):
                 status = _leaf_pairs(self._self, self._pose, limit, room.place, room.length, self._found_at)
                 if status:
                     raise error_of(status)
-            count, written, tested, complete, truncated, level, known, lower, upper, resolution = read_leaf_pairs(self._found)
+            count, written, tested, complete, truncated, level, known, lower, upper, resolution, off = read_leaf_pairs(self._found)
             distance = (lower, upper) if known else None
-            return made(LeafPairs, (out[:written], count, complete, truncated, level, distance, resolution, tested))
+            return made(LeafPairs, (out[:written], count, complete, truncated, level, distance, resolution, tested, off))
         finally:
             self._lock.release()
 
@@ -180,8 +180,8 @@ class Query(Lone):
                 status = _triangle_pairs(self._self, self._pose, limit, room.place, room.length, self._met_at)
                 if status:
                     raise error_of(status)
-            count, written, tested, truncated, complete = read_triangle_pairs(self._met)
-            return made(TrianglePairs, (out[:written], count, complete, truncated, tested))
+            count, written, tested, truncated, complete, off = read_triangle_pairs(self._met)
+            return made(TrianglePairs, (out[:written], count, complete, truncated, tested, off))
         finally:
             self._lock.release()
 
@@ -221,9 +221,9 @@ class Query(Lone):
             status = _contacts(self._self, self._pose, limit, room.place, room.length, self._sums_at, self._found_at)
             if status:
                 raise error_of(status)
-            leaf_pairs, count, written, tested, complete = read_contacts(self._found)
+            leaf_pairs, count, written, tested, complete, off = read_contacts(self._found)
             sums = self._sums
-            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, bytearray(sums)))
+            return made(Contacts, (out[:written], count, complete, leaf_pairs, sums.weight, tested, bytearray(sums), off))
         finally:
             self._lock.release()
 
@@ -238,8 +238,8 @@ class Query(Lone):
             status = _distance(self._self, self._pose, self._tolerance, limit, self._apart_at)
             if status:
                 raise error_of(status)
-            lower, upper, tested, complete, narrowest = read_distance(self._apart)
-            return made(Distance, (lower, upper, complete, narrowest, tested))
+            lower, upper, tested, complete, narrowest, off = read_distance(self._apart)
+            return made(Distance, (lower, upper, complete, narrowest, tested, off))
         finally:
             self._lock.release()
 

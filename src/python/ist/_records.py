@@ -186,6 +186,7 @@ class QueryResult(Sized):
         ("resolution", c_double),
         ("found", c_int32),
         ("reserved", c_int32),
+        ("rotation_error", c_double),
     ]
 
 
@@ -198,6 +199,7 @@ class DistanceResult(Sized):
         ("complete", c_int32),
         ("reserved", c_int32),
         ("narrowest", c_double),
+        ("rotation_error", c_double),
     ]
 
 
@@ -209,6 +211,7 @@ class TrianglePairsResult(Sized):
         ("sphere_tests", c_uint64),
         ("truncated", c_int32),
         ("complete", c_int32),
+        ("rotation_error", c_double),
     ]
 
 
@@ -227,6 +230,7 @@ class PenetrationResult(Sized):
         ("points", c_uint64),
         ("self_intersecting", c_int32),
         ("capped", c_int32),
+        ("rotation_error", c_double),
     ]
 
 
@@ -257,6 +261,7 @@ class FirstContactResult(Sized):
         ("self_intersecting", c_int32),
         ("narrowest", c_double),
         ("distances", c_uint64),
+        ("rotation_error", c_double),
     ]
 
 
@@ -386,11 +391,12 @@ class LeastDistanceResult(Sized):
 
 # Members of a struct, read at once. A flag is a c_int32 of 0 or 1, of which one byte is read as a bool.
 _FLAG = "?3x" if sys.byteorder == "little" else "3x?"
-# leaf_pairs, written, sphere_tests, complete, truncated, level, distance_known, distance_lower, distance_upper, resolution
-read_leaf_pairs = struct.Struct(f"=8xQ8xQQ{_FLAG}{_FLAG}i{_FLAG}ddd").unpack_from
-# leaf_pairs, contacts, written, sphere_tests, complete
-read_contacts = struct.Struct(f"=8xQQQQ{_FLAG}").unpack_from
-# lower, upper, sphere_tests, complete, narrowest
-read_distance = struct.Struct(f"=8xddQ{_FLAG}4xd").unpack_from
-# pairs, written, sphere_tests, truncated, complete
-read_triangle_pairs = struct.Struct(f"=8xQQQ{_FLAG}{_FLAG}").unpack_from
+# leaf_pairs, written, sphere_tests, complete, truncated, level, distance_known, distance_lower, distance_upper, resolution,
+# rotation_error
+read_leaf_pairs = struct.Struct(f"=8xQ8xQQ{_FLAG}{_FLAG}i{_FLAG}ddd8xd").unpack_from
+# leaf_pairs, contacts, written, sphere_tests, complete, rotation_error
+read_contacts = struct.Struct(f"=8xQQQQ{_FLAG}44xd").unpack_from
+# lower, upper, sphere_tests, complete, narrowest, rotation_error
+read_distance = struct.Struct(f"=8xddQ{_FLAG}4xdd").unpack_from
+# pairs, written, sphere_tests, truncated, complete, rotation_error
+read_triangle_pairs = struct.Struct(f"=8xQQQ{_FLAG}{_FLAG}d").unpack_from

@@ -77,6 +77,30 @@ TEST(World, AnswersAsAQueryOfEachPair) {
   EXPECT_GT(meeting, least(10, 0));
 }
 
+TEST(World, SaysHowFarThePosesOfAPairWere) {
+  Random random(9);
+  std::vector<PlacedTree> bodies = scattered(random, 3, 1);
+  for (PlacedTree& body : bodies) body.pose = shift({0, 0, 0});
+  World world = world_of(bodies);
+  Eigen::Isometry3d rough = bodies[1].pose;
+  rough(0, 1) = 3e-4;
+  EXPECT_EQ(world.set_pose(1, rough), QueryStatus::kDone);
+  const auto expect = [&](const auto& answer) {
+    ASSERT_EQ(answer.pairs.size(), 3u);
+    for (const auto& pair : answer.pairs) {
+      const bool has_it = pair.bodies.a == 1 || pair.bodies.b == 1;
+      EXPECT_EQ(pair.result.rotation_error, has_it ? rotation_error(rough) : 0);
+    }
+  };
+  expect(world.intersects());
+  expect(world.intersects({.tests = 0}));
+  expect(world.contacts());
+  expect(world.distances(0.1));
+  expect(world.triangle_pairs({}));
+  expect(world.leaf_pairs({}));
+  expect(world.distance(0));
+}
+
 TEST(World, ListsPairsInOrder) {
   Random random(1);
   const std::vector<PlacedTree> bodies = scattered(random, 20, 6);

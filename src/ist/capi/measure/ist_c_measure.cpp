@@ -32,6 +32,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.points = found.points;
   out.self_intersecting = self_intersecting(found);
   out.capped = found.capped;
+  out.rotation_error = found.rotation_error;
   return out;
 }
 
@@ -61,6 +62,7 @@ ist_first_contact first_contact_of(const FirstContact& found) {
   out.narrowest = found.narrowest;
   out.distances = found.distances;
   out.self_intersecting = self_intersecting(found);
+  out.rotation_error = found.rotation_error;
   return out;
 }
 static_assert(static_cast<int>(FirstContact::Status::kContact) + IST_FIRST_CONTACT ==

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/tree/nested_bounds.h"
@@ -218,10 +219,13 @@ struct ReferenceState {
       QueryResult result;
       result.status = QueryStatus::kInvalidPose;
       result.complete = false;
+      result.rotation_error = rotation_error(pose);
       return result;
     }
-    return policy_ == SpherePolicy::kSlab ? search<true>(*relative, out)
-                                          : search<false>(*relative, out);
+    QueryResult result = policy_ == SpherePolicy::kSlab ? search<true>(*relative, out)
+                                                        : search<false>(*relative, out);
+    result.rotation_error = rotation_error(pose);
+    return result;
   }
 
  private:

@@ -64,7 +64,7 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
   }
   s.table.add();  // the last that may fail
   s.broad.add();
-  s.bodies.push_back({tree, std::move(name), {}, {}});  // zeros are no motion
+  s.bodies.push_back({tree, std::move(name), {}, {}, 0});  // zeros are no motion
   s.ready = false;
   const auto number = static_cast<BodyIndex>(index);
   s.move(number, pose);

@@ -122,7 +122,8 @@ struct WorldDistance {
 /// BodyPair. Lengths are in mesh units, one for all bodies; poses map mesh coordinates of a body to
 /// the world's.
 ///
-/// The answer of a pair is that of a Query of its two bodies at pose_of(a, b), bit by bit. Which
+/// The answer of a pair is that of a Query of its two bodies at pose_of(a, b), bit by bit. Its
+/// `rotation_error` is the larger one of the poses that both bodies were given. Which
 /// pairs are near and in which order they are listed depends on the poses alone, and on no earlier
 /// ones. What a query keeps (QueryOptions::front_pairs, and the triangles that were nearest last)
 /// each pair keeps for itself.

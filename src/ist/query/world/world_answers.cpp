@@ -46,6 +46,7 @@ WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& b
     } else {
       ask(pair, s.memory(at), to_isometry(at.pose), rest_of(budget, all.sphere_tests));
     }
+    pair.result.rotation_error = s.rotation_error_of(pair.bodies);
     all.sphere_tests += pair.result.sphere_tests;
     all.complete = all.complete && pair.result.status == QueryStatus::kDone && pair.result.complete;
   }

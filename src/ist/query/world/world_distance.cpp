@@ -57,6 +57,7 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
           s.memory(at).query.distance(to_isometry(at.pose), tolerance, rest_of(budget, spent));
       spent += pair.result.sphere_tests;
     }
+    pair.result.rotation_error = s.rotation_error_of(pair.bodies);
     lower = std::min(lower, pair.result.distance.lower);
     upper = std::min(upper, pair.result.distance.upper);
   }

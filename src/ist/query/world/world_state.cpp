@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ist/base/pose.h"
 #include "ist/query/contacts/contact_scale.h"
 #include "ist/query/query_state.h"
 #include "ist/query/traversal/root_test.h"
@@ -50,6 +51,7 @@ void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
   if (std::memcmp(body.given.data(), numbers, sizeof body.given) == 0) return;
   std::copy_n(numbers, body.given.size(), body.given.begin());
   stale = true;
+  body.rotation_error = rotation_error(pose);
   const std::optional<BodyPose> rigid = body_pose(pose);
   if (!rigid) {
     broad.take_out(index);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
@@ -22,6 +23,7 @@ struct WorldState {
     std::string name;
     std::array<double, 16> given;  // the pose as it was given
     BodyPose pose;                 // projected
+    double rotation_error;         // of the pose as it was given
   };
   /// The memory of a pair from call to call.
   struct PairMemory {
@@ -75,6 +77,10 @@ struct WorldState {
 
   void move(BodyIndex body, const Eigen::Isometry3d& pose) noexcept;
   [[nodiscard]] bool is_there(BodyIndex body) const noexcept { return body < bodies.size(); }
+  /// Returns the larger rotation error of the poses that two bodies were given.
+  [[nodiscard]] double rotation_error_of(BodyPair pair) const noexcept {
+    return std::max(bodies[pair.a].rotation_error, bodies[pair.b].rotation_error);
+  }
   /// Returns the query of a pair that is prepared.
   [[nodiscard]] PairMemory& memory(const PairAtPose& pair) noexcept { return *made[pair.place]; }
   /// Returns a pair at its poses.
