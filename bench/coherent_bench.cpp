@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kFrontPairs = 1 << 17;
 // What a haptic loop asks for.
-constexpr ManifoldOptions kManifold{.points = 0, .least_depth = -0.25, .margin = 0.375};
+constexpr ManifoldOptions kManifold{.points = 0, .margin = 0.25, .reach = 0.375};
 
 // The trees of a voxel size and the motions, made once.
 struct Jaws {

@@ -167,7 +167,8 @@ void within(benchmark::State& state, std::chrono::microseconds given, Verb verb,
             const std::string& name, const Make& make) {
   const Scene& scene = made(name, make);
   Query query(scene.trees.first, scene.trees.second, slabs());
-  ContactManifold manifold(scene.trees.first, scene.trees.second, SpherePolicy::kSlab);
+  ContactManifold manifold(scene.trees.first, scene.trees.second, SpherePolicy::kSlab,
+                           {.margin = 2});
   std::vector<LeafPair> leaf_pairs(kMostPairs);
   Overruns of_query, of_loop;
   std::size_t turn = 0, complete = 0;

@@ -216,7 +216,7 @@ class SplintPairs {
   [[nodiscard]] std::unique_ptr<ToolContactQuery> query(std::size_t fixed, std::size_t held) const {
     return std::make_unique<ToolContactQuery>(
         *built_.trees[fixed].contact, *built_.trees[held].contact, bodies_.frames(fixed, held),
-        ToolContactOptions{.policy = SpherePolicy::kSlab, .least_depth = -0.25});
+        ToolContactOptions{.policy = SpherePolicy::kSlab, .margin = 0.25});
   }
 
   Scene scene_;

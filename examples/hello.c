@@ -40,7 +40,9 @@ int main(void) {
            succeeds(ist_query_distance(query, pose, 0.001, NULL, &gap));
     if (fine) {
       printf("lower jaw down by %.1f mm: touch %s, %.3f to %.3f mm apart\n", downs[i],
-             touch == IST_ANSWER_YES ? "yes" : touch == IST_ANSWER_NO ? "no" : "unknown",
+             touch == IST_ANSWER_YES  ? "yes"
+             : touch == IST_ANSWER_NO ? "no"
+                                      : "unknown",
              gap.lower, gap.upper);
     }
   }

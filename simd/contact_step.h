@@ -25,7 +25,7 @@ struct ContactRule {
   float per_ball;         ///< 1 / (sum of two leaves' circumradii)², 1 / mesh units²
   float per_slab;         ///< 1 / overlap with a slab over which a weight fades in
   float per_scaled_slab;  ///< per_slab / kSlabScale
-  float least;            ///< least depth, mesh units
+  float least;            ///< least depth, mesh units: the negative margin
   float range;            ///< greatest depth over the least one, mesh units
   float per_range;        ///< 1 / range
   float fade_from;        ///< factor of the weight at the least depth: 0, or 1 where none fades

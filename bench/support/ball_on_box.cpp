@@ -93,7 +93,7 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
     made.ball = tree_of(ball, {.voxel_size = kBallVoxel, .spheres = SpherePolicy::kSlab});
     contacts = std::make_unique<ToolContactQuery>(
         *made.box, *made.ball, frames,
-        ToolContactOptions{.policy = SpherePolicy::kSlab, .least_depth = -kMargin});
+        ToolContactOptions{.policy = SpherePolicy::kSlab, .margin = kMargin});
     radius = kUnit * surface_radius(*made.ball);
     parts.max_step = kUnit * kBallVoxel;
   }
@@ -105,7 +105,7 @@ BallOnBox make_ball_on_box(const std::set<std::string>& effects) {
     made.near_ball = tree_of(ball, {.voxel_size = voxel, .spheres = SpherePolicy::kTight});
     proximity = std::make_unique<ToolContactQuery>(
         *made.near_box, *made.near_ball, frames,
-        ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0});
+        ToolContactOptions{.policy = SpherePolicy::kTight, .margin = 2, .reach = 0});
   }
   detail::add_two_bodies(parts, frames, radius, std::move(contacts), std::move(proximity));
   made.device = std::make_unique<HandDevice>(HandSettings{.plan = plan_from(start)});

@@ -10,8 +10,8 @@ namespace ist {
 enum class Rigidity { kRigid, kEither, kNone };
 
 /// Decides by the guarantee of poses: all numbers are finite, the last row is 0 0 0 1, no entry of
-/// RᵀR - I exceeds 1e-3, R does not mirror, and neither exceed all its singular values 1 + 1e-5, nor
-/// are all of them below 1 - 1e-5.
+/// RᵀR - I exceeds 1e-3, R does not mirror, and neither exceed all its singular values 1 + 1e-5,
+/// nor are all of them below 1 - 1e-5.
 [[nodiscard]] Rigidity rigidity_of(const Eigen::Isometry3d& pose);
 
 /// The motion from the moving tree's frame to the fixed tree's, by which the verifier moves leaves.

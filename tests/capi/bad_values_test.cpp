@@ -188,12 +188,12 @@ TEST_F(CMisuse, OfOptionsIsTold) {
   EXPECT_EQ(queried([](auto& o) { o.frontier_pairs = UINT64_MAX; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = 4097; }), "argument-invalid");
   EXPECT_EQ(queried([](auto& o) { o.contacts = -2; }), "argument-invalid");
-  for (const double bad : {2.001, -0.5, -1.5, -2.0, HUGE_VAL, -HUGE_VAL, double{NAN}}) {
-    EXPECT_EQ(queried([bad](auto& o) { o.push_distance = bad; }), "argument-invalid") << bad;
+  for (const double bad : {2.001, -0.5, -1.0, -2.0, HUGE_VAL, -HUGE_VAL, double{NAN}}) {
+    EXPECT_EQ(queried([bad](auto& o) { o.margin = bad; }), "argument-invalid") << bad;
   }
   EXPECT_STREQ(ist_last_error_message(),
-               "ist_query_create: options->push_distance is nan: pass a number from 0 (the "
-               "default) to 2 mean voxel sizes, or -1 for springs that begin where surfaces meet");
+               "ist_query_create: options->margin is nan: pass a number from 0, where surfaces "
+               "meet, to 2 mean voxel sizes");
   EXPECT_EQ(queried([](auto& o) { o.target = "z80"; }), "target-missing");
   EXPECT_EQ(queried([](auto& o) { o.struct_size = 7; }), "struct-size");
 

@@ -63,7 +63,7 @@ AT(ist_query_options, frontier_pairs, 24);
 AT(ist_query_options, reserved, 32);
 AT(ist_query_options, contacts, 40);
 AT(ist_query_options, target, 48);
-AT(ist_query_options, push_distance, 56);
+AT(ist_query_options, margin, 56);
 AT(ist_query_options, front_pairs, 64);
 
 SIZE(ist_query_info, 56);

@@ -78,7 +78,7 @@ TEST(CSizedStruct, IsFilledInAsFarAsItGoes) {
   EXPECT_EQ(longer.c, 0);
 }
 
-// Through the interface: the shortest build options, query options before push_distance, a result
+// Through the interface: the shortest build options, query options before margin, a result
 // with two counts, a distance without its complete flag, and sums without springs.
 TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_mesh* mesh = nullptr;
@@ -126,7 +126,7 @@ TEST(CSizedStruct, OfAnyAgeServesACall) {
 
   ist_query_options asked{};
   asked.struct_size = 56;
-  asked.push_distance = 99;  // beyond struct_size
+  asked.margin = 99;  // beyond struct_size
   ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok");
   ASSERT_EQ(name(ist_query_create(tree, tree, &asked, &query)), "ok") << ist_last_error_message();
   EXPECT_EQ(name(ist_query_free(query)), "ok");

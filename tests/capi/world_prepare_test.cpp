@@ -24,7 +24,6 @@ class CWorldPrepare : public ::testing::Test {
     auto options = sized<ist_world_options>();
     auto query = sized<ist_query_options>();
     query.frontier_pairs = 1 << 10;
-    query.push_distance = -1;
     options.query = &query;
     EXPECT_EQ(name(ist_world_create(&options, &world_)), "ok") << ist_last_error_message();
     ist_tree* tree = c_tree(icosphere(5, 1), 0.05);

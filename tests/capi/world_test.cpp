@@ -33,13 +33,11 @@ class CWorld : public ::testing::Test {
     auto options = sized<ist_world_options>();
     auto query = sized<ist_query_options>();
     query.frontier_pairs = 1 << 10;
-    query.push_distance = -1;
     options.query = &query;
     options.reach = 0.25;
     EXPECT_EQ(name(ist_world_create(&options, &world_)), "ok") << ist_last_error_message();
     WorldOptions same;
     same.query.frontier_pairs = 1 << 10;
-    same.manifold.least_depth = 0;
     same.reach = 0.25;
     cpp_.emplace(same);
     const TriangleMesh meshes[] = {icosphere(2, 1), box({0, 0, 0}, {2, 2, 2}), icosphere(2, 1),

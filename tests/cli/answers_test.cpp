@@ -286,8 +286,8 @@ TEST_F(Answers, UnknownFailsWhereTouchingDoes) {
   const CommandResult unknown = asked("1");
   EXPECT_EQ(unknown.exit_code, 1) << unknown.out;
   EXPECT_TRUE(says(unknown.out, "touch      unknown"));
-  EXPECT_TRUE(says(unknown.err,
-                   "ist: whether the bodies touch is unknown: allow more --max-tests\n"));
+  EXPECT_TRUE(
+      says(unknown.err, "ist: whether the bodies touch is unknown: allow more --max-tests\n"));
   EXPECT_EQ(asked("1000000").exit_code, 6);
   // A touch at another pose is certain.
   EXPECT_EQ(ist({"collide", ball_, ball_, "--poses", list_, "--voxel-size", "0.5", "--max-tests",

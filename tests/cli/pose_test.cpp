@@ -118,18 +118,18 @@ TEST_F(Pose, AnAxisHasAnyLengthButZero) {
 
 TEST_F(Pose, SaysHowFarItWasFromARotation) {
   const auto error = [&](const std::string& option, const std::string& file) {
-    const auto lines =
-        json_lines(ist_well({"collide", tree_, tree_, "--json", option, file}).out);
+    const auto lines = json_lines(ist_well({"collide", tree_, tree_, "--json", option, file}).out);
     return lines.at(0)["rotation_error"].get<double>();
   };
   EXPECT_EQ(error("--move", "1,2,3"), 0);
   EXPECT_EQ(error("--matrix", write("m.txt", "1 4e-4 0 5 0 1 0 0 0 0 1 0 0 0 0 1")), 4e-4);
-  EXPECT_EQ(error("--poses", write("p.json", "[{\"pose\": [1,0,0,0, 3e-4,1,0,0, 0,0,1,0, "
-                                             "0,0,5,1]}]")),
+  EXPECT_EQ(error("--poses", write("p.json",
+                                   "[{\"pose\": [1,0,0,0, 3e-4,1,0,0, 0,0,1,0, "
+                                   "0,0,5,1]}]")),
             3e-4);
-  EXPECT_EQ(error("--matrix",
-                  itk("AffineTransform_double_3_3", "1 2e-4 0 0 1 0 0 0 1 0 0 0", "0 0 0")),
-            2e-4);
+  EXPECT_EQ(
+      error("--matrix", itk("AffineTransform_double_3_3", "1 2e-4 0 0 1 0 0 0 1 0 0 0", "0 0 0")),
+      2e-4);
 }
 
 TEST_F(Pose, BadOnesAreRefused) {

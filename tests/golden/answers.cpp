@@ -122,7 +122,7 @@ std::uint64_t hash_coherent_ticks(const std::string& target) {
 
 std::uint64_t hash_contacts(const std::string& target) {
   Query query = query_of(target);
-  ContactManifold manifold(upper(), lower(), SpherePolicy::kSlab);
+  ContactManifold manifold(upper(), lower(), SpherePolicy::kSlab, {.margin = 2});
   Hasher hasher;
   for (int step = 0; step < kSteps; ++step) {
     hasher.add(query.contacts(closing(step), manifold).sphere_tests);

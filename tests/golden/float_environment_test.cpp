@@ -48,7 +48,7 @@ std::uint64_t hash_of_answers(const TriangleMesh& a, const TriangleMesh& b,
     hasher.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
   Query query(fixed, moving, options_of(SpherePolicy::kSlab));
-  ContactManifold manifold(fixed, moving, query.policy());
+  ContactManifold manifold(fixed, moving, query.policy(), {.margin = 2});
   for (const Eigen::Isometry3d& pose : at) {
     const FoundPairs found = ask(query, pose);
     hasher.add(found.result.sphere_tests).add(found.result.resolution);

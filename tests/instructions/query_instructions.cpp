@@ -54,7 +54,7 @@ void count_all() {
   }
   options.policy = ist::SpherePolicy::kSlab;
   ist::Query query(fixed, moving, options);
-  ist::ContactManifold points(fixed, moving, query.policy());
+  ist::ContactManifold points(fixed, moving, query.policy(), {.margin = 2});
   count("leaf_pairs/slab/near", [&] { return answer_of(query.leaf_pairs(near, leaf_pairs)); });
   count("leaf_pairs/slab/within_20000_tests",
         [&] { return answer_of(query.leaf_pairs(closed, leaf_pairs, {.tests = 20'000})); });

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
     ist::QueryOptions options;
     options.target = kernels.target;
     ist::Query query(fixed, moving, options);
-    ist::ContactManifold manifold(fixed, moving, query.policy());
+    ist::ContactManifold manifold(fixed, moving, query.policy(), {.margin = 2});
     count(kernels.target, "leaf_pairs", [&] { return query.leaf_pairs(closed, leaf_pairs); });
     count(kernels.target, "contacts", [&] { return query.contacts(closed, manifold); });
   }

@@ -131,7 +131,7 @@ class Verbs(Jaws):
         self.assertFalse(self.query.leaf_pairs(JAW_POSES[2], seconds=1e-9).complete)
 
     def test_forces_push_the_lower_jaw_down(self):
-        felt = ist.Query(self.upper, self.lower, push_distance=0).contacts(JAW_POSES[2])
+        felt = ist.Query(self.upper, self.lower).contacts(JAW_POSES[2])
         force, torque, about = felt.wrench(1.0)
         self.assertLess(force[2], -1)
         np.testing.assert_allclose(about, self.upper.origin)

@@ -314,7 +314,7 @@ class Queries(Misuse):
         for contacts in (-2, 1.5, "many", None):
             self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=contacts)
         for push in (3, -1, np.nan, np.inf, "far", None):
-            self.refuses(ist.InputError, "push_distance", make, tree, tree, push_distance=push)
+            self.refuses(ist.InputError, "margin", make, tree, tree, margin=push)
         self.refuses(ist.InputError, "front_pairs", make, tree, tree, front_pairs=-1)
         self.refuses(ist.InputError, "spheres", make, tree, tree, spheres="round")
         self.assertEqual(self.refuses(ist.InputError, "", make, tree, tree, target="abacus").name, "target-missing")

@@ -236,7 +236,7 @@ class Worlds(Refusals):
     def test_bad_options(self):
         bad = {"reach": (-1, np.nan, np.inf, "far", None), "max_memory": (-1, 0, 2**64, 1.5, "much", None),
                "most_near": (-1, 0, 2**64, 1.5, 1 << 40), "contacts": (0, -2, 5000, 1.5, "many", None),
-               "push_distance": (-1, np.nan, 3, "far"), "front_pairs": (-1, 2**64, "many"), "spheres": ("round", 3),
+               "margin": (-1, np.nan, 3, "far"), "front_pairs": (-1, 2**64, "many"), "spheres": ("round", 3),
                "frontier_pairs": (-1, 2**64, "many"), "target": ("abacus", "\ud800")}
         for option, values in bad.items():
             for value in values:

@@ -193,7 +193,7 @@ TEST(StoppedSearch, TellsNoWiderIntervalThanTheFormula) {
       const Kernels& kernels = select_kernels("");
       Search search(plan, kernels, 1 << 20);
       Query query(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold contacts(scene.fixed, scene.moving, policy);
+      ContactManifold contacts(scene.fixed, scene.moving, policy, {.margin = 2});
       for (const double x : {0.0, 1.6, 1.9, 2.1, 2.6}) {
         Eigen::Isometry3d at = scene.pose;
         at.translation()[0] += x;

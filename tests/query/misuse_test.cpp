@@ -49,11 +49,11 @@ TEST_F(Misuse, OfManifoldOptionsThrows) {
   const auto made = [&](const ManifoldOptions& options) {
     return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });
   };
-  for (const double depth : {-2.1, 1.0, 7.0, kNotANumber, -HUGE_VAL}) {
-    EXPECT_NE(made({.least_depth = depth}).find("least_depth"), std::string::npos) << depth;
-  }
-  for (const double margin : {-0.1, 1.1, kNotANumber, HUGE_VAL}) {
+  for (const double margin : {-0.1, 2.1, kNotANumber, HUGE_VAL}) {
     EXPECT_NE(made({.margin = margin}).find("margin"), std::string::npos) << margin;
+  }
+  for (const double reach : {-0.1, 1.1, kNotANumber, HUGE_VAL}) {
+    EXPECT_NE(made({.reach = reach}).find("reach"), std::string::npos) << reach;
   }
 }
 
@@ -257,8 +257,7 @@ TEST(Query, MovesWithItsAnswers) {
 TEST(ContactManifold, GivesTheWrenchOfAStiffness) {
   const SphereTree tree = ball(0.25);
   Query query(tree, tree);
-  ContactManifold near(tree, tree, query.policy()),
-      deep(tree, tree, query.policy(), {.least_depth = 0});
+  ContactManifold near(tree, tree, query.policy(), {.margin = 2}), deep(tree, tree, query.policy());
   ASSERT_EQ(query.contacts(shift({3.9, 0, 0}), near).status, QueryStatus::kDone);
   ASSERT_EQ(query.contacts(shift({3.9, 0, 0}), deep).status, QueryStatus::kDone);
   const Wrench wrench = near.wrench(2);
@@ -268,6 +267,35 @@ TEST(ContactManifold, GivesTheWrenchOfAStiffness) {
   // Springs that begin where surfaces meet push less than those that begin before.
   EXPECT_GT(deep.wrench(2).force.x(), 0);
   EXPECT_LT(deep.wrench(2).force.x(), wrench.force.x());
+}
+
+// As far as voxels know it: to within a quarter of a voxel for bodies that curve little.
+TEST(ContactManifold, PushesByDefaultFromWhereSurfacesMeet) {
+  constexpr double kSize = 0.25;
+  const auto tree_of = [](const TriangleMesh& mesh) {
+    return build_tree(mesh, {.voxel_size = kSize});
+  };
+  const SphereTree ball = tree_of(icosphere(4, 3)), block = tree_of(box({-4, -4, -4}, {4, 4, 0}));
+  const struct {
+    const SphereTree &fixed, &moving;
+    Eigen::Vector3d touching, away;
+  } pairs[] = {{ball, ball, {6, 0, 0}, {1, 0, 0}},
+               {block, ball, {0.1, 0.2, 3}, {0, 0, 1}},
+               {block, block, {0.3, 0.1, 4}, {0, 0, 1}}};
+  for (const auto& [fixed, moving, touching, away] : pairs) {
+    Query query(fixed, moving);
+    ContactManifold manifold(fixed, moving, query.policy());
+    ASSERT_EQ(query.policy(), SpherePolicy::kSlab);
+    for (const double gap : {0.26, 0.5, 0.9, 1.4}) {
+      const Eigen::Isometry3d pose = shift(touching + gap * kSize * away);
+      EXPECT_EQ(query.intersects(pose).answer, Answer::kNo);
+      EXPECT_TRUE(query.contacts(pose, manifold).complete);
+      EXPECT_TRUE(manifold.points().empty()) << gap;
+      EXPECT_EQ(manifold.wrench(1).force, Eigen::Vector3d(0, 0, 0)) << gap;
+    }
+    EXPECT_TRUE(query.contacts(shift(touching - 0.3 * kSize * away), manifold).complete);
+    EXPECT_GT(manifold.wrench(1).force.dot(away), 0);
+  }
 }
 
 }  // namespace

@@ -107,13 +107,13 @@ TEST_P(Resolution, IsNoLessThanTheDistanceOfTheSurfacesInALeafPair) {
   EXPECT_GT(farthest_, effort() < 1 ? 0.5 * share : share);  // few bodies may not come as near
 }
 
-// One leaf each, much larger than the surface in it, and a margin that exceeds both balls.
-TEST(ResolutionOfContacts, HoldsTheMarginAskedFor) {
+// One leaf each, much larger than the surface in it, and a reach that exceeds both balls.
+TEST(ResolutionOfContacts, HoldsTheReachAskedFor) {
   const TriangleMesh mesh = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const SphereTree tree = build_tree(mesh, {.voxel_size = 100, .spheres = SpherePolicy::kSlab});
   for (const SpherePolicy policy : {SpherePolicy::kTight, SpherePolicy::kSlab}) {
     Query query(tree, tree, options_of(policy));
-    ContactManifold manifold(tree, tree, policy, {.margin = 0.5});
+    ContactManifold manifold(tree, tree, policy, {.reach = 0.5});
     QueryResult result;
     const double last = last_touching(0, 1000, [&](double z) {
       const QueryResult here = query.contacts(shift({0, 0, z}), manifold);

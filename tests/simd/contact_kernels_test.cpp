@@ -72,7 +72,7 @@ TEST_P(ContactKernels, AreTheScalarFormAfterASearch) {
   std::uint64_t counted = 0;
   Random random(1);
   for (const auto& search : all_plans()) {
-    for (const double least : {-2.0, -0.25}) {
+    for (const double margin : {2.0, 0.25, 0.0}) {
       const SearchPose pose = random_pose(random, 0.02);
       auto in = std::make_unique<GuardedFrontier>(1, 0);
       in->append(0, std::vector<std::uint32_t>{0});
@@ -87,7 +87,7 @@ TEST_P(ContactKernels, AreTheScalarFormAfterASearch) {
       SCOPED_TRACE(std::string(to_string(search->policy)));
       for (const std::uint64_t most : {~std::uint64_t{0}, std::uint64_t{500}}) {
         counted +=
-            expect_same(search->plan.steps().back(), pose, *in, rule_of(*search, least), most);
+            expect_same(search->plan.steps().back(), pose, *in, rule_of(*search, margin), most);
         if (HasFailure()) return;
       }
     }
@@ -115,7 +115,7 @@ TEST_P(ContactKernels, AreTheScalarFormForGroupsOfAnyLength) {
     for (const float pad : {0.1F, std::numeric_limits<float>::infinity()}) {
       pose.leaf = pose.inner = {pad, pad, pad};
       SCOPED_TRACE(std::string(to_string(search->policy)));
-      counted += expect_same(search->plan.steps().back(), pose, in, rule_of(*search, -2),
+      counted += expect_same(search->plan.steps().back(), pose, in, rule_of(*search, 2),
                              ~std::uint64_t{0});
       if (HasFailure()) return;
     }
@@ -229,12 +229,12 @@ TEST(PairTerms, AreWeightDepthPositionAndForce) {
   EXPECT_EQ(facing(0.5, rule, -1).weight, 0);
 }
 
-// With another least depth than -2 the weight grows from 0.
+// With a margin below 2 the weight grows from 0.
 TEST(PairTerms, BeginToWeighWithNothing) {
   const SphereTree& tree = all_plans()[0]->fixed;
   const double size = tree.voxel_size();
   const auto weight_at = [&](double above_least, double least) {
-    const ContactRule rule = contact_rule(ContactScale(tree, tree, least), 10 * size);
+    const ContactRule rule = contact_rule(ContactScale(tree, tree, -least), 10 * size);
     return facing((least + above_least) * size, rule).weight / (0.5 * kContactUnit);
   };
   const double whole = 1 + 128.0 / 255;

@@ -121,7 +121,7 @@ TEST_P(FrontKernels, AreTheScalarFormAfterASearch) {
       SearchPose other = random_pose(random_, pads);
       std::copy_n(pose.rotation, 9, other.rotation);
       for (const SearchPose& at : {pose, other, random_pose(random_, pads)}) {
-        test_both(last, at, made, rule_of(*search, random_.below(2) == 0 ? -2 : -0.25));
+        test_both(last, at, made, rule_of(*search, random_.below(2) == 0 ? 2 : 0.25));
       }
       if (HasFailure()) return;
     }
@@ -189,10 +189,10 @@ TEST_P(FrontKernels, AreTheScalarFormAtAPoseThatIsNoNumber) {
       if (k == 2) bad.leaf.ball = bad.inner.ball = kNoNumber;
       advance_both(last, bad, *in, wanted, made, ~std::uint64_t{0});
       EXPECT_GT(in->group_count == 0 ? 1 : made.pair_count, 0u);
-      test_both(last, bad, made, rule_of(*search, -2));
-      test_both(last, pose, made, rule_of(*search, -2));
+      test_both(last, bad, made, rule_of(*search, 2));
+      test_both(last, pose, made, rule_of(*search, 2));
       advance_both(last, pose, *in, wanted, made, ~std::uint64_t{0});
-      test_both(last, bad, made, rule_of(*search, -2));
+      test_both(last, bad, made, rule_of(*search, 2));
       if (HasFailure()) return;
     }
   }
@@ -206,7 +206,7 @@ TEST_P(FrontKernels, OfNoPairsAreNone) {
   const GuardedFrontier none(1, 0);
   EXPECT_FALSE(advance_both(last, pose, none, wanted, made, ~std::uint64_t{0}));
   EXPECT_EQ(made.pair_count, 0u);
-  test_both(last, pose, made, rule_of(search, -2));
+  test_both(last, pose, made, rule_of(search, 2));
   EXPECT_EQ(selected_ + counted_, 0u);
   TermsRecorder terms;
   made_->clear();

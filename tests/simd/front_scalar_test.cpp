@@ -72,7 +72,7 @@ class FrontOf {
     ContactAdder& made = *made_;
     wanted.clear();
     made.clear();
-    wanted.rule = made.rule = rule_of(search_, -0.25);
+    wanted.rule = made.rule = rule_of(search_, 0.25);
     wanted.stream = &wanted_terms;
     made.stream = &terms;
     SearchCursor cursor;

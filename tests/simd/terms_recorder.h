@@ -50,9 +50,9 @@ class TermsRecorder final : public ContactTermsStream {
          a.pairs == b.pairs;
 }
 
-/// The rule of the contacts of two trees with a least depth.
-[[nodiscard]] inline ContactRule rule_of(const PlannedSearch& search, double least) {
-  const ContactScale scale(search.fixed, search.moving, least);
+/// The rule of the contacts of two trees with a margin.
+[[nodiscard]] inline ContactRule rule_of(const PlannedSearch& search, double margin) {
+  const ContactScale scale(search.fixed, search.moving, margin);
   return contact_rule(scale,
                       contact_rates(search.fixed, search.moving, search.policy, scale).lever);
 }

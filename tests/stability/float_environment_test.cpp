@@ -193,7 +193,7 @@ TEST_P(FloatEnvironmentOfAQuery, ChangesNoInsideTest) {
 
 TEST_P(FloatEnvironmentOfAQuery, ChangesNoContact) {
   changes_no_answer("Query::contacts", 1000, [&](Query& query, const auto& pose, Record& record) {
-    ContactManifold manifold(fixed_, moving_, query.policy());
+    ContactManifold manifold(fixed_, moving_, query.policy(), {.margin = 2});
     static_cast<void>(query.contacts(pose, manifold));
     record.add(manifold.rates().spring_torque);
     for (const Contact& contact : manifold.points()) record.add(contact);

@@ -210,7 +210,7 @@ TEST_P(Place, BeyondTheRangeOfFloatEndsAtTheRoot) {
   };
   AllEngines engines(tree, tree, GetParam());
   Query& query = engines.first();
-  ContactManifold points(tree, tree, GetParam());
+  ContactManifold points(tree, tree, GetParam(), {.margin = 2});
   for (const double far : {1e26, 1e39, 1e300, kMost}) {
     for (int axes = 1; axes < 8; ++axes) {
       for (const double sign : {-1.0, 1.0}) {

@@ -48,7 +48,7 @@ void check_answers(const SphereTree& fixed, const SphereTree& moving,
     SCOPED_TRACE(to_string(policy));
     const AnswerVerifier check(fixed, moving, policy);
     ReferenceQuery reference(plain_fixed, plain_moving, policy);
-    ContactManifold points(plain_fixed, plain_moving, policy);
+    ContactManifold points(plain_fixed, plain_moving, policy, {.margin = 2});
     std::vector<std::unique_ptr<Query>> engines;
     const auto add = [&](const std::string& target, int workers) {
       engines.push_back(

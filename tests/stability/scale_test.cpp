@@ -66,7 +66,7 @@ class Scaled {
         options.frontier_pairs = 1 << 10;
         Query query(fixed_, moving_, options);
         ReferenceQuery reference(fixed_, moving_, policy);
-        ContactManifold points(fixed_, moving_, policy, {8, 64});
+        ContactManifold points(fixed_, moving_, policy, {8, 64, 2});
         for (int i = 0; i < samples(2); ++i) {
           Random random(static_cast<std::uint64_t>(i));
           const Eigen::Matrix3d rotation = random.rotation();

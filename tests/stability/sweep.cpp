@@ -64,8 +64,8 @@ Sweep::Sweep(const SphereTree& fixed, const SphereTree& moving, const SphereTree
       cases_(cases),
       exact_(fixed, moving, with(policy)),
       plain_(plain_fixed, plain_moving, with(policy)),
-      points_(plain_fixed, plain_moving, policy),
-      contacts_(plain_fixed, plain_moving, policy) {}
+      points_(plain_fixed, plain_moving, policy, {.margin = 2}),
+      contacts_(plain_fixed, plain_moving, policy, {.margin = 2}) {}
 
 void Sweep::along(const Path& path) {
   last_seen_.clear();
@@ -164,7 +164,7 @@ void Sweep::compare_sums(const Step& before, const Step& now, double motion) {
 }
 
 void Sweep::compare_depths(const Step& before, const Step& now, double motion) {
-  const ContactScale scale(fixed_, moving_);
+  const ContactScale scale(fixed_, moving_, 2);
   for (std::size_t i = 0; i < now.pairs.size(); i += 1 + now.pairs.size() / 8) {
     const PlainPair a = contacts_.at(now.pairs[i], before.pose),
                     b = contacts_.at(now.pairs[i], now.pose);

@@ -23,7 +23,7 @@ TEST_F(SweepFileTest, HasDefaults) {
   EXPECT_FALSE(file.questions.leaf_pairs || file.questions.penetration);
   EXPECT_EQ(file.questions.tolerance, 0.01);
   EXPECT_EQ(file.rows_per_part, 100000U);
-  EXPECT_EQ(file.push_distance, 2);
+  EXPECT_EQ(file.margin, 0);
   EXPECT_EQ(file.stiffness, 1);
   EXPECT_FALSE(file.spheres);
   EXPECT_EQ(file.questions.budget.tests, RowQuestions().budget.tests);
@@ -35,13 +35,13 @@ TEST_F(SweepFileTest, HasDefaults) {
 TEST_F(SweepFileTest, ReadsEveryKey) {
   const SweepFile file = sweep_with("tolerance = 0.01", R"(tolerance = 0.5
 stiffness = 2.5
-push_distance = 0.5
+margin = 0.5
 spheres = "tight"
 tests = 1000)")
                              .file();
   EXPECT_EQ(file.questions.tolerance, 0.5);
   EXPECT_EQ(file.stiffness, 2.5);
-  EXPECT_EQ(file.push_distance, 0.5);
+  EXPECT_EQ(file.margin, 0.5);
   EXPECT_EQ(file.spheres, SpherePolicy::kTight);
   EXPECT_EQ(file.questions.budget.tests, 1000U);
 }
@@ -70,7 +70,7 @@ TEST_F(SweepFileTest, WrongValuesAreRefusedWithLineAndRemedy) {
       {"tolerance = 0.01", "tolerance = -1", 2, "-1", "from 0"},
       {"tolerance = 0.01", "tolerance = nan", 2, "nan", "from 0"},
       {"tolerance = 0.01", "spheres = \"round\"", 2, "round", "\"slab\""},
-      {"tolerance = 0.01", "push_distance = 3", 2, "3", "from 0 to 2"},
+      {"tolerance = 0.01", "margin = 3", 2, "3", "from 0 to 2"},
       {"tolerance = 0.01", "tests = 0", 2, "0", "from 1 on"},
       {"rows_per_part = 4", "rows_per_part = 0", 3, "0", "1 to"},
       {"[fixed]\ntree = \"fixed.ist\"\n", "", 1, "no 'fixed'", "[fixed]"},
@@ -150,7 +150,7 @@ TEST_F(SweepFileTest, EachChangeIsAnotherSweep) {
   change("\"distance\", ", "");
   change("tolerance = 0.01", "tolerance = 0.010000000000000002");
   change("tolerance", "stiffness = 2\ntolerance");
-  change("tolerance", "push_distance = 1\ntolerance");
+  change("tolerance", "margin = 1\ntolerance");
   change("tolerance", "tests = 100\ntolerance");
   change("tolerance", "spheres = \"slab\"\ntolerance");
   change("tolerance", "spheres = \"tight\"\ntolerance");

@@ -53,7 +53,7 @@ TEST_F(SweepParts, HaveTheRowsOfTheSingleCalls) {
     row.intersects = intersects.intersects(pose);
     row.leaf_pairs = pairs.leaf_pairs(pose, std::span<LeafPair>());
     row.distance = apart.distance(pose, 0.01);
-    ContactManifold manifold(fixed, moving, pushed.policy(), {.points = 0, .least_depth = -2});
+    ContactManifold manifold(fixed, moving, pushed.policy(), {.points = 0});
     row.contacts = pushed.contacts(pose, manifold);
     row.sums = manifold.sums();
     row.penetration = penetration(deep, pose, 0.01);

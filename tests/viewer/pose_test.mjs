@@ -64,6 +64,15 @@ test('what is no pose is refused, with what to do', () => {
   assert.throws(() => parseMatrix('1 0 0 0\n0 1 0 0\n0 0 1 0\n5 0 0 1'), /column by column: put the 16 numbers in one line/);
 });
 
+test('a rough rotation is a pose, and a scaled one is none', () => {
+  const diagonal = (/** @type {number[]} */ [x, y, z]) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1];
+  assert.equal(isRigid([1, 9e-4, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), true);
+  assert.equal(isRigid([1, 2e-3, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), false);
+  assert.equal(isRigid(diagonal([1 + 4e-4, 1, 1 - 4e-4])), true);
+  for (const scale of [1 + 9e-6, 1 - 9e-6]) assert.equal(isRigid(diagonal([scale, scale, scale])), true);
+  for (const scale of [1 + 1.1e-5, 1 - 1.1e-5, 1.0004, 2]) assert.equal(isRigid(diagonal([scale, scale, scale])), false);
+});
+
 test('a mirror is no pose', () => {
   assert.equal(isRigid([-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), false);
   assert.equal(isRigid(some), true);

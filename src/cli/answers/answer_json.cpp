@@ -33,7 +33,9 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   const auto upper = [](const std::optional<DistanceInterval>& interval) {
     return interval ? ordered_json(interval->upper) : ordered_json(nullptr);
   };
-  ordered_json line{{"index", index}, {"pose", pose_json(answer.pose)}, {"rotation_error", answer.findings.rotation_error}};
+  ordered_json line{{"index", index},
+                    {"pose", pose_json(answer.pose)},
+                    {"rotation_error", answer.findings.rotation_error}};
   if (answer.displacement) line["displacement"] = *answer.displacement;
   line["engine"] = engine.name();
   line["spheres"] = to_string(bodies.policy);

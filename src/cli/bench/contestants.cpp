@@ -70,7 +70,7 @@ class Trembling {
   }
 
  private:
-  static constexpr ManifoldOptions kAsALoopAsks{.points = 0, .least_depth = -0.25, .margin = 0.375};
+  static constexpr ManifoldOptions kAsALoopAsks{.points = 0, .margin = 0.25, .reach = 0.375};
   static constexpr double kRadius = 0.1;
   static constexpr int kTicks = 100;
 

@@ -109,9 +109,9 @@ std::optional<ItkTransform> transform_of(std::string_view type, const std::vecto
 Eigen::Isometry3d require_rigid(const std::filesystem::path& file, const Eigen::Isometry3d& pose) {
   const auto rigid = project_to_rigid(pose);
   if (!rigid) {
-    refuse(ErrorCode::kPoseInvalid, file,
-           fmt::format("not a rigid motion: {} (the 16 numbers are row by row)",
-                       why_not_rigid(pose)));
+    refuse(
+        ErrorCode::kPoseInvalid, file,
+        fmt::format("not a rigid motion: {} (the 16 numbers are row by row)", why_not_rigid(pose)));
   }
   return *rigid;
 }

@@ -231,8 +231,8 @@ typedef struct ist_query_options {
   uint64_t reserved;       /**< passed over; was a capacity that exact questions do without */
   int64_t contacts;        /**< most contacts, up to 4096; default 32; -1: none, 3 MB less memory */
   const char* target;      /**< instruction set, such as "avx2"; default: the best. Same answers */
-  double push_distance;    /**< distance at which springs begin, in mean voxel sizes, up to 2;
-                              default 2; -1: springs begin where surfaces meet */
+  double margin;           /**< distance at which springs begin, in mean voxel sizes, 0 to 2;
+                              default 0: where surfaces meet, to within 0.25 with slabs */
   uint64_t front_pairs;    /**< most leaf pairs kept in slow motion, 224 bytes each, to 2^26;
                               0: none */
 } ist_query_options;
@@ -318,15 +318,16 @@ typedef struct ist_contact {
 } ist_contact;
 
 /** Sums over all leaf pairs, for forces on the moving body, of meshes in mm. A pair has weight w,
- * normal n, depth d and position p; springs begin at depth d0, the negative push distance. */
+ * normal n, depth d and position p; springs begin at the margin m of the
+ * query's options, mesh units. */
 typedef struct ist_contact_sums {
   size_t struct_size;        /**< the size of this struct, bytes */
   uint64_t pairs;            /**< leaf pairs with a weight above 0 */
   double weight;             /**< sum of w, mm^2 */
   double pressure_force[3];  /**< sum of w n, mm^2 */
   double pressure_torque[3]; /**< sum of p x w n, mm^3 */
-  double spring_force[3];    /**< sum of w (d - d0) n, mm^3 */
-  double spring_torque[3];   /**< sum of p x w (d - d0) n, mm^4 */
+  double spring_force[3];    /**< sum of w (d + m) n, mm^3 */
+  double spring_torque[3];   /**< sum of p x w (d + m) n, mm^4 */
   double about[3];           /**< reference point of the torques, fixed mesh coordinates */
 } ist_contact_sums;
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 26;
 constexpr std::int64_t kMostContacts = 4096;
-constexpr double kMostPushDistance = 2;
+constexpr double kMostMargin = 2;
 
 ist_status check_query_options(const Call& call, const ist_query_options& known) {
   if (!are_spheres(known.spheres)) {
@@ -36,13 +36,11 @@ ist_status check_query_options(const Call& call, const ist_query_options& known)
         "options->contacts is {}: pass 1 to {}, 0 for the default, or -1 for no contacts",
         known.contacts, kMostContacts);
   }
-  if (!(known.push_distance >= 0 && known.push_distance <= kMostPushDistance) &&
-      known.push_distance != -1) {
-    return call.fail(
-        IST_ARGUMENT_INVALID,
-        "options->push_distance is {}: pass a number from 0 (the default) to {} mean voxel "
-        "sizes, or -1 for springs that begin where surfaces meet",
-        known.push_distance, kMostPushDistance);
+  if (!(known.margin >= 0 && known.margin <= kMostMargin)) {
+    return call.fail(IST_ARGUMENT_INVALID,
+                     "options->margin is {}: pass a number from 0, where surfaces meet, to {} mean "
+                     "voxel sizes",
+                     known.margin, kMostMargin);
   }
   return IST_OK;
 }
@@ -79,9 +77,7 @@ ist_status read_query_options(const Call& call, const ist_query_options& given,
     return IST_OK;
   }
   if (known.contacts > 0) options.manifold->points = static_cast<std::size_t>(known.contacts);
-  if (known.push_distance != 0) {
-    options.manifold->least_depth = known.push_distance < 0 ? 0 : -known.push_distance;
-  }
+  options.manifold->margin = known.margin;
   return IST_OK;
 }
 

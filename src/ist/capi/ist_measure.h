@@ -125,7 +125,7 @@ typedef struct ist_first_contact {
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
   double narrowest;          /**< the least tolerance that is reached here */
   uint64_t distances;        /**< asked for */
-  double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
+  double rotation_error;     /**< of the given poses, the larger one: as in ist_query_result */
 } ist_first_contact;
 
 /** Finds the first contact along a motion. From `lower` to `upper` no point of the moving body goes

@@ -62,7 +62,7 @@ struct FirstContact {
     kBusy,            ///< another thread is using the query
   };
 
-  Status status = Status::kNone;  ///< says which members count
+  Status status = Status::kStopped;  ///< says which members count
   /// The parameter of the first contact lies in [lower, upper], which with kContact are no farther
   /// apart than any point of the moving body takes to go the tolerance; farther where the surfaces
   /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone.

@@ -20,8 +20,9 @@ class ContactReducer;
 struct Contact {
   Eigen::Vector3d position;  ///< half way between the two surfaces
   Eigen::Vector3d normal;    ///< of unit length, from the fixed body to the moving one
-  /// The overlap along the normal, negative where the surfaces are apart; from -2s to s, with s the
-  /// mean of the two voxel sizes. It is no measure of how deep the bodies are in each other.
+  /// The overlap of the two leaves' surfaces along the normal, negative where they are apart; from
+  /// the negative margin to s, with s the mean of the two voxel sizes. It is no measure of how deep
+  /// the bodies are in each other.
   double depth;
   /// An area, mesh units²: it grows with the surface in contact, and falls to 0 where a contact
   /// ends.
@@ -41,13 +42,13 @@ struct Wrench {
 
 /// The sums over all leaf pairs of one answer, none merged or left out, that act on the moving
 /// body. A pair has a weight w (mesh units²), a unit normal n, a depth d and a position p (mesh
-/// units); d0 is the least depth (ManifoldOptions). The sums are Lipschitz in the pose, so that
+/// units); m is ManifoldOptions::margin, mesh units. The sums are Lipschitz in the pose, so that
 /// forces made of them do not jump; docs/guarantees.md gives the rates. They are made in float and
 /// fixed point, and do not depend on the order of pairs: the same bits with one worker or two.
 struct ContactSums {
   double weight = 0;  ///< Σ w, mesh units²
   Wrench pressure;    ///< Σ w n, mesh units², and Σ p × w n, mesh units³
-  Wrench spring;      ///< Σ w (d - d0) n, mesh units³, and Σ p × w (d - d0) n, mesh units⁴
+  Wrench spring;      ///< Σ w (d + m) n, mesh units³, and Σ p × w (d + m) n, mesh units⁴
   std::uint64_t pairs = 0;  ///< leaf pairs with a weight above 0
   /// The point that torques are about: the origin of the fixed tree's frame, fixed mesh
   /// coordinates.
@@ -65,27 +66,32 @@ struct ContactRates {
   double weight,  ///< of w, mesh units
       pressure_force,   ///< of w n, mesh units
       pressure_torque,  ///< of p × w n, mesh units²
-      spring_force,     ///< of w (d - d0) n, mesh units²
-      spring_torque;    ///< of p × w (d - d0) n, mesh units³
+      spring_force,     ///< of w (d + m) n, mesh units²
+      spring_torque;    ///< of p × w (d + m) n, mesh units³
 };
 
 /// The most that an option of memory takes: kArgumentInvalid beyond it.
 inline constexpr std::size_t kMostItems = std::size_t{1} << 26;
 
-/// The options of a ContactManifold. Depths are in mean voxel sizes of the two trees.
+/// The options of a ContactManifold. Lengths are in mean voxel sizes of the two trees.
 struct ManifoldOptions {
   /// The most contacts; 0: the sums alone, which take less time and memory.
   std::size_t points = 32;
   /// The most fixed leaves to keep apart, 80 bytes each. Beyond it, leaves are joined by their
   /// ancestors in the octree.
   std::size_t max_leaves = 1 << 15;
-  /// The depth at which springs begin: pairs that are less deep weigh nothing. From -2, where every
-  /// leaf pair counts, to below 1; 0 is where surfaces meet.
-  double least_depth = -2;
-  /// The detection margin, from 0 to 1: leaf pairs count whose bounds are no farther apart. Without
-  /// it, pairs appear and vanish as tight bounds cross; load-bearing contacts need every pair
-  /// within this distance of the surface.
+  /// The distance at which springs begin, from 0 to 2: pairs of leaves whose surfaces are farther
+  /// apart along their normal weigh nothing. With 0 springs begin where surfaces meet, with 2 every
+  /// leaf pair counts.
+  ///
+  /// The surface of a leaf is the middle of its slab, or without slabs the centre of its ball. So
+  /// with 0 a wrench begins at a distance of 0, to within the error of a depth: 0.25 s with slabs
+  /// where the radius of curvature is over 10 s, with s the voxel size (docs/library.md).
   double margin = 0;
+  /// From 0 to 1: leaf pairs count whose bounds are no farther apart. With 0, pairs appear and
+  /// vanish as tight bounds cross; load-bearing contacts need every pair within this distance of
+  /// the surface.
+  double reach = 0;
 };
 
 /// All contacts of two bodies at one pose: sums that forces are made of, and a few points. Filled
@@ -116,7 +122,7 @@ class IST_API ContactManifold {
   [[nodiscard]] const ContactSums& sums() const noexcept;
   /// The wrench that springs of one stiffness exert on the moving body: stiffness · sums().spring,
   /// about sums().about. With meshes in millimetres and a stiffness in N/mm³ the force is in N and
-  /// the torque in N mm. Springs begin at ManifoldOptions::least_depth.
+  /// the torque in N mm. Springs begin at ManifoldOptions::margin.
   [[nodiscard]] Wrench wrench(double stiffness) const noexcept;
 
   /// The rates at which the sums can change with the pose.

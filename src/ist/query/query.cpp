@@ -124,10 +124,10 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   if (!reducer.fits(s.fixed, s.moving, s.policy)) {
     return {.status = QueryStatus::kManifoldMismatch, .complete = false};
   }
-  const double margin = reducer.scale().margin;
-  const std::optional<detail::Approach> bodies = s.approach(pose, margin);
+  const double reach = reducer.scale().reach;
+  const std::optional<detail::Approach> bodies = s.approach(pose, reach);
   if (!bodies) return detail::invalid_pose(pose);
-  QueryResult result = s.root_result(bodies->roots, margin);
+  QueryResult result = s.root_result(bodies->roots, reach);
   result.rotation_error = rotation_error(pose);
   if (!bodies->roots.overlap) return result;
 
@@ -139,7 +139,7 @@ QueryResult Query::contacts(const Eigen::Isometry3d& pose, ContactManifold& mani
   sink.flush();
   auto& [lower, upper] = *result.distance;
   if (result.leaf_pairs > 0) upper = std::min(upper, result.resolution);
-  if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, margin);
+  if (result.complete && result.leaf_pairs == 0) lower = std::max(lower, reach);
   reducer.finish(bodies->relative, result.complete);
   return result;
 }

@@ -93,8 +93,8 @@ struct QueryResult {
   /// and the rounding error that the tests allow for.
   double pad = 0;
   Found found = Found::kFresh;  ///< the way to the answer, which does not change it
-  /// How far the rotation of the given pose was from orthonormal (rotation_error). The answer is that
-  /// of the nearest rotation.
+  /// How far the rotation of the given pose was from orthonormal (rotation_error). The answer is
+  /// that of the nearest rotation.
   double rotation_error = 0;
 };
 
@@ -144,11 +144,11 @@ enum class Answer : std::uint8_t {
 /// The answer of Query::intersects.
 struct IntersectionResult {
   QueryStatus status = QueryStatus::kDone;  ///< other than kDone: the answer is kUnknown
-  Answer answer = Answer::kUnknown;  ///< exact where both trees have triangles
-  bool complete = false;             ///< no budget ended the search, and no error
-  double resolution = 0;             ///< with kNear: the surfaces are no farther apart
-  std::uint64_t sphere_tests = 0;    ///< as Budget::tests counts them
-  double rotation_error = 0;         ///< as QueryResult has it
+  Answer answer = Answer::kUnknown;         ///< exact where both trees have triangles
+  bool complete = false;                    ///< no budget ended the search, and no error
+  double resolution = 0;                    ///< with kNear: the surfaces are no farther apart
+  std::uint64_t sphere_tests = 0;           ///< as Budget::tests counts them
+  double rotation_error = 0;                ///< as QueryResult has it
 };
 
 /// How often the second worker of a query helped, since the query was made.

@@ -34,14 +34,14 @@ PlannedQuery contact_query(const PlacedBodies& of, const HandPair& pair) {
   return {fixed, held,
           ToolContactOptions{
               .policy = policy,
-              .least_depth = -of.scene.contact.value_or(ContactSettings()).margin,
+              .margin = of.scene.contact.value_or(ContactSettings()).margin,
               .workers = of.scene.workers,
               .period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * of.period))}};
 }
 
 PlannedQuery proximity_query(const PlacedBodies& of, const HandPair& pair) {
   return {*of.trees[pair.fixed].near, *of.trees[pair.held].coarse,
-          ToolContactOptions{.policy = SpherePolicy::kTight, .least_depth = -2, .margin = 0}};
+          ToolContactOptions{.policy = SpherePolicy::kTight, .margin = 2, .reach = 0}};
 }
 
 // Adds up what queries will reserve, before any of them is made, and refuses the one too many.

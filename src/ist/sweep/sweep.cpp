@@ -37,10 +37,10 @@ std::string questions_text(const SweepFile& file) {
   const RowQuestions& asked = file.questions;
   return fmt::format(
       "intersects {:d} leaf_pairs {:d} distance {:d} contacts {:d} penetration {:d} tolerance {} "
-      "tests {} spheres {} push {} stiffness {} rows_per_part {}",
+      "tests {} spheres {} margin {} stiffness {} rows_per_part {}",
       asked.intersects, asked.leaf_pairs, asked.distance, asked.contacts, asked.penetration,
       bits_of(asked.tolerance), asked.budget.tests,
-      file.spheres ? to_string(*file.spheres) : "default", bits_of(file.push_distance),
+      file.spheres ? to_string(*file.spheres) : "default", bits_of(file.margin),
       bits_of(file.stiffness), file.rows_per_part);
 }
 
@@ -107,7 +107,7 @@ bool Sweep::write_rows(std::uint64_t part, const Bodies& bodies, std::size_t thr
   QueryOptions query_options;
   query_options.policy = file_.spheres;
   ManifoldOptions manifold_options;
-  manifold_options.least_depth = -file_.push_distance;
+  manifold_options.margin = file_.margin;
   Query query(bodies.fixed, bodies.moving, query_options);
   const std::uint64_t first = part * identity_.rows_per_part, rows = identity_.rows_of(part),
                       most = rows_at_once(threads);

@@ -27,7 +27,7 @@ constexpr NumberRange kSmallTurn{0, 90, "degrees"};
 constexpr NumberRange kTurn{-360, 360, "degrees"};
 constexpr NumberRange kDirection{-1e300, 1e300, ""};
 constexpr NumberRange kTolerance{0, 1e12, "in mesh units"};
-constexpr NumberRange kPush{0, 2, "mean voxel sizes"};
+constexpr NumberRange kMargin{0, 2, "mean voxel sizes"};
 constexpr NumberRange kSpring{-1e12, 1e12, "N/mm³"};
 constexpr NumberRange kSeeds{0, kMany, ""};
 constexpr NumberRange kTests{1, kMany, ""};
@@ -183,7 +183,7 @@ SweepFile read_sweep_file(const std::filesystem::path& file) {
     sweep.spheres =
         reader.choice("spheres", sphere_policy, R"("simple", "table", "tight" or "slab")");
   }
-  sweep.push_distance = reader.number("push_distance", kPush, sweep.push_distance);
+  sweep.margin = reader.number("margin", kMargin, sweep.margin);
   sweep.stiffness = reader.number("stiffness", kSpring, sweep.stiffness);
   sweep.rows_per_part = reader.whole_number("rows_per_part", kRowsPerPart, sweep.rows_per_part);
   // Typing errors are found before large files are read.

@@ -211,7 +211,7 @@ class Query:
         spheres: Spheres = "default",
         workers: Literal[1, 2] = 1,
         contacts: int = 32,
-        push_distance: float = 2.0,
+        margin: float = 0.0,
         front_pairs: int = 0,
         target: Optional[str] = None,
     ) -> None: ...
@@ -345,7 +345,7 @@ class World:
         *,
         spheres: Spheres = "default",
         contacts: int = 32,
-        push_distance: float = 2.0,
+        margin: float = 0.0,
         front_pairs: int = 0,
         frontier_pairs: int = 0,
         target: Optional[str] = None,

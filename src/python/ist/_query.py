@@ -35,22 +35,22 @@ _intersects, _leaf_pairs, _contacts = bare("ist_query_intersects"), bare("ist_qu
 _distance, _triangle_pairs = bare("ist_query_distance"), bare("ist_query_triangle_pairs")
 
 
-def options_of(spheres, workers, contacts, push_distance, front_pairs, target):
+def options_of(spheres, workers, contacts, margin, front_pairs, target):
     """Returns the library's options of a query, checked."""
     if workers not in (1, 2):
         refuse(f"workers is {workers!r}: pass 1 or 2")
     if contacts == 0:
         refuse("contacts is 0: pass a number of contacts, or -1 for none")
     most = -1 if contacts == -1 else count_of(contacts, "contacts", 4096)
-    push = number_of(push_distance, "push_distance")
-    if not 0 <= push <= 2:
-        refuse(f"push_distance is {push}: pass a number from 0 to 2, mean voxel sizes")
+    begins = number_of(margin, "margin")
+    if not 0 <= begins <= 2:
+        refuse(f"margin is {begins}: pass a number from 0, where surfaces meet, to 2 mean voxel sizes")
     return QueryOptions(
         spheres=spheres_number(spheres),
         workers=workers,
         contacts=most,
         target=None if target is None else str(target).encode("utf-8", "replace"),
-        push_distance=-1 if push == 0 else push,
+        margin=begins,
         front_pairs=count_of(front_pairs, "front_pairs"),
     )
 
@@ -62,8 +62,8 @@ class Query(Lone):
     mesh units. `tests` and `seconds` limit one question; 0 is no limit. A query belongs to one thread at a time: another one
     gets a BusyError. Calls let other threads of Python run. Arrays given as `out` are filled in place.
 
-    contacts: the most contacts, -1 for none. push_distance: where springs begin, mean voxel sizes before the surfaces meet,
-    0 to 2. front_pairs: leaf pairs kept in slow motion, from pose to pose. workers: 2 for a resident thread that helps.
+    contacts: the most contacts, -1 for none. margin: the distance at which springs begin, 0 to 2 mean voxel
+    sizes; 0: where surfaces meet. front_pairs: leaf pairs kept in slow motion, from pose to pose. workers: 2 for a resident thread that helps.
 
     >>> import ist, numpy as np
     >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
@@ -87,13 +87,13 @@ class Query(Lone):
         spheres="default",
         workers=1,
         contacts=32,
-        push_distance=2.0,
+        margin=0.0,
         front_pairs=0,
         target=None,
     ):
         for tree, name in ((fixed, "fixed"), (moving, "moving")):
             need_tree(tree, name)
-        options = options_of(spheres, workers, contacts, push_distance, front_pairs, target)
+        options = options_of(spheres, workers, contacts, margin, front_pairs, target)
         out = Out()
         check(LIBRARY.ist_query_create(fixed._need(), moving._need(), addressof(options), out.address))
         super().__init__(out.handle)
@@ -207,7 +207,7 @@ class Query(Lone):
 
         >>> import ist, numpy as np
         >>> upper, lower = (ist.build(jaw, voxel_size=0.8) for jaw in ist.jaws())
-        >>> felt = ist.Query(upper, lower, push_distance=0).contacts(np.eye(4))
+        >>> felt = ist.Query(upper, lower).contacts(np.eye(4))
         >>> force, torque, about = felt.wrench(stiffness=1.0)
         >>> bool(force[2] < 0)                                     # the lower jaw is pushed down
         True

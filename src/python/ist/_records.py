@@ -148,7 +148,7 @@ class QueryOptions(Sized):
         ("reserved", c_uint64),
         ("contacts", c_int64),
         ("target", ctypes.c_char_p),
-        ("push_distance", c_double),
+        ("margin", c_double),
         ("front_pairs", c_uint64),
     ]
 

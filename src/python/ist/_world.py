@@ -62,7 +62,7 @@ class World(Lone):
         *,
         spheres="default",
         contacts=32,
-        push_distance=2.0,
+        margin=0.0,
         front_pairs=0,
         frontier_pairs=0,
         target=None,
@@ -70,7 +70,7 @@ class World(Lone):
         most_near=4096,
         max_memory=4 << 30,
     ):
-        query = options_of(spheres, 1, contacts, push_distance, front_pairs, target)
+        query = options_of(spheres, 1, contacts, margin, front_pairs, target)
         query.frontier_pairs = count_of(frontier_pairs, "frontier_pairs")
         options = WorldOptions(
             query=pointer(query),

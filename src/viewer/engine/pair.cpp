@@ -67,7 +67,7 @@ Pair::Pair(const cli::Bodies& bodies)
     : bodies_(bodies),
       examiner_(bodies_, {}, {}),
       query_(bodies_.fixed, bodies_.moving, {.policy = bodies_.policy}),
-      manifold_(bodies_.fixed, bodies_.moving, bodies_.policy, {.least_depth = 0}) {
+      manifold_(bodies_.fixed, bodies_.moving, bodies_.policy) {
   engines_.emplace_back(cli::kEngineNames.front(), bodies_.fixed, bodies_.moving,
                         cli::EngineOptions{.policy = bodies_.policy});
 }

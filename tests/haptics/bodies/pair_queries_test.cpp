@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMillimetre = 1e-3;
-constexpr ToolContactOptions kOptions{.policy = SpherePolicy::kSlab, .least_depth = -0.5};
+constexpr ToolContactOptions kOptions{.policy = SpherePolicy::kSlab, .margin = 0.5};
 
 SphereTree tree_of(const TriangleMesh& mesh) {
   BuildOptions options;

@@ -49,8 +49,8 @@ struct Scenery {
     const Vector3d origin = held.rotation * frames.tool_origin + held.translation;
     return {fixed.rotation * held.rotation, fixed.rotation * (kUnit * origin) + fixed.translation};
   }
-  [[nodiscard]] ToolContacts contacts(const Placement& held, double least_depth = -0.5) const {
-    ToolContactQuery query(block(), ball(), frames, {SpherePolicy::kSlab, least_depth});
+  [[nodiscard]] ToolContacts contacts(const Placement& held, double margin = 0.5) const {
+    ToolContactQuery query(block(), ball(), frames, {SpherePolicy::kSlab, margin});
     ToolContacts contacts;
     EXPECT_TRUE(query.find(tool(held), {}, contacts).complete);
     return contacts;

@@ -70,7 +70,7 @@ void ask_more(const ist::SphereTree& fixed, const ist::SphereTree& moving) {
   std::vector<ist::Query> queries;  // a query moves
   queries.emplace_back(fixed, moving);
   ist::Query& query = queries.front();
-  ist::ContactManifold manifold(fixed, moving, query.policy(), {.points = 8, .least_depth = 0});
+  ist::ContactManifold manifold(fixed, moving, query.policy(), {.points = 8});
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation().x() = kCells - 0.25;
   require(query.contacts(pose, manifold).leaf_pairs > 0, "no contacts");

@@ -35,7 +35,7 @@ class ClearDistance : public ::testing::Test {
     options.front_pairs = 1 << 14;
     kept_.emplace(*fixed_, *moving_, options);
     points_.emplace(*fixed_, *moving_, kept_->policy());
-    wide_.emplace(*fixed_, *moving_, kept_->policy(), ManifoldOptions{.margin = 1});
+    wide_.emplace(*fixed_, *moving_, kept_->policy(), ManifoldOptions{.reach = 1});
   }
 
   // Asks at a pose and holds the interval, if there is one, against the truth.

@@ -163,8 +163,8 @@ TEST_P(CoherentDeadline, OfTestsIsThatOfAFreshQuery) {
     Query fresh(scene.fixed, scene.moving, options);
     options.front_pairs = 1 << 15;
     Query query(scene.fixed, scene.moving, options);
-    ContactManifold points(scene.fixed, scene.moving, GetParam()),
-        others(scene.fixed, scene.moving, GetParam());
+    ContactManifold points(scene.fixed, scene.moving, GetParam(), {.margin = 2}),
+        others(scene.fixed, scene.moving, GetParam(), {.margin = 2});
     Motion motion(scene, random.below(1000));
     motion.limit_step(0.05);
     for (int i = 0; i < 60 && !HasFailure(); ++i) {

@@ -32,7 +32,7 @@ TEST(CoherentMisuse, OfAPoseIsAStatusAndTheNextTickIsRight) {
     bad[2].linear()(0, 0) = kNotANumber;
     bad[3].translation()[2] = HUGE_VAL;
     Eigen::Isometry3d pose = scene.pose;
-    ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+    ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
     for (int i = 0; i < 80; ++i) {
       pose.translation()[2] += 0.005 * scene.fixed.voxel_size();
       if (i % 5 == 4) {
@@ -56,8 +56,8 @@ TEST(CoherentMisuse, OfAPoseIsAStatusAndTheNextTickIsRight) {
 TEST(CoherentMisuse, OfAManifoldIsAStatusAndTheNextTickIsRight) {
   const Scene &scene = solids()[0], &other = solids()[1];
   KeptAnswers answers(scene, keeping(SpherePolicy::kSlab));
-  ContactManifold wrong(other.fixed, other.moving, SpherePolicy::kSlab),
-      loose(scene.fixed, scene.moving, SpherePolicy::kTight);
+  ContactManifold wrong(other.fixed, other.moving, SpherePolicy::kSlab, {.margin = 2}),
+      loose(scene.fixed, scene.moving, SpherePolicy::kTight, {.margin = 2});
   for (int i = 0; i < 40; ++i) {
     answers.check_contacts(scene.pose);
     for (ContactManifold* each : {&wrong, &loose}) {
@@ -106,7 +106,7 @@ TEST_F(TwoThreads, InOneQueryTheSecondIsToldThatItIsBusy) {
     QueryOptions options;
     options.front_pairs = front_pairs;
     Query query(ball_, ball_, options);
-    ContactManifold points(ball_, ball_, query.policy());
+    ContactManifold points(ball_, ball_, query.policy(), {.margin = 2});
     QueryResult before;
     for (int i = 0; i < 20; ++i) before = query.contacts(pose_, points);
     ASSERT_FALSE(points.points().empty());
@@ -169,14 +169,14 @@ TEST_F(TwoThreads, InOneQueryAreRightOrBusy) {
     Query query(ball_, ball_, options);
     std::vector<Eigen::Isometry3d> poses;
     std::vector<FoundContacts> expected;
-    ContactManifold points(ball_, ball_, single.policy());
+    ContactManifold points(ball_, ball_, single.policy(), {.margin = 2});
     for (int i = 0; i < 30; ++i) {
       poses.push_back(shift({1.9 + 0.0004 * i, 0, 0}));
       expected.push_back(find_contacts(single, points, poses.back()));
     }
     std::atomic<int> wrong{0}, right{0};
     const auto ask_all = [&](std::size_t from) {
-      ContactManifold own(ball_, ball_, single.policy());
+      ContactManifold own(ball_, ball_, single.policy(), {.margin = 2});
       std::size_t answers = 0;
       for (std::size_t i = 0; answers < 500; ++i) {
         const std::size_t k = (from + i) % poses.size();

@@ -59,9 +59,9 @@ class KeptAnswers {
   KeptAnswers(const Scene& scene, const QueryOptions& options)
       : kept_(std::make_unique<Query>(scene.fixed, scene.moving, options)),
         fresh_(scene.fixed, scene.moving, without_front(options)) {
-    for (const double margin : {0.0, 0.375, 1.0}) {
+    for (const double reach : {0.0, 0.375, 1.0}) {
       for (const std::size_t points : {0u, 32u}) {
-        const ManifoldOptions manifold{.points = points, .margin = margin};
+        const ManifoldOptions manifold{.points = points, .margin = 2, .reach = reach};
         for (auto* of : {&manifolds_, &others_}) {
           of->emplace_back(scene.fixed, scene.moving, *options.policy, manifold);
         }

@@ -25,7 +25,7 @@ TEST(ContactsWithinABudget, WithoutEndAreThoseOfThePlainQuery) {
   for (const Scene& scene : Scenes{solids()[0], solids()[1], solids()[2], shells()}) {
     for (const SpherePolicy policy : kPolicies) {
       Query query(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold points(scene.fixed, scene.moving, policy);
+      ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
       const FoundContacts plain = find_contacts(query, points, scene.pose);
       ASSERT_GT(plain.points.size(), 8u) << scene.name;
       {
@@ -49,8 +49,8 @@ TEST(ContactsWithinABudget, StopWhereTheyStoppedBefore) {
     for (const SpherePolicy policy : kPolicies) {
       Query query(scene.fixed, scene.moving, options_of(policy));
       Query other(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold points(scene.fixed, scene.moving, policy);
-      ContactManifold others(scene.fixed, scene.moving, policy);
+      ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
+      ContactManifold others(scene.fixed, scene.moving, policy, {.margin = 2});
       const std::uint64_t all = query.contacts(scene.pose, points).sphere_tests;
       {
         for (std::uint64_t tests = 1; tests < 2 * all; tests = tests * 7 / 4 + 1) {
@@ -84,7 +84,7 @@ TEST(ContactsWithinADeadline, StopWhereTheyStoppedBefore) {
   const Scene& scene = jaws();
   int stopped = 0;
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
   {
     for (int i = 0; i < 40; ++i) {
       const FoundContacts first =
@@ -112,7 +112,7 @@ TEST(ContactsOfTwoWorkers, AreThoseOfOneAndStopWhereTheyStoppedBefore) {
   options.workers = 2;
   options.period = std::chrono::nanoseconds(0);
   Query two(scene.fixed, scene.moving, options);
-  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
   const FoundContacts whole = find_contacts_within(one, points, scene.pose, {});
   ASSERT_GT(whole.result.leaf_pairs, 1000u);
   int stopped = 0;
@@ -143,7 +143,7 @@ TEST(ContactsWithinADeadline, ThatIsPastAreNone) {
   {
     const Scene& scene = solids()[0];
     Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-    ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+    ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
     const FoundContacts found =
         find_contacts_within(query, points, scene.pose, {.deadline = Budget::Clock::now()});
     EXPECT_FALSE(found.result.complete);
@@ -166,7 +166,7 @@ TEST(ContactsWithinABudget, TellATrueDistance) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kPolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));
-    ContactManifold points(scene.fixed, scene.moving, policy);
+    ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
     for (const double distance : {1.0, 0.3, 0.05, 0.002}) {
       const Eigen::Isometry3d pose = shift({1.9 + distance, 0, 0});
       DistanceInterval before{0, HUGE_VAL};
@@ -194,7 +194,7 @@ TEST(ContactsWithinABudget, TellATrueDistance) {
 TEST(ContactsWithinABudget, AreNoneAtNoRigidMotion) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
   Eigen::Isometry3d bad = scene.pose;
   bad.linear() *= 2;
   {

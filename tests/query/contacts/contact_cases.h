@@ -31,7 +31,7 @@ struct FoundContacts {
   QueryOptions options;
   options.policy = policy;
   Query query(fixed, moving, options);
-  ContactManifold points(fixed, moving, policy, {most, std::size_t{1} << 20});
+  ContactManifold points(fixed, moving, policy, {most, std::size_t{1} << 20, 2});
   return find_contacts(query, points, pose);
 }
 

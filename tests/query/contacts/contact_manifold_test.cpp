@@ -99,10 +99,10 @@ TEST(ContactManifold, LosesNothingWhereThereIsNoRoom) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
       SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
       Query query(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold all(scene.fixed, scene.moving, policy, {1 << 14, 1 << 14});
+      ContactManifold all(scene.fixed, scene.moving, policy, {1 << 14, 1 << 14, 2});
       const FoundContacts whole = find_contacts(query, all, scene.pose);
       for (const std::size_t room : {1u, 2u, 7u, 30u, 200u}) {
-        ContactManifold few(scene.fixed, scene.moving, policy, {1 << 14, room});
+        ContactManifold few(scene.fixed, scene.moving, policy, {1 << 14, room, 2});
         if (room < scene.fixed.leaf_count()) {
           EXPECT_LT(few.bytes(), all.bytes());
         }
@@ -116,7 +116,7 @@ TEST(ContactManifold, LosesNothingWhereThereIsNoRoom) {
         expect_near(moments_of(found.points), moments_of(whole.points));
         EXPECT_TRUE(
             same(find_contacts(query, few, scene.pose), found));  // nothing is left of the last
-        ContactManifold fewer(scene.fixed, scene.moving, policy, {3, room});
+        ContactManifold fewer(scene.fixed, scene.moving, policy, {3, room, 2});
         const FoundContacts joined = find_contacts(query, fewer, scene.pose);
         EXPECT_LE(joined.points.size(), 3u);
         EXPECT_NEAR(moments_of(joined.points).weight, whole.sums.weight, 1e-6 * whole.sums.weight);
@@ -128,7 +128,7 @@ TEST(ContactManifold, LosesNothingWhereThereIsNoRoom) {
 TEST(ContactManifold, IsTheSameBitsHoweverItIsFound) {
   for (const Scene& scene : Scenes{solids()[0], shells()}) {
     for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
-      ContactManifold points(scene.fixed, scene.moving, policy);
+      ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
       Query plain(scene.fixed, scene.moving, options_of(policy));
       const FoundContacts expected = find_contacts(plain, points, scene.pose);
       EXPECT_GT(expected.points.size(), 8u);
@@ -152,7 +152,7 @@ TEST(ContactManifold, IsTheSameBitsHoweverItIsFound) {
 TEST(ContactManifold, IsEmptyAtNoRigidMotionAndWhereBodiesAreApart) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving);
-  ContactManifold points(scene.fixed, scene.moving, query.policy());
+  ContactManifold points(scene.fixed, scene.moving, query.policy(), {.margin = 2});
   const FoundContacts before = find_contacts(query, points, scene.pose);
   EXPECT_GT(before.points.size(), 0u);
   Eigen::Isometry3d bad = scene.pose;
@@ -250,7 +250,7 @@ TEST(ContactManifold, HasADirectionWhereNormalsBalance) {
 TEST(ContactManifold, KeepsTheFloatEnvironment) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving);
-  ContactManifold points(scene.fixed, scene.moving, query.policy());
+  ContactManifold points(scene.fixed, scene.moving, query.policy(), {.margin = 2});
   const FoundContacts expected = find_contacts(query, points, scene.pose);
   const unsigned before = _mm_getcsr(), strange = 0x1F80 | 0x8040 | 0x6000;
   _mm_setcsr(strange);

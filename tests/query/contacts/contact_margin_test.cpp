@@ -9,8 +9,8 @@
 namespace ist::test {
 namespace {
 
-// A plate a little above another: what of it counts, and with which weight, by margin.
-TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
+// A plate a little above another: what of it counts, and with which weight, by reach.
+TEST(ContactReach, CountsPairsThatAreNoFartherApart) {
   constexpr double kSize = 0.25;
   BuildOptions build;
   build.voxel_size = kSize;
@@ -18,10 +18,10 @@ TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
   const SphereTree upper = build_tree(box({-1, -1, 0}, {1, 1, 1}), build);
   Query query(lower, upper);
   ASSERT_EQ(query.policy(), SpherePolicy::kSlab);
-  const auto sums_at = [&](double gap, double margin) {
+  const auto sums_at = [&](double gap, double reach) {
     ManifoldOptions options;
-    options.least_depth = -1;
-    options.margin = margin;
+    options.margin = 1;
+    options.reach = reach;
     ContactManifold points(lower, upper, query.policy(), options);
     return find_contacts(query, points, pose_of(Eigen::Matrix3d::Identity(), {0, 0, gap * kSize}))
         .sums;
@@ -34,7 +34,7 @@ TEST(ContactMargin, CountPairsThatAreNoFartherApartThanTheMargin) {
   EXPECT_GT(more.pairs, few.pairs);
   EXPECT_GT(more.weight, 2 * few.weight);
   EXPECT_GT(more.pressure.force.z(), 0.9 * more.weight);
-  // Those in their middle, which are flat, meet only by margin.
+  // Those in their middle, which are flat, meet only by reach.
   EXPECT_GT(sums_at(0.3, 0.5).weight, 3 * sums_at(0.3, 0).weight);
 }
 

@@ -92,10 +92,9 @@ TEST(ContactManifold, HasTheSumsAndContactsOfItsLeafPairsInDouble) {
   double most = 0;
   for (const Scene& scene : small_scenes()) {
     for (const SpherePolicy policy : kSpherePolicies) {
-      for (const double least : {-2.0, -0.5}) {
+      for (const double margin : {2.0, 0.5, 0.0}) {
         SCOPED_TRACE(scene.name + ", " + std::string(to_string(policy)));
-        const ManifoldOptions options{
-            .points = 1 << 14, .max_leaves = 1 << 20, .least_depth = least};
+        const ManifoldOptions options{.points = 1 << 14, .max_leaves = 1 << 20, .margin = margin};
         Query query(scene.fixed, scene.moving, options_of(policy));
         ContactManifold points(scene.fixed, scene.moving, policy, options);
         const PlainContacts plain(scene.fixed, scene.moving, policy, options);
@@ -128,13 +127,13 @@ TEST(ContactManifold, HasTheMeansOfEachFixedLeaf) {
     for (const SpherePolicy policy : kSpherePolicies) {
       SCOPED_TRACE(scene->name + ", " + std::string(to_string(policy)));
       Query query(scene->fixed, scene->moving, options_of(policy));
-      ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0});
+      ContactManifold points(scene->fixed, scene->moving, policy, {.points = 0, .margin = 2});
       const LinearOctree& octree = scene->fixed.parts().octree;
       LeafSums leaves(octree, octree.leaf_count());
       points.reducer().adder().stream = &leaves;
       static_cast<void>(query.contacts(scene->pose, points));
       leaves.close();
-      const PlainContacts plain(scene->fixed, scene->moving, policy);
+      const PlainContacts plain(scene->fixed, scene->moving, policy, {.margin = 2});
       const auto wanted = plain_points(plain.of(ask(query, scene->pose).leaf_pairs, scene->pose));
       const double whole = points.reducer().scale().area,
                    rounding = rounding_of(scene->fixed, points);

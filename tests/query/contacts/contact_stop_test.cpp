@@ -29,7 +29,7 @@ TEST(StoppedContacts, StopWhereTheListStops) {
     for (const SpherePolicy policy : kSpherePolicies) {
       for (const int workers : {1, 2}) {
         Query query(scene.fixed, scene.moving, options_of(policy, "", workers));
-        ContactManifold points(scene.fixed, scene.moving, policy);
+        ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
         for (const double x : {0.0, 1.6, 1.9, 2.6}) {
           Eigen::Isometry3d at = scene.pose;
           at.translation()[0] += x;
@@ -58,16 +58,16 @@ TEST(StoppedContacts, StopWhereTheListStops) {
   EXPECT_GT(with_some, 10);
 }
 
-// Nor does a margin widen what the bounds tell of the distance.
-TEST(StoppedContacts, TellNoWiderIntervalWithAMargin) {
+// Nor does a reach widen what the bounds tell of the distance.
+TEST(StoppedContacts, TellNoWiderIntervalWithAReach) {
   int stopped = 0;
   for (const Scene& scene : solids()) {
     for (const SpherePolicy policy : kSpherePolicies) {
       Query query(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold plain(scene.fixed, scene.moving, policy);
-      for (const double margin : {0.375, 1.0}) {
+      ContactManifold plain(scene.fixed, scene.moving, policy, {.margin = 2});
+      for (const double reach : {0.375, 1.0}) {
         ManifoldOptions options;
-        options.margin = margin;
+        options.reach = reach;
         ContactManifold wide(scene.fixed, scene.moving, policy, options);
         for (const double x : {0.0, 1.6, 1.9, 2.6}) {
           Eigen::Isometry3d at = scene.pose;
@@ -93,7 +93,7 @@ TEST(StoppedContacts, EndAtTheFirstLookAfterTheDeadline) {
   const Scene& scene = solids()[0];
   for (const SpherePolicy policy : kSpherePolicies) {
     Query query(scene.fixed, scene.moving, options_of(policy));
-    ContactManifold points(scene.fixed, scene.moving, policy);
+    ContactManifold points(scene.fixed, scene.moving, policy, {.margin = 2});
     std::uint64_t before = 0;
     for (int allowed = 0; allowed < 40; ++allowed) {
       const QueryResult stopped = query.contacts(scene.pose, points, LateClock::budget_of(allowed));

@@ -19,9 +19,9 @@ PlainContacts::PlainContacts(const SphereTree& fixed, const SphereTree& moving, 
       size_(0.5 * (fixed.voxel_size() + moving.voxel_size())),
       area_(fixed.voxel_size() * moving.voxel_size()),
       farthest_(std::sqrt(3.0) * size_),
-      least_(options.least_depth * size_),
-      fade_(options.least_depth > -2 ? size_ / 4 : 0),
-      margin_(options.margin * size_) {}
+      least_(-options.margin * size_),
+      fade_(options.margin < 2 ? size_ / 4 : 0),
+      reach_(options.reach * size_) {}
 
 std::vector<PlainContacts::Leaf> PlainContacts::leaves_of(const SphereTree& tree,
                                                           SpherePolicy policy) {
@@ -51,13 +51,13 @@ std::vector<PlainContacts::Leaf> PlainContacts::leaves_of(const SphereTree& tree
 PlainPair PlainContacts::at(const LeafPair& pair, const Eigen::Isometry3d& pose) const {
   const Leaf &a = fixed_[pair.fixed], &b = moving_[pair.moving];
   const Vector3d between = pose * b.centre - a.centre;
-  const double reach = a.radius + b.radius + margin_;
+  const double reach = a.radius + b.radius + reach_;
   double share = std::min(1.0, (reach * reach - between.squaredNorm()) / (farthest_ * farthest_));
   if (slabs_) {
     const Vector3d turned = pose.linear() * b.slab_normal;
     const double into_a =
-        a.half + b.radius + margin_ - std::abs(a.slab_normal.dot(between) - a.offset);
-    const double into_b = b.half + a.radius + margin_ - std::abs(turned.dot(-between) - b.offset);
+        a.half + b.radius + reach_ - std::abs(a.slab_normal.dot(between) - a.offset);
+    const double into_b = b.half + a.radius + reach_ - std::abs(turned.dot(-between) - b.offset);
     share *= std::clamp(std::min(into_a, into_b) / (size_ / 2), 0.0, 1.0);
   }
   const Vector3d mean = (a.normal - pose.linear() * b.normal) / 2;

@@ -21,7 +21,7 @@ struct PlainPair {
 /// Contacts worked out pair by pair in double from what the headers guarantee.
 class PlainContacts {
  public:
-  /// Takes the least depth and the margin of `options`.
+  /// Takes the margin and the reach of `options`.
   PlainContacts(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
                 const ManifoldOptions& options = {});
 
@@ -44,7 +44,7 @@ class PlainContacts {
   std::vector<Leaf> fixed_, moving_;
   Eigen::Vector3d about_;
   bool slabs_;
-  double size_, area_, farthest_, least_, fade_, margin_;
+  double size_, area_, farthest_, least_, fade_, reach_;
 };
 
 /// One contact a fixed leaf.

@@ -52,11 +52,12 @@ void expect_mirrored(const SphereTree& fixed, const SphereTree& moving, SpherePo
                                 std::back_inserter(differ));
   EXPECT_LE(differ.size(), 2 + pairs.size() / 200);
 
-  ContactManifold points(fixed, moving, policy), swapped(moving, fixed, policy);
+  ContactManifold points(fixed, moving, policy, {.margin = 2}),
+      swapped(moving, fixed, policy, {.margin = 2});
   const ContactSums a = find_contacts(there, points, pose).sums,
                     b = find_contacts(back, swapped, pose.inverse()).sums;
   // A pair is the same seen from either side, but for the rounding in another frame.
-  ContactManifold each(fixed, moving, policy, {.points = 0});
+  ContactManifold each(fixed, moving, policy, {.points = 0, .margin = 2});
   double part = 1e-6;
   const double rounding = rounding_of(fixed, points) + rounding_of(moving, swapped);
   part += points.rates().weight * rounding * static_cast<double>(b.pairs) / b.weight;

@@ -47,11 +47,11 @@ struct TravelBodies {
 /// Two bodies on one way: what they have in common at each step, and how far a step goes.
 class Travel {
  public:
-  Travel(const TravelBodies& bodies, const Way& way, SpherePolicy policy, double least_depth)
+  Travel(const TravelBodies& bodies, const Way& way, SpherePolicy policy, double margin)
       : bodies_(bodies),
         way_(way),
         query_(bodies.fixed, bodies.moving, options_of(policy)),
-        manifold_(bodies.fixed, bodies.moving, policy, {.points = 0, .least_depth = least_depth}) {}
+        manifold_(bodies.fixed, bodies.moving, policy, {.points = 0, .margin = margin}) {}
 
   [[nodiscard]] const ContactRates& rates() const { return manifold_.rates(); }
   [[nodiscard]] int steps() const { return way_.steps; }
@@ -88,11 +88,11 @@ class Travel {
 
 /// `check` of all bodies on all their ways.
 template <class Check>
-void for_each_travel(SpherePolicy policy, double least_depth, const Check& check) {
+void for_each_travel(SpherePolicy policy, double margin, const Check& check) {
   for (const TravelBodies& bodies : all_bodies()) {
     for (const Way& way : bodies.ways) {
       SCOPED_TRACE(std::string(bodies.name) + ", " + way.name);
-      Travel travel(bodies, way, policy, least_depth);
+      Travel travel(bodies, way, policy, margin);
       check(travel);
     }
   }

@@ -79,7 +79,7 @@ TEST(Allocations, ContactPointsMakeNone) {
   for (const SpherePolicy policy : {SpherePolicy::kTable, SpherePolicy::kSlab}) {
     for (const std::size_t room : {std::size_t{10}, std::size_t{1} << 15}) {
       Query query(scene.fixed, scene.moving, options_of(policy));
-      ContactManifold points(scene.fixed, scene.moving, policy, {32, room});
+      ContactManifold points(scene.fixed, scene.moving, policy, {32, room, 2});
       std::size_t found = 0;
       EXPECT_EQ(allocations_of([&] {
                   for (int i = 0; i < 100; ++i) {
@@ -105,7 +105,7 @@ TEST(Allocations, AQueryThatKeepsAFrontMakesNone) {
       options.front_pairs = front_pairs;
       std::vector<LeafPair> out(1 << 16);
       Query query(scene.fixed, scene.moving, options);
-      ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+      ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
       int kept = 0, clear = 0;
       const auto enough = [&] { return front_pairs == 100 || (kept > 20 && clear > 20); };
       const auto go = [&] {

@@ -46,7 +46,7 @@ TEST(Locks, AQueryAsksForNone) {
       options.front_pairs = front_pairs;
       std::vector<LeafPair> out(1 << 16);
       Query query(scene.fixed, scene.moving, options);
-      ContactManifold manifold(scene.fixed, scene.moving, SpherePolicy::kSlab);
+      ContactManifold manifold(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
       std::uint64_t pairs = 0;
       EXPECT_EQ(locks_of([&] {
                   for (int i = 0; i < 400; ++i) {

@@ -59,7 +59,7 @@ void carry_in_silence(const Scene& scene, int workers) {
   QueryOptions options = options_of(SpherePolicy::kSlab, "", workers);
   options.front_pairs = 1 << 15;
   Query query(scene.fixed, scene.moving, options);
-  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {.margin = 2});
   Eigen::Isometry3d pose = scene.pose;
   const double step = 0.01 * scene.fixed.voxel_size();
   int ticks = 0, kept = 0;
@@ -113,7 +113,7 @@ TEST_F(SystemCalls, ContactPointsMakeNone) {
       {
         const Scene& scene = jaws();
         Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kSlab));
-        ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {32, 100});
+        ContactManifold points(scene.fixed, scene.moving, SpherePolicy::kSlab, {32, 100, 2});
         forbid_system_calls();
         for (int i = 0; i < 100; ++i) {
           Eigen::Isometry3d pose = scene.pose;

@@ -58,6 +58,7 @@ TEST(SharedContacts, OfMoreLeavesThanTheWorkerHasRoomFor) {
   const Eigen::Isometry3d pose = shift({build.voxel_size / 4, 0, 0});
   ManifoldOptions options;
   options.max_leaves = 1 << 20;
+  options.margin = 2;
   ContactManifold points(ball, ball, SpherePolicy::kSimple, options);
   Query single(ball, ball, options_of(SpherePolicy::kSimple));
   const FoundContacts expected = find_contacts(single, points, pose);

@@ -140,7 +140,7 @@ TEST_F(WatchedSharedSearchThread, ReadsTheClockOftenEnoughForContacts) {
 // only said how long to wait for the worker.
 TEST_F(SharedDeadlineThread, EndsTheSearchAtTheFirstLookAfterIt) {
   Query query(scene_.fixed, scene_.moving, shared_);
-  ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab, {.margin = 2});
   ASSERT_TRUE(ask_until_helped(query));
   const auto ends = [&](const auto& ask) {
     int stopped = 0, within_shared = 0;

@@ -96,7 +96,7 @@ TEST_F(SharedSearchThread, SeveralQueriesShareTheWorker) {
 
 TEST_F(SharedSearchThread, WhatADeadlineCutsShortSpoilsNothing) {
   Query query(scene_.fixed, scene_.moving, shared_);
-  ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab);
+  ContactManifold points(scene_.fixed, scene_.moving, SpherePolicy::kSlab, {.margin = 2});
   int turn = 0, cut = 0;
   std::uint64_t helped = 0;  // where there was a deadline
   EXPECT_TRUE(ask_until(query, [&] {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "ist/base/pose.h"
 #include "ist/tree/tree_parts.h"
 #include "query/exact/exact_tree.h"
 #include "query/exact/meeting_pairs.h"
@@ -64,7 +65,8 @@ TEST(World, AnswersAsAQueryOfEachPair) {
     Random random(seed);
     const std::vector<PlacedTree> bodies = scattered(random, 8, 4);
     WorldOptions options = small_world();
-    options.manifold.margin = seed % 2 == 0 ? 0 : 1;
+    options.manifold.margin = 2;
+    options.manifold.reach = seed % 2 == 0 ? 0 : 1;
     options.query.front_pairs = seed % 3 == 0 ? 1000 : 0;
     World world = world_of(bodies, options);
     for (BodyIndex a = 0; a < 8; ++a) {

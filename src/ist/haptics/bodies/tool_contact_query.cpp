@@ -22,8 +22,7 @@ QueryOptions of_query(const ToolContactOptions& options) {
 }
 
 ManifoldOptions of_manifold(const ToolContactOptions& options) {
-  return {
-      .points = ToolContacts::kMost, .least_depth = options.least_depth, .margin = options.margin};
+  return {.points = ToolContacts::kMost, .margin = options.margin, .reach = options.reach};
 }
 
 }  // namespace
@@ -50,7 +49,7 @@ ToolContactQuery::ToolContactQuery(const SphereTree& fixed, const SphereTree& he
       fixed_radius_(fixed.bounding_radius()),
       held_origin_(held.origin()),
       query_(fixed, held, of_query(options)),
-      least_depth_(options.least_depth * size_),
+      margin_(options.margin * size_),
       manifold_(fixed, held, options.policy, of_manifold(options)) {}
 
 std::size_t ToolContactQuery::bytes_for(const SphereTree& fixed, const SphereTree& held,
@@ -85,8 +84,7 @@ void ToolContactQuery::add_to(ToolContacts& contacts, const Placement& tool) con
 
   for (const Contact& point : manifold_.points()) {
     contacts.add({frames_.to_scene(point.position) - tool.translation, turn * point.normal,
-                  frames_.unit * std::max(0.0, point.depth - least_depth_),
-                  fraction * point.weight});
+                  frames_.unit * std::max(0.0, point.depth + margin_), fraction * point.weight});
   }
 }
 

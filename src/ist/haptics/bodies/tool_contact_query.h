@@ -20,11 +20,11 @@ struct BodyFrames {
   [[nodiscard]] Eigen::Vector3d to_scene(const Eigen::Vector3d& point) const noexcept;
 };
 
-/// Options of a ToolContactQuery. Depths are in voxels; see ManifoldOptions.
+/// Options of a ToolContactQuery. Lengths are in voxels; see ManifoldOptions.
 struct ToolContactOptions {
   SpherePolicy policy = SpherePolicy::kTable;
-  double least_depth = -0.25;         ///< the depth at which contacts begin
-  double margin = 0.375;              ///< the detection margin
+  double margin = 0.25;               ///< the distance at which contacts begin
+  double reach = 0.375;               ///< leaf pairs count whose bounds are no farther apart
   int workers = 1;                    ///< 2: a second thread helps the search
   std::size_t front_pairs = 1 << 16;  ///< the most leaf pairs kept from tick to tick
   std::chrono::nanoseconds period = std::chrono::milliseconds(1);  ///< from one query to the next
@@ -61,7 +61,7 @@ class ToolContactQuery {
   double fixed_radius_;          // bounds the fixed body round its frame's origin, mesh units
   Eigen::Vector3d held_origin_;  // of the held tree's frame, held mesh coordinates
   Query query_;
-  double least_depth_;  // mesh units
+  double margin_;  // mesh units
   ContactManifold manifold_;
 };
 

@@ -22,8 +22,7 @@ std::string waypoint_flaw(const Waypoint* before, const Waypoint& waypoint) {
                        before->time);
   }
   if (!Placement::from(waypoint.pose.isometry())) {
-    return fmt::format("the pose is no rigid motion: {}",
-                       why_not_rigid(waypoint.pose.isometry()));
+    return fmt::format("the pose is no rigid motion: {}", why_not_rigid(waypoint.pose.isometry()));
   }
   // The trace is 1 + 2 cos(turn), as good as its entries.
   constexpr double kRounding = 1e-4;

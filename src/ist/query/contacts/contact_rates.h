@@ -14,9 +14,9 @@ namespace ist {
                                                 const ContactScale& scale) noexcept {
   ContactRates rates{};
   const double s = scale.size;
-  rates.lever = moving.bounding_radius() + (3 * s + scale.margin);
-  const double far = fixed.bounding_radius() + (2.5 * s + scale.margin);
-  const double radii = 1.02 * scale.radius_sum + scale.margin;
+  rates.lever = moving.bounding_radius() + (3 * s + scale.reach);
+  const double far = fixed.bounding_radius() + (2.5 * s + scale.reach);
+  const double radii = 1.02 * scale.radius_sum + scale.reach;
   const double squared = scale.radius_sum * scale.radius_sum, width = scale.width;
   // With slabs the steepest share is one where the centres are so far apart.
   const double apart = std::max(width, std::sqrt(std::max(0.0, radii * radii - squared)));
@@ -24,7 +24,7 @@ namespace ist {
                            ? (radii * radii - apart * apart) / width + 2 * apart
                            : 2 * radii;
   const double share = scale.area * slope / squared;
-  const double depth = scale.area * (1 + (3.9 * s + 0.5 * scale.margin) / rates.lever);
+  const double depth = scale.area * (1 + (3.9 * s + 0.5 * scale.reach) / rates.lever);
   rates.weight = share + 0.5 * scale.area / rates.lever + (scale.fade > 0 ? depth / scale.fade : 0);
   rates.pressure_force = rates.weight;
   rates.pressure_torque = far * rates.pressure_force + 0.5 * scale.area;
@@ -38,7 +38,7 @@ namespace ist {
 /// depth has no such constant (docs/guarantees.md, Rates of the contact sums).
 [[nodiscard]] inline double depth_rate(const ContactScale& scale, double lever,
                                        double mean_normal) noexcept {
-  return 1 + (1.4 * scale.size + 0.5 * scale.margin) / (lever * mean_normal);
+  return 1 + (1.4 * scale.size + 0.5 * scale.reach) / (lever * mean_normal);
 }
 
 }  // namespace ist

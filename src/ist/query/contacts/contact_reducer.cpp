@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "ist/base/error.h"
 #include "ist/query/contacts/contact_clusters.h"
@@ -12,12 +11,11 @@
 namespace ist::detail {
 namespace {
 
-void require_in_range(const char* name, double value, double least, double most, const char* end) {
-  if (value >= least && (value < most || (value == most && std::string_view(end) == "up to")))
-    return;
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("manifold option {} is {}: give a number from {} {} {}", name, value,
-                          least, end, most));
+void require_in_range(const char* name, double value, double most) {
+  if (value >= 0 && value <= most) return;  // no NaN
+  throw Error(
+      ErrorCode::kArgumentInvalid,
+      fmt::format("manifold option {} is {}: give a number from 0 to {}", name, value, most));
 }
 
 const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* body) {
@@ -27,12 +25,11 @@ const SphereTree& with(const SphereTree& tree, SpherePolicy policy, const char* 
 
 ContactScale scale_of(const SphereTree& fixed, const SphereTree& moving,
                       const ManifoldOptions& options) {
-  require_in_range("least_depth", options.least_depth, -2, 1, "below");
-  require_in_range("points", static_cast<double>(options.points), 0, double{kMostItems}, "up to");
-  require_in_range("max_leaves", static_cast<double>(options.max_leaves), 0, double{kMostItems},
-                   "up to");
-  require_in_range("margin", options.margin, 0, 1, "up to");
-  return ContactScale(fixed, moving, options.least_depth, options.margin);
+  require_in_range("points", static_cast<double>(options.points), double{kMostItems});
+  require_in_range("max_leaves", static_cast<double>(options.max_leaves), double{kMostItems});
+  require_in_range("margin", options.margin, 2);
+  require_in_range("reach", options.reach, 1);
+  return ContactScale(fixed, moving, options.margin, options.reach);
 }
 
 }  // namespace
@@ -86,7 +83,7 @@ void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
   sums_.spring = wrench(kSpringSum, kSpringTorqueSum, range * weight);
   if (!leaf_sums_ || !complete) return;
   leaf_sums_->close();
-  const LeafSumUnits units{weight, lever, scale_.least_depth, scale_.size, pose, sums_.about};
+  const LeafSumUnits units{weight, lever, scale_.least_depth(), scale_.size, pose, sums_.about};
   count_ = cluster(*leaf_sums_, units, points_);
 }
 

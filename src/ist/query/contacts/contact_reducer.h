@@ -20,8 +20,8 @@ namespace ist::detail {
 /// A pair weighs s_f s_m · u · b · |e|, with s_f and s_m the two voxel sizes, u the overlap of the
 /// two balls, b the lesser overlap of a slab with the other ball (bound_share), and e the mean of
 /// the two normals, each as long as it is coherent (pair_terms). Each factor falls to 0, with a
-/// bounded slope, where the pair leaves the answer or its normals cancel. With a least depth above
-/// -2 the weight also falls to 0 there, over a quarter of a voxel.
+/// bounded slope, where the pair leaves the answer or its normals cancel. With a margin below
+/// 2 the weight also falls to 0 at the margin, over a quarter of a voxel.
 ///
 /// The kernels add up, in float and fixed point, what their adder() is given; this class turns it
 /// into mesh units and the fixed tree's frame.

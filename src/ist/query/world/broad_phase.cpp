@@ -23,14 +23,14 @@ double largest_of(const Eigen::Vector3d& v) noexcept {
 }  // namespace
 
 BodyBall ball_of(const SphereTree& tree, const BodyPose& pose, double reach,
-                 double margin) noexcept {
+                 double contacts) noexcept {
   const Eigen::Vector3d origin = tree.origin();
   const double radius = tree.bounding_radius();
   const double place = (largest_of(origin) + largest_of(pose.translation)) + radius;
   BodyBall ball;
   ball.centre = moved(RelativePose{pose.rotation, pose.translation}, origin);
   ball.radius = (radius + kOfRadius * radius) + kOfPlace * place;
-  ball.margin = (1 + kOfRadius) * 0.5 * (reach + margin * tree.voxel_size());
+  ball.margin = (1 + kOfRadius) * 0.5 * (reach + contacts * tree.voxel_size());
   return ball;
 }
 

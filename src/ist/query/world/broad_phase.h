@@ -26,10 +26,10 @@ struct BodyBall {
 
 /// Returns the ball of a body at a pose.
 ///
-/// @param reach  pairs are near whose bounds are no farther apart, mesh units
-/// @param margin the margin of contacts, in mean voxel sizes of two bodies
+/// @param reach    pairs are near whose bounds are no farther apart, mesh units
+/// @param contacts the reach of contacts, in mean voxel sizes of two bodies
 [[nodiscard]] BodyBall ball_of(const SphereTree& tree, const BodyPose& pose, double reach,
-                               double margin) noexcept;
+                               double contacts) noexcept;
 
 /// Returns the distance between the surfaces of two bodies as far as their balls tell it.
 [[nodiscard]] DistanceInterval distance_of(const BodyBall& a, const BodyBall& b) noexcept;

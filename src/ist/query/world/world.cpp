@@ -54,9 +54,9 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
   }
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
-    throw Error(ErrorCode::kPoseInvalid,
-                fmt::format("world: the pose of '{}' is no rigid motion: {}", name,
-                            why_not_rigid(pose)));
+    throw Error(
+        ErrorCode::kPoseInvalid,
+        fmt::format("world: the pose of '{}' is no rigid motion: {}", name, why_not_rigid(pose)));
   }
   if (index == s.bodies.capacity()) {
     s.broad.reserve(2 * index + 8);

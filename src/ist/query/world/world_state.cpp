@@ -58,7 +58,7 @@ void WorldState::move(BodyIndex index, const Eigen::Isometry3d& pose) noexcept {
     return;
   }
   body.pose = *rigid;
-  broad.set(index, ball_of(body.tree, body.pose, options.reach, options.manifold.margin));
+  broad.set(index, ball_of(body.tree, body.pose, options.reach, options.manifold.reach));
 }
 
 PairAtPose WorldState::look(BodyPair pair) const noexcept {
@@ -72,9 +72,9 @@ PairAtPose WorldState::look(BodyPair pair) const noexcept {
     at.overlap = false;
     return at;
   }
-  const double margin =
-      std::max({options.reach, ContactScale(a, b, -2, options.manifold.margin).margin,
-                moved_error(b, at.pose)});
+  const double margin = std::max(
+      {options.reach, ContactScale(a, b, options.manifold.margin, options.manifold.reach).reach,
+       moved_error(b, at.pose)});
   const RootTest roots =
       test_roots(a, b, QueryState::policy_of(a, b, options.query), *relative, margin);
   at.overlap = roots.overlap;
