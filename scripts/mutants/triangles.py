@@ -91,6 +91,6 @@ MUTANTS = [
              ".fade_from = scale.fade > 1e300 ? 0.0F : 1.0F")],
            ["search_test PairTerms*", "contacts_test"]),
     Mutant("margin-forgotten", "leaf pairs within the margin do not count",
-           [("src/ist/query/query.cpp", "s.approach(pose, margin)", "s.approach(pose, 0 * margin)")],
+           [("src/ist/query/query.cpp", "s.approach(pose, reach)", "s.approach(pose, 0 * reach)")],
            ["contacts_test", "scene_test ShippedScene*"]),
 ]
