@@ -42,6 +42,8 @@ class SurfaceSides {
     return normals_.closed() && !box_.contains(point);
   }
 
+  /// Returns the box round all vertices in use.
+  [[nodiscard]] const Eigen::AlignedBox3d& box() const noexcept { return box_; }
   [[nodiscard]] const SelfIntersections& self_intersections() const noexcept {
     return self_intersections_;
   }

@@ -33,6 +33,8 @@ struct LeafTriangles {
   /// Returns the sides of the surface. The first call of this or of component_points(), by any
   /// thread, computes both. It takes 1.2 µs a triangle and core.
   [[nodiscard]] const SurfaceSides& sides() const { return *made().sides; }
+  /// Returns the box round all vertices in use.
+  [[nodiscard]] const Eigen::AlignedBox3d& box() const { return sides().box(); }
   /// Returns a vertex of each component.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& component_points() const {
     return made().component_points;
