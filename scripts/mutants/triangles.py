@@ -91,7 +91,7 @@ MUTANTS = [
            [(CONTACTS + "contact_scale.h", ".fade_from = scale.fade > 0 ? 0.0F : 1.0F",
              ".fade_from = scale.fade > 1e300 ? 0.0F : 1.0F")],
            ["search_test PairTerms*", "contacts_test"]),
-    Mutant("margin-forgotten", "leaf pairs within the margin do not count",
+    Mutant("reach-forgotten", "leaf pairs within the reach do not count",
            [("src/ist/query/query.cpp", "s.approach(pose, reach)", "s.approach(pose, 0 * reach)")],
            ["contacts_test", "scene_test ShippedScene*"]),
 ]

@@ -144,7 +144,9 @@ TEST_F(CMeasure, ASurfaceThatIntersectsItself_SaysSo) {
   EXPECT_EQ(found.distance, -0.25);
   EXPECT_EQ(found.is_signed, 1);
   EXPECT_EQ(found.self_intersecting, 1);
-  ist_query* query = c_query(tree, c_tree(moved(icosphere(1, 0.1), {1.75, 1, 1}), 0.05));
+  ist_tree* small = c_tree(moved(icosphere(1, 0.1), {1.75, 1, 1}), 0.05);
+  ist_query* query = nullptr;
+  ASSERT_EQ(name(ist_query_create(tree, small, nullptr, &query)), "ok");
   auto depth = sized<ist_penetration>();
   const auto pose = down_by(0, 0, 0);
   ASSERT_EQ(
@@ -153,6 +155,8 @@ TEST_F(CMeasure, ASurfaceThatIntersectsItself_SaysSo) {
   EXPECT_NEAR(depth.lower, 0.25, 0.11);
   EXPECT_EQ(depth.self_intersecting, IST_FIXED_SELF_INTERSECTING);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
+  EXPECT_EQ(name(ist_tree_free(small)), "ok");
+  EXPECT_EQ(name(ist_tree_free(tree)), "ok");
 }
 
 TEST_F(CMeasure, FirstContactIsThatOfCpp) {

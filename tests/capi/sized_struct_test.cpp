@@ -113,7 +113,7 @@ TEST(CSizedStruct, OfAnyAgeServesACall) {
   ist_contact_sums sums{};
   sums.struct_size = 72;
   sums.spring_force[0] = sums.about[2] = 99;
-  const std::array<double, 16> opposite = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0.7, 0.02, 1};
+  const std::array<double, 16> opposite = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0.7, -0.02, 1};
   ASSERT_EQ(name(ist_query_contacts(query, opposite.data(), nullptr, nullptr, 0, &sums, &result)),
             "ok");
   EXPECT_GT(sums.pairs, 0u);

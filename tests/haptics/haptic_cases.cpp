@@ -27,7 +27,7 @@ Simulation HapticBodies::simulation(std::unique_ptr<Effect> other) const {
   detail::add_two_bodies(
       parts, frames, 1e-3 * surface_radius(*held_),
       std::make_unique<ToolContactQuery>(*fixed_, *held_, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}));
+                                         ToolContactOptions{SpherePolicy::kSlab, 0.5}));
   parts.effects.push_back(std::make_unique<ContactEffect>(ContactSettings{2000, 0.5}));
   if (other) parts.effects.push_back(std::move(other));
   return Simulation(std::move(parts));

@@ -58,7 +58,7 @@ Simulation HumanPair::simulation(const CouplingSettings& coupling) const {
   detail::add_two_bodies(
       parts, frames_, 1e-3 * surface_radius(held_),
       std::make_unique<ToolContactQuery>(fixed_, held_, frames_,
-                                         ToolContactOptions{SpherePolicy::kSlab, -kMargin}));
+                                         ToolContactOptions{SpherePolicy::kSlab, kMargin}));
   auto contact = std::make_unique<ContactEffect>(ContactSettings{2000, kMargin});
   const ContactEffect& load = *contact;
   parts.effects.push_back(std::move(contact));

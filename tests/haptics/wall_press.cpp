@@ -71,7 +71,7 @@ Simulation simulation_of(const Wall& wall, const PressSettings& settings) {
   detail::add_two_bodies(
       parts, frames, kMillimetre * surface_radius(*wall.held),
       std::make_unique<ToolContactQuery>(*wall.fixed, *wall.held, frames,
-                                         ToolContactOptions{SpherePolicy::kSlab, -0.5}));
+                                         ToolContactOptions{SpherePolicy::kSlab, 0.5}));
   parts.effects.push_back(
       std::make_unique<ContactEffect>(ContactSettings{wall.contact_stiffness, 0.5}));
   return Simulation(std::move(parts));

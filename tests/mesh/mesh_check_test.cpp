@@ -212,7 +212,7 @@ TEST_F(RealFiles, JawsAreWatertightWithTheirHoles) {
     EXPECT_EQ(report.components, 1u) << name;
     EXPECT_EQ(report.vertices + report.triangles + 2 * genus, report.edges + 2) << name;
     EXPECT_GT(report.signed_volume, 0) << name;
-    EXPECT_TRUE(warnings(report).empty()) << name;
+    EXPECT_EQ(warnings(report).size(), report.self_intersections > 0 ? 1u : 0u) << name;
   }
 }
 

@@ -114,6 +114,29 @@ TEST(SelfIntersections, CleanBodiesHaveNone) {
   }
 }
 
+// All needles of an end share a corner, so that their boxes overlap there.
+TEST(SelfIntersections, FansOfNeedlesHaveNone) {
+  for (const double height : {100.0, 0.01}) {
+    TriangleMesh mesh = cylinder(1000, 1, height);
+    EXPECT_TRUE(found_in(mesh).pairs.empty());
+    // One more needle of an end, over ten others.
+    std::vector<std::size_t> uses(mesh.vertices.size());
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) ++uses[v];
+    }
+    const auto hub =
+        static_cast<std::uint32_t>(std::max_element(uses.begin(), uses.end()) - uses.begin());
+    std::vector<Triangle> needles;
+    for (const Triangle& t : mesh.triangles) {
+      if (std::find(t.begin(), t.end(), hub) != t.end()) needles.push_back(t);
+    }
+    ASSERT_GT(needles.size(), 1000u);
+    const auto rim = [&](const Triangle& t) { return t[0] == hub ? t[1] : t[0]; };
+    mesh.triangles.push_back({hub, rim(needles[0]), rim(needles[10])});
+    EXPECT_GE(found_in(mesh).pairs.size(), 9u);
+  }
+}
+
 TEST(SelfIntersections, TouchingCounts) {
   const TriangleMesh cube = box({0, 0, 0}, {1, 1, 1});
   for (const Vector& by : {Vector(1, 1, 1), Vector(1, 1, 0), Vector(1, 0, 0), Vector(0.5, 0, 0),

@@ -238,10 +238,10 @@ class Queries(Misuse):
 
         for read, struct, names in (
             (records.read_leaf_pairs, records.QueryResult, "leaf_pairs written sphere_tests complete truncated level "
-             "distance_known distance_lower distance_upper resolution"),
-            (records.read_contacts, records.QueryResult, "leaf_pairs contacts written sphere_tests complete"),
-            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete narrowest"),
-            (records.read_triangle_pairs, records.TrianglePairsResult, "pairs written sphere_tests truncated complete"),
+             "distance_known distance_lower distance_upper resolution rotation_error"),
+            (records.read_contacts, records.QueryResult, "leaf_pairs contacts written sphere_tests complete rotation_error"),
+            (records.read_distance, records.DistanceResult, "lower upper sphere_tests complete narrowest rotation_error"),
+            (records.read_triangle_pairs, records.TrianglePairsResult, "pairs written sphere_tests truncated complete rotation_error"),
         ):
             flags = ("complete", "truncated", "distance_known")
             for value in (0, 1):
@@ -313,8 +313,8 @@ class Queries(Misuse):
         self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=5000)
         for contacts in (-2, 1.5, "many", None):
             self.refuses(ist.InputError, "contacts", make, tree, tree, contacts=contacts)
-        for push in (3, -1, np.nan, np.inf, "far", None):
-            self.refuses(ist.InputError, "margin", make, tree, tree, margin=push)
+        for margin in (3, -1, np.nan, np.inf, "far", None):
+            self.refuses(ist.InputError, "margin", make, tree, tree, margin=margin)
         self.refuses(ist.InputError, "front_pairs", make, tree, tree, front_pairs=-1)
         self.refuses(ist.InputError, "spheres", make, tree, tree, spheres="round")
         self.assertEqual(self.refuses(ist.InputError, "", make, tree, tree, target="abacus").name, "target-missing")

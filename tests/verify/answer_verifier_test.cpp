@@ -218,12 +218,33 @@ TEST_P(Guarantee, AnswersAreAboutTheProjectedPose) {
   EXPECT_TRUE(violation(rigid * shift({kStretch * kFar, 0, 0})));
 }
 
+TEST_P(Guarantee, APoseThatIsRough) {
+  std::vector<Eigen::Isometry3d> poses(3, pose_);
+  poses[0].linear() *= Eigen::Vector3d(1 + 4e-4, 1, 1 - 4e-4).asDiagonal();
+  poses[1].linear() *= 1 + 9e-6;
+  poses[2].linear() *= 1 - 9e-6;
+  QueryOptions options;
+  options.policy = GetParam();
+  Query query(fixed_, moving_, options);
+  for (const Eigen::Isometry3d& rough : poses) {
+    FoundPairs answer = ask(query, rough);
+    const auto given = [&answer] {
+      return std::vector{GivenAnswer{answer.result, answer.leaf_pairs}};
+    };
+    EXPECT_FALSE(check_.check(rough, given())) << rough.matrix();
+    answer.result.status = QueryStatus::kInvalidPose;
+    EXPECT_TRUE(check_.check(rough, given())) << rough.matrix();
+  }
+}
+
 TEST_P(Guarantee, APoseThatIsNone) {
-  std::vector<Eigen::Isometry3d> poses(4, pose_);
+  std::vector<Eigen::Isometry3d> poses(6, pose_);
   poses[0](0, 0) = std::numeric_limits<double>::quiet_NaN();
   poses[1].linear().col(2) *= -1;
-  poses[2].linear() *= 1 + 6e-6;
+  poses[2].linear() *= 1 + 1.1e-5;
   poses[3](3, 0) = 1e-9;
+  poses[4].linear() *= 1 - 1.1e-5;
+  poses[5].linear() *= Eigen::Vector3d(1 + 6e-4, 1, 1 - 6e-4).asDiagonal();
   ReferenceQuery query(fixed_, moving_, GetParam());
   for (const Eigen::Isometry3d& none : poses) {
     FoundPairs answer = ask(query, none);

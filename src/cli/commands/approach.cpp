@@ -136,7 +136,7 @@ void run(const ApproachArguments& options) {
   const Path path = path_of(options);
   const std::vector<AskedPose> poses = poses_along(path, options.step);
   const Bodies bodies = load_bodies(query.body_files());
-  if (!query.json) echo_pose(options.pose, path.start);
+  if (!query.json) echo_pose(options.pose, path.start.pose);
   if (options.first_contact) require_triangles(bodies);
   const Meeting meeting = run_queries(bodies, poses, query);
   tell_first_contact(bodies, path, options);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ist/base/cancellation.h"
 #include "ist/base/float_rounding.h"
@@ -25,14 +26,96 @@ constexpr std::size_t kAtOnce = 1024, kGrain = 8;
 // Of one cluster with more pairs the search ends.
 constexpr std::size_t kMostOfACluster = 1 << 16;
 
-// The boxes of a cluster's triangles, side by side, rounded outward.
+// The boxes of a cluster's triangles, side by side, in the tree's frame.
 struct alignas(64) Boxes {
   float low[3][kClusterWidth], high[3][kClusterWidth];
+  std::uint32_t hub[kClusterWidth];  // see Hubs
 };
 
-float above(double x) {
-  return static_cast<float>(x + std::abs(x) * 0x1p-22) + std::numeric_limits<float>::min();
-}
+// Vertices of many triangles. All triangles at a hub have boxes that overlap, so pairs at a hub are
+// found by their directions from it.
+class Hubs {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  explicit Hubs(const TriangleMesh& mesh) : mesh_(mesh), of_(mesh.triangles.size(), kNone) {
+    constexpr std::uint32_t kMany = 64;
+    std::vector<std::uint32_t> uses(mesh.vertices.size());
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) ++uses[v];
+    }
+    for (std::uint32_t t = 0; t < of_.size(); ++t) {
+      for (const std::uint32_t v : mesh.triangles[t]) {
+        if (uses[v] > kMany) of_[t] = v;
+      }
+    }
+  }
+
+  // Returns a hub that the triangle has, or kNone.
+  [[nodiscard]] std::uint32_t of(std::uint32_t triangle) const { return of_[triangle]; }
+
+  // Calls `body` for all pairs of triangles at one hub that may meet beyond it, until it returns
+  // false.
+  template <class Body>
+  void for_each_pair(const Body& body) const {
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t t = 0; t < of_.size(); ++t) {
+      if (of_[t] != kNone && !has_equal_indices(mesh_.triangles[t])) triangles.push_back(t);
+    }
+    std::stable_sort(triangles.begin(), triangles.end(),
+                     [this](std::uint32_t a, std::uint32_t b) { return of_[a] < of_[b]; });
+    for (std::size_t begin = 0, end = 0; begin < triangles.size(); begin = end) {
+      while (end < triangles.size() && of_[triangles[end]] == of_[triangles[begin]]) ++end;
+      if (!sweep(std::span(triangles).subspan(begin, end - begin), body)) return;
+    }
+  }
+
+ private:
+  struct Arc {
+    Eigen::AlignedBox3d box;
+    std::uint32_t triangle;
+  };
+
+  // Returns a box round all directions from the hub into a triangle.
+  [[nodiscard]] Arc arc_of(std::uint32_t triangle) const {
+    Arc arc{{}, triangle};
+    Vector last = Vector::Zero();
+    double chord = 0;
+    for (const std::uint32_t v : mesh_.triangles[triangle]) {
+      if (v == of_[triangle]) continue;
+      const Vector way = difference(mesh_.vertices[v], mesh_.vertices[of_[triangle]]);
+      const Vector direction = scaled(1 / length_in_order(way), way);
+      chord = square_in_order(difference(direction, last));
+      arc.box.extend(direction);
+      last = direction;
+    }
+    // An arc leaves its chord by less than a quarter of the chord's square.
+    const double pad = 0.25 * chord + 1e-12;
+    arc.box.min().array() -= pad;
+    arc.box.max().array() += pad;
+    return arc;
+  }
+
+  template <class Body>
+  bool sweep(std::span<const std::uint32_t> triangles, const Body& body) const {
+    std::vector<Arc> arcs;
+    for (const std::uint32_t t : triangles) arcs.push_back(arc_of(t));
+    std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) {
+      return std::pair(a.box.min()[0], a.triangle) < std::pair(b.box.min()[0], b.triangle);
+    });
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      for (std::size_t j = i + 1; j < arcs.size(); ++j) {
+        if (arcs[j].box.min()[0] > arcs[i].box.max()[0]) break;
+        if (!arcs[i].box.intersects(arcs[j].box)) continue;
+        if (!body(arcs[i].triangle, arcs[j].triangle)) return false;
+      }
+    }
+    return true;
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<std::uint32_t> of_;
+};
 
 // Returns whether two triangles at the edge (u, v), of one plane, lie on one side of it.
 bool folds_over(const Vector& u, const Vector& v, const Vector& a, const Vector& b) {
@@ -68,11 +151,32 @@ Neighbours neighbours_of(const TriangleMesh& mesh, Triangle a, Triangle b) {
   return out;
 }
 
+// Returns whether a plane through an edge of `a`, about at a right angle to `a`, certainly
+// separates the triangles. Exact predicates take much longer for needles beside each other in a
+// plane.
+bool an_edge_separates(const TriangleCorners& a, const TriangleCorners& b) {
+  const Vector normal = cross_in_order(difference(a[1], a[0]), difference(a[2], a[0]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector& from = a[i];
+    const Vector out = cross_in_order(difference(a[(i + 1) % 3], from), normal);
+    double size = 0;
+    const auto height = [&](const Vector& p) {
+      const Vector way = difference(p, from);
+      size = std::max(size, way.cwiseAbs().maxCoeff());
+      return dot_in_order(out, way);
+    };
+    const double own = std::max({0.0, height(a[(i + 1) % 3]), height(a[(i + 2) % 3])}),
+                 other = std::min({height(b[0]), height(b[1]), height(b[2])});
+    if (other - own > 0x1p-40 * out.cwiseAbs().maxCoeff() * size) return true;
+  }
+  return false;
+}
+
 bool meet_beyond_shared(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
   const auto [a, b, shared] = neighbours_of(mesh, first, second);
   switch (shared) {
     case 0:
-      return triangles_meet(a, b);
+      return !an_edge_separates(a, b) && !an_edge_separates(b, a) && triangles_meet(a, b);
     case 1:
       return fans_meet(a, b);
     case 2:
@@ -87,6 +191,7 @@ class Search {
   Search(const TriangleMesh& mesh, const TriangleClusters& clusters)
       : mesh_(mesh),
         clusters_(clusters),
+        hubs_(mesh),
         boxes_(clusters.node_count(0)),
         has_area_(mesh.triangles.size()) {
     const NodeBlock& root = clusters.bounds(clusters.root_level())[0];
@@ -132,31 +237,49 @@ class Search {
     }
   }
 
+  // Lists the pairs at hubs.
+  void list_hub_pairs(std::vector<Pair>& out) const {
+    hubs_.for_each_pair([&](std::uint32_t first, std::uint32_t second) {
+      compare_triangles(first, second, out);
+      return out.size() <= SelfIntersections::kMost;
+    });
+  }
+
  private:
   void put_boxes(std::uint32_t cluster) {
     Boxes& boxes = boxes_[cluster];
+    const TriangleCluster& of = clusters_.clusters()[cluster];
     for (std::size_t k = 0; k < kClusterWidth; ++k) {
-      const std::uint32_t id = clusters_.clusters()[cluster].id[k];
-      const Triangle& t = mesh_.triangles[id];
+      const Triangle& t = mesh_.triangles[of.id[k]];
       const TriangleCorners corners = {mesh_.vertices[t[0]], mesh_.vertices[t[1]],
                                        mesh_.vertices[t[2]]};
       if (k < clusters_.child_count(-1, cluster)) {
-        has_area_[id] = !has_equal_indices(t) && has_area(corners);
+        has_area_[of.id[k]] = !has_equal_indices(t) && has_area(corners);
       }
+      TriangleCorners at;
       for (std::size_t i = 0; i < 3; ++i) {
         const auto axis = static_cast<Eigen::Index>(i);
-        const double origin = clusters_.origin()[axis];
-        const double x = corners[0][axis] - origin, y = corners[1][axis] - origin,
-                     z = corners[2][axis] - origin;
-        boxes.low[i][k] = -above(-std::min({x, y, z}));
-        boxes.high[i][k] = above(std::max({x, y, z}));
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          at[corner][axis] = dot_in_order(clusters_.axes().col(axis),
+                                          difference(corners[corner], clusters_.origin()));
+        }
+        boxes.low[i][k] = static_cast<float>(std::min({at[0][axis], at[1][axis], at[2][axis]}));
+        boxes.high[i][k] = static_cast<float>(std::max({at[0][axis], at[1][axis], at[2][axis]}));
       }
+      boxes.hub[k] = hubs_.of(of.id[k]);
     }
+  }
+
+  [[nodiscard]] std::uint32_t lanes_within(const float (&apart)[kClusterWidth]) const {
+    std::uint32_t bits = 0;
+    for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
+      bits |= static_cast<std::uint32_t>(!(apart[lane] > slack_)) << lane;
+    }
+    return bits;
   }
 
   [[nodiscard]] std::uint32_t lanes_near(const NodeBlock& own, std::size_t at,
                                          const NodeBlock& block) const {
-    std::uint32_t bits = 0;
     alignas(64) float apart[kClusterWidth];
     for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
       float most = 0;
@@ -166,44 +289,46 @@ class Search {
       }
       apart[lane] = most;
     }
-    for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
-      bits |= static_cast<std::uint32_t>(!(apart[lane] > slack_)) << lane;
-    }
-    return bits;
+    return lanes_within(apart);
   }
 
   void compare(std::uint32_t one, std::uint32_t other, std::vector<Pair>& out) const {
     if (other < one) return;
+    constexpr float kFar = std::numeric_limits<float>::infinity();
     const Boxes &a = boxes_[one], &b = boxes_[other];
     const std::uint32_t count = clusters_.child_count(-1, other);
     for (std::uint32_t k = 0; k < clusters_.child_count(-1, one); ++k) {
       const std::uint32_t first = clusters_.clusters()[one].id[k];
-      if (has_area_[first] == 0) continue;
+      const bool at_hub = a.hub[k] != Hubs::kNone;
       alignas(64) float apart[kClusterWidth];
       for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
-        float most = -std::numeric_limits<float>::infinity();
+        float most = -kFar;
         for (std::size_t i = 0; i < 3; ++i) {
           most = std::max(most,
                           std::max(b.low[i][lane] - a.high[i][k], a.low[i][k] - b.high[i][lane]));
         }
-        apart[lane] = most;
+        apart[lane] = at_hub && b.hub[lane] == a.hub[k] ? kFar : most;
       }
       for (std::uint32_t lane = one == other ? k + 1 : 0; lane < count; ++lane) {
-        if (apart[lane] > 0) continue;
-        const std::uint32_t second = clusters_.clusters()[other].id[lane];
-        if (has_area_[second] == 0) continue;
-        if (meet_beyond_shared(mesh_, mesh_.triangles[first], mesh_.triangles[second])) {
-          out.push_back({std::min(first, second), std::max(first, second)});
-        }
+        if (apart[lane] > slack_) continue;
+        compare_triangles(first, clusters_.clusters()[other].id[lane], out);
       }
+    }
+  }
+
+  void compare_triangles(std::uint32_t first, std::uint32_t second, std::vector<Pair>& out) const {
+    if (has_area_[first] == 0 || has_area_[second] == 0) return;
+    if (meet_beyond_shared(mesh_, mesh_.triangles[first], mesh_.triangles[second])) {
+      out.push_back({std::min(first, second), std::max(first, second)});
     }
   }
 
   const TriangleMesh& mesh_;
   const TriangleClusters& clusters_;
+  Hubs hubs_;
   std::vector<Boxes> boxes_;
   std::vector<std::uint8_t> has_area_;  // of each triangle; threads write neighbours
-  float slack_ = 0;                     // more than the rounding of a node's bounds
+  float slack_ = 0;                     // more than the rounding of bounds in the tree's frame
 };
 
 }  // namespace
@@ -228,6 +353,8 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh,
           some.size() <= kMostOfACluster && found.pairs.size() <= SelfIntersections::kMost;
     }
   }
+  search.list_hub_pairs(found.pairs);
+  found.complete = found.complete && found.pairs.size() <= SelfIntersections::kMost;
   std::sort(found.pairs.begin(), found.pairs.end());
   if (found.pairs.size() > SelfIntersections::kMost) found.pairs.resize(SelfIntersections::kMost);
   return found;

@@ -85,8 +85,9 @@ struct ManifoldOptions {
   /// leaf pair counts.
   ///
   /// The surface of a leaf is the middle of its slab, or without slabs the centre of its ball. So
-  /// with 0 a wrench begins at a distance of 0, to within the error of a depth: 0.25 s with slabs
-  /// where the radius of curvature is over 10 s, with s the voxel size (docs/library.md).
+  /// with 0 a wrench begins at a distance of 0, to within the error of a depth. With slabs and
+  /// voxels of size s the error is 0.25 s where the radius of curvature is over 10 s, and at most s
+  /// at sharp edges (docs/library.md).
   double margin = 0;
   /// From 0 to 1: leaf pairs count whose bounds are no farther apart. With 0, pairs appear and
   /// vanish as tight bounds cross; load-bearing contacts need every pair within this distance of

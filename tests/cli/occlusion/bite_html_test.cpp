@@ -230,7 +230,7 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
 TEST(BiteHtml, HoldsInputAndSettings) {
   const auto made = full_bite();
   made->bite.moving.hash.reset();
-  made->bite.fixed.surface.vertices[7] = {0.5, Eigen::Vector3d::Zero(), 0, false};
+  made->bite.fixed.surface.vertices[7] = {0.5, Eigen::Vector3d::Zero(), 0, false, false};
   const Page page(made->bite);
   const Rows pose = page.table("pose");
   for (int i = 0; i < 4; ++i) {
