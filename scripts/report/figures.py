@@ -24,8 +24,10 @@ def both(stem):
 
 
 # What every query rests on.
-QUERY = ["simd", "src/ist/base", "src/ist/mesh/mesh.h", "src/ist/query", "src/ist/tree", "src/ist/voxel"]
-MEASURE = [*QUERY, "src/ist/measure", "src/ist/mesh/bounding_box.h", *both("src/ist/mesh/nearest_point"), *both("src/ist/mesh/pseudonormals")]
+PREDICATES = [*both("src/ist/mesh/orientation"), *both("src/ist/mesh/triangles_meet"), "src/ist/mesh/whole_number.h"]
+QUERY = ["simd", "src/ist/base", "src/ist/mesh/clusters", "src/ist/mesh/mesh.h", *PREDICATES, "src/ist/query", "src/ist/tree", "src/ist/voxel"]
+MEASURE = [*QUERY, "src/ist/measure", "src/ist/mesh/bounding_box.h", *both("src/ist/mesh/nearest_point"), *both("src/ist/mesh/pseudonormals"),
+           *both("src/ist/mesh/self_intersections"), *both("src/ist/mesh/surface_sides"), *both("src/ist/mesh/winding_number")]
 LOOP = [*QUERY, "src/ist/haptics", "src/ist/scene"]
 SHAPES = ["src/ist/models", *both("tests/support/shapes")]
 # What figures rest on, by the benchmark or the script that makes them, beside a benchmark's own files. A benchmark's bodies come
