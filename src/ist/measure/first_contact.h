@@ -76,10 +76,11 @@ struct FirstContact {
   double narrowest = 0;
   /// Whether the surface of a body intersects itself: SphereTree::self_intersections(). Only
   /// kInsideAtStart depends on it. False if the bodies touch at the start.
-  bool fixed_self_intersecting = false, moving_self_intersecting = false;
-  std::uint64_t distances = 0;  ///< distances that were asked for
-  std::uint64_t verdicts = 0;   ///< exact questions whether triangles intersect
-  double rotation_error = 0;    ///< Motion::rotation_error()
+  bool fixed_self_intersecting = false,  ///< the fixed body's surface
+      moving_self_intersecting = false;  ///< the moving body's
+  std::uint64_t distances = 0;           ///< distances that were asked for
+  std::uint64_t verdicts = 0;            ///< exact questions whether triangles intersect
+  double rotation_error = 0;             ///< Motion::rotation_error()
 };
 /// Returns the status' name, such as "touches-at-start", for logs and tests.
 [[nodiscard]] IST_API const char* to_string(FirstContact::Status status) noexcept;

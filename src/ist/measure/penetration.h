@@ -39,8 +39,9 @@ struct Penetration {
   /// Whether the surface of a body intersects itself: SphereTree::self_intersections(). Inside is
   /// certain all the same. The depth is the distance from the nearest triangle, which may lie
   /// inside the body.
-  bool fixed_self_intersecting = false, moving_self_intersecting = false;
-  std::uint64_t points = 0;  ///< points of which the distance was measured
+  bool fixed_self_intersecting = false,  ///< the fixed body's surface
+      moving_self_intersecting = false;  ///< the moving body's
+  std::uint64_t points = 0;              ///< points of which the distance was measured
   /// How far the rotation of the given pose was from orthonormal (rotation_error).
   double rotation_error = 0;
 };

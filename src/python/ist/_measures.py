@@ -263,7 +263,8 @@ def occlusion_of(
 def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):
     """The distances of points, (N, 3) mesh coordinates, from the surface of a tree: an array of SURFACE_DISTANCE.
 
-    Negative inside; NaN beyond `reach`. is_signed is 0 if the nearest point lies at an open border. self_intersecting is 1 if the surface intersects itself.
+    Negative inside; NaN beyond `reach`. is_signed is 0 if the nearest point lies at an open border.
+    self_intersecting is 1 if the surface intersects itself; signs are right all the same.
 
     >>> import ist
     >>> box = ist.build(([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), 0.5)
