@@ -109,6 +109,9 @@ void Examiner::find_distance(const Eigen::Isometry3d& pose, Findings& found) {
 void Examiner::find_touch(const Eigen::Isometry3d& pose, Findings& found) {
   const IntersectionResult result = query_.intersects(pose, budget_);
   found.touch = result.answer;
+  // Within a budget nothing is called free that is not known to have a distance.
+  const bool free = found.touch == Answer::kNo && found.distance->lower > 0;
+  if (questions_.max_tests && found.touch == Answer::kNo && !free) found.touch = Answer::kUnknown;
   if (found.touch == Answer::kUnknown) {
     found.notes.push_back(fmt::format("stopped: {:.3g} to {:.3g} apart: allow more --max-tests",
                                       found.distance->lower, found.distance->upper));
