@@ -137,6 +137,24 @@ TEST(SelfIntersections, FansOfNeedlesHaveNone) {
   }
 }
 
+// A triangle at a hub may have a corner at the same place, and then no direction.
+TEST(SelfIntersections, AHubWithTrianglesWithoutAreaIsSearched) {
+  TriangleMesh mesh = cylinder(100, 1, 1);
+  const auto before = found_in(mesh).pairs;
+  std::vector<std::size_t> uses(mesh.vertices.size());
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) ++uses[v];
+  }
+  const auto hub =
+      static_cast<std::uint32_t>(std::max_element(uses.begin(), uses.end()) - uses.begin());
+  ASSERT_GT(uses[hub], 64u);
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    mesh.vertices.push_back(mesh.vertices[hub]);
+    mesh.triangles.push_back({hub, static_cast<std::uint32_t>(mesh.vertices.size() - 1), k});
+  }
+  EXPECT_EQ(found_in(mesh).pairs, before);
+}
+
 TEST(SelfIntersections, TouchingCounts) {
   const TriangleMesh cube = box({0, 0, 0}, {1, 1, 1});
   for (const Vector& by : {Vector(1, 1, 1), Vector(1, 1, 0), Vector(1, 0, 0), Vector(0.5, 0, 0),

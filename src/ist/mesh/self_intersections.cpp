@@ -84,7 +84,13 @@ class Hubs {
     for (const std::uint32_t v : mesh_.triangles[triangle]) {
       if (v == of_[triangle]) continue;
       const Vector way = difference(mesh_.vertices[v], mesh_.vertices[of_[triangle]]);
-      const Vector direction = scaled(1 / length_in_order(way), way);
+      const double length = length_in_order(way);
+      if (!(length > 0x1p-400 && length < 0x1p400)) {  // its square underflows or overflows
+        arc.box.extend(Vector(-1, -1, -1));
+        arc.box.extend(Vector(1, 1, 1));
+        continue;
+      }
+      const Vector direction = scaled(1 / length, way);
       chord = square_in_order(difference(direction, last));
       arc.box.extend(direction);
       last = direction;
@@ -167,7 +173,7 @@ bool an_edge_separates(const TriangleCorners& a, const TriangleCorners& b) {
     };
     const double own = std::max({0.0, height(a[(i + 1) % 3]), height(a[(i + 2) % 3])}),
                  other = std::min({height(b[0]), height(b[1]), height(b[2])});
-    if (other - own > 0x1p-40 * out.cwiseAbs().maxCoeff() * size) return true;
+    if (other - own > 0x1p-40 * out.cwiseAbs().maxCoeff() * size + 0x1p-900) return true;
   }
   return false;
 }

@@ -72,38 +72,43 @@ Patches patches_of(const TriangleMesh& mesh, const SelfIntersections& found) {
   return patches;
 }
 
-// A triangle's plane over the plane of y and z.
-struct Slope {
-  Slope(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const Triangle& t = mesh.triangles[triangle];
-    at = mesh.vertices[t[0]];
-    normal =
-        cross_in_order(difference(mesh.vertices[t[1]], at), difference(mesh.vertices[t[2]], at));
+Vector normal_of(const std::array<Vector, 3>& t) {
+  return cross_in_order(difference(t[1], t[0]), difference(t[2], t[0]));
+}
+
+// Returns the range of x in which a line along x through `point` certainly crosses a triangle.
+std::array<double, 2> range_on_line(const std::array<Vector, 3>& t, const Vector& point,
+                                    double extent) {
+  const Vector normal = normal_of(t);
+  const double steep = (std::abs(normal[1]) + std::abs(normal[2])) / std::abs(normal[0]);
+  double longest = 0;  // a square
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest = std::max(longest, square_in_order(difference(t[(k + 1) % 3], t[k])));
   }
-  // Its x over a point, and a bound of the rounding.
-  struct Height {
-    double x, error;
-  };
-  [[nodiscard]] Height over(const Vector& point, double extent) const {
-    const double y = point[1] - at[1], z = point[2] - at[2];
-    const double steep = (std::abs(normal[1]) + std::abs(normal[2])) / std::abs(normal[0]);
-    return {at[0] - (normal[1] * y + normal[2] * z) / normal[0],
-            0x1p-36 * extent * (1 + steep) * (1 + steep)};
+  // The normal of a needle is not known well enough.
+  if (!(length_in_order(normal) > 1e-3 * longest)) {
+    return {std::min({t[0][0], t[1][0], t[2][0]}), std::max({t[0][0], t[1][0], t[2][0]})};
   }
-  Vector at, normal;
-};
+  const double y = point[1] - t[0][1], z = point[2] - t[0][2];
+  const double x = t[0][0] - (normal[1] * y + normal[2] * z) / normal[0];
+  const double error = 0x1p-36 * extent * (1 + steep) * (1 + steep);
+  return {x - error, x + error};
+}
 
 // Returns the winding number beside a triangle, on its outer side: by the crossings of a line
-// along x through its middle. Returns nullopt if rounding could put them in another order.
+// along x through its middle. Returns nullopt if another triangle crosses the line in the range in
+// which this one does. Exact predicates decide.
 std::optional<int> outer_number(const TriangleMesh& mesh, const TriangleClusters& clusters,
                                 const Eigen::AlignedBox3d& box, std::uint32_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  Vector from =
-      scaled(1.0 / 3, sum(sum(mesh.vertices[t[0]], mesh.vertices[t[1]]), mesh.vertices[t[2]]));
+  const auto corners = [&](std::uint32_t index) -> std::array<Vector, 3> {
+    const Triangle& t = mesh.triangles[index];
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  };
+  const std::array<Vector, 3> own = corners(triangle);
+  Vector from = scaled(1.0 / 3, sum(sum(own[0], own[1]), own[2]));
   const double extent = box.sizes().maxCoeff() +
                         std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
-  const Slope::Height own = Slope(mesh, triangle).over(from, extent);
-  if (!(std::abs(own.x - from[0]) <= extent)) return {};
+  const auto [low, high] = range_on_line(own, from, extent);
   from[0] = box.min()[0] - extent;
   int own_turns = 0, beyond = 0;
   bool is_certain = true;
@@ -113,10 +118,10 @@ std::optional<int> outer_number(const TriangleMesh& mesh, const TriangleClusters
       own_turns = turns;
       return;
     }
-    const Slope::Height height = Slope(mesh, crossed).over(from, extent);
-    const double apart = height.x - own.x;
-    if (!(std::abs(apart) > height.error + own.error)) is_certain = false;
-    if (apart > 0) beyond += turns;
+    const auto [a, b, c] = corners(crossed);
+    const int side = orientation(a, b, c, {low, from[1], from[2]});
+    if (side == 0 || side != orientation(a, b, c, {high, from[1], from[2]})) is_certain = false;
+    if (side == turns) beyond += turns;
   });
   if (!is_certain || own_turns == 0) return {};
   return own_turns > 0 ? beyond : beyond - 1;
@@ -136,7 +141,10 @@ std::vector<std::optional<int>> outer_numbers(const TriangleMesh& mesh,
                                                         {{{0, 0}, {0, 0}, {0, 0}}});
   for (std::uint32_t t = 0; t < patch_of.size(); ++t) {
     if (patch_of[t] == kNone) continue;
-    Candidate next{std::abs(Slope(mesh, t).normal[0]), t};
+    const Triangle& triangle = mesh.triangles[t];
+    const Vector normal = normal_of(
+        {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]});
+    Candidate next{std::abs(normal[0]), t};
     for (Candidate& kept : candidates[patch_of[t]]) {
       if (next.size > kept.size) std::swap(next, kept);
     }
