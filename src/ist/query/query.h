@@ -196,7 +196,8 @@ enum class Inside : std::uint8_t {
 /// winding number of the other body round that point. Both meshes must outlive the test.
 class IST_API InsideTest {
  public:
-  /// Finds the components of both meshes. Cost: linear in their triangles.
+  /// Finds the components of both meshes, and puts their triangles into trees. Cost: 0.4 µs a
+  /// triangle.
   InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
   InsideTest(const TriangleMesh&&, const TriangleMesh&) = delete;
   InsideTest(const TriangleMesh&, const TriangleMesh&&) = delete;
@@ -206,8 +207,8 @@ class IST_API InsideTest {
   InsideTest& operator=(InsideTest&&) noexcept;  ///< as the constructor
 
   /// Returns the body of which all components lie inside the other. Precondition: `pose` is rigid,
-  /// and the surfaces do not intersect. Cost: 5 ns a triangle of one body for each component of the
-  /// other that lies in its bounding box.
+  /// and the surfaces do not intersect. Cost: some 3 µs for each component that lies in the bounding
+  /// box of the other body.
   [[nodiscard]] Inside at(const Eigen::Isometry3d& pose) const noexcept;
 
  private:
