@@ -207,8 +207,8 @@ class IST_API InsideTest {
   InsideTest& operator=(InsideTest&&) noexcept;  ///< as the constructor
 
   /// Returns the body of which all components lie inside the other. Precondition: `pose` is rigid,
-  /// and the surfaces do not intersect. Cost: some 3 µs for each component that lies in the bounding
-  /// box of the other body.
+  /// and the surfaces do not intersect. Cost: some 3 µs for each component that lies in the
+  /// bounding box of the other body.
   [[nodiscard]] Inside at(const Eigen::Isometry3d& pose) const noexcept;
 
  private:
