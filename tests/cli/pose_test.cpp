@@ -82,7 +82,7 @@ TEST_F(Pose, OfItkIsInverted) {
       {"Euler3DTransform_double_3_3", "0 0 " + quarter + " 1 2 3"}};
   for (const auto& [type, parameters] : same) {
     const Eigen::Matrix4d pose = asked({"--matrix", itk(type, parameters, "10 20 30")});
-    const auto goes = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const auto goes = [&, &type = type](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
       EXPECT_LE((pose * from.homogeneous() - to.homogeneous()).norm(), 1e-12) << type;
     };
     goes({11, 22, 33}, {10, 20, 30});

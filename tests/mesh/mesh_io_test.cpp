@@ -261,11 +261,11 @@ TEST(ReadMesh, GivesTrianglesForPolygonsWithoutAnAnswer) {
 
 TEST(ReadMesh, EndsWhereItsThreadIsAsked) {
   const std::atomic<bool> asked{true};
-  for (const auto& [name, bytes] : all_formats(kBox)) {
+  for (const auto& format : all_formats(kBox)) {
     const ScopedCancellation cancellation(asked);
-    EXPECT_EQ(test::error_name([&] { static_cast<void>(read_content(bytes, "mesh")); }),
+    EXPECT_EQ(test::error_name([&] { static_cast<void>(read_content(format.second, "mesh")); }),
               "cancelled")
-        << name;
+        << format.first;
   }
   const TempDir folder;
   const auto file = folder.write("mesh", test::as_binary_stl(kBox));

@@ -108,7 +108,7 @@ std::optional<int> outer_number(const TriangleMesh& mesh, const TriangleClusters
   Vector from = scaled(1.0 / 3, sum(sum(own[0], own[1]), own[2]));
   const double extent = box.sizes().maxCoeff() +
                         std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
-  const auto [low, high] = range_on_line(own, from, extent);
+  const auto range = range_on_line(own, from, extent);
   from[0] = box.min()[0] - extent;
   int own_turns = 0, beyond = 0;
   bool is_certain = true;
@@ -119,8 +119,8 @@ std::optional<int> outer_number(const TriangleMesh& mesh, const TriangleClusters
       return;
     }
     const auto [a, b, c] = corners(crossed);
-    const int side = orientation(a, b, c, {low, from[1], from[2]});
-    if (side == 0 || side != orientation(a, b, c, {high, from[1], from[2]})) is_certain = false;
+    const int side = orientation(a, b, c, {range[0], from[1], from[2]});
+    if (side == 0 || side != orientation(a, b, c, {range[1], from[1], from[2]})) is_certain = false;
     if (side == turns) beyond += turns;
   });
   if (!is_certain || own_turns == 0) return {};
