@@ -114,6 +114,9 @@ bool answer_rows(const RowSearch& search, std::span<const Eigen::Isometry3d> pos
   if (questions.penetration) {
     require_triangles(search.query.fixed(), "the fixed body");
     require_triangles(search.query.moving(), "the moving body");
+    // Made here, so that their loops have all threads.
+    static_cast<void>(search.query.fixed().self_intersections());
+    static_cast<void>(search.query.moving().self_intersections());
   }
   std::optional<ScopedThreadLimit> limit;
   if (threads > 0) limit.emplace(threads);
