@@ -4,6 +4,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <stdexcept>
 #include <thread>
@@ -40,6 +41,24 @@ TEST(ParallelSort, SortsAnyLength) {
     std::sort(expected.begin(), expected.end());
     parallel_sort(keys);
     EXPECT_EQ(keys, expected);
+  }
+}
+
+// Else a range that holds a lock would wait for itself.
+TEST(ParallelFor, AThreadThatWaitsForItsLoopTakesNoRangeOfAnOuterOne) {
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::atomic<int> nested{0};
+    parallel_for(64, 1, [&](std::size_t, std::size_t) {
+      thread_local bool waits = false;
+      nested += waits;
+      waits = true;
+      std::atomic<int> work{0};
+      parallel_for(16, 1, [&](std::size_t, std::size_t) {
+        for (int i = 0; i < 500; ++i) ++work;
+      });
+      waits = false;
+    });
+    EXPECT_EQ(nested, 0);
   }
 }
 

@@ -161,11 +161,33 @@ TEST(SignedDistance, SurfacesThatTouchThemselves_HaveCertainSigns) {
   }
   wall.triangles.push_back({first, first + 1, first + 2});
   wall.triangles.push_back({first, first + 2, first + 1});
-  const auto found = signed_distance(
-      body(wall), std::vector<Vector>{{0.9, 1, 1}, {1.1, 1, 1}, {3, 1, 1}}, kInfinite);
-  EXPECT_LT(found[0].distance, 0);
-  EXPECT_LT(found[1].distance, 0);
-  EXPECT_GT(found[2].distance, 0);
+  expect_signs(wall, true, random);
+}
+
+// Two faces so near each other that doubles tell no difference from afar.
+TEST(SignedDistance, AThinWall_HasTwoSides) {
+  const TriangleMesh far_away = box({5, 5, 5}, {6, 6, 6});
+  for (const double thickness : {1e-17, 1e-300, 1e-12}) {
+    for (int turn = 0; turn < 3; ++turn) {
+      TriangleMesh wall = box({0, 0, 0}, {1, 1, thickness});
+      for (Vector& v : wall.vertices) v = Vector(v[turn], v[(turn + 1) % 3], v[(turn + 2) % 3]);
+      const SphereTree tree = body(joined(wall, far_away));
+      Random random(12);
+      std::vector<Vector> points;
+      for (int i = 0; i < samples(200); ++i) {
+        const Vector p(random.uniform(-0.5, 1.5), random.uniform(-0.5, 1.5),
+                       random.uniform(1e-9, 1));
+        for (const double side : {-1.0, 1.0}) {
+          const Vector q(p[0], p[1], side * p[2]);
+          points.push_back({q[turn], q[(turn + 1) % 3], q[(turn + 2) % 3]});
+        }
+      }
+      for (const SurfaceDistance& found : signed_distance(tree, points, kInfinite)) {
+        EXPECT_TRUE(found.is_signed);
+        EXPECT_GT(found.distance, 0) << thickness;
+      }
+    }
+  }
 }
 
 TEST(SignedDistance, NestedBodies_AreInsideByWinding) {

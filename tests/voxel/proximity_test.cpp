@@ -162,6 +162,11 @@ TEST(Proximity, OfAShellWithACavityLooksIntoTheCavity) {
   expect_exactly_the_proximity_voxels(shell, 1);
 }
 
+TEST(Proximity, OfPartsThatOverlapLiesOutsideBoth) {
+  const TriangleMesh cube = test::box({0, 0, 0}, {2, 2, 2});
+  expect_exactly_the_proximity_voxels(test::joined(cube, test::moved(cube, {0.9, 0.7, 0.8})), 0.21);
+}
+
 TEST(Proximity, IsTheSameForAnyNumberOfThreads) {
   const TriangleMesh mesh = test::icosphere(3, 1);
   const VoxelSet surface = voxelize(mesh, {0.03, false});

@@ -11,7 +11,8 @@ namespace ist {
 /// Calls `body(begin, end)` on consecutive ranges that cover [0, count), on all cores. Each range
 /// holds `grain` items, the last one possibly fewer. The ranges do not depend on the number of
 /// threads, so a body that writes by range gives the same result for any number. Each range runs in
-/// a ScopedFloatEnvironment. An exception of the body reaches the caller.
+/// a ScopedFloatEnvironment. An exception of the body reaches the caller. The body may run a loop
+/// of its own, even under a lock that other ranges wait for.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -133,7 +133,7 @@ DepthSearch::Measured DepthSearch::measure(std::uint32_t side, const Vector& at,
   ++points_;
   const SurfaceInBody& of = sides_[side];
   const NearestTriangle nearest = *of.search.nearest(at, HUGE_VAL, hint);
-  const Side side_there = of.body.parts().triangles->side_of(at, nearest.triangle, nearest.on);
+  const Side side_there = of.body.parts().triangles->side_of(at, nearest);
   const double distance = std::sqrt(nearest.square);
   return {side_there == Side::kOutside ? -distance : distance, side_there != Side::kUnknown,
           nearest};

@@ -19,7 +19,7 @@ constexpr std::size_t kAtOnce = 1 << 14;
 
 SurfaceDistance with_sign(const LeafTriangles& body, const NearestTriangle& nearest,
                           const Vector& point) {
-  const Side side = body.side_of(point, nearest.triangle, nearest.on);
+  const Side side = body.side_of(point, nearest);
   const double distance = std::sqrt(nearest.square);
   return {side == Side::kInside ? -distance : distance, nearest.on.point, nearest.triangle,
           side != Side::kUnknown, !body.sides().self_intersections().pairs.empty()};
@@ -37,6 +37,7 @@ std::vector<SurfaceDistance> distances_of(const SphereTree& tree, const PointSea
                                           const Proceed& proceed) {
   std::vector<SurfaceDistance> out(points.size());
   const LeafTriangles& body = *tree.parts().triangles;
+  static_cast<void>(body.sides());  // made here, so that its loops have all threads
   for (std::size_t done = 0; done < points.size(); done += kAtOnce) {
     if (proceed && !proceed(static_cast<double>(done) / static_cast<double>(points.size()))) {
       out.resize(done);

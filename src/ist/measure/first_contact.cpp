@@ -78,7 +78,7 @@ class Advance {
     found_.verdicts = 1;
     if (start.answer == Answer::kYes) {
       name_triangles(0);
-      return end(ContactStatus::kTouchesAtStart, 0, 0);
+      return end(is_busy_ ? ContactStatus::kBusy : ContactStatus::kTouchesAtStart, 0, 0);
     }
     found_.fixed_self_intersecting = query_.fixed().self_intersections() > 0;
     found_.moving_self_intersecting = query_.moving().self_intersections() > 0;
@@ -87,15 +87,17 @@ class Advance {
     while (at < 1) {
       if (!goes_on(at)) return end(ContactStatus::kStopped, grazed_at(at), 1);
       const double apart = distance_at(at), safe = step(at, apart);
+      if (is_busy_) return end(ContactStatus::kBusy, 0, 0);
       if (apart >= tolerance_) {
         at = safe;
         continue;
       }
       const double near = step(at, tolerance_);
       for (const double then : {near, std::min(near, step(at, kAhead * found_.distance.upper))}) {
-        if (!meet(then)) continue;
-        name_triangles(then);
-        return end(ContactStatus::kContact, grazed_at(at), then);
+        const bool met = meet(then);
+        if (met) name_triangles(then);
+        if (is_busy_) return end(ContactStatus::kBusy, 0, 0);
+        if (met) return end(ContactStatus::kContact, grazed_at(at), then);
       }
       if (at >= slow_until_) {
         slow_until_ = near;
@@ -143,6 +145,7 @@ class Advance {
     do {
       sharp = std::max(sharp, kSharp * kStuck * tolerance_);
       const DistanceResult asked = query_.distance(motion_.at(at), sharp);
+      if (note_busy(asked.status)) return 0;
       ++found_.distances;
       found_.distance = asked.distance;
       limit_tolerance(asked.narrowest);
@@ -153,12 +156,19 @@ class Advance {
   }
   [[nodiscard]] bool meet(double at) {
     ++found_.verdicts;
-    return query_.intersects(motion_.at(at)).answer == Answer::kYes;
+    const IntersectionResult asked = query_.intersects(motion_.at(at));
+    return !note_busy(asked.status) && asked.answer == Answer::kYes;
   }
   void name_triangles(double at) {
     std::array<TrianglePair, 1> first;
-    static_cast<void>(query_.triangle_pairs(motion_.at(at), first));
-    found_.triangles = first[0];
+    if (!note_busy(query_.triangle_pairs(motion_.at(at), first).status)) {
+      found_.triangles = first[0];
+    }
+  }
+  // Another thread uses the query: no answer counts.
+  bool note_busy(QueryStatus status) {
+    is_busy_ = is_busy_ || status == QueryStatus::kBusy;
+    return is_busy_;
   }
 
   Query& query_;
@@ -168,6 +178,7 @@ class Advance {
   double way_;     // of the point that goes farthest
   double rounding_ = 0, tolerance_ = 0;
   FirstContact found_;
+  bool is_busy_ = false;
   std::pair<double, double> graze_{0, 0};
   double slow_until_ = 0;
   int slow_steps_ = 0;

@@ -12,7 +12,7 @@ bool is_any_inside(const SurfaceInBody& side) {
     const Eigen::Vector3d at = side.to_body(point);
     if (body.sides().is_beyond(at)) return false;
     const auto nearest = side.search.nearest(at, HUGE_VAL);
-    return nearest && body.side_of(at, nearest->triangle, nearest->on) == Side::kInside;
+    return nearest && body.side_of(at, *nearest) == Side::kInside;
   });
 }
 

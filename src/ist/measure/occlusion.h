@@ -92,9 +92,9 @@ struct Occlusion {
 /// could come within the largest limit are split until no edge is longer than `longest_edge`.
 /// Triangles without an area have none. Allocates. The same bits on every instruction set and for
 /// any number of threads. Cost: 0.05 to 0.2 s for two jaws in occlusion, on one core; the first
-/// time for a tree, 0.3 µs a triangle more. Throws kPoseInvalid, kTrianglesMissing, and
+/// time for a tree, 1.2 µs a triangle more. Throws kPoseInvalid, kTrianglesMissing, and
 /// kArgumentInvalid for an option that is NaN, negative, or a reach, limit, or edge of nothing or
-/// without end; kMemoryLimit where one surface would be over 8 million triangles.
+/// without end; kMemoryLimit if one surface would be over 8 million triangles.
 [[nodiscard]] IST_API Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
                                           const OcclusionOptions& options = {});
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ist/base/float_rounding.h"
 #include "ist/base/ordered_vector.h"
@@ -15,6 +16,8 @@ namespace {
 using Vector = Eigen::Vector3d;
 // No tree of 32-bit indices has more levels above its clusters.
 constexpr std::size_t kMostLevels = 8;
+// More than the error of a distance to a sliver, as a part of the coordinates.
+constexpr double kTie = 0x1p-37;
 
 template <class Body>
 void for_each_bit(std::uint32_t bits, const Body& body) {
@@ -40,7 +43,9 @@ class PointSearch::Descent {
       tree_point_.rest[axis] = static_cast<float>(at_[i] - double{tree_point_.at[axis]});
     }
     tree_point_.error = rounded_up(4 * error_);
-    set_far(within * within);
+    tie_ = kTie * (search.size_ + from.cwiseAbs().maxCoeff());
+    most_ = within * within;
+    set_far(most_);
   }
 
   void measure(std::uint32_t triangle) noexcept {
@@ -49,11 +54,17 @@ class PointSearch::Descent {
     const NearestPoint on =
         nearest_on_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, point_);
     const Vector way = difference(point_, on.point);
-    const double square = dot_in_order(way, way);
-    if (!(square <= most_)) return;
-    if (best_ && square == best_->square && triangle >= best_->triangle) return;
-    best_ = {square, triangle, on};
-    set_far(square);
+    NearestTriangle next{dot_in_order(way, way), triangle, on};
+    if (!(next.square <= tied_) || (best_ && best_->triangle == triangle)) return;
+    const bool is_other = best_ && !has_feature_of(*best_, next);
+    if (best_ ? std::pair(best_->square, best_->triangle) < std::pair(next.square, triangle)
+              : !(next.square <= most_)) {
+      if (best_) best_->is_tied = best_->is_tied || is_other;
+      return;
+    }
+    set_far(next.square);
+    next.is_tied = best_ && best_->square <= tied_ && (best_->is_tied || is_other);
+    best_ = next;
   }
 
   void run() noexcept {
@@ -98,10 +109,25 @@ class PointSearch::Descent {
     std::uint32_t triangle;
   };
 
-  // Nothing whose square is certain to be more is looked for.
+  // From now on triangles count whose distance is no greater, or greater by rounding alone.
   void set_far(double square) noexcept {
-    most_ = square;
-    far_ = std::min(far_, rounded_up(square));
+    const double distance = std::sqrt(square) + tie_;
+    tied_ = distance * distance;
+    far_ = std::min(far_, rounded_up(tied_));
+  }
+
+  // Returns whether the nearest points of two triangles lie on one corner or edge of both.
+  [[nodiscard]] bool has_feature_of(const NearestTriangle& a, const NearestTriangle& b) const {
+    if ((a.on.feature < 3) != (b.on.feature < 3)) return false;
+    if (a.on.feature == NearestPoint::kInside || b.on.feature == NearestPoint::kInside)
+      return false;
+    const auto corner = [this](const NearestTriangle& of, int next) -> const Vector& {
+      return search_.mesh_.vertices[search_.mesh_.triangles[of.triangle][static_cast<std::size_t>(
+          (of.on.feature + next) % 3)]];
+    };
+    if (a.on.feature < 3) return corner(a, 0) == corner(b, 0);
+    return (corner(a, 0) == corner(b, 0) && corner(a, 1) == corner(b, 1)) ||
+           (corner(a, 0) == corner(b, 1) && corner(a, 1) == corner(b, 0));
   }
 
   static std::uint32_t lanes_of(std::uint32_t count) noexcept {
@@ -148,7 +174,9 @@ class PointSearch::Descent {
   Vector at_;     // in the tree's frame
   double error_;  // of a coordinate there
   TreePoint tree_point_{};
-  double most_ = 0;
+  double tie_;   // distances that differ by less may differ by rounding alone
+  double most_;  // the square of the reach
+  double tied_ = 0;
   float far_ = std::numeric_limits<float>::infinity();
   std::array<Candidate, 4 * kClusterWidth> candidates_;  // not yet measured
   std::size_t candidate_count_ = 0;

@@ -11,16 +11,9 @@
 
 namespace ist {
 
-/// The triangle of a mesh that is nearest to a point.
-struct NearestTriangle {
-  double square;  ///< of the distance, mesh units squared
-  std::uint32_t triangle;
-  NearestPoint on;  ///< mesh coordinates
-};
-
-/// Finds the triangle nearest to a point: a search of the clusters, nearest nodes first, whose
-/// bounds in float leave out no triangle that could be the nearest; what is left is measured in
-/// double. So an answer has the same bits on every instruction set.
+/// Finds the triangle nearest to a point: a search of the clusters, nearest nodes first. Bounds in
+/// float leave out no triangle that could be the nearest, and doubles measure the others. So an
+/// answer has the same bits on every instruction set.
 class PointSearch {
  public:
   /// Refers to both. The tree must have triangles.

@@ -15,4 +15,11 @@ namespace ist {
   return box;
 }
 
+/// Returns whether the largest extent of a box lies in [1e-12, 1e15] units: no other mesh gets a
+/// tree. In this range sums and products of lengths neither overflow nor vanish.
+[[nodiscard]] inline bool has_usable_extent(const Eigen::AlignedBox3d& box) noexcept {
+  const double extent = box.sizes().maxCoeff();
+  return extent >= 1e-12 && extent <= 1e15;
+}
+
 }  // namespace ist

@@ -4,6 +4,7 @@
 
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
@@ -12,14 +13,12 @@ namespace ist {
 namespace {
 
 void check_extent(const TriangleMesh& mesh, const std::string& file) {
-  constexpr double kSmallest = 1e-12, kLargest = 1e15;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
-  const double extent = box.sizes().maxCoeff();
-  if (!(extent >= kSmallest && extent <= kLargest))
-    fail_mesh(ErrorCode::kMeshExtent, file, "",
-              fmt::format("the largest extent is {:g} units, outside [{:g}, {:g}]; scale the mesh",
-                          extent, kSmallest, kLargest));
+  if (has_usable_extent(box)) return;
+  fail_mesh(ErrorCode::kMeshExtent, file, "",
+            fmt::format("the largest extent is {:g} units, outside [1e-12, 1e+15]; scale the mesh",
+                        box.sizes().maxCoeff()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 
 namespace ist {
 
@@ -11,6 +12,14 @@ struct NearestPoint {
   static constexpr int kInside = 6;
   Eigen::Vector3d point;
   int feature;
+};
+
+/// The triangle of a mesh that is nearest to a point.
+struct NearestTriangle {
+  double square;  ///< of the distance, mesh units squared
+  std::uint32_t triangle;
+  NearestPoint on;       ///< mesh coordinates
+  bool is_tied = false;  ///< rounding alone may make it nearer than another corner, edge or face
 };
 
 /// Returns the point of a triangle nearest to `point`, with its feature.

@@ -85,14 +85,13 @@ std::array<double, 2> range_on_line(const std::array<Vector, 3>& t, const Vector
   for (std::size_t k = 0; k < 3; ++k) {
     longest = std::max(longest, square_in_order(difference(t[(k + 1) % 3], t[k])));
   }
+  const auto [least, greatest] = std::minmax({t[0][0], t[1][0], t[2][0]});
   // The normal of a needle is not known well enough.
-  if (!(length_in_order(normal) > 1e-3 * longest)) {
-    return {std::min({t[0][0], t[1][0], t[2][0]}), std::max({t[0][0], t[1][0], t[2][0]})};
-  }
+  if (!(length_in_order(normal) > 1e-3 * longest)) return {least, greatest};
   const double y = point[1] - t[0][1], z = point[2] - t[0][2];
   const double x = t[0][0] - (normal[1] * y + normal[2] * z) / normal[0];
   const double error = 0x1p-36 * extent * (1 + steep) * (1 + steep);
-  return {x - error, x + error};
+  return {std::max(least, x - error), std::min(greatest, x + error)};
 }
 
 // Returns the winding number beside a triangle, on its outer side: by the crossings of a line
@@ -186,15 +185,15 @@ SurfaceSides::SurfaceSides(const TriangleMesh& mesh, const TriangleClusters& clu
 }
 
 Side SurfaceSides::of(const TriangleMesh& mesh, const TriangleClusters& clusters,
-                      const Vector& point, std::uint32_t triangle,
-                      const NearestPoint& on) const noexcept {
+                      const Vector& point, const NearestTriangle& nearest) const noexcept {
   if (is_beyond(point)) return Side::kOutside;
-  const int outer = outer_.empty() ? 0 : outer_[triangle];
+  const int outer = outer_.empty() ? 0 : outer_[nearest.triangle];
+  const bool asks_ray = outer == kAskRay || (nearest.is_tied && normals_.closed());
   const std::optional<Vector> normal =
-      outer == kAskRay ? std::nullopt : normals_.at(mesh, triangle, on);
+      asks_ray ? std::nullopt : normals_.at(mesh, nearest.triangle, nearest.on);
   int winding;
   if (normal) {
-    winding = outer + (dot_in_order(*normal, difference(point, on.point)) < 0 ? 1 : 0);
+    winding = outer + (dot_in_order(*normal, difference(point, nearest.on.point)) < 0 ? 1 : 0);
   } else if (normals_.closed()) {
     winding = WindingNumber(mesh, clusters).at(point).value_or(0);
   } else {

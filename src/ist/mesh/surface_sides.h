@@ -23,7 +23,8 @@ enum class Side : std::uint8_t { kOutside, kInside, kUnknown };
 /// number of the point is the one beside the nearest triangle, on the side that the pseudonormal
 /// tells. The number is the same beside all triangles of a patch: triangles that are joined by
 /// edges of two, and meet no others. It is computed once a patch. Near a triangle that meets
-/// another, or has an odd neighbourhood, a ray counts for each point.
+/// another, or has an odd neighbourhood, a ray counts for each point. A ray counts as well if
+/// rounding alone may make one triangle nearer than another.
 class SurfaceSides {
  public:
   /// `clusters` hold the mesh's triangles. Cost: 1.2 µs a triangle and core.
@@ -31,11 +32,11 @@ class SurfaceSides {
   /// itself or is nested.
   SurfaceSides(const TriangleMesh& mesh, const TriangleClusters& clusters);
 
-  /// Returns the side of a point. `triangle` is the mesh's nearest one, and `on` its nearest point.
+  /// Returns the side of a point. `nearest` is the mesh's nearest triangle.
   /// For an open surface: the side of the pseudonormal, and kUnknown without one.
   [[nodiscard]] Side of(const TriangleMesh& mesh, const TriangleClusters& clusters,
-                        const Eigen::Vector3d& point, std::uint32_t triangle,
-                        const NearestPoint& on) const noexcept;
+                        const Eigen::Vector3d& point,
+                        const NearestTriangle& nearest) const noexcept;
 
   /// Returns whether a point lies outside a closed surface because it lies outside the box.
   [[nodiscard]] bool is_beyond(const Eigen::Vector3d& point) const noexcept {

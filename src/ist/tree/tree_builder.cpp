@@ -26,8 +26,9 @@ constexpr std::uint64_t kOctreeBytes = bytes_a_leaf(sizeof(OctreeNode) + 1);
 constexpr std::uint64_t kBallBytes = bytes_a_leaf(sizeof(BallBlock));
 constexpr std::uint64_t kSlabBytes = bytes_a_leaf(sizeof(SlabBlock) + kNestingBytes);
 
-// A surface voxel has two to three proximity voxels, whose codes are stored twice while joined. A
-// triangle has its normals, half a corner's, three sides while sides are sorted, and some bins.
+// A surface voxel has two to three proximity voxels. Their codes are stored twice while joined. A
+// triangle has its normals, half a corner's, three sides while sides are sorted, and some bins. A
+// closed surface is put into clusters too.
 constexpr std::uint64_t kProximityBytes = 3 * 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t kPseudoNormalBytes = 256;
 // A triangle in clusters, with its corners twice while they are ordered.
@@ -44,7 +45,7 @@ VoxelizerOptions voxelizer_options(const BuildOptions& options) {
   if (options.keep_triangles) voxelizer.bytes_per_triangle += kClusterBytes;
   if (options.proximity) {
     voxelizer.bytes_per_voxel += kProximityBytes;
-    voxelizer.bytes_per_triangle += kPseudoNormalBytes;
+    voxelizer.bytes_per_triangle += kPseudoNormalBytes + kClusterBytes;
   }
   return voxelizer;
 }

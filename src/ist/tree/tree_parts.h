@@ -39,11 +39,9 @@ struct LeafTriangles {
   [[nodiscard]] const std::vector<Eigen::Vector3d>& component_points() const {
     return made().component_points;
   }
-  /// Returns the side on which a point lies. `nearest` is the mesh's nearest triangle, and `on` its
-  /// nearest point.
-  [[nodiscard]] Side side_of(const Eigen::Vector3d& point, std::uint32_t nearest,
-                             const NearestPoint& on) const {
-    return sides().of(mesh, clusters, point, nearest, on);
+  /// Returns the side on which a point lies. `nearest` is the mesh's nearest triangle.
+  [[nodiscard]] Side side_of(const Eigen::Vector3d& point, const NearestTriangle& nearest) const {
+    return sides().of(mesh, clusters, point, nearest);
   }
 
  private:

@@ -10,6 +10,7 @@
 
 #include "ist/base/error.h"
 #include "ist/base/platform/from_chars.h"
+#include "ist/mesh/bounding_box.h"
 
 namespace ist {
 
@@ -51,7 +52,7 @@ std::optional<Error> lattice_flaw(const Eigen::Vector3d& box_min, const Eigen::V
                  fmt::format("voxel size {}: give a positive number of mesh units", voxel_size));
   }
   const double extent = extent_of(box_min, box_max);
-  if (!(extent >= 1e-12 && extent <= 1e15)) {
+  if (!has_usable_extent({box_min, box_max})) {
     return Error(
         ErrorCode::kMeshExtent,
         fmt::format("the largest extent is {} units, outside [1e-12, 1e15]: scale the mesh",

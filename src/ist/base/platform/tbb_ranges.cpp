@@ -8,7 +8,11 @@
 namespace ist {
 
 void run_ranges(std::size_t ranges, void (*run)(void*, std::size_t), void* context) {
-  tbb::parallel_for(std::size_t{0}, ranges, [=](std::size_t range) { run(context, range); });
+  // A thread that waits for its loop takes no range of an outer one. So a range may run a loop
+  // while it holds a lock, or a std::once_flag, that other ranges wait for.
+  tbb::this_task_arena::isolate([=] {
+    tbb::parallel_for(std::size_t{0}, ranges, [=](std::size_t range) { run(context, range); });
+  });
 }
 
 void run_aside(void (*run)(void*), void* context) {
