@@ -48,7 +48,7 @@ MUTANTS = [
              "add_to(of_vertex_[indices[i]], angle > 0 ? normal : scaled(angle, normal));")],
            ["mesh_test Pseudonormals*"]),
     Mutant("nearest-too-near", "triangles within a thousandth of the nearest distance so far are skipped",
-           [(MEASURE + "point_search.cpp", "far_ = std::min(far_, rounded_up(square));", "far_ = std::min(far_, rounded_up(0.998 * square));")],
+           [(MEASURE + "point_search.cpp", "far_ = std::min(far_, rounded_up(tied_));", "far_ = std::min(far_, rounded_up(0.998 * tied_));")],
            ["measure_test *PointSearch*"]),
     Mutant("node-as-its-middle", "a node's bound on the depth is the depth of its centre",
            [(MEASURE + "depth_search.cpp", "push({std::min(measured.depth + radius, in_box),", "push({measured.depth,")],

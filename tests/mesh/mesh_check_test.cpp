@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "ist/query/query.h"
 #include "support/data_dir.h"
+#include "support/errors.h"
 #include "support/shapes.h"
 #include "support/skip.h"
 
@@ -70,6 +73,46 @@ TEST(CheckMesh, CountsWhatIsWrong) {
   for (Triangle& t : touching.triangles) std::replace(t.begin(), t.end(), 8u, 7u);
   EXPECT_EQ(check_mesh(touching).components, 1u);
   EXPECT_TRUE(check_mesh(touching).closed);
+
+  // Two cubes that share an edge are closed: four triangles traverse it, twice each way.
+  TriangleMesh at_edge = test::joined(cube, test::moved(cube, {1, 1, 0}));
+  weld(at_edge);
+  EXPECT_EQ(summary(check_mesh(at_edge)),
+            "16 vertices, 24 triangles, 1 non-manifold, 1 parts, closed");
+  EXPECT_TRUE(check_mesh(at_edge).consistent);
+  for (std::size_t t = 12; t < 24; ++t) {
+    std::swap(at_edge.triangles[t][1], at_edge.triangles[t][2]);
+  }
+  EXPECT_TRUE(check_mesh(at_edge).consistent);  // twice each way still
+  std::swap(at_edge.triangles[0][1], at_edge.triangles[0][2]);
+  EXPECT_FALSE(check_mesh(at_edge).consistent);
+}
+
+TEST(CheckMesh, RefusesWhatIsNoNumberOrNoVertex) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  TriangleMesh cube = test::box({0, 0, 0}, {1, 1, 1});
+  for (const auto& [mesh, code] :
+       {std::pair(TriangleMesh{{{0, 0, 0}, {1, kNaN, 0}, {0, 1, 0}}, {{0, 1, 2}}},
+                  "mesh-not-finite"),
+        std::pair(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}},
+                  "mesh-bad-index")}) {
+    TriangleMesh changed = mesh;
+    EXPECT_EQ(test::error_name([&, &mesh = mesh] { static_cast<void>(check_mesh(mesh)); }), code);
+    EXPECT_EQ(test::error_name([&] { weld(changed); }), code);
+    EXPECT_EQ(test::error_name([&] { static_cast<void>(orient_outward(changed)); }), code);
+    EXPECT_EQ(test::error_name([&, &mesh = mesh] { InsideTest{mesh, cube}; }), code);
+    EXPECT_EQ(test::error_name([&, &mesh = mesh] { InsideTest{cube, mesh}; }), code);
+  }
+}
+
+// Digits of such numbers span more than a thousand bits.
+TEST(CheckMesh, NumbersMayBeFarApart) {
+  TriangleMesh mesh{{{1e-250, 0, 0}, {1e250, 0, 0}, {0, 1e250, 0}, {0, 0, 1e250}},
+                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+  EXPECT_TRUE(check_mesh(mesh).closed);
+  EXPECT_FALSE(check_mesh(mesh).self_intersections_complete);
+  EXPECT_EQ(orient_outward(mesh).turned_components, 1u);
+  EXPECT_TRUE(check_mesh(test::box({0, 0, 0}, {1, 1, 1})).self_intersections_complete);
 }
 
 TEST(CheckMesh, OfNothingIsNothing) {
@@ -146,7 +189,7 @@ constexpr RealFile kRealFiles[] = {
     {"bad_input/issue623.ply", "mesh-points-only"},  // no faces, but their list is declared
     {"bad_input/malformed.obj", "mesh-bad-index"},   // names vertices 0 and 12 of 8
     {"bad_input/points.ply", "mesh-points-only"},
-    {"bad_input/shared.STL", "14 vertices, 24 triangles, 1 non-manifold, 1 parts"},
+    {"bad_input/shared.STL", "14 vertices, 24 triangles, 1 non-manifold, 1 parts, closed"},
     {"bad_input/soup.stl", "300 vertices, 100 triangles, 300 boundary, 100 parts, 100 open"},
     {"bad_input/sphereWithHole.stl", "146 vertices, 285 triangles, 9 boundary, 1 parts, 1 open"},
     {"bad_input/stl_empty_ascii.stl", "mesh-empty"},
@@ -157,11 +200,12 @@ constexpr RealFile kRealFiles[] = {
     {"bad_input/triangle_with_two_solids.stl",
      "6 vertices, 2 triangles, 6 boundary, 2 parts, 2 open"},
     {"dirty/dragon_res3.stl",
-     "22982 vertices, 47794 triangles, 2094 non-manifold, 1254 duplicate, 1 parts"},
+     "22982 vertices, 47794 triangles, 2094 non-manifold, 1254 duplicate, 1 parts, closed"},
     {"dirty/human_maxilla_raw_open_soup.stl",
      "10154 vertices, 17992 triangles, 2270 boundary, 30 parts, 14 open"},
     {"dirty/spl_mandible_orig_dirty.stl",
-     "17962 vertices, 35784 triangles, 20 non-manifold, 15 inconsistent, 22 duplicate, 47 parts"},
+     "17962 vertices, 35784 triangles, 20 non-manifold, 15 inconsistent, 22 duplicate, 47 parts, "
+     "closed"},
     {"dirty/vkh_skull_dirty.stl",
      "49589 vertices, 103514 triangles, 8 boundary, 4331 non-manifold, 405 duplicate, 22 parts, 1 "
      "open"},

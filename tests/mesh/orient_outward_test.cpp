@@ -1,6 +1,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 
 #include "ist/mesh/mesh.h"
@@ -57,6 +58,30 @@ TEST(OrientOutward, TurnsWhatLiesInATurnedComponent) {
   const TriangleMesh strip = test::moved(test::open_strip(2), {2, 0, 0});
   expect_oriented(test::inside_out(test::joined(shell, strip)), test::joined(shell, strip),
                   Orientation::kAssumed, 3);
+}
+
+// A hole through a cube, flush with two faces, and an octahedron whose corners lie on the faces.
+TEST(OrientOutward, ACavityMayHaveAllItsVerticesOnTheShell) {
+  const TriangleMesh cube = test::box({0, 0, 0}, {2, 2, 2});
+  TriangleMesh octahedron{
+      {{2, 1, 1}, {0, 1, 1}, {1, 2, 1}, {1, 0, 1}, {1, 1, 2}, {1, 1, 0}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  for (const TriangleMesh& solid : {test::box({0, 0.5, 0.5}, {2, 1.5, 1.5}), octahedron}) {
+    TriangleMesh holed = test::joined(cube, test::inside_out(solid));
+    expect_oriented(holed, holed, Orientation::kOutward, 0);
+    expect_oriented(test::inside_out(holed), holed, Orientation::kOutward, 2);
+    const TriangleMesh filled = test::joined(cube, solid);
+    expect_oriented(filled, filled, Orientation::kOutward, 0);
+    expect_oriented(test::inside_out(filled), filled, Orientation::kOutward, 2);
+    // Beside the shell, with a face on it, it is a body that is inside out.
+    const TriangleMesh beside = test::joined(cube, test::moved(solid, {2, 0, 0}));
+    expect_oriented(test::joined(cube, test::moved(test::inside_out(solid), {2, 0, 0})), beside,
+                    Orientation::kOutward, 1);
+    for (Eigen::Vector3d& v : holed.vertices) v = turn * v;  // off the surface by rounding
+    expect_oriented(holed, holed, Orientation::kOutward, 0);
+  }
 }
 
 TEST(OrientOutward, APartThatSticksOut_IsNoCavity) {
@@ -149,6 +174,9 @@ TEST(OrientOutward, AssumesWhereItCannotTell) {
   TriangleMesh sheet = test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   sheet.triangles.push_back({0, 2, 1});
   expect_oriented(sheet, sheet, Orientation::kAssumed, 0);
+
+  // Beside a body that holds some, they change nothing.
+  expect_oriented(test::joined(kBall, sheet), test::joined(kBall, sheet), Orientation::kOutward, 0);
 
   // What is closed is turned all the same.
   const TriangleMesh far = test::moved(strip, {9, 0, 0});

@@ -96,12 +96,30 @@ TEST(Orientation, OfPointsNearlyInAPlane) {
 
 TEST(Orientation, OfNumbersOfAnySize) {
   Random random(4);
-  for (const int range : {60, 200, 339}) {
+  for (const int range : {60, 200, 339, 1020}) {
     expect_exact(samples(3'000), [&] {
       const int exponent = static_cast<int>(random.below(2 * static_cast<std::size_t>(range)));
       return std::ldexp(random.uniform(-1, 1), exponent - range);
     });
   }
+}
+
+// Whole numbers of few digits: a fourth point in the plane of three, and beside it.
+TEST(Orientation, OfSmallWholeNumbers) {
+  Random random(6);
+  Signs signs;
+  for (int i = 0; i < samples(20'000); ++i) {
+    const double unit = std::ldexp(1.0, static_cast<int>(random.below(60)) - 30);
+    const auto whole = [&] { return static_cast<double>(random.below(1 << 12)) - (1 << 11); };
+    const auto times = [&] { return static_cast<double>(random.below(1 << 10)) - (1 << 9); };
+    Eigen::Vector3d p[4];
+    for (Eigen::Vector3d& x : p) x = Eigen::Vector3d(whole(), whole(), whole()) * unit;
+    p[3] = p[0] + times() * (p[1] - p[0]) + times() * (p[2] - p[0]);
+    p[3][0] += unit * (static_cast<double>(random.below(3)) - 1);
+    signs.add(expect_exact(p));
+  }
+  EXPECT_GT(signs.zero, samples(4'000));
+  EXPECT_GT(signs.negative, samples(4'000));
 }
 
 // Products that are less than the least double, and points that are themselves hardly more.

@@ -50,6 +50,7 @@ ordered_json mesh_json(const std::string& file, const MeshReport& report,
                     {"degenerate_triangles", report.degenerate_triangles},
                     {"inconsistent_edges", report.inconsistent_edges},
                     {"self_intersections", report.self_intersections},
+                    {"self_intersections_complete", report.self_intersections_complete},
                     {"first_self_intersections", places(report)},
                     {"box_min", numbers(report.box_min)},
                     {"box_max", numbers(report.box_max)},
@@ -73,8 +74,11 @@ ordered_json tree_json(const std::string& file, const SphereTree& tree,
       {"orientation", tree.orientation() == Orientation::kOutward ? "outward" : "assumed"},
       {"triangles", tree.triangles() != nullptr},
       {"proximity", tree.has_proximity()}};
-  line["self_intersections"] = nullptr;
-  if (triangles) line["self_intersections"] = triangles->self_intersections;
+  for (const char* key : {"self_intersections", "self_intersections_complete"}) line[key] = nullptr;
+  if (triangles) {
+    line["self_intersections"] = triangles->self_intersections;
+    line["self_intersections_complete"] = triangles->self_intersections_complete;
+  }
   add_measures(line, box_of(tree).sizes(), triangles, tree.source());
   line["levels"] = ordered_json::array();
   for (const LevelStatistics& level : levels) {

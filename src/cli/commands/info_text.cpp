@@ -32,7 +32,8 @@ void print_topology(const MeshReport& report, LengthUnit unit) {
   }
   fmt::print("\n");
   if (report.self_intersections == 0) return;
-  fmt::print("{} pair{} of triangles intersect{}, first:\n", report.self_intersections,
+  fmt::print("{}{} pair{} of triangles intersect{}, first:\n",
+             report.self_intersections_complete ? "" : "at least ", report.self_intersections,
              report.self_intersections == 1 ? "" : "s", report.self_intersections == 1 ? "s" : "");
   for (const SelfIntersection& one : report.first_self_intersections) {
     fmt::print("  triangles {} and {} near ({:g}, {:g}, {:g})\n", one.triangles[0],

@@ -318,8 +318,8 @@ typedef struct ist_contact {
 } ist_contact;
 
 /** Sums over all leaf pairs, for forces on the moving body, of meshes in mm. A pair has weight w,
- * normal n, depth d and position p; springs begin at the margin m of the
- * query's options, mesh units. */
+ * normal n, depth d and position p. Springs begin at the margin m of the query's options, mesh
+ * units. */
 typedef struct ist_contact_sums {
   size_t struct_size;        /**< the size of this struct, bytes */
   uint64_t pairs;            /**< leaf pairs with a weight above 0 */

@@ -81,13 +81,17 @@ struct MeshReport {
   /// side squared.
   std::size_t degenerate_triangles = 0;
   /// Pairs of triangles that meet beyond the corners and edges that they share. Triangles that only
-  /// touch count, degenerate ones do not. Of more than 2^20 pairs some are not counted.
+  /// touch count, those of area 0 do not.
   std::size_t self_intersections = 0;
+  /// Else there are more: of some 2^20 pairs the search ends, and it needs an extent in
+  /// [1e-12, 1e15].
+  bool self_intersections_complete = true;
   std::vector<SelfIntersection> first_self_intersections;  ///< at most 8, by their indices
   std::size_t components = 0;       ///< sets of triangles connected by vertices
   std::size_t open_components = 0;  ///< components with a boundary edge
-  bool closed = false;              ///< every edge belongs to exactly two triangles
-  bool consistent = false;          ///< no edge is inconsistent; says nothing about `closed`
+  bool closed = false;              ///< each edge belongs to an even number of triangles
+  /// Of each edge of an even number of triangles, as many traverse it one way as the other.
+  bool consistent = false;
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< least x, y, z of all vertices, mesh units
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();  ///< greatest x, y, z
   double signed_volume = 0;  ///< mesh units cubed; positive if outward; means little if not closed
@@ -97,7 +101,8 @@ struct MeshReport {
 /// triangle, for a mesh that no tree can be built of. build_tree() calls it. Cost: 2 ns a triangle.
 IST_API void require_valid(const TriangleMesh& mesh);
 
-/// Checks the topology of a mesh, and finds its self-intersections exactly.
+/// Checks the topology of a mesh, and finds its self-intersections exactly. Throws kMeshNotFinite
+/// or kMeshBadIndex, as require_valid() does.
 /// Cost: O(t log t), some 150 ms for 100,000 triangles.
 [[nodiscard]] IST_API MeshReport check_mesh(const TriangleMesh& mesh);
 
@@ -106,7 +111,8 @@ IST_API void require_valid(const TriangleMesh& mesh);
 
 /// Makes all triangles use the first vertex at each position, so that triangles whose corners have
 /// equal coordinates are neighbours. All vertices and triangles keep their numbers. A triangle with
-/// two corners at one position gets two equal indices. Cost: 50 ns a vertex.
+/// two corners at one position gets two equal indices. Throws kMeshNotFinite or kMeshBadIndex, as
+/// require_valid() does. Cost: 50 ns a vertex.
 IST_API void weld(TriangleMesh& mesh);
 
 /// The result of orient_outward().
@@ -121,13 +127,15 @@ struct OrientationResult {
 /// traverse each edge one way as the other. An outermost closed component of negative volume is
 /// turned, with all components inside it. So a cavity stays a cavity, and a solid inside a solid
 /// stays one. A component lies inside another if all its vertices do, by exact winding numbers; if
-/// the other is open, by the crossings of a ray. Components that are not closed, or have a volume
-/// without a certain sign, make the result `kAssumed`. Triangles with two equal indices stay.
+/// the other is open, by the crossings of a ray. If all its vertices lie on the other's surface,
+/// the middles of its triangles decide. A component that is not closed makes the result `kAssumed`,
+/// and so does a mesh whose volumes are all 0. Triangles with two equal indices stay.
 ///
+/// Throws kMeshNotFinite or kMeshBadIndex, as require_valid() does.
 /// Neither the unit nor the position of the mesh matters. `progress` may be nullptr; it can end the
 /// call, as Progress says, and then the mesh is as it was.
-/// Cost: 0.2 µs a triangle; if a component has a negative volume, 0.3 µs a triangle and core, and
-/// some µs for each vertex inside another component.
+/// Cost: 0.2 µs a triangle; if a component has a negative volume, 1 µs a triangle and core more,
+/// and some µs for each vertex inside another component.
 [[nodiscard]] IST_API OrientationResult orient_outward(TriangleMesh& mesh,
                                                        Progress* progress = nullptr);
 

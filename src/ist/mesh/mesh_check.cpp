@@ -10,6 +10,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/self_intersections.h"
@@ -51,7 +52,9 @@ void count_edges(std::span<const EdgeUse> uses, MeshReport& report) {
     ++report.edges;
     if (edge.size() == 1) ++report.boundary_edges;
     if (edge.size() > 2) ++report.non_manifold_edges;
-    if (edge.size() == 2 && edge[0].forward == edge[1].forward) ++report.inconsistent_edges;
+    if (edge.size() == 2 && !is_balanced(edge)) ++report.inconsistent_edges;
+    if (edge.size() % 2 == 0 && !is_balanced(edge)) report.consistent = false;
+    if (edge.size() % 2 == 1) report.closed = false;
   });
 }
 
@@ -75,9 +78,15 @@ Eigen::AlignedBox3d box_of(const TriangleMesh& mesh, std::uint32_t triangle) {
 
 void add_self_intersections(const TriangleMesh& mesh, MeshReport& report) {
   constexpr std::size_t kListed = 8;
+  if (!has_usable_extent(bounding_box(mesh))) {
+    report.self_intersections_complete = false;
+    return;
+  }
   const TriangleClusters clusters(mesh, mesh.vertices[mesh.triangles[0][0]]);
-  const auto pairs = find_self_intersections(mesh, clusters).pairs;
+  const SelfIntersections found = find_self_intersections(mesh, clusters);
+  const auto& pairs = found.pairs;
   report.self_intersections = pairs.size();
+  report.self_intersections_complete = found.complete;
   for (std::size_t k = 0; k < std::min(kListed, pairs.size()); ++k) {
     const Eigen::AlignedBox3d overlap =
         box_of(mesh, pairs[k][0]).intersection(box_of(mesh, pairs[k][1]));
@@ -133,7 +142,10 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
   report.vertices = mesh.vertices.size();
   report.triangles = mesh.triangles.size();
   cancellation_point();
+  if (!mesh.triangles.empty()) require_valid(mesh);
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  report.closed = !uses.empty();
+  report.consistent = true;
   cancellation_point();
   count_edges(uses, report);
   cancellation_point();
@@ -145,8 +157,6 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
       std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
                     [&mesh](const Triangle& t) { return is_degenerate(mesh, t); }));
   if (!mesh.triangles.empty()) add_self_intersections(mesh, report);
-  report.closed = report.edges > 0 && report.boundary_edges == 0 && report.non_manifold_edges == 0;
-  report.consistent = report.inconsistent_edges == 0;
   if (!mesh.vertices.empty()) {
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
@@ -177,10 +187,13 @@ std::vector<std::string> warnings(const MeshReport& report) {
   if (report.self_intersections > 0) {
     const SelfIntersection& first = report.first_self_intersections.front();
     sentences.push_back(fmt::format(
-        "The surface intersects itself: {} pair{} of triangles, first {} and {} near ({:g}, {:g}, "
-        "{:g}). Inside is decided by winding numbers.",
-        report.self_intersections, report.self_intersections == 1 ? "" : "s", first.triangles[0],
-        first.triangles[1], first.near[0], first.near[1], first.near[2]));
+        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near ({:g}, "
+        "{:g}, "
+        "{:g}).{}",
+        report.self_intersections_complete ? "" : "at least ", report.self_intersections,
+        report.self_intersections == 1 ? "" : "s", first.triangles[0], first.triangles[1],
+        first.near[0], first.near[1], first.near[2],
+        report.closed && report.consistent ? " Winding numbers decide what is inside." : ""));
   }
   if (report.closed && report.consistent && report.signed_volume < 0)
     sentences.emplace_back("The surface is inside out: its volume is negative.");

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
 #include "ist/base/parallel.h"
+#include "ist/mesh/bounding_box.h"
 #include "ist/mesh/components.h"
 #include "ist/mesh/mesh.h"
 #include "ist/mesh/self_intersections.h"
@@ -40,9 +42,11 @@ int volume_sign(const TriangleMesh& mesh, const Component& component) {
 // Finds the component round each component.
 class Nesting {
  public:
-  Nesting(const TriangleMesh& mesh, std::span<const Component> components)
+  Nesting(const TriangleMesh& mesh, std::span<const Component> components, Progress* progress)
       : mesh_(mesh),
         components_(components),
+        progress_(progress),
+        aside_(aside_of(bounding_box(mesh))),
         clusters_(mesh, mesh.vertices[mesh.triangles[components[0].triangles[0]][0]]),
         component_of_(mesh.triangles.size(), kNone),
         meets_(components.size()) {
@@ -59,38 +63,34 @@ class Nesting {
         }
       }
     }
-    const SelfIntersections found = find_self_intersections(mesh, clusters_);
+    if (!has_usable_extent(bounding_box(mesh))) {
+      meets_.assign(components.size(), true);
+      return;
+    }
+    const SelfIntersections found = find_self_intersections(mesh, clusters_, progress);
     if (!found.complete) meets_.assign(components.size(), true);
     for (const auto& pair : found.pairs) meet(component_of_[pair[0]], component_of_[pair[1]]);
   }
 
-  // Returns the smallest component in which component k lies with all its vertices, at least one
-  // of them not on the surface; or k itself. One vertex tells of all if k meets no other component.
+  // Returns the smallest component in which component k lies, or k itself. It lies in a component
+  // if all its vertices lie in it or on its surface. If all lie on the surface, the middles of its
+  // triangles decide. If k meets no other component, one vertex is enough.
   [[nodiscard]] std::uint32_t parent_of(std::uint32_t k) const {
-    std::vector<Around> left;
-    bool is_first = true;
-    for (const std::uint32_t t : components_[k].triangles) {
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        const std::vector<Around> here = around(mesh_.vertices[v]);
-        if (is_first) {
-          left = here;
-          std::erase_if(left, [&](const Around& one) { return !may_hold(one.component, k); });
-          for (Around& one : left) one.strictly = false;
-        }
-        is_first = false;
-        std::erase_if(left, [&](Around& one) {
-          const auto same = std::find_if(here.begin(), here.end(), [&](const Around& other) {
-            return other.component == one.component;
-          });
-          if (same == here.end()) return true;
-          one.strictly = one.strictly || same->strictly;
-          return false;
-        });
-        if (left.empty()) return k;
-        if (!meets_[k]) return smallest(left, k);
+    const Eigen::Vector3d& first = mesh_.vertices[mesh_.triangles[components_[k].triangles[0]][0]];
+    const bool meets = meets_[k];
+    std::vector<Holder> left;
+    for (const Around& one : meets ? around_nearly(first) : around(first)) {
+      if (may_hold(one.component, k)) left.push_back({one.component, !meets && one.strictly});
+    }
+    if (meets) narrow(left, k);
+    std::uint32_t parent = k;
+    for (const Holder& one : left) {
+      if ((one.is_certain || middles_lie_in(one.component, k)) &&
+          (parent == k || is_larger(parent, one.component))) {
+        parent = one.component;
       }
     }
-    return smallest(left, k);
+    return parent;
   }
 
  private:
@@ -101,12 +101,84 @@ class Nesting {
     bool strictly;  // else the point lies on its surface
   };
 
-  [[nodiscard]] std::uint32_t smallest(std::span<const Around> left, std::uint32_t k) const {
-    std::uint32_t parent = k;
-    for (const Around& one : left) {
-      if (one.strictly && (parent == k || is_larger(parent, one.component))) parent = one.component;
+  static double aside_of(const Eigen::AlignedBox3d& box) {
+    return 0x1p-40 * box.sizes().maxCoeff() +
+           0x1p-48 * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  }
+
+  struct Holder {
+    std::uint32_t component;
+    bool is_certain;  // a vertex lies in it, off its surface
+  };
+  enum class Place { kOutside, kOnSurface, kInside };
+
+  // Leaves the holders in which, or on which, all vertices of k lie.
+  void narrow(std::vector<Holder>& holders, std::uint32_t k) const {
+    for (const std::uint32_t t : components_[k].triangles) {
+      if (progress_ != nullptr) progress_->check();
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        const std::vector<Around> here = around(mesh_.vertices[v]);
+        std::erase_if(holders, [&](Holder& one) {
+          if (one.is_certain && holds(here, one.component)) return false;
+          const Place place = place_in(one.component, mesh_.vertices[v]);
+          one.is_certain = one.is_certain || place == Place::kInside;
+          return place == Place::kOutside;
+        });
+        if (holders.empty()) return;
+      }
     }
-    return parent;
+  }
+
+  // Returns whether the first triangle of k whose middle is off a component's surface lies in it.
+  [[nodiscard]] bool middles_lie_in(std::uint32_t component, std::uint32_t k) const {
+    for (const std::uint32_t t : components_[k].triangles) {
+      const Triangle& triangle = mesh_.triangles[t];
+      const Place place = place_in(
+          component,
+          scaled(1.0 / 3, sum(sum(mesh_.vertices[triangle[0]], mesh_.vertices[triangle[1]]),
+                              mesh_.vertices[triangle[2]])));
+      if (place != Place::kOnSurface) return place == Place::kInside;
+    }
+    return false;
+  }
+
+  // Returns six points round a point, farther than rounding moves a point of the surface. Round
+  // such a point they lie on both sides.
+  [[nodiscard]] std::array<Eigen::Vector3d, 6> points_beside(const Eigen::Vector3d& point) const {
+    std::array<Eigen::Vector3d, 6> points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = point;
+      points[i][static_cast<Eigen::Index>(i / 2)] += i % 2 == 0 ? aside_ : -aside_;
+    }
+    return points;
+  }
+
+  [[nodiscard]] Place place_in(std::uint32_t component, const Eigen::Vector3d& point) const {
+    const auto points = points_beside(point);
+    const auto held = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) {
+      return holds(around(p), component);
+    });
+    return held == 0 ? Place::kOutside : held == 6 ? Place::kInside : Place::kOnSurface;
+  }
+
+  // Returns the components that hold one of the points beside.
+  [[nodiscard]] std::vector<Around> around_nearly(const Eigen::Vector3d& point) const {
+    std::vector<Around> all;
+    for (const Eigen::Vector3d& p : points_beside(point)) {
+      for (const Around& one : around(p)) {
+        const bool is_new = std::none_of(all.begin(), all.end(), [&](const Around& other) {
+          return other.component == one.component;
+        });
+        if (is_new) all.push_back(one);
+      }
+    }
+    return all;
+  }
+
+  static bool holds(std::span<const Around> here, std::uint32_t component) {
+    return std::any_of(here.begin(), here.end(), [&](const Around& one) {
+      return one.component == component && one.strictly;
+    });
   }
 
   // Returns the components round a point, and those through it.
@@ -144,11 +216,19 @@ class Nesting {
   }
   [[nodiscard]] bool may_hold(std::uint32_t outer, std::uint32_t inner) const {
     return outer != inner && is_larger(outer, inner) &&
-           components_[outer].box.contains(components_[inner].box);
+           inflated(components_[outer].box).contains(components_[inner].box);
+  }
+
+  [[nodiscard]] Eigen::AlignedBox3d inflated(Eigen::AlignedBox3d box) const {
+    box.min().array() -= aside_;
+    box.max().array() += aside_;
+    return box;
   }
 
   const TriangleMesh& mesh_;
   std::span<const Component> components_;
+  Progress* progress_;
+  double aside_;
   TriangleClusters clusters_;
   std::vector<std::uint32_t> component_of_;  // each triangle's
   std::vector<bool> meets_;                  // whether a component meets another one
@@ -157,11 +237,10 @@ class Nesting {
 // Returns each component's outermost one.
 std::vector<std::uint32_t> outermost_of(const TriangleMesh& mesh,
                                         std::span<const Component> components, Progress* progress) {
-  const Nesting nesting(mesh, components);
+  const Nesting nesting(mesh, components, progress);
   std::vector<std::uint32_t> outer(components.size());
   parallel_for(components.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (progress != nullptr) progress->check();
       outer[k] = nesting.parent_of(static_cast<std::uint32_t>(k));
       if (progress != nullptr) progress->add(1);
     }
@@ -176,15 +255,18 @@ std::vector<std::uint32_t> outermost_of(const TriangleMesh& mesh,
 
 OrientationResult orient_outward(TriangleMesh& mesh, Progress* progress) {
   const ScopedFloatEnvironment environment;
+  OrientationResult result;
+  if (!mesh.triangles.empty()) require_valid(mesh);
   const std::vector<Component> components = components_of(mesh);
   if (progress != nullptr) progress->begin_stage("orienting components", components.size());
-  OrientationResult result;
-  result.orientation = components.empty() ? Orientation::kAssumed : Orientation::kOutward;
   std::vector<int> signs;
+  bool all_closed = true, any_volume = false;
   for (const Component& component : components) {
     signs.push_back(component.closed ? volume_sign(mesh, component) : 0);
-    if (signs.back() == 0) result.orientation = Orientation::kAssumed;
+    all_closed = all_closed && component.closed;
+    any_volume = any_volume || signs.back() != 0;
   }
+  if (all_closed && any_volume) result.orientation = Orientation::kOutward;
   if (std::count(signs.begin(), signs.end(), -1) == 0) return result;
   const std::vector<std::uint32_t> outermost = outermost_of(mesh, components, progress);
   for (std::size_t k = 0; k < components.size(); ++k) {

@@ -1,7 +1,9 @@
 #include "ist/mesh/orientation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "ist/mesh/whole_number.h"
 
@@ -15,12 +17,15 @@ constexpr double kBound3 = 8 * kRounding, kBound2 = 4 * kRounding, kSmall = 0x1p
 
 int sign_of(double x) { return x > 0 ? 1 : -1; }
 
-// A double has 53 digits at one of 2046 exponents; those below 2^340 take 1415 bits: 23 limbs.
-constexpr std::size_t kLimbs = 23;
+// The digits of all finite doubles span 2098 bits: 33 limbs.
+constexpr std::size_t kLimbs = 33;
 using Coordinate = WholeNumber<kLimbs>;
 
 template <int kDimension, std::size_t kPoints>
-int last_digit_of(const Eigen::Matrix<double, kDimension, 1>* const (&points)[kPoints]) {
+using Points = const Eigen::Matrix<double, kDimension, 1>* const (&)[kPoints];
+
+template <int kDimension, std::size_t kPoints>
+int last_digit_of(Points<kDimension, kPoints> points) {
   int last = 2000;
   for (const auto* point : points) {
     for (Eigen::Index i = 0; i < kDimension; ++i) last = std::min(last, last_digit((*point)[i]));
@@ -28,9 +33,52 @@ int last_digit_of(const Eigen::Matrix<double, kDimension, 1>* const (&points)[kP
   return last;
 }
 
+__extension__ using Int128 = __int128;
+
+// Coordinates as whole numbers of at most `bits` bits, in one unit.
+template <int kDimension, std::size_t kPoints>
+struct SmallPoints {
+  SmallPoints(Points<kDimension, kPoints> points, int bits) noexcept {
+    double largest = 0;
+    for (const auto* point : points) {
+      for (Eigen::Index i = 0; i < kDimension; ++i) {
+        largest = std::max(largest, std::abs((*point)[i]));
+      }
+    }
+    if (!(largest < 0x1p600 && largest > 0x1p-600)) return;
+    int exponent = 0;
+    static_cast<void>(std::frexp(largest, &exponent));
+    const double scale = std::ldexp(1.0, bits - exponent);
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      for (std::size_t i = 0; i < kDimension; ++i) {
+        const double coordinate = (*points[k])[static_cast<Eigen::Index>(i)];
+        const double scaled = coordinate * scale;
+        at[k][i] = static_cast<std::int64_t>(scaled);
+        if (static_cast<double>(at[k][i]) != scaled || (at[k][i] == 0) != (coordinate == 0)) return;
+      }
+    }
+    fit = true;
+  }
+
+  std::array<std::array<std::int64_t, std::size_t{kDimension}>, kPoints> at;
+  bool fit = false;  // else `at` is undefined
+};
+
+int sign_of(Int128 x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
 int exact_orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d) noexcept {
   const Eigen::Vector3d* const points[] = {&a, &b, &c, &d};
+  if (const SmallPoints<3, 4> small(points, 40); small.fit) {  // the sum is below 2^126
+    const auto from_d = [&](std::size_t k, std::size_t i) {
+      return Int128{small.at[k][i] - small.at[3][i]};
+    };
+    const auto minor = [&](std::size_t k, std::size_t l) {
+      return from_d(k, 0) * from_d(l, 1) - from_d(l, 0) * from_d(k, 1);
+    };
+    return sign_of(from_d(0, 2) * minor(1, 2) + from_d(1, 2) * minor(2, 0) +
+                   from_d(2, 2) * minor(0, 1));
+  }
   const int last = last_digit_of<3>(points);
   const auto from_d = [&](const Eigen::Vector3d& p, Eigen::Index axis) {
     return Coordinate(p[axis], last) - Coordinate(d[axis], last);
@@ -46,6 +94,12 @@ int exact_orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
 int exact_orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                       const Eigen::Vector2d& c) noexcept {
   const Eigen::Vector2d* const points[] = {&a, &b, &c};
+  if (const SmallPoints<2, 3> small(points, 61); small.fit) {
+    const auto from_c = [&](std::size_t k, std::size_t i) {
+      return Int128{small.at[k][i] - small.at[2][i]};
+    };
+    return sign_of(from_c(0, 0) * from_c(1, 1) - from_c(0, 1) * from_c(1, 0));
+  }
   const int last = last_digit_of<2>(points);
   const auto from_c = [&](const Eigen::Vector2d& p, Eigen::Index axis) {
     return Coordinate(p[axis], last) - Coordinate(c[axis], last);

@@ -5,12 +5,12 @@
 namespace ist {
 
 /// Returns the side of the plane through a, b and c on which d lies, as the sign -1, 0 or 1 of
-///     det(a - d, b - d, c - d),
-/// which is positive where a, b, c turn counter clockwise seen from the side opposite d. Exact for
-/// all finite doubles below 2^340: doubles decide where their error bound allows, whole numbers
-/// elsewhere.
+///     det(a - d, b - d, c - d).
+/// It is positive if a, b, c turn counterclockwise seen from the side opposite d. Exact for all
+/// finite doubles: doubles decide if their error bound allows, else whole numbers do.
 ///
-/// Cost: 5 ns; 0.2 µs where doubles do not decide, more for exponents far apart. Allocates nothing.
+/// Cost: 5 ns. If doubles do not decide: 30 ns for coordinates of at most 40 bits, 0.2 µs for
+/// others, and more for exponents far apart. Allocates nothing.
 /// Source of the error bound: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast
 /// robust geometric predicates, Discrete & Computational Geometry 18, 1997.
 [[nodiscard]] int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b,

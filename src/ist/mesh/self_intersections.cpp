@@ -22,9 +22,14 @@ using Vector = Eigen::Vector3d;
 using Pair = std::array<std::uint32_t, 2>;
 
 // Clusters between two looks at the number of pairs, and those of one task.
-constexpr std::size_t kAtOnce = 1024, kGrain = 8;
+constexpr std::size_t kAtOnce = 128, kGrain = 8;
 // Of one cluster with more pairs the search ends.
 constexpr std::size_t kMostOfACluster = 1 << 16;
+
+void look_for_an_end(const Progress* progress) {
+  cancellation_point();
+  if (progress != nullptr) progress->check();
+}
 
 // The boxes of a cluster's triangles, side by side, in the tree's frame.
 struct alignas(64) Boxes {
@@ -38,7 +43,8 @@ class Hubs {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  explicit Hubs(const TriangleMesh& mesh) : mesh_(mesh), of_(mesh.triangles.size(), kNone) {
+  Hubs(const TriangleMesh& mesh, const Progress* progress)
+      : mesh_(mesh), progress_(progress), of_(mesh.triangles.size(), kNone) {
     constexpr std::uint32_t kMany = 64;
     std::vector<std::uint32_t> uses(mesh.vertices.size());
     for (const Triangle& t : mesh.triangles) {
@@ -105,13 +111,22 @@ class Hubs {
   template <class Body>
   bool sweep(std::span<const std::uint32_t> triangles, const Body& body) const {
     std::vector<Arc> arcs;
-    for (const std::uint32_t t : triangles) arcs.push_back(arc_of(t));
-    std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) {
-      return std::pair(a.box.min()[0], a.triangle) < std::pair(b.box.min()[0], b.triangle);
+    Vector middle = Vector::Zero(), spread = Vector::Zero();
+    for (const std::uint32_t t : triangles) {
+      arcs.push_back(arc_of(t));
+      middle += arcs.back().box.center();
+    }
+    middle /= static_cast<double>(arcs.size());
+    for (const Arc& arc : arcs) spread += (arc.box.center() - middle).cwiseAbs();
+    Eigen::Index axis = 0;  // along which few arcs overlap
+    spread.maxCoeff(&axis);
+    std::sort(arcs.begin(), arcs.end(), [axis](const Arc& a, const Arc& b) {
+      return std::pair(a.box.min()[axis], a.triangle) < std::pair(b.box.min()[axis], b.triangle);
     });
     for (std::size_t i = 0; i < arcs.size(); ++i) {
+      if (i % 1024 == 0) look_for_an_end(progress_);
       for (std::size_t j = i + 1; j < arcs.size(); ++j) {
-        if (arcs[j].box.min()[0] > arcs[i].box.max()[0]) break;
+        if (arcs[j].box.min()[axis] > arcs[i].box.max()[axis]) break;
         if (!arcs[i].box.intersects(arcs[j].box)) continue;
         if (!body(arcs[i].triangle, arcs[j].triangle)) return false;
       }
@@ -120,6 +135,7 @@ class Hubs {
   }
 
   const TriangleMesh& mesh_;
+  const Progress* progress_;
   std::vector<std::uint32_t> of_;
 };
 
@@ -194,10 +210,10 @@ bool meet_beyond_shared(const TriangleMesh& mesh, const Triangle& first, const T
 
 class Search {
  public:
-  Search(const TriangleMesh& mesh, const TriangleClusters& clusters)
+  Search(const TriangleMesh& mesh, const TriangleClusters& clusters, const Progress* progress)
       : mesh_(mesh),
         clusters_(clusters),
-        hubs_(mesh),
+        hubs_(mesh, progress),
         boxes_(clusters.node_count(0)),
         has_area_(mesh.triangles.size()) {
     const NodeBlock& root = clusters.bounds(clusters.root_level())[0];
@@ -340,12 +356,13 @@ class Search {
 }  // namespace
 
 SelfIntersections find_self_intersections(const TriangleMesh& mesh,
-                                          const TriangleClusters& clusters) {
-  const Search search(mesh, clusters);
+                                          const TriangleClusters& clusters,
+                                          const Progress* progress) {
+  const Search search(mesh, clusters, progress);
   SelfIntersections found;
   const std::size_t count = clusters.node_count(0);
   for (std::size_t done = 0; done < count && found.complete; done += kAtOnce) {
-    cancellation_point();
+    look_for_an_end(progress);
     std::vector<std::vector<Pair>> pairs(std::min(kAtOnce, count - done));
     parallel_for(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ist/base/progress.h"
 #include "ist/mesh/clusters/triangle_clusters.h"
 #include "ist/mesh/mesh.h"
 
@@ -20,10 +21,12 @@ struct SelfIntersections {
   bool complete = true;  ///< else there are more pairs
 };
 
-/// Finds them exactly. `clusters` hold the mesh's triangles.
+/// Finds them exactly. `clusters` hold the mesh's triangles, and their largest extent lies in
+/// [1e-12, 1e15]. `progress` may end the call, as Progress says.
 /// Cost: 0.8 µs a triangle and core for a mesh without any; the same result for any number of
 /// threads. A cancellation point.
 [[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh,
-                                                        const TriangleClusters& clusters);
+                                                        const TriangleClusters& clusters,
+                                                        const Progress* progress = nullptr);
 
 }  // namespace ist

@@ -44,6 +44,7 @@ std::vector<std::uint32_t> first_at_position(std::span<const Eigen::Vector3d> po
 }
 
 void weld(TriangleMesh& mesh) {
+  if (!mesh.triangles.empty()) require_valid(mesh);
   const std::vector<std::uint32_t> first = first_at_position(mesh.vertices);
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& v : triangle) v = first[v];

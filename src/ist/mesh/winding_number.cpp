@@ -50,7 +50,7 @@ Crossing crossing(const Vector& a, const Vector& b, const Vector& c, const Vecto
   if (side == 0 && in_box && triangles_meet({point, point, point}, {a, b, c})) {
     return Crossing::kOnTriangle;
   }
-  // The ray meets the plane if the point lies on that side of it from which x points through.
+  // The ray along x leaves one side of the plane alone.
   if (turns == 0 || side != turns) return Crossing::kNone;
   return turns > 0 ? Crossing::kOutward : Crossing::kInward;
 }

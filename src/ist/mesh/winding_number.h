@@ -18,7 +18,7 @@ namespace ist {
 enum class Crossing : std::int8_t { kNone = 0, kOutward = 1, kInward = -1, kOnTriangle = 2 };
 
 /// Returns how the ray from `point` along the axis x crosses a closed triangle. Exact. A point
-/// level with an edge counts as if it lay a little farther along z, and a yet smaller way along y.
+/// level with an edge counts as if it lay a little farther along y, and a yet smaller way along z.
 /// So two triangles at an edge never count a crossing twice, nor leave it out.
 [[nodiscard]] Crossing crossing(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                 const Eigen::Vector3d& c, const Eigen::Vector3d& point) noexcept;

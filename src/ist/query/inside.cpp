@@ -18,6 +18,7 @@ struct InsideState {
   struct Body {
     explicit Body(const TriangleMesh& of) : mesh(of) {
       if (!mesh.triangles.empty()) {
+        require_valid(mesh);
         clusters.emplace(mesh, mesh.vertices[mesh.triangles[0][0]]);
       }
       for (const Component& component : components_of(mesh)) {

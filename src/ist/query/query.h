@@ -77,9 +77,8 @@ class IST_API Query {
   Query(Query&&) noexcept;             ///< the other may then only be assigned or destroyed
   Query& operator=(Query&&) noexcept;  ///< as the constructor
 
-  /// Tests whether the bodies intersect. Ends at the first certain answer: exact where both trees
-  /// have triangles, else kNo or kNear. kUnknown where
-  /// the status is another than kDone.
+  /// Tests whether the bodies intersect. Ends at the first certain answer: exact if both trees have
+  /// triangles, else kNo or kNear. The answer is kUnknown if the status is not kDone.
   ///
   /// @param pose   maps moving mesh coordinates to fixed mesh coordinates
   /// @param budget ends the search early: the answer is then kUnknown
@@ -196,8 +195,8 @@ enum class Inside : std::uint8_t {
 /// winding number of the other body round that point. Both meshes must outlive the test.
 class IST_API InsideTest {
  public:
-  /// Finds the components of both meshes, and puts their triangles into trees. Cost: 0.4 µs a
-  /// triangle.
+  /// Finds the components of both meshes, and puts their triangles into trees. Throws
+  /// kMeshNotFinite or kMeshBadIndex. Cost: 0.4 µs a triangle.
   InsideTest(const TriangleMesh& fixed, const TriangleMesh& moving);
   InsideTest(const TriangleMesh&&, const TriangleMesh&) = delete;
   InsideTest(const TriangleMesh&, const TriangleMesh&&) = delete;

@@ -142,8 +142,8 @@ class IST_API SphereTree {
   /// Throws kPolicyMissing, naming `body` and the remedy, where the tree has no such spheres.
   void require(SpherePolicy policy, std::string_view body) const;
 
-  /// The triangles that the tree was built with keep_triangles to hold, as oriented at build; null
-  /// where it was built without.
+  /// The triangles that the build oriented and, unless it was told not to, welded. They are the
+  /// mesh's, in its order. Null without keep_triangles.
   [[nodiscard]] const TriangleMesh* triangles() const noexcept;
   /// The number of pairs of its triangles that meet beyond the corners and edges that they share,
   /// as check_mesh() counts them. The first call for a tree, or the first signed distance or depth,
