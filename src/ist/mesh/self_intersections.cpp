@@ -35,6 +35,7 @@ void look_for_an_end(const Progress* progress) {
 struct alignas(64) Boxes {
   float low[3][kClusterWidth], high[3][kClusterWidth];
   std::uint32_t hub[kClusterWidth];  // see Hubs
+  std::uint32_t only_hub;            // of all of them; else kNone
 };
 
 // Vertices of many triangles. All triangles at a hub have boxes that overlap, so pairs at a hub are
@@ -290,6 +291,9 @@ class Search {
       }
       boxes.hub[k] = hubs_.of(of.id[k]);
     }
+    const bool is_one = std::all_of(boxes.hub, boxes.hub + kClusterWidth,
+                                    [&](std::uint32_t hub) { return hub == boxes.hub[0]; });
+    boxes.only_hub = is_one ? boxes.hub[0] : Hubs::kNone;
   }
 
   [[nodiscard]] std::uint32_t lanes_within(const float (&apart)[kClusterWidth]) const {
@@ -318,6 +322,7 @@ class Search {
     if (other < one) return;
     constexpr float kFar = std::numeric_limits<float>::infinity();
     const Boxes &a = boxes_[one], &b = boxes_[other];
+    if (a.only_hub != Hubs::kNone && a.only_hub == b.only_hub) return;
     const std::uint32_t count = clusters_.child_count(-1, other);
     for (std::uint32_t k = 0; k < clusters_.child_count(-1, one); ++k) {
       const std::uint32_t first = clusters_.clusters()[one].id[k];
