@@ -9,9 +9,9 @@ namespace ist {
 /// Whether a pose is accepted as a rigid motion. kEither: within rounding of the limit.
 enum class Rigidity { kRigid, kEither, kNone };
 
-/// Decides by the guarantee of poses: all numbers are finite, the last row is 0 0 0 1, no entry of
-/// RᵀR - I exceeds 1e-3, R does not mirror, and neither exceed all its singular values 1 + 1e-5,
-/// nor are all of them below 1 - 1e-5.
+/// Decides by the guarantee of poses. All numbers are finite, and the last row is 0 0 0 1. No entry
+/// of RᵀR - I exceeds 1e-3, and R does not mirror. The singular values of R are not all above
+/// 1 + 1e-5, and not all below 1 - 1e-5.
 [[nodiscard]] Rigidity rigidity_of(const Eigen::Isometry3d& pose);
 
 /// The motion from the moving tree's frame to the fixed tree's, by which the verifier moves leaves.

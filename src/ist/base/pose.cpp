@@ -68,7 +68,7 @@ bool is_far_scaled(const Eigen::Matrix3d& gram) noexcept {
   return error_of(gram / (((gram(0, 0) + gram(1, 1)) + gram(2, 2)) / 3)) <= kMostError;
 }
 
-// Why a pose is no rigid motion; null where it is one.
+// Returns why a pose is no rigid motion; null if it is one.
 const char* fault_of(const Eigen::Matrix4d& m, const Eigen::Matrix3d& gram, double error) noexcept {
   for (int i = 0; i < 16; ++i) {
     if (!std::isfinite(m.data()[i])) return "a number is not finite: give finite numbers";

@@ -160,8 +160,8 @@ double DepthSearch::distance_to(std::uint32_t side, std::uint32_t triangle, cons
   return distance_between(p, nearest_on_triangle({v[t[0]], v[t[1]], v[t[2]]}, p).point);
 }
 
-// Returns how deep a point lies in the box round the body, and hence in the body at most: whoever
-// leaves the box leaves the body. Negative outside the box.
+// Returns how deep a point lies in the box round the body; negative outside the box. It lies no
+// deeper in the body.
 double DepthSearch::depth_in_box(std::uint32_t side, const Vector& at) const {
   const Eigen::AlignedBox3d& box = sides_[side].body.parts().triangles->box();
   const Vector above = difference(at, box.min()), below = difference(box.max(), at);

@@ -14,8 +14,6 @@ namespace ist {
 namespace {
 
 using Vector = Eigen::Vector3d;
-// No tree of 32-bit indices has more levels above its clusters.
-constexpr std::size_t kMostLevels = 8;
 // More than the error of a distance to a sliver, as a part of the coordinates.
 constexpr double kTie = 0x1p-37;
 
@@ -69,7 +67,7 @@ class PointSearch::Descent {
 
   void run() noexcept {
     const TriangleClusters& clusters = search_.clusters_;
-    std::array<Node, kMostLevels * kClusterWidth> stack;
+    std::array<Node, TriangleClusters::kMostLevels * kClusterWidth> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0, clusters.root_level()};
     while (size > 0) {

@@ -217,12 +217,7 @@ class Search {
         hubs_(mesh, progress),
         boxes_(clusters.node_count(0)),
         has_area_(mesh.triangles.size()) {
-    const NodeBlock& root = clusters.bounds(clusters.root_level())[0];
-    double extent = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      extent = std::max(extent, std::abs(double{root.centre[i][0]}) + double{root.half[i][0]});
-    }
-    slack_ = rounded_up(0x1p-21 * extent);
+    slack_ = rounded_up(0x1p-21 * clusters.extent());
     parallel_for(boxes_.size(), kGrain, [this](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) put_boxes(static_cast<std::uint32_t>(k));
     });
@@ -234,8 +229,7 @@ class Search {
       std::uint32_t index;
       int level;
     };
-    constexpr std::size_t kMostLevels = 8;
-    std::array<Node, kMostLevels * kClusterWidth> stack;
+    std::array<Node, TriangleClusters::kMostLevels * kClusterWidth> stack;
     std::size_t size = 0;
     stack[size++] = {0, clusters_.root_level()};
     const NodeBlock& own = clusters_.bounds(0)[cluster / kClusterWidth];
@@ -296,14 +290,6 @@ class Search {
     boxes.only_hub = is_one ? boxes.hub[0] : Hubs::kNone;
   }
 
-  [[nodiscard]] std::uint32_t lanes_within(const float (&apart)[kClusterWidth]) const {
-    std::uint32_t bits = 0;
-    for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
-      bits |= static_cast<std::uint32_t>(!(apart[lane] > slack_)) << lane;
-    }
-    return bits;
-  }
-
   [[nodiscard]] std::uint32_t lanes_near(const NodeBlock& own, std::size_t at,
                                          const NodeBlock& block) const {
     alignas(64) float apart[kClusterWidth];
@@ -315,7 +301,7 @@ class Search {
       }
       apart[lane] = most;
     }
-    return lanes_within(apart);
+    return lanes_within(apart, slack_);
   }
 
   void compare(std::uint32_t one, std::uint32_t other, std::vector<Pair>& out) const {

@@ -27,14 +27,6 @@ int turns_round(const Vector& a, const Vector& b, const Vector& c, const Vector&
   return pass(a, b, a_above, b_above) + pass(b, c, b_above, c_above) + pass(c, a, c_above, a_above);
 }
 
-std::uint32_t lanes_within(const float (&apart)[kClusterWidth], float slack) {
-  std::uint32_t bits = 0;
-  for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
-    bits |= static_cast<std::uint32_t>(!(apart[lane] > slack)) << lane;
-  }
-  return bits;
-}
-
 }  // namespace
 
 Crossing crossing(const Vector& a, const Vector& b, const Vector& c, const Vector& point) noexcept {
@@ -56,16 +48,12 @@ Crossing crossing(const Vector& a, const Vector& b, const Vector& c, const Vecto
 }
 
 WindingNumber::WindingNumber(const TriangleMesh& mesh, const TriangleClusters& clusters) noexcept
-    : mesh_(mesh), clusters_(clusters), extent_(0) {
+    : mesh_(mesh), clusters_(clusters), extent_(clusters.extent()) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       axes_[i][k] = static_cast<float>(
           clusters.axes()(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
     }
-  }
-  const NodeBlock& root = clusters.bounds(clusters.root_level())[0];
-  for (std::size_t i = 0; i < 3; ++i) {
-    extent_ = std::max(extent_, std::abs(double{root.centre[i][0]}) + double{root.half[i][0]});
   }
 }
 

@@ -53,8 +53,6 @@ class WindingNumber {
     std::uint32_t index;
     int level;
   };
-  // No tree of 32-bit indices has more levels above its clusters.
-  static constexpr std::size_t kMostLevels = 8;
 
   [[nodiscard]] Ray ray_from(const Eigen::Vector3d& point) const noexcept;
   [[nodiscard]] std::uint32_t lanes_on(const Ray& ray, const NodeBlock& block) const noexcept;
@@ -69,7 +67,7 @@ class WindingNumber {
 template <class Body>
 void WindingNumber::for_each_crossed(const Eigen::Vector3d& point, Body&& body) const {
   const Ray ray = ray_from(point);
-  std::array<Node, kMostLevels * kClusterWidth> stack;
+  std::array<Node, TriangleClusters::kMostLevels * kClusterWidth> stack;
   std::size_t size = 0;
   stack[size++] = {0, clusters_.root_level()};
   while (size > 0) {

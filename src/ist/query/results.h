@@ -93,8 +93,8 @@ struct QueryResult {
   /// and the rounding error that the tests allow for.
   double pad = 0;
   Found found = Found::kFresh;  ///< the way to the answer, which does not change it
-  /// How far the rotation of the given pose was from orthonormal (rotation_error). The answer is
-  /// that of the nearest rotation.
+  /// How far the rotation of the given pose was from orthonormal (rotation_error). The answer holds
+  /// for the nearest rotation.
   double rotation_error = 0;
 };
 

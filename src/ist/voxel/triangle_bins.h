@@ -77,8 +77,8 @@ class PairCounts {
   [[nodiscard]] double expected(double edge) const noexcept {
     return projections_ / (edge * edge) + extents_ / edge + triangles_;
   }
-  /// Returns a number that no position of the grid goes below. A plane has at most an area of
-  /// √2 s² in a cube of edge s, and a cube covers s² of a projection along an axis.
+  /// Returns the least number for any position of the grid. A plane has at most an area of √2 s² in
+  /// a cube of edge s, and a cube covers s² of a projection along an axis.
   [[nodiscard]] double least(double edge) const noexcept {
     return std::max(triangles_, (1 - 1e-3) * sections_ / (edge * edge));
   }

@@ -106,9 +106,9 @@ class Memory {
     return by * counts.voxels <= kMaxCount && by * counts.pairs <= kMaxCount &&
            by * needed(counts) <= static_cast<double>(options_.max_memory);
   }
-  // Returns false if it is certain, without a look at any voxel, that voxels of one size do not
-  // fit: so many pairs has a surface of this area at least. The triangles' keys are sorted by
-  // blocks, and stored three times meanwhile.
+  // Returns false if voxels of one size certainly do not fit. The surface's area gives the least
+  // number of pairs, without a look at any voxel. Three copies of the triangles' keys are needed
+  // while blocks are sorted.
   [[nodiscard]] bool may_hold(double voxel_size) const {
     const double keys = pairs_.expected(voxel_size * TriangleBins::kEdge);
     return 3 * sizeof(std::uint64_t) * keys <= static_cast<double>(options_.max_memory) &&

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -39,6 +41,16 @@ struct alignas(64) TriangleCluster {
 };
 static_assert(sizeof(TriangleCluster) == 704);
 
+/// Returns a bit for each lane whose number is at most `limit`, or no number.
+[[nodiscard]] inline std::uint32_t lanes_within(const float (&numbers)[kClusterWidth],
+                                                float limit) noexcept {
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < kClusterWidth; ++lane) {
+    bits |= static_cast<std::uint32_t>(!(numbers[lane] > limit)) << lane;
+  }
+  return bits;
+}
+
 /// The triangles of a mesh in a tree of sixteen-fold nodes, each triangle once. Nodes of level 0
 /// are the clusters; node i of level l + 1 has the nodes 16 i … 16 i + 15 of level l below it, as
 /// far as these exist. So there are no pointers: all nodes are full but the last one of each level.
@@ -52,6 +64,9 @@ class TriangleClusters {
   /// Cost: 0.25 µs a triangle and core. The same on every machine. Precondition: the mesh is
   /// valid.
   TriangleClusters(const TriangleMesh& mesh, const Eigen::Vector3d& origin);
+
+  /// No tree of 32-bit indices has more levels above its clusters.
+  static constexpr std::size_t kMostLevels = 8;
 
   /// The level of the root: 1 or more.
   [[nodiscard]] int root_level() const noexcept { return static_cast<int>(levels_.size()) - 1; }
@@ -75,6 +90,15 @@ class TriangleClusters {
 
   /// The origin of the tree's frame, in mesh coordinates.
   [[nodiscard]] const Eigen::Vector3d& origin() const noexcept { return origin_; }
+  /// The largest coordinate in the tree's frame, or more.
+  [[nodiscard]] double extent() const noexcept {
+    const NodeBlock& root = bounds(root_level())[0];
+    double extent = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      extent = std::max(extent, std::abs(double{root.centre[i][0]}) + double{root.half[i][0]});
+    }
+    return extent;
+  }
   /// The axes of the tree's frame: the columns of an orthogonal matrix, in mesh coordinates.
   [[nodiscard]] const Eigen::Matrix3d& axes() const noexcept { return axes_; }
   /// A power of two. Coordinates of centres are whole multiples of it, no more than 2^22 of them:
