@@ -113,8 +113,9 @@ Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
 }
 
 void fail_where_they_meet(Meeting meeting) {
-  if (meeting == Meeting::kUnknown) throw Failure(kFailed, to_string(meeting));
-  if (meeting != Meeting::kNone) throw Failure(kTouching, to_string(meeting));
+  if (meeting == Meeting::kNone) return;
+  const bool unknown = meeting == Meeting::kUnknown || meeting == Meeting::kMayBeInside;
+  throw Failure(unknown ? kFailed : kTouching, to_string(meeting));
 }
 
 }  // namespace ist::cli

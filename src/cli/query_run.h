@@ -24,7 +24,8 @@ struct AskedPose {
 [[nodiscard]] Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
                                   const QueryOptions& options);
 
-/// Throws a Failure of kTouching, which says how the bodies meet; nothing where they are apart.
+/// Throws a Failure of kTouching, which says how the bodies meet; of kFailed if that is unknown;
+/// nothing if they are apart.
 void fail_where_they_meet(Meeting meeting);
 
 }  // namespace ist::cli

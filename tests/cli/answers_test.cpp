@@ -67,11 +67,11 @@ TEST_F(Answers, NearIsSaidWithoutTriangles) {
   for (const json& line : lines) {
     EXPECT_TRUE(line["depth_lower"].is_null() && line["depth_upper"].is_null());
     EXPECT_TRUE(line["area"].is_null());
-    EXPECT_TRUE(line["inside"].is_null());
     EXPECT_EQ(line["touch"] != "no", has_note(line, "no certain depth: FIXED holds no triangles"));
-    EXPECT_EQ(line["touch"] == "no", has_note(line, "inside is not known without triangles"));
     EXPECT_LE(line["distance_lower"], line["distance_upper"]);
   }
+  EXPECT_TRUE(lines[1]["inside"].is_null());
+  EXPECT_EQ(lines[3]["inside"], "none");  // the boxes of the bodies are apart
   EXPECT_TRUE(has_note(lines[2], "asked to 0.01, reached "));
   EXPECT_TRUE(has_note(lines[2], "build with triangles"));
   const CommandResult words = ist_well({"collide", plain, plain, "--move", "3.5,0,0"});
@@ -276,6 +276,24 @@ TEST_F(Answers, TouchingFailsWhereItIsAskedTo) {
       ist({"approach", tree, tree, "--axis", "x", "--from", "9", "--to", "3", "--fail-if-touching"})
           .exit_code,
       6);
+}
+
+TEST_F(Answers, UnknownInside_Fails) {
+  TriangleMesh open = box({-2, -2, -2}, {2, 2, 2});
+  open.triangles.pop_back();
+  const std::string small = cube(0.5);
+  for (const std::string& outer : {tree_without_triangles("plain.ist"), mesh("shell.stl", open)}) {
+    const auto asked = [&](const char* shift) {
+      return ist(
+          {"collide", outer, small, "--move", shift, "--voxel-size", "0.25", "--fail-if-touching"});
+    };
+    const CommandResult within = asked("0,0,0");
+    EXPECT_EQ(within.exit_code, 1) << within.out;
+    EXPECT_TRUE(says(within.out, "note       inside is not known"));
+    EXPECT_TRUE(says(within.err,
+                     "ist: the surfaces are apart; whether one body lies in the other is unknown"));
+    EXPECT_EQ(asked("9,0,0").exit_code, 0);
+  }
 }
 
 TEST_F(Answers, UnknownFailsWhereTouchingDoes) {

@@ -243,6 +243,10 @@ TEST_F(OcclusionCommand, OpenSheetsMayOverlapWithoutTouching) {
   EXPECT_TRUE(says(said, "apart, or at least 0.15 mm deep (open surface, by vertices)"));
   EXPECT_TRUE(says(said, "apart, or in each other: a part lies behind an open surface"));
   EXPECT_TRUE(says(said, "overlap above 0.1 mm"));
+  EXPECT_EQ(ist({"occlusion", lower, upper, "--move", "0,0,-0.15", "-o", path("s.csv"),
+                 "--fail-if-touching"})
+                .exit_code,
+            1);
 }
 
 TEST_F(OcclusionCommand, ABodyInTheOtherIsToldWithNumbers) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/extents.h"
 #include "ist/base/pose.h"
 
 namespace ist::cli {
@@ -13,11 +14,9 @@ namespace {
 constexpr double kDefaultTolerance = 1e-4;
 
 // The box of a body that has no certain inside; else an empty box.
-Eigen::AlignedBox3d open_box(const SphereTree& body) {
-  Eigen::AlignedBox3d box;
-  if (body.orientation() == Orientation::kOutward) return box;
-  for (const Eigen::Vector3d& vertex : body.triangles()->vertices) box.extend(vertex);
-  return box;
+Eigen::AlignedBox3d open_box(const SphereTree& body, bool triangles) {
+  const bool certain = triangles && body.orientation() == Orientation::kOutward;
+  return certain ? Eigen::AlignedBox3d() : box_of(body);
 }
 
 }  // namespace
@@ -30,6 +29,8 @@ const char* to_string(Meeting meeting) {
       return "one body lies in the other";
     case Meeting::kMayTouch:
       return "the bodies may touch";
+    case Meeting::kMayBeInside:
+      return "the surfaces are apart; whether one body lies in the other is unknown";
     case Meeting::kUnknown:
       return "whether the bodies touch is unknown: allow more --max-tests";
     default:
@@ -41,7 +42,8 @@ Meeting Findings::meeting() const {
   if (touch == Answer::kYes) return Meeting::kTouch;
   if (inside && *inside != Inside::kNone) return Meeting::kInside;
   if (touch == Answer::kNear) return Meeting::kMayTouch;
-  return touch == Answer::kUnknown ? Meeting::kUnknown : Meeting::kNone;
+  if (touch == Answer::kUnknown) return Meeting::kUnknown;
+  return inside ? Meeting::kNone : Meeting::kMayBeInside;
 }
 
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
@@ -50,13 +52,13 @@ Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::
       distance_tolerance_(questions.distance.value_or(kDefaultTolerance * bodies.extent())),
       depth_tolerance_(questions.depth.value_or(kDefaultTolerance * bodies.extent())),
       query_(bodies.fixed, bodies.moving, {.policy = bodies.policy, .target = target}),
-      manifold_(bodies.fixed, bodies.moving, bodies.policy) {
+      manifold_(bodies.fixed, bodies.moving, bodies.policy),
+      open_fixed_(open_box(bodies.fixed, query_.has_triangles())),
+      open_moving_(open_box(bodies.moving, query_.has_triangles())) {
   if (questions.triangle_pairs || questions.depth) require_triangles(bodies);
   depth_.emplace(query_, depth_tolerance_, bodies.extent());
   if (query_.has_triangles()) {
     inside_.emplace(*bodies.fixed.triangles(), *bodies.moving.triangles());
-    open_fixed_ = open_box(bodies.fixed);
-    open_moving_ = open_box(bodies.moving);
   }
 }
 
@@ -124,13 +126,16 @@ void Examiner::find_touch(const Eigen::Isometry3d& pose, Findings& found) {
 void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const {
   if (found.touch == Answer::kYes) found.inside = Inside::kNone;
   if (found.touch != Answer::kNo) return;
-  if (!inside_) {
-    // Bodies whose roots are apart cannot tell either: a shell's root holds what is inside it.
-    found.notes.emplace_back("inside is not known without triangles");
-    return;
-  }
   const Eigen::Isometry3d to_fixed = *project_to_rigid(pose),
                           to_moving = to_fixed.inverse(Eigen::Isometry);
+  if (!inside_) {
+    if (open_fixed_.intersects(open_moving_.transformed(to_fixed))) {
+      found.notes.emplace_back("inside is not known without triangles");
+    } else {
+      found.inside = Inside::kNone;
+    }
+    return;
+  }
   const Inside inside = inside_->at(to_fixed);
   const bool fixed_might =
       open_fixed_.contains(to_fixed * query_.moving().triangles()->vertices.front());

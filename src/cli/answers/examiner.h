@@ -21,8 +21,9 @@ struct Questions {
   std::optional<std::uint64_t> max_tests;
 };
 
-/// How bodies meet, from not at all to certainly.
-enum class Meeting : std::uint8_t { kNone, kUnknown, kMayTouch, kInside, kTouch };
+/// How bodies meet, from not at all to certainly. kMayBeInside: the surfaces are apart, and one
+/// body may lie in the other.
+enum class Meeting : std::uint8_t { kNone, kMayBeInside, kUnknown, kMayTouch, kInside, kTouch };
 /// Returns a clause: "the bodies touch".
 [[nodiscard]] const char* to_string(Meeting meeting);
 

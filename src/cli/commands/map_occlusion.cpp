@@ -293,7 +293,8 @@ void add_occlusion(CLI::App& app) {
   command->add_flag("--no-names", options->questions.no_names,
                     "write fixed and moving for the files' names");
   command->add_flag("--fail-if-touching", options->fail_if_touching,
-                    "exit code 6 where the bodies touch, or one lies in the other");
+                    "exit code 6 where the bodies touch, or one lies in the other; 1 where that is "
+                    "unknown");
   add_max_memory(*command, options->files.max_memory, "a body's tree of triangles");
   command->add_flag("--json", options->json, "print the measures as JSON");
   add_patient_options(*command, *options);

@@ -120,7 +120,7 @@ std::vector<std::string> checks_of(const Bite& bite) {
   for (const std::string& note : bite.findings.notes) checks.push_back(note);
   const bool overlaps =
       bite.fixed.surface.penetrating_area > 0 || bite.moving.surface.penetrating_area > 0;
-  if (overlaps && bite.findings.meeting() == Meeting::kNone) {
+  if (overlaps && bite.findings.meeting() <= Meeting::kMayBeInside) {
     checks.push_back(
         "areas in each other lie behind an open surface, which has no inside: the surfaces are "
         "apart");
