@@ -89,7 +89,10 @@ TEST_F(CRows, AreTheSingleCallsBitByBit) {
     EXPECT_EQ(row.intersects, answer);
     if (status != IST_OK) {
       EXPECT_EQ(status, IST_POSE_INVALID);
-      EXPECT_TRUE(std::isnan(row.distance_lower) && std::isnan(row.depth_upper));
+      for (const double number :
+           {row.distance_lower, row.depth_upper, row.area, row.force[0], row.torque[2]}) {
+        EXPECT_TRUE(std::isnan(number));
+      }
       EXPECT_EQ(row.leaf_pairs, 0U);
       ++invalid;
       continue;
@@ -151,7 +154,7 @@ TEST_F(CRows, DoNotDependOnWhatElseIsAsked) {
     EXPECT_EQ(bits(alone[i].distance_upper), bits(all[i].distance_upper));
     EXPECT_EQ(alone[i].intersects, IST_ANSWER_UNKNOWN);
     EXPECT_EQ(alone[i].leaf_pairs, 0U);
-    EXPECT_TRUE(std::isnan(alone[i].depth_lower));
+    EXPECT_TRUE(std::isnan(alone[i].depth_lower) && std::isnan(alone[i].area));
   }
 }
 

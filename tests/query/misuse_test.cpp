@@ -101,6 +101,7 @@ TEST_F(Misuse, OfAPoseIsAStatusOfEveryVerb) {
   EXPECT_EQ(query.leaf_pairs(bad, {}, {.tests = 10}).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.contacts(bad, manifold).status, QueryStatus::kInvalidPose);
   EXPECT_EQ(query.distance(bad, 0.1).status, QueryStatus::kInvalidPose);
+  EXPECT_EQ(query.distance(bad, 0.1).distance.upper, HUGE_VAL);
   EXPECT_EQ(query.triangle_pairs(bad, {}).status, QueryStatus::kInvalidPose);
   EXPECT_STREQ(to_string(query.leaf_pairs(bad, {}).status), "invalid-pose");
 }
@@ -138,6 +139,8 @@ TEST_F(Misuse, OfARoughPoseSaysHowFarItWas) {
 TEST_F(Misuse, AResultWithoutAnAnswerIsUnknown) {
   EXPECT_EQ(IntersectionResult().answer, Answer::kUnknown);
   EXPECT_FALSE(IntersectionResult().complete);
+  EXPECT_EQ(DistanceResult().distance.lower, 0);
+  EXPECT_EQ(DistanceResult().distance.upper, HUGE_VAL);
   EXPECT_EQ(Answer{}, Answer::kUnknown);  // so is memory of zeros
   EXPECT_STREQ(to_string(Answer::kUnknown), "unknown");
   EXPECT_STREQ(to_string(Answer::kNo), "no");

@@ -68,7 +68,7 @@ typedef struct ist_penetration {
   int32_t of_moving;         /**< 1: the point lies on the moving surface */
   uint32_t triangle;         /**< of that surface, the one that holds the point */
   int32_t complete;          /**< 1: the interval is no wider than the tolerance, or `narrowest` */
-  int32_t not_closed;        /**< IST_CLOSED, or why there is no answer */
+  int32_t not_closed;        /**< IST_CLOSED, or why the interval is NaN */
   double narrowest;          /**< no tolerance below this width can be reached at this pose */
   uint64_t points;           /**< points of which the distance was measured */
   int32_t self_intersecting; /**< the sum of IST_..._SELF_INTERSECTING */
@@ -218,8 +218,8 @@ typedef struct ist_rows_options {
   const ist_progress* progress; /**< follows the call; may be NULL */
 } ist_rows_options;
 
-/** The answers at one pose; lengths in mesh units. A number is 0, and an interval NaN, where it was
- * not asked for, or the pose is invalid. */
+/** The answers at one pose; lengths in mesh units. If a number was not asked for, or the pose is
+ * invalid, an integer is 0 and a double is NaN. */
 typedef struct ist_row {
   ist_status status;     /**< IST_OK, or IST_POSE_INVALID: then there is no answer */
   int32_t intersects;    /**< IST_ANSWER_..., or IST_ANSWER_UNKNOWN */

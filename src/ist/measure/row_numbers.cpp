@@ -41,7 +41,7 @@ RowNumbers numbers_of(const PoseRow& row, double stiffness) {
   if (row.penetration) {
     numbers.complete = numbers.complete && row.penetration->complete;
     numbers.not_closed = not_closed_code(*row.penetration);
-    if (numbers.not_closed == 0) {
+    if (row.penetration->status == Penetration::Status::kDone) {
       numbers.depth_lower = row.penetration->lower;
       numbers.depth_upper = row.penetration->upper;
     }

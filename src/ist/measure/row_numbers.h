@@ -8,8 +8,8 @@
 
 namespace ist {
 
-/// The answers at one pose as numbers, for tables. A number is 0, and an interval NaN, where it was
-/// not asked for, or the pose is invalid.
+/// The answers at one pose as numbers, for tables. If a number was not asked for, or the pose is
+/// invalid, an integer is 0 and a double is NaN.
 struct RowNumbers {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -22,9 +22,9 @@ struct RowNumbers {
   std::uint64_t sphere_tests = 0;  ///< of all searches, those of a depth excepted
   double distance_lower = kNone, distance_upper = kNone;
   double depth_lower = kNone, depth_upper = kNone;
-  double area = 0;  ///< mesh units²
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(),
-                  torque = Eigen::Vector3d::Zero();  ///< of springs of `stiffness`
+  double area = kNone;  ///< mesh units²
+  Eigen::Vector3d force = Eigen::Vector3d::Constant(kNone),
+                  torque = Eigen::Vector3d::Constant(kNone);  ///< of springs of `stiffness`
 };
 
 /// Returns the numbers of a row.

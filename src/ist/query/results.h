@@ -119,9 +119,10 @@ struct TrianglePairsResult {
 
 /// The answer of Query::distance.
 struct DistanceResult {
-  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: `distance` is [0, 0]
+  QueryStatus status = QueryStatus::kDone;  ///< other than kDone: there is no answer
   bool complete = false;                    ///< the interval is no wider than the tolerance
-  DistanceInterval distance{};              ///< of the surfaces
+  /// The distance of the surfaces; [0, infinity] without an answer.
+  DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   /// The width below which no tolerance can be reached here: the rounding of a distance of
   /// triangles, of those found so far where a budget ended the search; without triangles, twice the
   /// resolution.

@@ -123,8 +123,8 @@ class LeastDistance(NamedTuple):
 class Penetration(NamedTuple):
     """How deep the deepest point of either surface lies inside the other body, mesh units."""
 
-    lower: float
-    upper: float
+    lower: float  # NaN, as `upper`, if `not_closed` names a body
+    upper: float  # 0: the bodies do not intersect
     complete: bool
     point: np.ndarray  # (3,), fixed mesh coordinates, `lower` deep
     direction: np.ndarray  # (3,), from there to the other surface's nearest point

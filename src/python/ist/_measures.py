@@ -34,8 +34,8 @@ QUESTIONS = {"intersects": 1, "leaf_pairs": 2, "distance": 4, "contacts": 8, "pe
 def penetration(self, pose, tolerance, *, last=None, points=0, seconds=0.0, progress=None):
     """How deep the deepest point of either surface lies inside the other body: an interval no wider than the tolerance.
 
-    p_fixed = pose @ p_moving. Both bodies have to be closed, else `not_closed` names the one that is not. last: an earlier
-    answer, from which the search goes on. points: the most points to measure.
+    p_fixed = pose @ p_moving. Both bodies have to be closed, else `not_closed` names the one that is not, and the interval
+    is NaN. last: an earlier answer, from which the search goes on. points: the most points to measure.
     """
     handle = self._enter()
     try:
@@ -131,7 +131,7 @@ def rows(
 
     Each row is bit for bit what the single calls say after forget(), whatever the number of threads (0: one for each core).
     want: of intersects, leaf_pairs, distance, contacts, penetration. A pose that is no rigid motion is a row with a status,
-    and no error; what was not asked for is 0, intervals NaN. stiffness: of the contacts' force, N/mm³, and its torque about
+    and no error. What was not asked for is NaN, or 0 in whole numbers. stiffness: of the contacts' force, N/mm³, and its torque about
     the fixed tree's origin. tests: the most of each search.
 
     >>> import ist, numpy as np

@@ -293,6 +293,7 @@ TEST(World, TellsOfPairsThatWereNotPrepared) {
   for (const double x : {0.0, 1.5, 3.0}) world.add(ball, shift({x, 0, 0}));
   EXPECT_EQ(world.near_pairs().status, QueryStatus::kNotPrepared);
   EXPECT_EQ(world.distance(0.1).status, QueryStatus::kNotPrepared);
+  EXPECT_EQ(world.distance(0.1).distance.upper, HUGE_VAL);
   const BodyPair first{1, 0};
   world.prepare({&first, 1});
   const auto answer = world.intersects();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "ist/capi/ist_measure.h"
@@ -12,6 +13,8 @@
 namespace ist::capi {
 namespace {
 
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
 template <class Found>
 std::int32_t self_intersecting(const Found& found) {
   return (found.fixed_self_intersecting ? IST_FIXED_SELF_INTERSECTING : 0) +
@@ -20,8 +23,9 @@ std::int32_t self_intersecting(const Found& found) {
 
 ist_penetration penetration_of(const Penetration& found) {
   ist_penetration out{};
-  out.lower = found.lower;
-  out.upper = found.upper;
+  const bool answered = found.status == Penetration::Status::kDone;
+  out.lower = answered ? found.lower : kNoNumber;
+  out.upper = answered ? found.upper : kNoNumber;
   copy(found.point, out.point);
   copy(found.direction, out.direction);
   out.of_moving = found.of_moving;

@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -108,8 +109,9 @@ struct WorldDistance {
   /// the other bodies.
   QueryStatus status = QueryStatus::kDone;
   bool complete = false;  ///< the interval is no wider than the tolerance, and counts all pairs
-  /// Holds the least distance, mesh units. Both ends are the largest double where no pair counts.
-  DistanceInterval distance{};
+  /// Holds the least distance, mesh units. Both ends are the largest double where no pair counts;
+  /// [0, infinity] without an answer.
+  DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   std::optional<BodyPair> nearest = std::nullopt;  ///< the pair with the least upper end
   std::uint64_t sphere_tests = 0;                  ///< of all pairs, as Budget::tests counts them
   /// The pairs that may be nearest by their roots, in the order of BodyPair, until the next call;
