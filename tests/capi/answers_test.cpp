@@ -297,6 +297,24 @@ TEST_F(CAnswers, SayHowFarThePoseWas) {
   auto contact = sized<ist_first_contact>();
   ASSERT_EQ(name(ist_query_first_contact(c_query_, &motion, 1, nullptr, nullptr, &contact)), "ok");
   EXPECT_EQ(contact.rotation_error, error);
+  auto fixed = sized<ist_occlusion>(), moving = sized<ist_occlusion>();
+  ASSERT_EQ(name(ist_query_occlusion(c_query_, rough.data(), nullptr, nullptr, nullptr, nullptr,
+                                     &fixed, &moving)),
+            "ok");
+  EXPECT_EQ(fixed.rotation_error, error);
+  EXPECT_EQ(moving.rotation_error, error);
+  auto options = sized<ist_rows_options>();
+  options.questions = IST_ASK_INTERSECTS;
+  ist_row row;
+  for (const double scale : {1, 3}) {
+    rough.linear() *= scale;
+    ASSERT_EQ(name(ist_query_rows(c_query_, rough.data(), 1, &options, &row)), "ok");
+    EXPECT_EQ(row.rotation_error, rotation_error(rough));
+    double alone = -1;
+    ASSERT_EQ(name(ist_rotation_error(rough.data(), &alone)), "ok");
+    EXPECT_EQ(alone, rotation_error(rough));
+  }
+  EXPECT_EQ(row.status, IST_POSE_INVALID);
 }
 
 TEST_F(CAnswers, NameAScale) {

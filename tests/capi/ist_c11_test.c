@@ -145,6 +145,9 @@ static void certify(ist_query* query) {
   const pose_at in = shifted(9.5, 0.25, 0), out = shifted(12, 0, 0);
   IS(ist_query_intersects(query, in.at, NULL, &answer), IST_OK);
   CHECK(answer == IST_ANSWER_YES);
+  double error = -1;
+  IS(ist_rotation_error(in.at, &error), IST_OK);
+  CHECK(error == 0);
   IS(ist_query_intersects(query, out.at, NULL, &answer), IST_OK);
   CHECK(answer == IST_ANSWER_NO);
 

@@ -247,13 +247,14 @@ AT(ist_occlusion_arrays, regions, 24);
 AT(ist_occlusion_arrays, region_capacity, 32);
 AT(ist_occlusion_arrays, areas, 40);
 
-SIZE(ist_occlusion, 56);
+SIZE(ist_occlusion, 64);
 AT(ist_occlusion, vertices, 8);
 AT(ist_occlusion, regions, 16);
 AT(ist_occlusion, total_area, 24);
 AT(ist_occlusion, penetrating_area, 32);
 AT(ist_occlusion, depth_integral, 40);
 AT(ist_occlusion, depth_at_vertices, 48);
+AT(ist_occlusion, rotation_error, 56);
 
 SIZE(ist_rows_options, 48);
 AT(ist_rows_options, questions, 8);
@@ -263,7 +264,7 @@ AT(ist_rows_options, stiffness, 24);
 AT(ist_rows_options, tests, 32);
 AT(ist_rows_options, progress, 40);
 
-SIZE(ist_row, 120);
+SIZE(ist_row, 128);
 AT(ist_row, status, 0);
 AT(ist_row, intersects, 4);
 AT(ist_row, complete, 8);
@@ -277,6 +278,7 @@ AT(ist_row, depth_upper, 56);
 AT(ist_row, area, 64);
 AT(ist_row, force, 72);
 AT(ist_row, torque, 96);
+AT(ist_row, rotation_error, 120);
 
 SIZE(ist_world_options, 40);
 AT(ist_world_options, struct_size, 0);
@@ -294,7 +296,7 @@ AT(ist_world_info, struct_size, 0);
 AT(ist_world_info, bytes, 8);
 AT(ist_world_info, bodies, 16);
 
-SIZE(ist_world_pair, 96);
+SIZE(ist_world_pair, 104);
 AT(ist_world_pair, a, 0);
 AT(ist_world_pair, b, 4);
 AT(ist_world_pair, status, 8);
@@ -310,6 +312,7 @@ AT(ist_world_pair, contacts, 64);
 AT(ist_world_pair, resolution, 72);
 AT(ist_world_pair, narrowest, 80);
 AT(ist_world_pair, sphere_tests, 88);
+AT(ist_world_pair, rotation_error, 96);
 
 SIZE(ist_world_result, 40);
 AT(ist_world_result, struct_size, 0);

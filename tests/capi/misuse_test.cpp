@@ -96,6 +96,8 @@ TEST_F(CMisuse, OfANullPointerIsToldByItsName) {
   is_null("pose", ist_query_distance(query_, nullptr, 0, nullptr, &distance_));
   is_null("result", ist_query_distance(query_, pose, 0, nullptr, nullptr));
   is_null("query", ist_query_forget(nullptr));
+  is_null("pose", ist_rotation_error(nullptr, force_));
+  is_null("error", ist_rotation_error(pose, nullptr));
   is_null("query", ist_query_intersects(nullptr, pose, nullptr, &answer_));
   is_null("pose", ist_query_intersects(query_, nullptr, nullptr, &answer_));
   is_null("answer", ist_query_intersects(query_, pose, nullptr, nullptr));

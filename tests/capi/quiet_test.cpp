@@ -131,6 +131,7 @@ Asked ask_all(Bodies& bodies) noexcept {
                 bad ? IST_ARGUMENT_INVALID : IST_OK);
     seen.status(ist_query_distance(bodies.query, at, 0.01, nullptr, &distance), wanted);
     seen.status(ist_query_intersects(bodies.query, at, nullptr, &answer), wanted);
+    seen.status(ist_rotation_error(at, force), IST_OK);
     seen.status(ist_query_triangle_pairs(bodies.query, at, nullptr, bodies.triangle_pairs.data(),
                                          bodies.triangle_pairs.size(), &triangle_result),
                 wanted);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "capi/c_bodies.h"
+#include "ist/base/pose.h"
 #include "ist/capi/ist_world.h"
 #include "support/shapes.h"
 
@@ -78,6 +79,11 @@ void expect_same(const ist_world_pair& pair, const NearPair& expected) {
 }
 
 TEST_F(CWorld, GivesTheAnswersOfCpp) {
+  std::array<double, 16> rough = poses_[0];
+  rough[0] += 1e-4;
+  rough[5] -= 1e-4;
+  ASSERT_EQ(name(ist_world_set_pose(world_, 0, rough.data())), "ok");
+  ASSERT_EQ(cpp_->set_pose(0, isometry(rough)), QueryStatus::kDone);
   std::uint64_t bytes = 0;
   ASSERT_EQ(name(ist_world_bytes_needed(world_, nullptr, 0, &bytes)), "ok");
   EXPECT_EQ(bytes, cpp_->bytes_needed());
@@ -100,7 +106,10 @@ TEST_F(CWorld, GivesTheAnswersOfCpp) {
     EXPECT_EQ(pairs_[k].status, IST_OK);
     EXPECT_EQ(pairs_[k].answer, static_cast<int>(found.pairs[k].result.answer));
     EXPECT_EQ(pairs_[k].distance_upper, found.pairs[k].roots.upper);
+    EXPECT_EQ(pairs_[k].rotation_error, found.pairs[k].result.rotation_error);
   }
+  EXPECT_EQ(pairs_[0].rotation_error, rotation_error(isometry(rough)));
+  EXPECT_GT(pairs_[0].rotation_error, 1e-4);
   EXPECT_EQ(pairs_[0].answer, IST_ANSWER_YES);
   EXPECT_EQ(pairs_[1].answer, IST_ANSWER_NO);
 

@@ -114,8 +114,11 @@ class Verbs(Jaws):
         self.assertGreater(error, 1e-4)
         for answer in (self.query.leaf_pairs(pose), self.query.leaf_pairs(pose, most=5), self.query.contacts(pose),
                        self.query.distance(pose, 0.1), self.query.triangle_pairs(pose), self.query.penetration(pose, 0.1),
-                       self.query.first_contact(np.eye(4), pose, 0.1)):
+                       self.query.first_contact(np.eye(4), pose, 0.1), self.query.occlusion(pose)):
             self.assertAlmostEqual(answer.rotation_error, error, places=14, msg=type(answer).__name__)
+        self.assertAlmostEqual(ist.rotation_error(pose), error, places=14)
+        rows = self.query.rows(np.array([pose, np.eye(4), 3 * np.eye(4)]))
+        np.testing.assert_allclose(rows["rotation_error"], [error, 0, 8], rtol=0, atol=1e-14)
         self.assertEqual(self.query.distance(np.eye(4)).rotation_error, 0)
         pose[:3, :3] = 1.0001 * np.eye(3)
         with self.assertRaisesRegex(ist.InputError, "scale"):

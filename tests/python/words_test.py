@@ -27,7 +27,7 @@ query = ist.Query(upper, lower, workers=2, spheres="tight")
 touch: Optional[bool] = query.intersects(np.eye(4))
 pairs = query.leaf_pairs(np.eye(4), out=np.empty(10, ist.LEAF_PAIR))
 count: int = pairs.count + query.triangle_pairs(np.eye(4).tolist()).count
-low: float = query.distance(np.eye(4), 0.1).lower
+low: float = query.distance(np.eye(4), 0.1).lower + ist.rotation_error(np.eye(4))
 rows = query.rows(np.eye(4)[None], want=["intersects", "penetration"], progress=lambda part: None)
 force, torque, about = query.contacts(np.eye(4)).wrench(2.0)
 tree = ist.load(pathlib.Path("a.ist"))
@@ -71,7 +71,8 @@ class Words(unittest.TestCase):
 
     def test_every_docstring_with_a_pose_says_which_way_it_goes(self):
         frames = {"Query": "p_fixed = pose @ p_moving", "World": "p_world = pose @ p_body", "Servo": "p_scene = pose @ p_tool",
-                  "occlusion": "p_fixed = pose @ p_moving", "distance_map": "p_other = pose @ p_body"}
+                  "occlusion": "p_fixed = pose @ p_moving", "distance_map": "p_other = pose @ p_body",
+                  "rotation_error": "p_fixed = pose @ p_moving"}
         takers = {}
         for name in ist.__all__:
             each = getattr(ist, name)

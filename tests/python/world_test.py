@@ -48,6 +48,8 @@ class Worlds(Refusals):
             self.assertEqual(contacts.contacts.tobytes(), wanted.contacts.tobytes())
             self.assertEqual(contacts.sums.tobytes(), wanted.sums.tobytes())
             self.assertEqual((contacts.complete, contacts.leaf_pairs), (True, wanted.leaf_pairs))
+            error = max(ist.rotation_error(self.poses[row[body]]) for body in "ab")
+            self.assertEqual((row["rotation_error"], contacts.rotation_error), (error, error))
             self.assertEqual(contacts.sphere_tests, felt.pairs[k]["sphere_tests"])
             self.assertGreater(contacts.sphere_tests, 0)
             self.assertEqual(felt.pairs[k]["contacts"], len(wanted.contacts))

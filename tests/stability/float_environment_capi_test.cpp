@@ -165,6 +165,9 @@ TEST_P(FloatEnvironmentOfTheCInterface, ChangesNoAnswerOfTriangles) {
         std::int32_t answer = 0;
         fine(ist_query_intersects(query, pose, nullptr, &answer));
         record.add(answer);
+        double error = 0;
+        fine(ist_rotation_error(pose, &error));
+        record.add(error);
         std::vector<ist_triangle_pair> pairs(1 << 12);
         auto result = sized<ist_triangle_pairs_result>();
         fine(ist_query_triangle_pairs(query, pose, nullptr, pairs.data(), pairs.size(), &result));

@@ -376,6 +376,10 @@ enum {
 IST_C_API ist_status ist_query_intersects(ist_query* query, const double pose[16],
                                           const ist_budget* budget, int32_t* answer) IST_NOEXCEPT;
 
+/** Gives how far the rotation R of a pose is from orthonormal: the largest entry of |R^T R - I|.
+ * Each question answers at the nearest rotation. INFINITY if a number is not finite. [real time] */
+IST_C_API ist_status ist_rotation_error(const double pose[16], double* error) IST_NOEXCEPT;
+
 /** Two triangles with a common point, by index. */
 typedef struct IST_MAY_ALIAS ist_triangle_pair {
   uint32_t fixed, /**< triangle of the fixed mesh */

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "ist/base/float_environment.h"
+#include "ist/base/pose.h"
 #include "ist/capi/objects.h"
 
 namespace ist::capi {
@@ -165,6 +166,16 @@ ist_status ist_query_intersects(ist_query* query, const double pose[16], const i
     const ist::IntersectionResult found = held->query.intersects(to_isometry(pose), allowed);
     if (const ist_status wrong = status_of(call, found.status, pose)) return wrong;
     *answer = answer_of(found.answer);
+    return IST_OK;
+  });
+}
+
+ist_status ist_rotation_error(const double pose[16], double* error) IST_NOEXCEPT {
+  return guarded(__func__, [&](const Call& call) -> ist_status {
+    if (const ist_status missing = call.need({{"error", error}})) return missing;
+    *error = 0;
+    if (const ist_status missing = call.need({{"pose", pose}})) return missing;
+    *error = ist::rotation_error(to_isometry(pose));
     return IST_OK;
   });
 }

@@ -186,6 +186,7 @@ typedef struct ist_occlusion {
       penetrating_area,  /**< where the distance is at most 0, mesh units^2 */
       depth_integral,    /**< of the depth over that area, mesh units^3 */
       depth_at_vertices; /**< the largest of a vertex, mesh units; 0 where all lie outside */
+  double rotation_error; /**< of the given pose: as in ist_query_result */
 } ist_occlusion;
 
 /** Measures the occlusion of two bodies: distance maps, areas within limits, contact regions, for
@@ -234,6 +235,7 @@ typedef struct ist_row {
   double area;           /**< sum of the weights of all leaf pairs, mesh units^2 */
   double force[3],       /**< of springs on the moving body, N for meshes in mm */
       torque[3];         /**< about the origin of the fixed tree (ist_tree_info), N mm */
+  double rotation_error; /**< of the given pose, also of an invalid one: as in ist_query_result */
 } ist_row;
 
 /** Answers the same questions at `count` poses, 16 numbers each: row i is what the calls for each

@@ -110,6 +110,7 @@ typedef struct ist_world_pair {
   double resolution;     /**< greatest distance between the surfaces in a leaf pair; 0 unknown */
   double narrowest;      /**< of distances: no tolerance below this width can be reached */
   uint64_t sphere_tests; /**< tests made, as ist_budget counts them */
+  double rotation_error; /**< of the given poses, the larger one: as in ist_query_result */
 } ist_world_pair;
 
 /** The answer of a world: one element for each pair that is near, sorted by `a` and then by `b`.

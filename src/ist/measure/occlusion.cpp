@@ -11,6 +11,7 @@
 #include "ist/base/error.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/base/pose.h"
 #include "ist/base/rigid_move.h"
 #include "ist/measure/contact_regions.h"
 #include "ist/measure/distances_of.h"
@@ -137,7 +138,7 @@ Occlusion occlusion(const Query& query, const Eigen::Isometry3d& pose,
   pair_regions(of_fixed->regions, of_moving->regions);
   of_fixed->surface.regions = std::move(of_fixed->regions.regions);
   of_moving->surface.regions = std::move(of_moving->regions.regions);
-  return {true, std::move(of_fixed->surface), std::move(of_moving->surface)};
+  return {true, std::move(of_fixed->surface), std::move(of_moving->surface), rotation_error(pose)};
 }
 
 }  // namespace ist

@@ -80,9 +80,10 @@ struct SurfaceOcclusion {
 /// The occlusion of two bodies. `complete` is false where the caller ended it: then nothing else is
 /// there.
 struct Occlusion {
-  bool complete = false;   ///< both surfaces are measured
-  SurfaceOcclusion fixed,  ///< the fixed surface against the moving body
-      moving;              ///< the moving surface against the fixed body, fixed coordinates
+  bool complete = false;      ///< both surfaces are measured
+  SurfaceOcclusion fixed,     ///< the fixed surface against the moving body
+      moving;                 ///< the moving surface against the fixed body, fixed coordinates
+  double rotation_error = 0;  ///< of the given pose (rotation_error())
 };
 
 /// Measures the occlusion of two bodies at a pose: signed distances of both surfaces, areas cut at

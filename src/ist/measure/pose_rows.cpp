@@ -72,6 +72,7 @@ class Askers {
 
 PoseRow row_of(const Asker& asker, const Eigen::Isometry3d& pose, const RowQuestions& questions) {
   PoseRow row;
+  row.rotation_error = rotation_error(pose);
   if (!project_to_rigid(pose)) {
     row.status = QueryStatus::kInvalidPose;
     return row;

@@ -30,6 +30,7 @@ struct PoseRow {
   std::optional<QueryResult> contacts = std::nullopt;
   ContactSums sums = {};
   std::optional<Penetration> penetration = std::nullopt;
+  double rotation_error = 0;  ///< of the given pose (rotation_error())
 };
 
 /// A query, and the options of those that further threads make.

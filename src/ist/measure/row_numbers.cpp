@@ -9,6 +9,7 @@ std::int32_t not_closed_code(const Penetration& found) noexcept {
 
 RowNumbers numbers_of(const PoseRow& row, double stiffness) {
   RowNumbers numbers;
+  numbers.rotation_error = row.rotation_error;
   if (row.status != QueryStatus::kDone) {
     numbers.pose_is_valid = false;
     return numbers;

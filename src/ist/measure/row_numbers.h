@@ -25,6 +25,7 @@ struct RowNumbers {
   double area = kNone;  ///< mesh units²
   Eigen::Vector3d force = Eigen::Vector3d::Constant(kNone),
                   torque = Eigen::Vector3d::Constant(kNone);  ///< of springs of `stiffness`
+  double rotation_error = 0;  ///< of the given pose, also of an invalid one
 };
 
 /// Returns the numbers of a row.

@@ -44,7 +44,7 @@ from ._errors import (
     MemoryLimitError,
 )
 from ._library import LIBRARY as _LIBRARY
-from ._measures import distance_map, signed_distance
+from ._measures import distance_map, rotation_error, signed_distance
 from ._mesh import jaws, read_mesh
 from ._query import Query
 from ._records import CONTACT, CONTACT_REGION, LEAF_PAIR, ROW, SURFACE_DISTANCE, TRIANGLE_PAIR, WORLD_PAIR

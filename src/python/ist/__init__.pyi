@@ -201,6 +201,7 @@ class Occlusion(NamedTuple):
     limits: F8
     fixed: BodyOcclusion
     moving: BodyOcclusion
+    rotation_error: float
 
 class Query:
     def __init__(
@@ -396,6 +397,7 @@ class World:
         self, kind: Optional[Type[BaseException]], value: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None: ...
 
+def rotation_error(pose: ArrayLike) -> float: ...
 def signed_distance(
     tree: Tree,
     points: ArrayLike,

@@ -33,7 +33,7 @@ class Contacts(NamedTuple):
     area: float  # sum of the weights of all leaf pairs, mesh units²
     sphere_tests: int
     memory_of_sums: bytearray  # of `sums`, which is made of it when somebody asks
-    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|; NaN of a pair of a world
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|; of a pair of a world, of both poses, the larger one
 
     @property
     def sums(self):
@@ -171,6 +171,7 @@ class Occlusion(NamedTuple):
     limits: np.ndarray  # distances whose areas were measured, mesh units
     fixed: BodyOcclusion
     moving: BodyOcclusion
+    rotation_error: float  # of the given pose: the largest entry of |RᵀR - I|
 
 
 class ServoBody(NamedTuple):

@@ -34,6 +34,7 @@ PROTOTYPES = {
     "ist_tree_free": (c_int32, [c_void_p]),
     "ist_query_create": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),
     "ist_query_get_info": (c_int32, [c_void_p, c_void_p]),
+    "ist_rotation_error": (c_int32, [c_void_p, c_void_p]),
     "ist_query_intersects": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p]),
     "ist_query_leaf_pairs": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p]),
     "ist_query_contacts": (c_int32, [c_void_p, c_void_p, c_void_p, c_void_p, c_size_t, c_void_p, c_void_p]),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ._answers import BodyOcclusion, FirstContact, Occlusion, Penetration
 from ._arrays import address, budget_of, by_columns, count_of, floats, number_of, place_of, pose_of
-from ._errors import refuse
+from ._errors import check, refuse
 from ._follow import Follower
 from ._library import LIBRARY
 from ._records import (
@@ -255,9 +255,19 @@ def occlusion_of(
             )
             for (_, distances, regions, areas), each in zip(arrays, sums)
         ]
-        return Occlusion(bounds, *bodies)
+        return Occlusion(bounds, *bodies, sums[0].rotation_error)
     finally:
         self._lock.release()
+
+
+def rotation_error(pose):
+    """How far the rotation R of a pose is from orthonormal: the largest entry of |RᵀR - I|.
+
+    p_fixed = pose @ p_moving. Each question answers at the nearest rotation. Infinite if a number is not finite.
+    """
+    at, error = pose_of(pose), ctypes.c_double()
+    check(LIBRARY.ist_rotation_error(address(at), addressof(error)))
+    return error.value
 
 
 def signed_distance(tree, points, *, reach=np.inf, out=None, progress=None):

@@ -42,6 +42,7 @@ ROW = np.dtype(
         ("area", "f8"),
         ("force", "f8", 3),
         ("torque", "f8", 3),
+        ("rotation_error", "f8"),
     ]
 )
 WORLD_PAIR = np.dtype(
@@ -61,6 +62,7 @@ WORLD_PAIR = np.dtype(
         ("resolution", "f8"),
         ("narrowest", "f8"),
         ("sphere_tests", "u8"),
+        ("rotation_error", "f8"),
     ]
 )
 CONTACT_SUMS = np.dtype(
@@ -299,6 +301,7 @@ class OcclusionSums(Sized):
         ("penetrating_area", c_double),
         ("depth_integral", c_double),
         ("depth_at_vertices", c_double),
+        ("rotation_error", c_double),
     ]
 
 

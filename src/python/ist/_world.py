@@ -217,7 +217,7 @@ class World(Lone):
             sums.weight,
             int(row["sphere_tests"]),
             bytearray(sums),
-            float("nan"),
+            float(row["rotation_error"]),
         )
 
     def distances(self, tolerance=0.0, *, out=None, tests=0, seconds=0.0):

@@ -59,8 +59,8 @@ ist_contact_region region_of(const ContactRegion& region) {
   return out;
 }
 
-void give_surface(const SurfaceOcclusion& found, const ist_occlusion_arrays& arrays,
-                  ist_occlusion& out) {
+void give_surface(const SurfaceOcclusion& found, double rotation_error,
+                  const ist_occlusion_arrays& arrays, ist_occlusion& out) {
   const auto copy_first = [](const auto& from, auto* to, std::size_t capacity, auto convert) {
     const auto count = static_cast<std::ptrdiff_t>(std::min(capacity, from.size()));
     std::transform(from.begin(), from.begin() + count, to, convert);
@@ -75,6 +75,7 @@ void give_surface(const SurfaceOcclusion& found, const ist_occlusion_arrays& arr
   values.penetrating_area = found.penetrating_area;
   values.depth_integral = found.depth_integral;
   values.depth_at_vertices = found.depth_at_vertices;
+  values.rotation_error = rotation_error;
   write_sized(values, out);
 }
 
@@ -114,8 +115,8 @@ ist_status ist_query_occlusion(ist_query* query, const double pose[16],
       found = ist::occlusion(held->query, to_isometry(pose), asked);
     });
     if (!whole) return cancelled(call);
-    give_surface(found.fixed, of_fixed, *fixed);
-    give_surface(found.moving, of_moving, *moving);
+    give_surface(found.fixed, found.rotation_error, of_fixed, *fixed);
+    give_surface(found.moving, found.rotation_error, of_moving, *moving);
     return IST_OK;
   });
 }

@@ -69,6 +69,7 @@ ist_row row_of(const RowNumbers& numbers) noexcept {
   row.area = numbers.area;
   copy(numbers.force, row.force);
   copy(numbers.torque, row.torque);
+  row.rotation_error = numbers.rotation_error;
   return row;
 }
 

@@ -36,6 +36,7 @@ ist_world_pair asked(const Pair& pair) {
   out.status = status_of_pair(pair.result.status);
   out.complete = pair.result.complete;
   out.sphere_tests = pair.result.sphere_tests;
+  out.rotation_error = pair.result.rotation_error;
   return out;
 }
 
