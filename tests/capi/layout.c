@@ -264,7 +264,7 @@ AT(ist_rows_options, stiffness, 24);
 AT(ist_rows_options, tests, 32);
 AT(ist_rows_options, progress, 40);
 
-SIZE(ist_row, 128);
+SIZE(ist_row, 136);
 AT(ist_row, status, 0);
 AT(ist_row, intersects, 4);
 AT(ist_row, complete, 8);
@@ -279,6 +279,8 @@ AT(ist_row, area, 64);
 AT(ist_row, force, 72);
 AT(ist_row, torque, 96);
 AT(ist_row, rotation_error, 120);
+AT(ist_row, self_intersecting, 128);
+AT(ist_row, reserved, 132);
 
 SIZE(ist_world_options, 40);
 AT(ist_world_options, struct_size, 0);

@@ -155,6 +155,12 @@ TEST_F(CMeasure, ASurfaceThatIntersectsItself_SaysSo) {
       "ok");
   EXPECT_NEAR(depth.lower, 0.25, 0.11);
   EXPECT_EQ(depth.self_intersecting, IST_FIXED_SELF_INTERSECTING);
+  auto options = sized<ist_rows_options>();
+  options.questions = IST_ASK_PENETRATION;
+  options.tolerance = 0.01;
+  ist_row row;
+  ASSERT_EQ(name(ist_query_rows(query, pose.data(), 1, &options, &row)), "ok");
+  EXPECT_EQ(row.self_intersecting, IST_FIXED_SELF_INTERSECTING);
   EXPECT_EQ(name(ist_query_free(query)), "ok");
   EXPECT_EQ(name(ist_tree_free(small)), "ok");
   EXPECT_EQ(name(ist_tree_free(tree)), "ok");

@@ -224,6 +224,46 @@ TEST_F(Answers, FirstContactIsFoundBetweenTheSteps) {
            "not known without triangles"));
 }
 
+TEST_F(Answers, SelfIntersectionsAreTold) {
+  const std::string small = cube(0.25);
+  const TriangleMesh two = joined(box({-1, -1, -1}, {1, 1, 1}), box({0, -2, -2}, {3, 2, 2}));
+  const std::string crossed = mesh("crossed.stl", two);
+  for (const std::string& fixed : {crossed, ball_}) {
+    const bool crosses = fixed == crossed;
+    const std::vector<std::string> path = {"approach", fixed,    small,    "--voxel-size", "0.25",
+                                           "--axis",   "x",      "--from", "0.5",          "--to",
+                                           "9",        "--step", "4"};
+    std::vector<std::string> words = path;
+    words.emplace_back("--json");
+    const auto lines = json_lines(ist_well(words).out);
+    for (const json& line : lines) EXPECT_EQ(line["self_intersecting"], crosses) << line;
+    EXPECT_EQ(lines.back()["first_contact"], "inside-at-start");
+    EXPECT_EQ(says(ist_well(path).out, "inside the other; a surface intersects itself"), crosses);
+  }
+  // Without triangles it is unknown.
+  const std::string plain = tree_without_triangles("plain.ist");
+  EXPECT_TRUE(ask(plain, small, {"--voxel-size", "0.5"})[0]["self_intersecting"].is_null());
+}
+
+TEST_F(Answers, AWideDepthIsTold) {
+  const std::string small = mesh("small.stl", box({-0.5, -0.5, 1.5}, {0.5, 0.5, 2.5}));
+  const std::vector<std::string> few = {"collide", ball_,         small, "--voxel-size",
+                                        "0.5",     "--max-tests", "20"};
+  EXPECT_TRUE(says(ist_well(few).out, "note       depth: asked to "));
+  std::vector<std::string> words = few;
+  words.emplace_back("--json");
+  const json wide = json_lines(ist_well(words).out).at(0);
+  EXPECT_EQ(wide["depth_complete"], false);
+  EXPECT_EQ(wide["depth_capped"], false);
+  EXPECT_TRUE(has_note(wide, "depth: asked to "));
+  const json whole = ask(ball_, small, {"--voxel-size", "0.5"})[0];
+  EXPECT_EQ(whole["depth_complete"], true);
+  EXPECT_EQ(whole["depth_capped"], false);
+  const std::string plain = tree_without_triangles("plain.ist");
+  const json none = ask(plain, small, {"--voxel-size", "0.5"})[0];
+  EXPECT_TRUE(none["depth_complete"].is_null() && none["depth_capped"].is_null());
+}
+
 TEST_F(Answers, MaxTestsStopsAndSaysHowFar) {
   const auto all = ask(ball_, ball_, {"--voxel-size", "0.5", "--exact"});
   for (const char* tests : {"0", "1", "40", "1000000"}) {

@@ -179,6 +179,7 @@ class Verbs(Jaws):
         pose[:3, 3] = 1.75, 1, 1
         depth = query.penetration(pose, 1e-6)
         self.assertEqual((depth.self_intersecting, depth.complete), ("fixed", True))
+        self.assertEqual(query.rows(pose[None], want=["penetration"], tolerance=1e-6)["self_intersecting"], 1)
         self.assertGreater(depth.lower, 0)
         self.assertEqual(query.first_contact(pose, np.eye(4), 1e-3).outcome, "inside at start")
         self.assertEqual(small.self_intersections, 0)

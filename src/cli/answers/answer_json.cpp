@@ -55,6 +55,10 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   line["distance_narrowest"] = or_null(found.narrowest);
   line["depth_lower"] = lower(found.depth.certain);
   line["depth_upper"] = upper(found.depth.certain);
+  const bool certain = found.depth.certain.has_value();
+  line["depth_complete"] = certain ? ordered_json(found.depth.complete) : ordered_json(nullptr);
+  line["depth_capped"] = certain ? ordered_json(found.depth.capped) : ordered_json(nullptr);
+  line["self_intersecting"] = or_null(found.self_intersecting);
   line["depth_at_vertices"] = or_null(found.depth.at_vertices);
   line["depth_point"] = triple(found.depth.point);
   line["contacts"] = or_null(found.contacts);

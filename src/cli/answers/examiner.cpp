@@ -78,7 +78,7 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
   if (!found.depth.certain && found.touch != Answer::kNo) {
     found.notes.push_back("no certain depth: " + depth_->why_none());
   }
-  if (found.depth.certain && !found.depth.complete && questions_.depth) {
+  if (found.depth.certain && !found.depth.complete) {
     const char* const why = found.depth.capped     ? ": the search ended after 4 million pieces"
                             : questions_.max_tests ? ": allow more --max-tests"
                                                    : "";
@@ -86,9 +86,7 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
                                       found.depth.certain->upper - found.depth.certain->lower,
                                       why));
   }
-  if (found.depth.certain || (found.inside && *found.inside != Inside::kNone)) {
-    note_self_intersections(found);
-  }
+  find_self_intersections(found);
   find_contacts(pose, found);
   if (questions_.triangle_pairs) count_triangles(pose, found);
   return found;
@@ -149,10 +147,15 @@ void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const
   found.inside = inside;
 }
 
-void Examiner::note_self_intersections(Findings& found) const {
+void Examiner::find_self_intersections(Findings& found) const {
+  if (!query_.has_triangles()) return;
+  found.self_intersecting = false;
+  const bool matters = found.depth.certain || (found.inside && *found.inside != Inside::kNone);
   for (const bool moving : {false, true}) {
     const std::uint64_t pairs = (moving ? query_.moving() : query_.fixed()).self_intersections();
     if (pairs == 0) continue;
+    found.self_intersecting = true;
+    if (!matters) continue;
     found.notes.push_back(
         fmt::format("{} intersects itself in {} pair{} of triangles: inside is by winding numbers",
                     moving ? "MOVING" : "FIXED", pairs, pairs == 1 ? "" : "s"));

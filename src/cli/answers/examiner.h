@@ -36,6 +36,8 @@ struct Findings {
   std::optional<DistanceInterval> distance{};
   std::optional<double> narrowest{};  ///< the width below which the distance cannot be told
   Depth depth;
+  /// Whether a surface intersects itself. Inside is by winding numbers then.
+  std::optional<bool> self_intersecting{};
   std::optional<std::uint64_t> contacts{};  ///< contact points
   std::optional<double> contact_depth{};    ///< of the deepest of them
   double rotation_error = 0;                ///< of the given pose
@@ -62,7 +64,7 @@ class Examiner {
   void find_touch(const Eigen::Isometry3d& pose, Findings& found);
   void find_inside(const Eigen::Isometry3d& pose, Findings& found) const;
   void find_distance(const Eigen::Isometry3d& pose, Findings& found);
-  void note_self_intersections(Findings& found) const;
+  void find_self_intersections(Findings& found) const;
   void find_contacts(const Eigen::Isometry3d& pose, Findings& found);
   void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
 

@@ -79,19 +79,24 @@ double displacement_at(const Path& path, double parameter) {
   return path.from + parameter * (path.to - path.from);
 }
 
-void print_first_contact_json(const FirstContact& found, const Path& path) {
+bool self_intersecting(const Bodies& bodies) {
+  return bodies.fixed.self_intersections() > 0 || bodies.moving.self_intersections() > 0;
+}
+
+void print_first_contact_json(const FirstContact& found, const Path& path, const Bodies& bodies) {
   const double a = displacement_at(path, found.lower), b = displacement_at(path, found.upper);
   nlohmann::ordered_json line{{"first_contact", to_string(found.status)},
                               {"displacement_lower", std::min(a, b)},
                               {"displacement_upper", std::max(a, b)},
                               {"grazed", found.grazed},
                               {"triangles", nullptr},
+                              {"self_intersecting", self_intersecting(bodies)},
                               {"distances", found.distances}};
   if (found.triangles) line["triangles"] = {found.triangles->fixed, found.triangles->moving};
   fmt::print("{}\n", line.dump());
 }
 
-void print_first_contact(const FirstContact& found, const Path& path) {
+void print_first_contact(const FirstContact& found, const Path& path, const Bodies& bodies) {
   switch (found.status) {
     case FirstContact::Status::kNone:
       fmt::print("first contact: none from {:g} to {:g}\n", path.from, path.to);
@@ -100,7 +105,8 @@ void print_first_contact(const FirstContact& found, const Path& path) {
       fmt::print("first contact: at the start, {:g}: triangles intersect there\n", path.from);
       return;
     case FirstContact::Status::kInsideAtStart:
-      fmt::print("first contact: at the start, {:g}: one body is inside the other\n", path.from);
+      fmt::print("first contact: at the start, {:g}: one body is inside the other{}\n", path.from,
+                 self_intersecting(bodies) ? "; a surface intersects itself" : "");
       return;
     default:
       break;
@@ -126,7 +132,8 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
   }
   const double tolerance = options.first_contact.value_or(kContactTolerance * bodies.extent());
   const FirstContact found = find_first_contact(bodies, path, tolerance);
-  options.query.json ? print_first_contact_json(found, path) : print_first_contact(found, path);
+  options.query.json ? print_first_contact_json(found, path, bodies)
+                     : print_first_contact(found, path, bodies);
 }
 
 void run(const ApproachArguments& options) {

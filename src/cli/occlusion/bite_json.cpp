@@ -110,6 +110,9 @@ ordered_json json_of(const Bite& bite) {
   const auto& depth = found.depth.certain;
   out["depth_lower"] = depth ? ordered_json(depth->lower) : ordered_json(nullptr);
   out["depth_upper"] = depth ? ordered_json(depth->upper) : ordered_json(nullptr);
+  out["depth_complete"] = depth ? ordered_json(found.depth.complete) : ordered_json(nullptr);
+  out["depth_capped"] = depth ? ordered_json(found.depth.capped) : ordered_json(nullptr);
+  out["self_intersecting"] = *found.self_intersecting;
   const auto& deepest = found.depth.at_vertices;
   out["depth_at_vertices"] = deepest ? ordered_json(*deepest) : ordered_json(nullptr);
   const auto& point = found.depth.point;

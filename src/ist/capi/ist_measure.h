@@ -236,6 +236,8 @@ typedef struct ist_row {
   double force[3],       /**< of springs on the moving body, N for meshes in mm */
       torque[3];         /**< about the origin of the fixed tree (ist_tree_info), N mm */
   double rotation_error; /**< of the given pose, also of an invalid one: as in ist_query_result */
+  int32_t self_intersecting; /**< of a depth: the sum of IST_..._SELF_INTERSECTING */
+  int32_t reserved;          /**< zero */
 } ist_row;
 
 /** Answers the same questions at `count` poses, 16 numbers each: row i is what the calls for each

@@ -18,6 +18,7 @@ struct RowNumbers {
   std::int32_t intersects = 0;
   bool complete = false;        ///< every search ended and every tolerance was reached
   std::int32_t not_closed = 0;  ///< 0: both bodies are; 1: the fixed one is not; 2: the moving one
+  std::int32_t self_intersecting = 0;  ///< of a depth: self_intersecting_code()
   std::uint64_t leaf_pairs = 0;
   std::uint64_t sphere_tests = 0;  ///< of all searches, those of a depth excepted
   double distance_lower = kNone, distance_upper = kNone;
@@ -34,5 +35,12 @@ struct RowNumbers {
 
 /// Returns the code of `not_closed` for a depth.
 [[nodiscard]] std::int32_t not_closed_code(const Penetration& found) noexcept;
+
+/// Returns 1 if the fixed body's surface intersects itself, 2 if the moving body's does, their sum,
+/// or 0.
+template <class Found>
+[[nodiscard]] std::int32_t self_intersecting_code(const Found& found) noexcept {
+  return (found.fixed_self_intersecting ? 1 : 0) + (found.moving_self_intersecting ? 2 : 0);
+}
 
 }  // namespace ist

@@ -32,7 +32,10 @@ void each_column(const RowQuestions& asked, std::uint64_t index, const RowNumber
   code("status", numbers.pose_is_valid ? 0 : kPoseInvalid);
   code("complete", numbers.complete ? 1 : 0);
   if (asked.intersects) code("intersects", numbers.intersects);
-  if (asked.penetration) code("not_closed", numbers.not_closed);
+  if (asked.penetration) {
+    code("not_closed", numbers.not_closed);
+    code("self_intersecting", numbers.self_intersecting);
+  }
   whole("sphere_tests", numbers.sphere_tests);
   if (asked.leaf_pairs || asked.contacts) whole("leaf_pairs", numbers.leaf_pairs);
   if (asked.distance) {

@@ -43,6 +43,8 @@ ROW = np.dtype(
         ("force", "f8", 3),
         ("torque", "f8", 3),
         ("rotation_error", "f8"),
+        ("self_intersecting", "i4"),
+        ("reserved", "i4"),
     ]
 )
 WORLD_PAIR = np.dtype(

@@ -15,12 +15,6 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-template <class Found>
-std::int32_t self_intersecting(const Found& found) {
-  return (found.fixed_self_intersecting ? IST_FIXED_SELF_INTERSECTING : 0) +
-         (found.moving_self_intersecting ? IST_MOVING_SELF_INTERSECTING : 0);
-}
-
 ist_penetration penetration_of(const Penetration& found) {
   ist_penetration out{};
   const bool answered = found.status == Penetration::Status::kDone;
@@ -34,7 +28,7 @@ ist_penetration penetration_of(const Penetration& found) {
   out.not_closed = not_closed_code(found);
   out.narrowest = found.narrowest;
   out.points = found.points;
-  out.self_intersecting = self_intersecting(found);
+  out.self_intersecting = self_intersecting_code(found);
   out.capped = found.capped;
   out.rotation_error = found.rotation_error;
   return out;
@@ -65,7 +59,7 @@ ist_first_contact first_contact_of(const FirstContact& found) {
   }
   out.narrowest = found.narrowest;
   out.distances = found.distances;
-  out.self_intersecting = self_intersecting(found);
+  out.self_intersecting = self_intersecting_code(found);
   out.rotation_error = found.rotation_error;
   return out;
 }
@@ -93,6 +87,7 @@ ist_surface_distance surface_distance_of(const SurfaceDistance& found) noexcept 
   out.self_intersecting = found.self_intersecting;
   return out;
 }
+static_assert(IST_FIXED_SELF_INTERSECTING == 1 && IST_MOVING_SELF_INTERSECTING == 2);
 static_assert(IST_CLOSED == 0 && IST_FIXED_NOT_CLOSED == 1 && IST_MOVING_NOT_CLOSED == 2);
 static_assert(SurfaceDistance::kNoTriangle == IST_NO_TRIANGLE);
 
