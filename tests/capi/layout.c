@@ -280,7 +280,7 @@ AT(ist_row, force, 72);
 AT(ist_row, torque, 96);
 AT(ist_row, rotation_error, 120);
 AT(ist_row, self_intersecting, 128);
-AT(ist_row, reserved, 132);
+AT(ist_row, capped, 132);
 
 SIZE(ist_world_options, 40);
 AT(ist_world_options, struct_size, 0);

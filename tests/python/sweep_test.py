@@ -72,7 +72,7 @@ class Rows(Sweeps):
     @staticmethod
     def names_of_row():
         vectors = {f"{vector}_{axis}" for vector in ("force", "torque") for axis in "xyz"}
-        return set(ist.ROW.names) - {"force", "torque"} | vectors
+        return set(ist.ROW.names) - {"force", "torque", "rotation_error"} | vectors
 
     def same_as_single_rows(self, table, sweep, **options):
         """Compares a table, column by column and bit by bit, with what Query.rows says of the same poses."""

@@ -26,9 +26,10 @@ TEST(RowLayout, HasTheColumnsOfTheQuestions) {
             (Names{"index", "status", "complete", "intersects", "sphere_tests"}));
   EXPECT_EQ(names_of(layout_of({.leaf_pairs = true})),
             (Names{"index", "status", "complete", "sphere_tests", "leaf_pairs"}));
-  EXPECT_EQ(names_of(layout_of({.distance = true, .penetration = true})),
-            (Names{"index", "status", "complete", "not_closed", "self_intersecting", "sphere_tests",
-                   "distance_lower", "distance_upper", "depth_lower", "depth_upper"}));
+  EXPECT_EQ(
+      names_of(layout_of({.distance = true, .penetration = true})),
+      (Names{"index", "status", "complete", "not_closed", "self_intersecting", "capped",
+             "sphere_tests", "distance_lower", "distance_upper", "depth_lower", "depth_upper"}));
   EXPECT_EQ(names_of(layout_of({.contacts = true})),
             (Names{"index", "status", "complete", "sphere_tests", "leaf_pairs", "area", "force_x",
                    "force_y", "force_z", "torque_x", "torque_y", "torque_z"}));
@@ -51,6 +52,7 @@ TEST(RowLayout, HoldsEachNumberInItsColumn) {
   numbers.complete = true;
   numbers.not_closed = 2;
   numbers.self_intersecting = 3;
+  numbers.capped = true;
   numbers.leaf_pairs = 11;
   numbers.sphere_tests = 12;
   numbers.distance_lower = 0.25;
@@ -68,6 +70,7 @@ TEST(RowLayout, HoldsEachNumberInItsColumn) {
                                                {"intersects", 3},
                                                {"not_closed", 2},
                                                {"self_intersecting", 3},
+                                               {"capped", 1},
                                                {"sphere_tests", 12},
                                                {"leaf_pairs", 11},
                                                {"distance_lower", .25},

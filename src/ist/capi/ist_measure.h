@@ -237,7 +237,7 @@ typedef struct ist_row {
       torque[3];         /**< about the origin of the fixed tree (ist_tree_info), N mm */
   double rotation_error; /**< of the given pose, also of an invalid one: as in ist_query_result */
   int32_t self_intersecting; /**< of a depth: the sum of IST_..._SELF_INTERSECTING */
-  int32_t reserved;          /**< zero */
+  int32_t capped;            /**< of a depth: as in ist_penetration */
 } ist_row;
 
 /** Answers the same questions at `count` poses, 16 numbers each: row i is what the calls for each

@@ -43,6 +43,7 @@ RowNumbers numbers_of(const PoseRow& row, double stiffness) {
     numbers.complete = numbers.complete && row.penetration->complete;
     numbers.not_closed = not_closed_code(*row.penetration);
     numbers.self_intersecting = self_intersecting_code(*row.penetration);
+    numbers.capped = row.penetration->capped;
     if (row.penetration->status == Penetration::Status::kDone) {
       numbers.depth_lower = row.penetration->lower;
       numbers.depth_upper = row.penetration->upper;

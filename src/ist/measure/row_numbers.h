@@ -19,6 +19,7 @@ struct RowNumbers {
   bool complete = false;        ///< every search ended and every tolerance was reached
   std::int32_t not_closed = 0;  ///< 0: both bodies are; 1: the fixed one is not; 2: the moving one
   std::int32_t self_intersecting = 0;  ///< of a depth: self_intersecting_code()
+  bool capped = false;                 ///< of a depth: Penetration::capped
   std::uint64_t leaf_pairs = 0;
   std::uint64_t sphere_tests = 0;  ///< of all searches, those of a depth excepted
   double distance_lower = kNone, distance_upper = kNone;

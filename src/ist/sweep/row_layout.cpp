@@ -35,6 +35,7 @@ void each_column(const RowQuestions& asked, std::uint64_t index, const RowNumber
   if (asked.penetration) {
     code("not_closed", numbers.not_closed);
     code("self_intersecting", numbers.self_intersecting);
+    code("capped", numbers.capped ? 1 : 0);
   }
   whole("sphere_tests", numbers.sphere_tests);
   if (asked.leaf_pairs || asked.contacts) whole("leaf_pairs", numbers.leaf_pairs);

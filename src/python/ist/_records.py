@@ -44,7 +44,7 @@ ROW = np.dtype(
         ("torque", "f8", 3),
         ("rotation_error", "f8"),
         ("self_intersecting", "i4"),
-        ("reserved", "i4"),
+        ("capped", "i4"),
     ]
 )
 WORLD_PAIR = np.dtype(

@@ -71,6 +71,7 @@ ist_row row_of(const RowNumbers& numbers) noexcept {
   copy(numbers.torque, row.torque);
   row.rotation_error = numbers.rotation_error;
   row.self_intersecting = numbers.self_intersecting;
+  row.capped = numbers.capped;
   return row;
 }
 
