@@ -316,11 +316,13 @@ TEST(Penetration, SaysWhatIsNoQuestion) {
   const TriangleMesh closed = box({0, 0, 0}, {1, 1, 1});
   Bodies open_fixed(open_strip(3), closed), open_moving(closed, open_strip(3));
   EXPECT_EQ(open_fixed.at(Pose::Identity(), 0.1).status, DepthStatus::kFixedNotClosed);
+  EXPECT_EQ(open_fixed.at(Pose::Identity(), 0.1).upper, HUGE_VAL);
   EXPECT_EQ(open_moving.at(Pose::Identity(), 0.1).status, DepthStatus::kMovingNotClosed);
   Bodies bodies(closed, closed);
   Pose sheared = Pose::Identity();
   sheared(0, 1) = 0.1;
   EXPECT_EQ(bodies.at(sheared, 0.1).status, DepthStatus::kInvalidPose);
+  EXPECT_EQ(bodies.at(sheared, 0.1).upper, HUGE_VAL);
   for (const double tolerance : {-1.0, std::nan("")}) {
     EXPECT_EQ(error_name([&] { static_cast<void>(bodies.at(Pose::Identity(), tolerance)); }),
               "argument-invalid");

@@ -74,11 +74,13 @@ class Advance {
   FirstContact run() {
     query_.forget();
     const IntersectionResult start = query_.intersects(motion_.at(0));
-    if (start.status == QueryStatus::kBusy) return end(ContactStatus::kBusy, 0, 0);
+    if (start.status == QueryStatus::kBusy) return end(ContactStatus::kBusy, 0, 1);
     found_.verdicts = 1;
     if (start.answer == Answer::kYes) {
       name_triangles(0);
-      return end(is_busy_ ? ContactStatus::kBusy : ContactStatus::kTouchesAtStart, 0, 0);
+      if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
+      found_.distance = {0, 0};
+      return end(ContactStatus::kTouchesAtStart, 0, 0);
     }
     found_.fixed_self_intersecting = query_.fixed().self_intersections() > 0;
     found_.moving_self_intersecting = query_.moving().self_intersections() > 0;
@@ -87,7 +89,7 @@ class Advance {
     while (at < 1) {
       if (!goes_on(at)) return end(ContactStatus::kStopped, grazed_at(at), 1);
       const double apart = distance_at(at), safe = step(at, apart);
-      if (is_busy_) return end(ContactStatus::kBusy, 0, 0);
+      if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
       if (apart >= tolerance_) {
         at = safe;
         continue;
@@ -96,7 +98,7 @@ class Advance {
       for (const double then : {near, std::min(near, step(at, kAhead * found_.distance.upper))}) {
         const bool met = meet(then);
         if (met) name_triangles(then);
-        if (is_busy_) return end(ContactStatus::kBusy, 0, 0);
+        if (is_busy_) return end(ContactStatus::kBusy, 0, 1);
         if (met) return end(ContactStatus::kContact, grazed_at(at), then);
       }
       if (at >= slow_until_) {

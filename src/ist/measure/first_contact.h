@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -65,13 +66,14 @@ struct FirstContact {
   Status status = Status::kStopped;  ///< says which members count
   /// The parameter of the first contact lies in [lower, upper], which with kContact are no farther
   /// apart than any point of the moving body takes to go the tolerance; farther where the surfaces
-  /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone.
+  /// grazed before: `grazed`. [0, 0] at the start; [1, 1] with kNone; [0, 1] if busy.
   double lower = 0,     ///< the parameter before which no triangles intersect
-      upper = 0;        ///< where the contact is at the latest
+      upper = 1;        ///< where the contact is at the latest
   bool grazed = false;  ///< the surfaces grazed before, and may have met unseen
   /// Triangles that intersect at `upper`.
   std::optional<TrianglePair> triangles = std::nullopt;
-  DistanceInterval distance{0, 0};  ///< of the surfaces at `lower`, mesh units
+  /// The distance of the surfaces at `lower`, mesh units; [0, infinity] if none was asked for.
+  DistanceInterval distance{0, std::numeric_limits<double>::infinity()};
   /// The least tolerance that is reached at the last pose of the search, mesh units: rounding.
   double narrowest = 0;
   /// Whether the surface of a body intersects itself: SphereTree::self_intersections(). Only

@@ -79,7 +79,10 @@ Penetration penetration(Query& query, const Eigen::Isometry3d& pose, double tole
   result.fixed_self_intersecting = fixed.self_intersections() > 0;
   result.moving_self_intersecting = moving.self_intersections() > 0;
   const bool meet = surfaces.answer == Answer::kYes;
-  if (!meet && !is_any_inside(sides[0]) && !is_any_inside(sides[1])) return result;
+  if (!meet && !is_any_inside(sides[0]) && !is_any_inside(sides[1])) {
+    result.upper = 0;
+    return result;
+  }
 
   DepthSearch search({sides.begin(), sides.end()}, rounding, options.budget, options.proceed);
   if (options.last != nullptr) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 
 #include "ist/base/api.h"
 #include "ist/base/progress.h"
@@ -21,11 +22,11 @@ struct Penetration {
     kBusy,             ///< another thread is using the query
   };
 
-  Status status = Status::kDone;  ///< other than kDone: all numbers but `rotation_error` are 0
+  Status status = Status::kDone;  ///< other than kDone: the interval is [0, infinity]
   bool complete = false;          ///< the interval is no wider than the tolerance, or `narrowest`
   bool capped = false;            ///< the search ended after 4 million pieces of triangles
   double lower = 0,               ///< the depth is no less, mesh units; 0: the bodies may be apart
-      upper = 0;                  ///< and no more; 0: the bodies do not intersect
+      upper = std::numeric_limits<double>::infinity();  ///< and no more; 0: they do not intersect
   /// A point of a surface that is `lower` deep, to within rounding; fixed coordinates. Zero where
   /// no point was found inside.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
