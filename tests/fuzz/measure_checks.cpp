@@ -95,7 +95,7 @@ void MeasureChecks::check_depth(const Eigen::Isometry3d& pose, const Intersectio
       penetration(query_, pose, 1e-3 * size_, {.last = &coarse, .budget = kFewPoints});
   require(depth.status == coarse.status, "the tolerance changes whether there is a depth");
   if (depth.status != Penetration::Status::kDone) {
-    require(depth.upper == 0 && depth.lower == 0, "there is no depth, and it is bounded");
+    require(depth.upper == HUGE_VAL && depth.lower == 0, "there is no depth, and it is bounded");
     return;
   }
   if (!built_) return;
