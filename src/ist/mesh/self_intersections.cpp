@@ -140,10 +140,12 @@ class Hubs {
   std::vector<std::uint32_t> of_;
 };
 
-// Returns whether two triangles at the edge (u, v), of one plane, lie on one side of it.
+// Returns whether two triangles at the edge (u, v) lie on one side of it if they lie in one plane.
 bool folds_over(const Vector& u, const Vector& v, const Vector& a, const Vector& b) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::Index i = (axis + 1) % 3, j = (axis + 2) % 3;
+  Eigen::Index steepest = 0;
+  cross_in_order(difference(v, u), difference(a, u)).cwiseAbs().maxCoeff(&steepest);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Eigen::Index i = (steepest + k + 1) % 3, j = (steepest + k + 2) % 3;
     const auto shadow = [i, j](const Vector& p) { return Eigen::Vector2d(p[i], p[j]); };
     const int side = orientation(shadow(u), shadow(v), shadow(a));
     if (side != 0) return side == orientation(shadow(u), shadow(v), shadow(b));
@@ -195,15 +197,31 @@ bool an_edge_separates(const TriangleCorners& a, const TriangleCorners& b) {
   return false;
 }
 
+// Returns whether a plane through the corner that two triangles share certainly separates the rest
+// of them. Exact predicates take much longer for triangles of one plane.
+bool a_plane_separates_fans(const TriangleCorners& a, const TriangleCorners& b) {
+  const std::array<Vector, 4> ways = {difference(a[1], a[0]), difference(a[2], a[0]),
+                                      difference(b[1], b[0]), difference(b[2], b[0])};
+  const Vector into_a = sum(ways[0], ways[1]), into_b = sum(ways[2], ways[3]);
+  const Vector across =
+      difference(scaled(length_in_order(into_a), into_b), scaled(length_in_order(into_b), into_a));
+  const double size = across.cwiseAbs().maxCoeff();
+  const auto is_beyond = [&](const Vector& way, double side) {
+    return side * dot_in_order(across, way) > 0x1p-48 * size * way.cwiseAbs().maxCoeff() + 0x1p-900;
+  };
+  return is_beyond(ways[0], -1) && is_beyond(ways[1], -1) && is_beyond(ways[2], 1) &&
+         is_beyond(ways[3], 1);
+}
+
 bool meet_beyond_shared(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
   const auto [a, b, shared] = neighbours_of(mesh, first, second);
   switch (shared) {
     case 0:
       return !an_edge_separates(a, b) && !an_edge_separates(b, a) && triangles_meet(a, b);
     case 1:
-      return fans_meet(a, b);
+      return !a_plane_separates_fans(a, b) && fans_meet(a, b);
     case 2:
-      return orientation(a[0], a[1], a[2], b[2]) == 0 && folds_over(a[0], a[1], a[2], b[2]);
+      return folds_over(a[0], a[1], a[2], b[2]) && orientation(a[0], a[1], a[2], b[2]) == 0;
     default:
       return true;  // one triangle twice
   }
