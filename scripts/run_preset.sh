@@ -13,16 +13,21 @@ configure() {  # a preset and its options
 build() {  # a preset and its targets; ninja's progress shows on a terminal
   local preset=$1
   shift
+  part "building $preset"
   if [ -t 1 ]; then
     cmake --build --preset "$preset" --target "$@" -- -j"$jobs"
-  elif ! cmake --build --preset "$preset" --target "$@" -- -j"$jobs" >"build/$preset.log" 2>&1; then
+    return
+  fi
+  echo "the log of the build is build/$preset.log"
+  if ! cmake --build --preset "$preset" --target "$@" -- -j"$jobs" >"build/$preset.log" 2>&1; then
     cat "build/$preset.log"
     exit 1
   fi
 }
 
 tests() {  # a preset for ctest, and its arguments
-  ctest --preset "$@" -j"$jobs" | grep -vE '^ *Start +[0-9]+:'
+  part "tests of $1"
+  ctest --preset "$@" -j"$jobs" | grep --line-buffered -vE '^ *Start +[0-9]+:'
 }
 
 run() {  # a preset and its options, targets to build, then arguments for ctest

@@ -1,27 +1,28 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that are missing. It works as root or with sudo, and does nothing if all are installed.
+# An option adds the packages of a task to those of a build:
 #
-#   scripts/setup.sh             builds the command and the library
-#   scripts/setup.sh --tests     also builds and runs the fast tests
-#   scripts/setup.sh --all       also runs scripts/test.sh --all
-#   scripts/setup.sh --bench     also builds the benchmarks and draws the plots
-#   scripts/setup.sh --peers     also builds the libraries that bench/peers compares with
-#   scripts/setup.sh --fuzz      also builds the fuzzers
-#   scripts/setup.sh --style     also checks style by clang-format and flake8
-#   scripts/setup.sh --lint      also checks style by clang-tidy too, and before each commit
-#   scripts/setup.sh --hardware  also simulates and synthesises the circuit
-#   scripts/setup.sh --oracles   also reads and measures the command's files by other tools
-#   scripts/setup.sh --python    also makes and tests the Python package
-#   scripts/setup.sh --sweep     also runs sweeps by dask and GNU parallel
-#   scripts/setup.sh --slurm     also runs sweeps by Slurm, on one node of its own
-#   scripts/setup.sh --docs      also makes a site of the pages and of the reference
-#   scripts/setup.sh --package   also checks packages, manual pages and instruction counts
-#   scripts/setup.sh --cloudcompare   also measures distances by CloudCompare
-#   scripts/setup.sh --blender   also tests the add-on in Blender
-#   scripts/setup.sh --doors     also walks the four doors of tests/doors
-#   scripts/setup.sh --viewer    also makes and tests the page. It uses the node (18 or later) and npm that it finds, and
+#   scripts/setup.sh             to build the command and the library
+#   scripts/setup.sh --tests     to build and run the fast tests
+#   scripts/setup.sh --all       to run scripts/test.sh --all
+#   scripts/setup.sh --bench     to build the benchmarks and draw the plots
+#   scripts/setup.sh --peers     to build the libraries that bench/peers compares with
+#   scripts/setup.sh --fuzz      to build the fuzzers
+#   scripts/setup.sh --style     to check style by clang-format and flake8
+#   scripts/setup.sh --lint      to check style by clang-tidy, and before each commit
+#   scripts/setup.sh --hardware  to simulate and synthesise the circuit
+#   scripts/setup.sh --oracles   to read and measure the command's files by other tools
+#   scripts/setup.sh --python    to make and test the Python package
+#   scripts/setup.sh --sweep     to run sweeps by dask and GNU parallel
+#   scripts/setup.sh --slurm     to run sweeps by Slurm, on one node of its own
+#   scripts/setup.sh --docs      to make a site of the pages and of the reference
+#   scripts/setup.sh --package   to check packages, manual pages and instruction counts
+#   scripts/setup.sh --cloudcompare   to measure distances by CloudCompare
+#   scripts/setup.sh --blender   to test the add-on in Blender
+#   scripts/setup.sh --doors     to walk the four doors of tests/doors
+#   scripts/setup.sh --viewer    to make and test the page. It uses the node (18 or later) and npm that it finds, and
 #                                installs Debian's if it finds none
-#   scripts/setup.sh --cross     also builds and runs for ARM64 and WebAssembly, and with clang 16. It adds the
+#   scripts/setup.sh --cross     to build and run for ARM64 and WebAssembly, and with clang 16. It adds the
 #                                architecture arm64 to this machine
 set -euo pipefail
 
@@ -68,7 +69,7 @@ for argument in "${arguments[@]}"; do
       viewer=true
       ;;
     --cross) packages+=("${cross[@]}") ;;
-    -h | --help) sed -n '2,27s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,28s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "setup: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

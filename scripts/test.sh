@@ -17,7 +17,7 @@ source scripts/run_preset.sh
 export IST_DATA_DIR=${IST_DATA_DIR:-$PWD/../shared/data}
 few=${IST_EFFORT:-0.2} all=${IST_EFFORT:-1}
 what=${1:-fast}
-[ $# -le 1 ] || [ "$what" = --long ] || { echo "test: one word at a time, and \"$2\" is a second one; see --help" >&2; exit 2; }
+[ $# -le 1 ] || [ "$what" = --long ] || { echo "test: one word at a time, and \"$2\" is a second one: call the script once for each label" >&2; exit 2; }
 
 # A build with every instruction set serves the fast tests too, and stays.
 instruction_sets() { grep -qs '^IST_FEW_TARGETS:BOOL=OFF' build/test/CMakeCache.txt && echo OFF || echo ON; }
@@ -31,9 +31,9 @@ fast() {
   part "fast tests"
   configure test "-DIST_FEW_TARGETS=$(instruction_sets)"
   build test tests_fast
-  echo "left out: four fifths of the random samples, sanitizers, WebAssembly, and $(count slow) slow, $(count oracle) oracle," \
-    "$(count page) page and $(count package) package tests, and $(grep -rh '^  IST_SLOW();' tests | wc -l) slow cases of fast" \
-    "programs; scripts/test.sh --all runs them"
+  echo "left out, and run by scripts/test.sh --all: four fifths of the random samples; sanitizers; WebAssembly;" \
+    "$(count slow) slow, $(count oracle) oracle, $(count page) page and $(count package) package tests;" \
+    "$(grep -rh '^  IST_SLOW();' tests | wc -l) slow cases"
   [ -d "$IST_DATA_DIR" ] || echo "left out: tests of real meshes, because there is no folder $IST_DATA_DIR (IST_DATA_DIR)"
   echo "left out: $(count long) long tests; scripts/test.sh --long runs them"
   IST_EFFORT=$few tests fast
