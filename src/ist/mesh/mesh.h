@@ -83,8 +83,8 @@ struct MeshReport {
   /// Pairs of triangles that meet beyond the corners and edges that they share. Triangles that only
   /// touch count, those of area 0 do not.
   std::size_t self_intersections = 0;
-  /// Else there are more: of some 2^20 pairs the search ends, and it needs an extent in
-  /// [1e-12, 1e15].
+  /// False if there may be more: the search ends after some 2^20 pairs. It also needs a largest
+  /// extent in [1e-12, 1e15].
   bool self_intersections_complete = true;
   std::vector<SelfIntersection> first_self_intersections;  ///< at most 8, by their indices
   std::size_t components = 0;       ///< sets of triangles connected by vertices

@@ -187,9 +187,8 @@ std::vector<std::string> warnings(const MeshReport& report) {
   if (report.self_intersections > 0) {
     const SelfIntersection& first = report.first_self_intersections.front();
     sentences.push_back(fmt::format(
-        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near ({:g}, "
-        "{:g}, "
-        "{:g}).{}",
+        "The surface intersects itself: {}{} pair{} of triangles, first {} and {} near "
+        "({:g}, {:g}, {:g}).{}",
         report.self_intersections_complete ? "" : "at least ", report.self_intersections,
         report.self_intersections == 1 ? "" : "s", first.triangles[0], first.triangles[1],
         first.near[0], first.near[1], first.near[2],

@@ -19,7 +19,7 @@ struct NearestTriangle {
   double square;  ///< of the distance, mesh units squared
   std::uint32_t triangle;
   NearestPoint on;       ///< mesh coordinates
-  bool is_tied = false;  ///< rounding alone may make it nearer than another corner, edge or face
+  bool is_tied = false;  ///< another corner, edge or face is as near, to within rounding
 };
 
 /// Returns the point of a triangle nearest to `point`, with its feature.

@@ -142,8 +142,8 @@ class Nesting {
     return false;
   }
 
-  // Returns six points round a point, farther than rounding moves a point of the surface. Round
-  // such a point they lie on both sides.
+  // Returns six points round a point, farther from it than rounding moves a vertex. Round a point
+  // of the surface they lie on both sides.
   [[nodiscard]] std::array<Eigen::Vector3d, 6> points_beside(const Eigen::Vector3d& point) const {
     std::array<Eigen::Vector3d, 6> points;
     for (std::size_t i = 0; i < points.size(); ++i) {
