@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "ist/mesh/format/base64.h"
 #include "ist/tree/sphere_tree.h"
 #include "support/errors.h"
+#include "support/scoped_variable.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
 
@@ -23,8 +23,7 @@ using nlohmann::json;
 class View : public CliTest {
  protected:
   View() { name_page(page_); }
-  ~View() override { ::unsetenv("IST_PAGE"); }
-  static void name_page(const std::string& file) { ::setenv("IST_PAGE", file.c_str(), 1); }
+  void name_page(const std::string& file) const { variable_.set(file.c_str()); }
 
   static constexpr const char* kBegin = R"(<script type="application/json" id="ist-data">)";
   static constexpr const char* kEnd = "</script>";
@@ -71,6 +70,7 @@ stiffness = 2000
 
   const std::string html_ = std::string("<html>") + kBegin + "null" + kEnd + "<p>rest</p></html>";
   const std::string page_ = write("page.html", html_);
+  const ScopedVariable variable_{"IST_PAGE", nullptr};
 };
 
 TEST_F(View, HoldsTwoBodiesWithTheirTriangles) {

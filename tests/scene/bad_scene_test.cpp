@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
 #include "support/errors.h"
+#include "support/scoped_variable.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -301,7 +301,7 @@ TEST_F(BadSceneTest, ContradictsItself) {
 
 TEST_F(BadSceneTest, NamesFilesThatAreNotThere) {
   const std::string shape = "shape = \"box\"\nsize = [40, 40, 10]";
-  ::unsetenv("IST_DATA_DIR");
+  const ScopedVariable data("IST_DATA_DIR", nullptr);
   expect_refused({
       {shape, "file = \"none.stl\"", 4,
        "there is no file " + (folder_.path() / "none.stl").string(),
@@ -321,10 +321,9 @@ TEST_F(BadSceneTest, NamesFilesThatAreNotThere) {
       {"kind = \"hand\"", "kind = \"script\"\npath = \"none.csv\"", 13, "there is no file",
        "check 'path'"},
   });
-  ::setenv("IST_DATA_DIR", folder_.path().c_str(), 1);
+  data.set(folder_.path().c_str());
   expect_refused({{shape, "file = \"${IST_DATA_DIR}/a.stl\"", 4,
                    "there is no file " + (folder_.path() / "a.stl").string(), "check 'file'"}});
-  ::unsetenv("IST_DATA_DIR");
 }
 
 TEST_F(BadSceneTest, GivesAVoxelSizeToATree) {

@@ -2,13 +2,13 @@
 
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <string>
 
 #include "ist/models/models.h"
 #include "ist/scene/make_effects.h"
 #include "ist/tree/sphere_tree.h"
 #include "scene/scene_text.h"
+#include "support/scoped_variable.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -319,9 +319,10 @@ TEST_F(SceneFile, FindsFilesFromItsFolderAndFromThatOfTheData) {
   expect_tree(read_from("sub/cube.ist"));
   expect_tree(read_from("./sub/../sub/cube.ist"));
   expect_tree(read_from(tree.string()));
-  ::setenv("IST_DATA_DIR", (folder_.path() / "sub").c_str(), 1);
-  expect_tree(read_from("${IST_DATA_DIR}/cube.ist"));
-  ::unsetenv("IST_DATA_DIR");
+  {
+    const ScopedVariable data("IST_DATA_DIR", (folder_.path() / "sub").c_str());
+    expect_tree(read_from("${IST_DATA_DIR}/cube.ist"));
+  }
   folder_.write("cube.stl", "solid\nendsolid\n");
   const SceneBody mesh =
       read(replaced(kSoundScene, shape, "file = \"cube.stl\"\nvoxel_size = 1\n")).fixed.front();

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "ist/scene/make_effects.h"
 #include "support/data_dir.h"
 #include "support/effort.h"
+#include "support/scoped_variable.h"
 #include "support/skip.h"
 
 namespace ist::test {
@@ -102,7 +102,7 @@ TEST(ShippedScene, ClosesTheHumanPair) {
       !std::filesystem::is_regular_file(folder / "human_maxilla.stl")) {
     IST_SKIP("the human pair is not in " << folder);
   }
-  ASSERT_EQ(::setenv("IST_DATA_DIR", folder.c_str(), 1), 0);
+  const ScopedVariable data("IST_DATA_DIR", folder.c_str());
   const Scene scene = shipped("human_pair");
   EXPECT_EQ(std::get<std::filesystem::path>(scene.fixed.front().source),
             folder / "human_maxilla.stl");

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "support/run_command.h"
+#include "support/scoped_variable.h"
 #include "support/skip.h"
 #include "support/temp_dir.h"
 
@@ -21,25 +22,21 @@ namespace ist::test {
 class GermanLocale : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string made = folder_.path() / kName;
     if (!std::filesystem::exists("/usr/share/i18n/locales/de_DE")) {
       IST_SKIP("no sources of locales are here: scripts/setup.sh --tests installs them");
     }
-    const CommandResult made_it =
-        run_command("/usr/bin/localedef",
-                    {"--no-archive", "-i", folder_.write("source", source()), "-f", "UTF-8", made});
-    ASSERT_EQ(made_it.exit_code, 0) << made_it.err;
-    ASSERT_EQ(setenv("LOCPATH", folder_.path().c_str(), 1), 0);
-    ASSERT_EQ(setenv("LC_ALL", kName, 1), 0);
+    static const TempDir kLocales;  // one for all tests of a program
+    static const CommandResult kMade =
+        run_command("/usr/bin/localedef", {"--no-archive", "-i", kLocales.write("source", source()),
+                                           "-f", "UTF-8", kLocales.path() / kName});
+    ASSERT_EQ(kMade.exit_code, 0) << kMade.err;
+    locales_.set(kLocales.path().c_str());
+    language_.set(kName);
     set_german();
     ASSERT_STREQ(std::localeconv()->decimal_point, ",");
     ASSERT_EQ(std::strtod("0,5", nullptr), 0.5);
   }
-  void TearDown() override {
-    set_classic();
-    unsetenv("LC_ALL");
-    unsetenv("LOCPATH");
-  }
+  void TearDown() override { set_classic(); }
 
   static void set_german() { std::locale::global(std::locale(kName)); }  // C's with it
   static void set_classic() { std::locale::global(std::locale::classic()); }
@@ -69,6 +66,7 @@ class GermanLocale : public ::testing::Test {
 
   static constexpr const char* kName = "de_DE.UTF-8";
   const TempDir folder_;
+  const ScopedVariable locales_{"LOCPATH", nullptr}, language_{"LC_ALL", nullptr};
 };
 
 }  // namespace ist::test

@@ -109,8 +109,18 @@ std::unique_ptr<MadeBite> full_bite() {
   return made;
 }
 
+// One of them and its page, for tests that change neither.
+struct Shown {
+  const std::unique_ptr<const MadeBite> made = full_bite();
+  const Page page{made->bite};
+};
+const Shown& shown() {
+  static const Shown kShown;
+  return kShown;
+}
+
 TEST(BiteHtml, HasNoScriptAndRefersToNothingOutside) {
-  const Page page(full_bite()->bite);
+  const Page& page = shown().page;
   EXPECT_EQ(page.content["outside"], json::array());
   for (const char* element : {"script", "link", "iframe", "object", "a", "form"}) {
     EXPECT_FALSE(page.content["elements"].contains(element)) << element;
@@ -151,9 +161,9 @@ TEST(BiteHtml, HoldsTheContactRegions) {
 }
 
 TEST(BiteHtml, HoldsAreasAndDepths) {
-  const auto made = full_bite();
+  const auto& [made, page] = shown();
   const BiteBody &fixed = made->bite.fixed, &moving = made->bite.moving;
-  const Rows areas = Page(made->bite).table("areas");
+  const Rows areas = page.table("areas");
   const auto expect = [&](const std::string& head, double a, double b, double error) {
     const Cells row = row_of(areas, {head});
     ASSERT_EQ(row.size(), 4U) << head;
@@ -174,8 +184,8 @@ TEST(BiteHtml, HoldsAreasAndDepths) {
 }
 
 TEST(BiteHtml, HoldsTheFindings) {
-  const auto made = full_bite();
-  const Rows rows = Page(made->bite).table("findings");
+  const auto& [made, page] = shown();
+  const Rows rows = page.table("findings");
   const auto answer = [&](const char* question) {
     const Cells row = row_of(rows, {question});
     return row.size() == 2 ? row[1] : "no row";
@@ -194,8 +204,8 @@ TEST(BiteHtml, HoldsTheFindings) {
 }
 
 TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
-  const auto made = full_bite();
-  const Page page(made->bite);
+  const std::unique_ptr<const MadeBite>& made = shown().made;
+  const Page& page = shown().page;
   const auto expect = [&](const char* head, const cli::Balance& balance) {
     const Cells row = row_of(page.table("shares"), {head});
     ASSERT_EQ(row.size(), 5U) << head;
@@ -262,8 +272,8 @@ TEST(BiteHtml, HoldsInputAndSettings) {
 }
 
 TEST(BiteHtml, TheLegendHoldsEveryBand) {
-  const auto made = full_bite();
-  const json items = Page(made->bite).content["lists"]["legend"];
+  const auto& [made, page] = shown();
+  const json& items = page.content["lists"]["legend"];
   const auto bands = cli::map_bands(made->bite);
   ASSERT_EQ(items.size(), bands.size() + 3);
   for (std::size_t i = 0; i < bands.size(); ++i) {
@@ -275,9 +285,9 @@ TEST(BiteHtml, TheLegendHoldsEveryBand) {
 
 TEST(BiteHtml, SaysTheCaveatVerbatim) {
   const auto made = sphere_over_plate({0, 0, 0.5});
-  EXPECT_NE(Page(made->bite).content["all"].get<std::string>().find(cli::kCaveat),
-            std::string::npos);
-  EXPECT_TRUE(Page(made->bite).says(cli::kCaveat));
+  const Page page(made->bite);
+  EXPECT_NE(page.content["all"].get<std::string>().find(cli::kCaveat), std::string::npos);
+  EXPECT_TRUE(page.says(cli::kCaveat));
 }
 
 TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
@@ -298,7 +308,7 @@ TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
 }
 
 TEST(BiteHtml, ClaimsNothingThatItCannotKnow) {
-  const Page page(full_bite()->bite);
+  const Page& page = shown().page;
   for (const char* word : {R"(\bnewtons?\b)", R"(\d N\b)", R"(\bstable\b)", R"(\bbalanced\b)",
                            R"(\bhigh\b)", R"(\bcorrect\b)", R"(\bload)", R"(\bpremature\b)"}) {
     EXPECT_FALSE(std::regex_search(page.text(), std::regex(word))) << word;
