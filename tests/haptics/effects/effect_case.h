@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
 #include "ist/haptics/effects/effect.h"
 #include "support/random.h"
@@ -70,8 +70,7 @@ inline double difference(const Matrix6& a, const Matrix6& b) {
 inline bool is_symmetric_and_semidefinite(const Matrix6& stiffness) {
   const double size = stiffness.cwiseAbs().maxCoeff();
   if ((stiffness - stiffness.transpose()).cwiseAbs().maxCoeff() > 1e-14 * size) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(stiffness);
-  return solver.eigenvalues()[0] >= -1e-14 * size;
+  return Eigen::LDLT<Matrix6>(stiffness + 1e-14 * size * Matrix6::Identity()).isPositive();
 }
 
 /// The needs of an effect, in order: normals, depth, velocity, proximity, triangles.
