@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <thread>
 
 #include "c_bodies.h"
+#include "ist/capi/follower.h"
 
 namespace ist::test {
 
@@ -27,10 +29,21 @@ struct Listener {
   }
 };
 
-/// Makes a call of more and more work, as call(work, progress), until it lasts for four reports,
-/// 20 ms apart; then ends it at its second one, and expects that it tells no third.
+/// Calls report every 0.2 ms in its lifetime, so that short ones report several times on a fast
+/// machine too.
+class FrequentReports {
+ public:
+  FrequentReports() { capi::time_between_reports() = std::chrono::microseconds(200); }
+  ~FrequentReports() { capi::time_between_reports() = std::chrono::milliseconds(20); }
+  FrequentReports(const FrequentReports&) = delete;
+  FrequentReports& operator=(const FrequentReports&) = delete;
+};
+
+/// Makes a call of more and more work, as call(work, progress), until it lasts for four reports;
+/// then ends it at its second one, and expects that it tells no third.
 template <class Call>
 void expect_ends_midway(const Call& call) {
+  const FrequentReports frequent;
   Listener listener;
   const auto progress = sized<ist_progress>({0, Listener::hear, &listener});
   std::size_t work = 1;

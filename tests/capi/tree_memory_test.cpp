@@ -126,6 +126,7 @@ TEST(CJaw, IsThatOfCpp) {
 }
 
 TEST(CBuild, IsFollowedOnTheCallersThreadAndEndsWhereItSaysSo) {
+  const FrequentReports frequent;
   ist_mesh* mesh = nullptr;
   ASSERT_EQ(name(ist_jaw_create(IST_JAW_UPPER, 1, &mesh)), "ok");
   Listener listener;
@@ -157,6 +158,7 @@ TEST(CBuild, IsFollowedOnTheCallersThreadAndEndsWhereItSaysSo) {
 // A sphere of 327,680 triangles: its files take longer than the time between two reports.
 TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
   IST_SLOW();
+  const FrequentReports frequent;
   const TempDir folder;
   const std::string stl = (folder.path() / "a.stl").string(),
                     ist = (folder.path() / "a.ist").string();
@@ -196,6 +198,7 @@ TEST(CFiles, AreFollowedAndEndWhereTheCallerSaysSo) {
 
 TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
   IST_SLOW();
+  const FrequentReports frequent;
   ist_tree *tree = c_tree(icosphere(6, 10), 0.1), *back = nullptr;
   const std::vector<unsigned char> bytes = bytes_of(tree);
   std::vector<unsigned char> memory(bytes.size(), 7);
@@ -240,6 +243,7 @@ TEST(CTreeInMemory, IsFollowedAndEndsWhereTheCallerSaysSo) {
 }
 
 TEST(CMeshCheck, IsFollowedAndEndsWhereTheCallerSaysSo) {
+  const FrequentReports frequent;
   ist_mesh* mesh = c_mesh(icosphere(7, 10));
   auto wanted = sized<ist_mesh_info>(), info = wanted;
   ASSERT_EQ(name(ist_mesh_get_info(mesh, &wanted)), "ok");

@@ -60,6 +60,7 @@ class CWorldPrepare : public ::testing::Test {
 
 TEST_F(CWorldPrepare, IsFollowedAndEndsWhereTheCallerSaysSo) {
   IST_SLOW();
+  const FrequentReports frequent;
   const ist_body_pair first[] = {{0, 1}};
   ASSERT_EQ(name(ist_world_prepare_with_progress(world_, first, 1, nullptr)), "ok");
   ask_contacts(nullptr);
@@ -108,12 +109,13 @@ TEST_F(CWorldPrepare, TellsItsFollowerOfItsErrors) {
   const ist_body_pair wrong[] = {{0, kBodies}};
   EXPECT_EQ(name(ist_world_prepare_with_progress(world_, wrong, 1, &progress)), "argument-invalid");
   EXPECT_NE(std::string(ist_last_error_message()).find("body 30"), std::string::npos);
-  EXPECT_EQ(listener.reports, 1);
+  const int reports = listener.reports;
+  EXPECT_GE(reports, 1);
   EXPECT_EQ(name(ist_world_prepare_with_progress(world_, nullptr, 2, &progress)), "null-argument");
   EXPECT_EQ(name(ist_world_prepare_with_progress(nullptr, wrong, 1, &progress)), "null-argument");
   progress.struct_size = 7;
   EXPECT_EQ(name(ist_world_prepare_with_progress(world_, wrong, 1, &progress)), "struct-size");
-  EXPECT_EQ(listener.reports, 1);
+  EXPECT_EQ(listener.reports, reports);
 }
 
 TEST_F(CWorldPrepare, ARowTellsWhereABudgetEndedItsContacts) {

@@ -1,8 +1,6 @@
 #include "ist/capi/follower.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <future>
 
 #include "ist/base/cancellation.h"
@@ -11,8 +9,6 @@
 namespace ist::capi {
 namespace {
 
-constexpr std::chrono::milliseconds kBetween(20);
-
 // `part` says how much is done, `stop` ends the work.
 bool run_beside(const ist_progress& follower, const std::function<void()>& work,
                 const std::function<double()>& part, const std::function<void()>& stop) {
@@ -20,7 +16,7 @@ bool run_beside(const ist_progress& follower, const std::function<void()>& work,
   std::future<void> ended = std::async(std::launch::async, work);
   bool stopped = false;
   double told = 0;
-  while (ended.wait_for(kBetween) != std::future_status::ready) {
+  while (ended.wait_for(time_between_reports().load()) != std::future_status::ready) {
     told = std::max(told, part());
     if (stopped || follower.report(follower.user, told) == 0) continue;
     stopped = true;
@@ -31,6 +27,11 @@ bool run_beside(const ist_progress& follower, const std::function<void()>& work,
 }
 
 }  // namespace
+
+std::atomic<std::chrono::microseconds>& time_between_reports() noexcept {
+  static std::atomic<std::chrono::microseconds> between{std::chrono::milliseconds(20)};
+  return between;
+}
 
 ist_status read_follower(const Call& call, const ist_progress* given, Follower& follower) {
   if (given == nullptr) return IST_OK;

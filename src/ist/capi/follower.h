@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -14,6 +16,9 @@ using Follower = std::optional<ist_progress>;
 /// Converts a caller's progress. NULL, and one without a function, leave nobody.
 [[nodiscard]] ist_status read_follower(const Call& call, const ist_progress* given,
                                        Follower& follower);
+
+/// Returns the time between two reports, 20 ms. Tests shorten it, so that short calls report too.
+std::atomic<std::chrono::microseconds>& time_between_reports() noexcept;
 
 /// Runs `work` to its end. The follower's function is called first and every 20 ms meanwhile on the
 /// calling thread, and `work` then runs on a thread of its own; from the first answer other than 0
