@@ -260,8 +260,10 @@ TEST(Gltf, RefusesAGlbOfWrongChunks) {
 }
 
 TEST(Gltf, ColladaIsRefusedWithARemedy) {
-  EXPECT_EQ(refusal("<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\"></COLLADA>\n"),
-            "not-a-mesh: COLLADA is not supported; export the mesh as glTF (.glb), PLY or STL");
+  EXPECT_EQ(
+      refusal("<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\"></COLLADA>\n"),
+      "not-a-mesh: the file's format is COLLADA, and the supported formats are STL, PLY, OBJ, OFF, "
+      "glTF or 3MF; export the mesh as one of them");
 }
 
 }  // namespace

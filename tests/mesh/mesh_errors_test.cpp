@@ -116,8 +116,9 @@ TEST(ReadMesh, RefusesWhatIsNoMesh) {
       {"not-a-mesh", ply("element face 1\nproperty int vertex_indices\nend_header\n")},
       {"not-a-mesh", ply("element face 1\nproperty list uchar float vertex_index\nend_header\n")},
       {"not-a-mesh", ply("element face 1\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")},
-      {"not-a-mesh",
+      {"mesh-truncated",
        ply("element tristrips 1\nproperty list int int vertex_indices\nend_header\n")},
+      {"not-a-mesh", ply("element tristrips 1\nproperty int vertex_indices\nend_header\n")},
       {"not-a-mesh", "ply\nformat ebcdic 1.0\nend_header\n"},
       {"not-a-mesh", "ply\nelement vertex -3\nend_header\n"},
       {"not-a-mesh", "ply\nproperty float x\nend_header\n"},
@@ -180,7 +181,7 @@ TEST(ReadMesh, AcceptsPaddingButNothingElseAfterTheLastElement) {
 TEST(ReadMesh, BelievesNoCountThatTheFileDoesNotHold) {
   std::string stl = test::as_binary_stl(kSoundBox);
   std::memset(stl.data() + 80, 0xFF, 4);
-  EXPECT_EQ(code_of_bytes(stl), "mesh-truncated");
+  EXPECT_EQ(code_of_bytes(stl), "not-a-mesh");
   EXPECT_EQ(code_of_bytes(stl, "a.stl"), "mesh-truncated");
   for (const char* many : {"4294967295", "9223372036854775807"}) {
     const std::string element = std::string("element vertex ") + many;
@@ -253,6 +254,56 @@ TEST(ReadMesh, SaysWhatWhereAndWhatToDo) {
     EXPECT_EQ(error.what(), file.string() +
                                 ": line 4: a face names vertex 9, which does not exist; "
                                 "export the mesh again");
+  }
+}
+
+// The cause, without the file's name.
+std::string cause(std::string_view bytes, const char* name) {
+  const TempDir folder;
+  const std::filesystem::path file = folder.write(name, bytes);
+  try {
+    static_cast<void>(read_mesh(file));
+  } catch (const Error& error) {
+    return std::string(error.what()).substr(file.string().size() + 2);
+  }
+  return "fine";
+}
+
+TEST(ReadMesh, NamesFormatsThatItDoesNotRead) {
+  const std::string zeros(2000, '\0'), blank(2000, '\1');
+  for (const auto& [format, bytes] : std::vector<std::pair<const char*, std::string>>{
+           {"VTK", "# vtk DataFile Version 5.1\nvtk output\nBINARY\nDATASET POLYDATA\n" + zeros},
+           {"VTK", "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n" + zeros},
+           {"COLLADA", "<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\"></COLLADA>\n"},
+           {"Blender's", "BLENDER-v293" + blank},
+           {"Draco", "DRACO\2\2" + blank},
+           {"LightWave's", std::string("FORM\0\0\7\0LWO2", 12) + blank},
+           {"3DS", std::string("MM\7\0\0\0", 6) + blank},
+           {"FBX", "Kaydara FBX Binary  " + zeros},
+           {"DICOM", std::string(128, '\0') + "DICM" + blank},
+           {"gzip, a packed file", "\x1F\x8B\x08" + blank}}) {
+    for (const char* name : {"a.stl", "a", "a.vtk"}) {
+      EXPECT_EQ(cause(bytes, name),
+                std::string("the file's format is ") + format +
+                    ", and the supported formats are STL, PLY, OBJ, OFF, glTF or 3MF; export the "
+                    "mesh as one of them")
+          << name;
+    }
+  }
+  EXPECT_TRUE(cause(blank, "a.lwo").starts_with("the content is in no supported format"));
+}
+
+TEST(ReadMesh, NamesUtf16) {
+  const std::string text = test::as_obj(kSoundBox);
+  for (const bool big : {false, true}) {
+    std::string wide;
+    for (const char c : text) wide += big ? std::string{'\0', c} : std::string{c, '\0'};
+    for (const char* mark : {"", big ? "\xFE\xFF" : "\xFF\xFE"}) {
+      for (const char* name : {"a.obj", "a.stl"}) {
+        EXPECT_EQ(cause(mark + wide, name),
+                  "the text is UTF-16; save it as UTF-8 or ASCII, or export the mesh again");
+      }
+    }
   }
 }
 

@@ -174,13 +174,68 @@ TEST(ReadMesh, TakesTheNumbersOfAPlyForWhatItDeclares) {
 
 TEST(ReadMesh, ReadsWhatObjWritersWrite) {
   const TriangleMesh mesh = read_bytes(
-      "# comment \\\n still a comment, f 9 9 9\n"
+      "# comment\n"
       "mtllib /dev/zero\ng a b\ns 1\nusemtl c:\\path\n"
       "  v 0 0 0 1.0   # a weight\n\tv 1 0 0 0.5 0.5 0.5\nv 1 \\\n 1 0\n"
       "vt 0.5\nvn nan nan nan\nvp 1\nl 1 2\np 1\n"
       "f 1/1/1 2//1 3/1\n  f -3 -1\\\r\n 4# a vertex that comes later\ncurv 0 1\nv 0 1 0\n");
   EXPECT_EQ(mesh.vertices.size(), 4u);
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+// Comments and names may end with a backslash: exporters write Windows paths there.
+TEST(ReadMesh, InAnObjOnlyLinesOfNumbersGoOn) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+  for (const std::string line :
+       {"# from D:\\scans\\", "g D:\\", "o D:\\", "usemtl D:\\", "mtllib D:\\", "shadow_obj D:\\",
+        "v 0 1 0 # D:\\", "  # \\", "s off\\"}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      const TriangleMesh mesh =
+          read_bytes(line + end + vertices + line + end + "f 1 2 3\n", "a.obj");
+      EXPECT_EQ(mesh.triangles.size(), 1u) << line;
+    }
+  }
+  for (const char* text : {"f 1 2\\\n3\n", "f 1 2 \\\r\n 3\n", "f 1\\\n2\\\n3\n", "f\\\r1 2 3\n"}) {
+    EXPECT_EQ(read_bytes(vertices + text).triangles.size(), 1u) << text;
+  }
+}
+
+TEST(ReadMesh, TextMayHoldAFewControlBytes) {
+  const std::string obj = "# \x1B[0m\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng a\x01\nf 1 2 3\n";
+  EXPECT_EQ(read_bytes(obj, "a.obj").triangles.size(), 1u);
+  std::string stl = test::as_text_stl(kBox);
+  stl.replace(stl.find("solid"), 5, std::string("solid a\0b", 9));
+  EXPECT_EQ(corners(read_bytes(stl, "a.stl")), corners(narrowed(kBox)));
+}
+
+// The header's lines end with \r, and the first byte of the first vertex is \n.
+TEST(ReadMesh, APlyMayHaveCarriageReturnsBeforeItsBytes) {
+  TriangleMesh mesh = test::icosphere(0, 1);
+  mesh.vertices[0].x() = static_cast<double>(std::bit_cast<float>(0x3F80000Au));
+  std::string bytes = test::as_binary_ply(mesh, false);
+  const std::size_t header = bytes.find("end_header\n") + 11;
+  for (std::size_t i = 0; i < header; ++i) {
+    if (bytes[i] == '\n') bytes[i] = '\r';
+  }
+  EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(mesh)));
+}
+
+TEST(ReadMesh, ReadsThePlyStrips) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n";
+  const TriangleMesh faces = read_bytes(
+      "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3\nf 3 2 4\nf 3 4 5\nf 5 4 6\n");
+  EXPECT_EQ(corners(read_bytes(header + "6 0 1 2 3 4 5\n")), corners(faces));
+  EXPECT_EQ(corners(read_bytes(header + "11 0 1 2 3 -1 2 3 4 5 -1 -1\n")), corners(faces));
+  // Corners twice in a row join two strips.
+  const TriangleMesh joined = read_bytes(header + "10 0 1 2 3 3 2 2 3 4 5\n");
+  EXPECT_EQ(corners(joined), corners(faces));
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(read_bytes(header + "4 0 1 2 6\n")); }),
+            "mesh-bad-index");
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(read_bytes(header + "4 0 1 2 -2\n")); }),
+            "mesh-bad-index");
 }
 
 TEST(ReadMesh, TheFirstCoordinateMayLookLikeALineEnd) {
@@ -257,6 +312,27 @@ TEST(ReadMesh, GivesTrianglesForPolygonsWithoutAnAnswer) {
   EXPECT_EQ(read_bytes(star + "f 1 2 3 4 5\n").triangles.size(), 3u);
   EXPECT_EQ(read_bytes(star + "f 1 2 1 2 1 2\n").triangles.size(), 4u);
   EXPECT_EQ(read_bytes("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 3 2 4\n").triangles.size(), 2u);
+}
+
+// A closed surface of polygons is a closed surface of triangles: no two polygons get the same
+// diagonal.
+TEST(ReadMesh, PolygonsThatShareTwoCornersStayClosed) {
+  const std::string cube =
+      "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\nv 1 0.3 1\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  for (const std::string one : {"f 1 2 6 9\n", "f 2 6 9 1\n", "f 6 9 1 2\n", "f 9 1 2 6\n"}) {
+    for (const std::string other : {"f 6 5 1 9\n", "f 5 1 9 6\n", "f 1 9 6 5\n", "f 9 6 5 1\n"}) {
+      const MeshReport report = check_mesh(read_bytes(cube + one + other));
+      EXPECT_EQ(report.non_manifold_edges, 0u) << one << other;
+      EXPECT_EQ(report.duplicate_triangles, 0u) << one << other;
+      EXPECT_TRUE(report.closed && report.consistent);
+      EXPECT_NEAR(report.signed_volume, 7.7, 0.1 + 1e-12) << "vertex 9 lies 0.3 inside";
+    }
+  }
+  // Only the second of the two has another diagonal: the edge from 2 to 9 is taken.
+  const MeshReport taken =
+      check_mesh(read_bytes(cube + "f 1 2 6 9\nf 6 5 1 9\nv 1 -2 1\nf 2 9 10\nf 9 2 10\n"));
+  EXPECT_EQ(taken.duplicate_triangles, 1u) << "the one that was written so";
 }
 
 TEST(ReadMesh, EndsWhereItsThreadIsAsked) {

@@ -5,6 +5,7 @@
 
 #include "ist/base/assert.h"
 #include "ist/base/cancellation.h"
+#include "ist/mesh/format/part_diagonals.h"
 #include "ist/mesh/format/triangulate.h"
 
 namespace ist {
@@ -67,7 +68,14 @@ TriangleMesh IndexedFaces::weld() const {
     }
     builder.add_face(polygon);
   }
-  return builder.finish();
+  TriangleMesh mesh = builder.finish();
+  if (corners_.size() == 4 * faces_) return mesh;  // triangles
+  std::vector<std::uint32_t> polygons = corners_;
+  for (std::size_t at = 0; at < polygons.size(); at += polygons[at] + 1) {
+    for (std::size_t i = 1; i <= polygons[at]; ++i) polygons[at + i] = vertex_of[polygons[at + i]];
+  }
+  part_diagonals(polygons, mesh);
+  return mesh;
 }
 
 }  // namespace ist

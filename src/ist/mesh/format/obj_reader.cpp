@@ -16,7 +16,7 @@ namespace {
 class ObjReader {
  public:
   ObjReader(std::string_view content, std::string_view file)
-      : reader_(content, file, TextReader::LineEnd::kContinuedByBackslash), file_(file) {}
+      : reader_(content, file, TextReader::LineEnd::kObj), file_(file) {}
 
   TriangleMesh read() {
     bool statement_seen = false;

@@ -117,8 +117,10 @@ template <class Read>
 auto with_ply_body(const TextReader& reader, const PlyHeader& header, std::string_view content,
                    std::string_view file, Read read) {
   if (header.encoding == PlyEncoding::kText) return read(PlyText(reader));
-  return read(PlyBytes(content, reader.next_line_offset(),
-                       header.encoding == PlyEncoding::kBigEndian, file));
+  std::size_t begin = reader.next_line_offset();
+  // If the header's other lines end with \r alone, a \n after its last line is the first byte.
+  if (content.find("\r\n") + 2 == begin) --begin;
+  return read(PlyBytes(content, begin, header.encoding == PlyEncoding::kBigEndian, file));
 }
 
 }  // namespace ist

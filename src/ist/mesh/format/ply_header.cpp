@@ -63,7 +63,8 @@ PlyRole role_of(std::string_view element, std::string_view property) {
   if (element == "vertex" && property == "x") return PlyRole::kX;
   if (element == "vertex" && property == "y") return PlyRole::kY;
   if (element == "vertex" && property == "z") return PlyRole::kZ;
-  if (element == "face" && (property == "vertex_indices" || property == "vertex_index"))
+  if ((element == "face" || element == kPlyStrips) &&
+      (property == "vertex_indices" || property == "vertex_index"))
     return PlyRole::kCorners;
   return PlyRole::kOther;
 }
@@ -114,10 +115,9 @@ void check_elements(const TextReader& reader, const PlyHeader& header) {
         !(has_one(element, PlyRole::kX) && has_one(element, PlyRole::kY) &&
           has_one(element, PlyRole::kZ)))
       refuse("a vertex does not have one each of x, y and z; export the mesh again");
-    if (element.name == "face" && !has_one(element, PlyRole::kCorners))
+    if ((element.name == "face" || element.name == kPlyStrips) &&
+        !has_one(element, PlyRole::kCorners))
       refuse("a face does not have one list 'vertex_indices'; export the mesh again");
-    if (element.name == "tristrips")
-      refuse("the surface is in triangle strips, which are not supported; export it as faces");
   }
   for (const std::string_view name : {"vertex", "face"})
     if (std::count_if(header.elements.begin(), header.elements.end(),

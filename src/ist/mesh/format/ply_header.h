@@ -41,9 +41,12 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
+/// The element of triangle strips: lists of corners, with -1 after each strip.
+inline constexpr std::string_view kPlyStrips = "tristrips";
+
 /// Reads the header of a PLY and leaves the reader on the header's last line. The result has at
 /// most one element `vertex`, with x, y and z, and at most one `face`, with one list of integer
-/// corners.
+/// corners. An element of strips has such a list too.
 /// Errors: kNotAMesh, kMeshTruncated.
 [[nodiscard]] PlyHeader read_ply_header(TextReader& reader);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,18 +14,45 @@ namespace ist {
 namespace {
 
 template <class Body>
+std::uint32_t checked_corner(const Body& body, std::int64_t corner, std::uint64_t vertices) {
+  if (corner < 0 || static_cast<std::uint64_t>(corner) >= vertices)
+    body.fail(ErrorCode::kMeshBadIndex,
+              fmt::format("a face names vertex {}, but there are {}, counted from 0; export the "
+                          "mesh again",
+                          corner, vertices));
+  return static_cast<std::uint32_t>(corner);
+}
+
+template <class Body>
 void read_corners(Body& body, std::int64_t count, const PlyProperty& property,
                   std::uint64_t vertices, std::vector<std::uint32_t>& corners) {
   require_face_size(count, body);
   corners.clear();
   for (std::int64_t i = 0; i < count; ++i) {
-    const std::int64_t corner = body.integer(property.type);
-    if (corner < 0 || static_cast<std::uint64_t>(corner) >= vertices)
-      body.fail(ErrorCode::kMeshBadIndex,
-                fmt::format("a face names vertex {}, but there are {}, counted from 0; export the "
-                            "mesh again",
-                            corner, vertices));
-    corners.push_back(static_cast<std::uint32_t>(corner));
+    corners.push_back(checked_corner(body, body.integer(property.type), vertices));
+  }
+}
+
+// Adds a triangle for each corner after the second one of a strip; every other one is turned. A
+// strip repeats corners to go on elsewhere: triangles that have a corner twice are left out.
+template <class Body>
+void read_strips(Body& body, std::int64_t count, const PlyProperty& property,
+                 std::uint64_t vertices, IndexedFaces& surface) {
+  std::array<std::uint32_t, 2> last{};
+  std::size_t length = 0;  // of the strip so far
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::int64_t named = body.integer(property.type);
+    if (named == -1) {
+      length = 0;
+      continue;
+    }
+    const std::uint32_t corner = checked_corner(body, named, vertices);
+    const bool is_triangle =
+        length >= 2 && last[0] != last[1] && corner != last[0] && corner != last[1];
+    if (is_triangle && length % 2 == 0) surface.add_face(Triangle{last[0], last[1], corner});
+    if (is_triangle && length % 2 == 1) surface.add_face(Triangle{last[1], last[0], corner});
+    last = {last[1], corner};
+    ++length;
   }
 }
 
@@ -34,7 +62,9 @@ void read_instance(Body& body, const PlyElement& element, std::uint64_t vertices
                    std::vector<std::uint32_t>& corners, IndexedFaces& surface) {
   Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
   for (const PlyProperty& property : element.properties) {
-    if (property.role == PlyRole::kCorners) {
+    if (property.role == PlyRole::kCorners && element.name == kPlyStrips) {
+      read_strips(body, body.integer(property.count_type), property, vertices, surface);
+    } else if (property.role == PlyRole::kCorners) {
       read_corners(body, body.integer(property.count_type), property, vertices, corners);
     } else if (property.role == PlyRole::kOther) {
       const std::int64_t count = property.count_type ? body.integer(property.count_type) : 1;

@@ -109,9 +109,10 @@ bool has_size_of_binary_stl(std::string_view content) {
 }
 
 bool begins_like_binary_stl(std::string_view content) {
-  if (content.size() < kStlCountEnd + kStlFacetBytes || facet_count(content) == 0) return false;
-  const std::size_t whole = std::min(facet_count(content), whole_facets(content));
-  for (std::size_t i = 0; i < whole; ++i)
+  if (content.size() < kStlCountEnd + kStlFacetBytes) return false;
+  const std::size_t counted = facet_count(content), whole = whole_facets(content);
+  if (counted == 0 || counted / 65536 > whole || whole / 64 > counted) return false;
+  for (std::size_t i = 0; i < std::min(counted, whole); ++i)
     if (!is_finite(corners_of(content, i))) return false;
   return true;
 }

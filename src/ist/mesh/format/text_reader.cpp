@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <system_error>
@@ -14,6 +15,11 @@ namespace ist {
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Whether the # at this place begins a comment. That of "1.#IND", a printed NaN, begins none.
+bool begins_comment(std::string_view text, std::size_t at) {
+  return at == 0 || text[at - 1] != '.';
+}
 
 template <class Number>
 std::optional<double> rounded(std::string_view word) {
@@ -59,9 +65,28 @@ bool same_word(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-bool TextReader::is_blank(char c) const {
-  return static_cast<unsigned char>(c) <= 0x20 ||
-         (c == '\\' && line_end_ == LineEnd::kContinuedByBackslash);
+// In an OBJ a backslash at the end of a line is blank.
+bool TextReader::is_blank(std::size_t at) const {
+  if (static_cast<unsigned char>(text_[at]) <= 0x20) return true;
+  if (line_end_ != LineEnd::kObj || text_[at] != '\\') return false;
+  return at + 1 == text_.size() || text_[at + 1] == '\r' || text_[at + 1] == '\n';
+}
+
+// Whether a backslash joins the next line to the statement at the cursor. Its last line begins at
+// `begin`.
+bool TextReader::goes_on(std::size_t begin) const {
+  if (line_end_ != LineEnd::kObj || line_close_ == begin || text_[line_close_ - 1] != '\\')
+    return false;
+  const std::string_view line = text_.substr(begin, line_close_ - begin);
+  for (std::size_t at = line.find('#'); at != line.npos; at = line.find('#', at + 1)) {
+    if (begins_comment(line, at)) return false;
+  }
+  std::size_t open = cursor_, close = 0;
+  while (open < line_close_ && is_blank(open)) ++open;
+  for (close = open; close < line_close_ && !is_blank(close);) ++close;
+  constexpr std::array<std::string_view, 7> kNumbers = {"v", "vt", "vn", "vp", "f", "l", "p"};
+  return std::find(kNumbers.begin(), kNumbers.end(), text_.substr(open, close - open)) !=
+         kNumbers.end();
 }
 
 bool TextReader::next_line() {
@@ -69,14 +94,14 @@ bool TextReader::next_line() {
     cursor_ = next_open_;
     line_number_ = next_line_number_;
     for (bool continued = true; continued;) {
+      const std::size_t begin = next_open_;
       line_close_ = std::min(text_.find_first_of("\r\n", next_open_), text_.size());
       const bool pair = text_.substr(line_close_, 2) == "\r\n";
       next_open_ = std::min(line_close_ + (pair ? 2 : 1), text_.size());
       ++next_line_number_;
-      continued = line_end_ == LineEnd::kContinuedByBackslash && line_close_ > cursor_ &&
-                  text_[line_close_ - 1] == '\\' && next_open_ < text_.size();
+      continued = next_open_ < text_.size() && goes_on(begin);
     }
-    while (cursor_ < line_close_ && is_blank(text_[cursor_])) ++cursor_;
+    while (cursor_ < line_close_ && is_blank(cursor_)) ++cursor_;
     if (cursor_ < line_close_) return true;
   }
   cursor_ = line_close_ = text_.size();
@@ -84,16 +109,16 @@ bool TextReader::next_line() {
 }
 
 std::string_view TextReader::word() {
-  while (cursor_ < line_close_ && is_blank(text_[cursor_])) ++cursor_;
+  while (cursor_ < line_close_ && is_blank(cursor_)) ++cursor_;
   const std::size_t open = cursor_;
-  while (cursor_ < line_close_ && !is_blank(text_[cursor_])) ++cursor_;
+  while (cursor_ < line_close_ && !is_blank(cursor_)) ++cursor_;
   return text_.substr(open, cursor_ - open);
 }
 
 std::string_view TextReader::word_before_comment() {
   const std::string_view found = word();
   const std::size_t comment = found.find('#');
-  if (comment == found.npos || found.substr(0, comment).ends_with('.')) return found;
+  if (comment == found.npos || !begins_comment(found, comment)) return found;
   skip_line();
   return found.substr(0, comment);
 }
@@ -132,9 +157,9 @@ void TextReader::fail(ErrorCode code, std::string_view cause) const {
 }
 
 void TextReader::fail_malformed(std::string_view cause) const {
-  const auto blank = [this](char c) { return is_blank(c); };
-  const std::string_view rest = text_.substr(cursor_);
-  if (std::all_of(rest.begin(), rest.end(), blank))
+  std::size_t rest = cursor_;
+  while (rest < text_.size() && is_blank(rest)) ++rest;
+  if (rest == text_.size())
     fail(ErrorCode::kMeshTruncated, fmt::format("the file ends here, but {}", cause));
   fail(ErrorCode::kNotAMesh, cause);
 }

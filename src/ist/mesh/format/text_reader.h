@@ -26,11 +26,13 @@ enum class Precision : std::uint8_t { kFloat, kDouble };
 /// products of several coordinates are finite doubles.
 [[nodiscard]] bool is_coordinate(double number);
 
-/// Reads a text by lines and words; errors name the current line. Lines end with \n, \r or \r\n;
-/// every byte up to 0x20 is a blank. Allocates nothing; the text must outlive the reader.
+/// Reads a text by lines and words. Errors name the current line. Lines end with \n, \r or \r\n.
+/// Every byte up to 0x20 is a blank. Allocates nothing. The text must outlive the reader.
 class TextReader {
  public:
-  enum class LineEnd : std::uint8_t { kPlain, kContinuedByBackslash };
+  /// In an OBJ a line of numbers (v, vt, vn, vp, f, l, p) goes on if a backslash ends it. A comment
+  /// or a line of names does not: a backslash may end a Windows path.
+  enum class LineEnd : std::uint8_t { kPlain, kObj };
 
   TextReader(std::string_view text, std::string_view file, LineEnd line_end = LineEnd::kPlain)
       : text_(text), file_(file), line_end_(line_end) {}
@@ -60,7 +62,8 @@ class TextReader {
   [[noreturn]] void fail_malformed(std::string_view cause) const;
 
  private:
-  [[nodiscard]] bool is_blank(char c) const;
+  [[nodiscard]] bool is_blank(std::size_t at) const;
+  [[nodiscard]] bool goes_on(std::size_t begin) const;
 
   std::string_view text_;
   std::string_view file_;

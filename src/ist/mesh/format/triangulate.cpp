@@ -1,6 +1,7 @@
 #include "ist/mesh/format/triangulate.h"
 
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "ist/base/assert.h"
 #include "ist/base/ordered_vector.h"
@@ -83,6 +84,27 @@ void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::
   }
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
     out.push_back({polygon.corner(0)[1], polygon.corner(i)[1], polygon.corner(i + 1)[1]});
+}
+
+void triangulate_avoiding(std::span<const std::uint32_t> corners,
+                          std::span<const Eigen::Vector3d> vertices,
+                          const std::function<bool(std::uint32_t, std::uint32_t)>& is_free,
+                          std::vector<Triangle>& out) {
+  Polygon polygon(corners, vertices);
+  while (polygon.size() > 3) {
+    std::optional<std::size_t> ear;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      if (!polygon.is_ear(i)) continue;
+      const auto [a, b, c] = polygon.corner(i);
+      const bool free = is_free(a, c);
+      if (!ear || free) ear = i;
+      if (free) break;
+    }
+    const std::size_t cut = ear.value_or(0);
+    out.push_back(polygon.corner(cut));
+    polygon.clip(cut);
+  }
+  out.push_back({polygon.corner(0)[1], polygon.corner(1)[1], polygon.corner(2)[1]});
 }
 
 }  // namespace ist

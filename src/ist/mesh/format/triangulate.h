@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,5 +18,11 @@ namespace ist {
 /// Source: G. H. Meisters, Polygons Have Ears, 1975.
 void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices,
                  std::vector<Triangle>& out);
+/// The same, and avoids diagonals that are not free if it can: of all ears whose diagonal is free,
+/// it cuts the first one.
+void triangulate_avoiding(std::span<const std::uint32_t> corners,
+                          std::span<const Eigen::Vector3d> vertices,
+                          const std::function<bool(std::uint32_t, std::uint32_t)>& is_free,
+                          std::vector<Triangle>& out);
 
 }  // namespace ist
