@@ -14,6 +14,8 @@ struct Bodies {
   /// Mesh units; empty of a mesh that got no voxels, but one as large as itself.
   std::optional<double> fixed_voxel_size{}, moving_voxel_size{};
 
+  /// Returns whether both bodies have voxels: leaf pairs and contacts are answers about voxels.
+  [[nodiscard]] bool have_voxels() const { return fixed_voxel_size && moving_voxel_size; }
   /// Returns the largest extent of the smaller body. Cost: as of box_of().
   [[nodiscard]] double extent() const;
   /// Returns the unit that a body's tree was told, which is the other's too: load_bodies() refuses

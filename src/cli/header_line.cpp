@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/answers/json_text.h"
 #include "cli/commit.h"
 #include "cli/source_file.h"
 
@@ -42,12 +43,12 @@ ordered_json header_line(const std::string& subcommand, const NamedSources& file
 }
 
 void print_header(const std::string& subcommand, const NamedFiles& files) {
-  fmt::print("{}\n", header_line(subcommand, read(files)).dump());
+  print_json(header_line(subcommand, read(files)));
 }
 
 void print_header(const std::string& subcommand, const NamedFiles& files, const Bodies& bodies,
                   const std::optional<TakenUnit>& unit) {
-  fmt::print("{}\n", header_line(subcommand, read(files), bodies, unit).dump());
+  print_json(header_line(subcommand, read(files), bodies, unit));
 }
 
 }  // namespace ist::cli

@@ -28,7 +28,7 @@ void add_engine_options(CLI::App& command, QueryOptions& options) {
       ->check(CLI::IsMember(std::vector<std::string>(kEngineNames.begin(), kEngineNames.end())))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->capture_default_str()
+      ->default_str(std::string(kEngineNames.front()))
       ->group(group);
   command
       .add_option("--workers", options.workers,
@@ -73,7 +73,8 @@ void QueryOptions::check() const {
   if (!contacts.empty()) check_contact_file(contacts);
   refuse_if(json && timing, "--timing", "contradicts --json, which has all times");
   static_cast<void>(select_kernels(target));  // before anything is built
-  if (std::find(engines.begin(), engines.end(), "simd") != engines.end()) return;
+  const std::vector<std::string> asked = asked_engines();
+  if (std::find(asked.begin(), asked.end(), "simd") != asked.end()) return;
   constexpr const char* kNoSimd = "goes with --engine simd: the reference is scalar, in one thread";
   refuse_if(!target.empty(), "--target", kNoSimd);
   refuse_if(workers != 1, "--workers", kNoSimd);
@@ -83,8 +84,12 @@ void QueryOptions::check() const {
 
 bool QueryOptions::asks_voxels() const {
   const bool engine = timing || repeat > 1 || verify || questions.max_tests || workers > 1 ||
-                      !spheres.empty() || !target.empty() || engines != QueryOptions().engines;
-  return json || engine || !contacts.empty() || files.voxel_size;
+                      !spheres.empty() || !target.empty() || !engines.empty();
+  return engine || !contacts.empty() || files.voxel_size;
+}
+
+std::vector<std::string> QueryOptions::asked_engines() const {
+  return engines.empty() ? std::vector<std::string>{std::string(kEngineNames.front())} : engines;
 }
 
 BodyFiles QueryOptions::body_files() const {
@@ -104,8 +109,8 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       ->required();
   command.add_option("--voxel-size", options.files.voxel_size,
                      "edge of a voxel, in mesh units; by default a 500th of the smaller body's "
-                     "largest extent. A mesh gets voxels where --json, --contacts, an option of "
-                     "the engine or a tree without triangles needs them");
+                     "largest extent. A mesh gets voxels if --contacts, an option of the engine "
+                     "or a tree without triangles needs them");
   command
       .add_option("--distance", options.questions.distance,
                   "how sharp the distance of the surfaces shall be; by default a 10,000th of that "

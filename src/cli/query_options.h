@@ -21,9 +21,9 @@ struct QueryOptions {
   bool json = false;
 
   // Of the engine.
-  std::string spheres;  ///< empty: the tightest that both bodies have
-  std::vector<std::string> engines{kEngineNames.front()};
-  std::string target;  ///< instruction set; empty: IST_TARGET's, or the best
+  std::string spheres;               ///< empty: the tightest that both bodies have
+  std::vector<std::string> engines;  ///< as named; empty: the first of kEngineNames
+  std::string target;                ///< instruction set; empty: IST_TARGET's, or the best
   int workers = 1;
   int repeat = 1;
   bool timing = false;
@@ -31,9 +31,11 @@ struct QueryOptions {
 
   /// Throws CLI::ValidationError if options contradict each other, and kTargetMissing.
   void check() const;
-  /// Returns whether anything is asked of voxels: lines of JSON, contacts, times and engines are,
-  /// and people's questions are not, unless a tree holds no triangles.
+  /// Returns whether a question needs voxels: contacts, times, budgets and engines do. All others
+  /// are about triangles.
   [[nodiscard]] bool asks_voxels() const;
+  /// Returns the engines that answer, one or two.
+  [[nodiscard]] std::vector<std::string> asked_engines() const;
   /// Returns the files with the chosen policy; without voxels where none are needed.
   [[nodiscard]] BodyFiles body_files() const;
 };

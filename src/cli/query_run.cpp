@@ -89,7 +89,7 @@ Meeting run_queries(const Bodies& bodies, const std::vector<AskedPose>& poses,
                     const QueryOptions& options) {
   Examiner examiner(bodies, options.questions, options.target);
   Engines engines;
-  for (const std::string& name : options.engines) {
+  for (const std::string& name : options.asked_engines()) {
     engines.emplace_back(
         name, bodies.fixed, bodies.moving,
         EngineOptions{bodies.policy, options.target, options.workers, options.questions.max_tests});

@@ -36,7 +36,7 @@ TEST_F(BodySizes, QueriesChooseVoxelsOfTheSmallerBody) {
       ": 1/500 of the smaller body's largest extent; --voxel-size names another\n";
   const auto asks = [&](const std::string& fixed, const std::string& moving,
                         const std::string& size, const json& sizes) {
-    const CommandResult result = collide(fixed, moving);
+    const CommandResult result = collide(fixed, moving, {"--engine", "simd"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.err, "voxel size " + size + said);
     EXPECT_EQ(json_lines(result.out).at(0)["voxel_size"], sizes);
@@ -47,6 +47,30 @@ TEST_F(BodySizes, QueriesChooseVoxelsOfTheSmallerBody) {
   asks(built, small, "0.002", {0.02, 0.002});
   asks(large, built, "0.008", {0.008, 0.02});
   EXPECT_EQ(collide(built, built).err, "");
+}
+
+TEST_F(BodySizes, OfJsonAloneHaveNoVoxels) {
+  const std::string mesh = needle("needle.stl", 4), built = tree("built.ist", "");
+  for (const auto& [fixed, moving] : {std::pair(mesh, mesh), {built, mesh}, {mesh, built}}) {
+    const CommandResult result = collide(fixed, moving);
+    EXPECT_EQ(result.err, "");
+    const json line = json_lines(result.out).at(0);
+    for (const char* key : {"engine", "spheres", "target", "workers", "resolution", "complete",
+                            "truncated", "level", "leaf_pairs", "sphere_tests", "contacts",
+                            "contact_depth", "microseconds_min", "microseconds_median"}) {
+      ASSERT_TRUE(line.contains(key)) << key;
+      EXPECT_TRUE(line[key].is_null()) << key;
+    }
+    EXPECT_EQ(line["voxel_size"][0].is_null(), fixed == mesh);
+    EXPECT_EQ(line["voxel_size"][1].is_null(), moving == mesh);
+    EXPECT_EQ(line["touch"], "yes");
+    EXPECT_EQ(line["distance_upper"], 0);
+    EXPECT_FALSE(line["area"].is_null());
+  }
+  const json asked = json_lines(collide(mesh, mesh, {"--voxel-size", "0.1"}).out).at(0);
+  EXPECT_EQ(asked["voxel_size"], json({0.1, 0.1}));
+  EXPECT_GT(asked["leaf_pairs"], 0);
+  EXPECT_GT(json_lines(collide(built, built).out).at(0)["leaf_pairs"], 0);
 }
 
 TEST_F(BodySizes, MeshesKeepTheirTrianglesForAQuery) {
@@ -121,7 +145,7 @@ TEST_F(BodySizes, VoxelsThatAreLargeForTheirBodyAreWarnedOf) {
             "warning: " + of +
                 ": a voxel of 0.081 is more than 1/50 of the largest extent, 4: take smaller "
                 "voxels for sharper answers\n");
-  const CommandResult coarse = collide(ball_tree(), ball_tree());
+  const CommandResult coarse = collide(ball_tree(), ball_tree(), {"--engine", "simd"});
   EXPECT_EQ(coarse.exit_code, 0);
   EXPECT_TRUE(says(coarse.err, "ball.ist: a voxel of 0.5 is more than 1/50"));
   const auto built_with = [&](const char* size) {

@@ -141,5 +141,27 @@ TEST_F(Sources, InfoSaysWhereAMeshIsOpen) {
                    "\nopen, wound consistently\n"));
 }
 
+// Old archives name files in Latin-1.
+TEST_F(Sources, JsonStaysUtf8WhateverFilesAreCalled) {
+  const std::string mesh = needle("Z\xE4hne.stl", 4), tree = path("Z\xE4hne.ist");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", mesh, "--json"},
+        {"build", mesh, "-o", tree, "--voxel-size", "0.02", "--json"},
+        {"info", tree, "--json"},
+        {"export", tree, "--what", "voxels", "--level", "0", "-o", path("Z\xE4hne.vtp"), "--json"},
+        {"collide", mesh, tree, "--json"},
+        {"table", "--format", "mem", "-o", path("t\xE4.mem"), "--json"}}) {
+    const CommandResult result = ist_well(arguments);
+    EXPECT_TRUE(result.out.starts_with("{")) << arguments[0] << result.out;
+    EXPECT_EQ(result.out.find('\xE4'), std::string::npos) << arguments[0];
+  }
+  // And without the folder.
+  for (const std::string& file : {mesh, tree}) {
+    const CommandResult result = ist_well({"info", file, "--json"});
+    EXPECT_EQ(result.out.find(path("")), std::string::npos) << result.out;
+    EXPECT_TRUE(says(result.out, "Z?hne."));
+  }
+}
+
 }  // namespace
 }  // namespace ist::test

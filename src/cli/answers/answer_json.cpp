@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/answers/answer_lines.h"
+#include "cli/answers/json_text.h"
 #include "cli/poses/pose_json.h"
 
 namespace ist::cli {
@@ -27,6 +28,10 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
                          const EngineAnswer& timed, const Bodies& bodies) {
   const Findings& found = answer.findings;
   const QueryResult& result = timed.result;
+  const bool have_voxels = bodies.have_voxels();
+  const auto of_voxels = [have_voxels](const ordered_json& value) {
+    return have_voxels ? value : ordered_json(nullptr);
+  };
   const auto lower = [](const std::optional<DistanceInterval>& interval) {
     return interval ? ordered_json(interval->lower) : ordered_json(nullptr);
   };
@@ -37,18 +42,18 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
                     {"pose", pose_json(answer.pose)},
                     {"rotation_error", answer.findings.rotation_error}};
   if (answer.displacement) line["displacement"] = *answer.displacement;
-  line["engine"] = engine.name();
-  line["spheres"] = to_string(bodies.policy);
-  line["target"] = engine.target();
-  line["workers"] = engine.workers();
-  line["voxel_size"] = {bodies.fixed.voxel_size(), bodies.moving.voxel_size()};
-  line["resolution"] = result.resolution;
-  line["complete"] = result.complete;
-  line["truncated"] = result.truncated;
-  line["level"] = result.level;
+  line["engine"] = of_voxels(engine.name());
+  line["spheres"] = of_voxels(to_string(bodies.policy));
+  line["target"] = of_voxels(engine.target());
+  line["workers"] = of_voxels(engine.workers());
+  line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
+  line["resolution"] = of_voxels(result.resolution);
+  line["complete"] = of_voxels(result.complete);
+  line["truncated"] = of_voxels(result.truncated);
+  line["level"] = of_voxels(result.level);
   line["touch"] = to_string(found.touch);
   line["inside"] = found.inside ? ordered_json(to_string(*found.inside)) : ordered_json(nullptr);
-  line["leaf_pairs"] = result.leaf_pairs;
+  line["leaf_pairs"] = of_voxels(result.leaf_pairs);
   line["triangle_pairs"] = or_null(found.triangle_pairs);
   line["distance_lower"] = lower(found.distance);
   line["distance_upper"] = upper(found.distance);
@@ -64,9 +69,9 @@ ordered_json answer_line(std::size_t index, const PoseAnswer& answer, const Engi
   line["contacts"] = or_null(found.contacts);
   line["contact_depth"] = or_null(found.contact_depth);
   line["area"] = or_null(found.depth.area);
-  line["sphere_tests"] = result.sphere_tests;
-  line["microseconds_min"] = timed.fastest();
-  line["microseconds_median"] = timed.median();
+  line["sphere_tests"] = of_voxels(result.sphere_tests);
+  line["microseconds_min"] = of_voxels(timed.fastest());
+  line["microseconds_median"] = of_voxels(timed.median());
   line["notes"] = found.notes;
   return line;
 }
@@ -77,7 +82,7 @@ void print_answer_lines(const Engines& engines, const Bodies& bodies,
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const ordered_json line =
           answer_line(i, answers[i], engines[e], answers[i].engines[e], bodies);
-      fmt::print("{}\n", line.dump());
+      print_json(line);
     }
   }
 }

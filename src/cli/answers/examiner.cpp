@@ -48,6 +48,7 @@ Meeting Findings::meeting() const {
 
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
     : questions_(questions),
+      have_voxels_(bodies.have_voxels()),
       budget_{questions.max_tests.value_or(Budget().tests)},
       distance_tolerance_(questions.distance.value_or(kDefaultTolerance * bodies.extent())),
       depth_tolerance_(questions.depth.value_or(kDefaultTolerance * bodies.extent())),
@@ -163,6 +164,7 @@ void Examiner::find_self_intersections(Findings& found) const {
 }
 
 void Examiner::find_contacts(const Eigen::Isometry3d& pose, Findings& found) {
+  if (!have_voxels_) return;
   const QueryResult result = query_.contacts(pose, manifold_, budget_);
   if (!result.complete) return;
   found.contacts = manifold_.points().size();

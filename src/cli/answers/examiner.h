@@ -38,7 +38,7 @@ struct Findings {
   Depth depth;
   /// Whether a surface intersects itself. Inside is by winding numbers then.
   std::optional<bool> self_intersecting{};
-  std::optional<std::uint64_t> contacts{};  ///< contact points
+  std::optional<std::uint64_t> contacts{};  ///< contact points of voxels
   std::optional<double> contact_depth{};    ///< of the deepest of them
   double rotation_error = 0;                ///< of the given pose
   std::vector<std::string> notes{};         ///< for people, a few words each
@@ -69,6 +69,7 @@ class Examiner {
   void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
 
   Questions questions_;
+  bool have_voxels_;
   Budget budget_;
   double distance_tolerance_, depth_tolerance_;
   Query query_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/answers/json_text.h"
 #include "cli/bench/ratios.h"
 #include "cli/version.h"
 
@@ -133,7 +134,7 @@ void print_bench_json(const BenchSetting& setting, const Contest& contest) {
   if (!machine.governor.empty()) line["governor"] = machine.governor;
   if (machine.load) line["load"] = *machine.load;
   if (noise) line["noise"] = *noise;
-  fmt::print("{}\n", line.dump());
+  print_json(line);
   for (const RatioGroup& group : ratios_of(contest.contestants())) {
     for (const Ratio& ratio : group.ratios) {
       for (std::size_t pose = 0; pose < contest.poses().size(); ++pose) {
@@ -142,7 +143,7 @@ void print_bench_json(const BenchSetting& setting, const Contest& contest) {
                 {"over", name_of(contest.contestants()[ratio.over])},
                 {"at", contest.poses()[pose].key},
                 {"times", times_as_fast(contest, ratio, pose)}};
-        fmt::print("{}\n", line.dump());
+        print_json(line);
       }
     }
   }
@@ -161,7 +162,7 @@ void print_bench_json(const BenchSetting& setting, const Contest& contest) {
               {"samples", score.times.size()}};
       if (!asked.spheres.empty()) line["spheres"] = asked.spheres;
       if (score.listed) line["listed"] = *score.listed;
-      fmt::print("{}\n", line.dump());
+      print_json(line);
     }
   }
 }

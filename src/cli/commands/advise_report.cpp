@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/answers/json_text.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
@@ -32,7 +33,7 @@ void print_json(const VoxelAdvice& advice) {
                                       {"build_milliseconds", size.build_milliseconds},
                                       {"memory", size.bytes},
                                       {"recommended", advice.recommended == i}};
-    fmt::print("{}\n", line.dump());
+    print_json(line);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/measure_progress.h"
@@ -93,7 +94,7 @@ void print_first_contact_json(const FirstContact& found, const Path& path, const
                               {"self_intersecting", self_intersecting(bodies)},
                               {"distances", found.distances}};
   if (found.triangles) line["triangles"] = {found.triangles->fixed, found.triangles->moving};
-  fmt::print("{}\n", line.dump());
+  print_json(line);
 }
 
 void print_first_contact(const FirstContact& found, const Path& path, const Bodies& bodies) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/extents.h"
@@ -72,7 +73,7 @@ void run(BuildArguments options) {
       line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
     for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
     line["warnings"] = checked.warnings;
-    fmt::print("{}\n", line.dump());
+    print_json(line);
     return;
   }
   fmt::print("{}: {} voxels, {} nodes, depth {}, {:.1f} MB\n", options.output.string(),

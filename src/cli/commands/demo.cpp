@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/engine.h"
@@ -82,7 +83,7 @@ void print_rows_json(const Engine& engine, SpherePolicy policy, double size, con
                                       {"sphere_tests", rows[i].result.sphere_tests},
                                       {"microseconds_median", rows[i].microseconds},
                                       {"hertz", 1e6 / rows[i].microseconds}};
-    fmt::print("{}\n", line.dump());
+    print_json(line);
   }
 }
 

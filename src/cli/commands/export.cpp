@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/level_geometry.h"
 #include "cli/common_options.h"
@@ -93,7 +94,7 @@ void run(const ExportArguments& options) {
                                       {"what", options.what},
                                       {"level", options.level},
                                       {"count", count}};
-    fmt::print("{}\n", line.dump());
+    print_json(line);
   } else {
     fmt::print("{}: {} {}\n", options.output.string(), count, options.what);
   }

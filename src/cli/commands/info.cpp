@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/answers/body_json.h"
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/info_text.h"
 #include "cli/common_options.h"
@@ -13,6 +14,7 @@
 #include "cli/source_file.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/mesh.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/saved_spheres.h"
 #include "ist/tree/sphere_tree.h"
 
@@ -28,8 +30,8 @@ void show_mesh(const InfoArguments& options) {
   const MeshReport report = check_mesh(read_mesh(options.file));
   if (!options.json) return print_mesh(options.file, report);
   print_header("info", {{"mesh", options.file}});
-  const auto line = mesh_json(options.file.string(), report, source_of(options.file));
-  fmt::print("{}\n", line.dump());
+  const MeshSource source = source_of(options.file);
+  print_json(mesh_json(source.name, report, source));
 }
 
 void show_tree(const InfoArguments& options) {
@@ -39,8 +41,7 @@ void show_tree(const InfoArguments& options) {
   if (tree.triangles() != nullptr) triangles = check_mesh(*tree.triangles());
   if (!options.json) return print_tree(options.file, tree, triangles, levels);
   print_header("info", {{"tree", options.file}});
-  const auto line = tree_json(options.file.string(), tree, triangles, levels);
-  fmt::print("{}\n", line.dump());
+  print_json(tree_json(source_name(options.file.filename().string()), tree, triangles, levels));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/formats/format.h"
@@ -199,7 +200,7 @@ void run(const OcclusionArguments& options) {
       print_header("occlusion", {{"fixed", options.files.fixed}, {"moving", options.files.moving}},
                    bodies, TakenUnit{bite.unit, bite.unit_assumed});
     }
-    fmt::print("{}\n", json_of(bite).dump());
+    print_json(json_of(bite));
   } else {
     print_bite(bite, options.outputs);
   }

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/answers/json_text.h"
+
 namespace ist::cli {
 namespace {
 
@@ -64,7 +66,7 @@ void print_notes(const std::vector<BuildNote>& notes, bool json) {
                                         {"why", note.why},
                                         {"milliseconds", note.milliseconds},
                                         {"bytes", note.bytes}};
-      fmt::print("{}\n", line.dump());
+      print_json(line);
     } else if (note.built) {
       fmt::print("built    {:<18} {:>8.1f} ms {:>8.1f} MB  {}\n", note.what, note.milliseconds,
                  1e-6 * static_cast<double>(note.bytes), note.why);
@@ -103,7 +105,7 @@ void print_report(const ServoReport& report, const Scene& scene, const Simulatio
            {change.attach ? "attach" : "release", std::string(simulation.body_name(change.body))},
            {"status", to_string(change.status)}});
     }
-    fmt::print("{}\n", line.dump());
+    print_json(line);
     return;
   }
   for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);

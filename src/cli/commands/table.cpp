@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/answers/json_text.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/exit_code.h"
@@ -63,7 +64,7 @@ void tell(const TableArguments& options, const nlohmann::ordered_json& line,
   if (options.output.empty()) return;
   if (options.json) {
     print_header("table", {});
-    fmt::print("{}\n", line.dump());
+    print_json(line);
   } else {
     fmt::print("{}: {}\n", options.output.string(), text);
   }
@@ -109,7 +110,7 @@ void check_file(const TableArguments& options) {
   const std::string file = options.check.string();
   if (options.json) {
     print_header("table", {{"vectors", options.check}});
-    fmt::print("{}\n", json_of(options.check, check).dump());
+    print_json(json_of(options.check, check));
   } else {
     for (const VectorDifference& at : check.differences) {
       fmt::print("{}, line {}: {} is {:x}, and {:x} in the model\n", file, at.line, at.field, at.is,

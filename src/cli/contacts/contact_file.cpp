@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/answers/json_text.h"
 #include "cli/formats/csv_writer.h"
 #include "cli/formats/format.h"
 #include "cli/formats/ply_writer.h"
@@ -42,7 +43,7 @@ class JsonlFile : public ContactFile {
       line["fixed_centre"] = triple(row.position);
       line["moving_centre"] = triple(*row.moving_centre);
     }
-    lines_ += line.dump();
+    lines_ += json_text(line);
     lines_ += '\n';
     if (lines_.size() > (1 << 20)) flush();
   }

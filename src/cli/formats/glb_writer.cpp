@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -19,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Numbers of the format.
-constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
 constexpr int kPoints = 0, kTriangles = 4;
 constexpr std::size_t kMagic = 0x46546C67, kVersion = 2;
@@ -36,10 +38,24 @@ std::vector<std::uint32_t> triangles_of(const PolyData& data) {
   return triangles;
 }
 
-std::vector<std::array<std::uint8_t, 4>> opaque(const std::vector<Colour>& colours) {
-  std::vector<std::array<std::uint8_t, 4>> all;
+// The linear share of light of each sRGB byte (IEC 61966-2-1), 65535 for all of it. In 16 bits no
+// two bytes have the same share.
+std::array<std::uint16_t, 256> linear_shares() {
+  std::array<std::uint16_t, 256> shares{};
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double c = static_cast<double>(i) / 255;
+    const double share = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    shares[i] = static_cast<std::uint16_t>(std::lround(65535 * share));
+  }
+  return shares;
+}
+
+std::vector<std::array<std::uint16_t, 4>> opaque(const std::vector<Colour>& colours) {
+  static const std::array<std::uint16_t, 256> kShares = linear_shares();
+  std::vector<std::array<std::uint16_t, 4>> all;
   all.reserve(colours.size());
-  for (const Colour& c : colours) all.push_back({c[0], c[1], c[2], 255});
+  for (const Colour& c : colours)
+    all.push_back({kShares[c[0]], kShares[c[1]], kShares[c[2]], 65535});
   return all;
 }
 
@@ -112,7 +128,7 @@ class Scene {
     if (!data.colours.empty()) {
       const auto colours = opaque(data.colours);
       attributes["COLOR_0"] =
-          accessor(std::as_bytes(std::span(colours)), kVertexBuffer, kUnsignedByte, "VEC4", count);
+          accessor(std::as_bytes(std::span(colours)), kVertexBuffer, kUnsignedShort, "VEC4", count);
       accessors_.back()["normalized"] = true;
     }
     Json primitive{{"attributes", std::move(attributes)}, {"material", 0}, {"mode", kPoints}};
@@ -125,8 +141,8 @@ class Scene {
     return primitive;
   }
 
-  // Appends a buffer view, and returns the index of an accessor to all of it. Every element has 4
-  // or 12 bytes, so each view begins at a multiple of 4.
+  // Appends a buffer view, and returns the index of an accessor to all of it. Every element has 4,
+  // 8 or 12 bytes, so each view begins at a multiple of 4.
   std::size_t accessor(std::span<const std::byte> bytes, int target, int kind, const char* type,
                        std::size_t count) {
     IST_ASSERT(binary_.size() % 4 == 0 && bytes.size() % 4 == 0);

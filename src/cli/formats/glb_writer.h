@@ -10,9 +10,10 @@ namespace ist::cli {
 
 /// Writes glTF 2.0 as one binary file (.glb): a root node, which turns z-up into glTF's y-up and
 /// mesh units into metres, and under it a node of its name for each body, with a mesh of its own.
-/// A vertex has a POSITION, a NORMAL where there are normals (viewers draw flat polygons where
-/// there are none), and a COLOR_0 where there are colours, of four bytes, which viewers read as
-/// linear shares of light. Quads become two triangles each; points without polygons are drawn as
+/// A vertex has a POSITION, a NORMAL if there are normals (without them viewers draw flat
+/// polygons), and a COLOR_0 if there are colours. Colours of PolyData are sRGB, as screens and
+/// pictures have them. COLOR_0 is linear, as glTF requires, with 16 bits each, so that viewers show
+/// the colours of the legend. Quads become two triangles each; points without polygons are drawn as
 /// points; a body without points is a node alone. Arrays are left out.
 ///
 /// @param metres_per_unit of mesh units, positive: 0.001 for millimetres

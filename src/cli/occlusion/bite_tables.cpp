@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/answers/json_text.h"
 #include "cli/formats/csv_writer.h"
 #include "cli/occlusion/bite_json.h"
 #include "cli/terminal.h"
@@ -82,7 +83,7 @@ void write_bite_csv(const Bite& bite, OutputFile& file) {
 }
 
 void write_bite_json(const Bite& bite, OutputFile& file) {
-  const std::string text = json_of(bite).dump(2) + "\n";
+  const std::string text = json_text(json_of(bite), 2) + "\n";
   file.write(text.data(), text.size());
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "cli/answers/json_text.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
@@ -57,8 +58,7 @@ void write_page(const std::filesystem::path& page, const nlohmann::ordered_json&
   }
   const std::size_t begin = at + kBegin.size();
   // A file's name may hold bytes that are no UTF-8.
-  const std::string json =
-      block.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string json = json_text(block);
   if (json.size() > most) {
     throw Error(ErrorCode::kInputInvalid,
                 fmt::format("{}: it would hold {} MB of data, and a browser reads {} MB: take "

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "cli/answers/json_text.h"
 #include "cli/commit.h"
 #include "cli/source_file.h"
 #include "ist/base/error.h"
@@ -119,7 +120,7 @@ void RecordingHeader::check(const nlohmann::json& recorded,
         continue;
       refuse(file,
              fmt::format("the {} of '{}', {}, is not the one that was recorded: give that one",
-                         what, body.at("name").get<std::string>(), body.at(name).dump()));
+                         what, body.at("name").get<std::string>(), json_text(body.at(name))));
     }
   }
 }

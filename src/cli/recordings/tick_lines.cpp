@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/answers/json_text.h"
 #include "ist/base/error.h"
 
 namespace ist::cli {
@@ -89,7 +90,7 @@ void TickWriter::append_change(const TickRecord& record) {
   const nlohmann::ordered_json line{{"tick", record.tick},
                                     {change.attach ? "attach" : "release", names_[change.body]},
                                     {"status", to_string(change.status)}};
-  lines_ += line.dump() + '\n';
+  lines_ += json_text(line) + '\n';
 }
 
 void TickWriter::write(const TickRecord& record) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/answers/json_text.h"
 #include "cli/header_line.h"
 #include "cli/source_file.h"
 #include "ist/tree/mesh_source.h"
@@ -77,7 +78,8 @@ void print_json(const Sweep& sweep, const nlohmann::ordered_json& result) {
   };
   add("fixed", sweep.file().fixed);
   add("moving", sweep.file().moving);
-  fmt::print("{}\n{}\n", header.dump(), result.dump());
+  print_json(header);
+  print_json(result);
 }
 
 void print_status(const Sweep& sweep, const FolderStatus& status, bool json) {

@@ -6,6 +6,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "cli/answers/json_text.h"
 #include "cli/engine.h"
 #include "cli/version.h"
 #include "ist/base/error.h"
@@ -39,7 +40,7 @@ std::string& last_text() {
 }
 
 const char* keep(const nlohmann::ordered_json& json) {
-  last_text() = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  last_text() = cli::json_text(json);
   return last_text().c_str();
 }
 

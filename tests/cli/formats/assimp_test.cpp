@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -22,7 +23,14 @@ using cli::PolyData;
 
 Eigen::Vector3f as_eigen(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-void expect_mesh(const aiMesh& mesh, const PolyData& data) {
+// The sRGB byte that a viewer shows for a linear share of light (IEC 61966-2-1).
+double shown(double light) {
+  return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
+enum class Colours : std::uint8_t { kSrgb, kLinear };
+
+void expect_mesh(const aiMesh& mesh, const PolyData& data, Colours colours) {
   ASSERT_EQ(mesh.mNumVertices, data.points.size());
   ASSERT_EQ(mesh.HasNormals(), !data.normals.empty());
   ASSERT_EQ(mesh.HasVertexColors(0), !data.colours.empty());
@@ -34,7 +42,9 @@ void expect_mesh(const aiMesh& mesh, const PolyData& data) {
     if (!mesh.HasVertexColors(0)) continue;
     const aiColor4D& colour = mesh.mColors[0][i];
     for (unsigned k = 0; k < 3; ++k) {
-      EXPECT_FLOAT_EQ(colour[k], static_cast<float>(data.colours[i][k]) / 255);
+      const double number = colour[k];
+      EXPECT_NEAR(colours == Colours::kLinear ? shown(number) : 255 * number, data.colours[i][k],
+                  0.05);
     }
     EXPECT_EQ(colour.a, 1);
   }
@@ -68,7 +78,7 @@ TEST_F(ReadByAssimp, PlyOfTwoJawsAndOfQuads) {
     const aiScene* scene = read(dir_.path() / "data.ply");
     ASSERT_NE(scene, nullptr);
     ASSERT_EQ(scene->mNumMeshes, 1u);
-    expect_mesh(*scene->mMeshes[0], data);
+    expect_mesh(*scene->mMeshes[0], data, Colours::kSrgb);
     EXPECT_EQ(corners_of(*scene->mMeshes[0], static_cast<unsigned>(data.corners)), data.polygons);
   }
 }
@@ -88,7 +98,7 @@ TEST_F(ReadByAssimp, GlbOfTwoJawsAndOfPoints) {
     EXPECT_TRUE(node.mTransformation.IsIdentity());
     ASSERT_EQ(node.mNumMeshes, 1u);
     const aiMesh& mesh = *scene->mMeshes[node.mMeshes[0]];
-    expect_mesh(mesh, bodies[i].data);
+    expect_mesh(mesh, bodies[i].data, Colours::kLinear);
     if (i < 2) {
       EXPECT_EQ(corners_of(mesh, 3), bodies[i].data.polygons);
     } else {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,13 @@ class GlbFile {
   std::string binary;
 };
 
+// The sRGB byte that a viewer shows for a linear share of light (IEC 61966-2-1).
+long shown(std::uint16_t share) {
+  const double light = share / 65535.0;
+  return std::lround(
+      255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055));
+}
+
 TEST(Glb, HoldsANamedNodeAndAMeshForEachBody) {
   const auto bodies = sample_bodies();
   const GlbFile file(bodies);
@@ -103,11 +111,11 @@ TEST(Glb, HoldsANamedNodeAndAMeshForEachBody) {
     EXPECT_EQ((file.accessor(attributes["POSITION"])["min"].get<std::array<float, 3>>()), least);
     EXPECT_EQ((file.accessor(attributes["POSITION"])["max"].get<std::array<float, 3>>()), most);
     EXPECT_EQ(file.numbers<float>(attributes["NORMAL"], 5126, "VEC3", 3, 34962), normals);
-    const auto colours = file.numbers<std::uint8_t>(attributes["COLOR_0"], 5121, "VEC4", 4, 34962);
+    const auto colours = file.numbers<std::uint16_t>(attributes["COLOR_0"], 5123, "VEC4", 4, 34962);
     EXPECT_EQ(file.accessor(attributes["COLOR_0"])["normalized"], true);
     ASSERT_EQ(colours.size(), 4 * data.colours.size());
     for (std::size_t k = 0; k < colours.size(); ++k) {
-      EXPECT_EQ(colours[k], k % 4 == 3 ? 255 : data.colours[k / 4][k % 4]);
+      EXPECT_EQ(shown(colours[k]), k % 4 == 3 ? 255 : data.colours[k / 4][k % 4]);
     }
     EXPECT_EQ(file.numbers<std::uint32_t>(primitive["indices"], 5125, "SCALAR", 1, 34963),
               data.polygons);

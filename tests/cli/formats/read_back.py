@@ -145,6 +145,11 @@ def vtk_meshes(block):
             yield from vtk_meshes(block.GetBlock(i))
 
 
+def linear(srgb):
+    """The shares of light of sRGB colours (IEC 61966-2-1), in 16 bits."""
+    return np.rint(65535 * np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)) / 65535
+
+
 def vtk_glb(file, expected, metres):
     meshes = list(vtk_meshes(vtk_output(vtk.vtkGLTFReader(), file)))
     assert len(meshes) == len(expected.bodies)
@@ -157,7 +162,7 @@ def vtk_glb(file, expected, metres):
         if len(expected.normals):
             close("normals", found["NORMAL"], turned(expected.normals[mine], 1))
         if len(expected.colours):
-            close("colours", found["COLOR_0"][:, :3], expected.colours[mine] / 255)
+            close("colours", found["COLOR_0"][:, :3], linear(expected.colours[mine] / 255))
 
 
 def vtk_samples(folder, expected, samples):

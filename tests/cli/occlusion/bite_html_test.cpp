@@ -81,6 +81,17 @@ Cells row_of(const Rows& rows, const Cells& begin) {
   return {};
 }
 
+// The cell of the row that begins so, under a heading.
+std::string cell(const Rows& table, const Cells& begin, const std::string& heading) {
+  const Cells row = row_of(table, begin);
+  if (row.empty()) return "no row";
+  const Cells& head = table.front();
+  EXPECT_EQ(row.size(), head.size());
+  EXPECT_EQ(std::count(head.begin(), head.end(), heading), 1) << heading;
+  return row.at(
+      static_cast<std::size_t>(std::find(head.begin(), head.end(), heading) - head.begin()));
+}
+
 // A plate under two spheres, turned a little, with all that a bite may have.
 std::unique_ptr<MadeBite> full_bite() {
   Eigen::Isometry3d pose(Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -139,21 +150,22 @@ TEST(BiteHtml, HoldsTheContactRegions) {
     for (std::size_t i = 0; i < body.surface.regions.size(); ++i, ++regions) {
       const ContactRegion& region = body.surface.regions[i];
       const std::string index = std::to_string(i);
-      const Cells row = row_of(page.table(region.partner ? "regions" : "unpaired"),
-                               {(is_fixed ? "fixed " : "moving ") + index});
-      ASSERT_EQ(row.size(), 9U);
-      EXPECT_EQ(row[1], region.partner
-                            ? (is_fixed ? "moving " : "fixed ") + std::to_string(*region.partner)
-                            : "unpaired");
-      expect_numbers(row[2], {region.area}, 1e-4);
-      expect_numbers(row[3],
+      const auto in = [&](const char* heading) {
+        return cell(page.table(region.partner ? "regions" : "unpaired"),
+                    {(is_fixed ? "fixed " : "moving ") + index}, heading);
+      };
+      EXPECT_EQ(in("partner"),
+                region.partner ? (is_fixed ? "moving " : "fixed ") + std::to_string(*region.partner)
+                               : "unpaired");
+      expect_numbers(in("area, mm²"), {region.area}, 1e-4);
+      expect_numbers(in("share, %"),
                      {100 * region.share, 100 * region.share_thinner, 100 * region.share_thicker},
                      0.01);
-      expect_numbers(row[4], {1000 * region.least_distance}, 0.1);
-      expect_numbers(row[5], {region.penetrating_area}, 1e-4);
-      expect_numbers(row[6], {region.depth_integral}, 1e-5);
-      expect_place(row[7], region.centre);
-      expect_place(row[8], region.closest);
+      expect_numbers(in("least distance, µm"), {1000 * region.least_distance}, 0.1);
+      expect_numbers(in("overlap, mm²"), {region.penetrating_area}, 1e-4);
+      expect_numbers(in("depth, integrated, mm³"), {region.depth_integral}, 1e-5);
+      expect_place(in("centre"), region.centre);
+      expect_place(in("closest point"), region.closest);
     }
   }
   EXPECT_EQ(page.table("regions").size() + page.table("unpaired").size(), regions + 2);
@@ -165,10 +177,8 @@ TEST(BiteHtml, HoldsAreasAndDepths) {
   const BiteBody &fixed = made->bite.fixed, &moving = made->bite.moving;
   const Rows areas = page.table("areas");
   const auto expect = [&](const std::string& head, double a, double b, double error) {
-    const Cells row = row_of(areas, {head});
-    ASSERT_EQ(row.size(), 4U) << head;
-    expect_numbers(row[1], {a}, error);
-    expect_numbers(row[2], {b}, error);
+    expect_numbers(cell(areas, {head}, "fixed"), {a}, error);
+    expect_numbers(cell(areas, {head}, "moving"), {b}, error);
   };
   const std::string below = ": below the error assumed for scanning";
   expect("distance at most 9 µm" + below, fixed.areas[0], moving.areas[0], 1e-4);
@@ -186,10 +196,7 @@ TEST(BiteHtml, HoldsAreasAndDepths) {
 TEST(BiteHtml, HoldsTheFindings) {
   const auto& [made, page] = shown();
   const Rows rows = page.table("findings");
-  const auto answer = [&](const char* question) {
-    const Cells row = row_of(rows, {question});
-    return row.size() == 2 ? row[1] : "no row";
-  };
+  const auto answer = [&](const char* question) { return cell(rows, {question}, "answer"); };
   EXPECT_EQ(answer("do the surfaces touch"), "yes");
   EXPECT_EQ(answer("pairs of triangles that intersect"), "1234");
   EXPECT_EQ(answer("distance of the surfaces"), "0 µm");
@@ -207,16 +214,17 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
   const std::unique_ptr<const MadeBite>& made = shown().made;
   const Page& page = shown().page;
   const auto expect = [&](const char* head, const cli::Balance& balance) {
-    const Cells row = row_of(page.table("shares"), {head});
-    ASSERT_EQ(row.size(), 5U) << head;
+    const auto in = [&](const char* heading) {
+      return cell(page.table("shares"), {head}, heading);
+    };
     const auto of = [&](auto member) {
       return std::vector<double>{balance.shares.*member, balance.thinner.*member,
                                  balance.thicker.*member};
     };
-    expect_numbers(row[1].substr(3), of(&cli::Balance::Shares::first), 0.01);
-    expect_numbers(row[2].substr(3), of(&cli::Balance::Shares::second), 0.01);
-    expect_numbers(row[3], of(&cli::Balance::Shares::asymmetry), 0.01);
-    expect_place(row[4], balance.centre);
+    expect_numbers(in("first side, %").substr(3), of(&cli::Balance::Shares::first), 0.01);
+    expect_numbers(in("second side, %").substr(3), of(&cli::Balance::Shares::second), 0.01);
+    expect_numbers(in("asymmetry, %"), of(&cli::Balance::Shares::asymmetry), 0.01);
+    expect_place(in("centre"), balance.centre);
   };
   expect("fixed: +x and -x", *made->bite.fixed.sides);
   expect("fixed: +y and -y", *made->bite.fixed.fore_aft);
@@ -227,12 +235,13 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
                 "box: assumed"));
   ASSERT_EQ(page.table("teeth").size(), 3U);
   for (const cli::Tooth& tooth : made->bite.fixed.teeth) {
-    const Cells row = row_of(page.table("teeth"), {std::to_string(tooth.number), "fixed"});
-    ASSERT_EQ(row.size(), 5U);
-    expect_numbers(row[2], {tooth.area}, 1e-4);
-    expect_numbers(row[3],
+    const auto in = [&](const char* heading) {
+      return cell(page.table("teeth"), {std::to_string(tooth.number), "fixed"}, heading);
+    };
+    expect_numbers(in("area in contact, mm²"), {tooth.area}, 1e-4);
+    expect_numbers(in("geometric share, %"),
                    {100 * tooth.share, 100 * tooth.share_thinner, 100 * tooth.share_thicker}, 0.01);
-    expect_numbers(row[4], {1000 * tooth.least_distance}, 0.1);
+    expect_numbers(in("least distance, µm"), {1000 * tooth.least_distance}, 0.1);
   }
   EXPECT_TRUE(page.says("FDI numbers"));
 }
@@ -252,15 +261,18 @@ TEST(BiteHtml, HoldsInputAndSettings) {
       EXPECT_EQ(read, made->bite.pose.matrix()(i, k)) << "to the last bit";
     }
   }
-  const Cells fixed = row_of(page.table("bodies"), {"fixed", "fixed.stl", "0123456789abcdef"});
-  const Cells moving = row_of(page.table("bodies"), {"moving", "moving.stl", "–"});
-  ASSERT_EQ(fixed.size(), 7U);
-  ASSERT_EQ(moving.size(), 7U);
-  EXPECT_EQ(fixed[3], std::to_string(made->bite.fixed.mesh->triangles.size()));
-  expect_numbers(fixed[4], {made->bite.fixed.surface.total_area}, 1e-4);
-  EXPECT_EQ(fixed[5], "no: depth is by vertices");
-  EXPECT_EQ(moving[5], "yes");
-  EXPECT_GE(std::stoi(fixed[6]), 1);
+  const auto of = [&](const char* body, const char* heading) {
+    return cell(page.table("bodies"), {body}, heading);
+  };
+  EXPECT_EQ(of("fixed", "file"), "fixed.stl");
+  EXPECT_EQ(of("moving", "file"), "moving.stl");
+  EXPECT_EQ(of("fixed", "XXH3 of the file"), "0123456789abcdef");
+  EXPECT_EQ(of("moving", "XXH3 of the file"), "–");
+  EXPECT_EQ(of("fixed", "triangles"), std::to_string(made->bite.fixed.mesh->triangles.size()));
+  expect_numbers(of("fixed", "area, mm²"), {made->bite.fixed.surface.total_area}, 1e-4);
+  EXPECT_EQ(of("fixed", "closed"), "no: depth is by vertices");
+  EXPECT_EQ(of("moving", "closed"), "yes");
+  EXPECT_GE(std::stoi(of("fixed", "vertices without a known sign")), 1);
   EXPECT_TRUE(page.says("Unit of the meshes: mm, assumed: the files do not say."));
   EXPECT_TRUE(page.says("biteeye (bands of silicone bites: BiteEye, J Oral Rehabil 2022)"));
   EXPECT_TRUE(page.says("± 50 µm assumed for scanning"));

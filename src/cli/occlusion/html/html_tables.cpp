@@ -171,11 +171,15 @@ std::string tooth_table(const Bite& bite) {
 
 std::string region_tables(const Bite& bite) {
   const BiteNumbers numbers(bite);
-  const std::vector<std::string> head{"region",       "body",
-                                      "partner",      "area, mm²",
-                                      "share, %",     "least distance, µm",
-                                      "overlap, mm²", "depth, integrated, mm³",
-                                      "centre",       "closest point"};
+  const std::vector<std::string> head{"region",
+                                      "partner",
+                                      "area, mm²",
+                                      "share, %",
+                                      "least distance, µm",
+                                      "overlap, mm²",
+                                      "depth, integrated, mm³",
+                                      "centre",
+                                      "closest point"};
   const std::string caption = fmt::format("distance at most {}; share {}",
                                           numbers.length(bite.contact), foundation_words(bite));
   HtmlTable paired("regions", "Contact regions with a partner: " + caption, head);

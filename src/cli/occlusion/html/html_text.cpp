@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 
 namespace ist::cli {
 namespace {
@@ -93,9 +94,14 @@ HtmlTable::HtmlTable(std::string_view id, std::string_view caption,
                      const std::vector<std::string>& head)
     : html_(fmt::format("<div class=\"wide\"><table id=\"{}\">\n{}<thead>\n{}</thead>\n<tbody>\n",
                         id, caption.empty() ? "" : fmt::format("<caption>{}</caption>\n", caption),
-                        row_of(head, true))) {}
+                        row_of(head, true))),
+      columns_(head.size()) {}
 
 void HtmlTable::add(const std::vector<std::string>& cells) {
+  if (cells.size() != columns_) {
+    throw std::logic_error(
+        fmt::format("a row of {} cells in a table of {} columns", cells.size(), columns_));
+  }
   html_ += row_of(cells, false);
   empty_ = false;
 }

@@ -19,7 +19,8 @@ class HtmlTable {
   /// `id` is unique in the document. The caption may be empty, where a heading says it.
   HtmlTable(std::string_view id, std::string_view caption, const std::vector<std::string>& head);
 
-  /// The first cell is the row's head.
+  /// The first cell is the row's head. Throws std::logic_error unless the head of the table has as
+  /// many cells.
   void add(const std::vector<std::string>& cells);
   [[nodiscard]] bool empty() const { return empty_; }
   /// Returns the whole table, in a frame that scrolls where the page is narrow.
@@ -27,6 +28,7 @@ class HtmlTable {
 
  private:
   std::string html_;
+  std::size_t columns_;
   bool empty_ = true;
 };
 

@@ -37,7 +37,7 @@ class NameReader {
 
   // The labels of the triangles; 0 for all that nothing names by a tooth's number.
   [[nodiscard]] ToothLabels labels_by(const Naming& naming) const {
-    TextReader reader(content_, file_, TextReader::LineEnd::kContinuedByBackslash);
+    TextReader reader(content_, file_, TextReader::LineEnd::kObj);
     ToothLabels labels;
     int tooth = 0;
     while (reader.next_line()) {
