@@ -5,7 +5,7 @@ import {isHere, unitOf} from './follow.js';
 import {moved, toSixNumbers} from './pose.js';
 import {slider} from './ui/controls.js';
 import {element} from './ui/element.js';
-import {count, interval, short, unitWord} from './words.js';
+import {count, depthWords, interval, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 
@@ -55,8 +55,8 @@ export function makeReadout(place, store) {
       answer && rested ? inFull(answer.line, 'distance') : '',
     );
     depth.set(
-      unknown ? 'not known' : answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…',
-      unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? inFull(answer.line, 'depth') : '',
+      unknown ? 'not known' : answer ? depthWords(answer.line, unit) : '…',
+      unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? depthInFull(answer.line) : '',
     );
     depth.element.classList.toggle('stale', !rested && !unknown);
     force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
@@ -84,6 +84,15 @@ export function closingSpan(extent) {
 function inFull(line, name) {
   const [lower, upper] = [line[`${name}_lower`], line[`${name}_upper`]];
   return lower === null || upper === null || lower === undefined ? '' : `${lower} to ${upper}`;
+}
+
+/**
+ * @param {import('./protocol.js').Line} line
+ * @returns {string} all digits of the depth, or of its lower bound
+ */
+function depthInFull(line) {
+  const {depth_at_vertices: atVertices} = line;
+  return inFull(line, 'depth') || (atVertices > 0 ? `${atVertices}: the deepest vertex, for an open surface has no certain depth` : '');
 }
 
 /** @param {string} name */

@@ -51,6 +51,21 @@ export function interval(lower, upper, unit) {
   return from === to ? `${from} ${unit}` : `${from} to ${to} ${unit}`;
 }
 
+/**
+ * How deep two bodies are in each other, of a line of `ist collide --json` or `ist occlusion --json`. Of open scans a
+ * lower bound is known, the depth of the deepest vertex.
+ * @param {Line} line
+ * @param {string} unit
+ */
+export function depthWords({touch, inside, depth_lower: lower, depth_upper: upper, depth_at_vertices: atVertices}, unit) {
+  if (typeof lower === 'number') return interval(lower, upper, unit);
+  const least = `≥ ${short(atVertices, 3)} ${unit} (open scans)`;
+  if (touch === 'yes' && typeof atVertices === 'number') return least;
+  if (touch !== 'no') return 'not known';
+  if (atVertices > 0) return `0, or ${least}`;
+  return atVertices === 0 || inside === 'none' ? `0 ${unit}` : 'not known';
+}
+
 /** @param {number} bytes */
 export function bytesWords(bytes) {
   if (bytes < 1e3) return `${bytes} bytes`;
