@@ -15,16 +15,18 @@ test('numbers are short, and tell their size', () => {
 });
 
 test('a depth is an interval, of open scans a lower bound, and 0 where they are apart', () => {
-  const open = {depth_lower: null, depth_upper: null, touch: 'yes', inside: 'none', depth_at_vertices: 1.0539};
+  const open = {depth_lower: null, depth_upper: null, touch: 'yes', inside: 'none', self_intersecting: false, depth_at_vertices: 1.0539};
   for (const [line, words] of [
     [{depth_lower: 0.284, depth_upper: 0.2949, depth_at_vertices: 0.28, touch: 'yes'}, '0.284 to 0.2949 mm'],
     [{depth_lower: 0, depth_upper: 0, depth_at_vertices: 0, touch: 'no'}, '0 mm'],
     [open, '≥ 1.05 mm (open scans)'],
     [{...open, touch: 'no', inside: null}, '0, or ≥ 1.05 mm (open scans)'],
     [{...open, touch: 'no', depth_at_vertices: 0}, '0 mm'],
-    [{...open, touch: 'no', depth_at_vertices: null}, '0 mm'],
-    // A body may lie in an open one that is larger, far from its surface.
-    [{...open, touch: 'no', inside: null, depth_at_vertices: null}, 'not known'],
+    [{...open, touch: 'no', inside: null, depth_at_vertices: null}, '0 mm'],
+    [{...open, touch: 'no', inside: 'moving', depth_at_vertices: null}, 'not known'],
+    // Trees without triangles: one may lie in the other.
+    [{...open, touch: 'no', inside: null, self_intersecting: null, depth_at_vertices: null}, 'not known'],
+    [{...open, touch: 'no', self_intersecting: null, depth_at_vertices: null}, '0 mm'],
     [{...open, touch: 'near', depth_at_vertices: null}, 'not known'],
     [{...open, touch: 'unknown', depth_at_vertices: 0}, 'not known'],
   ])

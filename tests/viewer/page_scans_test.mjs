@@ -1,0 +1,105 @@
+// What people with two scans see: open surfaces, in any order, with any axis up, and one file at a time.
+
+import assert from 'node:assert/strict';
+import {readFileSync, writeFileSync} from 'node:fs';
+import path from 'node:path';
+import {test} from 'node:test';
+
+import {depthWords} from '../../src/viewer/page/words.js';
+import {
+  answer,
+  answerOf,
+  closePage,
+  closedBy,
+  dropFiles,
+  ist,
+  linesOf,
+  openPage,
+  readout,
+  ready,
+  setPose,
+  showPanel,
+} from './browser.mjs';
+import {browser, folder, stage} from './stage.mjs';
+
+/** The triangles of a binary STL file that are wanted, by their middles; with their corners mapped. */
+function cut(bytes, wanted, map = (corner) => corner) {
+  const kept = [];
+  for (let at = 84; at + 50 <= bytes.length; at += 50) {
+    const corners = [0, 1, 2].map((k) => [0, 1, 2].map((axis) => bytes.readFloatLE(at + 12 + 12 * k + 4 * axis)));
+    const middle = [0, 1, 2].map((axis) => (corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3);
+    if (wanted(middle)) kept.push(corners.map(map));
+  }
+  return stl(kept);
+}
+
+function stl(triangles) {
+  const bytes = Buffer.alloc(84 + 50 * triangles.length);
+  bytes.writeUInt32LE(triangles.length, 80);
+  triangles.forEach((corners, t) => corners.flat().forEach((value, k) => bytes.writeFloatLE(value, 84 + 50 * t + 12 + 4 * k)));
+  return bytes;
+}
+
+const yUp = ([x, y, z]) => [x, z, -y];
+const scans = {};
+stage(() => {
+  ist(folder, 'demo', '--voxel-size', '2', '--keep', '.');
+  const [upper, lower] = ['upper_jaw.stl', 'lower_jaw.stl'].map((name) => readFileSync(path.join(folder, name)));
+  const teeth = {upper: [upper, ([, , z]) => z < 60], lower: [lower, ([, , z]) => z > 40]};
+  for (const [name, [bytes, wanted]] of Object.entries(teeth)) {
+    scans[`${name}.stl`] = cut(bytes, wanted);
+    scans[`${name}_y.stl`] = cut(bytes, wanted, yUp);
+  }
+  scans['mandible.stl'] = lower;
+  for (const [name, bytes] of Object.entries(scans)) writeFileSync(path.join(folder, name), bytes);
+});
+
+/** Drops scans, and waits until both are answered. */
+async function openScans(names, fragment = '#voxel=2', window = {}) {
+  const opened = await openPage(browser, fragment, {window});
+  await ready(opened.page);
+  await dropScans(opened.page, names, names);
+  return opened;
+}
+
+async function dropScans(page, names, both) {
+  await dropFiles(
+    page,
+    names.map((name) => [name, scans[name]]),
+  );
+  await page.waitForFunction((names) => {
+    const {bodies, trees} = window.ist.state();
+    return trees !== null && names.every((name) => [bodies.fixed?.name, bodies.moving?.name].includes(name));
+  }, both);
+  await ready(page);
+}
+
+const namesOf = (page) => page.evaluate(() => ['fixed', 'moving'].map((role) => window.ist.state().bodies[role]?.name));
+
+async function showMap(page) {
+  await showPanel(page, 'Occlusion');
+  await page.getByText('The map is of this pose.').waitFor();
+  await ready(page);
+}
+
+test('says how deep open scans are, as the command does, and 0 where they are apart', async () => {
+  const opened = await openScans(['upper.stl', 'lower.stl']);
+  const {page} = opened;
+  const asked = ['collide', 'upper.stl', 'lower.stl', '--json'];
+  const {line} = await answer(page);
+  const [, closed] = linesOf(ist(folder, ...asked, '--voxel-size', `${line.voxel_size[0]}`));
+  assert.deepEqual(answerOf(line), answerOf(closed));
+  assert.ok(closed.depth_at_vertices > 0 && closed.depth_lower === null);
+  const words = depthWords(closed, 'mm');
+  assert.match(words, /^≥ [\d.]+ mm \(open scans\)$/);
+  assert.equal((await readout(page)).Depth, words);
+  for (const panel of ['Accuracy', 'Occlusion']) {
+    if (panel === 'Occlusion') await showMap(page);
+    else await showPanel(page, panel);
+    const text = await page.getByRole('tabpanel', {name: panel}).textContent();
+    assert.ok(text.includes(`Depth${words}`), text);
+  }
+  await setPose(page, closedBy(-5));
+  assert.deepEqual([(await readout(page)).Touch, (await readout(page)).Depth], ['apart', '0 mm']);
+  await closePage(opened);
+});
