@@ -205,6 +205,29 @@ test('finds the first contact on the way', () => {
   assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
 });
 
+test('says how bodies face each other, and swaps them', () => {
+  engine.ask('make_jaws', {seed: 1});
+  const bite = poses.at(-2);
+  const facing = engine.ask('facing', {pose: bite, frame: ''});
+  assert.deepEqual(facing, {known: true, towards: [0, 0, -1], front: facing.front, upper: 'fixed'});
+  [0, -1, 0].forEach((value, axis) => assert.ok(Math.abs(facing.front[axis] - value) < 1e-12, 'the narrower end is in front'));
+  engine.ask('build', {voxel_size: 2});
+  const {line} = engine.ask('collide', {pose: bite});
+  engine.ask('swap', {});
+  assert.throws(() => engine.ask('collide', {pose: bite}), /not built/);
+  const back = [...bite.slice(0, 14), -bite[14], 1];
+  const other = engine.ask('facing', {pose: back, frame: ''});
+  assert.deepEqual([other.towards, other.upper], [[0, 0, 1], 'moving']);
+  engine.ask('build', {voxel_size: 2});
+  const turned = engine.ask('collide', {pose: back}).line;
+  assert.ok(turned.depth_lower <= line.depth_upper && line.depth_lower <= turned.depth_upper, 'as deep the other way round');
+  // Far from each other, and without triangles, nothing is told of roles.
+  assert.equal(engine.ask('facing', {pose: [...bite.slice(0, 14), -300, 1], frame: ''}).known, false);
+  ist('build', lower, '-o', 'none.ist', '--voxel-size', '2', '--no-triangles');
+  engine.open('moving', 'none.ist', readFileSync(path.join(folder, 'none.ist')));
+  assert.deepEqual(engine.ask('facing', {pose: bite, frame: ''}), {known: false});
+});
+
 /** An engine whose memory ends: `limit` says at how many bytes, and `bytes` how many there are. */
 async function short(use) {
   const {grow} = WebAssembly.Memory.prototype;

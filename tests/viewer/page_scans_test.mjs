@@ -14,6 +14,7 @@ import {
   dropFiles,
   ist,
   linesOf,
+  message,
   openPage,
   readout,
   ready,
@@ -101,5 +102,60 @@ test('says how deep open scans are, as the command does, and 0 where they are ap
   }
   await setPose(page, closedBy(-5));
   assert.deepEqual([(await readout(page)).Touch, (await readout(page)).Depth], ['apart', '0 mm']);
+  await closePage(opened);
+});
+
+test('a file that is dropped alone waits for the other jaw', async () => {
+  const opened = await openPage(browser, '#voxel=2');
+  const {page} = opened;
+  await ready(page);
+  await dropFiles(page, [['lower.stl', scans['lower.stl']]]);
+  await message(page, /^lower\.stl is open\. Now the other jaw/);
+  await ready(page);
+  assert.deepEqual((await namesOf(page)).filter(Boolean), ['lower.stl']);
+  const {Touch, Contacts, Depth} = await readout(page);
+  assert.deepEqual([Touch, Contacts, Depth], ['…', '…', '…']);
+  await dropScans(page, ['upper.stl'], ['lower.stl', 'upper.stl']);
+  assert.deepEqual(await namesOf(page), ['upper.stl', 'lower.stl']);
+  const {line} = await answer(page);
+  const [, wanted] = linesOf(ist(folder, 'collide', 'upper.stl', 'lower.stl', '--json', '--voxel-size', `${line.voxel_size[0]}`));
+  assert.deepEqual(answerOf(line), answerOf(wanted));
+  // The next file begins another pair.
+  await dropFiles(page, [['upper.stl', scans['upper.stl']]]);
+  await message(page, /^upper\.stl is open\. Now the other jaw/);
+  assert.deepEqual((await namesOf(page)).filter(Boolean), ['upper.stl']);
+  await closePage(opened);
+});
+
+test('finds by itself which jaw moves and along which axis, and swaps them on request', async () => {
+  const opened = await openScans(['lower_y.stl', 'upper_y.stl']);
+  const {page} = opened;
+  assert.deepEqual(await namesOf(page), ['upper_y.stl', 'lower_y.stl']);
+  await message(page, /^lower_y\.stl lies below, so it is the moving body, which closes along y\./);
+  const closed = await readout(page);
+  assert.equal(closed.Touch, 'they touch');
+  await page.getByRole('slider', {name: 'Close along y'}).press('Home');
+  await ready(page);
+  assert.deepEqual((await answer(page)).line.pose, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -5, 0, 1]);
+  assert.equal((await readout(page)).Touch, 'apart');
+  await page.keyboard.press('End');
+  await ready(page);
+  await showPanel(page, 'Bodies');
+  await page.getByRole('button', {name: 'Swap', exact: true}).click();
+  await page.waitForFunction(() => window.ist.state().bodies.fixed.name === 'lower_y.stl' && window.ist.state().trees !== null);
+  await ready(page);
+  assert.equal((await readout(page)).Depth, closed.Depth);
+  await page.getByRole('slider', {name: 'Close along −y'}).press('Home');
+  await ready(page);
+  assert.deepEqual((await answer(page)).line.pose, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 5, 0, 1]);
+  assert.equal((await readout(page)).Touch, 'apart');
+  // First contact goes the same way.
+  await showPanel(page, 'Pose');
+  await page.getByRole('button', {name: 'First contact'}).click();
+  await message(page, /^First contact: within/);
+  await ready(page);
+  const {line} = await answer(page);
+  assert.equal(line.touch, 'yes');
+  assert.ok(line.pose[13] > 0 && line.pose[13] < 5 && line.pose[14] === 0, `${line.pose}`);
   await closePage(opened);
 });

@@ -28,7 +28,9 @@ Eigen::Index largest_of(const Vector& vector) {
 }
 
 Vector signed_axis(Eigen::Index axis, double sign) {
-  return (sign < 0 ? -1.0 : 1.0) * Vector::Unit(axis);
+  Vector direction = Vector::Zero();
+  direction[axis] = sign < 0 ? -1 : 1;
+  return direction;
 }
 
 Vector direction_across(const Vector& towards, const Division& sides, const Division& fore_aft) {

@@ -15,6 +15,7 @@
 #include "ist/measure/first_contact.h"
 #include "ist/models/models.h"
 #include "viewer/engine/bite_reply.h"
+#include "viewer/engine/facing_reply.h"
 #include "viewer/engine/level_reply.h"
 
 namespace ist::viewer {
@@ -51,6 +52,10 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
     reply.json = pairs().of(asked.policy()).collide(asked.pose("pose"));
   } else if (question == "occlusion") {
     fill_bite(whole(), asked, progress, reply);
+  } else if (question == "facing") {
+    fill_facing(whole(), asked, progress, reply);
+  } else if (question == "swap") {
+    swap();
   } else if (question == "save_glb") {
     reply.json["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
   } else if (question == "make_jaws") {
@@ -128,6 +133,12 @@ Reply Session::open(const Asked& asked) {
   reply.json = read.facts(reply);
   take(role, std::move(read));
   return reply;
+}
+
+void Session::swap() {
+  std::swap(present(Role::kFixed), present(Role::kMoving));
+  pairs_.reset();
+  recorded_.reset();
 }
 
 Reply Session::build(const Asked& asked, Progress& progress) {

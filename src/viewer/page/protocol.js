@@ -69,6 +69,8 @@
  *   overlap another, by their places in `level`
  * @property {[{pose: Pose, policy: Policy}, {steps: Step[]}]} fronts
  * @property {[{pose: Pose, policy: Policy, step: number}, Front]} front
+ * @property {[{pose: Pose, frame: string}, FacingReply]} facing
+ * @property {[{}, {}]} swap  gives each body the other one's role; there are no trees then
  * @property {[BiteQuestion, Bite]} occlusion
  * @property {[{role: Role}, {bytes: Uint8Array}]} save_body  its tree's file, as `ist build` writes it
  * @property {[{}, {in_use: number}]} memory  bytes that the engine holds now
@@ -84,6 +86,14 @@
  * @property {number} sphere_tests
  * @property {number} resolution
  * @property {Contacts} contacts
+ */
+
+/**
+ * @typedef {object} FacingReply  how both bodies face each other; fixed coordinates
+ * @property {boolean} known       whether surfaces are near enough to tell
+ * @property {number[]} [towards]  from the fixed body to the moving one; missing where a body has no triangles
+ * @property {number[]} [front]    to the front teeth
+ * @property {Role} [upper]        the body that lies above
  */
 
 /**
