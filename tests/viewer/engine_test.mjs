@@ -205,6 +205,30 @@ test('finds the first contact on the way', () => {
   assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
 });
 
+/** A tetrahedron whose apex is its highest point, or its lowest, as an OBJ file. */
+function tetrahedron([x, y, z], up) {
+  const base = [
+    [-4, -3],
+    [5, -2],
+    [0, 6],
+  ].map(([dx, dy]) => `v ${x + dx} ${y + dy} ${z - 10 * up}`);
+  const faces = up > 0 ? ['1 2 4', '2 3 4', '3 1 4', '3 2 1'] : ['2 1 4', '3 2 4', '1 3 4', '1 2 3'];
+  return Buffer.from([...base, `v ${x} ${y} ${z}`, ...faces.map((face) => `f ${face}`)].join('\n'));
+}
+
+test('says where the first contact is', () => {
+  // An apex that rises into a flat face, 3 above it.
+  engine.open('fixed', 'above.obj', Buffer.from('v -50 -50 8\nv 50 -50 8\nv 0 70 8\nv 0 0 30\nf 3 2 1\nf 1 2 4\nf 2 3 4\nf 3 1 4'));
+  engine.open('moving', 'below.obj', tetrahedron([1.25, -2.5, 5], 1));
+  engine.ask('build', {voxel_size: 1});
+  const at = (dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1];
+  const found = engine.ask('first_contact', {from: at(-2), to: at(6), tolerance: 1e-6});
+  assert.equal(found.status, 'contact');
+  // At the end of the interval the apex is just behind the face.
+  [1.25, -2.5, 8].forEach((value, axis) => assert.ok(Math.abs(found.point[axis] - value) < 1e-3, `${found.point}`));
+  assert.equal(engine.ask('first_contact', {from: at(-9), to: at(-5), tolerance: 1e-6}).point, null);
+});
+
 test('says how bodies face each other, and swaps them', () => {
   engine.ask('make_jaws', {seed: 1});
   const bite = poses.at(-2);

@@ -13,6 +13,7 @@ import {
   closedBy,
   dropFiles,
   ist,
+  lastPicture,
   linesOf,
   message,
   openPage,
@@ -21,6 +22,7 @@ import {
   setPose,
   showPanel,
 } from './browser.mjs';
+import {pictureOf} from './pictures.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
 /** The triangles of a binary STL file that are wanted, by their middles; with their corners mapped. */
@@ -81,6 +83,18 @@ async function showMap(page) {
   await showPanel(page, 'Occlusion');
   await page.getByText('The map is of this pose.').waitFor();
   await ready(page);
+}
+
+/** The pixels of the picture: red, green, blue, 255 each. */
+async function pixels(page) {
+  const png = (await lastPicture(() => pictureOf(page))).toString('base64');
+  return page.evaluate(async (text) => {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], {type: 'image/png'}), {colorSpaceConversion: 'none'});
+    const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    canvas.drawImage(image, 0, 0);
+    return {width: image.width, height: image.height, data: [...canvas.getImageData(0, 0, image.width, image.height).data]};
+  }, png);
 }
 
 test('says how deep open scans are, as the command does, and 0 where they are apart', async () => {
@@ -152,10 +166,31 @@ test('finds by itself which jaw moves and along which axis, and swaps them on re
   // First contact goes the same way.
   await showPanel(page, 'Pose');
   await page.getByRole('button', {name: 'First contact'}).click();
-  await message(page, /^First contact: within/);
+  await message(page, /^First contact at \(/);
   await ready(page);
   const {line} = await answer(page);
   assert.equal(line.touch, 'yes');
   assert.ok(line.pose[13] > 0 && line.pose[13] < 5 && line.pose[14] === 0, `${line.pose}`);
+  await closePage(opened);
+});
+
+test('marks the place of the first contact in the middle of the picture, until the body moves', async () => {
+  const opened = await openPage(browser, '#voxel=2&panel=pose');
+  const {page} = opened;
+  await ready(page);
+  const middle = async () => {
+    const {width, height, data} = await pixels(page);
+    const at = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2));
+    return data.slice(at, at + 3);
+  };
+  await page.getByRole('button', {name: 'First contact'}).click();
+  const text = await message(page, /^First contact at \(/);
+  assert.match(text, /^First contact at \(−?[\d.]+, −?[\d.]+, −?[\d.]+\) mm, within [\d.e−]+ mm of this pose\.$/);
+  await ready(page);
+  await showPanel(page, 'Save'); // without the handles
+  assert.deepEqual(await middle(), [0xf0, 0xe4, 0x42]);
+  await page.getByRole('slider', {name: 'Close along z'}).press('ArrowLeft');
+  await ready(page);
+  assert.notDeepEqual(await middle(), [0xf0, 0xe4, 0x42]);
   await closePage(opened);
 });

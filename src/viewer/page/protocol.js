@@ -61,8 +61,8 @@
  *   more that are timed together, above 0 by a coarse clock too
  * @property {[{pose: Pose, policy?: Policy, stiffness: number}, Tick]} tick
  *   what a frame of dragging needs, quickly
- * @property {[{from: Pose, to: Pose, tolerance: number}, {status: string, lower: number, upper: number, pose: Pose}]} first_contact
- *   along the screw from one pose to the other; `pose` is that of `upper`
+ * @property {[{from: Pose, to: Pose, tolerance: number}, {status: string, lower: number, upper: number, pose: Pose, point: number[] | null}]} first_contact
+ *   along the screw from one pose to the other; `pose` is that of `upper`, and `point` lies on both bodies there
  * @property {[{role: Role, policy: Policy, level: number}, Level]} level
  * @property {[{pose: Pose, policy: Policy, level: number}, {fixed: Uint32Array, moving: Uint32Array}]} touched
  *   the nodes of that level (of the deeper tree's; the other's where it has none so deep) that

@@ -9,6 +9,7 @@ import {button, numberField, select} from '../ui/controls.js';
 import {element, newId} from '../ui/element.js';
 import {short, unitWord} from '../words.js';
 import {makeGizmo} from '../view/gizmo.js';
+import {makePointMark} from '../view/point_mark.js';
 import {closingSpan} from '../readout.js';
 
 /** @typedef {import('../context.js').State} State */
@@ -18,7 +19,8 @@ const tolerance = 1e-5;
 
 /** @type {import('../context.js').MakePanel} */
 export function makePosePanel({store, stage, engine, history, say}) {
-  const gizmo = makeGizmo(stage, store);
+  const gizmo = makeGizmo(stage, store),
+    mark = makePointMark(stage, store);
   const centre = () => middleOf(store.get().bodies.moving);
   const six = () => toSixNumbers(store.get().pose, centre());
   /**
@@ -57,12 +59,15 @@ export function makePosePanel({store, stage, engine, history, say}) {
         {from: at(-far), to: at(further), tolerance},
         {doing: `Looking for the first contact along ${way}`},
       );
-      if (found.status === 'contact') {
-        store.set({pose: found.pose, dragging: false});
-        say(`First contact: within ${short(tolerance * (far + further), 2)} ${unit} of this pose.`);
-      } else {
+      if (found.status !== 'contact' || !found.point) {
         say(firstContactWords(found.status, way), 'warning');
+        return;
       }
+      store.set({pose: found.pose, dragging: false});
+      mark.show(found.point, 'first contact');
+      stage.flyTo(found.point);
+      const place = found.point.map((value) => short(value, 5)).join(', ');
+      say(`First contact at (${place}) ${unit}, within ${short(tolerance * (far + further), 2)} ${unit} of this pose.`);
     } catch (error) {
       const text = faultText(error);
       if (text) say(text, 'error');
