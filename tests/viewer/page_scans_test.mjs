@@ -119,6 +119,84 @@ test('says how deep open scans are, as the command does, and 0 where they are ap
   await closePage(opened);
 });
 
+/** The numbers of pixels of each column, or row, that are no background. */
+function drawnBy({width, height, data}, inColumns) {
+  const background = data.slice(0, 3).join();
+  const counts = new Array(inColumns ? width : height).fill(0);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const at = 4 * (y * width + x);
+      if (`${data[at]},${data[at + 1]},${data[at + 2]}` !== background) counts[inColumns ? x : y] += 1;
+    }
+  }
+  return counts;
+}
+
+/** How many parts of a line are drawn, with nothing between them. */
+const partsOf = (counts) => counts.filter((count, at) => count > 0 && !(counts[at - 1] > 0)).length;
+
+for (const [window, sideBySide] of [
+  [{width: 1200, height: 600}, true],
+  [{width: 320, height: 1000}, false],
+]) {
+  test(`shows both arches from their teeth, front up, ${sideBySide ? 'side by side' : 'above each other'}, and comes back to that`, async () => {
+    // The middle of the mandible's box lies far behind that of the scan.
+    const opened = await openScans(['upper.stl', 'mandible.stl'], '#voxel=2', {viewport: window});
+    const {page} = opened;
+    await showMap(page);
+    const picture = () => lastPicture(() => pictureOf(page));
+    const first = await picture();
+    const drawn = await pixels(page);
+    assert.deepEqual([partsOf(drawnBy(drawn, true)), partsOf(drawnBy(drawn, false))], sideBySide ? [2, 1] : [1, 2]);
+    // Both looked at from their teeth: triangles near the other body face the viewer. The front of the mesh, its least y, is up.
+    const seen = await page.evaluate(
+      (layout) => {
+        const {bite, bodies} = window.ist.state();
+        const turn = ([x, y, z], p) => [0, 1, 2].map((row) => p[row] * x + p[4 + row] * y + p[8 + row] * z);
+        return ['fixed', 'moving'].map((role) => {
+          const {positions, triangles} = bodies[role],
+            {distances} = bite[role],
+            place = bite.book[layout][role];
+          const sum = [0, 0, 0];
+          const corner = (v) => [...positions.subarray(3 * v, 3 * v + 3)];
+          for (let t = 0; t < triangles.length; t += 3) {
+            const three = [...triangles.subarray(t, t + 3)];
+            if (!three.every((v) => Math.abs(distances[v]) < 1)) continue;
+            const [a, b, c] = three.map(corner);
+            const [u, w] = [b, c].map((each) => each.map((value, axis) => value - a[axis]));
+            [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]].forEach(
+              (value, axis) => (sum[axis] += value),
+            );
+          }
+          const length = Math.hypot(...sum);
+          return {
+            facing: turn(
+              sum.map((value) => value / length),
+              place,
+            )[1],
+            front: turn([0, -1, 0], place)[2],
+          };
+        });
+      },
+      sideBySide ? 'beside' : 'above',
+    );
+    for (const {facing} of seen) assert.ok(facing < -0.9, `${facing}`);
+    assert.deepEqual(
+      seen.map(({front}) => Math.round(front)),
+      sideBySide ? [1, 1] : [1, -1],
+    );
+    const canvas = page.locator('canvas');
+    for (const back of [() => canvas.press('Home'), () => page.getByRole('button', {name: 'Occlusal view'}).click()]) {
+      await canvas.press('ArrowLeft');
+      await canvas.press('+');
+      assert.ok(!first.equals(await picture()), 'the view is turned');
+      await back();
+      assert.ok(first.equals(await picture()), 'it comes back');
+    }
+    await closePage(opened);
+  });
+}
+
 test('a file that is dropped alone waits for the other jaw', async () => {
   const opened = await openPage(browser, '#voxel=2');
   const {page} = opened;

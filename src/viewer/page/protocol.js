@@ -146,13 +146,16 @@
  * @property {string} bare        colour of what lies beyond the bands
  * @property {MapSide} fixed
  * @property {MapSide} moving
+ * @property {Record<BookLayout, Record<Role, Pose>>} book  where the bodies lie when they are opened like a book: maps of their own
+ *   coordinates to those of the picture: x to the right, z up, the viewer at −y
+ *
+ * @typedef {'beside' | 'above'} BookLayout  side by side, the front of both up; or the fixed body above the moving one, the fronts outwards
  */
 
 /**
  * @typedef {object} MapSide
  * @property {Float32Array} distances  of each vertex of BodyFacts.positions; NaN beyond the reach
  * @property {Uint8Array} colours      red, green, blue of each vertex
- * @property {Pose} place              where the body lies in the opened book: a map of its own coordinates
  */
 
 /**

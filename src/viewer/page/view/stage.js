@@ -28,10 +28,12 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {(role: Role, place: Pose | null) => void} place  draws a body elsewhere than at its pose
  * @property {(point: number[], from?: number[], distance?: number) => void} flyTo  looks at a point, fixed coordinates, from a direction
  * @property {(box: THREE.Box3, from: number[]) => void} fit  looks at all of a box
+ * @property {(box: THREE.Box3, from: number[]) => number} reach  from how far fit() looks
  * @property {() => void} frameAll     looks at both bodies, from in front
  * @property {() => void} home         looks as setHome() says, else at both bodies
  * @property {(view: (() => void) | null) => void} setHome
  * @property {(up: number[], front: number[]) => void} setUpright  which ways are up and to the front; fixed coordinates
+ * @property {(listen: () => void) => void} onResize
  * @property {(across: number, up: number, nearer: number) => void} circle  turns the camera by angles, and scales its distance
  * @property {() => THREE.Box3} bounds of both bodies as drawn
  * @property {(on: boolean) => void} orbit  whether the pointer turns the camera
@@ -136,12 +138,15 @@ export function makeStage(surface, say) {
 
   /** @type {(() => void) | null} */
   let homeView = null;
+  /** @type {(() => void)[]} */
+  const resized = [];
   new ResizeObserver(() => {
     const {clientWidth, clientHeight} = surface;
     if (clientWidth === 0 || clientHeight === 0) return;
     renderer.setSize(clientWidth, clientHeight, false);
     camera.aspect = clientWidth / clientHeight;
     camera.updateProjectionMatrix();
+    for (const listen of resized) listen();
     draw();
   }).observe(surface);
 
@@ -177,6 +182,7 @@ export function makeStage(surface, say) {
       const direction = from ? new THREE.Vector3(...from) : camera.position.clone().sub(controls.target);
       look(new THREE.Vector3(...point), direction, distance ?? bounds().getSize(new THREE.Vector3()).length() * 0.35);
     },
+    reach: (box, from) => distanceOf(box, new THREE.Vector3(...from).normalize(), camera),
     fit(box, from) {
       if (box.isEmpty()) return;
       const size = box.getSize(new THREE.Vector3()).length();
@@ -210,6 +216,9 @@ export function makeStage(surface, say) {
       controls.target.copy(target);
       controls.update();
       render();
+    },
+    onResize(listen) {
+      resized.push(listen);
     },
     circle(across, up, nearer) {
       const toY = new THREE.Quaternion().setFromUnitVectors(camera.up, new THREE.Vector3(0, 1, 0));
