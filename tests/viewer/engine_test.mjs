@@ -127,7 +127,7 @@ test('maps the occlusion as the command does', () => {
   const words = ['occlusion', upper, lower, '--move', '0,0,-0.6', '--unit', 'mm', '--frame', 'lps'];
   assert.deepEqual(withoutCommit(map.bite), withoutCommit(linesOf(ist(...words, '--json'))[1]));
   assert.equal(map.fixed.distances.length, map.bite.fixed.vertices);
-  assert.equal(map.moving.colours.length, 3 * map.bite.moving.vertices);
+  assert.equal(map.moving.distances.length, map.bite.moving.vertices);
   ist(...words, '-o', 'bite.glb');
   assert.ok(readFileSync(path.join(folder, 'bite.glb')).equals(engine.ask('save_glb', asked).bytes));
   assert.throws(() => engine.ask('occlusion', {...asked, preset: 'none'}), {code: 'argument-invalid'});

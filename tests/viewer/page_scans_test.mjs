@@ -272,3 +272,48 @@ test('marks the place of the first contact in the middle of the picture, until t
   assert.notDeepEqual(await middle(), [0xf0, 0xe4, 0x42]);
   await closePage(opened);
 });
+
+/** A box of 12 triangles, whose upper corners are `top(x)` high. */
+function boxOf([x0, y0, z0], [x1, y1], top) {
+  const at = (x, y, up) => [x, y, up ? top(x) : z0];
+  const square = (a, b, c, d) => [
+    [a, b, c],
+    [a, c, d],
+  ];
+  return stl([
+    ...square(at(x0, y0, 0), at(x0, y1, 0), at(x1, y1, 0), at(x1, y0, 0)),
+    ...square(at(x0, y0, 1), at(x1, y0, 1), at(x1, y1, 1), at(x0, y1, 1)),
+    ...square(at(x0, y0, 0), at(x1, y0, 0), at(x1, y0, 1), at(x0, y0, 1)),
+    ...square(at(x1, y0, 0), at(x1, y1, 0), at(x1, y1, 1), at(x1, y0, 1)),
+    ...square(at(x1, y1, 0), at(x0, y1, 0), at(x0, y1, 1), at(x1, y1, 1)),
+    ...square(at(x0, y1, 0), at(x0, y0, 0), at(x0, y0, 1), at(x0, y1, 1)),
+  ]);
+}
+
+test('draws bands to the pixel, between vertices that are far apart, and hatched where the legend says so', async () => {
+  scans['above.stl'] = boxOf([-7, -7, 0], [7, 7], () => 6);
+  // From 40 µm in the upper box to 160 µm below it: 0 is at a fifth, and 100 µm at seven tenths.
+  scans['below.stl'] = boxOf([-5, -5, -6], [5, 5], (x) => 0.04 - (0.2 * (x + 5)) / 10);
+  const opened = await openScans(['above.stl', 'below.stl'], '#voxel=2&theme=light');
+  const {page} = opened;
+  assert.deepEqual(await namesOf(page), ['above.stl', 'below.stl']);
+  await showMap(page);
+  // By their hues, for the colours are lit: pale blue, red, purple, and lines of 45 % of the purple.
+  const {data} = await pixels(page);
+  const counts = {line: 0, overlap: 0, contact: 0, near: 0};
+  for (let at = 0; at < data.length; at += 4) {
+    const [r, g, b] = data.slice(at, at + 3);
+    if (b > r + 14) counts.near += 1;
+    else if (r > 1.6 * g && r > 1.6 * b) counts.contact += 1;
+    else if (b > 1.3 * g && r > g) counts[r < 100 ? 'line' : 'overlap'] += 1;
+  }
+  const all = counts.line + counts.overlap + counts.contact + counts.near;
+  const shares = Object.fromEntries(Object.entries(counts).map(([name, count]) => [name, count / all]));
+  const said = JSON.stringify(counts);
+  assert.ok(all > 10_000, said);
+  assert.ok(Math.abs(shares.line + shares.overlap - 0.2) < 0.02, said);
+  assert.ok(Math.abs(shares.contact - 0.5) < 0.02, said);
+  assert.ok(Math.abs(shares.near - 0.3) < 0.02, said);
+  assert.ok(Math.abs(counts.line / (counts.line + counts.overlap) - 0.3) < 0.1, said);
+  await closePage(opened);
+});

@@ -51,16 +51,12 @@ std::string web_colour(const Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
-ordered_json side_of(const cli::BiteBody& body, std::span<const cli::MapBand> bands, Reply& reply) {
+ordered_json side_of(const cli::BiteBody& body, Reply& reply) {
   std::vector<float> distances;
-  std::vector<std::uint8_t> colours;
   for (const SurfaceDistance& one : body.surface.vertices) {
     distances.push_back(static_cast<float>(one.distance));
-    const Colour colour = cli::map_colour(one.distance, bands);
-    colours.insert(colours.end(), colour.begin(), colour.end());
   }
-  return {{"distances", reply.array(std::move(distances))},
-          {"colours", reply.array(std::move(colours))}};
+  return {{"distances", reply.array(std::move(distances))}};
 }
 
 // Both bodies of an opened book as the page draws it: x to the right, z up, the viewer at -y.
@@ -92,8 +88,8 @@ void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress
   reply.json["bare"] = web_colour(cli::kBareSurface);
   reply.json["book"] = {{"beside", book_of(bite, cli::BookLayout::kBeside)},
                         {"above", book_of(bite, cli::BookLayout::kAbove)}};
-  reply.json["fixed"] = side_of(bite.fixed, bands, reply);
-  reply.json["moving"] = side_of(bite.moving, bands, reply);
+  reply.json["fixed"] = side_of(bite.fixed, reply);
+  reply.json["moving"] = side_of(bite.moving, reply);
 }
 
 std::vector<std::uint8_t> coloured_glb(const cli::Bodies& bodies, const Asked& asked,

@@ -97,8 +97,7 @@ export function makeBodiesLoader({store, say, ask}) {
     homes = both ? {} : {...homes, [file.role]: home};
     looked = false;
     store.set({...nothingKnown, bodies, jaws: null, home: both ? [...identity] : home, unit: file.unit ?? null});
-    if (kept.seed !== null)
-      say(`${facts.name} is measured against a built-in jaw, ${bodies[other]?.name}: open a file in its place too.`);
+    if (kept.seed !== null) say(`${facts.name} is measured against a built-in jaw, ${bodies[other]?.name}: open a file in its place too.`);
     for (const warning of facts.warnings) say(`${facts.name}: ${warning.replace(/\.$/, '')}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }

@@ -155,7 +155,6 @@
 /**
  * @typedef {object} MapSide
  * @property {Float32Array} distances  of each vertex of BodyFacts.positions; NaN beyond the reach
- * @property {Uint8Array} colours      red, green, blue of each vertex
  */
 
 /**

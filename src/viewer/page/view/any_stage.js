@@ -51,7 +51,7 @@ function makeNoStage(surface) {
     render: nothing,
     setBody: nothing,
     setPose: nothing,
-    colour: nothing,
+    map: nothing,
     fade: nothing,
     place: nothing,
     flyTo: nothing,

@@ -1,4 +1,4 @@
-/** The map on both bodies: its colours, grey where it is of another pose, and the opened book. */
+/** The map on both bodies: its bands, grey where it is of another pose, and the opened book. */
 
 import * as THREE from 'three';
 
@@ -33,10 +33,7 @@ export function makeMapView(stage, store) {
 
   const colour = () => {
     const {bite, pose} = store.get();
-    for (const role of roles) {
-      const colours = seen && bite ? bite[role].colours : null;
-      stage.colour(role, colours && bite?.pose !== pose ? greyed(colours) : colours);
-    }
+    for (const role of roles) stage.map(role, seen && bite ? drawnMap(bite, role, bite.pose !== pose) : null);
     placeDots();
   };
   /** @param {BiteAt} bite */
@@ -132,14 +129,26 @@ export function makeMapView(stage, store) {
 }
 
 /**
- * @param {Uint8Array} colours
- * @returns {Uint8Array} the same by their lightness alone, and nearer to each other
+ * @param {BiteAt} bite
+ * @param {Role} role
+ * @param {boolean} stale  whether it is drawn by its lightness alone
+ * @returns {import('./band_material.js').DrawnMap}
  */
-function greyed(colours) {
-  const grey = new Uint8Array(colours.length);
-  for (let i = 0; i + 2 < colours.length; i += 3) {
-    const light = 0.3 * colours[i] + 0.59 * colours[i + 1] + 0.11 * colours[i + 2];
-    grey.fill(90 + 0.4 * light, i, i + 3);
-  }
-  return grey;
+function drawnMap({bands, bare, ...bite}, role, stale) {
+  const shown = stale ? greyed : (/** @type {string} */ colour) => colour;
+  return {
+    distances: bite[role].distances,
+    bands: bands.map(({to, colour, below_scan_error: hatched}) => ({to, colour: shown(colour), hatched})),
+    bare: shown(bare),
+  };
+}
+
+/**
+ * @param {string} colour  "#rrggbb"
+ * @returns {string} the same by its lightness alone, and nearer to the others
+ */
+function greyed(colour) {
+  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const grey = Math.round(90 + 0.4 * (0.3 * red + 0.59 * green + 0.11 * blue));
+  return `#${grey.toString(16).padStart(2, '0').repeat(3)}`;
 }

@@ -12,6 +12,7 @@ import {makeBodyMesh} from './body_mesh.js';
 /** @typedef {import('../protocol.js').Pose} Pose */
 /** @typedef {import('../protocol.js').Role} Role */
 /** @typedef {import('../protocol.js').BodyFacts} BodyFacts */
+/** @typedef {import('./band_material.js').DrawnMap} DrawnMap */
 
 /**
  * @typedef {object} Stage
@@ -23,7 +24,7 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {() => void} render        draws a frame soon; many calls draw one
  * @property {(role: Role, facts: BodyFacts | null) => void} setBody
  * @property {(pose: Pose) => void} setPose
- * @property {(role: Role, colours: Uint8Array | null) => void} colour  red, green, blue of each vertex; null: the body's own
+ * @property {(role: Role, map: DrawnMap | null) => void} map  null: the body's own colour
  * @property {(role: Role, opacity: number) => void} fade  1: solid; 0: not drawn
  * @property {(role: Role, place: Pose | null) => void} place  draws a body elsewhere than at its pose
  * @property {(point: number[], from?: number[], distance?: number) => void} flyTo  looks at a point, fixed coordinates, from a direction
@@ -166,8 +167,8 @@ export function makeStage(surface, say) {
       pose = to;
       arrange();
     },
-    colour(role, colours) {
-      bodies[role].setColours(colours);
+    map(role, map) {
+      bodies[role].setMap(map);
       render();
     },
     fade(role, opacity) {
