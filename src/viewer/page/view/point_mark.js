@@ -38,10 +38,10 @@ export function makePointMark(stage, store) {
       const size = bodies.moving?.extent ?? 100;
       at = pose;
       if (label) disposeLabel(label);
-      label = makeLabel(name, 0.035 * size);
+      label = makeLabel(name, 0.02 * size);
       label.center.set(0.5, -0.4);
-      rim.scale.setScalar(0.011 * size);
-      core.scale.setScalar(0.008 * size);
+      rim.scale.setScalar(0.007 * size);
+      core.scale.setScalar(0.005 * size);
       group.clear();
       group.add(rim, core, label);
       group.position.set(...threeOf(point));
