@@ -14,10 +14,17 @@ const file = (role, name, unit) => ({role, name, content: new Blob(['solid']), u
 function made(answers) {
   const said = [],
     asked = [];
-  const store = makeStore({bodies: {fixed: null, moving: null}, trees: null, policy: null, pose: [], home: [], dragging: false});
+  const store = makeStore({
+    bodies: {fixed: null, moving: null},
+    trees: null,
+    policy: null,
+    pose: [...identity],
+    home: [...identity],
+    dragging: false,
+  });
   const ask = async (name, question) => {
     asked.push([name, question]);
-    const answer = await answers[name](question);
+    const answer = await {facing: () => ({known: false}), swap: () => ({}), ...answers}[name](question);
     if (answer instanceof Error) throw answer;
     return answer;
   };
@@ -91,6 +98,77 @@ test('the pose that two bodies came with is home until both have given way', asy
   await loader.replace([file('fixed', 'a.ist'), file('moving', 'b.ist')], translation([1, 2, 3]));
   await loader.makeJaws(2);
   assert.deepEqual(home(), [...identity]);
+});
+
+test('a file that is opened alone empties the other place, and no built-in jaw is left', async () => {
+  const {loader, store, said, asked} = made({make_jaws: () => jaws, open: ({name}) => facts(name, 100), build: () => trees});
+  await loader.makeJaws(1);
+  await loader.open(file('moving', 'a.stl'));
+  assert.match(said.pop()[1], /^a\.stl is measured against a built-in jaw, upper:/);
+  await loader.makeJaws(1);
+  await loader.open(file('fixed', 'a.stl'), true);
+  assert.deepEqual(store.get().bodies, {fixed: facts('a.stl', 100), moving: null});
+  assert.deepEqual(said, []);
+  await loader.build();
+  assert.equal(store.get().trees, null, 'there is nothing to measure it against');
+  await loader.open(file('moving', 'b.stl'));
+  const again = [];
+  await loader.restore(async (name) => again.push(name));
+  assert.deepEqual(again, ['open', 'open']);
+  assert.equal(asked.filter(([name]) => name === 'build').length, 0);
+});
+
+test('the lower body moves, whichever came first, and closes along what its normals say', async () => {
+  for (const [upper, swaps] of [
+    ['fixed', false],
+    ['moving', true],
+  ]) {
+    const facing = {known: true, towards: [0, swaps ? 1 : -1, 0], front: [0, 0, 1], upper};
+    const {loader, store, said, asked} = made({open: ({name}) => facts(name, 100), build: () => trees, facing: () => facing});
+    await loader.open(file('fixed', 'a.stl'), true);
+    await loader.open(file('moving', 'b.stl'));
+    await loader.guessRoles();
+    await loader.build();
+    const {bodies, facing: found} = store.get();
+    assert.deepEqual([bodies.fixed.name, bodies.moving.name], swaps ? ['b.stl', 'a.stl'] : ['a.stl', 'b.stl']);
+    assert.deepEqual([found.closing, found.up, found.front, found.upper], [[0, 1, 0], [0, 1, 0], [0, 0, 1], 'fixed']);
+    assert.equal(asked.filter(([name]) => name === 'facing').length, 1, 'a build does not ask again');
+    assert.equal(said.length, swaps ? 1 : 0);
+    if (swaps) assert.match(said[0][1], /^a\.stl lies below, so it is the moving body, which closes along y\./);
+    const again = [];
+    await loader.restore(async (name, {role, name: of}) => again.push([name, role, of]), false);
+    assert.deepEqual(again.sort(), [
+      ['open', 'fixed', bodies.fixed.name],
+      ['open', 'moving', bodies.moving.name],
+    ]);
+  }
+});
+
+test('bodies whose roles nobody can tell keep them', async () => {
+  const {loader, store} = made({
+    open: ({name}) => facts(name, 100),
+    facing: () => ({known: false, towards: [0, 0, 1], front: [0, -1, 0], upper: 'moving'}),
+  });
+  await loader.open(file('fixed', 'a.stl'), true);
+  await loader.open(file('moving', 'b.stl'));
+  await loader.guessRoles();
+  assert.equal(store.get().bodies.fixed.name, 'a.stl');
+});
+
+test('a swap keeps the bodies where they are to each other', async () => {
+  const {loader, store} = made({open: ({name}) => facts(name, 100), build: () => trees});
+  await loader.replace([file('fixed', 'a.stl'), file('moving', 'b.stl')], translation([1, 2, 3]));
+  const {closing} = store.get().facing;
+  await loader.swap();
+  assert.deepEqual(store.get().pose, translation([-1, -2, -3]));
+  assert.deepEqual(store.get().home, store.get().pose);
+  assert.equal(store.get().trees, null);
+  assert.deepEqual(
+    store.get().facing.closing,
+    closing.map((value) => 0 - value),
+  );
+  await loader.swap();
+  assert.deepEqual(store.get().pose, translation([1, 2, 3]));
 });
 
 test('bodies that cannot be in one unit get a warning, others get none', async () => {

@@ -153,6 +153,18 @@ export async function showPanel(page, title) {
   await page.getByRole('tab', {name: title, exact: true}).click();
 }
 
+/** Drops files on the page together: names and bytes. */
+export function dropFiles(page, files) {
+  const texts = files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]);
+  return page.evaluate((texts) => {
+    const dropped = new DataTransfer();
+    for (const [name, text] of texts) {
+      dropped.items.add(new File([Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))], name));
+    }
+    document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
+  }, texts);
+}
+
 /** Gives the page a pose as people paste one. */
 export async function setPose(page, pose) {
   await showPanel(page, 'Pose');

@@ -127,7 +127,7 @@ test('maps the occlusion as the command does', () => {
   const words = ['occlusion', upper, lower, '--move', '0,0,-0.6', '--unit', 'mm', '--frame', 'lps'];
   assert.deepEqual(withoutCommit(map.bite), withoutCommit(linesOf(ist(...words, '--json'))[1]));
   assert.equal(map.fixed.distances.length, map.bite.fixed.vertices);
-  assert.equal(map.moving.colours.length, 3 * map.bite.moving.vertices);
+  assert.equal(map.moving.distances.length, map.bite.moving.vertices);
   ist(...words, '-o', 'bite.glb');
   assert.ok(readFileSync(path.join(folder, 'bite.glb')).equals(engine.ask('save_glb', asked).bytes));
   assert.throws(() => engine.ask('occlusion', {...asked, preset: 'none'}), {code: 'argument-invalid'});
@@ -203,6 +203,53 @@ test('finds the first contact on the way', () => {
   assert.equal(found.status, 'contact');
   assert.equal(engine.ask('tick', {pose: found.pose, stiffness: 1}).touch, 'yes');
   assert.ok(found.pose[14] > -3 && found.pose[14] < -0.5, `${found.pose[14]}`);
+});
+
+/** A tetrahedron whose apex is its highest point, or its lowest, as an OBJ file. */
+function tetrahedron([x, y, z], up) {
+  const base = [
+    [-4, -3],
+    [5, -2],
+    [0, 6],
+  ].map(([dx, dy]) => `v ${x + dx} ${y + dy} ${z - 10 * up}`);
+  const faces = up > 0 ? ['1 2 4', '2 3 4', '3 1 4', '3 2 1'] : ['2 1 4', '3 2 4', '1 3 4', '1 2 3'];
+  return Buffer.from([...base, `v ${x} ${y} ${z}`, ...faces.map((face) => `f ${face}`)].join('\n'));
+}
+
+test('says where the first contact is', () => {
+  // An apex that rises into a flat face, 3 above it.
+  engine.open('fixed', 'above.obj', Buffer.from('v -50 -50 8\nv 50 -50 8\nv 0 70 8\nv 0 0 30\nf 3 2 1\nf 1 2 4\nf 2 3 4\nf 3 1 4'));
+  engine.open('moving', 'below.obj', tetrahedron([1.25, -2.5, 5], 1));
+  engine.ask('build', {voxel_size: 1});
+  const at = (dz) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, dz, 1];
+  const found = engine.ask('first_contact', {from: at(-2), to: at(6), tolerance: 1e-6});
+  assert.equal(found.status, 'contact');
+  // At the end of the interval the apex is just behind the face.
+  [1.25, -2.5, 8].forEach((value, axis) => assert.ok(Math.abs(found.point[axis] - value) < 1e-3, `${found.point}`));
+  assert.equal(engine.ask('first_contact', {from: at(-9), to: at(-5), tolerance: 1e-6}).point, null);
+});
+
+test('says how bodies face each other, and swaps them', () => {
+  engine.ask('make_jaws', {seed: 1});
+  const bite = poses.at(-2);
+  const facing = engine.ask('facing', {pose: bite, frame: ''});
+  assert.deepEqual(facing, {known: true, towards: [0, 0, -1], front: facing.front, upper: 'fixed'});
+  [0, -1, 0].forEach((value, axis) => assert.ok(Math.abs(facing.front[axis] - value) < 1e-12, 'the narrower end is in front'));
+  engine.ask('build', {voxel_size: 2});
+  const {line} = engine.ask('collide', {pose: bite});
+  engine.ask('swap', {});
+  assert.throws(() => engine.ask('collide', {pose: bite}), /not built/);
+  const back = [...bite.slice(0, 14), -bite[14], 1];
+  const other = engine.ask('facing', {pose: back, frame: ''});
+  assert.deepEqual([other.towards, other.upper], [[0, 0, 1], 'moving']);
+  engine.ask('build', {voxel_size: 2});
+  const turned = engine.ask('collide', {pose: back}).line;
+  assert.ok(turned.depth_lower <= line.depth_upper && line.depth_lower <= turned.depth_upper, 'as deep the other way round');
+  // Far from each other, and without triangles, nothing is told of roles.
+  assert.equal(engine.ask('facing', {pose: [...bite.slice(0, 14), -300, 1], frame: ''}).known, false);
+  ist('build', lower, '-o', 'none.ist', '--voxel-size', '2', '--no-triangles');
+  engine.open('moving', 'none.ist', readFileSync(path.join(folder, 'none.ist')));
+  assert.deepEqual(engine.ask('facing', {pose: bite, frame: ''}), {known: false});
 });
 
 /** An engine whose memory ends: `limit` says at how many bytes, and `bytes` how many there are. */

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
+import {builtIn} from '../../src/viewer/page/facing.js';
 import {listenToKeys} from '../../src/viewer/page/keyboard.js';
 import {identity, translation} from '../../src/viewer/page/pose.js';
 import {makeStore} from '../../src/viewer/page/state/store.js';
@@ -19,10 +20,10 @@ function picture() {
     drawn: true,
     surface,
     circle: (...by) => done.push(by.map(Math.sign)),
-    frameAll: () => done.push('all'),
+    home: () => done.push('home'),
   };
   globalThis.document = {addEventListener: () => {}};
-  const store = makeStore({bodies: {moving: {extent: 1000}}, pose: [...identity], dragging: false});
+  const store = makeStore({bodies: {moving: {extent: 1000}}, facing: builtIn, pose: [...identity], dragging: false});
   listenToKeys({store, stage, history: {}});
   const press = (key, more = {}) => {
     let taken = false;
@@ -47,7 +48,7 @@ test('arrows turn the view; plus and minus change its distance, also where Shift
     ['+', {}, [0, 0, 1]],
     ['+', {shiftKey}, [0, 0, 1]],
     ['-', {}, [0, 0, 1]],
-    ['Home', {}, 'all'],
+    ['Home', {}, 'home'],
   ]) {
     assert.equal(press(key, more), true);
     assert.deepEqual(done.pop(), wanted);

@@ -11,6 +11,7 @@ import {
   answerOf,
   closePage,
   closedBy,
+  dropFiles,
   inWorker,
   ist,
   linesOf,
@@ -108,20 +109,11 @@ test('takes two meshes that are dropped together, the first as fixed', async () 
   const {page} = opened;
   await ready(page);
   await page.getByLabel('Unit of the files you open').selectOption('mm');
-  const names = ['first.stl', 'second.stl'];
-  const contents = [scaled(upper, 0.25), scaled(lower, 0.25)].map((bytes) => bytes.toString('base64'));
-  await page.evaluate(
-    ({names, contents}) => {
-      const dropped = new DataTransfer();
-      contents.forEach((text, at) => {
-        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-        dropped.items.add(new File([bytes], names[at]));
-      });
-      document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
-    },
-    {names, contents},
-  );
-  await page.waitForFunction(() => window.ist.state().bodies.moving.name === 'second.stl' && window.ist.state().trees !== null);
+  await dropFiles(page, [
+    ['first.stl', scaled(upper, 0.25)],
+    ['second.stl', scaled(lower, 0.25)],
+  ]);
+  await page.waitForFunction(() => window.ist.state().bodies.moving?.name === 'second.stl' && window.ist.state().trees !== null);
   await ready(page);
   const {fixed, moving} = await page.evaluate(() => window.ist.state().bodies);
   assert.deepEqual([fixed.name, fixed.unit, moving.unit], ['first.stl', 'mm', 'mm']);

@@ -148,7 +148,7 @@ test('finds the first contact from the pose that is shown', async () => {
   const {page} = opened;
   await ready(page);
   await page.getByRole('button', {name: 'First contact'}).click();
-  await message(page, /^First contact: within/);
+  await message(page, /^First contact at \(/);
   await ready(page);
   const {line} = await answer(page);
   assert.equal(line.touch, 'yes');

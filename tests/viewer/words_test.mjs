@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {infoSentences, interval, short} from '../../src/viewer/page/words.js';
+import {depthWords, infoSentences, interval, short} from '../../src/viewer/page/words.js';
 import {wrenchAtMiddle} from '../../src/viewer/page/wrench.js';
 
 test('numbers are short, and tell their size', () => {
@@ -12,6 +12,25 @@ test('numbers are short, and tell their size', () => {
   assert.equal(interval(0.284, 0.2949, 'mm'), '0.284 to 0.2949 mm');
   assert.equal(interval(0.28400001, 0.28400004, 'mm'), '0.284 mm');
   assert.equal(interval(null, null, 'mm'), 'not known');
+});
+
+test('a depth is an interval, of open scans a lower bound, and 0 where they are apart', () => {
+  const open = {depth_lower: null, depth_upper: null, touch: 'yes', inside: 'none', self_intersecting: false, depth_at_vertices: 1.0539};
+  for (const [line, words] of [
+    [{depth_lower: 0.284, depth_upper: 0.2949, depth_at_vertices: 0.28, touch: 'yes'}, '0.284 to 0.2949 mm'],
+    [{depth_lower: 0, depth_upper: 0, depth_at_vertices: 0, touch: 'no'}, '0 mm'],
+    [open, '≥ 1.05 mm (open scans)'],
+    [{...open, touch: 'no', inside: null}, '0, or ≥ 1.05 mm (open scans)'],
+    [{...open, touch: 'no', depth_at_vertices: 0}, '0 mm'],
+    [{...open, touch: 'no', inside: null, depth_at_vertices: null}, '0 mm'],
+    [{...open, touch: 'no', inside: 'moving', depth_at_vertices: null}, 'not known'],
+    // Trees without triangles: one may lie in the other.
+    [{...open, touch: 'no', inside: null, self_intersecting: null, depth_at_vertices: null}, 'not known'],
+    [{...open, touch: 'no', self_intersecting: null, depth_at_vertices: null}, '0 mm'],
+    [{...open, touch: 'near', depth_at_vertices: null}, 'not known'],
+    [{...open, touch: 'unknown', depth_at_vertices: 0}, 'not known'],
+  ])
+    assert.equal(depthWords(line, 'mm'), words);
 });
 
 test('sentences describe a body', () => {

@@ -3,72 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "cli/occlusion/bite_direction.h"
 
 namespace ist::cli {
 namespace {
 
 using Vector = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
-
-// Visits the triangles whose corners are all within the reach: a corner, and twice the area along
-// the outer normal; fixed coordinates.
-template <typename Visit>
-void visit_near(const BiteBody& body, const Visit& visit) {
-  const auto is_near = [&](std::uint32_t v) {
-    return !std::isnan(body.surface.vertices[v].distance);
-  };
-  for (const Triangle& t : body.mesh->triangles) {
-    if (!is_near(t[0]) || !is_near(t[1]) || !is_near(t[2])) continue;
-    const Vector& a = body.mesh->vertices[t[0]];
-    const Vector area = (body.mesh->vertices[t[1]] - a).cross(body.mesh->vertices[t[2]] - a);
-    visit(body.to_fixed * a, Vector(body.to_fixed.linear() * area));
-  }
-}
-
-Vector facing(const BiteBody& body) {
-  Vector sum = Vector::Zero();
-  visit_near(body, [&](const Vector&, const Vector& area) { sum += area; });
-  return sum;
-}
-
-Vector middle_of(const BiteBody& body) {
-  Box box;
-  for (const Vector& v : body.mesh->vertices) box.extend(body.to_fixed * v);
-  return box.center();
-}
-
-// The axis of a vector's largest component.
-Vector nearest_axis(const Vector& vector) {
-  Eigen::Index largest = 0;
-  vector.cwiseAbs().maxCoeff(&largest);
-  Vector axis = Vector::Zero();
-  axis[largest] = vector[largest] < 0 ? -1 : 1;
-  return axis;
-}
-
-// From the fixed body to the moving one.
-Vector direction_between(const Bite& bite) {
-  constexpr double kCosine25 = 0.906;
-  const Vector normal = facing(bite.fixed) - facing(bite.moving);
-  const double length = normal.norm();
-  if (!(length > 0)) return nearest_axis(middle_of(bite.moving) - middle_of(bite.fixed));
-  const Vector direction = normal / length, axis = nearest_axis(direction);
-  return axis.dot(direction) > kCosine25 ? axis : direction;
-}
-
-Vector direction_across(const Bite& bite, const Vector& towards) {
-  const std::array<Vector, 4> choice{bite.sides.direction, bite.fore_aft.direction, Vector::UnitX(),
-                                     Vector::UnitY()};
-  for (const Vector& direction : choice) {
-    const Vector across = direction - towards.dot(direction) * towards;
-    if (across.norm() > 0.5) return across.normalized();
-  }
-  return Vector::UnitZ().cross(towards).normalized();
-}
 
 // Returns the smallest pixels by which a picture of that size holds a box with some room round it.
 double pixel_of(const Box& box, double room, int width, int height) {
@@ -104,11 +49,12 @@ Box opposed(const Bite& bite, const Eigen::Matrix3d& to_picture, const Vector& t
   std::array<Middle, 3> middle;
   for (const BiteBody* body : {&bite.fixed, &bite.moving}) {
     const Vector outwards = body == &bite.fixed ? towards : Vector(-towards);
-    visit_near(*body, [&](const Vector& corner, const Vector& area) {
-      if (area.dot(outwards) < 0.5 * area.norm()) return;
-      const Vector point = to_picture * corner;
-      for (std::size_t i = 0; i < 3; ++i) middle[i].add(point[static_cast<int>(i)], area.norm());
-    });
+    for (const NearTriangle& one : near_triangles(*body)) {
+      const double area = one.area.norm();
+      if (one.area.dot(outwards) < 0.5 * area) continue;
+      const Vector point = to_picture * one.corner;
+      for (std::size_t i = 0; i < 3; ++i) middle[i].add(point[static_cast<int>(i)], area);
+    }
     for (const ContactRegion& region : body->surface.regions) {
       box.extend(to_picture * region.closest);
     }
@@ -122,8 +68,9 @@ Box opposed(const Bite& bite, const Eigen::Matrix3d& to_picture, const Vector& t
 
 BiteViews bite_views(const Bite& bite, int width, int height) {
   BiteView fixed;
-  fixed.towards = direction_between(bite);
-  fixed.across = direction_across(bite, fixed.towards);
+  const BiteDirections directions = directions_of(bite);
+  fixed.towards = directions.towards;
+  fixed.across = directions.across;
   fixed.up = fixed.towards.cross(fixed.across);
   Eigen::Matrix3d axes;
   axes << fixed.across, fixed.up, fixed.towards;

@@ -24,12 +24,9 @@ struct BiteViews {
 
 /// Returns the views for pictures of that size, in pixels.
 ///
-/// Looks along the difference of the bodies' mean outer normals, weighted by area, over the
-/// triangles whose corners are all within the reach; along the axis of the fixed body that lies
-/// within 25° of it, so that pictures of a series compare; and where nothing is within the reach,
-/// along the axis by which the boxes' middles differ most. `Bite::sides` runs across, its first
-/// side at the end of the lines. Shows both bodies whole; or the part where
-/// they face each other within the reach, up to three times as large, and all contact regions.
+/// Looks along the direction between the bodies (bite_direction.h). `Bite::sides` runs across, its
+/// first side at the end of the lines. Shows both bodies whole; or the part where they face each
+/// other within the reach, up to three times as large, and all contact regions.
 [[nodiscard]] BiteViews bite_views(const Bite& bite, int width, int height);
 
 }  // namespace ist::cli

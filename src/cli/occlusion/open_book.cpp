@@ -1,33 +1,29 @@
 #include "cli/occlusion/open_book.h"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
+
+#include "cli/occlusion/bite_direction.h"
 
 namespace ist::cli {
 namespace {
 
 using Vector = Eigen::Vector3d;
 
-Eigen::AlignedBox3d box_of(const BiteBody& body, const Eigen::Isometry3d& place) {
-  Eigen::AlignedBox3d box;
-  for (const Vector& vertex : body.mesh->vertices) box.extend(place * (body.to_fixed * vertex));
-  return box;
-}
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+};
 
-// The axis, with its sign, along which the middles of both boxes are farthest apart.
-Vector towards_moving(const Bite& bite) {
-  const Eigen::Isometry3d stay = Eigen::Isometry3d::Identity();
-  const Vector way = box_of(bite.moving, stay).center() - box_of(bite.fixed, stay).center();
-  Eigen::Index axis = 0;
-  way.cwiseAbs().maxCoeff(&axis);
-  return (way[axis] < 0 ? -1.0 : 1.0) * Vector::Unit(axis);
-}
-
-// The axis that is most nearly the one from front to back, and across `up`.
-Vector hinge_across(const Vector& up, const Vector& fore_aft) {
-  const Vector flat = fore_aft - fore_aft.dot(up) * up;
-  Eigen::Index axis = 0;
-  if (flat.cwiseAbs().maxCoeff(&axis) > 0.1) return Vector::Unit(axis);
-  return Vector::Unit(std::abs(up[0]) > 0.5 ? 1 : 0);
+// How far a body reaches along a direction, where it is placed.
+Range range_of(const BiteBody& body, const Eigen::Isometry3d& place, const Vector& along) {
+  const Eigen::Isometry3d whole = place * body.to_fixed;
+  Range range;
+  for (const Vector& vertex : body.mesh->vertices) {
+    const double at = along.dot(whole * vertex);
+    range = {std::min(range.low, at), std::max(range.high, at)};
+  }
+  return range;
 }
 
 Eigen::Isometry3d quarter(const Vector& axis, double sense) {
@@ -40,22 +36,20 @@ Eigen::Isometry3d quarter(const Vector& axis, double sense) {
 
 }  // namespace
 
-OpenedBook opened(const Bite& bite, double gap) {
-  const Vector up = towards_moving(bite), hinge = hinge_across(up, bite.fore_aft.direction);
-  const Vector viewer = hinge.cross(up);  // both faces look there: fixed up, moving down, turned
-  OpenedBook book{quarter(hinge, +1), quarter(hinge, -1)};
-  const Eigen::AlignedBox3d fixed = box_of(bite.fixed, book.fixed),
-                            moving = box_of(bite.moving, book.moving);
-  // Ends of the boxes along `up` and towards the viewer.
-  const auto ends = [](const Eigen::AlignedBox3d& box, const Vector& along) {
-    const double middle = along.dot(box.center());
-    const double half = 0.5 * along.cwiseAbs().dot(box.sizes());
-    return std::pair(middle - half, middle + half);
+OpenedBook opened(const Bite& bite, double gap, BookLayout layout) {
+  const BiteDirections directions = directions_of(bite);
+  const Vector &towards = directions.towards, &front = directions.front;
+  const bool beside = layout == BookLayout::kBeside;
+  const Vector hinge = beside ? Vector(-front) : towards.cross(front);
+  // Both faces look at the viewer: the fixed body's looked `towards`, the moving body's against it.
+  const Vector viewer = hinge.cross(towards);
+  OpenedBook book{quarter(hinge, +1), quarter(hinge, -1), viewer,
+                  beside ? front : Vector(-towards)};
+  const auto shift = [&](const BiteBody& body, Eigen::Isometry3d& place, double aside) {
+    place.pretranslate(aside * towards - range_of(body, place, viewer).middle() * viewer);
   };
-  const auto [fixed_low, fixed_high] = ends(fixed, up);
-  const auto [moving_low, moving_high] = ends(moving, up);
-  book.fixed.pretranslate((-0.5 * gap - fixed_high) * up - viewer.dot(fixed.center()) * viewer);
-  book.moving.pretranslate((0.5 * gap - moving_low) * up - viewer.dot(moving.center()) * viewer);
+  shift(bite.fixed, book.fixed, -0.5 * gap - range_of(bite.fixed, book.fixed, towards).high);
+  shift(bite.moving, book.moving, 0.5 * gap - range_of(bite.moving, book.moving, towards).low);
   return book;
 }
 

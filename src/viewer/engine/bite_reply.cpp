@@ -51,18 +51,22 @@ std::string web_colour(const Colour& colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
-ordered_json side_of(const cli::BiteBody& body, const Eigen::Isometry3d& placing,
-                     std::span<const cli::MapBand> bands, Reply& reply) {
+ordered_json side_of(const cli::BiteBody& body, Reply& reply) {
   std::vector<float> distances;
-  std::vector<std::uint8_t> colours;
   for (const SurfaceDistance& one : body.surface.vertices) {
     distances.push_back(static_cast<float>(one.distance));
-    const Colour colour = cli::map_colour(one.distance, bands);
-    colours.insert(colours.end(), colour.begin(), colour.end());
   }
-  return {{"distances", reply.array(std::move(distances))},
-          {"colours", reply.array(std::move(colours))},
-          {"place", cli::pose_json(placing * body.to_fixed)}};
+  return {{"distances", reply.array(std::move(distances))}};
+}
+
+// Both bodies of an opened book as the page draws it: x to the right, z up, the viewer at -y.
+ordered_json book_of(const cli::Bite& bite, cli::BookLayout layout) {
+  const cli::OpenedBook book = cli::opened(bite, kBookGap * bite.units_per_mm, layout);
+  Eigen::Isometry3d drawn = Eigen::Isometry3d::Identity();
+  drawn.linear() << book.up.cross(book.viewer).transpose(), -book.viewer.transpose(),
+      book.up.transpose();
+  return {{"fixed", cli::pose_json(drawn * book.fixed * bite.fixed.to_fixed)},
+          {"moving", cli::pose_json(drawn * book.moving * bite.moving.to_fixed)}};
 }
 
 }  // namespace
@@ -82,9 +86,10 @@ void fill_bite(const cli::Bodies& bodies, const Asked& asked, Progress& progress
     reply.json["bands"].push_back(line);
   }
   reply.json["bare"] = web_colour(cli::kBareSurface);
-  const cli::OpenedBook book = cli::opened(bite, kBookGap * bite.units_per_mm);
-  reply.json["fixed"] = side_of(bite.fixed, book.fixed, bands, reply);
-  reply.json["moving"] = side_of(bite.moving, book.moving, bands, reply);
+  reply.json["book"] = {{"beside", book_of(bite, cli::BookLayout::kBeside)},
+                        {"above", book_of(bite, cli::BookLayout::kAbove)}};
+  reply.json["fixed"] = side_of(bite.fixed, reply);
+  reply.json["moving"] = side_of(bite.moving, reply);
 }
 
 std::vector<std::uint8_t> coloured_glb(const cli::Bodies& bodies, const Asked& asked,

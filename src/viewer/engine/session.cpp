@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -13,8 +14,10 @@
 #include "cli/poses/pose_json.h"
 #include "ist/base/error.h"
 #include "ist/measure/first_contact.h"
+#include "ist/mesh/nearest_point.h"
 #include "ist/models/models.h"
 #include "viewer/engine/bite_reply.h"
+#include "viewer/engine/facing_reply.h"
 #include "viewer/engine/level_reply.h"
 
 namespace ist::viewer {
@@ -41,6 +44,28 @@ int level_of(const Asked& asked) {
   return static_cast<int>(std::min<std::uint64_t>(asked.count("level"), 64));
 }
 
+// A point of the fixed triangle that is next to the moving one, which intersects it. Nearest points
+// of both in turns come to a common point of any two convex sets.
+Eigen::Vector3d shared_point(const cli::Bodies& bodies, const TrianglePair& pair,
+                             const Eigen::Isometry3d& pose) {
+  constexpr int kTurns = 2000;  // 0.2 ms
+  const auto corners = [](const TriangleMesh& mesh, std::uint32_t triangle,
+                          const Eigen::Isometry3d& place) {
+    std::array<Eigen::Vector3d, 3> found;
+    for (std::size_t i = 0; i < 3; ++i) {
+      found[i] = place * mesh.vertices[mesh.triangles[triangle][i]];
+    }
+    return found;
+  };
+  const auto fixed = corners(*bodies.fixed.triangles(), pair.fixed, Eigen::Isometry3d::Identity());
+  const auto moving = corners(*bodies.moving.triangles(), pair.moving, pose);
+  Eigen::Vector3d point = (moving[0] + moving[1] + moving[2]) / 3;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    point = nearest_on_triangle(moving, nearest_on_triangle(fixed, point).point).point;
+  }
+  return nearest_on_triangle(fixed, point).point;
+}
+
 }  // namespace
 
 Reply Session::answer(const std::string& question, const Asked& asked, Progress& progress) {
@@ -51,6 +76,10 @@ Reply Session::answer(const std::string& question, const Asked& asked, Progress&
     reply.json = pairs().of(asked.policy()).collide(asked.pose("pose"));
   } else if (question == "occlusion") {
     fill_bite(whole(), asked, progress, reply);
+  } else if (question == "facing") {
+    fill_facing(whole(), asked, progress, reply);
+  } else if (question == "swap") {
+    swap();
   } else if (question == "save_glb") {
     reply.json["bytes"] = reply.array(coloured_glb(whole(), asked, progress));
   } else if (question == "make_jaws") {
@@ -130,6 +159,12 @@ Reply Session::open(const Asked& asked) {
   return reply;
 }
 
+void Session::swap() {
+  std::swap(present(Role::kFixed), present(Role::kMoving));
+  pairs_.reset();
+  recorded_.reset();
+}
+
 Reply Session::build(const Asked& asked, Progress& progress) {
   PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
   const double extent = std::min(fixed.extent(), moving.extent());
@@ -161,11 +196,17 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
   const Motion motion = Motion::between(asked.pose("from"), asked.pose("to"));
   const FirstContact found =
       ist::first_contact(pairs().of({}).query(), motion, asked.number("tolerance"));
+  const Eigen::Isometry3d pose = motion.at(found.upper);
   Reply reply;
   reply.json = {{"status", to_string(found.status)},
                 {"lower", found.lower},
                 {"upper", found.upper},
-                {"pose", cli::pose_json(motion.at(found.upper))}};
+                {"pose", cli::pose_json(pose)},
+                {"point", nullptr}};
+  if (found.triangles) {
+    const Eigen::Vector3d point = shared_point(pairs().bodies(), *found.triangles, pose);
+    reply.json["point"] = {point[0], point[1], point[2]};
+  }
   return reply;
 }
 

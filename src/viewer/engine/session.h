@@ -31,6 +31,8 @@ class Session {
 
   [[nodiscard]] Reply make_jaws(const Asked& asked);
   [[nodiscard]] Reply open(const Asked& asked);
+  /// Gives each body the other one's role.
+  void swap();
   [[nodiscard]] Reply build(const Asked& asked, Progress& progress);
   [[nodiscard]] Reply first_contact(const Asked& asked, Progress& progress);
   [[nodiscard]] Reply level(const Asked& asked);

@@ -4,7 +4,8 @@
  */
 
 import {faultText} from './engine/engine_client.js';
-import {identity} from './pose.js';
+import {builtIn, directionWords, facingOf, swapped} from './facing.js';
+import {identity, inverse} from './pose.js';
 import {bytesWords, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
@@ -20,7 +21,9 @@ import {bytesWords, short, unitWord} from './words.js';
  * @typedef {object} BodiesLoader  each promise gives whether it was done; if not, a sentence was said, or
  *   somebody cancelled or replaced it
  * @property {(seed: number) => Promise<boolean>} makeJaws
- * @property {(file: BodyFile) => Promise<boolean>} open  of one role; trees are not built by it
+ * @property {(file: BodyFile, alone?: boolean) => Promise<boolean>} open  of one role; trees are not built by it; `alone`: the other place is empty then
+ * @property {() => Promise<boolean>} guessRoles  gives the upper body the fixed role, where it is known which is the upper one
+ * @property {() => Promise<boolean>} swap  gives each body the other one's role, where they are; trees are not built by it
  * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
  * @property {(files: BodyFile[], pose?: Pose) => Promise<boolean>} replace  opens, poses and builds
  * @property {(ask: Ask, trees?: boolean) => Promise<void>} restore  gives another engine the bodies, and their trees where those are wanted
@@ -40,6 +43,9 @@ const farApart = 20;
 export function makeBodiesLoader({store, say, ask}) {
   /** @type {{seed: number | null, files: Partial<Record<Role, BodyFile>>, voxelSize: number | null, built: boolean}} */
   const kept = {seed: null, files: {}, voxelSize: null, built: false};
+  /** What is not of these bodies any more. */
+  const nothingKnown = {trees: null, tick: null, answer: null, cancelled: null, bite: null};
+  let looked = false;
   /** @type {Partial<Record<Role, Pose>>} the home pose when a body was opened: of the bodies before it */
   let homes = {};
 
@@ -60,22 +66,15 @@ export function makeBodiesLoader({store, say, ask}) {
     const bodies = await ask('make_jaws', {seed}, {doing: 'Making the built-in jaws'});
     Object.assign(kept, {seed, files: {}, built: false});
     homes = {};
-    store.set({
-      bodies,
-      jaws: seed,
-      seed,
-      home: [...identity],
-      trees: null,
-      tick: null,
-      answer: null,
-      cancelled: null,
-      bite: null,
-      unit: null,
-    });
+    looked = true;
+    store.set({...nothingKnown, bodies, jaws: seed, seed, home: [...identity], facing: builtIn, unit: null});
   }
 
-  /** @param {BodyFile} file */
-  async function open(file) {
+  /**
+   * @param {BodyFile} file
+   * @param {boolean} [alone]
+   */
+  async function open(file, alone = false) {
     if (file.content.size > mostBytes) {
       throw new Error(
         `${file.name}: it has ${bytesWords(file.content.size)}, and a page's memory takes files to ${bytesWords(mostBytes)}: ` +
@@ -86,26 +85,20 @@ export function makeBodiesLoader({store, say, ask}) {
     const read = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
     // The engine keeps it under a name that is a file's.
     const facts = {...read, name: file.name};
-    kept.files[file.role] = file;
+    const other = file.role === 'fixed' ? 'moving' : 'fixed';
+    kept.files = alone ? {[file.role]: file} : {...kept.files, [file.role]: file};
     kept.built = false;
-    if (kept.files.fixed && kept.files.moving) kept.seed = null;
+    if (alone || kept.files[other]) kept.seed = null;
     const bodies = {...store.get().bodies, [file.role]: facts};
+    if (alone) bodies[other] = null;
     // A pose that the bodies before came with says nothing of two others.
     const {home} = store.get(),
-      both = homes[file.role === 'fixed' ? 'moving' : 'fixed'] === home;
+      both = alone || homes[other] === home;
     homes = both ? {} : {...homes, [file.role]: home};
-    store.set({
-      bodies,
-      jaws: null,
-      home: both ? [...identity] : home,
-      trees: null,
-      tick: null,
-      answer: null,
-      cancelled: null,
-      bite: null,
-      unit: file.unit ?? null,
-    });
-    for (const warning of facts.warnings) say(`${facts.name}: ${warning}.`, 'warning');
+    looked = false;
+    store.set({...nothingKnown, bodies, jaws: null, home: both ? [...identity] : home, unit: file.unit ?? null});
+    if (kept.seed !== null) say(`${facts.name} is measured against a built-in jaw, ${bodies[other]?.name}: open a file in its place too.`);
+    for (const warning of facts.warnings) say(`${facts.name}: ${warning.replace(/\.$/, '')}.`, 'warning');
     if (!compare(bodies)) suspect(facts);
   }
 
@@ -143,10 +136,52 @@ export function makeBodiesLoader({store, say, ask}) {
     );
   }
 
+  /** Finds how both bodies face each other. Without an answer they do as the built-in jaws. */
+  async function look() {
+    const {home, frame} = store.get();
+    const found = await ask('facing', {pose: home, frame}, {doing: 'Looking where the bodies face each other', seldomLong: true}).catch(
+      () => ({
+        known: false,
+      }),
+    );
+    looked = true;
+    store.set({facing: facingOf(found)});
+  }
+
+  async function swap() {
+    const {bodies, pose, home, facing} = store.get();
+    if (!bodies.fixed || !bodies.moving || kept.seed !== null) return;
+    await ask('swap', {});
+    const {fixed, moving} = kept.files;
+    if (fixed && moving) kept.files = {fixed: {...moving, role: 'fixed'}, moving: {...fixed, role: 'moving'}};
+    kept.built = false;
+    homes = {};
+    store.set({
+      ...nothingKnown,
+      bodies: {fixed: bodies.moving, moving: bodies.fixed},
+      pose: inverse(pose),
+      home: inverse(home),
+      facing: swapped(facing, home),
+    });
+  }
+
+  async function guessRoles() {
+    const {fixed, moving} = store.get().bodies;
+    if (!fixed || !moving) return;
+    await look();
+    const {facing} = store.get();
+    if (!facing.known || facing.upper === 'fixed') return;
+    await swap();
+    say(
+      `${fixed.name} lies below, so it is the moving body, which closes along ${directionWords(store.get().facing.closing)}. Swap, in the panel Bodies, changes that.`,
+    );
+  }
+
   /** @param {number} [wanted] */
   async function build(wanted) {
     const {fixed, moving} = store.get().bodies;
     if (!fixed || !moving) return;
+    if (!looked) await look();
     const voxelSize = wanted ?? Number((firstVoxel * Math.min(fixed.extent, moving.extent)).toPrecision(2));
     try {
       const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
@@ -184,7 +219,9 @@ export function makeBodiesLoader({store, say, ask}) {
 
   return {
     makeJaws: (seed) => said(makeJaws(seed)),
-    open: (file) => said(open(file)),
+    open: (file, alone) => said(open(file, alone)),
+    guessRoles: () => said(guessRoles()),
+    swap: () => said(swap()),
     build: (voxelSize) => said(build(voxelSize)),
     replace: (files, pose = [...identity]) => said(replace(files, pose)),
     async restore(again, trees = true) {

@@ -20,6 +20,7 @@
  * @property {Trees | null} trees   null until both bodies have trees
  * @property {Pose} pose            of the moving body
  * @property {Pose} home            the pose that the bodies came with: the closing slider's 0
+ * @property {import('./facing.js').Facing} facing  how both bodies face each other at the home pose
  * @property {boolean} dragging     whether the pose changes right now
  * @property {number | null} voxelSize  mesh units; null: the engine's own choice
  * @property {Policy | null} policy     null: the tightest

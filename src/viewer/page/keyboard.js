@@ -37,18 +37,28 @@ export function listenToKeys({store, stage, history}) {
 
   /** @param {string} key */
   function moveBody(key) {
-    const step = (store.get().bodies.moving?.extent ?? 100) / 1000;
-    /** @type {Record<string, number[]>} */
+    const {bodies, facing, pose} = store.get();
+    const step = (bodies.moving?.extent ?? 100) / 1000;
+    const {up, front} = facing,
+      right = [up[1] * front[2] - up[2] * front[1], up[2] * front[0] - up[0] * front[2], up[0] * front[1] - up[1] * front[0]];
+    /** @type {Record<string, [number[], number]>} */
     const ways = {
-      ArrowLeft: [-step, 0, 0],
-      ArrowRight: [step, 0, 0],
-      ArrowUp: [0, 0, step],
-      ArrowDown: [0, 0, -step],
-      PageUp: [0, step, 0],
-      PageDown: [0, -step, 0],
+      ArrowLeft: [right, -step],
+      ArrowRight: [right, step],
+      ArrowUp: [up, step],
+      ArrowDown: [up, -step],
+      PageUp: [front, -step],
+      PageDown: [front, step],
     };
     if (!ways[key]) return false;
-    store.set({pose: moved(store.get().pose, ways[key]), dragging: true});
+    const [way, by] = ways[key];
+    store.set({
+      pose: moved(
+        pose,
+        way.map((part) => part * by),
+      ),
+      dragging: true,
+    });
     return true;
   }
 
@@ -75,7 +85,7 @@ export function listenToKeys({store, stage, history}) {
         stage.circle(0, 0, 1 / zoom);
         return true;
       case 'Home':
-        stage.frameAll();
+        stage.home();
         return true;
       default:
         return false;

@@ -5,6 +5,7 @@ import {makeBodiesLoader} from './bodies_loader.js';
 import {readDataBlock} from './data_block.js';
 import {faultText, makeEngineClient} from './engine/engine_client.js';
 import {startEngine, unpackEngine} from './engine/engine_start.js';
+import {builtIn} from './facing.js';
 import {followPose} from './follow.js';
 import {makeAddress} from './state/address.js';
 import {readFragment, writeFragment} from './state/fragment.js';
@@ -55,6 +56,7 @@ function firstState() {
     trees: null,
     pose: translation(startShift),
     home: [...identity],
+    facing: builtIn,
     dragging: false,
     voxelSize: null,
     policy: null,
@@ -143,6 +145,7 @@ async function main() {
   });
   store.subscribe(['bodies'], () => measurer.drop());
   store.subscribe(['pose'], ({pose}) => stage.setPose(pose));
+  store.subscribe(['facing'], ({facing}) => stage.setUpright(facing.up, facing.front));
   store.subscribe(['panel'], ({panel}) => show(panel));
   const setAddress = makeAddress((fragment) => window.history.replaceState(null, '', fragment));
   store.subscribe(['panel', 'pose', 'dragging', 'voxelSize', 'policy', 'preset', 'theme', 'seed'], (state) => {
@@ -153,7 +156,7 @@ async function main() {
     store.set({panel: recorded ? 'recording' : 'bodies'});
     if (recorded) await recording.openFile(recorded);
     const meshes = files.filter((file) => file !== recorded);
-    for (const [at, file] of meshes.entries()) await openDropped(context, file, at, meshes.length);
+    if (meshes.length > 0) await openDropped(context, meshes);
   });
   let opened = false;
   exposeTestSurface({

@@ -76,18 +76,21 @@ async function buildFirst(loader, {voxelSize}) {
 }
 
 /**
- * Opens a mesh that was dropped on the page.
+ * Opens the meshes that were dropped together. One alone takes the empty place; where there is none, it waits for the other jaw.
  * @param {Context} context
- * @param {File} file
- * @param {number} at  among the files that were dropped together
- * @param {number} of  how many those are
+ * @param {File[]} files
  */
-export async function openDropped({store, loader, stage, history}, file, at, of) {
-  // Of two the first is fixed; one alone takes the place of the body that moves.
-  const role = of > 1 && at === 0 ? 'fixed' : 'moving';
-  if (!(await loader.open({role, name: file.name, content: file, unit: store.get().fileUnit ?? undefined}))) return;
-  if (at < of - 1) return;
+export async function openDropped({store, loader, stage, history, say}, files) {
+  const {bodies, fileUnit} = store.get();
+  const empty = bodies.fixed ? (bodies.moving ? null : 'moving') : 'fixed';
+  for (const [at, content] of files.entries()) {
+    const role = files.length === 1 ? (empty ?? 'fixed') : at === 0 ? 'fixed' : 'moving';
+    const begins = at === 0 && (files.length > 1 || empty === null);
+    if (!(await loader.open({role, name: content.name, content, unit: fileUnit ?? undefined}, begins))) return;
+  }
   store.set({pose: store.get().home, dragging: false});
+  if (files.length === 1 && empty === null) say(`${files[0].name} is open. Now the other jaw: drop its file too.`);
+  await loader.guessRoles();
   history.forget();
   await loader.build();
   stage.frameAll();

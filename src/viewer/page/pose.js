@@ -73,6 +73,29 @@ export function transformed(pose, point) {
 }
 
 /**
+ * @param {readonly number[]} pose
+ * @param {readonly number[]} direction
+ * @returns {number[]} turned by the pose, not shifted
+ */
+export function turned(pose, direction) {
+  const from = transformed(pose, [0, 0, 0]);
+  return transformed(pose, direction).map((value, axis) => value - from[axis]);
+}
+
+/**
+ * @param {readonly number[]} from  a pose
+ * @param {readonly number[]} to    another one
+ * @param {readonly number[]} point
+ * @param {readonly number[]} direction  of length 1
+ * @returns {number} how far the point goes along the direction
+ */
+export function along(from, to, point, direction) {
+  const begin = transformed(from, point),
+    end = transformed(to, point);
+  return direction.reduce((sum, part, axis) => sum + part * (end[axis] - begin[axis]), 0);
+}
+
+/**
  * @param {readonly number[]} shift
  * @returns {Pose}
  */

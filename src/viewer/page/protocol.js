@@ -61,14 +61,16 @@
  *   more that are timed together, above 0 by a coarse clock too
  * @property {[{pose: Pose, policy?: Policy, stiffness: number}, Tick]} tick
  *   what a frame of dragging needs, quickly
- * @property {[{from: Pose, to: Pose, tolerance: number}, {status: string, lower: number, upper: number, pose: Pose}]} first_contact
- *   along the screw from one pose to the other; `pose` is that of `upper`
+ * @property {[{from: Pose, to: Pose, tolerance: number}, {status: string, lower: number, upper: number, pose: Pose, point: number[] | null}]} first_contact
+ *   along the screw from one pose to the other; `pose` is that of `upper`, and `point` lies on both bodies there
  * @property {[{role: Role, policy: Policy, level: number}, Level]} level
  * @property {[{pose: Pose, policy: Policy, level: number}, {fixed: Uint32Array, moving: Uint32Array}]} touched
  *   the nodes of that level (of the deeper tree's; the other's where it has none so deep) that
  *   overlap another, by their places in `level`
  * @property {[{pose: Pose, policy: Policy}, {steps: Step[]}]} fronts
  * @property {[{pose: Pose, policy: Policy, step: number}, Front]} front
+ * @property {[{pose: Pose, frame: string}, FacingReply]} facing
+ * @property {[{}, {}]} swap  gives each body the other one's role; there are no trees then
  * @property {[BiteQuestion, Bite]} occlusion
  * @property {[{role: Role}, {bytes: Uint8Array}]} save_body  its tree's file, as `ist build` writes it
  * @property {[{}, {in_use: number}]} memory  bytes that the engine holds now
@@ -84,6 +86,14 @@
  * @property {number} sphere_tests
  * @property {number} resolution
  * @property {Contacts} contacts
+ */
+
+/**
+ * @typedef {object} FacingReply  how both bodies face each other; fixed coordinates
+ * @property {boolean} known       whether surfaces are near enough to tell
+ * @property {number[]} [towards]  from the fixed body to the moving one; missing where a body has no triangles
+ * @property {number[]} [front]    to the front teeth
+ * @property {Role} [upper]        the body that lies above
  */
 
 /**
@@ -136,13 +146,15 @@
  * @property {string} bare        colour of what lies beyond the bands
  * @property {MapSide} fixed
  * @property {MapSide} moving
+ * @property {Record<BookLayout, Record<Role, Pose>>} book  where the bodies lie when they are opened like a book: maps of their own
+ *   coordinates to those of the picture: x to the right, z up, the viewer at −y
+ *
+ * @typedef {'beside' | 'above'} BookLayout  side by side, the front of both up; or the fixed body above the moving one, the fronts outwards
  */
 
 /**
  * @typedef {object} MapSide
  * @property {Float32Array} distances  of each vertex of BodyFacts.positions; NaN beyond the reach
- * @property {Uint8Array} colours      red, green, blue of each vertex
- * @property {Pose} place              where the body lies in the opened book: a map of its own coordinates
  */
 
 /**

@@ -1,11 +1,12 @@
 /** Below the picture, whatever panel is shown: the slider that closes the bodies, and the answers at the pose. */
 
 import {middleOf} from './body_box.js';
+import {directionWords} from './facing.js';
 import {isHere, unitOf} from './follow.js';
-import {moved, toSixNumbers} from './pose.js';
+import {along, moved} from './pose.js';
 import {slider} from './ui/controls.js';
 import {element} from './ui/element.js';
-import {count, interval, short, unitWord} from './words.js';
+import {count, depthWords, interval, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 
@@ -16,15 +17,28 @@ const touchWords = {yes: 'they touch', no: 'apart', near: 'near: voxels alone ar
  * @param {Store} store
  */
 export function makeReadout(place, store) {
-  const shiftOf = (/** @type {import('./protocol.js').Pose} */ pose) => toSixNumbers(pose, middleOf(store.get().bodies.moving)).shift[2];
-  const position = () => shiftOf(store.get().pose) - shiftOf(store.get().home);
+  // How far the body has closed: its middle's way from the home pose.
+  const position = () => {
+    const {pose, home, facing, bodies} = store.get();
+    return along(home, pose, middleOf(bodies.moving), facing.closing);
+  };
   const closing = slider({
-    label: 'Close along z',
+    label: closingWords(store.get()),
     min: -5,
     max: 0,
     value: 0,
     words: (value) => `${short(value, 3)} ${unitWord(unitOf(store.get()))}`,
-    onInput: (value) => store.set({pose: moved(store.get().pose, [0, 0, value - position()]), dragging: true}),
+    onInput(value) {
+      const {pose, facing} = store.get();
+      const further = value - position();
+      store.set({
+        pose: moved(
+          pose,
+          facing.closing.map((part) => part * further),
+        ),
+        dragging: true,
+      });
+    },
     onChange: () => store.set({dragging: false}),
   });
   const touch = cell('Touch'),
@@ -42,6 +56,7 @@ export function makeReadout(place, store) {
     const {tick, answer, bodies} = state;
     const unit = unitWord(unitOf(state));
     const span = closingSpan(bodies.moving?.extent ?? 110);
+    closing.name(closingWords(state));
     closing.range(-span, 0);
     closing.set(position());
     // A tick's distance is only as close as a person sees; at rest all is the command's.
@@ -55,15 +70,20 @@ export function makeReadout(place, store) {
       answer && rested ? inFull(answer.line, 'distance') : '',
     );
     depth.set(
-      unknown ? 'not known' : answer ? interval(answer.line.depth_lower, answer.line.depth_upper, unit) : '…',
-      unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? inFull(answer.line, 'depth') : '',
+      unknown ? 'not known' : answer ? depthWords(answer.line, unit) : '…',
+      unknown ? 'Its search was cancelled: it is asked again when the body moves.' : answer && rested ? depthInFull(answer.line) : '',
     );
     depth.element.classList.toggle('stale', !rested && !unknown);
     force.set(tick ? `${short(Math.hypot(...tick.contacts.force), 3)} N` : '…');
     contacts.set(tick ? count(tick.contacts.depths.length) : '…');
   };
-  store.subscribe(['tick', 'answer', 'cancelled', 'pose', 'policy', 'home', 'bodies', 'unit'], fill);
+  store.subscribe(['tick', 'answer', 'cancelled', 'pose', 'policy', 'home', 'facing', 'bodies', 'unit'], fill);
   fill();
+}
+
+/** @param {Readonly<import('./context.js').State>} state */
+function closingWords({facing}) {
+  return `Close along ${directionWords(facing.closing)}`;
 }
 
 /**
@@ -84,6 +104,15 @@ export function closingSpan(extent) {
 function inFull(line, name) {
   const [lower, upper] = [line[`${name}_lower`], line[`${name}_upper`]];
   return lower === null || upper === null || lower === undefined ? '' : `${lower} to ${upper}`;
+}
+
+/**
+ * @param {import('./protocol.js').Line} line
+ * @returns {string} all digits of the depth, or of its lower bound
+ */
+function depthInFull(line) {
+  const {depth_at_vertices: atVertices} = line;
+  return inFull(line, 'depth') || (atVertices > 0 ? `${atVertices}: the deepest vertex, for an open surface has no certain depth` : '');
 }
 
 /** @param {string} name */

@@ -51,6 +51,25 @@ export function interval(lower, upper, unit) {
   return from === to ? `${from} ${unit}` : `${from} to ${to} ${unit}`;
 }
 
+/**
+ * How deep two bodies are in each other, of a line of `ist collide --json` or `ist occlusion --json`. Of open scans a
+ * lower bound is known, the depth of the deepest vertex. It is 0 where no vertex is near the other surface.
+ * @param {Line} line
+ * @param {string} unit
+ */
+export function depthWords(
+  {touch, inside, self_intersecting: crosses, depth_lower: lower, depth_upper: upper, depth_at_vertices: deepest},
+  unit,
+) {
+  if (typeof lower === 'number') return interval(lower, upper, unit);
+  const least = `≥ ${short(deepest, 3)} ${unit} (open scans)`;
+  if (touch === 'yes' && typeof deepest === 'number') return least;
+  if (touch !== 'no' || inside === 'fixed' || inside === 'moving') return 'not known';
+  if (deepest > 0) return `0, or ${least}`;
+  const hasTriangles = typeof crosses === 'boolean';
+  return hasTriangles || inside === 'none' ? `0 ${unit}` : 'not known';
+}
+
 /** @param {number} bytes */
 export function bytesWords(bytes) {
   if (bytes < 1e3) return `${bytes} bytes`;

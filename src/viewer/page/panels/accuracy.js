@@ -7,7 +7,7 @@ import {button, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {plot} from '../ui/plot.js';
 import {facts, table} from '../ui/table.js';
-import {count, interval, short, unitWord} from '../words.js';
+import {count, depthWords, interval, short, unitWord} from '../words.js';
 
 /** @typedef {import('../context.js').State} State */
 /** @typedef {import('../context.js').Answer} Answer */
@@ -187,7 +187,7 @@ function answerFacts(answer, unit) {
     ['Resolution', `${short(line.resolution)} ${unit}`],
     ['Touch', line.touch],
     ['Distance', interval(line.distance_lower, line.distance_upper, unit)],
-    ['Depth', interval(line.depth_lower, line.depth_upper, unit)],
+    ['Depth', depthWords(line, unit)],
   ]);
 }
 

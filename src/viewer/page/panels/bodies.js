@@ -6,6 +6,7 @@ import {element} from '../ui/element.js';
 import {fileField} from '../ui/file_drop.js';
 import {bytesWords, count, infoSentences, short, unitWord} from '../words.js';
 import {facts} from '../ui/table.js';
+import {directionWords} from '../facing.js';
 import {unitOf} from '../follow.js';
 
 /** @typedef {import('../context.js').State} State */
@@ -45,7 +46,18 @@ export function makeBodiesPanel({store, loader, stage, history}) {
       seed = value;
     },
   });
-  const parts = {fixed: element('section'), moving: element('section')};
+  const parts = {fixed: element('section'), moving: element('section')},
+    facingLine = element('p');
+  const swap = button(
+    'Swap',
+    async () => {
+      if (!(await loader.swap())) return;
+      history.forget();
+      await loader.build();
+      stage.frameAll();
+    },
+    {title: 'The fixed body moves, and the moving one is fixed'},
+  );
   const panel = element(
     'div',
     {},
@@ -65,6 +77,8 @@ export function makeBodiesPanel({store, loader, stage, history}) {
       choices: unitChoices('as the file says, else millimetres'),
       onChange: (value) => store.set({fileUnit: value === '' ? null : value}),
     }).element,
+    facingLine,
+    element('div', {class: 'row'}, swap),
     ...roles.map((role) =>
       element(
         'section',
@@ -78,14 +92,26 @@ export function makeBodiesPanel({store, loader, stage, history}) {
 
   const fill = (/** @type {Readonly<State>} */ state) => {
     for (const role of roles) parts[role].replaceChildren(...bodyLines(state, role));
+    facingLine.textContent = facingWords(state);
+    // The built-in jaws are known.
+    swap.hidden = state.jaws !== null || !state.bodies.fixed || !state.bodies.moving;
   };
-  store.subscribe(['bodies', 'trees', 'unit'], fill);
+  store.subscribe(['bodies', 'facing', 'jaws', 'trees', 'unit'], fill);
   store.subscribe(['seed'], (state) => {
     ({seed} = state);
     number.set(seed);
   });
   fill(store.get());
   return {id: 'bodies', title: 'Bodies', element: panel, shown: () => {}, hidden: () => {}};
+}
+
+/** @param {Readonly<State>} state */
+function facingWords({bodies, facing, jaws}) {
+  if (!bodies.fixed || !bodies.moving) return 'One body is missing: drop the file of the other jaw.';
+  const closes = `the moving body closes along ${directionWords(facing.closing)}`;
+  if (jaws !== null) return `The fixed body is the upper jaw, and ${closes}.`;
+  if (!facing.known) return `The bodies are too far from each other to tell which is the upper one. It is assumed that ${closes}.`;
+  return `By the normals of the surfaces that face each other, the ${facing.upper} body is the upper one, and ${closes}.`;
 }
 
 /**
@@ -98,7 +124,7 @@ function bodyLines(state, role) {
   const lines = [
     element('p', {}, element('strong', {}, body.name)),
     ...infoSentences({unit: body.unit, ...body.info}).map((sentence) => element('p', {}, sentence)),
-    ...body.warnings.map((warning) => element('p', {class: 'warned'}, `${warning}.`)),
+    ...body.warnings.map((warning) => element('p', {class: 'warned'}, `${warning.replace(/\.$/, '')}.`)),
   ];
   return state.trees ? [...lines, treeFacts(state.trees[role], unitWord(unitOf(state)))] : lines;
 }

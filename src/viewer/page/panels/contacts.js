@@ -36,7 +36,7 @@ export function makeContactsPanel({store, stage}) {
     element(
       'p',
       {},
-      'Where a hand that holds the moving body feels the other: leaf pairs, gathered to points. A contact depth says how far the two surfaces overlap there along the normal, to within a voxel.',
+      'Where a hand that holds the moving body feels the other: leaf pairs, gathered to points. Each has a spring that pushes along the normal. Springs see voxels, so no spring is pressed by more than a voxel. The depth of the bodies stands below the picture.',
     ),
     sums,
     stiffness.element,
@@ -104,15 +104,6 @@ function sumFacts(contacts, unit) {
   const along = (/** @type {number[]} */ v) => v.map((value) => short(value, 3)).join(', ');
   return facts([
     ['Contacts', count(contacts.depths.length)],
-    [
-      'Deepest',
-      contacts.depths.length
-        ? `${short(
-            contacts.depths.reduce((a, b) => Math.max(a, b), -Infinity),
-            3,
-          )} ${unit}`
-        : '–',
-    ],
     ['Force on the moving body (green)', `${short(size(force), 3)} N (${along(force)})`],
     ['Torque (pink)', `${short(size(torque), 3)} N ${unit} (${along(torque)})`],
     ["About the contacts' middle", contacts.depths.length ? along(at) : '–'],
@@ -130,8 +121,8 @@ function contactTable({positions, normals, depths, weights}, unit, onPick) {
   const three = (/** @type {Float64Array} */ of, /** @type {number} */ at, /** @type {number} */ digits) =>
     [...of.subarray(3 * at, 3 * at + 3)].map((value) => value.toFixed(digits).replace('-', '−')).join(' ');
   return table(
-    `The ${order.length === 1 ? 'deepest contact' : `deepest ${order.length} of ${count(depths.length)} contacts`}, fixed coordinates`,
-    ['#', `depth, ${unit}`, `position, ${unit}`, 'normal', `weight, ${unit}²`],
+    `The ${order.length === 1 ? 'only contact' : `most pressed ${order.length} of ${count(depths.length)} contacts`}, fixed coordinates`,
+    ['#', `spring pressed, ${unit}`, `position, ${unit}`, 'normal', `weight, ${unit}²`],
     order.map((at, rank) => [
       element(
         'button',

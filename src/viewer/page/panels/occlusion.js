@@ -41,10 +41,13 @@ export function makeOcclusionPanel({store, stage}) {
   // Closed, the bodies hide the surfaces that face each other.
   let opens = true,
     seen = false;
-  const book = checkbox('Open both bodies like a book', opens, (on) => {
+  const open = (/** @type {boolean} */ on) => {
     opens = on;
+    book.set(on);
     store.set({book: on});
-  });
+    view.home();
+  };
+  const book = checkbox('Open both bodies like a book', opens, open);
   const state = element('p', {class: 'map-state', 'aria-live': 'polite'});
   const again = button('Make the map', () => store.set({wantsMap: true}));
   const answer = element('div'),
@@ -59,7 +62,12 @@ export function makeOcclusionPanel({store, stage}) {
       'Each vertex by its signed distance from the other body: negative inside. The presets are published limits, and none is a clinical recommendation.',
     ),
     preset.element,
-    book.element,
+    element(
+      'div',
+      {class: 'row'},
+      book.element,
+      button('Occlusal view', () => open(true), {title: 'Both arches from their teeth; the key Home, in the picture'}),
+    ),
     state,
     again,
     answer,

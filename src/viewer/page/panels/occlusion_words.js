@@ -3,7 +3,7 @@
 import {button} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {facts, table} from '../ui/table.js';
-import {count, interval, short} from '../words.js';
+import {count, depthWords, interval, short} from '../words.js';
 
 /** @typedef {import('../protocol.js').Bite} Bite */
 /** @typedef {import('../protocol.js').Line} Line */
@@ -53,7 +53,7 @@ export function areaFacts(bite, unit) {
   const lines = [
     ['Touch', bite.touch],
     ['Distance', interval(bite.distance_lower, bite.distance_upper, unit)],
-    ['Depth', interval(bite.depth_lower, bite.depth_upper, unit)],
+    ['Depth', depthWords(bite, unit)],
     ...bite.fixed.areas.map(
       (/** @type {Line} */ area, /** @type {number} */ at) =>
         /** @type {[string, string]} */ ([

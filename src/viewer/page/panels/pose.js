@@ -2,12 +2,14 @@
 
 import {middleOf} from '../body_box.js';
 import {faultText} from '../engine/engine_client.js';
+import {directionWords} from '../facing.js';
 import {unitOf} from '../follow.js';
-import {fromSixNumbers, matrixText, moved, parseMatrix, toSixNumbers} from '../pose.js';
+import {along, fromSixNumbers, matrixText, moved, parseMatrix, toSixNumbers} from '../pose.js';
 import {button, numberField, select} from '../ui/controls.js';
 import {element, newId} from '../ui/element.js';
 import {short, unitWord} from '../words.js';
 import {makeGizmo} from '../view/gizmo.js';
+import {makePointMark} from '../view/point_mark.js';
 import {closingSpan} from '../readout.js';
 
 /** @typedef {import('../context.js').State} State */
@@ -17,7 +19,8 @@ const tolerance = 1e-5;
 
 /** @type {import('../context.js').MakePanel} */
 export function makePosePanel({store, stage, engine, history, say}) {
-  const gizmo = makeGizmo(stage, store);
+  const gizmo = makeGizmo(stage, store),
+    mark = makePointMark(stage, store);
   const centre = () => middleOf(store.get().bodies.moving);
   const six = () => toSixNumbers(store.get().pose, centre());
   /**
@@ -31,7 +34,6 @@ export function makePosePanel({store, stage, engine, history, say}) {
     store.set({pose: fromSixNumbers(numbers, centre()), dragging: false});
   };
 
-  const homeShift = () => toSixNumbers(store.get().home, centre()).shift[2];
   const fields = {
     shift: axes.map((name, axis) => numberField({label: `Shift ${name}`, value: 0, onChange: (value) => setNumber('shift', axis, value)})),
     turn: axes.map((name, axis) => numberField({label: `Turn ${name}, °`, value: 0, onChange: (value) => setNumber('turn', axis, value)})),
@@ -40,22 +42,32 @@ export function makePosePanel({store, stage, engine, history, say}) {
     redo = button('Redo', history.redo, {title: 'Control, Shift and Z'});
 
   const firstContact = async () => {
-    const {pose, bodies} = store.get();
+    const {pose, home, bodies, facing} = store.get();
+    const way = directionWords(facing.closing),
+      unit = unitWord(unitOf(store.get()));
     const far = closingSpan(bodies.moving?.extent ?? 110) * 2;
     // Apart here, the body closes on to where the slider ends.
-    const further = Math.max(0, homeShift() - six().shift[2]);
+    const further = Math.max(0, along(pose, home, centre(), facing.closing));
+    const at = (/** @type {number} */ distance) =>
+      moved(
+        pose,
+        facing.closing.map((part) => part * distance),
+      );
     try {
       const found = await engine.ask(
         'first_contact',
-        {from: moved(pose, [0, 0, -far]), to: moved(pose, [0, 0, further]), tolerance},
-        {doing: 'Looking for the first contact along z'},
+        {from: at(-far), to: at(further), tolerance},
+        {doing: `Looking for the first contact along ${way}`},
       );
-      if (found.status === 'contact') {
-        store.set({pose: found.pose, dragging: false});
-        say(`First contact: within ${short(tolerance * (far + further), 2)} ${unitWord(unitOf(store.get()))} of this pose.`);
-      } else {
-        say(firstContactWords(found.status), 'warning');
+      if (found.status !== 'contact' || !found.point) {
+        say(firstContactWords(found.status, way), 'warning');
+        return;
       }
+      store.set({pose: found.pose, dragging: false});
+      mark.show(found.point, 'first contact');
+      stage.flyTo(found.point);
+      const place = found.point.map((value) => short(value, 5)).join(', ');
+      say(`First contact at (${place}) ${unit}, within ${short(tolerance * (far + further), 2)} ${unit} of this pose.`);
     } catch (error) {
       const text = faultText(error);
       if (text) say(text, 'error');
@@ -89,7 +101,7 @@ export function makePosePanel({store, stage, engine, history, say}) {
     element(
       'div',
       {class: 'row'},
-      button('First contact', firstContact, {primary: true, title: 'Moves the body along z from far away to where it touches first'}),
+      button('First contact', firstContact, {primary: true, title: 'Closes the body from far away to where it touches first'}),
       undo,
       redo,
       button('As it came', () => store.set({pose: store.get().home, dragging: false})),
@@ -137,16 +149,19 @@ export function makePosePanel({store, stage, engine, history, say}) {
   return {id: 'pose', title: 'Pose', element: panel, shown: () => gizmo.show(true), hidden: () => gizmo.show(false)};
 }
 
-/** @param {string} status */
-function firstContactWords(status) {
+/**
+ * @param {string} status
+ * @param {string} way  along which the body closes
+ */
+function firstContactWords(status, way) {
   switch (status) {
     case 'none':
-      return 'Nothing touches on the way along z to this pose: turn or shift the body so that they meet.';
+      return `Nothing touches on the way along ${way} to this pose: turn or shift the body so that they meet.`;
     case 'grazing':
       return 'On the way the bodies come as near as rounding can tell, without meeting for certain: shift the body a little.';
     case 'touches-at-start':
-      return 'They touch even far away along z: their sizes may differ, or z is not the way they close.';
+      return `They touch even far away along ${way}: their sizes may differ, or this is not the way they close.`;
     default:
-      return `There is no first contact along z: ${status.replaceAll('-', ' ')}.`;
+      return `There is no first contact along ${way}: ${status.replaceAll('-', ' ')}.`;
   }
 }

@@ -19,7 +19,7 @@ const ways = 1000;
 
 /**
  * @param {SliderOptions} options
- * @returns {{element: HTMLElement, set: (value: number) => void, range: (min: number, max: number) => void}}
+ * @returns {{element: HTMLElement, set: (value: number) => void, range: (min: number, max: number) => void, name: (label: string) => void}}
  */
 export function slider({label, min, max, step, value, logarithmic, words, onInput, onChange}) {
   const id = newId('slider');
@@ -55,9 +55,13 @@ export function slider({label, min, max, step, value, logarithmic, words, onInpu
     show(to);
   };
   set(value);
+  const name = element('label', {for: id}, label);
   return {
-    element: element('div', {class: 'control'}, element('label', {for: id}, label), output, input),
+    element: element('div', {class: 'control'}, name, output, input),
     set,
+    name: (to) => {
+      name.textContent = to;
+    },
     range: (from, to) => {
       [min, max] = [from, to];
       if (stepped) Object.assign(input, {min: String(min), max: String(max)});

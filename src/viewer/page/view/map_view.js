@@ -1,24 +1,26 @@
-/** The map on both bodies: its colours, grey where it is of another pose, and the opened book. */
+/** The map on both bodies: its bands, grey where it is of another pose, and the opened book. */
 
 import * as THREE from 'three';
 
-import {middleOf} from '../body_box.js';
 import {inverse, transformed} from '../pose.js';
+import {threeOf} from './stage.js';
 
 /** @typedef {import('../context.js').Store} Store */
 /** @typedef {import('../context.js').BiteAt} BiteAt */
-/** @typedef {import('../protocol.js').Pose} Pose */
 /** @typedef {import('../protocol.js').Role} Role */
 /** @typedef {import('./stage.js').Stage} Stage */
 
 /** @type {Role[]} */
 const roles = ['fixed', 'moving'];
+/** @type {import('../protocol.js').BookLayout[]} */
+const layouts = ['beside', 'above'];
+const viewer = [0, -1, 0];
 const dotColour = 0x111111;
 
 /**
  * @param {Stage} stage
  * @param {Store} store
- * @returns {{show: (on: boolean) => void, flyTo: (role: Role, point: number[]) => void}}
+ * @returns {{show: (on: boolean) => void, flyTo: (role: Role, point: number[]) => void, home: () => void}}
  */
 export function makeMapView(stage, store) {
   const dots = new THREE.Group();
@@ -26,36 +28,47 @@ export function makeMapView(stage, store) {
   const dot = new THREE.SphereGeometry(1, 12, 8);
   stage.fixedFrame.add(dots);
   let seen = false,
-    opened = false;
+    opened = false,
+    layout = layouts[0];
 
   const colour = () => {
     const {bite, pose} = store.get();
-    for (const role of roles) {
-      const colours = seen && bite ? bite[role].colours : null;
-      stage.colour(role, colours && bite?.pose !== pose ? greyed(colours) : colours);
-    }
+    for (const role of roles) stage.map(role, seen && bite ? drawnMap(bite, role, bite.pose !== pose) : null);
     placeDots();
+  };
+  /** @param {BiteAt} bite */
+  const lay = (bite) => {
+    for (const role of roles) stage.place(role, bite.book[layout][role]);
+  };
+  /** Lays both bodies side by side or above each other, whatever is seen larger, and looks at them. */
+  const lookAtBook = () => {
+    const {bite} = store.get();
+    if (!opened || !bite) return;
+    const reached = layouts.map((each) => {
+      layout = each;
+      lay(bite);
+      return stage.reach(stage.bounds(), viewer);
+    });
+    layout = layouts[reached[0] <= reached[1] ? 0 : 1];
+    lay(bite);
+    placeDots();
+    stage.fit(stage.bounds(), viewer);
   };
   const arrange = () => {
-    const {bite, book} = store.get();
-    const wanted = seen && book && bite !== null;
-    for (const role of roles) stage.place(role, wanted ? bite[role].place : null);
-    if (wanted && !opened) stage.fit(stage.bounds(), viewer(bite));
-    if (!wanted && opened) stage.frameAll();
-    opened = wanted;
+    const {bite, book, facing} = store.get();
+    const before = opened;
+    opened = seen && book && bite !== null;
+    if (opened !== before) {
+      stage.setHome(opened ? lookAtBook : null);
+      // The opened book has its own coordinates.
+      if (opened) stage.setUpright([0, 0, 1], viewer);
+      else stage.setUpright(facing.up, facing.front);
+    }
+    if (opened && bite) lay(bite);
+    else for (const role of roles) stage.place(role, null);
+    if (opened && !before) lookAtBook();
+    if (!opened && before) stage.frameAll();
     placeDots();
-  };
-
-  /** @param {BiteAt} bite */
-  const viewer = ({pose, fixed}) => {
-    const {bodies} = store.get();
-    const from = middleOf(bodies.fixed),
-      to = transformed(pose, middleOf(bodies.moving));
-    const way = to.map((value, axis) => value - from[axis]);
-    const axis = way.reduce((best, value, at) => (Math.abs(value) > Math.abs(way[best]) ? at : best), 0);
-    const facing = [0, 0, 0];
-    facing[axis] = Math.sign(way[axis]) || 1;
-    return rotated(fixed.place, facing);
   };
 
   /**
@@ -67,7 +80,7 @@ export function makeMapView(stage, store) {
   const drawnAt = (bite, role, point) => {
     const toOwn = role === 'fixed' ? null : inverse(bite.pose);
     const own = toOwn ? transformed(toOwn, point) : point;
-    if (opened) return transformed(bite[role].place, own);
+    if (opened) return transformed(bite.book[layout][role], own);
     return role === 'fixed' ? own : transformed(store.get().pose, own);
   };
   const placeDots = () => {
@@ -92,6 +105,7 @@ export function makeMapView(stage, store) {
     colour();
     arrange();
   });
+  stage.onResize(lookAtBook);
   let wasStale = false;
   store.subscribe(['pose'], ({bite, pose}) => {
     const stale = bite !== null && bite.pose !== pose;
@@ -104,6 +118,7 @@ export function makeMapView(stage, store) {
       colour();
       arrange();
     },
+    home: lookAtBook,
     flyTo(role, point) {
       const {bite} = store.get();
       if (!bite) return;
@@ -114,32 +129,26 @@ export function makeMapView(stage, store) {
 }
 
 /**
- * @param {Pose} place
- * @param {number[]} direction
+ * @param {BiteAt} bite
+ * @param {Role} role
+ * @param {boolean} stale  whether it is drawn by its lightness alone
+ * @returns {import('./band_material.js').DrawnMap}
  */
-function rotated(place, direction) {
-  const turn = [...place];
-  turn[12] = turn[13] = turn[14] = 0;
-  return transformed(turn, direction);
+function drawnMap({bands, bare, ...bite}, role, stale) {
+  const shown = stale ? greyed : (/** @type {string} */ colour) => colour;
+  return {
+    distances: bite[role].distances,
+    bands: bands.map(({to, colour, below_scan_error: hatched}) => ({to, colour: shown(colour), hatched})),
+    bare: shown(bare),
+  };
 }
 
 /**
- * @param {number[]} numbers
- * @returns {[number, number, number]}
+ * @param {string} colour  "#rrggbb"
+ * @returns {string} the same by its lightness alone, and nearer to the others
  */
-function threeOf([x, y, z]) {
-  return [x, y, z];
-}
-
-/**
- * @param {Uint8Array} colours
- * @returns {Uint8Array} the same by their lightness alone, and nearer to each other
- */
-function greyed(colours) {
-  const grey = new Uint8Array(colours.length);
-  for (let i = 0; i + 2 < colours.length; i += 3) {
-    const light = 0.3 * colours[i] + 0.59 * colours[i + 1] + 0.11 * colours[i + 2];
-    grey.fill(90 + 0.4 * light, i, i + 3);
-  }
-  return grey;
+function greyed(colour) {
+  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  const grey = Math.round(90 + 0.4 * (0.3 * red + 0.59 * green + 0.11 * blue));
+  return `#${grey.toString(16).padStart(2, '0').repeat(3)}`;
 }

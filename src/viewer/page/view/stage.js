@@ -12,6 +12,7 @@ import {makeBodyMesh} from './body_mesh.js';
 /** @typedef {import('../protocol.js').Pose} Pose */
 /** @typedef {import('../protocol.js').Role} Role */
 /** @typedef {import('../protocol.js').BodyFacts} BodyFacts */
+/** @typedef {import('./band_material.js').DrawnMap} DrawnMap */
 
 /**
  * @typedef {object} Stage
@@ -23,12 +24,17 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {() => void} render        draws a frame soon; many calls draw one
  * @property {(role: Role, facts: BodyFacts | null) => void} setBody
  * @property {(pose: Pose) => void} setPose
- * @property {(role: Role, colours: Uint8Array | null) => void} colour  red, green, blue of each vertex; null: the body's own
+ * @property {(role: Role, map: DrawnMap | null) => void} map  null: the body's own colour
  * @property {(role: Role, opacity: number) => void} fade  1: solid; 0: not drawn
  * @property {(role: Role, place: Pose | null) => void} place  draws a body elsewhere than at its pose
  * @property {(point: number[], from?: number[], distance?: number) => void} flyTo  looks at a point, fixed coordinates, from a direction
  * @property {(box: THREE.Box3, from: number[]) => void} fit  looks at all of a box
+ * @property {(box: THREE.Box3, from: number[]) => number} reach  from how far fit() looks
  * @property {() => void} frameAll     looks at both bodies, from in front
+ * @property {() => void} home         looks as setHome() says, else at both bodies
+ * @property {(view: (() => void) | null) => void} setHome
+ * @property {(up: number[], front: number[]) => void} setUpright  which ways are up and to the front; fixed coordinates
+ * @property {(listen: () => void) => void} onResize
  * @property {(across: number, up: number, nearer: number) => void} circle  turns the camera by angles, and scales its distance
  * @property {() => THREE.Box3} bounds of both bodies as drawn
  * @property {(on: boolean) => void} orbit  whether the pointer turns the camera
@@ -36,7 +42,8 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {() => Promise<Blob>} picture  PNG of the canvas
  */
 
-const front = [0.35, -1, 0.22];
+// Of the view from in front: how far to the right, to the front, and up.
+const seenFrom = [0.35, 1, 0.22];
 const ownColours = {fixed: 0xd9c6a0, moving: 0x86aed6};
 
 /**
@@ -69,9 +76,15 @@ export function makeStage(surface, say) {
   };
   scene.add(bodies.fixed.object, bodies.moving.object);
 
-  const controls = new OrbitControls(camera, renderer.domElement);
-  controls.enableDamping = false;
-  controls.addEventListener('change', () => render());
+  let front = new THREE.Vector3(0, -1, 0);
+  // The controls take the way up when they are made.
+  const makeControls = () => {
+    const made = new OrbitControls(camera, renderer.domElement);
+    made.enableDamping = false;
+    made.addEventListener('change', () => render());
+    return made;
+  };
+  let controls = makeControls();
 
   renderer.domElement.addEventListener('webglcontextlost', () => {
     say(
@@ -124,12 +137,17 @@ export function makeStage(surface, say) {
     render();
   };
 
+  /** @type {(() => void) | null} */
+  let homeView = null;
+  /** @type {(() => void)[]} */
+  const resized = [];
   new ResizeObserver(() => {
     const {clientWidth, clientHeight} = surface;
     if (clientWidth === 0 || clientHeight === 0) return;
     renderer.setSize(clientWidth, clientHeight, false);
     camera.aspect = clientWidth / clientHeight;
     camera.updateProjectionMatrix();
+    for (const listen of resized) listen();
     draw();
   }).observe(surface);
 
@@ -149,8 +167,8 @@ export function makeStage(surface, say) {
       pose = to;
       arrange();
     },
-    colour(role, colours) {
-      bodies[role].setColours(colours);
+    map(role, map) {
+      bodies[role].setMap(map);
       render();
     },
     fade(role, opacity) {
@@ -165,25 +183,49 @@ export function makeStage(surface, say) {
       const direction = from ? new THREE.Vector3(...from) : camera.position.clone().sub(controls.target);
       look(new THREE.Vector3(...point), direction, distance ?? bounds().getSize(new THREE.Vector3()).length() * 0.35);
     },
+    reach: (box, from) => distanceOf(box, new THREE.Vector3(...from).normalize(), camera),
     fit(box, from) {
-      if (box.isEmpty()) return;
-      const direction = new THREE.Vector3(...from).normalize();
-      look(box.getCenter(new THREE.Vector3()), direction, distanceOf(box, direction, camera));
-    },
-    frameAll() {
-      const box = bounds();
       if (box.isEmpty()) return;
       const size = box.getSize(new THREE.Vector3()).length();
       camera.near = size / 1000;
       camera.far = size * 30;
       camera.updateProjectionMatrix();
-      this.fit(box, front);
+      const direction = new THREE.Vector3(...from).normalize();
+      look(box.getCenter(new THREE.Vector3()), direction, distanceOf(box, direction, camera));
+    },
+    frameAll() {
+      const axes = [new THREE.Vector3().crossVectors(camera.up, front), front, camera.up];
+      const from = axes.reduce((sum, axis, at) => sum.addScaledVector(axis, seenFrom[at]), new THREE.Vector3());
+      this.fit(bounds(), from.toArray());
+    },
+    home() {
+      if (homeView) homeView();
+      else this.frameAll();
+    },
+    setHome(view) {
+      homeView = view;
+    },
+    setUpright(up, to) {
+      front = new THREE.Vector3(...to);
+      const before = camera.up.clone();
+      if (before.distanceTo(camera.up.set(...threeOf(up)).normalize()) === 0) return;
+      sky.position.copy(camera.up);
+      const {target, enabled} = controls;
+      controls.dispose();
+      controls = makeControls();
+      controls.enabled = enabled;
+      controls.target.copy(target);
+      controls.update();
+      render();
+    },
+    onResize(listen) {
+      resized.push(listen);
     },
     circle(across, up, nearer) {
-      const arm = new THREE.Spherical().setFromVector3(toYUp(camera.position.clone().sub(controls.target)));
+      const toY = new THREE.Quaternion().setFromUnitVectors(camera.up, new THREE.Vector3(0, 1, 0));
+      const arm = new THREE.Spherical().setFromVector3(camera.position.clone().sub(controls.target).applyQuaternion(toY));
       arm.set(arm.radius * nearer, Math.min(3.1, Math.max(0.04, arm.phi + up)), arm.theta + across);
-      const {x, y, z} = new THREE.Vector3().setFromSpherical(arm);
-      look(controls.target.clone(), new THREE.Vector3(z, x, y), arm.radius);
+      look(controls.target.clone(), new THREE.Vector3().setFromSpherical(arm).applyQuaternion(toY.invert()), arm.radius);
     },
     orbit(on) {
       controls.enabled = on;
@@ -230,9 +272,9 @@ function distanceOf(box, from, camera) {
 }
 
 /**
- * @param {THREE.Vector3} v  with z up
- * @returns {THREE.Vector3} as the renderer's own spherical coordinates have it
+ * @param {number[]} numbers
+ * @returns {[number, number, number]}
  */
-function toYUp({x, y, z}) {
-  return new THREE.Vector3(y, z, x);
+export function threeOf([x, y, z]) {
+  return [x, y, z];
 }

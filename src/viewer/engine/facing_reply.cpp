@@ -1,0 +1,64 @@
+#include "viewer/engine/facing_reply.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "cli/extents.h"
+#include "cli/measure_progress.h"
+#include "cli/occlusion/bite_direction.h"
+#include "cli/occlusion/sides.h"
+#include "ist/measure/occlusion.h"
+
+namespace ist::viewer {
+namespace {
+
+// How far to look, of the smaller body's extent: 2 mm of a jaw, which is quick; then 10 mm, for
+// jaws that are open.
+constexpr double kReaches[] = {0.02, 0.1};
+constexpr double kLongestEdge = 0.02;
+
+bool any_near(const SurfaceOcclusion& surface) {
+  return std::any_of(surface.vertices.begin(), surface.vertices.end(),
+                     [](const SurfaceDistance& one) { return !std::isnan(one.distance); });
+}
+
+nlohmann::ordered_json numbers_of(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+void fill_facing(const cli::Bodies& bodies, const Asked& asked, Progress& progress, Reply& reply) {
+  reply.json = {{"known", false}};
+  Query query(bodies.fixed, bodies.moving, {.policy = bodies.policy});
+  if (!query.has_triangles()) return;
+  const Eigen::Isometry3d pose = asked.pose("pose");
+  const double extent = bodies.extent();
+  OcclusionOptions options;
+  options.limits.clear();
+  options.contact = options.foundation = options.change = 0;
+  options.longest_edge = kLongestEdge * extent;
+  options.proceed = cli::shown_by(progress, "looking where the bodies face each other");
+  Occlusion found;
+  for (const double part : kReaches) {
+    options.reach = part * extent;
+    found = occlusion(query, pose, options);
+    if (any_near(found.fixed) || any_near(found.moving)) break;
+  }
+  cli::SideOptions named;
+  named.frame = asked.text_or_none("frame");
+  const auto [sides, fore_aft] = cli::divisions(named, cli::box_of(bodies.fixed));
+  const cli::FacingBody fixed(*bodies.fixed.triangles(), found.fixed.vertices,
+                              Eigen::Isometry3d::Identity());
+  const cli::FacingBody moving(*bodies.moving.triangles(), found.moving.vertices, pose);
+  const cli::BiteDirections ways =
+      cli::directions_of(fixed, moving, options.reach, sides, fore_aft);
+  Eigen::Index upright = 0;
+  ways.towards.cwiseAbs().maxCoeff(&upright);
+  reply.json = {{"known", any_near(found.fixed) || any_near(found.moving)},
+                {"towards", numbers_of(ways.towards)},
+                {"front", numbers_of(ways.front)},
+                {"upper", ways.towards[upright] > 0 ? "moving" : "fixed"}};
+}
+
+}  // namespace ist::viewer
