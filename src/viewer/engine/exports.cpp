@@ -40,7 +40,7 @@ std::string& last_text() {
 }
 
 const char* keep(const nlohmann::ordered_json& json) {
-  last_text() = cli::json_text(json);
+  last_text() = ist::cli::json_text(json);
   return last_text().c_str();
 }
 
