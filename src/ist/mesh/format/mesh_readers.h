@@ -36,9 +36,9 @@ inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, glTF or 3M
 
 /// Whether the size matches the facet count of a binary STL.
 [[nodiscard]] bool has_size_of_binary_stl(std::string_view content);
-/// Whether the content could be a binary STL of the wrong size: it begins with finite facets. There
-/// are a 65,536th of those that its header counts, or more, and at most 64 times as many. Other
-/// data practically never are so.
+/// Whether the content could be a binary STL of the wrong size. It must begin with finite facets,
+/// and have room for a 65,536th to 64 times as many facets as its header counts. Other data rarely
+/// pass.
 [[nodiscard]] bool begins_like_binary_stl(std::string_view content);
 /// Whether a line of an OBJ may begin with `word`.
 [[nodiscard]] bool is_obj_statement(std::string_view word);

@@ -16,7 +16,7 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Whether the # at this place begins a comment. That of "1.#IND", a printed NaN, begins none.
+// Whether the # at this place begins a comment. In "1.#IND", a printed NaN, it does not.
 bool begins_comment(std::string_view text, std::size_t at) {
   return at == 0 || text[at - 1] != '.';
 }
@@ -72,8 +72,8 @@ bool TextReader::is_blank(std::size_t at) const {
   return at + 1 == text_.size() || text_[at + 1] == '\r' || text_[at + 1] == '\n';
 }
 
-// Whether a backslash joins the next line to the statement at the cursor. Its last line begins at
-// `begin`.
+// Whether a backslash joins the next line to the statement at the cursor. The statement's last line
+// so far begins at `begin`.
 bool TextReader::goes_on(std::size_t begin) const {
   if (line_end_ != LineEnd::kObj || line_close_ == begin || text_[line_close_ - 1] != '\\')
     return false;

@@ -94,10 +94,10 @@ void triangulate_avoiding(std::span<const std::uint32_t> corners,
   while (polygon.size() > 3) {
     std::optional<std::size_t> ear;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      if (!polygon.is_ear(i)) continue;
       const auto [a, b, c] = polygon.corner(i);
       const bool free = is_free(a, c);
-      if (!ear || free) ear = i;
+      if ((ear && !free) || !polygon.is_ear(i)) continue;
+      ear = i;
       if (free) break;
     }
     const std::size_t cut = ear.value_or(0);

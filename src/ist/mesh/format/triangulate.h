@@ -18,8 +18,9 @@ namespace ist {
 /// Source: G. H. Meisters, Polygons Have Ears, 1975.
 void triangulate(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices,
                  std::vector<Triangle>& out);
-/// The same, and avoids diagonals that are not free if it can: of all ears whose diagonal is free,
-/// it cuts the first one.
+/// Triangulates as triangulate() does, and avoids diagonals that are not free: it cuts the first
+/// ear whose diagonal is free, or the first ear if there is none. Cost: mostly O(n^2), at worst
+/// O(n^3).
 void triangulate_avoiding(std::span<const std::uint32_t> corners,
                           std::span<const Eigen::Vector3d> vertices,
                           const std::function<bool(std::uint32_t, std::uint32_t)>& is_free,
