@@ -15,8 +15,15 @@ double Bodies::extent() const {
 }
 
 LengthUnit Bodies::unit() const {
-  const LengthUnit unit = fixed.source().unit;
-  return unit == LengthUnit::kUnknown ? moving.source().unit : unit;
+  for (const LengthUnit unit : {fixed.source().unit, moving.source().unit}) {
+    if (unit != LengthUnit::kUnknown) return unit;
+  }
+  return told_unit;
+}
+
+PatientFrame Bodies::frame() const {
+  const PatientFrame frame = fixed.frame();
+  return frame == PatientFrame::kUnknown ? moving.frame() : frame;
 }
 
 std::optional<std::string> voxel_warning(const std::string& name, double voxel_size,
@@ -30,13 +37,14 @@ std::optional<std::string> voxel_warning(const std::string& name, double voxel_s
 }
 
 void require_triangles(const Bodies& bodies) {
-  for (const auto& [tree, name] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
+  for (const auto& [tree, name] :
+       {std::pair(&bodies.fixed, &bodies.fixed_name), {&bodies.moving, &bodies.moving_name}}) {
     if (tree->triangles()) continue;
     throw Error(
         ErrorCode::kTrianglesMissing,
         fmt::format("{}: the tree has no triangles: build it without --no-triangles, or name the "
                     "mesh",
-                    name));
+                    *name));
   }
 }
 

@@ -13,21 +13,29 @@ struct Bodies {
   SpherePolicy policy;
   /// Mesh units; empty of a mesh that got no voxels, but one as large as itself.
   std::optional<double> fixed_voxel_size{}, moving_voxel_size{};
+  LengthUnit told_unit = LengthUnit::kUnknown;  ///< by the user, for trees that know none
+  /// How messages call the bodies: by the names of their files, if there are any.
+  std::string fixed_name = "the fixed body", moving_name = "the moving body";
+  /// Whether a mesh was read that has a border. It is false for trees, which do not tell.
+  bool fixed_has_border = false, moving_has_border = false;
 
   /// Returns whether both bodies have voxels: leaf pairs and contacts are answers about voxels.
   [[nodiscard]] bool have_voxels() const { return fixed_voxel_size && moving_voxel_size; }
   /// Returns the largest extent of the smaller body. Cost: as of box_of().
   [[nodiscard]] double extent() const;
-  /// Returns the unit that a body's tree was told, which is the other's too: load_bodies() refuses
-  /// two that differ. kUnknown where neither was told one.
+  /// Returns the unit of a body's lengths. It is the other's too, because load_bodies() converts or
+  /// refuses two that differ. kUnknown if neither is known.
   [[nodiscard]] LengthUnit unit() const;
+  /// Returns the frame that a body's file names. It is the other's too, because load_bodies()
+  /// refuses two that differ. kUnknown if no file names one.
+  [[nodiscard]] PatientFrame frame() const;
 };
 
 /// Returns a warning that begins with `name`, if a voxel is over 1/50 of the largest extent.
 [[nodiscard]] std::optional<std::string> voxel_warning(const std::string& name, double voxel_size,
                                                        double extent);
 
-/// Throws kTrianglesMissing, naming the body, where a tree holds no triangles.
+/// Throws kTrianglesMissing, naming the body, if a tree holds no triangles.
 void require_triangles(const Bodies& bodies);
 
 }  // namespace ist::cli

@@ -15,6 +15,12 @@ std::vector<std::string> policy_names() {
   return names;
 }
 
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return CLI::IsMember(words, CLI::ignore_case);
+}
+
+CLI::Validator unit_name() { return one_of({"mm", "m", "inch", "um", "µm"}); }
+
 void add_example(CLI::App& command, const std::string& example) {
   command.footer(example + "\n" + command.get_parent()->get_footer());
 }

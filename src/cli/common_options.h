@@ -11,6 +11,12 @@ namespace ist::cli {
 /// Returns the values of --spheres.
 [[nodiscard]] std::vector<std::string> policy_names();
 
+/// Accepts one of `words` in any case, and spells it as they do. For Option::transform().
+[[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// Accepts the name of a unit in any case. For Option::transform().
+[[nodiscard]] CLI::Validator unit_name();
+
 /// Adds an example to the end of a subcommand's help, before the common footer.
 void add_example(CLI::App& command, const std::string& example);
 

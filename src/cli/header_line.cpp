@@ -38,6 +38,7 @@ ordered_json header_line(const std::string& subcommand, const NamedSources& file
   ordered_json line = header_line(subcommand, files);
   line["unit"] = unit ? ordered_json(unit->name) : json_of(bodies.unit());
   if (unit) line["unit_assumed"] = unit->assumed;
+  line["frame"] = json_of(bodies.frame());
   line["voxel_size"] = {or_null(bodies.fixed_voxel_size), or_null(bodies.moving_voxel_size)};
   return line;
 }

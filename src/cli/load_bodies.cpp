@@ -1,13 +1,17 @@
 #include "cli/load_bodies.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 
+#include "cli/common_options.h"
 #include "cli/extents.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
@@ -21,24 +25,38 @@ namespace {
 
 // A body before its tree is built.
 struct LoadedBody {
-  explicit LoadedBody(const std::filesystem::path& path) : file(path) {
+  LoadedBody(const std::filesystem::path& path, LengthUnit given) : file(path), unit(given) {
     if (is_tree_file(file)) {
       tree = read_tree(file);
+      source = tree->source();
+      const bool contradicts = unit != LengthUnit::kUnknown &&
+                               source.unit != LengthUnit::kUnknown && source.unit != unit;
+      refuse_if(
+          contradicts, "--unit",
+          fmt::format("{} is a tree in {}: leave the option out, or build the tree again with "
+                      "its mesh's unit",
+                      name(), to_string(source.unit)));
+      if (source.unit != LengthUnit::kUnknown) unit = source.unit;
     } else {
       source = source_of(file);
       checked = load_mesh(file);
     }
+    source.unit = unit;
     extent = largest_extent(tree ? box_of(*tree) : box_of(checked.mesh));
   }
   [[nodiscard]] std::string name() const { return file.string(); }
   [[nodiscard]] bool has_triangles() const { return !tree || tree->triangles() != nullptr; }
+  [[nodiscard]] PatientFrame frame() const { return tree ? tree->frame() : checked.mesh.frame; }
 
   std::filesystem::path file;
+  LengthUnit unit;
   std::optional<SphereTree> tree;  // empty of a mesh
   CheckedMesh checked;
   MeshSource source;
   double extent = 0;
 };
+
+void note(const std::string& sentence) { std::fprintf(stderr, "note: %s\n", sentence.c_str()); }
 
 // Takes the tree out of `body`, or builds it of its mesh; without a voxel size, of one voxel.
 SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<double> voxel_size) {
@@ -49,20 +67,73 @@ SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<dou
   options.spheres = files.policy.value_or(options.spheres);
   options.max_memory = files.max_memory;
   options.source = body.source;
+  options.frame = files.to_frame;
   SphereTree tree = build_with_progress(body.name(), std::move(body.checked.mesh), options,
                                         body.checked.warnings);
   print_warnings(body.checked.warnings);
   return tree;
 }
 
-void refuse_different_units(const LoadedBody& fixed, const LoadedBody& moving) {
-  if (!fixed.tree || !moving.tree) return;
-  const LengthUnit one = fixed.tree->source().unit, other = moving.tree->source().unit;
+// Brings both bodies into one unit, if both are known.
+void convert_units(LoadedBody& fixed, LoadedBody& moving) {
   constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
-  refuse_if(one != other && one != kUnknown && other != kUnknown, moving.name(),
-            fmt::format("its unit is {}, and that of {} is {}: nothing is converted in silence: "
-                        "convert one of the meshes, and build it again with the other's --unit",
-                        to_string(other), fixed.name(), to_string(one)));
+  refuse_if(fixed.unit == kUnknown && moving.unit != kUnknown && !moving.tree, "--unit-moving",
+            fmt::format("the unit of {} is not known: give --unit too", fixed.name()));
+  if (fixed.unit == moving.unit || fixed.unit == kUnknown || moving.unit == kUnknown) return;
+  refuse_if(fixed.tree && moving.tree, moving.name(),
+            fmt::format("the tree is in {}, and {} in {}: name the mesh of one of them, and its "
+                        "unit by --unit or --unit-moving, and it is converted",
+                        to_string(moving.unit), fixed.name(), to_string(fixed.unit)));
+  LoadedBody &mesh = moving.tree ? fixed : moving, &other = moving.tree ? moving : fixed;
+  // Both in micrometres are whole numbers, so that the factor is rounded once.
+  const double factor =
+      std::round(1e6 * metres_per_unit(mesh.unit)) / std::round(1e6 * metres_per_unit(other.unit));
+  for (Eigen::Vector3d& vertex : mesh.checked.mesh.vertices) vertex *= factor;
+  mesh.extent *= factor;
+  note(fmt::format("{} was converted from {} to {}", mesh.name(), to_string(mesh.unit),
+                   to_string(other.unit)));
+  mesh.unit = mesh.source.unit = other.unit;
+}
+
+// Refuses bodies in different frames, unless they are to be turned into one.
+void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFrame to_frame) {
+  for (const LoadedBody* body : {&fixed, &moving}) {
+    const bool turns = contradict(body->frame(), to_frame);
+    refuse_if(turns && body->tree, body->name(),
+              fmt::format("the tree is in the frame {}: build it again of its mesh by 'ist build "
+                          "--to-frame {}'",
+                          to_string(body->frame()), to_string(to_frame)));
+    if (turns) {
+      note(fmt::format("{} was turned from the frame {} to {}", body->name(),
+                       to_string(body->frame()), to_string(to_frame)));
+    } else if (to_frame != PatientFrame::kUnknown && body->frame() == PatientFrame::kUnknown) {
+      note(fmt::format("{} does not say its frame, and stays as it is", body->name()));
+    }
+  }
+  refuse_if(to_frame == PatientFrame::kUnknown && contradict(fixed.frame(), moving.frame()),
+            moving.name(),
+            fmt::format("its frame is {}, and the frame of {} is {}: give --to-frame {} to turn "
+                        "both into one",
+                        to_string(moving.frame()), fixed.name(), to_string(fixed.frame()),
+                        to_string(fixed.frame())));
+}
+
+void tell_of_twins(const LoadedBody& fixed, const LoadedBody& moving) {
+  std::error_code unknown;
+  const bool twins = (fixed.source.hash != 0 && fixed.source.hash == moving.source.hash) ||
+                     std::filesystem::equivalent(fixed.file, moving.file, unknown);
+  if (twins) {
+    note(fmt::format("{} and {} hold one mesh: it is compared with itself", fixed.name(),
+                     moving.name()));
+  }
+}
+
+void tell_of_borders(const LoadedBody& fixed, const LoadedBody& moving) {
+  std::vector<std::string> open;
+  for (const LoadedBody* body : {&fixed, &moving}) {
+    if (body->checked.has_border) open.push_back(body->name());
+  }
+  if (!open.empty()) note(open_surfaces(open));
 }
 
 void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
@@ -70,8 +141,8 @@ void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
   const double smaller = std::min(fixed.extent, moving.extent);
   if (!(std::max(fixed.extent, moving.extent) > kRatio * smaller)) return;
   print_warnings(
-      {fmt::format("the largest extent of {} is {:.4g}, and that of {} is {:.4g}: are they in one "
-                   "unit?",
+      {fmt::format("the largest extent of {} is {:.4g}, and that of {} is {:.4g}: if they are in "
+                   "different units, give --unit and --unit-moving",
                    fixed.name(), fixed.extent, moving.name(), moving.extent)});
 }
 
@@ -84,10 +155,18 @@ CheckedMesh load_mesh(const std::filesystem::path& file) {
         fmt::format("{}: this is a tree: name the mesh that it was built from", file.string()));
   }
   CheckedMesh checked{read_mesh(file), {}};
-  for (const std::string& warning : warnings(check_mesh(checked.mesh))) {
+  MeshReport report = check_mesh(checked.mesh);
+  checked.has_border = std::exchange(report.boundary_edges, 0) > 0;
+  for (const std::string& warning : warnings(report)) {
     checked.warnings.push_back(fmt::format("{}: {}", file.string(), warning));
   }
   return checked;
+}
+
+std::string open_surfaces(const std::vector<std::string>& names) {
+  return fmt::format(
+      "{} {}, as scans usually are: depth there is a lower bound, measured at vertices",
+      fmt::join(names, " and "), names.size() == 1 ? "is an open surface" : "are open surfaces");
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -108,21 +187,37 @@ SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                    filled.turned_components,
                                    filled.turned_components == 1 ? " was" : "s were"));
   }
-  if (tree.orientation() == Orientation::kAssumed) {
-    warnings.push_back(
-        fmt::format("{}: not closed or not wound consistently: its outside is assumed from the "
-                    "winding of its triangles",
-                    name));
-  }
   return tree;
 }
 
+void add_units_and_frame(CLI::App& command, BodyFiles& files) {
+  const auto add_unit = [&command](const char* name, LengthUnit& unit, const char* help) {
+    command
+        .add_option_function<std::string>(
+            name, [&unit](const std::string& word) { unit = *length_unit(word); }, help)
+        ->transform(unit_name());
+  };
+  add_unit("--unit", files.unit, "unit of the lengths in both files; a tree may know its own");
+  add_unit("--unit-moving", files.moving_unit,
+           "unit of the second file, if it is another one; its mesh is converted");
+  command
+      .add_option_function<std::string>(
+          "--to-frame",
+          [&files](const std::string& word) { files.to_frame = *patient_frame(word); },
+          "turn meshes into this frame of the patient, if their files say SPACE=RAS or SPACE=LPS")
+      ->transform(one_of({"ras", "lps"}));
+}
+
 Bodies load_bodies(const BodyFiles& files) {
-  LoadedBody fixed(files.fixed), moving(files.moving);
+  LoadedBody fixed(files.fixed, files.unit),
+      moving(files.moving,
+             files.moving_unit == LengthUnit::kUnknown ? files.unit : files.moving_unit);
   const bool both_are_trees = fixed.tree && moving.tree;
   refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
             "both bodies are trees, which have their own voxel sizes: leave it out");
-  refuse_different_units(fixed, moving);
+  convert_units(fixed, moving);
+  check_frames(fixed, moving, files.to_frame);
+  tell_of_borders(fixed, moving);
   warn_of_units(fixed, moving);
   using Voxels = BodyFiles::Voxels;
   const bool triangles = fixed.has_triangles() && moving.has_triangles();
@@ -135,12 +230,18 @@ Bodies load_bodies(const BodyFiles& files) {
   }
   Bodies bodies{take_tree(fixed, files, voxel_size), take_tree(moving, files, voxel_size),
                 SpherePolicy::kTable};
+  bodies.told_unit = files.unit;
+  bodies.fixed_name = fixed.file.filename().string();
+  bodies.moving_name = moving.file.filename().string();
+  bodies.fixed_has_border = fixed.checked.has_border;
+  bodies.moving_has_border = moving.checked.has_border;
   bodies.policy =
       files.policy.value_or(std::min(bodies.fixed.tightest(), bodies.moving.tightest()));
   bodies.fixed.require(bodies.policy, fixed.name());
   bodies.moving.require(bodies.policy, moving.name());
   if (fixed.tree || voxel_size) bodies.fixed_voxel_size = bodies.fixed.voxel_size();
   if (moving.tree || voxel_size) bodies.moving_voxel_size = bodies.moving.voxel_size();
+  tell_of_twins(fixed, moving);
   if (!voxels) return bodies;
   for (const auto& [body, tree] : {std::pair(&fixed, &bodies.fixed), {&moving, &bodies.moving}}) {
     const auto warning = voxel_warning(body->name(), tree->voxel_size(), body->extent);
@@ -150,7 +251,8 @@ Bodies load_bodies(const BodyFiles& files) {
 }
 
 SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory) {
-  LoadedBody body(file);
+  LoadedBody body(file, LengthUnit::kUnknown);
+  if (body.checked.has_border) note(open_surfaces({body.name()}));
   BodyFiles files;
   files.max_memory = max_memory;
   return take_tree(body, files, {});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/bodies.h"
+#include "cli/cli11_fwd.h"
 #include "ist/mesh/mesh.h"
 #include "ist/tree/sphere_tree.h"
 
@@ -16,6 +17,7 @@ namespace ist::cli {
 struct CheckedMesh {
   TriangleMesh mesh;
   std::vector<std::string> warnings;
+  bool has_border = false;  ///< no flaw, because scans have one
 };
 /// Reads and checks a mesh. Throws kNotAMesh for a tree, and as read_mesh does.
 [[nodiscard]] CheckedMesh load_mesh(const std::filesystem::path& file);
@@ -23,8 +25,11 @@ struct CheckedMesh {
 /// Prints "warning: …" lines to stderr.
 void print_warnings(const std::vector<std::string>& warnings);
 
-/// Builds a tree under a progress bar. Adds warnings that begin with `name` if components were
-/// turned outward or the outside is assumed.
+/// Returns a sentence without a full stop about the files whose surfaces have a border.
+[[nodiscard]] std::string open_surfaces(const std::vector<std::string>& names);
+
+/// Builds a tree under a progress bar. Adds a warning that begins with `name` if components were
+/// turned outward.
 [[nodiscard]] SphereTree build_with_progress(const std::string& name, TriangleMesh mesh,
                                              const BuildOptions& options,
                                              std::vector<std::string>& warnings,
@@ -35,7 +40,7 @@ struct BodyFiles {
   /// Whether meshes get voxels, or only one as large as themselves.
   enum class Voxels : std::uint8_t {
     kMade,
-    kNeeded,  ///< made where a tree holds no triangles, so that voxels alone can answer
+    kNeeded,  ///< made if a tree holds no triangles, so that voxels alone can answer
     kNone,
   };
 
@@ -44,12 +49,21 @@ struct BodyFiles {
   std::optional<double> voxel_size;    ///< of meshes, mesh units; empty: 1/500 of Bodies::extent()
   std::optional<SpherePolicy> policy;  ///< empty: the tightest that both have
   std::uint64_t max_memory = BuildOptions{}.max_memory;
+  LengthUnit unit = LengthUnit::kUnknown;          ///< of both files, if they do not say it
+  LengthUnit moving_unit = LengthUnit::kUnknown;   ///< of the moving one, if it has another one
+  PatientFrame to_frame = PatientFrame::kUnknown;  ///< meshes of the other frame are turned into it
 };
 
-/// Loads both bodies; trees of meshes keep their triangles. Says on stderr which voxel size it
-/// takes where none is given. Warns of bodies that seem to be in different units, and of voxels
-/// that are large for their body. Throws CLI::ValidationError for a voxel size of two trees, and
-/// for two trees of different units.
+/// Adds --unit, --unit-moving and --to-frame to a subcommand.
+void add_units_and_frame(CLI::App& command, BodyFiles& files);
+
+/// Loads both bodies. Trees of meshes keep their triangles. A mesh in another known unit than the
+/// other body's is converted to that one.
+///
+/// Says on stderr if it takes a voxel size, converts or turns a mesh, if both files hold one mesh,
+/// if surfaces have borders, if the bodies seem to be in different units, and if voxels are large
+/// for their body. Throws CLI::ValidationError for a voxel size of two trees, for two trees of
+/// different units, for a unit that a tree contradicts, and for files in different frames.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
 /// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.

@@ -18,14 +18,14 @@ void add_engine_options(CLI::App& command, QueryOptions& options) {
   command
       .add_option("--spheres", options.spheres,
                   "bounds of the nodes; by default the tightest that both bodies have")
-      ->check(CLI::IsMember(policy_names()))
+      ->transform(one_of(policy_names()))
       ->group(group);
   command
       .add_option(
           "--engine", options.engines,
           "times simd, the fast query of leaf pairs, or reference, the published one; given "
           "twice, both in turn")
-      ->check(CLI::IsMember(std::vector<std::string>(kEngineNames.begin(), kEngineNames.end())))
+      ->transform(one_of({kEngineNames.begin(), kEngineNames.end()}))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->default_str(std::string(kEngineNames.front()))
@@ -135,6 +135,7 @@ void add_query_options(CLI::App& command, QueryOptions& options) {
       "--fail-if-touching", options.fail_if_touching,
       "exit code 6 where the bodies touch, or may, or one lies in the other, at any pose; 1 where "
       "that is unknown");
+  add_units_and_frame(command, options.files);
   add_max_memory(command, options.files.max_memory);
   command.add_flag("--json", options.json, "print one JSON object a line");
   add_engine_options(command, options);

@@ -40,4 +40,9 @@ nlohmann::ordered_json json_of(LengthUnit unit) {
   return std::string(to_string(unit));
 }
 
+nlohmann::ordered_json json_of(PatientFrame frame) {
+  if (frame == PatientFrame::kUnknown) return nullptr;
+  return std::string(to_string(frame));
+}
+
 }  // namespace ist::cli

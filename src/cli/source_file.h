@@ -16,7 +16,10 @@ namespace ist::cli {
 /// Returns {"name": …, "hash": 16 hexadecimal digits}; each is null where unknown.
 [[nodiscard]] nlohmann::ordered_json json_of(const MeshSource& source);
 
-/// Returns the unit's name, or null where unknown.
+/// Returns the unit's name, or null if it is unknown.
 [[nodiscard]] nlohmann::ordered_json json_of(LengthUnit unit);
+
+/// Returns the frame's name, or null if it is unknown.
+[[nodiscard]] nlohmann::ordered_json json_of(PatientFrame frame);
 
 }  // namespace ist::cli

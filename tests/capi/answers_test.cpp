@@ -401,5 +401,33 @@ TEST(CTrees, TellTheUnitOfTheirFile) {
   }
 }
 
+TEST(CTrees, TellTheFrameOfTheirFile) {
+  const TempDir folder;
+  const std::string file = folder.path() / "ball.stl";
+  TriangleMesh ball = icosphere(1, 1);
+  ball.frame = PatientFrame::kLps;
+  write_stl(ball, file);
+  ist_mesh* mesh = nullptr;
+  ASSERT_EQ(name(ist_mesh_read(file.c_str(), &mesh)), "ok");
+  auto options = sized<ist_build_options>();
+  options.voxel_size = 0.5;
+  std::array<ist_tree*, 2> trees{};
+  for (const std::int32_t frame : {IST_FRAME_UNKNOWN, IST_FRAME_RAS}) {
+    options.frame = frame;
+    ist_tree*& tree = trees[frame == IST_FRAME_RAS ? 1 : 0];
+    ASSERT_EQ(name(ist_tree_build(mesh, &options, &tree)), "ok");
+    auto info = sized<ist_tree_info>();
+    EXPECT_EQ(name(ist_tree_get_info(tree, &info)), "ok");
+    EXPECT_EQ(info.frame, frame == IST_FRAME_RAS ? IST_FRAME_RAS : IST_FRAME_LPS);
+  }
+  ist_query* query = nullptr;
+  EXPECT_EQ(name(ist_query_create(trees[0], trees[1], nullptr, &query)), "argument-invalid");
+  options.frame = 3;
+  ist_tree* none = nullptr;
+  EXPECT_EQ(name(ist_tree_build(mesh, &options, &none)), "argument-invalid");
+  for (ist_tree* tree : trees) EXPECT_EQ(name(ist_tree_free(tree)), "ok");
+  EXPECT_EQ(name(ist_mesh_free(mesh)), "ok");
+}
+
 }  // namespace
 }  // namespace ist::test

@@ -67,7 +67,8 @@ TEST_F(Answers, NearIsSaidWithoutTriangles) {
   for (const json& line : lines) {
     EXPECT_TRUE(line["depth_lower"].is_null() && line["depth_upper"].is_null());
     EXPECT_TRUE(line["area"].is_null());
-    EXPECT_EQ(line["touch"] != "no", has_note(line, "no certain depth: FIXED holds no triangles"));
+    EXPECT_EQ(line["touch"] != "no",
+              has_note(line, "depth is not known: plain.ist holds no triangles"));
     EXPECT_LE(line["distance_lower"], line["distance_upper"]);
   }
   EXPECT_TRUE(lines[1]["inside"].is_null());
@@ -112,7 +113,7 @@ TEST_F(Answers, ExactCountsTheTrianglesThatMeet) {
     arguments.insert(arguments.end(), asked.begin(), asked.end());
     const CommandResult result = ist(arguments);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(says(result.err, "FIXED"));
+    EXPECT_TRUE(says(result.err, "plain.ist: the tree has no triangles"));
     EXPECT_TRUE(says(result.err, "--no-triangles"));
   }
 }
@@ -139,7 +140,7 @@ TEST_F(Answers, AnOpenBodyHasNoInsideAndADepthByVertices) {
   const auto lines = ask(shell, small, {"--voxel-size", "0.25"});
   EXPECT_EQ(lines[0]["touch"], "no");
   EXPECT_TRUE(lines[0]["inside"].is_null());
-  EXPECT_TRUE(has_note(lines[0], "inside is not known: FIXED is open"));
+  EXPECT_TRUE(has_note(lines[0], "inside is not known: shell.stl is open"));
   EXPECT_EQ(lines[3]["inside"], "none");
   EXPECT_TRUE(lines[3]["notes"].empty());
   // A corner of the cube, 0.01 behind a face: within the reach of an open body.
@@ -154,7 +155,15 @@ TEST_F(Answers, AnOpenBodyHasNoInsideAndADepthByVertices) {
   EXPECT_TRUE(met["depth_lower"].is_null() && met["depth_upper"].is_null());
   EXPECT_NEAR(met["depth_at_vertices"].get<double>(), 0.01, 1e-6);
   EXPECT_NEAR(met["depth_point"][0].get<double>(), 1.99, 1e-6);
-  EXPECT_TRUE(has_note(met, "no certain depth: FIXED is open"));
+  EXPECT_TRUE(has_note(met, "depth is a lower bound, measured at vertices: shell.stl is open"));
+  // Calm: one line about both, and a note once below the rows.
+  const CommandResult rows =
+      ist_well({"approach", shell, shell, "--axis", "x", "--from", "0.1", "--to", "0.3"});
+  const std::string note = "depth is a lower bound, measured at vertices: shell.stl and shell.stl";
+  EXPECT_TRUE(says(rows.out, "note: " + note)) << rows.out;
+  EXPECT_EQ(rows.out.find(note), rows.out.rfind(note)) << rows.out;
+  EXPECT_TRUE(says(rows.err, shell + " and " + shell + " are open surfaces, as scans usually are"));
+  EXPECT_EQ(rows.err.find("warning"), std::string::npos) << rows.err;
 }
 
 TEST_F(Answers, DistanceIsAsSharpAsAsked) {
@@ -410,7 +419,8 @@ TEST_F(Answers, VoxelsAreMadeWhereTheyAreAskedFor) {
   const CommandResult people = ist_well({"collide", ball_, ball_, "--move", "3.9,0,0"});
   EXPECT_EQ(people.err.find("voxel"), std::string::npos) << people.err;
   EXPECT_TRUE(says(people.out, "touch      yes"));
-  EXPECT_EQ(ist_well({"collide", ball_, ball_, "--move", "3.9,0,0", "--json"}).err, "");
+  EXPECT_EQ(without_notes(ist_well({"collide", ball_, ball_, "--move", "3.9,0,0", "--json"}).err),
+            "");
   for (const char* flag : {"--timing", "--verify"}) {
     EXPECT_TRUE(says(ist_well({"collide", ball_, ball_, "--move", "3.9,0,0", flag}).err,
                      "voxel size 0.008"));

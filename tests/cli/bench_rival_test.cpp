@@ -61,11 +61,10 @@ TEST_F(BenchRival, IsNamedWithItsVersion) {
 
 TEST_F(BenchRival, NeedsTriangles) {
   const std::string bare = ball_tree("bare.ist", "slab", {"--no-triangles"}), whole = ball_tree();
-  for (const auto& [fixed, moving, named] :
-       {std::tuple(bare, whole, "FIXED"), {whole, bare, "MOVING"}}) {
+  for (const auto& [fixed, moving] : {std::pair(bare, whole), {whole, bare}}) {
     const CommandResult result = bench({fixed, moving, "--poses", poses({1, 3.5})});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(says(result.err, std::string(named) + ": the tree has no triangles"));
+    EXPECT_TRUE(says(result.err, "bare.ist: the tree has no triangles"));
     EXPECT_EQ(result.out, "");
   }
 }

@@ -124,6 +124,15 @@ std::vector<std::string> CliTest::words_with_call(const std::string& call, int a
   return words;
 }
 
+std::string CliTest::without_notes(const std::string& err) {
+  std::string rest;
+  std::istringstream stream(err);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("note: ")) rest += line + "\n";
+  }
+  return rest;
+}
+
 std::vector<nlohmann::json> CliTest::json_lines(const std::string& text) {
   std::vector<nlohmann::json> lines;
   std::istringstream stream(text);

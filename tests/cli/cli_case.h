@@ -32,6 +32,8 @@ class CliTest : public ::testing::Test {
   std::string write(const std::string& name, const std::string& content) const {
     return dir_.write(name, content);
   }
+  /// The lines of stderr that are no notes.
+  static std::string without_notes(const std::string& err);
   /// Writes a mesh, and returns its path.
   [[nodiscard]] std::string mesh(const std::string& name, const TriangleMesh& mesh) const;
   /// A ball of radius 2 round the origin, closed and consistent.

@@ -157,6 +157,22 @@ TEST_F(Usage, AValueOfAFlag) {
   }
 }
 
+TEST_F(Usage, WordsMayBeInAnyCase) {
+  const std::string mesh = ball(), tree = path("out.ist");
+  ist_well(
+      {"build", mesh, "-o", tree, "--voxel-size", "0.5", "--unit", "MM", "--spheres", "Tight"});
+  EXPECT_TRUE(says(ist_well({"info", tree}).out, "unit mm"));
+  const std::vector<std::string> approach{"approach", mesh, tree,   "--axis", "Z",
+                                          "--from",   "4",  "--to", "5"};
+  EXPECT_TRUE(says(ist_well(approach).out, "first contact"));
+  const auto bite = [&](const std::string& preset, const std::string& frame) {
+    return ist_well({"occlusion", mesh, tree, "--move", "0,0,3.9", "--preset", preset, "--frame",
+                     frame, "--json"})
+        .out;
+  };
+  EXPECT_EQ(bite("SCAN", "LPS"), bite("scan", "lps"));
+}
+
 TEST_F(Usage, OptionsOfBuild) {
   const std::string mesh = ball(), tree = path("out.ist");
   const auto refuses_with = [&](const std::string& flag, const std::string& value,

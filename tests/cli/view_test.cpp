@@ -99,7 +99,8 @@ TEST_F(View, HoldsTwoBodiesWithTheirTriangles) {
 }
 
 TEST_F(View, WarnsOnceOfABodyAlone) {
-  const std::string one = mesh("open.stl", open_strip(2)), warning = "its outside is assumed";
+  const std::string one = mesh("open.stl", open_strip(2)),
+                    warning = "is an open surface, as scans usually are";
   const std::string err = ist_well({"view", one, "-o", path("one.html")}).err;
   ASSERT_TRUE(says(err, warning)) << err;
   EXPECT_EQ(err.find(warning), err.rfind(warning)) << err;

@@ -220,6 +220,37 @@ TEST(ReadMesh, APlyMayHaveCarriageReturnsBeforeItsBytes) {
   EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(mesh)));
 }
 
+// As 3D Slicer writes it.
+TEST(ReadMesh, TellsTheFrameThatAFileNames) {
+  const auto stl = [](std::string header) {
+    std::string bytes = test::as_binary_stl(kBox);
+    return bytes.replace(0, header.size(), header);
+  };
+  const std::string text = test::as_text_stl(kBox), ply = test::as_binary_ply(kBox, true),
+                    obj = test::as_obj(kBox);
+  const auto with = [](std::string content, const std::string& line, std::size_t after) {
+    return content.insert(content.find('\n', after) + 1, line);
+  };
+  const auto frame = [](const std::string& bytes) { return read_bytes(bytes).frame; };
+  using enum PatientFrame;
+  EXPECT_EQ(frame(stl("3D Slicer output. SPACE=RAS")), kRas);
+  EXPECT_EQ(frame(stl("3D Slicer output. SPACE=LPS")), kLps);
+  EXPECT_EQ(frame("solid made by hand;SPACE=LPS\n" + text.substr(text.find('\n') + 1)), kLps);
+  EXPECT_EQ(frame(with(ply, "comment SPACE=RAS\n", 0)), kRas);
+  EXPECT_EQ(frame(with(ply, "obj_info SPACE=lps\n", 0)), kLps);
+  EXPECT_EQ(frame("# SPACE=LPS\n" + obj), kLps);
+  EXPECT_EQ(frame("#SPACE=RAS a comment\n" + obj), kRas);
+  // A name is no comment, and other words are no frame.
+  for (const std::string& nothing :
+       {obj, "o SPACE=RAS\n" + obj, stl("COLORSPACE=RAS"), stl("SPACE=RASX"), stl("SPACE=LAS"),
+        stl("SPACE = RAS"), stl("SPACE="), with(ply, "comment SPACE\n", 0)}) {
+    EXPECT_EQ(frame(nothing), kUnknown);
+  }
+  EXPECT_EQ(frame("# SPACE=RAS\n# SPACE=RAS\n" + obj), kRas);
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(frame("# SPACE=RAS\n# SPACE=LPS\n" + obj)); }),
+            "not-a-mesh");
+}
+
 TEST(ReadMesh, ReadsThePlyStrips) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "

@@ -34,6 +34,18 @@ TEST(WriteStl, ComesBackTheSame) {
   EXPECT_FALSE(bytes.starts_with("solid"));
 }
 
+TEST(WriteStl, KeepsTheFrame) {
+  const TempDir folder;
+  const auto file = folder.path() / "mesh.stl";
+  TriangleMesh mesh = test::icosphere(0, 1);
+  for (const PatientFrame frame :
+       {PatientFrame::kUnknown, PatientFrame::kRas, PatientFrame::kLps}) {
+    mesh.frame = frame;
+    write_stl(mesh, file);
+    EXPECT_EQ(read_mesh(file).frame, frame);
+  }
+}
+
 TEST(WriteStl, WritesUnitNormalsFromTheWinding) {
   const TempDir folder;
   const auto normal_of = [&](const TriangleMesh& mesh) {

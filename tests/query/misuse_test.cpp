@@ -45,6 +45,19 @@ TEST_F(Misuse, OfWorkersThrows) {
   }
 }
 
+TEST_F(Misuse, OfTreesInDifferentFramesThrows) {
+  TriangleMesh mesh = icosphere(2, 2);
+  const auto in = [&](PatientFrame frame) {
+    mesh.frame = frame;
+    return build_tree(mesh, {.voxel_size = 0.5});
+  };
+  const SphereTree ras = in(PatientFrame::kRas), lps = in(PatientFrame::kLps);
+  const std::string text = refusal([&] { Query(ras, lps); });
+  EXPECT_NE(text.find("frame ras"), std::string::npos) << text;
+  EXPECT_NE(text.find("in lps"), std::string::npos) << text;
+  EXPECT_EQ(error_name([&] { Query(ras, ras), Query(ras, tree_), Query(tree_, lps); }), "");
+}
+
 TEST_F(Misuse, OfManifoldOptionsThrows) {
   const auto made = [&](const ManifoldOptions& options) {
     return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });

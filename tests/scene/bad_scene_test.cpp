@@ -334,6 +334,25 @@ TEST_F(BadSceneTest, GivesAVoxelSizeToATree) {
                    "the file is a tree, which has a voxel size", "take the key out"}});
 }
 
+TEST_F(BadSceneTest, NamesFilesInDifferentFrames) {
+  TriangleMesh box = make_box({0, 0, 0}, {1, 1, 1});
+  for (const auto& [name, frame] :
+       {std::pair("ras.stl", PatientFrame::kRas), {"lps.stl", PatientFrame::kLps}}) {
+    box.frame = frame;
+    write_stl(box, folder_.path() / name);
+  }
+  const auto file = folder_.write(
+      "scene.toml",
+      "unit = \"mm\"\n[fixed]\nfile = \"ras.stl\"\nvoxel_size = 0.5\n[held]\nfile = \"lps.stl\"\n"
+      "voxel_size = 0.5\n[device]\nkind = \"hand\"\nplan = [{ time = 0, move = [0, 0, 5] }, "
+      "{ time = 1, move = [0, 0, 2] }]\n[effects.contact]\nstiffness = 2000\n");
+  const auto error = error_of([&] { static_cast<void>(build_scene(read_scene(file))); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInputInvalid);
+  EXPECT_NE(std::string(error->what()).find("ist build --to-frame"), std::string::npos)
+      << error->what();
+}
+
 TEST_F(BadSceneTest, HasAScriptThatIsNone) {
   folder_.write("bad.csv", "time,x,y\n");
   const auto file = folder_.write(

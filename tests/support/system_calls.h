@@ -2,6 +2,17 @@
 
 namespace ist::test {
 
+/// Whether a sanitizer is in the program. Its own locks call the system if another thread holds
+/// them.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+inline constexpr bool kSanitized =
+    __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 /// Whether this kernel lets a process forbid its own system calls.
 [[nodiscard]] bool can_forbid_system_calls();
 

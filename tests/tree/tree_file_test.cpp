@@ -103,6 +103,54 @@ TEST(TreeFile, EverySourceComesBackAsItWas) {
   }
 }
 
+TEST(TreeFile, EveryFrameComesBackAsItWas) {
+  BuildOptions options;
+  options.voxel_size = 0.3;
+  TriangleMesh mesh = test::icosphere(1, 1);
+  for (const PatientFrame frame :
+       {PatientFrame::kUnknown, PatientFrame::kRas, PatientFrame::kLps}) {
+    mesh.frame = frame;
+    options.source.unit = frame == PatientFrame::kRas ? LengthUnit::kInch : LengthUnit::kUnknown;
+    const SphereTree tree = build_tree(mesh, options);
+    EXPECT_EQ(tree.frame(), frame);
+    const std::string bytes = test::file_of(tree);
+    const SphereTree back = test::tree_of_bytes(bytes);
+    EXPECT_EQ(back.frame(), frame);
+    EXPECT_EQ(back.triangles()->frame, frame);
+    EXPECT_EQ(back.source(), options.source);
+    EXPECT_EQ(test::file_of(back), bytes);
+  }
+}
+
+// The tree of a turned mesh is the tree of that mesh, bit by bit.
+TEST(TreeFrames, AMeshOfTheOtherFrameIsTurned) {
+  BuildOptions options;
+  options.voxel_size = 0.3;
+  TriangleMesh mesh = test::box({-1, 0.1, 2}, {0.5, 1.25, 3});
+  mesh.frame = PatientFrame::kRas;
+  TriangleMesh turned = test::box({-0.5, -1.25, 2}, {1, -0.1, 3});
+  options.frame = PatientFrame::kLps;
+  const SphereTree tree = build_tree(mesh, options);
+  EXPECT_EQ(tree.frame(), PatientFrame::kLps);
+  const auto box = [](const TriangleMesh& of) {
+    Eigen::AlignedBox3d found;
+    for (const Eigen::Vector3d& vertex : of.vertices) found.extend(vertex);
+    return found;
+  };
+  EXPECT_EQ(box(*tree.triangles()).min(), box(turned).min());
+  EXPECT_EQ(box(*tree.triangles()).max(), box(turned).max());
+  EXPECT_EQ(tree.orientation(), Orientation::kOutward);
+  options.frame = PatientFrame::kRas;
+  EXPECT_EQ(build_tree(mesh, options).triangles()->vertices, mesh.vertices);
+  mesh.frame = PatientFrame::kUnknown;
+  const SphereTree unknown = build_tree(mesh, options);
+  EXPECT_EQ(unknown.frame(), PatientFrame::kUnknown);
+  EXPECT_EQ(unknown.triangles()->vertices, mesh.vertices);
+  options.frame = static_cast<PatientFrame>(3);
+  EXPECT_EQ(test::error_name([&] { static_cast<void>(build_tree(mesh, options)); }),
+            "argument-invalid");
+}
+
 TEST(TreeFile, IsWrittenWholeAndItsSizeReported) {
   const test::TempDir folder;
   const auto file = folder.path() / "tree.ist";

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/answers/answer_lines.h"
 #include "cli/terminal.h"
@@ -46,10 +49,25 @@ std::string inside_of(const Findings& found) {
   return fmt::format("the {} body is inside", to_string(*found.inside));
 }
 
-// Notes, and what has no column of its own.
-std::string rest_of(const Findings& found) {
+// The notes of more than one row, which are printed once, below the rows.
+std::vector<std::string> shared_notes(const std::vector<PoseAnswer>& answers) {
+  std::map<std::string_view, int> rows;
+  std::vector<std::string> shared;
+  for (const PoseAnswer& answer : answers) {
+    for (const std::string& note : answer.findings.notes) {
+      if (++rows[note] == 2) shared.push_back(note);
+    }
+  }
+  return shared;
+}
+
+// Notes of this row alone, and which body lies in the other.
+std::string rest_of(const Findings& found, const std::vector<std::string>& shared) {
   std::string rest = inside_of(found);
-  for (const std::string& note : found.notes) rest += (rest.empty() ? "" : "; ") + note;
+  for (const std::string& note : found.notes) {
+    if (std::find(shared.begin(), shared.end(), note) != shared.end()) continue;
+    rest += (rest.empty() ? "" : "; ") + note;
+  }
   return rest;
 }
 
@@ -75,6 +93,7 @@ void print_one(const PoseAnswer& answer) {
 void print_rows(const std::vector<PoseAnswer>& answers) {
   const bool path = answers.front().displacement.has_value();
   const bool triangles = answers.front().findings.triangle_pairs.has_value();
+  const std::vector<std::string> shared = shared_notes(answers);
   std::size_t wide = 8;  // of depth, which may be a sentence
   for (const PoseAnswer& answer : answers) {
     wide = std::max(wide, words_of(answer.findings.depth).size());
@@ -88,9 +107,10 @@ void print_rows(const std::vector<PoseAnswer>& answers) {
                word_of(found.touch, 7), found.distance ? words_of(*found.distance) : "-",
                words_of(found.depth), wide, words_of(found.depth.area));
     if (triangles) fmt::print(" {:>9}", words_of(found.triangle_pairs));
-    const std::string rest = rest_of(found);
+    const std::string rest = rest_of(found, shared);
     fmt::print("{}{}\n", rest.empty() ? "" : "  ", rest);
   }
+  for (const std::string& note : shared) fmt::print("note: {}\n", note);
 }
 
 void print_times(const Engines& engines, const Bodies& bodies,

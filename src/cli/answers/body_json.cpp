@@ -15,7 +15,8 @@ ordered_json numbers(const Eigen::Vector3d& vector) { return {vector[0], vector[
 
 // Adds the keys that a mesh and a tree share; without a report the surface's are null.
 void add_measures(ordered_json& line, const Eigen::Vector3d& extent,
-                  const std::optional<MeshReport>& report, const MeshSource& source) {
+                  const std::optional<MeshReport>& report, const MeshSource& source,
+                  PatientFrame frame) {
   line["extent"] = numbers(extent);
   for (const char* key : {"closed", "consistent", "volume"}) line[key] = nullptr;
   if (report) {
@@ -24,6 +25,7 @@ void add_measures(ordered_json& line, const Eigen::Vector3d& extent,
     if (report->closed && report->consistent) line["volume"] = report->signed_volume;
   }
   line["unit"] = json_of(source.unit);
+  line["frame"] = json_of(frame);
   line["source"] = json_of(source);
 }
 
@@ -37,8 +39,8 @@ ordered_json places(const MeshReport& report) {
 
 }  // namespace
 
-ordered_json mesh_json(const std::string& file, const MeshReport& report,
-                       const MeshSource& source) {
+ordered_json mesh_json(const std::string& file, const MeshReport& report, const MeshSource& source,
+                       PatientFrame frame) {
   ordered_json line{{"file", file},
                     {"kind", "mesh"},
                     {"vertices", report.vertices},
@@ -55,7 +57,7 @@ ordered_json mesh_json(const std::string& file, const MeshReport& report,
                     {"box_min", numbers(report.box_min)},
                     {"box_max", numbers(report.box_max)},
                     {"warnings", warnings(report)}};
-  add_measures(line, report.box_max - report.box_min, report, source);
+  add_measures(line, report.box_max - report.box_min, report, source, frame);
   return line;
 }
 
@@ -79,7 +81,7 @@ ordered_json tree_json(const std::string& file, const SphereTree& tree,
     line["self_intersections"] = triangles->self_intersections;
     line["self_intersections_complete"] = triangles->self_intersections_complete;
   }
-  add_measures(line, box_of(tree).sizes(), triangles, tree.source());
+  add_measures(line, box_of(tree).sizes(), triangles, tree.source(), tree.frame());
   line["levels"] = ordered_json::array();
   for (const LevelStatistics& level : levels) {
     ordered_json row{{"level", level.level}, {"edge", level.edge}, {"nodes", level.nodes}};

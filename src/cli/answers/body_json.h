@@ -13,9 +13,9 @@ namespace ist::cli {
 
 /// Returns what `ist info --json` says of a mesh: the keys stand in docs/command.md.
 [[nodiscard]] nlohmann::ordered_json mesh_json(const std::string& file, const MeshReport& report,
-                                               const MeshSource& source);
+                                               const MeshSource& source, PatientFrame frame);
 
-/// Returns what it says of a tree. `triangles`: the report of its mesh, where it holds one.
+/// Returns what it says of a tree. `triangles`: the report of its mesh, if it holds one.
 [[nodiscard]] nlohmann::ordered_json tree_json(const std::string& file, const SphereTree& tree,
                                                const std::optional<MeshReport>& triangles,
                                                std::span<const LevelStatistics> levels);

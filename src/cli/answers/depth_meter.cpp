@@ -1,6 +1,10 @@
 #include "cli/answers/depth_meter.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <vector>
 
 #include "ist/base/pose.h"
 #include "ist/measure/occlusion.h"
@@ -36,17 +40,25 @@ std::optional<Eigen::Vector3d> deepest_vertex(const Query& query, const Occlusio
 
 }  // namespace
 
-DepthMeter::DepthMeter(Query& query, double tolerance, double extent)
-    : query_(query), tolerance_(tolerance), extent_(extent) {
-  for (const auto& [tree, name] :
-       {std::pair(&query.fixed(), "FIXED"), {&query.moving(), "MOVING"}}) {
-    if (!why_none_.empty()) continue;
-    if (tree->triangles() == nullptr) {
-      why_none_ = std::string(name) + " holds no triangles: build it without --no-triangles";
-    } else if (tree->orientation() != Orientation::kOutward) {
-      why_none_ = std::string(name) + " is open or not wound consistently";
+DepthMeter::DepthMeter(Query& query, const Bodies& bodies, double tolerance)
+    : query_(query), tolerance_(tolerance), extent_(bodies.extent()) {
+  std::vector<std::string> open;
+  bool borders = true;  // of all that are open
+  const auto look = [&](const SphereTree& tree, const std::string& name, bool has_border) {
+    if (tree.triangles() == nullptr && why_none_.empty()) {
+      why_none_ = fmt::format(
+          "depth is not known: {} holds no triangles: build it without --no-triangles", name);
     }
-  }
+    if (tree.orientation() == Orientation::kOutward) return;
+    open.push_back(name);
+    borders = borders && has_border;
+  };
+  look(bodies.fixed, bodies.fixed_name, bodies.fixed_has_border);
+  look(bodies.moving, bodies.moving_name, bodies.moving_has_border);
+  if (open.empty() || !why_none_.empty()) return;
+  why_none_ = fmt::format("depth is a lower bound, measured at vertices: {} {} open{}",
+                          fmt::join(open, " and "), open.size() == 1 ? "is" : "are",
+                          borders ? "" : " or not wound consistently");
 }
 
 double DepthMeter::open_reach() const { return kOpenReach * extent_; }

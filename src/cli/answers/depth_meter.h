@@ -27,8 +27,8 @@ struct Depth {
 /// Measures how deep the bodies of a query are in each other.
 class DepthMeter {
  public:
-  /// `query` must outlive it; `extent` is the smaller body's largest, mesh units.
-  DepthMeter(Query& query, double tolerance, double extent);
+  /// `query` is of `bodies`, and must outlive it.
+  DepthMeter(Query& query, const Bodies& bodies, double tolerance);
 
   /// `near`: whether the surfaces intersect, or are no farther apart than open_reach(). A budget
   /// counts points; with one the interval may be wider.
@@ -37,7 +37,7 @@ class DepthMeter {
   /// How far behind an open surface a vertex counts as inside, mesh units.
   [[nodiscard]] double open_reach() const;
 
-  /// Why there is no certain depth; empty where there is one.
+  /// Why there is no certain depth, as a sentence without a full stop; empty if there is one.
   [[nodiscard]] const std::string& why_none() const { return why_none_; }
 
  private:

@@ -47,7 +47,8 @@ Meeting Findings::meeting() const {
 }
 
 Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::string& target)
-    : questions_(questions),
+    : bodies_(bodies),
+      questions_(questions),
       have_voxels_(bodies.have_voxels()),
       budget_{questions.max_tests.value_or(Budget().tests)},
       distance_tolerance_(questions.distance.value_or(kDefaultTolerance * bodies.extent())),
@@ -57,7 +58,7 @@ Examiner::Examiner(const Bodies& bodies, const Questions& questions, const std::
       open_fixed_(open_box(bodies.fixed, query_.has_triangles())),
       open_moving_(open_box(bodies.moving, query_.has_triangles())) {
   if (questions.triangle_pairs || questions.depth) require_triangles(bodies);
-  depth_.emplace(query_, depth_tolerance_, bodies.extent());
+  depth_.emplace(query_, bodies, depth_tolerance_);
   if (query_.has_triangles()) {
     inside_.emplace(*bodies.fixed.triangles(), *bodies.moving.triangles());
   }
@@ -77,7 +78,7 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
         "apart, or in each other: a part lies behind an open surface, which has no inside");
   }
   if (!found.depth.certain && found.touch != Answer::kNo) {
-    found.notes.push_back("no certain depth: " + depth_->why_none());
+    found.notes.push_back(depth_->why_none());
   }
   if (found.depth.certain && !found.depth.complete) {
     const char* const why = found.depth.capped     ? ": the search ended after 4 million pieces"
@@ -142,7 +143,7 @@ void Examiner::find_inside(const Eigen::Isometry3d& pose, Findings& found) const
       open_moving_.contains(to_moving * query_.fixed().triangles()->vertices.front());
   if (fixed_might || (moving_might && inside != Inside::kMoving)) {
     found.notes.push_back(fmt::format("inside is not known: {} is open or not wound consistently",
-                                      fixed_might ? "FIXED" : "MOVING"));
+                                      name_of(!fixed_might)));
     return;
   }
   found.inside = inside;
@@ -159,7 +160,7 @@ void Examiner::find_self_intersections(Findings& found) const {
     if (!matters) continue;
     found.notes.push_back(
         fmt::format("{} intersects itself in {} pair{} of triangles: inside is by winding numbers",
-                    moving ? "MOVING" : "FIXED", pairs, pairs == 1 ? "" : "s"));
+                    name_of(moving), pairs, pairs == 1 ? "" : "s"));
   }
 }
 

@@ -68,6 +68,11 @@ class Examiner {
   void find_contacts(const Eigen::Isometry3d& pose, Findings& found);
   void count_triangles(const Eigen::Isometry3d& pose, Findings& found);
 
+  [[nodiscard]] const std::string& name_of(bool moving) const {
+    return moving ? bodies_.moving_name : bodies_.fixed_name;
+  }
+
+  const Bodies& bodies_;
   Questions questions_;
   bool have_voxels_;
   Budget budget_;

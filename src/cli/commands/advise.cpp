@@ -137,6 +137,10 @@ void run(const AdviseArguments& options) {
     fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
+  refuse_if(contradict(fixed_mesh.mesh.frame, moving_mesh.mesh.frame), options.moving.string(),
+            fmt::format("its frame is {}, and the frame of {} is {}: turn one of them first",
+                        to_string(moving_mesh.mesh.frame), options.fixed.string(),
+                        to_string(fixed_mesh.mesh.frame)));
   const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);
   const std::uint64_t max_memory = options.calibration.max_memory;
   const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);
@@ -220,7 +224,7 @@ void add_advise(CLI::App& app) {
       ->add_option("--axis", options->axis,
                    "direction in which the moving body leaves the fixed one; by default the "
                    "direction in which its bounding box leaves soonest")
-      ->check(CLI::IsMember({"x", "-x", "y", "-y", "z", "-z"}));
+      ->transform(one_of({"x", "-x", "y", "-y", "z", "-z"}));
   command->add_option("--workers", options->calibration.workers, "threads of a query")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "cli/answers/json_text.h"
+#include "cli/answers/shared_point.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
 #include "cli/measure_progress.h"
@@ -117,7 +118,10 @@ void print_first_contact(const FirstContact& found, const Path& path, const Bodi
              found.status == FirstContact::Status::kGrazing ? "only grazing, " : "", std::min(a, b),
              std::max(a, b));
   if (found.triangles) {
-    fmt::print(", triangles {} and {}", found.triangles->fixed, found.triangles->moving);
+    const Eigen::Isometry3d pose = path.at(displacement_at(path, found.upper));
+    const Eigen::Vector3d point = shared_point(bodies, *found.triangles, pose);
+    fmt::print(", at ({:.5g}, {:.5g}, {:.5g}), triangles {} and {}", point[0], point[1], point[2],
+               found.triangles->fixed, found.triangles->moving);
   }
   fmt::print("\n");
 }

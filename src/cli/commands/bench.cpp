@@ -166,7 +166,7 @@ void add_bench(CLI::App& app) {
   command->add_option("--against", options->against, "other libraries to ask too")
       ->delimiter(',')
       ->allow_extra_args(false)  // bodies may come behind it
-      ->check(CLI::IsMember(names));
+      ->transform(one_of(names));
   command
       ->add_option("--seconds", options->seconds,
                    "time for all queries; each has three turns at least")

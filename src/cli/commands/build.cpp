@@ -27,11 +27,22 @@ struct BuildArguments {
   BuildOptions build;
   std::optional<double> voxel_size;  // empty: 1/500 of the largest extent
   std::string spheres{to_string(BuildOptions{}.spheres)};
-  std::string unit;  // empty: unknown
+  std::string unit, frame, to_frame;  // empty: unknown
   bool no_triangles = false;
   std::vector<std::string> classes{"surface"};
   bool json = false;
 };
+
+// Gives the mesh the frame that the user names, if its file names none.
+void take_frame(const std::string& name, const std::filesystem::path& file, TriangleMesh& mesh) {
+  if (name.empty()) return;
+  const PatientFrame frame = *patient_frame(name);
+  refuse_if(contradict(frame, mesh.frame), "--frame",
+            fmt::format("{} says that its frame is {}: leave the option out, or turn the mesh by "
+                        "--to-frame {}",
+                        file.string(), to_string(mesh.frame), name));
+  mesh.frame = frame;
+}
 
 void run(BuildArguments options) {
   options.build.spheres = *sphere_policy(options.spheres);
@@ -45,7 +56,10 @@ void run(BuildArguments options) {
   options.build.source = source_of(options.mesh);
   options.build.source.unit = length_unit(options.unit).value_or(LengthUnit::kUnknown);
   options.build.keep_triangles = !options.no_triangles;
+  options.build.frame = patient_frame(options.to_frame).value_or(PatientFrame::kUnknown);
   CheckedMesh checked = load_mesh(options.mesh);
+  take_frame(options.frame, options.mesh, checked.mesh);
+  if (checked.has_border) checked.warnings.push_back(open_surfaces({options.mesh.string()}));
   const double extent = largest_extent(box_of(checked.mesh));
   options.build.voxel_size =
       options.voxel_size ? *options.voxel_size : default_voxel_size(extent, "the largest extent");
@@ -68,7 +82,7 @@ void run(BuildArguments options) {
         {"voxels", octree.leaf_count()},   {"nodes", octree.node_count()},
         {"depth", octree.depth()},         {"bytes", bytes},
         {"memory", tree.bytes()},          {"unit", json_of(tree.source().unit)},
-        {"source", json_of(tree.source())}};
+        {"frame", json_of(tree.frame())},  {"source", json_of(tree.source())}};
     if (tree.parts().proximity)
       line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
     for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
@@ -105,11 +119,20 @@ void add_build(CLI::App& app) {
   command
       ->add_option("--unit", options->unit,
                    "unit of the mesh's lengths, which the tree remembers; nothing is converted")
-      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
+      ->transform(unit_name());
+  command
+      ->add_option("--frame", options->frame,
+                   "frame of the patient that the mesh is in, if its file does not say SPACE=RAS "
+                   "or SPACE=LPS")
+      ->transform(one_of({"ras", "lps"}));
+  command
+      ->add_option("--to-frame", options->to_frame,
+                   "frame to turn the mesh into: x and y change their signs if it is another one")
+      ->transform(one_of({"ras", "lps"}));
   command
       ->add_option("--spheres", options->spheres,
                    "bounds to save beside simple and table, which need no saving")
-      ->check(CLI::IsMember(policy_names()))
+      ->transform(one_of(policy_names()))
       ->capture_default_str();
   command->add_flag("--no-triangles", options->no_triangles,
                     "make a smaller tree without the triangles, which exact answers need");
@@ -118,7 +141,7 @@ void add_build(CLI::App& app) {
                    "classes of voxels: surface, or surface,proximity")
       ->delimiter(',')
       // Help and pages would show the check as a choice of one word.
-      ->check(CLI::IsMember({"surface", "proximity"}).description(""))
+      ->transform(one_of({"surface", "proximity"}).description(""))
       ->type_name("LIST")
       ->capture_default_str();
   add_max_memory(*command, options->build.max_memory);

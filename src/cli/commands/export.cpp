@@ -112,14 +112,14 @@ void add_export(CLI::App& app) {
   command
       ->add_option("--what", options->what, "cubes; or spheres, as points with an array 'radius'")
       ->required()
-      ->check(CLI::IsMember({"voxels", "spheres"}));
+      ->transform(one_of({"voxels", "spheres"}));
   command->add_option("--level", options->level, "0 for the leaves")
       ->required()
       ->check(CLI::Range(0, 17));
   command
       ->add_option("--spheres", options->spheres,
                    "spheres to write, of slab the balls; by default the tightest that the tree has")
-      ->check(CLI::IsMember(policy_names()));
+      ->transform(one_of(policy_names()));
   command
       ->add_option("-o,--output", options->output,
                    "file to write; its ending says the format: .vtp or .ply, of voxels also .glb")
@@ -128,7 +128,7 @@ void add_export(CLI::App& app) {
   command
       ->add_option("--unit", options->unit,
                    "unit of a tree that holds none, which a .glb turns into metres; else mm")
-      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
+      ->transform(unit_name());
   command->add_flag("--json", options->json, "print one JSON object");
   add_example(
       *command,

@@ -27,11 +27,12 @@ struct InfoArguments {
 };
 
 void show_mesh(const InfoArguments& options) {
-  const MeshReport report = check_mesh(read_mesh(options.file));
-  if (!options.json) return print_mesh(options.file, report);
+  const TriangleMesh mesh = read_mesh(options.file);
+  const MeshReport report = check_mesh(mesh);
+  if (!options.json) return print_mesh(options.file, report, mesh.frame);
   print_header("info", {{"mesh", options.file}});
   const MeshSource source = source_of(options.file);
-  print_json(mesh_json(source.name, report, source));
+  print_json(mesh_json(source.name, report, source, mesh.frame));
 }
 
 void show_tree(const InfoArguments& options) {

@@ -23,6 +23,13 @@ void print_extent(const Eigen::AlignedBox3d& box, LengthUnit unit) {
   fmt::print("box {}\n", box_text(box));
 }
 
+void print_frame(PatientFrame frame) {
+  if (frame == PatientFrame::kUnknown) return;
+  fmt::print("frame {}: +x to the patient's {}, +y to the {}\n", to_string(frame),
+             frame == PatientFrame::kRas ? "right" : "left",
+             frame == PatientFrame::kRas ? "front" : "back");
+}
+
 void print_topology(const MeshReport& report, LengthUnit unit) {
   fmt::print("{}, {}", report.closed ? "closed" : "open",
              report.consistent ? "wound consistently" : "not wound consistently");
@@ -68,11 +75,12 @@ void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& le
 
 }  // namespace
 
-void print_mesh(const std::filesystem::path& file, const MeshReport& report) {
+void print_mesh(const std::filesystem::path& file, const MeshReport& report, PatientFrame frame) {
   fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
              report.triangles, report.vertices, report.components,
              report.components == 1 ? "" : "s");
   print_extent({report.box_min, report.box_max}, LengthUnit::kUnknown);
+  print_frame(frame);
   print_topology(report, LengthUnit::kUnknown);
   print_warnings(warnings(report));
 }
@@ -85,6 +93,7 @@ void print_tree(const std::filesystem::path& file, const SphereTree& tree,
              static_cast<double>(tree.bytes()) / 1e6);
   print_source(tree.source());
   print_extent(box_of(tree), tree.source().unit);
+  print_frame(tree.frame());
   if (triangles) print_topology(*triangles, tree.source().unit);
   fmt::print("orientation {}, {} triangles kept, {} proximity voxels\n\n",
              tree.orientation() == Orientation::kOutward ? "outward" : "assumed",

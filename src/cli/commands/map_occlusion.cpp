@@ -45,7 +45,7 @@ struct OcclusionArguments {
   PoseOptions pose;
   std::vector<std::filesystem::path> outputs;
   BiteQuestions questions;
-  std::string preset{presets().front().name}, unit, numbering, side;
+  std::string preset{presets().front().name}, numbering, side;
   std::optional<double> open;  // millimetres
   bool fail_if_touching = false, json = false;
 };
@@ -73,7 +73,6 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
   refuse_if(questions.reach < 1e-3 * preset->micrometres.back(), "--reach",
             fmt::format("{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
                         preset->micrometres.back()));
-  if (!options.unit.empty()) questions.unit = *length_unit(options.unit);
   const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
   refuse_if(labels && options.numbering.empty(), "--numbering",
             "needed with labels: fdi or universal");
@@ -166,12 +165,17 @@ BiteSources sources_of(const Bodies& bodies, const BodyFiles& files) {
 }
 
 void run(const OcclusionArguments& options) {
-  const BiteQuestions questions = questions_of(options);
+  BiteQuestions questions = questions_of(options);
   const std::vector<Output> outputs = outputs_of(options);
   refuse_if(outputs.empty() && !options.json, "-o",
             "name a file that ends in .vtp, .ply, .glb, .csv, .json or .html, or give --json");
   const auto [pose, rotation_error] = options.pose.poses_named().front();
-  const Bodies bodies = load_bodies(options.files);
+  Bodies bodies = load_bodies(options.files);
+  questions.unit = bodies.told_unit;
+  if (questions.no_names) {
+    bodies.fixed_name = "the fixed body";
+    bodies.moving_name = "the moving body";
+  }
   if (!options.json) echo_pose(options.pose, pose);
   const Bite bite = [&, pose = pose, error = rotation_error] {
     ProgressBar progress;
@@ -214,7 +218,7 @@ void add_measure_options(CLI::App& command, OcclusionArguments& options) {
           "--preset", options.preset,
           "limits of the areas and bands: scan 0, 100 µm; owens 50, 350; biteeye 9, 29, 59, "
           "89, 149; paper 200; stl 100 to 400; shim 10")
-      ->check(CLI::IsMember(preset_names()))
+      ->transform(one_of(preset_names()))
       ->capture_default_str();
   command
       .add_option("--reach", questions.reach, "millimetres beyond which no distance is measured")
@@ -223,8 +227,7 @@ void add_measure_options(CLI::App& command, OcclusionArguments& options) {
       .add_option("--scanner-band", questions.scanner_band,
                   "micrometres, ±, that scanning is assumed to err by")
       ->capture_default_str();
-  command.add_option("--unit", options.unit, "of both meshes; of trees, what they hold; else mm")
-      ->check(CLI::IsMember({"mm", "m", "inch", "um", "µm"}));
+  add_units_and_frame(command, options.files);
 }
 
 void add_patient_options(CLI::App& command, OcclusionArguments& options) {
@@ -232,8 +235,9 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
   BiteQuestions& questions = options.questions;
   command
       .add_option("--frame", questions.sides.frame,
-                  "lps: +x is the patient's left, +y behind; ras: +x right, +y in front")
-      ->check(CLI::IsMember({"lps", "ras"}))
+                  "lps: +x is the patient's left, +y behind; ras: +x right, +y in front; by "
+                  "default as the files say it")
+      ->transform(one_of({"lps", "ras"}))
       ->group(group);
   command.add_option("--left", questions.sides.left, "x,y,z: the direction of the patient's left")
       ->type_name("X,Y,Z")
@@ -261,7 +265,7 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
       ->type_name("FILE")
       ->group(group);
   command.add_option("--numbering", options.numbering, "the system of the labels")
-      ->check(CLI::IsMember({"fdi", "universal"}))
+      ->transform(one_of({"fdi", "universal"}))
       ->group(group);
 }
 
@@ -288,7 +292,7 @@ void add_occlusion(CLI::App& app) {
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
-      ->check(CLI::IsMember({"fixed", "moving"}));
+      ->transform(one_of({"fixed", "moving"}));
   command->add_option("--open", options->open,
                       "open the pair like a book, with this gap, millimetres: .ply and .glb");
   command->add_flag("--no-names", options->questions.no_names,

@@ -151,7 +151,7 @@ void add_table(CLI::App& app) {
       "table", "Write the lookup table for other languages and for circuits, or test vectors");
   const auto options = std::make_shared<TableArguments>();
   command->add_option("--format", options->format, "write the table as text in this language")
-      ->check(CLI::IsMember(format_names()));
+      ->transform(one_of(format_names()));
   command
       ->add_option("--vectors", options->vectors,
                    "write this number of golden vectors of the pair test, corner cases first")

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "cli/extents.h"
 #include "cli/measure_progress.h"
@@ -25,33 +26,36 @@ struct KnownUnit {
   bool assumed;
 };
 KnownUnit unit_of(const Bodies& bodies, const BiteQuestions& questions) {
-  const LengthUnit stored = bodies.unit();
-  refuse_if(stored != LengthUnit::kUnknown && questions.unit != LengthUnit::kUnknown &&
-                stored != questions.unit,
-            "--unit", fmt::format("the trees hold {}: leave it out", to_string(stored)));
-  if (questions.unit != LengthUnit::kUnknown) return {questions.unit, false};
-  if (stored == LengthUnit::kUnknown) return {LengthUnit::kMillimetre, true};
-  return {stored, bodies.fixed.source().unit != bodies.moving.source().unit};
+  const LengthUnit known = bodies.unit();
+  if (known == LengthUnit::kUnknown) {
+    const bool told = questions.unit != LengthUnit::kUnknown;
+    return {told ? questions.unit : LengthUnit::kMillimetre, !told};
+  }
+  const bool told = known == bodies.told_unit || known == questions.unit;
+  return {known, !told && bodies.fixed.source().unit != bodies.moving.source().unit};
 }
 
 // Two jaws in another unit than theirs are metres large, or less than a millimetre.
 void require_size(const Bodies& bodies, const Bite& bite) {
   constexpr double kLeast = 1, kLargest = 1000;  // millimetres
-  for (const auto& [tree, role] : {std::pair(&bodies.fixed, "FIXED"), {&bodies.moving, "MOVING"}}) {
+  for (const auto& [tree, name, option] :
+       {std::tuple(&bodies.fixed, &bodies.fixed_name, "--unit"),
+        std::tuple(&bodies.moving, &bodies.moving_name, "--unit-moving")}) {
     const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
-    refuse_if(!(size >= kLeast && size <= kLargest), "--unit",
-              fmt::format("in {} {} is {:.4g} mm large, and jaws are 1 to 1000: name the unit of "
-                          "the meshes, or convert them",
-                          bite.unit, role, size));
+    refuse_if(
+        !(size >= kLeast && size <= kLargest), option,
+        fmt::format("{} would be {:.4g} mm large if its unit were {}, and jaws are 1 to 1000: "
+                    "give its unit",
+                    *name, size, bite.unit));
   }
 }
 
-void require_area(const BiteBody& body, const char* role) {
+void require_area(const BiteBody& body, const std::string& name) {
   if (body.surface.total_area > 0) return;
   throw Error(ErrorCode::kMeshExtent,
               fmt::format("{}: the mesh is flat: no triangle has an area, so nothing can touch it: "
                           "write it again from its scan",
-                          role));
+                          name));
 }
 
 OcclusionOptions options_of(const Bite& bite) {
@@ -102,6 +106,9 @@ std::vector<std::string> checks_of(const Bite& bite) {
   if (deepest > kMuchOverlap * bite.units_per_mm) {
     checks.push_back("overlap above 0.1 mm: check the bite registration");
   }
+  if (bite.fixed.hash && bite.fixed.hash == bite.moving.hash) {
+    checks.push_back("both files hold one mesh: it is compared with itself");
+  }
   if (bite.unit_assumed) checks.push_back(fmt::format("unit: {} (assumed)", bite.unit));
   checks.push_back(fmt::format(
       "sides: {} and {}, divided {}", bite.sides.first, bite.sides.second,
@@ -109,13 +116,6 @@ std::vector<std::string> checks_of(const Bite& bite) {
   if (bite.fore_aft.assumed != bite.sides.assumed) {
     checks.push_back(fmt::format("{} and {} divided in the middle of that box (assumed)",
                                  bite.fore_aft.first, bite.fore_aft.second));
-  }
-  for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
-    if (body->closed) continue;
-    checks.push_back(fmt::format(
-        "the {} body is open: distances at its border have no sign, and depth is measured at "
-        "vertices",
-        role));
   }
   for (const std::string& note : bite.findings.notes) checks.push_back(note);
   const bool overlaps =
@@ -156,7 +156,8 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   for (double* length : {&bite.contact, &bite.foundation, &bite.change}) {
     *length *= bite.units_per_mm;
   }
-  std::tie(bite.sides, bite.fore_aft) = divisions(questions.sides, box_of(bodies.fixed));
+  std::tie(bite.sides, bite.fore_aft) =
+      divisions(questions.sides, bodies.frame(), box_of(bodies.fixed));
   bite.moving.to_fixed = bite.pose;
   name(bite.fixed, sources.fixed, "fixed", questions.no_names);
   name(bite.moving, sources.moving, "moving", questions.no_names);
@@ -175,8 +176,8 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   bite.moving.surface = std::move(measured.moving);
   fill(bite.fixed, bodies.fixed, bite, labels_fixed);
   fill(bite.moving, bodies.moving, bite, labels_moving);
-  require_area(bite.fixed, "FIXED");
-  require_area(bite.moving, "MOVING");
+  require_area(bite.fixed, bodies.fixed_name);
+  require_area(bite.moving, bodies.moving_name);
   bite.findings = Examiner(bodies, {}, {}).at(pose);
   // Of the same triangles as all areas here.
   bite.findings.depth.area =

@@ -1,5 +1,7 @@
 #include "cli/occlusion/sides.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 
@@ -29,19 +31,27 @@ std::optional<Vector> direction(const std::string& text, const std::string& opti
 
 }  // namespace
 
-std::pair<Division, Division> divisions(const SideOptions& options,
+std::pair<Division, Division> divisions(const SideOptions& options, PatientFrame of_files,
                                         const Eigen::AlignedBox3d& box) {
   std::optional<Vector> left = direction(options.left, "--left"),
                         front = direction(options.front, "--front");
   const std::optional<Vector> midline = triple(options.midline, "--midline");
   refuse_if(!options.frame.empty() && (left || front), "--frame",
             "contradicts --left and --front, which say the same");
-  if (options.frame == "lps") {
-    left = Vector(1, 0, 0);
-    front = Vector(0, -1, 0);
-  } else if (options.frame == "ras") {
-    left = Vector(-1, 0, 0);
-    front = Vector(0, 1, 0);
+  const PatientFrame given = patient_frame(options.frame).value_or(PatientFrame::kUnknown);
+  refuse_if(contradict(given, of_files), "--frame",
+            fmt::format("it is {}, and the files are in {}: leave the option out", to_string(given),
+                        to_string(of_files)));
+  const PatientFrame frame = given == PatientFrame::kUnknown ? of_files : given;
+  if (frame != PatientFrame::kUnknown) {
+    const double sign = frame == PatientFrame::kLps ? 1 : -1;
+    const Vector to_left(sign, 0, 0), to_front(0, -sign, 0);
+    refuse_if(left && !(left->dot(to_left) > 0), "--left",
+              fmt::format("it points to the right in the files' frame, {}", to_string(frame)));
+    refuse_if(front && !(front->dot(to_front) > 0), "--front",
+              fmt::format("it points to the back in the files' frame, {}", to_string(frame)));
+    if (!left) left = to_left;
+    if (!front) front = to_front;
   }
   refuse_if(left && front && !(std::abs(left->dot(*front)) < 0.99), "--front",
             "it is the direction of --left: give another");

@@ -71,7 +71,8 @@ Eigen::Isometry3d turn_named(const std::string& text) {
 
 Eigen::Vector3d axis_named(const std::string& word, const std::string& option) {
   const bool minus = word.starts_with('-');
-  const std::string letter = word.substr(minus || word.starts_with('+') ? 1 : 0);
+  const std::string letter =
+      CLI::detail::to_lower(word.substr(minus || word.starts_with('+') ? 1 : 0));
   refuse_if(letter != "x" && letter != "y" && letter != "z", option,
             fmt::format("{} is no axis: give x, y, z, -x, -y or -z", word));
   Eigen::Vector3d axis(0, 0, 0);

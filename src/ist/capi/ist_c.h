@@ -128,6 +128,15 @@ enum {
   IST_SPHERES_SLAB = 4     /**< tight spheres, cut by thin slabs */
 };
 
+/** The directions of the patient that a mesh's axes point to. 3D Slicer writes SPACE=RAS or
+ * SPACE=LPS into its files. A half turn about z leads from one frame to the other. A query refuses
+ * two trees of different known frames with IST_ARGUMENT_INVALID. */
+enum {
+  IST_FRAME_UNKNOWN = 0, /**< the file does not say */
+  IST_FRAME_RAS = 1,     /**< +x right, +y front, +z up */
+  IST_FRAME_LPS = 2      /**< +x left, +y back, +z up */
+};
+
 /** How a tree is built. */
 typedef struct ist_build_options {
   size_t struct_size;     /**< the size of this struct, bytes */
@@ -138,6 +147,8 @@ typedef struct ist_build_options {
   int32_t no_weld;        /**< 1: vertices at one position stay apart; 0: they count as one */
   uint64_t max_memory;    /**< memory limit, bytes; default 4 GiB */
   const ist_progress* progress; /**< follows the build; may be NULL */
+  int32_t frame;    /**< IST_FRAME_...: a mesh of the other known frame is turned into it */
+  int32_t reserved; /**< 0 */
 } ist_build_options;
 
 /** Builds a tree, and turns a closed mesh outward where it is inside out. The mesh may be freed
@@ -198,6 +209,8 @@ typedef struct ist_tree_info {
   double origin[3];           /**< of the tree's frame: the root cube's centre, mesh coordinates */
   double bounding_radius;     /**< around the origin; contains every sphere */
   double largest_leaf_radius; /**< of the tightest spheres */
+  int32_t frame;              /**< IST_FRAME_... of the coordinates, as the mesh's file says it */
+  int32_t reserved;           /**< 0 */
 } ist_tree_info;
 
 /** Gives the properties of a tree. Cost: 1 us. */

@@ -29,6 +29,14 @@ ist_status read_build_options(const Call& call, const ist_build_options& given,
                      "1 for each",
                      known.drop_triangles, known.proximity, known.no_weld);
   }
+  if (known.frame < IST_FRAME_UNKNOWN || known.frame > IST_FRAME_LPS) {
+    return call.fail(IST_ARGUMENT_INVALID, "options->frame is {}: pass one of IST_FRAME_...",
+                     known.frame);
+  }
+  if (known.reserved != 0) {
+    return call.fail(IST_ARGUMENT_INVALID, "options->reserved is {}: set it to 0", known.reserved);
+  }
+  options.frame = static_cast<PatientFrame>(known.frame);
   options.voxel_size = known.voxel_size;
   options.spheres = policy_of(known.spheres).value_or(options.spheres);
   options.keep_triangles = known.drop_triangles == 0;
@@ -61,6 +69,7 @@ ist_tree_info tree_info_of(const Tree& object) {
   std::copy_n(origin.data(), 3, info.origin);
   info.bounding_radius = tree.bounding_radius();
   info.largest_leaf_radius = tree.largest_leaf_radius(tree.tightest());
+  info.frame = static_cast<std::int32_t>(tree.frame());
   return info;
 }
 

@@ -10,6 +10,7 @@
 
 #include "ist/base/api.h"
 #include "ist/base/progress.h"
+#include "ist/mesh/patient_frame.h"
 
 namespace ist {
 
@@ -29,8 +30,9 @@ enum class Orientation : std::uint8_t {
 /// A surface of indexed triangles. Coordinates are in mesh units (millimetres by habit), in the
 /// body's own frame. A triangle's vertices run counterclockwise as seen from its outer side.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;  ///< positions, used or not
-  std::vector<Triangle> triangles;        ///< each index is below vertices.size()
+  std::vector<Eigen::Vector3d> vertices;        ///< positions, used or not
+  std::vector<Triangle> triangles;              ///< each index is below vertices.size()
+  PatientFrame frame = PatientFrame::kUnknown;  ///< of the coordinates, if the file says it
 };
 
 /// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text), glTF 2.0 (GLB,
@@ -44,7 +46,8 @@ struct TriangleMesh {
 /// its header declares; in an OBJ, an OFF or a 3MF doubles; in a glTF floats. What a scene
 /// transforms is placed in double; where it mirrors a mesh its triangles are turned round. No
 /// coordinate is beyond the range of a float. No unit is converted: a glTF's is the metre, a 3MF
-/// names its own. At most 2^25 vertices and triangles are placed, and 2^29 bytes unpacked.
+/// names its own. At most 2^25 vertices and triangles are placed, and 2^29 bytes unpacked. The
+/// frame is read of an STL's header and of comments in a PLY or OBJ: SPACE=RAS or SPACE=LPS.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.
@@ -52,7 +55,8 @@ struct TriangleMesh {
 /// kMeshNotFinite, kMeshExtent, kMeshTooLarge; the text names the file and the place in it.
 [[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
 
-/// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding. The
+/// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding, and a
+/// known frame in the header. The
 /// file appears whole or not at all: it is written under a temporary name in the same folder and
 /// then renamed.
 ///
@@ -114,6 +118,10 @@ IST_API void require_valid(const TriangleMesh& mesh);
 /// two corners at one position gets two equal indices. Throws kMeshNotFinite or kMeshBadIndex, as
 /// require_valid() does. Cost: 50 ns a vertex.
 IST_API void weld(TriangleMesh& mesh);
+
+/// Turns a mesh from one known frame of a patient into the other: x and y change their signs. It
+/// does nothing if either frame is unknown. Cost: 1 ns a vertex.
+IST_API void turn_into(TriangleMesh& mesh, PatientFrame frame);
 
 /// The result of orient_outward().
 struct OrientationResult {

@@ -23,6 +23,12 @@ void check_extent(const TriangleMesh& mesh, const std::string& file) {
 
 }  // namespace
 
+void turn_into(TriangleMesh& mesh, PatientFrame frame) {
+  if (!contradict(mesh.frame, frame)) return;
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = {-vertex.x(), -vertex.y(), vertex.z()};
+  mesh.frame = frame;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const ScopedFloatEnvironment environment;  // parsing numbers rounds as well
   TriangleMesh mesh = read_content(InputFile(file).read_rest(), file);

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "ist/base/assert.h"
 #include "ist/base/files.h"
@@ -42,6 +44,10 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
     fail_mesh(ErrorCode::kFileUnwritable, file.string(), "",
               "an STL holds at most 2^32 - 1 triangles; write the mesh in parts");
   std::string bytes(kStlCountEnd + kStlFacetBytes * mesh.triangles.size(), '\0');
+  const std::string_view tag = mesh.frame == PatientFrame::kRas   ? "SPACE=RAS"
+                               : mesh.frame == PatientFrame::kLps ? "SPACE=LPS"
+                                                                  : "";
+  std::copy(tag.begin(), tag.end(), bytes.begin());
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::memcpy(bytes.data() + kStlHeaderBytes, &count, sizeof count);
   char* facet = bytes.data() + kStlCountEnd;

@@ -68,7 +68,7 @@ struct QueryOptions {
 class IST_API Query {
  public:
   /// Throws kPolicyMissing, kTargetMissing, kMemoryLimit; kArgumentInvalid for a number of workers
-  /// other than 1 or 2; std::bad_alloc.
+  /// other than 1 or 2, and for trees in different frames of a patient; std::bad_alloc.
   Query(const SphereTree& fixed, const SphereTree& moving, const QueryOptions& options = {});
   Query(const SphereTree&&, const SphereTree&, const QueryOptions& = {}) = delete;
   Query(const SphereTree&, const SphereTree&&, const QueryOptions& = {}) = delete;

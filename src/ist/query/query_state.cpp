@@ -29,11 +29,21 @@ std::size_t within_limit(const char* option, std::size_t value) {
               fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
 }
 
+// Returns the first tree of two whose files say one frame, or say none.
+const SphereTree& in_one_frame(const SphereTree& fixed, const SphereTree& moving) {
+  if (!contradict(fixed.frame(), moving.frame())) return fixed;
+  throw Error(
+      ErrorCode::kArgumentInvalid,
+      fmt::format("query: the fixed tree is in the frame {} and the moving one in {}: build "
+                  "both in one frame (BuildOptions::frame)",
+                  to_string(fixed.frame()), to_string(moving.frame())));
+}
+
 }  // namespace
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
                        const QueryOptions& options, const ScopedFloatEnvironment&)
-    : fixed(fixed_tree),
+    : fixed(in_one_frame(fixed_tree, moving_tree)),
       moving(moving_tree),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),

@@ -16,6 +16,7 @@ namespace {
 void take_tree(LoadedBody& body, const std::filesystem::path& file) {
   body.tree = std::make_unique<const SphereTree>(read_tree(file));
   body.outside_is_known = body.tree->orientation() == Orientation::kOutward;
+  body.frame = body.tree->frame();
   body.origin = body.tree->origin();
   if (body.tree->triangles()) {
     body.mesh = std::make_unique<TriangleMesh>(body.tree->parts().triangles->mesh);
@@ -27,6 +28,7 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Sce
     fail_at(scene, fmt::format("{}.voxel_size", body.table),
             fmt::format("{}: {}", body.name, flaw->what()));
   }
+  body.frame = mesh.frame;
   body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
   body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;
   body.origin = lattice_of(*body.mesh, voxel_size).origin();
@@ -69,6 +71,16 @@ std::vector<LoadedBody> load_bodies(const Scene& scene, std::vector<std::string>
   };
   load(scene.fixed, "fixed", false);
   load(scene.held, "held", true);
+  for (const LoadedBody& a : bodies) {
+    for (const LoadedBody& b : bodies) {
+      if (!contradict(a.frame, b.frame)) continue;
+      fail_at(
+          scene, b.table,
+          fmt::format("{} is in the frame {} and {} in {}: turn one of them by 'ist build "
+                      "--to-frame {}', and name its tree",
+                      b.name, to_string(b.frame), a.name, to_string(a.frame), to_string(a.frame)));
+    }
+  }
   return bodies;
 }
 

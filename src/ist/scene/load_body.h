@@ -19,6 +19,7 @@ struct LoadedBody {
   std::unique_ptr<TriangleMesh> mesh;
   std::unique_ptr<const SphereTree> tree;            ///< null unless the source is a tree
   bool outside_is_known = false;                     ///< from its triangles, or trusted
+  PatientFrame frame = PatientFrame::kUnknown;       ///< as its file says it
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of the grid, mesh coordinates
 
   /// Whether it is fixed at some time of a run.
@@ -29,7 +30,7 @@ struct LoadedBody {
 
 /// Reads or makes all bodies: the fixed ones, then the held ones. Adds the flaws of their meshes to
 /// `warnings`. Throws the errors of reading; kInputInvalid (fail_at) for a voxel size that does not
-/// fit the mesh.
+/// fit the mesh, and for files that name different frames of a patient.
 [[nodiscard]] std::vector<LoadedBody> load_bodies(const Scene& scene,
                                                   std::vector<std::string>& warnings);
 

@@ -87,6 +87,8 @@ std::uint32_t SphereTree::leaf_count() const noexcept { return parts_->octree.le
 int SphereTree::depth() const noexcept { return parts_->octree.depth(); }
 Orientation SphereTree::orientation() const noexcept { return parts_->orientation; }
 const MeshSource& SphereTree::source() const noexcept { return parts_->source; }
+
+PatientFrame SphereTree::frame() const noexcept { return parts_->frame; }
 bool SphereTree::has_proximity() const noexcept { return parts_->proximity.has_value(); }
 Eigen::Vector3d SphereTree::origin() const noexcept {
   const ScopedFloatEnvironment environment;

@@ -151,6 +151,8 @@ class IST_API SphereTree {
   [[nodiscard]] std::uint64_t self_intersections() const;
   /// The mesh's file and unit, as BuildOptions::source told them.
   [[nodiscard]] const MeshSource& source() const noexcept;
+  /// The frame of the mesh's coordinates; kUnknown if its file does not say it.
+  [[nodiscard]] PatientFrame frame() const noexcept;
   /// Whether the tree holds proximity voxels (BuildOptions::proximity).
   [[nodiscard]] bool has_proximity() const noexcept;
 
@@ -183,6 +185,9 @@ struct BuildOptions {
   bool weld = true;
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
   MeshSource source = {};                             ///< kept by the tree; nothing is converted
+  /// A mesh of the other known frame is turned into this one: x and y change their signs. A mesh
+  /// of unknown frame stays as it is, and kUnknown turns none.
+  PatientFrame frame = PatientFrame::kUnknown;
 };
 
 /// The stages of a build, and the repairs of its mesh.

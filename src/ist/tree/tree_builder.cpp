@@ -69,7 +69,11 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
         ErrorCode::kArgumentInvalid,
         fmt::format("source: {}: give a file's name without its folder, and a LengthUnit", flaw));
   }
+  if (to_string(mesh.frame).empty() || to_string(options.frame).empty()) {
+    throw Error(ErrorCode::kArgumentInvalid, "frame: it is out of range: give a PatientFrame");
+  }
   require_valid(mesh);
+  turn_into(mesh, options.frame);
   auto begin = std::chrono::steady_clock::now();
   const auto end_stage = [&](const char* name) {
     const auto now = std::chrono::steady_clock::now();
@@ -95,7 +99,8 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                   {},
                   std::nullopt,
                   std::nullopt,
-                  options.source};
+                  options.source,
+                  mesh.frame};
   end_stage("octree");
 
   if (!is_implicit(options.spheres)) {

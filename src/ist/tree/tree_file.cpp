@@ -24,7 +24,9 @@
 //     u32       cells an axis          u32  depth
 //     u32       orientation            u32  sections: 1 balls, 2 triangles, 4 proximity, 8 slabs
 //     u64       hash of the mesh's file, 0 where unknown
-//     u32       unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
+//     u8        unit: 0 unknown, 1 millimetre, 2 metre, 3 inch, 4 micrometre
+//     u8        frame: 0 unknown, 1 RAS, 2 LPS
+//     u16       0
 //     u32, u8 … bytes in the name of the mesh's file, at most 255; the name (MeshSource)
 //     u32 × depth, u32                 nodes at levels 1 … depth; leaves
 //     u8 …      masks of level 1, 2 … depth
@@ -53,7 +55,9 @@ struct Header {
   double voxel_size;
   std::uint32_t cells, depth, orientation, sections;
   std::uint64_t hash;
-  std::uint32_t unit, name_bytes;
+  std::uint8_t unit, frame;
+  std::uint16_t zero;
+  std::uint32_t name_bytes;
 };
 static_assert(sizeof(Header) == 64);
 
@@ -122,7 +126,9 @@ MeshSource read_source(TreeReader& reader, const Header& header) {
 }
 
 void verify_source(const TreeReader& reader, const Header& header, const MeshSource& source) {
-  reader.require(header.unit <= kLengthUnits.size(), "the unit of length is out of range");
+  reader.require(header.unit <= kLengthUnits.size() && header.zero == 0,
+                 "the unit of length is out of range");
+  reader.require(header.frame <= kPatientFrames.size(), "the patient's frame is out of range");
   if (const char* flaw = source_flaw(source)) reader.require(false, flaw);
 }
 
@@ -226,7 +232,8 @@ std::uint64_t write(const SphereTree& tree, TreeWriter writer) {
   writer.value(Header{
       lattice.corner, lattice.voxel_size, lattice.cells, static_cast<std::uint32_t>(lattice.depth),
       static_cast<std::uint32_t>(tree.orientation()), sections, source.hash,
-      static_cast<std::uint32_t>(source.unit), static_cast<std::uint32_t>(source.name.size())});
+      static_cast<std::uint8_t>(source.unit), static_cast<std::uint8_t>(tree.frame()), 0,
+      static_cast<std::uint32_t>(source.name.size())});
   writer.array(source.name);
   write_octree(writer, tree.parts().octree);
   writer.array(tree.parts().normals);
@@ -276,6 +283,7 @@ SphereTree read(TreeReader reader) {
     const auto coordinates = reader.array<std::array<double, 3>>(counts[0]);
     for (const auto& [x, y, z] : coordinates) triangles->first.vertices.emplace_back(x, y, z);
     triangles->first.triangles = reader.array<Triangle>(counts[1]);
+    triangles->first.frame = static_cast<PatientFrame>(header.frame);
     triangles->second.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
     triangles->second.ids = reader.array<std::uint32_t>(counts[2]);
   }
@@ -300,7 +308,8 @@ SphereTree read(TreeReader reader) {
                   {},
                   std::nullopt,
                   std::nullopt,
-                  std::move(source)};
+                  std::move(source),
+                  static_cast<PatientFrame>(header.frame)};
   if (triangles) {
     parts.triangles.emplace(std::move(triangles->first), std::move(triangles->second),
                             lattice.origin());

@@ -76,6 +76,7 @@ struct TreeParts {
   std::optional<LeafTriangles> triangles;  ///< only with keep_triangles
   std::optional<ProximityTree> proximity;  ///< only if requested and not empty
   MeshSource source = {};                  ///< as source_flaw() allows it
+  PatientFrame frame = PatientFrame::kUnknown;
   /// The largest radius of a saved leaf ball, mesh units; set by SphereTree's constructor.
   double largest_saved_leaf = 0;
   /// The bounding radius of all spheres round the tree's origin, mesh units; set by SphereTree's

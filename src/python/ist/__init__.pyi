@@ -13,6 +13,7 @@ __version__: str
 
 Path = Union[str, "PathLike[str]"]
 Spheres = Literal["default", "simple", "table", "tight", "slab"]
+Frame = Literal["unknown", "ras", "lps"]
 Question = Literal["intersects", "leaf_pairs", "distance", "contacts", "penetration"]
 F8 = NDArray[np.float64]
 U4 = NDArray[np.uint32]
@@ -87,6 +88,8 @@ class Tree:
     @property
     def unit(self) -> str: ...
     @property
+    def frame(self) -> Frame: ...
+    @property
     def outward(self) -> bool: ...
     @property
     def self_intersections(self) -> int: ...
@@ -114,6 +117,7 @@ def build(
     keep_triangles: bool = True,
     proximity: bool = False,
     weld: bool = True,
+    frame: Frame = "unknown",
     max_memory: int = 4 << 30,
     progress: Optional[Follow] = None,
 ) -> Tree: ...

@@ -105,6 +105,8 @@ class BuildOptions(Sized):
         ("no_weld", c_int32),
         ("max_memory", c_uint64),
         ("progress", POINTER(Progress)),
+        ("frame", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -124,6 +126,8 @@ class TreeInfo(Sized):
         ("origin", c_double * 3),
         ("bounding_radius", c_double),
         ("largest_leaf_radius", c_double),
+        ("frame", c_int32),
+        ("reserved", c_int32),
     ]
 
 

@@ -14,6 +14,7 @@ from ._records import BuildOptions, TreeInfo
 
 SPHERES = ("default", "simple", "table", "tight", "slab")
 UNITS = ("unknown", "mm", "m", "inch", "µm")
+FRAMES = ("unknown", "ras", "lps")
 
 
 def spheres_number(name):
@@ -45,6 +46,7 @@ class Tree(Handle):
     nbytes = property(lambda self: self._info.bytes, doc="Memory in use, bytes.")
     spheres = property(lambda self: SPHERES[self._info.spheres], doc="The tightest bounds: simple, table, tight, slab.")
     unit = property(lambda self: UNITS[self._info.unit], doc="The unit of its lengths, where it is known.")
+    frame = property(lambda self: FRAMES[self._info.frame], doc="The frame that the mesh's file names: ras, lps, unknown.")
     outward = property(lambda self: bool(self._info.outward), doc="Whether the surface is closed, so that inside is known.")
 
     @property
@@ -156,6 +158,7 @@ def build(
     keep_triangles=True,
     proximity=False,
     weld=True,
+    frame="unknown",
     max_memory=4 << 30,
     progress=None,
 ):
@@ -164,7 +167,8 @@ def build(
     mesh: a path; (vertices, faces), (V, 3) and (T, 3), counter-clockwise seen from outside; or an object of another library
     with vertices and faces (trimesh, open3d, meshio, vtkPolyData). voxel_size: the edge of a voxel, mesh units.
     keep_triangles: for exact answers and all measures. weld: vertices at exactly one position count as one; all keep their
-    numbers. progress: called with the part of the build that is done, 0 while a
+    numbers. frame: "ras" or "lps"; a file that names the other one is turned into it, so that x and y change their signs.
+    progress: called with the part of the build that is done, 0 while a
     file is read; what it raises ends both. Raises InputError, FileError, MemoryLimitError.
 
     >>> import ist
@@ -174,12 +178,15 @@ def build(
     (21863, True)
     """
     kind = spheres_number(spheres)
+    if frame not in FRAMES:
+        refuse(f"frame is {frame!r}: pass one of {', '.join(FRAMES)}")
     options = BuildOptions(
         voxel_size=number_of(voxel_size, "voxel_size"),
         spheres=kind,
         drop_triangles=int(not keep_triangles),
         proximity=int(bool(proximity)),
         no_weld=int(not weld),
+        frame=FRAMES.index(frame),
         max_memory=count_of(max_memory, "max_memory", least=1),
     )
     source = handle_of(mesh, progress)

@@ -91,4 +91,12 @@ LengthUnit Asked::unit() const {
   return *unit;
 }
 
+PatientFrame Asked::to_frame() const {
+  const std::string name = text_or_none("to_frame");
+  if (name.empty()) return PatientFrame::kUnknown;
+  const std::optional<PatientFrame> frame = patient_frame(name);
+  if (!frame) refuse("to_frame", "ras or lps");
+  return *frame;
+}
+
 }  // namespace ist::viewer

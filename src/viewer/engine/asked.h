@@ -33,6 +33,8 @@ class Asked {
   [[nodiscard]] std::optional<SpherePolicy> policy() const;
   /// The unit, or kUnknown if the member is missing.
   [[nodiscard]] LengthUnit unit() const;
+  /// The frame to turn a mesh into, or kUnknown if the member is missing.
+  [[nodiscard]] PatientFrame to_frame() const;
 
  private:
   [[nodiscard]] const nlohmann::json* find(const char* name) const;

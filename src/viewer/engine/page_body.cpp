@@ -10,6 +10,7 @@
 #include "cli/commands/level_geometry.h"
 #include "cli/extents.h"
 #include "cli/source_file.h"
+#include "ist/base/error.h"
 #include "ist/tree/tree_parts.h"
 
 namespace ist::viewer {
@@ -39,10 +40,15 @@ std::vector<std::uint32_t> halves_of(const std::vector<std::uint32_t>& quads) {
 
 }  // namespace
 
-PageBody::PageBody(const std::filesystem::path& file, LengthUnit unit)
+PageBody::PageBody(const std::filesystem::path& file, LengthUnit unit, PatientFrame to_frame)
     : name_(file.filename().string()) {
   if (is_tree_file(file)) {
     tree_ = read_tree(file);
+    if (contradict(tree_->frame(), to_frame)) {
+      throw Error(
+          ErrorCode::kArgumentInvalid,
+          fmt::format("{}: a tree cannot be turned into another frame: open its mesh", name_));
+    }
     whole_ = tree_;  // trees share their content
     source_ = tree_->source();
     std::optional<MeshReport> triangles;
@@ -52,16 +58,13 @@ PageBody::PageBody(const std::filesystem::path& file, LengthUnit unit)
     }
     info_ = cli::tree_json(name_, *tree_, triangles, level_statistics(*tree_));
     extent_ = cli::largest_extent(cli::box_of(*tree_));
-    if (tree_->orientation() == Orientation::kAssumed) {
-      warnings_.emplace_back(
-          "not closed or not wound consistently: its outside is assumed from the winding of its "
-          "triangles");
-    }
   } else {
     mesh_ = read_mesh(file);
+    turn_into(*mesh_, to_frame);
     source_ = cli::source_of(file);
-    const MeshReport report = check_mesh(*mesh_);
-    info_ = cli::mesh_json(name_, report, source_);
+    MeshReport report = check_mesh(*mesh_);
+    info_ = cli::mesh_json(name_, report, source_, mesh_->frame);
+    report.boundary_edges = 0;  // scans have them, and the page's panel counts them
     warnings_ = warnings(report);
     extent_ = cli::largest_extent(cli::box_of(*mesh_));
   }

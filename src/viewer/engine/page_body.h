@@ -17,10 +17,13 @@ class PageBody {
  public:
   /// Reads a mesh or a tree, and checks it. Throws as read_mesh() and read_tree() do.
   /// @param unit of a mesh whose file names none, and of such a tree
-  PageBody(const std::filesystem::path& file, LengthUnit unit);
+  /// @param to_frame a mesh of the other known frame is turned into it; such a tree is refused
+  PageBody(const std::filesystem::path& file, LengthUnit unit,
+           PatientFrame to_frame = PatientFrame::kUnknown);
 
   /// Whether it holds triangles, of which a tree can be made.
   [[nodiscard]] bool rebuilds() const noexcept { return mesh_.has_value(); }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
   [[nodiscard]] double extent() const noexcept { return extent_; }
   /// The tree of the last take(), or the one that was read.

@@ -4,17 +4,16 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/answers/shared_point.h"
 #include "cli/extents.h"
 #include "cli/poses/pose_json.h"
 #include "ist/base/error.h"
 #include "ist/measure/first_contact.h"
-#include "ist/mesh/nearest_point.h"
 #include "ist/models/models.h"
 #include "viewer/engine/bite_reply.h"
 #include "viewer/engine/facing_reply.h"
@@ -42,28 +41,6 @@ std::vector<std::uint8_t> bytes_of(const std::vector<std::byte>& bytes) {
 
 int level_of(const Asked& asked) {
   return static_cast<int>(std::min<std::uint64_t>(asked.count("level"), 64));
-}
-
-// A point of the fixed triangle that is next to the moving one, which intersects it. Nearest points
-// of both in turns come to a common point of any two convex sets.
-Eigen::Vector3d shared_point(const cli::Bodies& bodies, const TrianglePair& pair,
-                             const Eigen::Isometry3d& pose) {
-  constexpr int kTurns = 2000;  // 0.2 ms
-  const auto corners = [](const TriangleMesh& mesh, std::uint32_t triangle,
-                          const Eigen::Isometry3d& place) {
-    std::array<Eigen::Vector3d, 3> found;
-    for (std::size_t i = 0; i < 3; ++i) {
-      found[i] = place * mesh.vertices[mesh.triangles[triangle][i]];
-    }
-    return found;
-  };
-  const auto fixed = corners(*bodies.fixed.triangles(), pair.fixed, Eigen::Isometry3d::Identity());
-  const auto moving = corners(*bodies.moving.triangles(), pair.moving, pose);
-  Eigen::Vector3d point = (moving[0] + moving[1] + moving[2]) / 3;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    point = nearest_on_triangle(moving, nearest_on_triangle(fixed, point).point).point;
-  }
-  return nearest_on_triangle(fixed, point).point;
 }
 
 }  // namespace
@@ -123,7 +100,14 @@ Pairs& Session::pairs() {
 cli::Bodies Session::whole() {
   PageBody &fixed = present(Role::kFixed), &moving = present(Role::kMoving);
   const SphereTree &one = fixed.whole(), &other = moving.whole();
-  return {one, other, std::min(one.tightest(), other.tightest())};
+  cli::Bodies bodies{one, other, std::min(one.tightest(), other.tightest())};
+  name(bodies);
+  return bodies;
+}
+
+void Session::name(cli::Bodies& bodies) {
+  bodies.fixed_name = present(Role::kFixed).name();
+  bodies.moving_name = present(Role::kMoving).name();
 }
 
 Reply Session::make_jaws(const Asked& asked) {
@@ -152,7 +136,7 @@ void Session::take(Role role, PageBody read) {
 
 Reply Session::open(const Asked& asked) {
   const Role role = asked.role();
-  PageBody read(file_of(role, asked.text("name")), asked.unit());
+  PageBody read(file_of(role, asked.text("name")), asked.unit(), asked.to_frame());
   Reply reply;
   reply.json = read.facts(reply);
   take(role, std::move(read));
@@ -175,6 +159,7 @@ Reply Session::build(const Asked& asked, Progress& progress) {
   cli::Bodies bodies{one.tree, other.tree, std::min(one.tree.tightest(), other.tree.tightest())};
   bodies.fixed_voxel_size = bodies.fixed.voxel_size();
   bodies.moving_voxel_size = bodies.moving.voxel_size();
+  name(bodies);
   auto pairs = std::make_unique<Pairs>(std::move(bodies));
   static_cast<void>(pairs->of({}));  // so that the first frame of a drag has it
   // Memory may have ended before here: what was before is whole until all that is new is there.
@@ -204,7 +189,7 @@ Reply Session::first_contact(const Asked& asked, Progress& progress) {
                 {"pose", cli::pose_json(pose)},
                 {"point", nullptr}};
   if (found.triangles) {
-    const Eigen::Vector3d point = shared_point(pairs().bodies(), *found.triangles, pose);
+    const Eigen::Vector3d point = cli::shared_point(pairs().bodies(), *found.triangles, pose);
     reply.json["point"] = {point[0], point[1], point[2]};
   }
   return reply;

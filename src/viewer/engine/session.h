@@ -53,6 +53,8 @@ class Session {
   [[nodiscard]] Pairs& pairs();
   /// Both bodies as `ist occlusion` takes them.
   [[nodiscard]] cli::Bodies whole();
+  /// Gives the bodies the names of their files.
+  void name(cli::Bodies& bodies);
   [[nodiscard]] const std::vector<StepFront>& recorded(const Asked& asked);
 
   std::optional<PageBody> fixed_, moving_;

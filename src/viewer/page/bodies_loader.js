@@ -6,7 +6,7 @@
 import {faultText} from './engine/engine_client.js';
 import {builtIn, directionWords, facingOf, swapped} from './facing.js';
 import {identity, inverse} from './pose.js';
-import {bytesWords, short, unitWord} from './words.js';
+import {bytesWords, differInFrame, frameWord, short, unitWord} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 /** @typedef {import('./context.js').Context} Context */
@@ -16,12 +16,15 @@ import {bytesWords, short, unitWord} from './words.js';
 /** @typedef {import('./protocol.js').BodyFacts} BodyFacts */
 /** @typedef {import('./engine/engine_client.js').EngineClient['ask']} Ask */
 
-/** @typedef {{role: Role, name: string, content: Blob, unit?: Unit}} BodyFile */
+/** @typedef {import('./protocol.js').Frame} Frame */
+
+/** @typedef {{role: Role, name: string, content: Blob, unit?: Unit, toFrame?: Frame}} BodyFile */
 /**
  * @typedef {object} BodiesLoader  each promise gives whether it was done; if not, a sentence was said, or
  *   somebody cancelled or replaced it
  * @property {(seed: number) => Promise<boolean>} makeJaws
  * @property {(file: BodyFile, alone?: boolean) => Promise<boolean>} open  of one role; trees are not built by it; `alone`: the other place is empty then
+ * @property {() => Promise<boolean>} turn  turns the moving body's mesh into the fixed body's frame; trees are not built by it
  * @property {() => Promise<boolean>} guessRoles  gives the upper body the fixed role, where it is known which is the upper one
  * @property {() => Promise<boolean>} swap  gives each body the other one's role, where they are; trees are not built by it
  * @property {(voxelSize?: number) => Promise<boolean>} build  none: one that is quick to ask
@@ -82,7 +85,7 @@ export function makeBodiesLoader({store, say, ask}) {
       );
     }
     const bytes = await bytesOf(file);
-    const read = await ask('open', {role: file.role, name: file.name, bytes, unit: file.unit}, {doing: `Reading ${file.name}`});
+    const read = await ask('open', question(file, bytes), {doing: `Reading ${file.name}`});
     // The engine keeps it under a name that is a file's.
     const facts = {...read, name: file.name};
     const other = file.role === 'fixed' ? 'moving' : 'fixed';
@@ -108,6 +111,14 @@ export function makeBodiesLoader({store, say, ask}) {
    */
   function compare({fixed, moving}) {
     if (!fixed || !moving) return false;
+    if (differInFrame(fixed, moving)) {
+      say(
+        `${fixed.name} says that it is in the frame ${frameWord(fixed)}, and ${moving.name} in ${frameWord(moving)}. ` +
+          'Nothing is computed across frames: turn one into the other, in the panel Bodies.',
+        'warning',
+      );
+      return true;
+    }
     if (fixed.unit !== null && moving.unit !== null && fixed.unit !== moving.unit) {
       say(
         `${fixed.name} is in ${unitWord(fixed.unit)}, and ${moving.name} in ${unitWord(moving.unit)}. Both must be in one unit; nothing is converted: ` +
@@ -163,6 +174,12 @@ export function makeBodiesLoader({store, say, ask}) {
       home: inverse(home),
       facing: swapped(facing, home),
     });
+  }
+
+  async function turn() {
+    const {fixed} = store.get().bodies,
+      file = kept.files.moving;
+    if (fixed && file) await open({...file, toFrame: fixed.info.frame});
   }
 
   async function guessRoles() {
@@ -222,17 +239,26 @@ export function makeBodiesLoader({store, say, ask}) {
     open: (file, alone) => said(open(file, alone)),
     guessRoles: () => said(guessRoles()),
     swap: () => said(swap()),
+    turn: () => said(turn()),
     build: (voxelSize) => said(build(voxelSize)),
     replace: (files, pose = [...identity]) => said(replace(files, pose)),
     async restore(again, trees = true) {
       const {seed, files, voxelSize, built} = kept;
       if (seed !== null) await again('make_jaws', {seed});
       for (const file of Object.values(files)) {
-        await again('open', {role: file.role, name: file.name, bytes: await bytesOf(file), unit: file.unit});
+        await again('open', question(file, await bytesOf(file)));
       }
       if (built && trees) await again('build', {voxel_size: voxelSize});
     },
   };
+}
+
+/**
+ * @param {BodyFile} file
+ * @param {ArrayBuffer} bytes
+ */
+function question({role, name, unit, toFrame}, bytes) {
+  return {role, name, bytes, unit, to_frame: toFrame};
 }
 
 /**

@@ -7,6 +7,7 @@
  * @typedef {'fixed' | 'moving'} Role
  * @typedef {'simple' | 'table' | 'tight' | 'slab'} Policy  from the loosest spheres to the tightest
  * @typedef {'mm' | 'm' | 'inch' | 'µm'} Unit
+ * @typedef {'ras' | 'lps'} Frame  the patient's directions along x and y, as a file says them
  * @typedef {Record<string, any>} Line  an object as the command prints it
  */
 
@@ -51,8 +52,9 @@
  * @typedef {object} Questions
  * @property {[{seed: number}, {fixed: BodyFacts, moving: BodyFacts}]} make_jaws
  *   the upper jaw is fixed, the lower one moves; millimetres
- * @property {[{role: Role, name: string, bytes: ArrayBuffer, unit?: Unit}, BodyFacts]} open
- *   a mesh or a tree; the body of that role before is gone, but not where this one is refused
+ * @property {[{role: Role, name: string, bytes: ArrayBuffer, unit?: Unit, to_frame?: Frame}, BodyFacts]} open
+ *   a mesh or a tree; the body of that role before is gone, but stays if this one is refused. A mesh
+ *   of the other known frame is turned into `to_frame`
  * @property {[{voxel_size: number | null}, {fixed: TreeFacts, moving: TreeFacts, policies: Policy[]}]} build
  *   makes the trees of bodies that hold triangles, of this voxel size; null: a 500th of the smaller
  *   body's largest extent

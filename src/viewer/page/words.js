@@ -77,6 +77,23 @@ export function bytesWords(bytes) {
 }
 
 /**
+ * @param {import('./protocol.js').BodyFacts} body
+ * @returns {string} RAS or LPS
+ */
+export function frameWord(body) {
+  return String(body.info.frame).toUpperCase();
+}
+
+/**
+ * @param {import('./protocol.js').BodyFacts} a
+ * @param {import('./protocol.js').BodyFacts} b
+ * @returns {boolean} whether both files name a frame of the patient, and not the same one
+ */
+export function differInFrame(a, b) {
+  return Boolean(a.info.frame && b.info.frame && a.info.frame !== b.info.frame);
+}
+
+/**
  * What `ist info` says of a body, in sentences.
  * @param {Line} info
  * @returns {string[]}
@@ -103,6 +120,7 @@ export function infoSentences(info) {
         (info.unit ? '.' : '; the file names no unit, so millimetres are assumed.'),
     );
   }
+  if (info.frame) sentences.push(`Frame ${info.frame.toUpperCase()}, as the file says.`);
   if (typeof info.closed === 'boolean') {
     const wound = info.consistent === false ? 'not wound consistently' : 'wound consistently';
     const border = typeof info.boundary_edges === 'number' ? ` (${count(info.boundary_edges)} border edges)` : '';

@@ -230,6 +230,21 @@ TEST_F(WorldMemory, MisuseThrows) {
   expect(refusal([&] { margin.prepare(); }), "argument-invalid", "margin");
 }
 
+TEST_F(WorldMemory, OfBodiesInDifferentFramesIsRefused) {
+  TriangleMesh mesh = icosphere(1, 1);
+  World world;
+  mesh.frame = PatientFrame::kLps;
+  world.add(build_tree(mesh, {.voxel_size = 0.5}), Eigen::Isometry3d::Identity(), "upper");
+  mesh.frame = PatientFrame::kUnknown;
+  world.add(build_tree(mesh, {.voxel_size = 0.5}));
+  mesh.frame = PatientFrame::kRas;
+  const SphereTree other = build_tree(mesh, {.voxel_size = 0.5});
+  const std::optional<Error> error = error_of([&] { world.add(other); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+  EXPECT_NE(std::string(error->what()).find("'upper' in lps"), std::string::npos) << error->what();
+}
+
 TEST_F(WorldMemory, OfTooManyBodiesIsRefused) {
   const SphereTree tree = trees()[1];
   World world(small_world());

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "ist/mesh/format/frame_tags.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/text_reader.h"
@@ -16,12 +17,13 @@ namespace {
 class ObjReader {
  public:
   ObjReader(std::string_view content, std::string_view file)
-      : reader_(content, file, TextReader::LineEnd::kObj), file_(file) {}
+      : reader_(content, file, TextReader::LineEnd::kObj), file_(file), tags_(file) {}
 
   TriangleMesh read() {
     bool statement_seen = false;
     bool other_seen = false;
     while (reader_.next_line()) {
+      if (reader_.rest().starts_with('#')) tags_.read(reader_.rest());
       const std::string_view statement = reader_.word_before_comment();
       if (statement == "v") {
         read_vertex();
@@ -34,7 +36,9 @@ class ObjReader {
     if (highest_ > static_cast<std::int64_t>(surface_.vertices()))
       bad_index(highest_, highest_line_);
     if (surface_.faces() == 0) fail_without_faces(statement_seen, other_seen);
-    return surface_.weld();
+    TriangleMesh mesh = surface_.weld();
+    mesh.frame = tags_.frame();
+    return mesh;
   }
 
  private:
@@ -92,6 +96,7 @@ class ObjReader {
 
   TextReader reader_;
   std::string_view file_;
+  FrameTags tags_;
   IndexedFaces surface_;
   std::vector<std::uint32_t> corners_;
   std::int64_t highest_ = 0;      // the highest index in a face

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "ist/base/printable.h"
+#include "ist/mesh/format/frame_tags.h"
 
 namespace ist {
 namespace {
@@ -129,15 +130,20 @@ void check_elements(const TextReader& reader, const PlyHeader& header) {
 
 PlyHeader read_ply_header(TextReader& reader) {
   PlyHeader header;
+  FrameTags tags(reader.file());
   bool encoding_seen = false;
   for (bool first = true; reader.next_line(); first = false) {
     const std::string_view word = reader.word();
     if (first && word == "ply") continue;
-    if (word == "comment" || word == "obj_info") continue;
+    if (word == "comment" || word == "obj_info") {
+      tags.read(reader.rest());
+      continue;
+    }
     if (word == "end_header") {
       if (!encoding_seen)
         reader.fail(ErrorCode::kNotAMesh, "the header names no encoding; export the mesh again");
       check_elements(reader, header);
+      header.frame = tags.frame();
       return header;
     }
     if (word == "format") {

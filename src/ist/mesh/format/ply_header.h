@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/patient_frame.h"
 
 namespace ist {
 
@@ -39,6 +40,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kText;
   std::vector<PlyElement> elements;
+  PatientFrame frame = PatientFrame::kUnknown;  ///< as a comment says it
 };
 
 /// The element of triangle strips: lists of corners, with -1 after each strip.

@@ -99,7 +99,9 @@ TriangleMesh read_elements(Body body, const PlyHeader& header, std::string_view 
     fail_mesh(ErrorCode::kMeshPointsOnly, file, "",
               fmt::format("the file has {} vertices, but no face; export the surface as polygons",
                           surface.vertices()));
-  return surface.weld();
+  TriangleMesh mesh = surface.weld();
+  mesh.frame = header.frame;
+  return mesh;
 }
 
 }  // namespace

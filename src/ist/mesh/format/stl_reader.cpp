@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "ist/base/printable.h"
+#include "ist/mesh/format/frame_tags.h"
 #include "ist/mesh/format/mesh_builder.h"
 #include "ist/mesh/format/mesh_readers.h"
 #include "ist/mesh/format/stl_layout.h"
@@ -49,12 +50,14 @@ void add_facet(const Corners& corners, MeshBuilder& builder) {
 
 class TextStl {
  public:
-  TextStl(std::string_view content, std::string_view file) : reader_(content, file), file_(file) {}
+  TextStl(std::string_view content, std::string_view file)
+      : reader_(content, file), file_(file), tags_(file) {}
 
   TriangleMesh read() {
     std::size_t facets = 0;
     for (std::string_view word = next(); !word.empty(); word = next()) {
       if (!same_word(word, "solid")) unexpected(word, "solid");
+      tags_.read(reader_.rest());
       reader_.skip_line();  // the name, which may hold any words
       for (word = next(); !same_word(word, "endsolid"); word = next(), ++facets) {
         if (!same_word(word, "facet")) unexpected(word, "facet' or 'endsolid");
@@ -64,7 +67,9 @@ class TextStl {
     }
     if (facets == 0)
       fail_mesh(ErrorCode::kMeshEmpty, file_, "", "the STL has no facet; export the mesh again");
-    return builder_.finish();
+    TriangleMesh mesh = builder_.finish();
+    mesh.frame = tags_.frame();
+    return mesh;
   }
 
  private:
@@ -98,6 +103,7 @@ class TextStl {
 
   TextReader reader_;
   std::string_view file_;
+  FrameTags tags_;
   MeshBuilder builder_{0};
 };
 
@@ -136,6 +142,8 @@ TriangleMesh read_binary_stl(std::string_view content, std::string_view file) {
                           content.size() - size, facets));
   if (facets == 0)
     fail_mesh(ErrorCode::kMeshEmpty, file, "", "the STL has no facet; export the mesh again");
+  FrameTags tags(file);
+  tags.read(content.substr(0, kStlHeaderBytes));
   MeshBuilder builder(facets);
   for (std::size_t i = 0; i < facets; ++i) {
     const Corners corners = corners_of(content, i);
@@ -144,7 +152,9 @@ TriangleMesh read_binary_stl(std::string_view content, std::string_view file) {
                 "a vertex is not finite; repair the mesh where it was made");
     add_facet(corners, builder);
   }
-  return builder.finish();
+  TriangleMesh mesh = builder.finish();
+  mesh.frame = tags.frame();
+  return mesh;
 }
 
 TriangleMesh read_text_stl(std::string_view content, std::string_view file) {

@@ -46,6 +46,10 @@ class TextReader {
   /// Returns the next word of this line, up to a comment, which # begins. The # of "1.#IND", a
   /// printed NaN, begins none.
   [[nodiscard]] std::string_view word_before_comment();
+  /// Returns the rest of this line, from the cursor on.
+  [[nodiscard]] std::string_view rest() const {
+    return text_.substr(cursor_, line_close_ - cursor_);
+  }
   void skip_line() { cursor_ = line_close_; }
 
   /// Converts a word to a coordinate, rounded once. Errors: kMeshNotFinite, kNotAMesh,
@@ -54,6 +58,7 @@ class TextReader {
   /// Converts a word to an integer. Errors: kNotAMesh, kMeshTruncated.
   [[nodiscard]] std::int64_t integer(std::string_view word) const;
 
+  [[nodiscard]] std::string_view file() const { return file_; }
   [[nodiscard]] std::size_t line_number() const { return line_number_; }
   /// The offset of the next line in the text, bytes.
   [[nodiscard]] std::size_t next_line_offset() const { return next_open_; }

@@ -154,7 +154,8 @@ class IST_API World {
   /// @param name names the body in errors; if empty, `body` and its number do
   ///
   /// Throws kPolicyMissing where the tree lacks the bounds of the options, kPoseInvalid,
-  /// kArgumentInvalid beyond kMostBodies, std::bad_alloc.
+  /// kArgumentInvalid beyond kMostBodies and for a tree in another frame of a patient than an
+  /// earlier one, std::bad_alloc.
   BodyIndex add(const SphereTree& tree,
                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity(),
                 std::string name = {});

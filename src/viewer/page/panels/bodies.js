@@ -4,7 +4,7 @@ import {unitChoices} from '../choices.js';
 import {button, numberField, select} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {fileField} from '../ui/file_drop.js';
-import {bytesWords, count, infoSentences, short, unitWord} from '../words.js';
+import {bytesWords, count, differInFrame, infoSentences, short, unitWord} from '../words.js';
 import {facts} from '../ui/table.js';
 import {directionWords} from '../facing.js';
 import {unitOf} from '../follow.js';
@@ -58,6 +58,13 @@ export function makeBodiesPanel({store, loader, stage, history}) {
     },
     {title: 'The fixed body moves, and the moving one is fixed'},
   );
+  const turn = button(
+    'Turn the moving body into the frame of the fixed one',
+    async () => {
+      if (await loader.turn()) await settle();
+    },
+    {title: 'x and y of its mesh change their signs'},
+  );
   const panel = element(
     'div',
     {},
@@ -78,7 +85,7 @@ export function makeBodiesPanel({store, loader, stage, history}) {
       onChange: (value) => store.set({fileUnit: value === '' ? null : value}),
     }).element,
     facingLine,
-    element('div', {class: 'row'}, swap),
+    element('div', {class: 'row'}, swap, turn),
     ...roles.map((role) =>
       element(
         'section',
@@ -94,6 +101,7 @@ export function makeBodiesPanel({store, loader, stage, history}) {
     for (const role of roles) parts[role].replaceChildren(...bodyLines(state, role));
     facingLine.textContent = facingWords(state);
     // The built-in jaws are known.
+    turn.hidden = !state.bodies.fixed || !state.bodies.moving || !differInFrame(state.bodies.fixed, state.bodies.moving);
     swap.hidden = state.jaws !== null || !state.bodies.fixed || !state.bodies.moving;
   };
   store.subscribe(['bodies', 'facing', 'jaws', 'trees', 'unit'], fill);

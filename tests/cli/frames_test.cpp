@@ -1,0 +1,118 @@
+// The patient's frame that files name: bodies of two frames never meet in silence.
+
+#include "cli/cli_case.h"
+#include "ist/tree/sphere_tree.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using nlohmann::json;
+
+// A plate, and a ball 0.2 deep in it, as two programs store them: one in RAS, one in LPS.
+class Frames : public CliTest {
+ protected:
+  [[nodiscard]] std::string in(PatientFrame frame, const std::string& name, TriangleMesh of) const {
+    of.frame = PatientFrame::kRas;
+    turn_into(of, frame);
+    write_stl(of, path(name));
+    return path(name);
+  }
+  [[nodiscard]] CommandResult collide(const std::string& fixed, const std::string& moving,
+                                      const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"collide", fixed, moving};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ist(arguments);
+  }
+
+  const TriangleMesh plate_ = box({10, 20, -3}, {20, 30, 0});
+  TriangleMesh ball_ = [] {
+    TriangleMesh ball = icosphere(3, 2);
+    for (Eigen::Vector3d& vertex : ball.vertices) vertex += Eigen::Vector3d(15, 25, 1.8);
+    return ball;
+  }();
+  const std::string ras_ = in(PatientFrame::kRas, "plate.stl", plate_),
+                    lps_ = in(PatientFrame::kLps, "ball.stl", ball_),
+                    plain_ = mesh("plain.stl", ball_);
+};
+
+TEST_F(Frames, OfTwoFilesMustBeOne) {
+  const CommandResult refused = collide(ras_, lps_);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_TRUE(says(refused.err, lps_ + ": its frame is lps, and the frame of " + ras_ + " is ras"));
+  EXPECT_TRUE(says(refused.err, "--to-frame ras"));
+  for (const char* command : {"occlusion", "approach", "advise"}) {
+    std::vector<std::string> arguments{command, ras_, lps_};
+    if (*command == 'o') arguments.insert(arguments.end(), {"--json"});
+    if (std::string(command) == "approach") {
+      arguments.insert(arguments.end(), {"--axis", "z", "--from", "0", "--to", "1"});
+    }
+    if (std::string(command) == "advise") arguments.insert(arguments.end(), {"--error", "0.1"});
+    const CommandResult result = ist(arguments);
+    EXPECT_EQ(result.exit_code, 2) << command;
+    EXPECT_TRUE(says(result.err, "frame")) << result.err;
+  }
+}
+
+TEST_F(Frames, AMeshIsTurnedIfThatIsAsked) {
+  const std::string truth = collide(ras_, plain_, {"--depth", "0.001"}).out;
+  EXPECT_TRUE(says(truth, "touch      yes"));
+  const CommandResult turned = collide(ras_, lps_, {"--depth", "0.001", "--to-frame", "RAS"});
+  EXPECT_EQ(turned.out, truth);
+  EXPECT_TRUE(says(turned.err, lps_ + " was turned from the frame lps to ras"));
+  EXPECT_TRUE(says(collide(ras_, lps_, {"--to-frame", "lps"}).out, "touch      yes"));
+  const CommandResult plain = collide(ras_, plain_, {"--to-frame", "ras"});
+  EXPECT_TRUE(says(plain.err, plain_ + " does not say its frame, and stays as it is"));
+  EXPECT_TRUE(says(collide(ras_, plain_, {"--json"}).out, R"("frame":"ras")"));
+}
+
+TEST_F(Frames, ATreeKeepsItsMeshesFrame) {
+  const std::string tree = path("ball.ist");
+  ist_well({"build", lps_, "-o", tree, "--voxel-size", "0.5"});
+  EXPECT_EQ(read_tree(tree).frame(), PatientFrame::kLps);
+  EXPECT_TRUE(says(ist_well({"info", tree}).out, "frame lps: +x to the patient's left"));
+  EXPECT_TRUE(says(ist_well({"info", lps_}).out, "frame lps"));
+  EXPECT_EQ(json_lines(ist_well({"info", "--json", tree}).out).at(0)["frame"], "lps");
+  EXPECT_EQ(json_lines(ist_well({"info", "--json", plain_}).out).at(0)["frame"], nullptr);
+  EXPECT_EQ(collide(ras_, tree).exit_code, 2);
+  const CommandResult fixed = collide(ras_, tree, {"--to-frame", "ras"});
+  EXPECT_EQ(fixed.exit_code, 2);
+  EXPECT_TRUE(says(fixed.err, "ist build --to-frame ras"));
+  ist_well({"build", lps_, "-o", tree, "--voxel-size", "0.5", "--to-frame", "ras"});
+  EXPECT_TRUE(says(collide(ras_, tree).out, "touch      yes"));
+}
+
+TEST_F(Frames, BuildTakesNoOtherFrameThanTheFiles) {
+  const std::string tree = path("t.ist");
+  const auto build = [&](const std::string& of, const std::string& frame) {
+    return ist({"build", of, "-o", tree, "--voxel-size", "0.5", "--frame", frame});
+  };
+  EXPECT_EQ(build(plain_, "lps").exit_code, 0);
+  EXPECT_EQ(read_tree(tree).frame(), PatientFrame::kLps);
+  EXPECT_EQ(build(lps_, "LPS").exit_code, 0);
+  const CommandResult refused = build(lps_, "ras");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(says(refused.err, "--frame: " + lps_ + " says that its frame is lps"));
+}
+
+TEST_F(Frames, OfTheFilesNamesTheSides) {
+  const std::string ball = in(PatientFrame::kRas, "ras_ball.stl", ball_);
+  const auto bite = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"occlusion", ras_, ball, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return ist(arguments);
+  };
+  const std::string told = bite({}).out;
+  EXPECT_EQ(told, bite({"--frame", "ras"}).out);
+  EXPECT_TRUE(says(told, "left")) << told;
+  EXPECT_TRUE(says(told, "anterior"));
+  const CommandResult other = bite({"--frame", "lps"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_TRUE(says(other.err, "--frame: it is lps, and the files are in ras"));
+  EXPECT_TRUE(says(bite({"--left", "1,0,0"}).err, "--left: it points to the right"));
+  EXPECT_EQ(bite({"--left", "-1,0.2,0"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace ist::test
