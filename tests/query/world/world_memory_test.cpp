@@ -231,14 +231,16 @@ TEST_F(WorldMemory, MisuseThrows) {
 }
 
 TEST_F(WorldMemory, OfBodiesInDifferentFramesIsRefused) {
-  TriangleMesh mesh = icosphere(1, 1);
+  const auto in = [](PatientFrame frame) {
+    TriangleMesh mesh = icosphere(1, 1);
+    mesh.frame = frame;
+    return build_tree(mesh, {.voxel_size = 0.5});
+  };
+  const SphereTree upper = in(PatientFrame::kLps), plain = in(PatientFrame::kUnknown),
+                   other = in(PatientFrame::kRas);
   World world;
-  mesh.frame = PatientFrame::kLps;
-  world.add(build_tree(mesh, {.voxel_size = 0.5}), Eigen::Isometry3d::Identity(), "upper");
-  mesh.frame = PatientFrame::kUnknown;
-  world.add(build_tree(mesh, {.voxel_size = 0.5}));
-  mesh.frame = PatientFrame::kRas;
-  const SphereTree other = build_tree(mesh, {.voxel_size = 0.5});
+  world.add(upper, Eigen::Isometry3d::Identity(), "upper");
+  world.add(plain);
   const std::optional<Error> error = error_of([&] { world.add(other); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
