@@ -31,6 +31,12 @@ struct BiteBody {
   std::size_t on_both = 0;            ///< contacts with numbers up to this are on both bodies
   std::vector<Tooth> teeth;           ///< with labels
 
+  /// Returns the box round the body, fixed coordinates.
+  [[nodiscard]] Eigen::AlignedBox3d box() const {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& v : mesh->vertices) box.extend(to_fixed * v);
+    return box;
+  }
   /// Returns the area that lies outside the other body, and no farther than limit `i` of the
   /// preset.
   [[nodiscard]] double area_outside(std::size_t i) const {

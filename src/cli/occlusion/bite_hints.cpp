@@ -19,12 +19,6 @@ using ContactList = std::vector<std::size_t>;  // contacts, from 0
 
 constexpr double kOutOfPlane = 0.423;  // the sine of 25°
 
-Box box_of(const BiteBody& body) {
-  Box box;
-  for (const Vector& v : body.mesh->vertices) box.extend(body.to_fixed * v);
-  return box;
-}
-
 bool maps_nothing(const BiteBody& body) {
   const auto& vertices = body.surface.vertices;
   return std::all_of(vertices.begin(), vertices.end(),
@@ -59,7 +53,7 @@ struct FarContacts {
 
 FarContacts far_contacts(const Bite& bite) {
   const std::vector<BiteContact>& contacts = bite.contacts;
-  const double gap = box_of(bite.fixed).sizes().maxCoeff() / 3;
+  const double gap = bite.fixed.box().sizes().maxCoeff() / 3;
   std::vector<ContactList> groups = groups_of(contacts, gap);
   if (groups.size() < 2) return {};
   const auto area = [&](const ContactList& group) {
@@ -87,7 +81,7 @@ FarContacts far_contacts(const Bite& bite) {
   return out;
 }
 
-Box box_of(const Bite& bite, std::size_t contact) {
+Box box_of_contact(const Bite& bite, std::size_t contact) {
   Box box;
   const auto extend = [&](const BiteBody& body, const std::vector<std::uint32_t>& regions) {
     for (const std::uint32_t k : regions) {
@@ -106,13 +100,13 @@ Box box_of(const Bite& bite, std::size_t contact) {
 // The box of both bodies, cut halfway between the arch and each far contact; empty if no such cut
 // parts them. Its corners have few digits.
 Box region_without(const Bite& bite, const FarContacts& parts) {
-  Box arch, region = box_of(bite.fixed).merged(box_of(bite.moving));
-  for (const std::size_t k : parts.arch) arch.extend(box_of(bite, k));
+  Box arch, region = bite.fixed.box().merged(bite.moving.box());
+  for (const std::size_t k : parts.arch) arch.extend(box_of_contact(bite, k));
   const double digit = std::pow(10, std::floor(std::log10(region.sizes().maxCoeff() / 50)));
   region.min() = digit * ((region.min() / digit).array().floor() - 1);
   region.max() = digit * ((region.max() / digit).array().ceil() + 1);
   for (const std::size_t k : parts.far) {
-    const Box far = box_of(bite, k);
+    const Box far = box_of_contact(bite, k);
     const Vector above = far.min() - arch.max(), below = arch.min() - far.max();
     Eigen::Index axis = 0, low = 0;
     const double gap_above = above.maxCoeff(&axis), gap_below = below.maxCoeff(&low);
@@ -133,7 +127,7 @@ Box region_without(const Bite& bite, const FarContacts& parts) {
 std::optional<std::string> warning_of(const Bite& bite) {
   const double apart = bite.findings.distance->lower;
   const double smaller =
-      std::min(box_of(bite.fixed).sizes().maxCoeff(), box_of(bite.moving).sizes().maxCoeff());
+      std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());
   if (!maps_nothing(bite.fixed) || !maps_nothing(bite.moving) || apart <= 0.5 * smaller) return {};
   return fmt::format(
       "The scans are {:.3g} {} apart: they are probably not in one coordinate system. Register "

@@ -73,11 +73,9 @@ OcclusionOptions options_of(const Bite& bite) {
 
 void require_in_region(const Bite& bite, const BiteBody& body, const char* role) {
   if (!bite.region || body.surface.total_area > 0) return;
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : body.mesh->vertices) box.extend(body.to_fixed * v);
   refuse_if(true, "--region",
             fmt::format("no triangle of {} has its centroid in {}: the body lies in {}", role,
-                        box_words(*bite.region), box_words(box)));
+                        box_words(*bite.region), box_words(body.box())));
 }
 
 // Of each limit of the preset, in its order.
