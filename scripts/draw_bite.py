@@ -194,8 +194,8 @@ def draw_legend(place, bands):
 def facts_of(body):
     regions = body["regions"]
     within = body["areas"][0]
-    return (f"{within['area']:.1f} mm² within {within['micrometres'] / 1000:g} mm or overlapping\n"
-            f"{len(regions)} contact regions")
+    return (f"{within['area']:.1f} mm² within {within['micrometres'] / 1000:g} mm\n"
+            f"or overlapping; {len(regions)} contacts")
 
 
 def main(ist, output):
