@@ -6,7 +6,6 @@
 All that is drawn comes from the command: the built-in jaws, and the files that `ist occlusion` writes of them. Needs
 Debian's python3-matplotlib, so run it with the system's python3.
 """
-import csv
 import json
 import pathlib
 import subprocess
@@ -128,20 +127,18 @@ def shaded(colour, normals):
 
 
 def measured(ist, folder):
-    """Returns the vertices as bitten and as opened, the faces, the contact regions, and the report."""
+    """Returns the vertices as bitten and as opened, the faces, and the report."""
 
     def run(*arguments):
         subprocess.run([ist, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
     run("demo", "--keep", folder, "--voxel-size", 8)
     jaws = [folder / "upper_jaw.stl", folder / "lower_jaw.stl"]
-    run("occlusion", *jaws, *BITE, "-o", folder / "bite.ply", "-o", folder / "bite.csv", "-o", folder / "bite.json")
+    run("occlusion", *jaws, *BITE, "-o", folder / "bite.ply", "-o", folder / "bite.json")
     run("occlusion", *jaws, *BITE, "-o", folder / "book.ply", "--open", 8)
     bitten, _ = read_ply(folder / "bite.ply")
     book, faces = read_ply(folder / "book.ply")
-    with open(folder / "bite.csv", newline="") as file:
-        regions = list(csv.DictReader(file))
-    return bitten, book, faces, regions, json.loads((folder / "bite.json").read_text())
+    return bitten, book, faces, json.loads((folder / "bite.json").read_text())
 
 
 def axes_of(book):
@@ -155,7 +152,7 @@ def axes_of(book):
 
 def closest_points(jaw, bitten, regions):
     """Returns where the closest points of contact regions are on the opened jaw, which is moved as a whole."""
-    points = np.array([[float(region[f"closest_{axis}"]) for axis in "xyz"] for region in regions]).reshape(-1, 3)
+    points = np.array([region["closest"] for region in regions]).reshape(-1, 3)
     closed = positions(bitten)
     opening = np.linalg.lstsq(np.column_stack([closed, np.ones(len(closed))]), jaw.points, rcond=None)[0]
     return np.column_stack([points, np.ones(len(points))]) @ opening
@@ -163,7 +160,7 @@ def closest_points(jaw, bitten, regions):
 
 def draw_half(place, jaw, bands, bitten, regions, title, facts):
     place.imshow(np.clip(jaw.draw(bands), 0, 255).astype(np.uint8), origin="lower", extent=(0, WIDTH, 0, HEIGHT))
-    paired = np.array([region["partner"] != "" for region in regions], bool)
+    paired = np.array([region["partner"] is not None for region in regions], bool)
     points = jaw.place(closest_points(jaw, bitten, regions))
     for chosen, core, ring in ((paired, "black", "white"), (~paired, "white", "black")):
         place.scatter(*points[chosen, :2].T, s=30, c=core, edgecolors=ring, linewidths=1.3)
@@ -198,18 +195,18 @@ def facts_of(body):
     regions = body["regions"]
     within = body["areas"][0]
     return (f"{within['area']:.1f} mm² within {within['micrometres'] / 1000:g} mm\n"
-            f"{len(regions)} contact regions")
+            f"or overlapping; {len(regions)} contacts")
 
 
 def main(ist, output):
     with tempfile.TemporaryDirectory() as name:
-        bitten, book, faces, regions, report = measured(pathlib.Path(ist).resolve(), pathlib.Path(name))
+        bitten, book, faces, report = measured(pathlib.Path(ist).resolve(), pathlib.Path(name))
     axes, bands = axes_of(book), Bands(report, book)
     figure = plt.figure(figsize=(18, 9.2), dpi=100)
     for role, (key, title) in enumerate((("fixed", "upper jaw"), ("moving", "lower jaw"))):
         place = figure.add_axes((role / 2, 1.6 / 9.2, 0.5, 7.6 / 9.2))
         draw_half(place, Jaw(book, faces, role, axes), bands, bitten[bitten["body"] == role],
-                  [region for region in regions if region["body"] == key], title, facts_of(report[key]))
+                  report[key]["regions"], title, facts_of(report[key]))
     draw_legend(figure.add_axes((0.02, 0.01, 0.96, 1.6 / 9.2)), bands)
     save_small_png(figure, output)
 

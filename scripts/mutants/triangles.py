@@ -67,7 +67,7 @@ MUTANTS = [
     Mutant("deep-is-outside", "vertices inside and beyond the reach count as outside",
            [(MEASURE + "far_inside.cpp", "inside[asked[k]] = first[k].distance < 0;", "inside[asked[k]] = false;")], ["measure_test Occlusion*"]),
     Mutant("partners-one-way", "a region counts as a partner although its own partner is another one",
-           [(MEASURE + "contact_regions.cpp", "if (!other || faced(moving, *other, fixed) != k) continue;", "if (!other) continue;")],
+           [(MEASURE + "contact_regions.cpp", "if (!other || moving.regions[*other].faces != k) continue;", "if (!other) continue;")],
            ["measure_test ContactRegions*"]),
     Mutant("slabs-not-weighed", "a contact does not fade where a ball leaves a slab",
            [("simd/contact_lanes.h", "return balls * lesser(lesser(fixed, moving), 1);",

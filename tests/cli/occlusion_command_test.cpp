@@ -1,5 +1,10 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "cli/cli_case.h"
 #include "support/effort.h"
@@ -41,16 +46,65 @@ class OcclusionCommand : public CliTest {
   const std::string plate_ = mesh("plate.stl", box({-5, -5, -3}, {5, 5, 0}));
 };
 
-TEST_F(OcclusionCommand, SaysThreeLines) {
+// A table of CSV: each row by its headings.
+using CsvRows = std::vector<std::map<std::string, std::string>>;
+CsvRows csv_rows(const std::string& text, char separator = ',') {
+  CsvRows rows;
+  std::vector<std::string> head, fields(1);
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == separator && !quoted) {
+      fields.emplace_back();
+    } else if (c != '\n') {
+      fields.back() += c;
+    } else if (head.empty()) {
+      head = std::exchange(fields, {""});
+    } else {
+      EXPECT_EQ(fields.size(), head.size());
+      auto& row = rows.emplace_back();
+      for (std::size_t i = 0; i < head.size(); ++i) row[head[i]] = fields.at(i);
+      fields = {""};
+    }
+  }
+  return rows;
+}
+
+// The rows whose cells are these.
+CsvRows only(const CsvRows& rows, const std::map<std::string, std::string>& cells) {
+  CsvRows found;
+  for (const auto& row : rows) {
+    if (std::all_of(cells.begin(), cells.end(),
+                    [&](const auto& cell) { return row.at(cell.first) == cell.second; })) {
+      found.push_back(row);
+    }
+  }
+  return found;
+}
+
+// As a table writes it: four significant digits.
+std::string four(double number) {
+  return fmt::format("{}", std::stod(fmt::format("{:.4g}", number)));
+}
+
+TEST_F(OcclusionCommand, SaysThreeLinesAndItsContacts) {
   const CommandResult result = ask({"--move", "0,0,1.8", "-o", path("bite.vtp")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 3);
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5);
+  const CommandResult unnamed = ask({"--move", "0,0,1.8"});
+  EXPECT_EQ(unnamed.exit_code, 0) << unnamed.err;
+  EXPECT_TRUE(says(unnamed.out, "; nothing written\n"));
+  EXPECT_TRUE(says(result.out,
+                   "contact      on  area, mm²  least distance, µm  share, %  closest "
+                   "at, mm\n      1    both "));
+  EXPECT_TRUE(says(result.out, " -200     100.0  ("));
   for (const char* part :
        {"touch yes, ", "(± 0.05 mm assumed for scanning)",
         "areas, scan (intersection and contact of scans: Beck 2023): in each other ",
-        "within 100 µm ", "1 paired region, 0 unpaired", "overlap above 0.1 mm: check the bite",
-        "unit: mm (assumed)", "sides: +x and -x, divided in the middle of the fixed body's box",
-        "wrote ", "bite.vtp"}) {
+        "within 100 µm or overlapping ", " without the overlap); 1 contact, 0 of them on one body",
+        "overlap above 0.1 mm: check the bite", "unit: mm (assumed)",
+        "sides: +x and -x, divided in the middle of the fixed body's box", "wrote ", "bite.vtp"}) {
     EXPECT_TRUE(says(result.out, part));
   }
   const CommandResult apart = ask({"--move", "0,0,2.5", "-o", path("bite.vtp")});
@@ -76,10 +130,155 @@ TEST_F(OcclusionCommand, MeasuresACap) {
   ASSERT_EQ(bite["moving"]["regions"].size(), 1u);
   EXPECT_EQ(bite["moving"]["regions"][0]["partner"], 0);
   EXPECT_EQ(bite["moving"]["regions"][0]["share"], 1);
+  EXPECT_EQ(bite["moving"]["regions"][0]["contact"], 1);
+  // Without the overlap a ring of the cap is left: 2 π r · 0.1.
+  EXPECT_NEAR(bite["moving"]["areas"][1]["area_outside"].get<double>(), 2 * pi * 2 * 0.1, 0.03);
+  EXPECT_EQ(bite["moving"]["areas"][0]["area_outside"], 0);
   EXPECT_NEAR(bite["moving"]["sides"]["per_cent"]["+x"].get<double>(), 50, 1);
   EXPECT_TRUE(bite["caveat"].get<std::string>().starts_with("Research software, not a medical"));
   EXPECT_EQ(bite["moving"]["file"], "ball.stl");
   EXPECT_EQ(bite["unit_assumed"], true);
+}
+
+// Two balls of other depths in the plate, with labels: each number of the table is that of JSON.
+TEST_F(OcclusionCommand, TablesHoldEachNumberUnderItsHeading) {
+  const std::string pair = mesh("balls.stl", joined(moved(icosphere(4, 2), {-2.5, 0, 0}),
+                                                    moved(icosphere(4, 2), {2.5, 0, -0.1})));
+  const auto count = static_cast<int>(icosphere(4, 2).triangles.size());
+  std::string labels;
+  for (int i = 0; i < 2 * count; ++i) labels += i < count ? "46\n" : "36\n";
+  ist_well({"occlusion", plate_, pair, "--move", "0,0,1.9", "--labels-moving",
+            write("labels.txt", labels), "--numbering", "fdi", "-o", path("b.csv"), "-o",
+            path("b.json"), "-o", path("c.report.html")});
+  const CsvRows rows = csv_rows(file_content(path("b.csv")));
+  const json bite = json::parse(file_content(path("b.json")));
+  const auto expect = [&](const std::map<std::string, std::string>& which, const char* heading,
+                          const json& number, double factor = 1) {
+    const CsvRows found = only(rows, which);
+    ASSERT_EQ(found.size(), 1U) << heading;
+    EXPECT_EQ(found[0].at(heading), four(factor * number.get<double>())) << heading;
+  };
+  expect({{"kind", "total"}, {"body", "both"}}, "depth_mm", bite["depth_lower"]);
+  expect({{"kind", "total"}, {"body", "both"}}, "depth_upper_mm", bite["depth_upper"]);
+  ASSERT_EQ(bite["contacts"].size(), 2U);
+  for (const json& contact : bite["contacts"]) {
+    const auto number = std::to_string(contact["number"].get<int>());
+    const std::map<std::string, std::string> row{{"kind", "pair"}, {"contact", number}};
+    expect(row, "area_mm2", contact["area"]);
+    expect(row, "overlap_mm2", contact["penetrating_area"]);
+    expect(row, "depth_integral_mm3", contact["depth_integral"]);
+    expect(row, "least_distance_um", contact["least_distance"], 1000);
+    expect(row, "share_percent", contact["share"], 100);
+    expect(row, "share_thinner_percent", contact["share_thinner"], 100);
+    expect(row, "share_thicker_percent", contact["share_thicker"], 100);
+    EXPECT_NEAR(std::stod(only(rows, row).at(0)["closest_x_mm"]),
+                contact["closest"][0].get<double>(), 0.0051);
+    EXPECT_NEAR(std::stod(only(rows, row).at(0)["centre_z_mm"]), contact["centre"][2].get<double>(),
+                0.0051);
+  }
+  EXPECT_GT(bite["contacts"][0]["area"], bite["contacts"][1]["area"]);
+  for (const std::string role : {"fixed", "moving"}) {
+    const json& body = bite[role];
+    const std::map<std::string, std::string> total{{"kind", "total"}, {"body", role}};
+    expect(total, "depth_mm", body["depth_at_vertices"]);
+    expect(total, "overlap_mm2", body["penetrating_area"]);
+    expect(total, "depth_integral_mm3", body["depth_integral"]);
+    expect(total, "area_mm2",
+           body["regions"][0]["area"].get<double>() + body["regions"][1]["area"].get<double>());
+    const std::map<std::string, std::string> band{{"kind", "band"}, {"body", role}};
+    const auto of = [&](const char* from, const char* to) {
+      auto row = band;
+      row["from_um"] = from;
+      row["to_um"] = to;
+      return row;
+    };
+    EXPECT_EQ(only(rows, band).size(), 3U);
+    expect(of("", "0"), "area_mm2", body["penetrating_area"]);
+    expect(of("", "100"), "area_mm2", body["areas"][1]["area"]);
+    expect(of("0", "100"), "area_mm2", body["areas"][1]["area_outside"]);
+    for (const json& region : body["regions"]) {
+      expect({{"kind", "region"},
+              {"body", role},
+              {"contact", std::to_string(region["contact"].get<int>())}},
+             "area_mm2", region["area"]);
+    }
+    for (const auto& [name, share] : body["sides"]["per_cent"].items()) {
+      if (name == "asymmetry") continue;
+      expect({{"kind", "side"}, {"body", role}, {"name", name}}, "share_percent", share);
+    }
+  }
+  for (const json& tooth : bite["moving"]["teeth"]) {
+    const std::map<std::string, std::string> row{
+        {"kind", "tooth"}, {"name", std::to_string(tooth["number"].get<int>())}};
+    expect(row, "area_mm2", tooth["area"]);
+    expect(row, "share_percent", tooth["share"], 100);
+    expect(row, "least_distance_um", tooth["least_distance"], 1000);
+  }
+  EXPECT_EQ(only(rows, {{"kind", "tooth"}}).size(), 2U);
+  EXPECT_EQ(only(rows, {{"kind", "note"}}).size(), bite["checks"].size());
+}
+
+TEST_F(OcclusionCommand, ADecimalCommaHoldsTheSameNumbers) {
+  ASSERT_EQ(ask({"--move", "0,0,1.8", "-o", path("p.csv")}).exit_code, 0);
+  ASSERT_EQ(ask({"--move", "0,0,1.8", "-o", path("c.csv"), "--decimal", "comma"}).exit_code, 0);
+  const CsvRows point = csv_rows(file_content(path("p.csv"))),
+                comma = csv_rows(file_content(path("c.csv")), ';');
+  ASSERT_EQ(point.size(), comma.size());
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    for (const auto& [heading, cell] : point[i]) {
+      std::string expected = cell;
+      if (heading != "name") std::replace(expected.begin(), expected.end(), '.', ',');
+      EXPECT_EQ(comma[i].at(heading), expected) << heading;
+    }
+  }
+}
+
+// A box with one of two balls in it: all is as if the other were not there.
+TEST_F(OcclusionCommand, ARegionLeavesOutWhatLiesBesideIt) {
+  TriangleMesh floor;
+  for (int x = -5; x < 5; ++x) {
+    for (int y = -5; y < 5; ++y) {
+      const auto at = static_cast<std::uint32_t>(floor.vertices.size());
+      for (const auto& [i, k] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+        floor.vertices.emplace_back(x + i, y + k, 0);
+      }
+      floor.triangles.push_back({at, at + 1, at + 2});
+      floor.triangles.push_back({at, at + 2, at + 3});
+    }
+  }
+  const TriangleMesh left = moved(icosphere(4, 1), {-3, 0, 0});
+  const std::string sheet = mesh("sheet.stl", floor), one = mesh("one.stl", left),
+                    two = mesh("two.stl", joined(left, moved(icosphere(4, 1), {3, 0, -0.1})));
+  const auto asked = [&](const std::string& moving, std::vector<std::string> more) {
+    std::vector<std::string> words{"occlusion", sheet, moving, "--move", "0,0,0.9", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json_lines(ist_well(words).out).at(0);
+  };
+  const std::vector<std::string> within{"--region", "-6,-6,9,0,6,-9"};
+  const json whole = asked(two, {}), part = asked(two, within), alone = asked(one, {});
+  EXPECT_EQ(whole["contacts"].size(), 2U);
+  EXPECT_EQ(whole["region"], nullptr);
+  ASSERT_EQ(part["contacts"].size(), 1U);
+  EXPECT_EQ(part["region"], json({-6.0, -6.0, -9.0, 0.0, 6.0, 9.0}));
+  EXPECT_EQ(part["contacts"], alone["contacts"]);
+  for (const char* role : {"fixed", "moving"}) {
+    for (const char* key : {"areas", "penetrating_area", "depth_at_vertices", "depth_integral"}) {
+      EXPECT_EQ(part[role][key], alone[role][key]) << role << " " << key;
+    }
+    EXPECT_EQ(part[role]["sides"]["per_cent"]["-x"], 100);
+  }
+  EXPECT_LT(part["depth_at_vertices"], whole["depth_at_vertices"]);
+  EXPECT_TRUE(says(ist_well({"occlusion", sheet, two, "--region", within[1]}).out,
+                   "region: areas, contacts, shares and depths of vertices are of the triangles "
+                   "with their centroid in x -6 to 0, y -6 to 6, z -9 to 9; all else is of "
+                   "the whole bodies\n"));
+  for (const char* bad : {"1,2,3,4,5", "1,2,3,4,5,x", "1,2,3,4,5,6,7"}) {
+    refuses({"--json", "--region", bad}, 2, "give x0,y0,z0,x1,y1,z1, two corners of a box");
+  }
+  refuses({"--json", "--region", "0,0,0,1,0,1"}, 2, "the box is empty: its corners must differ");
+  refuses({"--json", "--region", "50,50,50,60,60,60"}, 2,
+          "no triangle of FIXED has its centroid in x 50 to 60, y 50 to 60, z 50 to 60: the body "
+          "lies in x -5 to 5, y -5 to 5, z -3 to 0");
 }
 
 TEST_F(OcclusionCommand, WritesBothBodiesWhereTheyBite) {
@@ -215,7 +414,13 @@ TEST_F(OcclusionCommand, AnOpenBodyAndAFarOneAreSaid) {
   const CommandResult far = ask({"--move", "0,0,50", "-o", path("b.csv")});
   EXPECT_EQ(far.exit_code, 0);
   EXPECT_TRUE(says(far.out, "the map is empty: nothing lies within the reach of 2 mm"));
-  EXPECT_EQ(file_content(path("b.csv")).find('\n'), file_content(path("b.csv")).size() - 1);
+  EXPECT_TRUE(says(far.out,
+                   "The scans are 48 mm apart: they are probably not in one coordinate "
+                   "system. Register them first, or give --matrix.\n"));
+  EXPECT_TRUE(says(far.out, "No contacts.\n"));
+  const CsvRows rows = csv_rows(file_content(path("b.csv")));
+  EXPECT_TRUE(only(rows, {{"kind", "region"}}).empty());
+  EXPECT_EQ(only(rows, {{"kind", "total"}, {"body", "both"}}).at(0)["least_distance_um"], "48000");
 }
 
 // Two open sheets that lie in each other and cross nowhere: nobody can tell overlap from a gap.
@@ -294,7 +499,8 @@ TEST_F(OcclusionCommand, FilesTellTheirUnit) {
   EXPECT_TRUE(says(file_content(path("b.vtp")), "Name=\"Unit\""));
   EXPECT_TRUE(says(file_content(path("b.ply")), "comment unit: mm (assumed)\n"));
   EXPECT_TRUE(says(file_content(path("b.glb")), "\"Unit\":\"mm (assumed)\""));
-  EXPECT_TRUE(says(file_content(path("b.csv")), ",mm (assumed)\n"));
+  EXPECT_EQ(only(csv_rows(file_content(path("b.csv"))), {{"name", "unit: mm (assumed)"}}).size(),
+            1U);
   EXPECT_TRUE(says(file_content(path("b.html")), "assumed"));
   // One tree's unit says nothing of the other body.
   const std::string tree = path("plate.ist");
@@ -357,7 +563,6 @@ TEST_F(OcclusionCommand, UnitsAreSaidAndPresetsKeepTheirs) {
 }
 
 TEST_F(OcclusionCommand, BadWordsAreRefused) {
-  refuses({}, 2, "-o");
   refuses({"-o", path("b.stl")}, 2, ".vtp");
   refuses({"-o", ball_ + ".vtp", "--preset", "nonsense"}, 2, "--preset");
   for (const char* reach : {"0", "-1", "nan", "inf"}) {
@@ -375,6 +580,8 @@ TEST_F(OcclusionCommand, BadWordsAreRefused) {
   std::filesystem::create_symlink("b.csv", path("link.csv"));
   refuses({"-o", path("b.csv"), "-o", path("link.csv")}, 2, "named twice");
   refuses({"-o", path("b.csv"), "-o", path("none/b.vtp")}, 1, "none/b.vtp");
+  refuses({"-o", path("c.csv"), "--decimal", "point,"}, 2, "--decimal");
+  refuses({"-o", path("c.vtp"), "--decimal", "comma"}, 2, "--decimal: goes with .csv");
   refuses({"--side", "fixed", "-o", path("b.csv")}, 2, "--side");
   const std::string input = write("plate.ply", file_content(plate_));
   EXPECT_EQ(ist({"occlusion", input, ball_, "-o", input}).exit_code, 2);

@@ -119,7 +119,7 @@ TEST_F(View, NoNameEndsTheElementThatHoldsIt) {
   EXPECT_TRUE(says(data_of("run.html")["recording"].get<std::string>(), "</script>"));
 }
 
-TEST_F(View, ABiteIsAPageWhereThereIsOneElseThePlainReport) {
+TEST_F(View, ABiteIsAPageIfThereIsOneElseTheStaticReport) {
   const std::string one = mesh("ball.stl", icosphere(4, 2)),
                     plate = mesh("plate.stl", box({-5, -5, -3}, {5, 5, 0}));
   const std::vector<std::string> asked{"occlusion", plate,    one,  "--move",          "0,0,1.8",
@@ -138,16 +138,21 @@ TEST_F(View, ABiteIsAPageWhereThereIsOneElseThePlainReport) {
   const json without = data_of("bite.html");
   EXPECT_EQ(without["bodies"][0]["name"], "fixed");
   EXPECT_EQ(tree_of(without["bodies"][0]).source().name, "");
-  // What the page does not know, the plain report does.
+  // What the page does not know, the static report does.
   auto sided = asked;
   sided.resize(9);
   sided.insert(sided.end(), {"--left", "1,0,0"});
   const CommandResult plain = ist_well(sided);
-  EXPECT_TRUE(says(plain.err, "the plain report"));
+  EXPECT_TRUE(says(plain.err, "the static report"));
   EXPECT_NE(file_content(path("bite.html")).find("<table id=\"shares\""), std::string::npos);
+  // A name that asks for the report gets it, whatever the page knows.
+  auto report = asked;
+  report[8] = path("bite.report.html");
+  EXPECT_FALSE(says(ist_well(report).err, "static report"));
+  EXPECT_TRUE(says(file_content(path("bite.report.html")), "<table id=\"contacts\""));
   name_page("");
   EXPECT_TRUE(says(ist_well(asked).err, "this build has no page"));
-  EXPECT_NE(file_content(path("bite.html")).find("Contact regions"), std::string::npos);
+  EXPECT_NE(file_content(path("bite.html")).find("<h2>Contacts</h2>"), std::string::npos);
 }
 
 TEST_F(View, ARecordingHasTheBodiesOfItsScene) {

@@ -195,6 +195,32 @@ TEST(ContactRegions, ArePartnersWhereEachFacesTheOther) {
   pair_regions(one_way, other);
   EXPECT_FALSE(one_way.regions[0].partner.has_value());
   EXPECT_FALSE(other.regions[1].partner.has_value());
+  EXPECT_EQ(moving.regions[1].faces, 0U) << "which faces another one";
+  EXPECT_EQ(one_way.regions[0].faces, 1U);
+  EXPECT_EQ(other.regions[0].faces, 0U);
+  EXPECT_FALSE(other.regions[1].faces.has_value()) << "nothing touches there";
+}
+
+// Two balls in a plate, of which a box holds one.
+TEST(Occlusion, CountsWithinABoxAlone) {
+  const Bite bite(box({-6, -6, -2}, {6, 6, 0}), joined(moved(icosphere(4, 1), {-3, 0, 0}),
+                                                       moved(icosphere(4, 1), {3, 0, -0.05})));
+  const Vector to(0, 0, 0.9);
+  const Bite one(box({-6, -6, -2}, {6, 6, 0}), moved(icosphere(4, 1), {-3, 0, 0}));
+  const Occlusion whole = bite.at(to), alone = one.at(to),
+                  part = bite.at(
+                      to, {.within = Eigen::AlignedBox3d(Vector(-9, -9, -9), Vector(0, 9, 9))});
+  ASSERT_EQ(whole.moving.regions.size(), 2U);
+  ASSERT_EQ(part.moving.regions.size(), 1U);
+  EXPECT_EQ(part.moving.areas, alone.moving.areas);
+  EXPECT_EQ(part.moving.penetrating_area, alone.moving.penetrating_area);
+  EXPECT_EQ(part.moving.depth_at_vertices, alone.moving.depth_at_vertices);
+  EXPECT_GT(whole.moving.depth_at_vertices, part.moving.depth_at_vertices + 0.04);
+  EXPECT_EQ(part.moving.total_area, alone.moving.total_area);
+  EXPECT_EQ(part.moving.regions[0].share, 1);
+  EXPECT_EQ(part.moving.vertices.size(), whole.moving.vertices.size());
+  EXPECT_EQ(error_name([&] { (void)bite.at(to, {.within = Eigen::AlignedBox3d()}); }),
+            "argument-invalid");
 }
 
 TEST(Occlusion, LeavesOutSmallRegionsAndWhatIsFar) {

@@ -7,6 +7,7 @@ import {test} from 'node:test';
 
 import {count, infoSentences, interval, short} from '../../src/viewer/page/words.js';
 import {answer, answerOf, closePage, closedBy, holding, ist, linesOf, message, openPage, readout, ready} from './browser.mjs';
+import {pictureOf} from './pictures.mjs';
 import {browser, folder, stage} from './stage.mjs';
 
 const ratio = JSON.parse(readFileSync(new URL('../../src/viewer/page/native_ratio.json', import.meta.url), 'utf8'));
@@ -210,7 +211,7 @@ test('Contacts: the most pressed ones, and the force and the torque of all', asy
   await closePage(opened);
 });
 
-test('Occlusion: the legend, the areas and the regions of the bite, grey where the pose is another', async () => {
+test('Occlusion: the legend, the areas and the contacts of the bite, grey where the pose is another', async () => {
   const opened = await openPage(browser, `#voxel=2&panel=occlusion&preset=stl&pose=${closedBy(-0.6)}`);
   const {page} = opened;
   await page.getByText('The map is of this pose.').waitFor();
@@ -226,11 +227,36 @@ test('Occlusion: the legend, the areas and the regions of the bite, grey where t
   bands.forEach(({words}, at) => assert.ok(legend[at].startsWith(words), legend[at]));
   assert.match(await panel(page, 'Occlusion').locator('.map-legend figcaption').textContent(), /^stl: .*Rovira-Lastra/);
   assert.equal(await page.locator('.caveat').textContent(), bite.caveat);
-  for (const role of ['fixed', 'moving']) {
-    assert.equal((await rows(page, `Contact regions of the ${role} body`)).length, bite[role].regions.length);
-  }
-  assert.equal((await facts(page, 'Occlusion')).Regions, `${count(bite.fixed.regions.length)} and ${count(bite.moving.regions.length)}`);
-  await page.getByRole('button', {name: 'Look at region 1 of the moving body', exact: true}).click();
+  const areaOn = (contact, role) => {
+    const area = contact[role].reduce((sum, at) => sum + bite[role].regions[at].area, 0);
+    return contact[role].length ? short(area, 3) : '–';
+  };
+  assert.ok(bite.contacts.length > 1);
+  assert.deepEqual(
+    await rows(page, 'Contacts (d ≤ 0.1 mm)'),
+    bite.contacts.map((contact) => [
+      String(contact.number),
+      areaOn(contact, 'fixed'),
+      areaOn(contact, 'moving'),
+      short(Math.round(1000 * contact.least_distance)),
+      short(100 * contact.share, 3),
+    ]),
+  );
+  const said = await facts(page, 'Occlusion');
+  const alone = bite.contacts.filter(({fixed, moving}) => !fixed.length || !moving.length).length;
+  assert.equal(said.Contacts, `${count(bite.contacts.length)}, ${count(alone)} of them on one body alone`);
+  const both = (at, key) => `${short(bite.fixed.areas[at][key])} and ${short(bite.moving.areas[at][key])} mm²`;
+  assert.equal(said['Area within 100 µm or overlapping'], both(0, 'area'));
+  assert.equal(said['Area within 100 µm, without the overlap'], both(0, 'area_outside'));
+  // A contact that is marked is drawn otherwise; one that is looked at is near.
+  const drawn = async () => (await pictureOf(page)).toString('base64');
+  const unmarked = await drawn();
+  await page.getByRole('button', {name: 'Mark contact 2', exact: true}).click();
+  const marked = await drawn();
+  assert.notEqual(marked, unmarked);
+  await page.getByRole('button', {name: 'Mark contact 1', exact: true}).click();
+  assert.notEqual(await drawn(), marked);
+  await page.getByRole('button', {name: 'Look at contact 1 on the moving body', exact: true}).click();
   const stale = () => panel(page, 'Occlusion').locator('div.stale').count();
   assert.equal(await stale(), 0);
   // A hand that holds the slider: the old map is grey until it rests.

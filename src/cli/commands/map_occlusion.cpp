@@ -20,6 +20,7 @@
 #include "cli/formats/vtp_writer.h"
 #include "cli/header_line.h"
 #include "cli/load_bodies.h"
+#include "cli/occlusion/bite_csv.h"
 #include "cli/occlusion/bite_html.h"
 #include "cli/occlusion/bite_json.h"
 #include "cli/occlusion/bite_maker.h"
@@ -27,6 +28,7 @@
 #include "cli/occlusion/bite_tables.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
+#include "cli/poses/numbers.h"
 #include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/query_run.h"
@@ -45,7 +47,8 @@ struct OcclusionArguments {
   PoseOptions pose;
   std::vector<std::filesystem::path> outputs;
   BiteQuestions questions;
-  std::string preset{presets().front().name}, numbering, side;
+  std::string preset{presets().front().name}, numbering, side, region;
+  std::string decimal = "point";
   std::optional<double> open;  // millimetres
   bool fail_if_touching = false, json = false;
 };
@@ -61,6 +64,17 @@ void require_length(double length, const std::string& option) {
             fmt::format("{} is no length: give more than 0", length));
 }
 
+std::optional<Eigen::AlignedBox3d> region_of(const std::string& text) {
+  if (text.empty()) return {};
+  const auto numbers = numbers_of(text);
+  refuse_if(!numbers || numbers->size() != 6, "--region",
+            text + ": give x0,y0,z0,x1,y1,z1, two corners of a box in fixed coordinates");
+  const Eigen::Vector3d one(numbers->data()), other(numbers->data() + 3);
+  refuse_if((one - other).cwiseAbs().minCoeff() == 0, "--region",
+            text + ": the box is empty: its corners must differ in x, y and z");
+  return Eigen::AlignedBox3d(one.cwiseMin(other), one.cwiseMax(other));
+}
+
 // Reads the options' values, or refuses them, before any file is read.
 BiteQuestions questions_of(const OcclusionArguments& options) {
   BiteQuestions questions = options.questions;
@@ -73,6 +87,7 @@ BiteQuestions questions_of(const OcclusionArguments& options) {
   refuse_if(questions.reach < 1e-3 * preset->micrometres.back(), "--reach",
             fmt::format("{} mm is less than the preset's largest limit, {:g} µm", questions.reach,
                         preset->micrometres.back()));
+  questions.region = region_of(options.region);
   const bool labels = !questions.labels_fixed.empty() || !questions.labels_moving.empty();
   refuse_if(labels && options.numbering.empty(), "--numbering",
             "needed with labels: fdi or universal");
@@ -100,7 +115,7 @@ struct Output {
 std::vector<Output> outputs_of(const OcclusionArguments& options) {
   std::vector<Output> outputs;
   std::set<std::filesystem::path> names;
-  bool surface = false, open = false;
+  bool surface = false, open = false, table = false;
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
     refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
@@ -109,8 +124,10 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
               fmt::format("{} is named twice", file.string()));
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
     surface = surface || format == FileFormat::kVtp;
+    table = table || format == FileFormat::kCsv;
     outputs.push_back({std::make_unique<OutputFile>(file), format});
   }
+  refuse_if(options.decimal == "comma" && !table, "--decimal", "goes with .csv");
   refuse_if(options.open && !open, "--open", "goes with .ply and .glb");
   refuse_if(!options.side.empty() && !open && !surface, "--side", "goes with .vtp, .ply and .glb");
   if (options.open) {
@@ -120,7 +137,7 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
   return outputs;
 }
 
-void write(const Bite& bite, const Output& output, BiteSelection selection) {
+void write(const Bite& bite, const Output& output, BiteSelection selection, DecimalSign sign) {
   const std::string comment =
       fmt::format("signed distances, {}, NaN beyond {:g}", bite.unit_words(), bite.reach);
   switch (output.format) {
@@ -138,22 +155,28 @@ void write(const Bite& bite, const Output& output, BiteSelection selection) {
       return write_glb(bodies, 1e-3 / bite.units_per_mm, *output.file);
     }
     case FileFormat::kCsv:
-      return write_bite_csv(bite, *output.file);
+      return write_bite_csv(bite, sign, *output.file);
     default:
       return write_bite_json(bite, *output.file);
   }
 }
 
-// Writes the page with the engine in it where there is one that shows all that was asked, else the
-// plain report, and says why.
+// Whether a file's name asks for the static report: bite.report.html.
+bool asks_for_report(const std::filesystem::path& file) {
+  return file.stem().extension() == ".report";
+}
+
+// Writes the page with the engine in it if there is one that shows all that was asked, else the
+// static report, and says why.
 void write_report(const Bodies& bodies, const Bite& bite, const BiteQuestions& questions,
                   OutputFile& file) {
+  if (asks_for_report(file.target())) return write_bite_html(bite, file);
   const std::optional<std::filesystem::path> page = find_page();
   if (page && page_shows(questions)) {
     return write_page(*page, bite_block(bodies, bite, questions), file);
   }
-  fmt::print(stderr, "{}: the plain report, for {}\n", file.target().string(),
-             page ? "the page knows no sides, labels and scanner bands" : kHowToGetPage);
+  fmt::print(stderr, "{}: the static report, for {}\n", file.target().string(),
+             page ? "the page knows no sides, labels, scanner bands and regions" : kHowToGetPage);
   write_bite_html(bite, file);
 }
 
@@ -167,8 +190,6 @@ BiteSources sources_of(const Bodies& bodies, const BodyFiles& files) {
 void run(const OcclusionArguments& options) {
   BiteQuestions questions = questions_of(options);
   const std::vector<Output> outputs = outputs_of(options);
-  refuse_if(outputs.empty() && !options.json, "-o",
-            "name a file that ends in .vtp, .ply, .glb, .csv, .json or .html, or give --json");
   const auto [pose, rotation_error] = options.pose.poses_named().front();
   Bodies bodies = load_bodies(options.files);
   questions.unit = bodies.told_unit;
@@ -188,11 +209,12 @@ void run(const OcclusionArguments& options) {
     selection.side = options.side == "fixed" ? BiteSide::kFixed : BiteSide::kMoving;
   }
   if (options.open) selection.open = *options.open * bite.units_per_mm;
+  const DecimalSign sign = options.decimal == "comma" ? DecimalSign::kComma : DecimalSign::kPoint;
   for (const Output& output : outputs) {
     if (output.format == FileFormat::kHtml) {
       write_report(bodies, bite, questions, *output.file);
     } else {
-      write(bite, output, selection);
+      write(bite, output, selection, sign);
     }
   }
   std::vector<OutputFile*> files;
@@ -207,6 +229,7 @@ void run(const OcclusionArguments& options) {
     print_json(json_of(bite));
   } else {
     print_bite(bite, options.outputs);
+    print_contacts(bite);
   }
   if (options.fail_if_touching) fail_where_they_meet(bite.findings.meeting());
 }
@@ -227,6 +250,11 @@ void add_measure_options(CLI::App& command, OcclusionArguments& options) {
       .add_option("--scanner-band", questions.scanner_band,
                   "micrometres, ±, that scanning is assumed to err by")
       ->capture_default_str();
+  command
+      .add_option("--region", options.region,
+                  "x0,y0,z0,x1,y1,z1: count only triangles with their centroid in this box; two "
+                  "corners, fixed coordinates, mesh units")
+      ->type_name("BOX");
   add_units_and_frame(command, options.files);
 }
 
@@ -284,15 +312,22 @@ void add_occlusion(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("-o,--output", options->outputs,
-                   "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
-                   "Blender), .glb (browsers), .csv (a row a region), .json, .html (a page to look "
-                   "at and ask on, or a report); "
-                   "may be given again")
+      ->add_option(
+          "-o,--output", options->outputs,
+          "file to write, by its ending: .vtp (ParaView, Slicer), .ply (MeshLab, "
+          "Blender), .glb (browsers), .csv (Excel, R), .json, .html (the interactive page if "
+          "it is installed, else a static report), .report.html (the report always); "
+          "may be given again; without it only text is printed")
       ->type_name("FILE");
   add_measure_options(*command, *options);
   command->add_option("--side", options->side, "write this body alone, to .vtp, .ply and .glb")
       ->transform(one_of({"fixed", "moving"}));
+  command
+      ->add_option("--decimal", options->decimal,
+                   "the decimal sign in .csv; with comma, semicolons part the fields, as in German "
+                   "or Spanish Excel")
+      ->transform(one_of({"point", "comma"}))
+      ->capture_default_str();
   command->add_option("--open", options->open,
                       "open the pair like a book, with this gap, millimetres: .ply and .glb");
   command->add_flag("--no-names", options->questions.no_names,

@@ -10,22 +10,23 @@ CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::s
   end_row();
 }
 
-CsvWriter::CsvWriter(OutputFile& file, const std::vector<std::string>& columns)
-    : file_(file), columns_(columns.size()) {
+CsvWriter::CsvWriter(OutputFile& file, const std::vector<std::string>& columns, DecimalSign sign)
+    : file_(file), sign_(sign), columns_(columns.size()) {
   for (const std::string& column : columns) add(column);
   end_row();
 }
 
 void CsvWriter::add(std::string_view text) {
   // An empty text is quoted, so that it differs from what is not known.
-  if (!text.empty() && text.find_first_of(",\"\r\n") == text.npos) return add_raw(text);
+  const char* special = sign_ == DecimalSign::kComma ? ";\"\r\n" : ",\"\r\n";
+  if (!text.empty() && text.find_first_of(special) == text.npos) return add_raw(text);
   std::string quoted = "\"";
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
   add_raw(quoted + "\"");
 }
 
 void CsvWriter::add_raw(std::string_view text) {
-  if (fields_++ > 0) rows_ += ',';
+  if (fields_++ > 0) rows_ += sign_ == DecimalSign::kComma ? ';' : ',';
   rows_ += text;
 }
 

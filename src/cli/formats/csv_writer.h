@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <concepts>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
@@ -13,6 +15,10 @@
 #include "ist/base/files.h"
 
 namespace ist::cli {
+
+/// The decimal sign of a table's numbers. With a comma, fields are parted by semicolons, as Excel
+/// reads and writes them in German or Spanish.
+enum class DecimalSign : std::uint8_t { kPoint, kComma };
 
 /// Writes a table as CSV: a header row, then a row at a time. Fields are quoted as RFC 4180 says;
 /// rows end in a line feed alone, as tools for lines expect. A number has the fewest digits that
@@ -26,7 +32,8 @@ class CsvWriter {
   CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns);
   /// Writes the header row into a file that outlives the writer, and that the caller completes,
   /// after flush().
-  CsvWriter(OutputFile& file, const std::vector<std::string>& columns);
+  CsvWriter(OutputFile& file, const std::vector<std::string>& columns,
+            DecimalSign sign = DecimalSign::kPoint);
 
   /// Writes a row: as many fields as columns, each a number, a text, or an optional one.
   template <typename... Fields>
@@ -39,7 +46,11 @@ class CsvWriter {
   void add(std::string_view text);
   template <typename Number>
   requires std::integral<Number> || std::floating_point<Number>
-  void add(Number number) { add_raw(fmt::format("{}", number)); }
+  void add(Number number) {
+    std::string text = fmt::format("{}", number);
+    if (sign_ == DecimalSign::kComma) std::replace(text.begin(), text.end(), '.', ',');
+    add_raw(text);
+  }
   template <typename Field>
   void add(const std::optional<Field>& field) {
     field ? add(*field) : add_raw("");
@@ -57,6 +68,7 @@ class CsvWriter {
 
   std::optional<OutputFile> own_;
   OutputFile& file_;
+  DecimalSign sign_ = DecimalSign::kPoint;
   std::size_t columns_, fields_ = 0;  // fields_: of the row that is being written
   std::string rows_;                  // not yet written
 };

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/answers/examiner.h"
 #include "cli/occlusion/balance.h"
+#include "cli/occlusion/bite_contacts.h"
 #include "cli/occlusion/preset.h"
 #include "cli/occlusion/teeth.h"
 #include "ist/measure/occlusion.h"
@@ -22,10 +24,24 @@ struct BiteBody {
   Eigen::Isometry3d to_fixed = Eigen::Isometry3d::Identity();
   bool closed = false;  ///< closed and wound consistently: depth is certain
   SurfaceOcclusion surface;
-  std::vector<double> areas;        ///< of each limit of the preset: where d is at most that
-  std::optional<Balance> sides;     ///< by `Bite::sides`; empty where nothing touches
-  std::optional<Balance> fore_aft;  ///< by `Bite::fore_aft`; empty where nothing touches
-  std::vector<Tooth> teeth;         ///< with labels
+  std::vector<double> areas;          ///< of each limit of the preset: where d is at most that
+  std::optional<Balance> sides;       ///< by `Bite::sides`; empty where nothing touches
+  std::optional<Balance> fore_aft;    ///< by `Bite::fore_aft`; empty where nothing touches
+  std::vector<std::size_t> contacts;  ///< of each region, the number of its contact, from 1
+  std::size_t on_both = 0;            ///< contacts with numbers up to this are on both bodies
+  std::vector<Tooth> teeth;           ///< with labels
+
+  /// Returns the box round the body, fixed coordinates.
+  [[nodiscard]] Eigen::AlignedBox3d box() const {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& v : mesh->vertices) box.extend(to_fixed * v);
+    return box;
+  }
+  /// Returns the area that lies outside the other body, and no farther than limit `i` of the
+  /// preset.
+  [[nodiscard]] double area_outside(std::size_t i) const {
+    return std::max(0.0, areas[i] - surface.penetrating_area);
+  }
 };
 
 /// The occlusion of two bodies, as all outputs of `ist occlusion` tell it. Lengths are in mesh
@@ -44,11 +60,18 @@ struct Bite {
   Findings findings;  ///< touch, distance, depth
   Division sides, fore_aft;
   std::optional<ToothNumbers> numbers;
-  std::vector<std::string> checks;  ///< sentences for people: overlap, unit, sides, open bodies
+  std::vector<BiteContact> contacts;  ///< by their numbers: the first has the number 1
+  /// Only triangles with their centroid in this box count; fixed coordinates.
+  std::optional<Eigen::AlignedBox3d> region;
+  std::optional<std::string> warning;  ///< what makes all numbers meaningless
+  std::optional<std::string> hint;     ///< contacts that may not belong to the arch
+  std::vector<std::string> checks;     ///< sentences for people: overlap, unit, sides, open bodies
 
   /// Returns the unit as outputs tell it: "mm", or "mm (assumed)".
   [[nodiscard]] std::string unit_words() const { return unit_assumed ? unit + " (assumed)" : unit; }
   [[nodiscard]] double units_per_micrometre() const { return 1e-3 * units_per_mm; }
+  /// Fills in `contacts` of the bite and of both bodies, from their regions.
+  void number_contacts();
 };
 
 /// The text that stands in every report and help of an occlusion.

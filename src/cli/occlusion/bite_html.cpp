@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/occlusion/bite_hints.h"
 #include "cli/occlusion/html/bite_figures.h"
 #include "cli/occlusion/html/bite_numbers.h"
 #include "cli/occlusion/html/html_tables.h"
@@ -43,11 +44,11 @@ table { min-inline-size: min(100%, 30rem); border-collapse: collapse; font-size:
 caption { text-align: start; color: #4a525a; padding-block-end: 0.3rem; }
 th, td { text-align: start; padding: 0.2rem 0.7rem 0.2rem 0; vertical-align: top;
   border-block-end: 1px solid #e3e6ea; }
-#regions :is(th, td), #unpaired :is(th, td), #teeth :is(th, td) { white-space: nowrap; }
+#contacts :is(th, td), #contacts-on-one :is(th, td), #teeth :is(th, td) { white-space: nowrap; }
 thead th { border-block-end: 2px solid #868d95; }
 tr { break-inside: avoid; }
 @media print { body { padding: 0; font-size: 9pt; } .wide { overflow: visible; }
-  #regions, #unpaired { font-size: 6.5pt; } }
+  #contacts, #contacts-on-one { font-size: 6.5pt; } }
 )";
 
 std::string limits_of_method(const Bite& bite) {
@@ -61,10 +62,10 @@ std::string limits_of_method(const Bite& bite) {
       "<li>Areas are of triangles on which the distance is taken as linear; long ones are split "
       "first. The pictures interpolate between vertices, show one direction alone, and hide what "
       "lies under it.</li>\n"
-      "<li>Contact regions are where the distance is at most {}; the smallest are passed over. Two "
-      "regions are partners where the closest point of each faces the other. In a comparison with "
-      "articulating paper, marks on one arch alone were false more often than marks on both "
-      "(15 % against 2 %), so regions without a partner stand apart.</li>\n"
+      "<li>Contact regions are where the distance is at most {}; the smallest are passed over. "
+      "Regions of both bodies whose closest points face each other are one contact. In a "
+      "comparison with articulating paper, marks on one arch alone were false more often than "
+      "marks on both (15 % against 2 %), so contacts on one body alone stand apart.</li>\n"
       "<li>A geometric share is the part of a region in the sum of the overlaps with an elastic "
       "layer of {} between the surfaces. It changes with that depth, as the brackets show.</li>\n"
       "<li>The limits come from the preset; other publications take limits that differ by ten "
@@ -85,9 +86,10 @@ std::string settings_words(const Bite& bite) {
 }
 
 std::string checks_list(const Bite& bite) {
-  if (bite.checks.empty()) return "";
+  const std::vector<std::string> notes = notes_of(bite);
+  if (notes.empty()) return "";
   std::string html = "<div class=\"checks\" id=\"checks\">\n<ul>\n";
-  for (const std::string& check : bite.checks) html += "<li>" + escaped(check) + "</li>\n";
+  for (const std::string& check : notes) html += "<li>" + escaped(check) + "</li>\n";
   return html + "</ul>\n</div>\n";
 }
 
@@ -108,10 +110,12 @@ std::string page(const Bite& bite) {
   html += checks_list(bite);
   section("Distance maps", bite_figures(bite));
   section("Touch, distance and depth", findings_table(bite));
-  section("Areas", area_table(bite));
-  section("Share by side", share_table(bite));
-  section("Teeth", tooth_table(bite));
-  section("Contact regions", region_tables(bite));
+  if (!bite.warning) {
+    section("Areas", area_table(bite));
+    section("Share by side", share_table(bite));
+    section("Teeth", tooth_table(bite));
+  }
+  section("Contacts", contact_tables(bite));
   section("Input", settings_words(bite) + body_table(bite) + pose_table(bite));
   section("Limits of the method", limits_of_method(bite));
   return html + "</main>\n</body>\n</html>\n";

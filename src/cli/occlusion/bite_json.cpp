@@ -17,7 +17,7 @@ ordered_json or_null(double number) {
   return std::isfinite(number) ? ordered_json(number) : ordered_json(nullptr);
 }
 
-ordered_json json_of(const ContactRegion& region) {
+ordered_json json_of(const ContactRegion& region, std::size_t contact) {
   ordered_json out{{"area", region.area},
                    {"centre", triple(region.centre)},
                    {"least_distance", region.least_distance},
@@ -28,7 +28,23 @@ ordered_json json_of(const ContactRegion& region) {
                    {"share_thinner", region.share_thinner},
                    {"share_thicker", region.share_thicker}};
   out["partner"] = region.partner ? ordered_json(*region.partner) : ordered_json(nullptr);
+  out["contact"] = contact;
   return out;
+}
+
+ordered_json json_of(const BiteContact& contact, std::size_t number) {
+  return {{"number", number},
+          {"fixed", contact.fixed},
+          {"moving", contact.moving},
+          {"area", contact.area},
+          {"penetrating_area", contact.penetrating_area},
+          {"depth_integral", contact.depth_integral},
+          {"share", contact.share},
+          {"share_thinner", contact.share_thinner},
+          {"share_thicker", contact.share_thicker},
+          {"least_distance", contact.least_distance},
+          {"centre", triple(contact.centre)},
+          {"closest", triple(contact.closest)}};
 }
 
 ordered_json json_of(const Balance::Shares& shares, const Division& division) {
@@ -61,14 +77,18 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
   out["vertices_within_reach"] = near;
   out["areas"] = ordered_json::array();
   for (std::size_t i = 0; i < body.areas.size(); ++i) {
-    out["areas"].push_back({{"micrometres", bite.preset->micrometres[i]}, {"area", body.areas[i]}});
+    out["areas"].push_back({{"micrometres", bite.preset->micrometres[i]},
+                            {"area", body.areas[i]},
+                            {"area_outside", body.area_outside(i)}});
   }
   out["total_area"] = surface.total_area;
   out["penetrating_area"] = surface.penetrating_area;
   out["depth_integral"] = surface.depth_integral;
   out["depth_at_vertices"] = surface.depth_at_vertices;
   out["regions"] = ordered_json::array();
-  for (const ContactRegion& region : surface.regions) out["regions"].push_back(json_of(region));
+  for (std::size_t i = 0; i < surface.regions.size(); ++i) {
+    out["regions"].push_back(json_of(surface.regions[i], body.contacts[i]));
+  }
   out["sides"] = json_of(body.sides, bite.sides);
   out["fore_aft"] = json_of(body.fore_aft, bite.fore_aft);
   out["teeth"] = ordered_json::array();
@@ -81,6 +101,16 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
                             {"least_distance", or_null(tooth.least_distance)}});
   }
   return out;
+}
+
+ordered_json json_of(const std::optional<Eigen::AlignedBox3d>& box) {
+  if (!box) return nullptr;
+  const Eigen::Vector3d &low = box->min(), &high = box->max();
+  return {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+}
+
+ordered_json or_null(const std::optional<std::string>& text) {
+  return text ? ordered_json(*text) : ordered_json(nullptr);
 }
 
 const char* name_of(ToothNumbers numbers) {
@@ -122,6 +152,13 @@ ordered_json json_of(const Bite& bite) {
   out["numbering"] = bite.numbers ? ordered_json(name_of(*bite.numbers)) : ordered_json(nullptr);
   out["fixed"] = json_of(bite.fixed, bite);
   out["moving"] = json_of(bite.moving, bite);
+  out["contacts"] = ordered_json::array();
+  for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
+    out["contacts"].push_back(json_of(bite.contacts[i], i + 1));
+  }
+  out["region"] = json_of(bite.region);
+  out["warning"] = or_null(bite.warning);
+  out["hint"] = or_null(bite.hint);
   out["checks"] = bite.checks;
   out["caveat"] = kCaveat;
   return out;

@@ -9,6 +9,7 @@
 
 #include "cli/extents.h"
 #include "cli/measure_progress.h"
+#include "cli/occlusion/bite_hints.h"
 #include "cli/refusals.h"
 #include "cli/version.h"
 #include "ist/base/error.h"
@@ -70,7 +71,15 @@ OcclusionOptions options_of(const Bite& bite) {
   options.longest_edge = 0.2 * bite.units_per_mm;
   options.foundation = bite.foundation;
   options.change = bite.change;
+  options.within = bite.region;
   return options;
+}
+
+void require_in_region(const Bite& bite, const BiteBody& body, const std::string& name) {
+  if (!bite.region || body.surface.total_area > 0) return;
+  refuse_if(true, "--region",
+            fmt::format("no triangle of {} has its centroid in {}: the body lies in {}", name,
+                        box_words(*bite.region), box_words(body.box())));
 }
 
 // Of each limit of the preset, in its order.
@@ -152,6 +161,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   bite.preset = questions.preset;
   bite.scanner_band = questions.scanner_band;
   bite.numbers = questions.numbers;
+  bite.region = questions.region;
   bite.reach = questions.reach * bite.units_per_mm;
   for (double* length : {&bite.contact, &bite.foundation, &bite.change}) {
     *length *= bite.units_per_mm;
@@ -176,12 +186,21 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   bite.moving.surface = std::move(measured.moving);
   fill(bite.fixed, bodies.fixed, bite, labels_fixed);
   fill(bite.moving, bodies.moving, bite, labels_moving);
+  require_in_region(bite, bite.fixed, bodies.fixed_name);
+  require_in_region(bite, bite.moving, bodies.moving_name);
   require_area(bite.fixed, bodies.fixed_name);
   require_area(bite.moving, bodies.moving_name);
   bite.findings = Examiner(bodies, {}, {}).at(pose);
   // Of the same triangles as all areas here.
   bite.findings.depth.area =
       0.5 * (bite.fixed.surface.penetrating_area + bite.moving.surface.penetrating_area);
+  if (bite.region && bite.findings.depth.at_vertices) {
+    bite.findings.depth.at_vertices =
+        std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices);
+  }
+  bite.number_contacts();
+  bite.warning = warning_of(bite);
+  bite.hint = hint_of(bite);
   bite.checks = checks_of(bite);
   return bite;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ struct BiteQuestions {
   SideOptions sides;
   std::filesystem::path labels_fixed, labels_moving;
   std::optional<ToothNumbers> numbers;
+  std::optional<Eigen::AlignedBox3d> region;  ///< fixed coordinates, mesh units; empty: all counts
   bool no_names = false;
 };
 
@@ -30,8 +32,8 @@ struct BiteSources {
 };
 
 /// Measures an occlusion, and tells `progress` of it. `bodies` must outlive the bite. Throws
-/// kTrianglesMissing, kInputInvalid for labels, and CLI::ValidationError for sides and for a unit
-/// that contradicts the trees'.
+/// kTrianglesMissing, kInputInvalid for labels, and CLI::ValidationError for sides, for a unit that
+/// contradicts the trees', and for a region without a triangle of one body.
 [[nodiscard]] Bite make_bite(const Bodies& bodies, const BiteSources& sources,
                              const Eigen::Isometry3d& pose, const BiteQuestions& questions,
                              Progress& progress);

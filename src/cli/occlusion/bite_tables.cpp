@@ -7,23 +7,14 @@
 #include <string>
 
 #include "cli/answers/json_text.h"
-#include "cli/formats/csv_writer.h"
+#include "cli/occlusion/bite_hints.h"
 #include "cli/occlusion/bite_json.h"
+#include "cli/occlusion/html/bite_numbers.h"
 #include "cli/terminal.h"
 #include "ist/base/files.h"
 
 namespace ist::cli {
 namespace {
-
-void add_rows(CsvWriter& table, const Bite& bite, const BiteBody& body, const char* role) {
-  std::size_t index = 0;
-  for (const ContactRegion& region : body.surface.regions) {
-    table.row(role, index++, region.area, region.centre[0], region.centre[1], region.centre[2],
-              region.least_distance, region.closest[0], region.closest[1], region.closest[2],
-              region.penetrating_area, region.depth_integral, region.share, region.share_thinner,
-              region.share_thicker, region.partner, bite.unit_words());
-  }
-}
 
 // How far apart, and how deep: of a body that lies inside the other both are known.
 std::string first_line(const Bite& bite) {
@@ -54,33 +45,24 @@ std::string second_line(const Bite& bite) {
   for (std::size_t i = 0; i < bite.fixed.areas.size(); ++i) {
     const double limit = bite.preset->micrometres[i];
     areas += fmt::format(
-        "{}{} {:.4g} and {:.4g} {}²{}", areas.empty() ? "" : ", ",
-        limit > 0 ? fmt::format("within {:g} µm", limit) : "in each other", bite.fixed.areas[i],
-        bite.moving.areas[i], bite.unit,
-        limit > 0 && limit < bite.scanner_band ? " (below the error assumed for scanning)" : "");
+        "{}{} {:.4g} and {:.4g} {}²", areas.empty() ? "" : ", ",
+        limit > 0 ? fmt::format("within {:g} µm or overlapping", limit) : "in each other",
+        bite.fixed.areas[i], bite.moving.areas[i], bite.unit);
+    if (limit == 0) continue;
+    areas += fmt::format(" ({:.4g} and {:.4g} without the overlap{})", bite.fixed.area_outside(i),
+                         bite.moving.area_outside(i),
+                         limit < bite.scanner_band ? "; below the error assumed for scanning" : "");
   }
-  const auto unpaired = [](const BiteBody& body) {
-    return std::count_if(body.surface.regions.begin(), body.surface.regions.end(),
-                         [](const ContactRegion& region) { return !region.partner; });
-  };
-  const auto pairs =
-      static_cast<std::ptrdiff_t>(bite.fixed.surface.regions.size()) - unpaired(bite.fixed);
-  return fmt::format("areas, {} ({}): {}; {} paired region{}, {} unpaired", bite.preset->name,
-                     bite.preset->source, areas, pairs, pairs == 1 ? "" : "s",
-                     unpaired(bite.fixed) + unpaired(bite.moving));
+  const std::size_t count = bite.contacts.size();
+  const std::string contacts =
+      count == 0 ? "no contacts"
+                 : fmt::format("{} contact{}, {} of them on one body alone", count,
+                               count == 1 ? "" : "s", count - bite.fixed.on_both);
+  return fmt::format("areas, {} ({}): {}; {}", bite.preset->name, bite.preset->source, areas,
+                     contacts);
 }
 
 }  // namespace
-
-void write_bite_csv(const Bite& bite, OutputFile& file) {
-  CsvWriter table(
-      file, {"body", "index", "area", "centre_x", "centre_y", "centre_z", "least_distance",
-             "closest_x", "closest_y", "closest_z", "penetrating_area", "depth_integral", "share",
-             "share_thinner", "share_thicker", "partner", "unit"});
-  add_rows(table, bite, bite.fixed, "fixed");
-  add_rows(table, bite, bite.moving, "moving");
-  table.flush();
-}
 
 void write_bite_json(const Bite& bite, OutputFile& file) {
   const std::string text = json_text(json_of(bite), 2) + "\n";
@@ -92,7 +74,30 @@ void print_bite(const Bite& bite, std::span<const std::filesystem::path> written
   for (const std::string& check : bite.checks) last += check + "; ";
   last += written.empty() ? "nothing written" : "wrote";
   for (const std::filesystem::path& file : written) last += " " + file.string();
-  fmt::print("{}\n{}\n{}\n", first_line(bite), second_line(bite), last);
+  if (bite.warning) fmt::print("{}\n", *bite.warning);
+  fmt::print("{}\n", first_line(bite));
+  if (!bite.warning) fmt::print("{}\n", second_line(bite));
+  if (bite.region) fmt::print("{}\n", region_words(bite));
+  if (bite.hint) fmt::print("hint: {}\n", *bite.hint);
+  fmt::print("{}\n", last);
+}
+
+void print_contacts(const Bite& bite) {
+  constexpr std::size_t kMost = 40;
+  if (bite.contacts.empty()) return fmt::print("No contacts.\n");
+  const BiteNumbers numbers(bite);
+  fmt::print("{:>7}  {:>6}  {:>9}  {:>18}  {:>8}  closest at, {}\n", "contact", "on", "area, mm²",
+             "least distance, µm", "share, %", bite.unit);
+  for (std::size_t i = 0; i < std::min(bite.contacts.size(), kMost); ++i) {
+    const BiteContact& contact = bite.contacts[i];
+    const char* on = contact.on_both() ? "both" : contact.moving.empty() ? "fixed" : "moving";
+    fmt::print("{:>7}  {:>6}  {:>9}  {:>18}  {:>8}  {}\n", i + 1, on, numbers.area(contact.area),
+               numbers.micrometres(contact.least_distance),
+               BiteNumbers::percent(100 * contact.share), numbers.place(contact.closest));
+  }
+  if (bite.contacts.size() > kMost) {
+    fmt::print("… and {} more: -o bite.csv holds them all\n", bite.contacts.size() - kMost);
+  }
 }
 
 }  // namespace ist::cli

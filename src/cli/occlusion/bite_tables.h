@@ -8,15 +8,14 @@
 
 namespace ist::cli {
 
-/// Writes a row for each contact region: of the fixed body, then of the moving one, the largest
-/// first. Throws kFileUnwritable.
-void write_bite_csv(const Bite& bite, OutputFile& file);
-
-/// Writes the object of json_of() in the same way. Throws kFileUnwritable.
+/// Writes the object of json_of(). Throws kFileUnwritable.
 void write_bite_json(const Bite& bite, OutputFile& file);
 
-/// Prints three lines for people: touch and how far or how deep; areas and regions; checks, and
-/// the files that were written.
+/// Prints three lines for people: touch and how far or how deep; areas and the number of contacts;
+/// checks, and the files that were written. A warning, a region and a hint have lines of their own.
 void print_bite(const Bite& bite, std::span<const std::filesystem::path> written);
+
+/// Prints the contacts by their numbers, a line each.
+void print_contacts(const Bite& bite);
 
 }  // namespace ist::cli

@@ -160,8 +160,9 @@ Picture draw_map(const BiteBody& body, const BiteView& view, std::span<const Map
       }
     }
   }
-  for (const ContactRegion& region : body.surface.regions) {
-    draw_dot(picture, place_in(view, width, height, region.closest), region.partner.has_value());
+  for (std::size_t k = 0; k < body.contacts.size(); ++k) {
+    draw_dot(picture, place_in(view, width, height, body.surface.regions[k].closest),
+             body.contacts[k] <= body.on_both);
   }
   return picture;
 }

@@ -26,7 +26,7 @@ struct Picture {
 /// are interpolated between the corners of a triangle. It stays bare where a corner has no
 /// distance, and where the distances of two corners differ by more than they are apart, since a
 /// sign is wrong there. The points of contact regions that are closest to the other body are dots:
-/// black, or white for regions without a partner.
+/// black, or white for contacts on one body alone.
 ///
 /// Surfaces that face the eye have the very colours of the bands. Cost: some 0.1 s for 250,000
 /// triangles at 900 × 700 pixels.

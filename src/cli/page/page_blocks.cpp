@@ -69,7 +69,7 @@ ordered_json bite_block(const Bodies& bodies, const Bite& bite, const BiteQuesti
 bool page_shows(const BiteQuestions& questions) {
   const SideOptions& sides = questions.sides;
   return sides.left.empty() && sides.front.empty() && sides.midline.empty() &&
-         questions.labels_fixed.empty() && questions.labels_moving.empty() &&
+         questions.labels_fixed.empty() && questions.labels_moving.empty() && !questions.region &&
          questions.scanner_band == BiteQuestions{}.scanner_band;
 }
 

@@ -36,7 +36,8 @@ struct NamedTree {
 [[nodiscard]] nlohmann::ordered_json bite_block(const Bodies& bodies, const Bite& bite,
                                                 const BiteQuestions& questions);
 
-/// Whether the page can ask all that was asked: it knows no sides, midlines and labels.
+/// Whether the page can ask all that was asked: it knows no sides, midlines, labels and
+/// regions.
 [[nodiscard]] bool page_shows(const BiteQuestions& questions);
 
 }  // namespace ist::cli

@@ -150,9 +150,16 @@ void pair_regions(ContactRegions& fixed, ContactRegions& moving) {
     }
     return {};
   };
+  const auto find_faced = [&](ContactRegions& surface, const ContactRegions& others) {
+    for (std::size_t k = 0; k < surface.regions.size(); ++k) {
+      surface.regions[k].faces = faced(surface, k, others);
+    }
+  };
+  find_faced(fixed, moving);
+  find_faced(moving, fixed);
   for (std::uint32_t k = 0; k < fixed.regions.size(); ++k) {
-    const auto other = faced(fixed, k, moving);
-    if (!other || faced(moving, *other, fixed) != k) continue;
+    const auto other = fixed.regions[k].faces;
+    if (!other || moving.regions[*other].faces != k) continue;
     fixed.regions[k].partner = *other;
     moving.regions[*other].partner = k;
   }

@@ -18,7 +18,7 @@ struct ContactRegions {
 [[nodiscard]] ContactRegions contact_regions(const RefinedSurface& surface,
                                              const OcclusionOptions& options);
 
-/// Names the partners of regions that face each other.
+/// Finds the regions that regions face, and the partners.
 void pair_regions(ContactRegions& fixed, ContactRegions& moving);
 
 }  // namespace ist

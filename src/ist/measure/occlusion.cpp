@@ -46,12 +46,29 @@ void require_options(const OcclusionOptions& options) {
   amount("least_area", options.least_area);
   amount("foundation", options.foundation);
   amount("change", options.change);
+  if (!options.within || !options.within->isEmpty()) return;
+  throw Error(ErrorCode::kArgumentInvalid, "within: the box is empty: give two of its corners");
 }
 
 double farthest_level(const OcclusionOptions& options) {
   double farthest = std::max(options.contact, options.foundation + options.change);
   for (const double limit : options.limits) farthest = std::max(farthest, limit);
   return farthest;
+}
+
+// The triangles whose centroid lies in the box; all if there is no box.
+std::vector<std::uint32_t> counted_triangles(const TriangleMesh& mesh,
+                                             const std::vector<Vector>& points,
+                                             const RigidMove& to_fixed,
+                                             const OcclusionOptions& options) {
+  std::vector<std::uint32_t> counted;
+  counted.reserve(mesh.triangles.size());
+  for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+    const Triangle& t = mesh.triangles[k];
+    const Vector middle = scaled(1.0 / 3, sum(sum(points[t[0]], points[t[1]]), points[t[2]]));
+    if (!options.within || options.within->contains(to_fixed(middle))) counted.push_back(k);
+  }
+  return counted;
 }
 
 // One surface; its regions are in the body's coordinates yet.
@@ -78,13 +95,20 @@ std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const 
   if (!measure_far_inside(side, points, reach, found, proceed_here)) return {};
   MeasuredSurface out;
   SurfaceOcclusion& surface = out.surface;
+  const std::vector<std::uint32_t> counted = counted_triangles(mesh, points, to_fixed, options);
+  std::vector<std::uint8_t> counts(points.size(), options.within ? 0 : 1);
+  for (const std::uint32_t k : counted) {
+    for (const std::uint32_t v : mesh.triangles[k]) counts[v] = 1;
+  }
   std::vector<RefinedSurface::Vertex> vertices;
   vertices.reserve(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
     SurfaceDistance& one = found[v];
     const bool is_far = one.triangle == SurfaceDistance::kNoTriangle;
     vertices.push_back({points[v], is_far ? reach : one.distance, one.triangle});
-    if (!is_far) surface.depth_at_vertices = std::max(surface.depth_at_vertices, -one.distance);
+    if (!is_far && counts[v] != 0) {
+      surface.depth_at_vertices = std::max(surface.depth_at_vertices, -one.distance);
+    }
     if (is_far || std::abs(one.distance) > options.reach) {
       one = beyond_reach();
     } else {
@@ -92,7 +116,8 @@ std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const 
     }
   }
   surface.vertices = std::move(found);
-  const RefinedSurface refined(side, std::move(vertices), near, options.longest_edge, proceed_here);
+  const RefinedSurface refined(side, std::move(vertices), counted, near, options.longest_edge,
+                               proceed_here);
   if (!refined.complete()) return {};
   surface.areas.assign(options.limits.size(), 0);
   for (const RefinedTriangle& triangle : refined.triangles()) {
@@ -104,7 +129,8 @@ std::optional<MeasuredSurface> measure_surface(const SurfaceInBody& side, const 
     surface.penetrating_area += inside.area;
     surface.depth_integral += inside.below;
   }
-  for (const Triangle& t : mesh.triangles) {
+  for (const std::uint32_t k : counted) {
+    const Triangle& t = mesh.triangles[k];
     surface.total_area += area_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
   }
   out.regions = contact_regions(refined, options);

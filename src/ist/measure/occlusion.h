@@ -27,7 +27,10 @@ struct OcclusionOptions {
   double longest_edge = 0.2;
   double foundation = 0.1,  ///< depth of the elastic foundation of which shares are made
       change = 0.05;        ///< added to it and taken off, to show what shares hang on
-  Proceed proceed = {};     ///< asked every 16,384 points, and before each round of splitting
+  /// Counts only triangles whose centroid lies in this box, fixed coordinates: areas, depth and
+  /// contact regions. The distances of single vertices are of the whole surfaces.
+  std::optional<Eigen::AlignedBox3d> within = std::nullopt;
+  Proceed proceed = {};  ///< asked every 16,384 points, and before each round of splitting
 };
 
 /// The part of a contact region in one triangle of the mesh.
@@ -59,9 +62,10 @@ struct ContactRegion {
       share_thinner = 0,  ///< with a foundation thinner by the change
       share_thicker = 0;  ///< and thicker
   /// The region of the other surface, by its index there, in which the nearest triangle of this
-  /// one's closest vertex lies, where the same holds the other way round.
-  std::optional<std::uint32_t> partner = std::nullopt;
-  std::vector<ContactTriangle> triangles;  ///< by their indices
+  /// one's closest vertex lies.
+  std::optional<std::uint32_t> faces = std::nullopt;
+  std::optional<std::uint32_t> partner = std::nullopt;  ///< the same, if it faces this one too
+  std::vector<ContactTriangle> triangles;               ///< by their indices
 };
 
 /// Distances, areas and contact regions of one surface against the other body.
@@ -69,10 +73,10 @@ struct SurfaceOcclusion {
   /// One for each vertex of the mesh, as distance_map() gives; `closest` in fixed coordinates.
   std::vector<SurfaceDistance> vertices;
   std::vector<double> areas;    ///< of each limit: the area whose distance is at most that
-  double total_area = 0;        ///< of the mesh
+  double total_area = 0;        ///< of the triangles that count
   double penetrating_area = 0;  ///< whose distance is at most 0
   double depth_integral = 0;    ///< units cubed
-  /// The largest depth of a vertex of the mesh; 0 where all lie outside.
+  /// The largest depth of a vertex of these triangles; 0 if all lie outside.
   double depth_at_vertices = 0;
   std::vector<ContactRegion> regions;  ///< the largest first
 };

@@ -26,12 +26,13 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices, double near,
+RefinedSurface::RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices,
+                               std::span<const std::uint32_t> triangles, double near,
                                double longest_edge, const Proceed& proceed)
     : vertices_(std::move(vertices)) {
   const TriangleMesh& mesh = *side.surface.triangles();
   std::vector<RefinedTriangle> open;
-  for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+  for (const std::uint32_t k : triangles) {
     const Triangle& t = mesh.triangles[k];
     open.push_back({{t[0], t[1], t[2]}, k});
   }

@@ -30,11 +30,13 @@ class RefinedSurface {
   };
 
   /// @param vertices     the mesh's, with their distances
+  /// @param triangles    of the mesh: those to refine
   /// @param near         what is farther is left out
   /// @param longest_edge longer ones are split
   /// @param proceed      may end it: then it is not complete
-  RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices, double near,
-                 double longest_edge, const Proceed& proceed);
+  RefinedSurface(const SurfaceInBody& side, std::vector<Vertex> vertices,
+                 std::span<const std::uint32_t> triangles, double near, double longest_edge,
+                 const Proceed& proceed);
 
   [[nodiscard]] bool complete() const noexcept { return complete_; }
 

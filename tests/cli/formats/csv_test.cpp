@@ -45,6 +45,16 @@ TEST_F(Csv, NumbersHaveTheFewestDigitsThatReadBack) {
             "2.5,,x,7\n");
 }
 
+TEST_F(Csv, ADecimalCommaPartsFieldsBySemicolons) {
+  OutputFile file(file_);
+  cli::CsvWriter csv(file, {"a", "b;c", "d"}, cli::DecimalSign::kComma);
+  csv.row(0.5, "1.5, text", "x;y");
+  csv.row(std::optional<double>(), 7, -2.25);
+  csv.flush();
+  file.commit();
+  EXPECT_EQ(file_content(file_), "a;\"b;c\";d\n0,5;1.5, text;\"x;y\"\n;7;-2,25\n");
+}
+
 TEST_F(Csv, RowsMayBeCountedAtRunTime) {
   cli::CsvWriter csv(file_, std::vector<std::string>(40, "column"));
   std::string expected;

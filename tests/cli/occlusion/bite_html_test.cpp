@@ -1,5 +1,6 @@
 #include "cli/occlusion/bite_html.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <charconv>
@@ -8,6 +9,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "cli/occlusion/bite_hints.h"
 #include "cli/occlusion/bite_view.h"
 #include "cli/occlusion/bites.h"
 #include "cli/occlusion/map_colours.h"
@@ -68,7 +70,7 @@ void expect_numbers(const std::string& cell, const std::vector<double>& expected
 }
 
 void expect_place(const std::string& cell, const Eigen::Vector3d& at) {
-  expect_numbers(cell, {at.x(), at.y(), at.z()}, 1e-4 * at.cwiseAbs().maxCoeff());
+  expect_numbers(cell, {at.x(), at.y(), at.z()}, 0.0051);
 }
 
 // The row that begins so; empty without one.
@@ -139,58 +141,100 @@ TEST(BiteHtml, HasNoScriptAndRefersToNothingOutside) {
   EXPECT_FALSE(page.holds("https?:|javascript"));
 }
 
-TEST(BiteHtml, HoldsTheContactRegions) {
+TEST(BiteHtml, HoldsTheContactsByTheirNumbers) {
   const auto made = full_bite();
-  made->bite.moving.surface.regions.at(0).partner.reset();
-  const Page page(made->bite);
-  std::size_t regions = 0;
-  for (const bool is_fixed : {true, false}) {
-    const BiteBody& body = is_fixed ? made->bite.fixed : made->bite.moving;
-    ASSERT_GE(body.surface.regions.size(), 2U);
-    for (std::size_t i = 0; i < body.surface.regions.size(); ++i, ++regions) {
-      const ContactRegion& region = body.surface.regions[i];
-      const std::string index = std::to_string(i);
-      const auto in = [&](const char* heading) {
-        return cell(page.table(region.partner ? "regions" : "unpaired"),
-                    {(is_fixed ? "fixed " : "moving ") + index}, heading);
+  Bite& bite = made->bite;
+  ASSERT_EQ(bite.contacts.size(), 2U);
+  ContactRegion alone = bite.moving.surface.regions.at(1);
+  alone.faces.reset();
+  alone.area = 0.5;
+  bite.moving.surface.regions.push_back(alone);
+  bite.number_contacts();
+  const Page page(bite);
+  for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
+    const cli::BiteContact& contact = bite.contacts[i];
+    const auto in = [&](const char* heading) {
+      return cell(page.table(i < 2 ? "contacts" : "contacts-on-one"), {std::to_string(i + 1)},
+                  heading);
+    };
+    if (i < 2) {
+      const auto area = [](const BiteBody& body, std::uint32_t region) {
+        return std::vector<double>{body.surface.regions[region].area};
       };
-      EXPECT_EQ(in("partner"),
-                region.partner ? (is_fixed ? "moving " : "fixed ") + std::to_string(*region.partner)
-                               : "unpaired");
-      expect_numbers(in("area, mm²"), {region.area}, 1e-4);
-      expect_numbers(in("share, %"),
-                     {100 * region.share, 100 * region.share_thinner, 100 * region.share_thicker},
-                     0.01);
-      expect_numbers(in("least distance, µm"), {1000 * region.least_distance}, 0.1);
-      expect_numbers(in("overlap, mm²"), {region.penetrating_area}, 1e-4);
-      expect_numbers(in("depth, integrated, mm³"), {region.depth_integral}, 1e-5);
-      expect_place(in("centre"), region.centre);
-      expect_place(in("closest point"), region.closest);
+      expect_numbers(in("fixed area, mm²"), area(bite.fixed, contact.fixed.at(0)), 0.05);
+      expect_numbers(in("moving area, mm²"), area(bite.moving, contact.moving.at(0)), 0.05);
+    } else {
+      EXPECT_EQ(in("fixed area, mm²"), "–");
+      EXPECT_EQ(in("moving area, mm²"), "0.50");
+    }
+    expect_numbers(in("share, %"),
+                   {100 * contact.share, 100 * contact.share_thinner, 100 * contact.share_thicker},
+                   0.05);
+    expect_numbers(in("least distance, µm"), {1000 * contact.least_distance}, 0.5);
+    expect_numbers(in("overlap, mm²"), {contact.penetrating_area}, 0.05);
+    expect_numbers(in("depth, integrated, mm³"), {contact.depth_integral}, 0.005);
+    expect_place(in("centre, mm"), contact.centre);
+    expect_place(in("closest point, mm"), contact.closest);
+  }
+  EXPECT_EQ(page.table("contacts").size(), 3U);
+  EXPECT_EQ(page.table("contacts-on-one").size(), 2U);
+}
+
+// A number stands in both pictures where its contact is closest.
+TEST(BiteHtml, BothPicturesCallAContactByOneNumber) {
+  const auto made = full_bite();
+  Bite& bite = made->bite;
+  // Regions in another order than those of the other body.
+  std::swap(bite.moving.surface.regions[0], bite.moving.surface.regions[1]);
+  for (ContactRegion& region : bite.fixed.surface.regions) region.faces = 1 - *region.faces;
+  bite.number_contacts();
+  ASSERT_EQ(bite.fixed.contacts, (std::vector<std::size_t>{1, 2}));
+  ASSERT_EQ(bite.moving.contacts, (std::vector<std::size_t>{2, 1}));
+  const Page page(bite);
+  const cli::BiteViews views = cli::bite_views(bite, 900, 700);
+  for (const bool is_fixed : {true, false}) {
+    const BiteBody& body = is_fixed ? bite.fixed : bite.moving;
+    for (std::size_t k = 0; k < body.contacts.size(); ++k) {
+      const Eigen::Vector2d place = cli::place_in(is_fixed ? views.fixed : views.moving, 900, 700,
+                                                  body.surface.regions[k].closest);
+      const std::string drawn =
+          fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"start\">{}</text>",
+                      place.x() + 5, place.y() - 4, body.contacts[k]);
+      EXPECT_NE(page.content["all"].get<std::string>().find(drawn), std::string::npos) << drawn;
     }
   }
-  EXPECT_EQ(page.table("regions").size() + page.table("unpaired").size(), regions + 2);
-  EXPECT_EQ(page.table("unpaired").size(), 2U);
 }
 
 TEST(BiteHtml, HoldsAreasAndDepths) {
   const auto& [made, page] = shown();
   const BiteBody &fixed = made->bite.fixed, &moving = made->bite.moving;
   const Rows areas = page.table("areas");
-  const auto expect = [&](const std::string& head, double a, double b, double error) {
-    expect_numbers(cell(areas, {head}, "fixed"), {a}, error);
-    expect_numbers(cell(areas, {head}, "moving"), {b}, error);
+  const auto expect = [&](const std::string& head, double a, double b) {
+    expect_numbers(cell(areas, {head}, "fixed, mm²"), {a}, 0.05);
+    expect_numbers(cell(areas, {head}, "moving, mm²"), {b}, 0.05);
   };
   const std::string below = ": below the error assumed for scanning";
-  expect("distance at most 9 µm" + below, fixed.areas[0], moving.areas[0], 1e-4);
-  expect("distance at most 29 µm" + below, fixed.areas[1], moving.areas[1], 1e-4);
-  expect("distance at most 59 µm", fixed.areas[2], moving.areas[2], 1e-4);
-  expect("distance at most 149 µm", fixed.areas[4], moving.areas[4], 1e-4);
+  const double over_fixed = fixed.surface.penetrating_area,
+               over_moving = moving.surface.penetrating_area;
+  expect("overlap", over_fixed, over_moving);
+  expect("within 9 µm or overlapping" + below, fixed.areas[0], moving.areas[0]);
+  expect("within 29 µm or overlapping" + below, fixed.areas[1], moving.areas[1]);
+  expect("within 59 µm or overlapping", fixed.areas[2], moving.areas[2]);
+  expect("within 149 µm or overlapping", fixed.areas[4], moving.areas[4]);
+  expect("within 9 µm, without the overlap" + below, fixed.areas[0] - over_fixed,
+         moving.areas[0] - over_moving);
+  expect("within 149 µm, without the overlap", fixed.areas[4] - over_fixed,
+         moving.areas[4] - over_moving);
   EXPECT_LT(fixed.areas[0], fixed.areas[4]);
-  expect("overlap", fixed.surface.penetrating_area, moving.surface.penetrating_area, 1e-4);
-  expect("depth, integrated over the overlap (no volume)", fixed.surface.depth_integral,
-         moving.surface.depth_integral, 1e-5);
-  expect("depth of the deepest vertex", 1000 * fixed.surface.depth_at_vertices,
-         1000 * moving.surface.depth_at_vertices, 0.1);
+  for (const auto& [body, role] : {std::pair(&fixed, "fixed"), {&moving, "moving"}}) {
+    const auto in = [&, role = role](const char* heading) {
+      return cell(page.table("depths"), {role}, heading);
+    };
+    expect_numbers(in("depth of the deepest vertex, µm"), {1000 * body->surface.depth_at_vertices},
+                   0.5);
+    expect_numbers(in("depth, integrated over the overlap (no volume), mm³"),
+                   {body->surface.depth_integral}, 0.005);
+  }
 }
 
 TEST(BiteHtml, HoldsTheFindings) {
@@ -202,9 +246,9 @@ TEST(BiteHtml, HoldsTheFindings) {
   EXPECT_EQ(answer("distance of the surfaces"), "0 µm");
   EXPECT_EQ(answer("penetration depth"), "123 µm to 124 µm");
   expect_numbers(answer("depth of the deepest vertex"),
-                 {1000 * *made->bite.findings.depth.at_vertices}, 0.1);
-  EXPECT_EQ(answer("area inside the other body, mean of both"), "2.7500 mm²");
-  EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.125)");
+                 {1000 * *made->bite.findings.depth.at_vertices}, 0.5);
+  EXPECT_EQ(answer("area inside the other body, mean of both"), "2.75 mm²");
+  EXPECT_EQ(answer("deepest point"), "(1.5, -2.25, 3.13)");
   EXPECT_EQ(answer("note"), "a note for people");
   EXPECT_EQ(rows.size(), 9U)
       << "of contact points, which are as coarse as voxels, it tells nothing";
@@ -221,27 +265,25 @@ TEST(BiteHtml, HoldsSharesBySideAndByTooth) {
       return std::vector<double>{balance.shares.*member, balance.thinner.*member,
                                  balance.thicker.*member};
     };
-    expect_numbers(in("first side, %").substr(3), of(&cli::Balance::Shares::first), 0.01);
-    expect_numbers(in("second side, %").substr(3), of(&cli::Balance::Shares::second), 0.01);
-    expect_numbers(in("asymmetry, %"), of(&cli::Balance::Shares::asymmetry), 0.01);
-    expect_place(in("centre"), balance.centre);
+    expect_numbers(in("first side, %").substr(3), of(&cli::Balance::Shares::first), 0.05);
+    expect_numbers(in("second side, %").substr(3), of(&cli::Balance::Shares::second), 0.05);
+    expect_numbers(in("asymmetry, %"), of(&cli::Balance::Shares::asymmetry), 0.05);
+    expect_place(in("centre, mm"), balance.centre);
   };
   expect("fixed: +x and -x", *made->bite.fixed.sides);
   expect("fixed: +y and -y", *made->bite.fixed.fore_aft);
   expect("moving: +x and -x", *made->bite.moving.sides);
   expect("moving: +y and -y", *made->bite.moving.fore_aft);
-  EXPECT_TRUE(
-      page.says("+x and -x are parted by the plane 1 x + 0 y + 0 z = 0, the middle of the "
-                "box: assumed"));
+  EXPECT_TRUE(page.says("+x and -x: split at the middle of the fixed body, x = 0 (assumed)"));
   ASSERT_EQ(page.table("teeth").size(), 3U);
   for (const cli::Tooth& tooth : made->bite.fixed.teeth) {
     const auto in = [&](const char* heading) {
       return cell(page.table("teeth"), {std::to_string(tooth.number), "fixed"}, heading);
     };
-    expect_numbers(in("area in contact, mm²"), {tooth.area}, 1e-4);
+    expect_numbers(in("area in contact, mm²"), {tooth.area}, 0.05);
     expect_numbers(in("geometric share, %"),
-                   {100 * tooth.share, 100 * tooth.share_thinner, 100 * tooth.share_thicker}, 0.01);
-    expect_numbers(in("least distance, µm"), {1000 * tooth.least_distance}, 0.1);
+                   {100 * tooth.share, 100 * tooth.share_thinner, 100 * tooth.share_thicker}, 0.05);
+    expect_numbers(in("least distance, µm"), {1000 * tooth.least_distance}, 0.5);
   }
   EXPECT_TRUE(page.says("FDI numbers"));
 }
@@ -269,7 +311,7 @@ TEST(BiteHtml, HoldsInputAndSettings) {
   EXPECT_EQ(of("fixed", "XXH3 of the file"), "0123456789abcdef");
   EXPECT_EQ(of("moving", "XXH3 of the file"), "–");
   EXPECT_EQ(of("fixed", "triangles"), std::to_string(made->bite.fixed.mesh->triangles.size()));
-  expect_numbers(of("fixed", "area, mm²"), {made->bite.fixed.surface.total_area}, 1e-4);
+  expect_numbers(of("fixed", "area, mm²"), {made->bite.fixed.surface.total_area}, 0.05);
   EXPECT_EQ(of("fixed", "closed"), "no: depth is by vertices");
   EXPECT_EQ(of("moving", "closed"), "yes");
   EXPECT_GE(std::stoi(of("fixed", "vertices without a known sign")), 1);
@@ -311,7 +353,13 @@ TEST(BiteHtml, NamesSidesOnlyAsTheDivisionsDo) {
   made->bite.fore_aft = {-Eigen::Vector3d::UnitY(), 0, true, "anterior", "posterior"};
   const Page named(made->bite);
   EXPECT_FALSE(row_of(named.table("shares"), {"fixed: left and right"}).empty());
-  EXPECT_TRUE(named.says("left and right are parted by the plane 1 x + 0 y + 0 z = 0.5; anterior"));
+  EXPECT_TRUE(
+      named.says("left and right: split at x = 0.5; anterior and posterior: split at the "
+                 "middle of the fixed body, y = 0 (assumed)"));
+  made->bite.sides.direction = Eigen::Vector3d(0.6, 0.8, 0);
+  made->bite.sides.at = 0.00819397;
+  EXPECT_TRUE(Page(made->bite).says("left and right: split at 0.6 x + 0.8 y = 0.01"));
+  made->bite.sides = {Eigen::Vector3d::UnitX(), 0.5, false, "left", "right"};
   // And at the edges of both pictures, where they lie.
   EXPECT_TRUE(named.holds(R"(x="890\.0" y="350\.0" text-anchor="end">left<)"));
   EXPECT_TRUE(named.holds(R"(x="10\.0" y="350\.0" text-anchor="start">right<)"));
@@ -378,12 +426,34 @@ TEST(BiteHtml, ShowsBothMapsAsPictures) {
 TEST(BiteHtml, SaysWhereNothingTouches) {
   const auto made = sphere_over_plate({0, 0, 0.5});
   const Page page(made->bite);
-  EXPECT_EQ(row_of(page.table("shares"), {"fixed: +x and -x"}),
-            (Cells{"fixed: +x and -x", "+x –", "-x –", "–", "–"}));
-  EXPECT_TRUE(page.says("No contact region has a partner."));
-  EXPECT_TRUE(page.says("No contact region is without a partner."));
+  EXPECT_TRUE(page.table("shares").empty());
+  EXPECT_TRUE(page.says("No contacts."));
   EXPECT_TRUE(page.table("teeth").empty());
   EXPECT_EQ(row_of(page.table("findings"), {"do the surfaces touch"}).at(1), "no");
+}
+
+TEST(BiteHtml, BeginsWithAWarningInPlaceOfEmptyTables) {
+  const auto made = sphere_over_plate({0, 0, 100});
+  made->bite.warning = cli::warning_of(made->bite);
+  const Page page(made->bite);
+  EXPECT_EQ(page.content["lists"]["checks"].at(0),
+            "The scans are 100 mm apart: they are probably not in one coordinate system. Register "
+            "them first, or give --matrix.");
+  for (const char* table : {"areas", "depths", "shares", "contacts"}) {
+    EXPECT_TRUE(page.table(table).empty()) << table;
+  }
+  EXPECT_TRUE(page.says("No contacts."));
+}
+
+TEST(BiteHtml, SaysItsRegionAndItsHint) {
+  const auto made = sphere_over_plate({0, 0, -0.05});
+  made->bite.region = Eigen::AlignedBox3d(Eigen::Vector3d(-5, -4, -3), Eigen::Vector3d(5, 4, 3.5));
+  made->bite.hint = "contact 1 is far";
+  EXPECT_EQ(Page(made->bite).content["lists"]["checks"],
+            (json{"region: areas, contacts, shares and depths of vertices are of the triangles "
+                  "with their centroid in x -5 to 5, y -4 to 4, z -3 to 3.5; all else is of the "
+                  "whole bodies",
+                  "hint: contact 1 is far"}));
 }
 
 TEST(BiteHtml, TellsTheOverlapOnce) {
@@ -391,22 +461,23 @@ TEST(BiteHtml, TellsTheOverlapOnce) {
   made->bite.preset = &cli::presets().front();
   ASSERT_EQ(made->bite.preset->micrometres.front(), 0);
   const Rows rows = Page(made->bite).table("areas");
-  EXPECT_TRUE(
-      row_of(rows, {"distance at most 0 µm: below the error assumed for scanning"}).empty());
+  EXPECT_EQ(rows.size(), 4U);
   EXPECT_FALSE(row_of(rows, {"overlap"}).empty());
+  EXPECT_FALSE(row_of(rows, {"within 100 µm or overlapping"}).empty());
+  EXPECT_FALSE(row_of(rows, {"within 100 µm, without the overlap"}).empty());
 }
 
 TEST(BiteHtml, OtherUnitsComeToTheSameMicrometres) {
   IST_SLOW();
   const auto made = sphere_over_plate({0, 0, -0.05});
-  const Cells in_mm = row_of(Page(made->bite).table("areas"), {"overlap"});
+  const Cells in_mm = row_of(Page(made->bite).table("bodies"), {"fixed"});
   made->bite.unit = "µm";  // the same numbers, as if each were a micrometre
   made->bite.units_per_mm = 1000;
-  const Cells in_micrometres = row_of(Page(made->bite).table("areas"), {"overlap"});
-  EXPECT_NEAR(numbers_in(in_micrometres.at(1)).at(0), 1e-6 * numbers_in(in_mm.at(1)).at(0), 1e-4);
-  const Rows depths = Page(made->bite).table("areas");
-  expect_numbers(row_of(depths, {"depth of the deepest vertex"}).at(1),
-                 {made->bite.fixed.surface.depth_at_vertices}, 0.1);
+  made->bite.fixed.surface.total_area *= 1e6;
+  made->bite.fixed.surface.depth_at_vertices *= 1000;
+  const Page page(made->bite);
+  EXPECT_EQ(row_of(page.table("bodies"), {"fixed"}), in_mm);
+  EXPECT_EQ(cell(page.table("depths"), {"fixed"}, "depth of the deepest vertex, µm"), "50");
 }
 
 TEST(BiteHtml, IsWholeOrAbsent) {

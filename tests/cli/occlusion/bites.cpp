@@ -57,6 +57,7 @@ std::unique_ptr<MadeBite> bite_of(const TriangleMesh& fixed, const TriangleMesh&
   bite.fixed = body_of("fixed.stl", made->fixed, std::move(found.fixed), bite,
                        Eigen::Isometry3d::Identity());
   bite.moving = body_of("moving.stl", made->moving, std::move(found.moving), bite, pose);
+  bite.number_contacts();
   bite.findings.touch = query.intersects(pose).answer;
   bite.findings.distance = query.distance(pose, 1e-3).distance;
   bite.findings.depth.at_vertices =

@@ -136,7 +136,7 @@ TEST(MapPicture, BandsBelowTheScannerBandAreHatched) {
   EXPECT_GT(white_with, white_without + plain / 10);
 }
 
-TEST(MapPicture, DotsShowTheClosestPointsAndWhetherTheyHaveAPartner) {
+TEST(MapPicture, DotsShowTheClosestPointsAndWhetherTheyAreOnBothBodies) {
   auto made = sphere_over_plate({1, -2, -0.2});
   ASSERT_EQ(made->bite.fixed.surface.regions.size(), 1U);
   const auto bands = cli::map_bands(made->bite);
@@ -147,9 +147,9 @@ TEST(MapPicture, DotsShowTheClosestPointsAndWhetherTheyHaveAPartner) {
         cli::place_in(view, kWidth, kHeight, made->bite.fixed.surface.regions[0].closest);
     return pixel_at(picture, static_cast<int>(place.x()), static_cast<int>(place.y()));
   };
-  ASSERT_TRUE(made->bite.fixed.surface.regions[0].partner);
+  ASSERT_EQ(made->bite.fixed.on_both, 1U);
   EXPECT_LT(dot()[1], 10);
-  made->bite.fixed.surface.regions[0].partner.reset();
+  made->bite.fixed.on_both = 0;
   EXPECT_GT(dot()[1], 245);
 }
 

@@ -18,7 +18,7 @@ namespace ist::cli {
 namespace {
 
 constexpr int kWidth = 900, kHeight = 700;  // pixels
-// More numbers than this would hide the map; the first regions are the largest.
+// More numbers than this would hide the map; the first contacts are the largest.
 constexpr std::size_t kNumbered = 40;
 
 std::string text_at(double x, double y, const char* anchor, const std::string& text) {
@@ -59,12 +59,12 @@ std::string scale_bar(const Bite& bite, const BiteView& view) {
          text_at(12 + 0.5 * pixels, kHeight - 20, "middle", fmt::format("{:g} mm", length));
 }
 
-std::string region_numbers(const BiteBody& body, const BiteView& view) {
+std::string contact_numbers(const BiteBody& body, const BiteView& view) {
   std::string html;
-  const auto& regions = body.surface.regions;
-  for (std::size_t i = 0; i < std::min(regions.size(), kNumbered); ++i) {
-    const Eigen::Vector2d place = place_in(view, kWidth, kHeight, regions[i].closest);
-    html += text_at(place.x() + 5, place.y() - 4, "start", fmt::format("{}", i));
+  for (std::size_t i = 0; i < body.contacts.size(); ++i) {
+    if (body.contacts[i] > kNumbered) continue;
+    const Eigen::Vector2d place = place_in(view, kWidth, kHeight, body.surface.regions[i].closest);
+    html += text_at(place.x() + 5, place.y() - 4, "start", fmt::format("{}", body.contacts[i]));
   }
   return html;
 }
@@ -81,11 +81,11 @@ std::string figure(const Bite& bite, const BiteBody& body, const BiteView& view,
       "<svg viewBox=\"0 0 {1} {2}\" aria-hidden=\"true\">\n{5}{6}{7}</svg>\n</div>\n"
       "<figcaption><strong>{8}</strong>, the {0} body, seen from the side of the other body. "
       "{9}</figcaption>\n</figure>\n",
-      role, kWidth, kHeight, alt, base64_of(png), region_numbers(body, view),
+      role, kWidth, kHeight, alt, base64_of(png), contact_numbers(body, view),
       edge_names(bite, view), scale_bar(bite, view), escaped(body.name),
-      body.surface.regions.size() > kNumbered
-          ? fmt::format("The {} largest contact regions are numbered.", kNumbered)
-          : "Contact regions are numbered as in the tables.");
+      bite.contacts.size() > kNumbered
+          ? fmt::format("Contacts are numbered to {}.", kNumbered)
+          : "A contact has the same number in both pictures and in the tables.");
 }
 
 std::string swatch(const Colour& colour, bool hatched) {
@@ -115,8 +115,8 @@ std::string legend(const Bite& bite, const std::vector<MapBand>& bands) {
         band.below_scan_error ? ", hatched: below the error assumed for scanning" : "");
   }
   html += fmt::format("<li>{}farther, or not known</li>\n", swatch(kBareSurface, false));
-  html += fmt::format("<li>{}closest point of a contact region with a partner</li>\n", dot(true));
-  html += fmt::format("<li>{}closest point of an unpaired contact region</li>\n", dot(false));
+  html += fmt::format("<li>{}closest point of a contact on both bodies</li>\n", dot(true));
+  html += fmt::format("<li>{}closest point of a contact on one body alone</li>\n", dot(false));
   return html + "</ul>\n</div>\n";
 }
 

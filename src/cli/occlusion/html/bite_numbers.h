@@ -10,43 +10,64 @@
 
 namespace ist::cli {
 
-/// How a report writes the numbers of a bite for people.
+/// How a report and a terminal write the numbers of a bite. Scans err by some 50 µm, so no digit
+/// says less than 1 µm, 0.01 mm², 0.001 mm³ or 0.1 %.
 class BiteNumbers {
  public:
   explicit BiteNumbers(const Bite& bite) : bite_(bite) {}
 
   /// A length in mesh units, as micrometres without their unit; a dash for NaN.
   [[nodiscard]] std::string micrometres(double units) const {
-    if (std::isnan(units)) return "–";
-    return fmt::format("{:.1f}", units / bite_.units_per_micrometre());
+    return std::isnan(units) ? "–" : whole(std::round(units / bite_.units_per_micrometre()));
   }
   /// A length in mesh units, as micrometres, or millimetres from 10 mm up.
   [[nodiscard]] std::string length(double units) const {
-    const double in_mm = units / bite_.units_per_mm;
-    if (std::abs(in_mm) >= 10) return fmt::format("{:.3f} mm", in_mm);
-    return fmt::format("{:.6g} µm", std::round(1e4 * in_mm) / 10);
+    return in_words(units / bite_.units_per_micrometre(), [](double x) { return std::round(x); });
   }
+  /// Rounded outwards.
   [[nodiscard]] std::string interval(const DistanceInterval& of) const {
-    return of.lower == of.upper ? length(of.lower) : length(of.lower) + " to " + length(of.upper);
+    if (of.lower == of.upper) return length(of.lower);
+    const double unit = bite_.units_per_micrometre();
+    return in_words(of.lower / unit, [](double x) { return std::floor(x); }) + " to " +
+           in_words(of.upper / unit, [](double x) { return std::ceil(x); });
   }
   /// An area in mesh units squared, as mm² without their unit.
   [[nodiscard]] std::string area(double square_units) const {
-    return fmt::format("{:.4f}", square_units / (bite_.units_per_mm * bite_.units_per_mm));
+    const double area = square_units / (bite_.units_per_mm * bite_.units_per_mm);
+    return fmt::format("{:.{}f}", area, area < 10 ? 2 : 1);
   }
   /// Mesh units cubed, as mm³ without their unit.
   [[nodiscard]] std::string volume(double cubic_units) const {
-    return fmt::format("{:.5f}", cubic_units / std::pow(bite_.units_per_mm, 3));
+    const double volume = cubic_units / std::pow(bite_.units_per_mm, 3);
+    return fmt::format("{:.{}f}", volume, volume < 1 ? 3 : 2);
   }
-  /// In mesh units.
-  [[nodiscard]] static std::string place(const Eigen::Vector3d& at) {
-    return fmt::format("({:.5g}, {:.5g}, {:.5g})", at.x(), at.y(), at.z());
+  /// A coordinate in mesh units, to 0.01 mm.
+  [[nodiscard]] std::string coordinate(double units) const {
+    const double hundredths = std::round(100 * units / bite_.units_per_mm);
+    return fmt::format("{:g}", hundredths == 0 ? 0.0 : hundredths / 100 * bite_.units_per_mm);
+  }
+  [[nodiscard]] std::string place(const Eigen::Vector3d& at) const {
+    return fmt::format("({}, {}, {})", coordinate(at.x()), coordinate(at.y()), coordinate(at.z()));
+  }
+  [[nodiscard]] static std::string percent(double percent) {
+    return fmt::format("{:.1f}", percent);
   }
   /// A share in per cent without their sign, with those of a thinner and a thicker foundation.
   [[nodiscard]] static std::string share(double share, double thinner, double thicker) {
-    return fmt::format("{:.2f} ({:.2f}; {:.2f})", share, thinner, thicker);
+    return fmt::format("{:.1f} ({:.1f}; {:.1f})", share, thinner, thicker);
   }
 
  private:
+  // Without a sign before a nought.
+  static std::string whole(double number) {
+    return fmt::format("{:.0f}", number == 0 ? 0.0 : number);
+  }
+  template <class Round>
+  static std::string in_words(double micrometres, Round round) {
+    if (std::abs(micrometres) < 1e4) return whole(round(micrometres)) + " µm";
+    return fmt::format("{:g} mm", round(micrometres / 10) / 100);
+  }
+
   const Bite& bite_;
 };
 

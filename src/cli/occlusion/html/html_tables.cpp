@@ -12,6 +12,8 @@
 namespace ist::cli {
 namespace {
 
+constexpr const char* kNoContacts = "<p>No contacts.</p>\n";
+
 struct NamedBody {
   const BiteBody& body;
   const char* role;
@@ -35,12 +37,12 @@ std::string foundation_words(const Bite& bite) {
 }
 
 // Rows of a balance; a dash in each cell where nothing is pressed.
-void add_balance(HtmlTable& table, const char* role, const Division& division,
-                 const std::optional<Balance>& balance) {
+void add_balance(HtmlTable& table, const BiteNumbers& numbers, const char* role,
+                 const Division& division, const std::optional<Balance>& balance) {
   const auto cells = [&](auto member) -> std::string {
     if (!balance) return "–";
     const auto of = [&](const Balance::Shares& shares) {
-      return shares.first + shares.second > 0 ? fmt::format("{:.2f}", shares.*member) : "–";
+      return shares.first + shares.second > 0 ? BiteNumbers::percent(shares.*member) : "–";
     };
     return fmt::format("{} ({}; {})", of(balance->shares), of(balance->thinner),
                        of(balance->thicker));
@@ -49,14 +51,28 @@ void add_balance(HtmlTable& table, const char* role, const Division& division,
   table.add({fmt::format("{}: {} and {}", role, first, second),
              first + " " + cells(&Balance::Shares::first),
              second + " " + cells(&Balance::Shares::second), cells(&Balance::Shares::asymmetry),
-             balance ? BiteNumbers::place(balance->centre) : "–"});
+             balance ? numbers.place(balance->centre) : "–"});
 }
 
-std::string plane_words(const Division& division) {
+// The plane that parts both sides: "x = 0.01", or "0.6 x + 0.8 y = 2".
+std::string plane_of(const Division& division, const BiteNumbers& numbers) {
   const Eigen::Vector3d& n = division.direction;
-  return fmt::format("{} and {} are parted by the plane {:.6g} x + {:.6g} y + {:.6g} z = {:.6g}{}",
-                     escaped(division.first), escaped(division.second), n.x(), n.y(), n.z(),
-                     division.at, division.assumed ? ", the middle of the box: assumed" : "");
+  Eigen::Index axis = 0;
+  if (n.cwiseAbs().maxCoeff(&axis) > 1 - 1e-9) {
+    return fmt::format("{} = {}", "xyz"[axis], numbers.coordinate(division.at / n[axis]));
+  }
+  std::string plane;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(n[i]) < 1e-9) continue;
+    plane += fmt::format("{}{:.4g} {}", plane.empty() ? "" : " + ", n[i], "xyz"[i]);
+  }
+  return plane + " = " + numbers.coordinate(division.at);
+}
+
+std::string plane_words(const Division& division, const BiteNumbers& numbers) {
+  return fmt::format("{} and {}: split at {}{}", escaped(division.first), escaped(division.second),
+                     division.assumed ? "the middle of the fixed body, " : "",
+                     plane_of(division, numbers) + (division.assumed ? " (assumed)" : ""));
 }
 
 }  // namespace
@@ -110,7 +126,7 @@ std::string findings_table(const Bite& bite) {
   }
   if (depth.area)
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});
-  if (depth.point) table.add({"deepest point", BiteNumbers::place(*depth.point)});
+  if (depth.point) table.add({"deepest point", numbers.place(*depth.point)});
   for (const std::string& note : found.notes) table.add({"note", escaped(note)});
   return table.html();
 }
@@ -118,36 +134,41 @@ std::string findings_table(const Bite& bite) {
 std::string area_table(const Bite& bite) {
   const BiteNumbers numbers(bite);
   HtmlTable table("areas", "Areas of each surface by its distance from the other one",
-                  {"where", "fixed", "moving", "unit"});
+                  {"distance from the other surface", "fixed, mm²", "moving, mm²"});
   const BiteBody &fixed = bite.fixed, &moving = bite.moving;
+  table.add({"overlap", numbers.area(fixed.surface.penetrating_area),
+             numbers.area(moving.surface.penetrating_area)});
   for (std::size_t i = 0; i < bite.preset->micrometres.size(); ++i) {
     const double limit = bite.preset->micrometres[i];
     if (limit == 0) continue;  // the overlap
-    table.add(
-        {fmt::format("distance at most {:g} µm{}", limit,
-                     limit < bite.scanner_band ? ": below the error assumed for scanning" : ""),
-         numbers.area(fixed.areas[i]), numbers.area(moving.areas[i]), "mm²"});
+    const char* error = limit < bite.scanner_band ? ": below the error assumed for scanning" : "";
+    table.add({fmt::format("within {:g} µm or overlapping{}", limit, error),
+               numbers.area(fixed.areas[i]), numbers.area(moving.areas[i])});
+    table.add({fmt::format("within {:g} µm, without the overlap{}", limit, error),
+               numbers.area(fixed.area_outside(i)), numbers.area(moving.area_outside(i))});
   }
-  table.add({"overlap", numbers.area(fixed.surface.penetrating_area),
-             numbers.area(moving.surface.penetrating_area), "mm²"});
-  table.add({"depth, integrated over the overlap (no volume)",
-             numbers.volume(fixed.surface.depth_integral),
-             numbers.volume(moving.surface.depth_integral), "mm³"});
-  table.add({"depth of the deepest vertex", numbers.micrometres(fixed.surface.depth_at_vertices),
-             numbers.micrometres(moving.surface.depth_at_vertices), "µm"});
-  return table.html();
+  HtmlTable depths("depths", "Overlap of each surface",
+                   {"surface", "depth of the deepest vertex, µm",
+                    "depth, integrated over the overlap (no volume), mm³"});
+  for (const auto& [body, role] : bodies_of(bite)) {
+    depths.add({role, numbers.micrometres(body.surface.depth_at_vertices),
+                numbers.volume(body.surface.depth_integral)});
+  }
+  return table.html() + depths.html();
 }
 
 std::string share_table(const Bite& bite) {
-  HtmlTable table(
-      "shares", "Geometric share by side, " + foundation_words(bite),
-      {"surface and sides", "first side, %", "second side, %", "asymmetry, %", "centre"});
+  if (bite.contacts.empty()) return kNoContacts;
+  const BiteNumbers numbers(bite);
+  HtmlTable table("shares", "Geometric share by side, " + foundation_words(bite),
+                  {"surface and sides", "first side, %", "second side, %", "asymmetry, %",
+                   "centre, " + escaped(bite.unit)});
   for (const auto& [body, role] : bodies_of(bite)) {
-    add_balance(table, role, bite.sides, body.sides);
-    add_balance(table, role, bite.fore_aft, body.fore_aft);
+    add_balance(table, numbers, role, bite.sides, body.sides);
+    add_balance(table, numbers, role, bite.fore_aft, body.fore_aft);
   }
   return fmt::format("{}<p>{}; {}. Asymmetry is 100 |a − b| / (a + b).</p>\n", table.html(),
-                     plane_words(bite.sides), plane_words(bite.fore_aft));
+                     plane_words(bite.sides, numbers), plane_words(bite.fore_aft, numbers));
 }
 
 std::string tooth_table(const Bite& bite) {
@@ -169,42 +190,40 @@ std::string tooth_table(const Bite& bite) {
   return table.empty() ? "" : table.html();
 }
 
-std::string region_tables(const Bite& bite) {
+std::string contact_tables(const Bite& bite) {
+  if (bite.contacts.empty()) return kNoContacts;
   const BiteNumbers numbers(bite);
-  const std::vector<std::string> head{"region",
-                                      "partner",
-                                      "area, mm²",
+  const std::string unit = escaped(bite.unit);
+  const std::vector<std::string> head{"contact",
+                                      "fixed area, mm²",
+                                      "moving area, mm²",
                                       "share, %",
                                       "least distance, µm",
                                       "overlap, mm²",
                                       "depth, integrated, mm³",
-                                      "centre",
-                                      "closest point"};
+                                      "centre, " + unit,
+                                      "closest point, " + unit};
   const std::string caption = fmt::format("distance at most {}; share {}",
                                           numbers.length(bite.contact), foundation_words(bite));
-  HtmlTable paired("regions", "Contact regions with a partner: " + caption, head);
-  HtmlTable unpaired("unpaired", "Unpaired contact regions: " + caption, head);
-  for (const auto& [body, role] : bodies_of(bite)) {
-    const char* other = &body == &bite.fixed ? "moving" : "fixed";
-    const auto& regions = body.surface.regions;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      const ContactRegion& region = regions[i];
-      (region.partner ? paired : unpaired)
-          .add({fmt::format("{} {}", role, i),
-                region.partner ? fmt::format("{} {}", other, *region.partner) : "unpaired",
-                numbers.area(region.area),
-                BiteNumbers::share(100 * region.share, 100 * region.share_thinner,
-                                   100 * region.share_thicker),
-                numbers.micrometres(region.least_distance), numbers.area(region.penetrating_area),
-                numbers.volume(region.depth_integral), BiteNumbers::place(region.centre),
-                BiteNumbers::place(region.closest)});
-    }
-  }
-  const auto or_none = [](const HtmlTable& table, const char* none) {
-    return table.empty() ? fmt::format("<p>{}</p>\n", none) : table.html();
+  HtmlTable both("contacts", "Contacts on both bodies: " + caption, head);
+  HtmlTable alone("contacts-on-one", "Contacts on one body alone: " + caption, head);
+  const auto area = [&](const BiteBody& body, const std::vector<std::uint32_t>& regions) {
+    double sum = 0;
+    for (const std::uint32_t k : regions) sum += body.surface.regions[k].area;
+    return regions.empty() ? "–" : numbers.area(sum);
   };
-  return or_none(paired, "No contact region has a partner.") +
-         or_none(unpaired, "No contact region is without a partner.");
+  for (std::size_t i = 0; i < bite.contacts.size(); ++i) {
+    const BiteContact& contact = bite.contacts[i];
+    (contact.on_both() ? both : alone)
+        .add({fmt::format("{}", i + 1), area(bite.fixed, contact.fixed),
+              area(bite.moving, contact.moving),
+              BiteNumbers::share(100 * contact.share, 100 * contact.share_thinner,
+                                 100 * contact.share_thicker),
+              numbers.micrometres(contact.least_distance), numbers.area(contact.penetrating_area),
+              numbers.volume(contact.depth_integral), numbers.place(contact.centre),
+              numbers.place(contact.closest)});
+  }
+  return (both.empty() ? "" : both.html()) + (alone.empty() ? "" : alone.html());
 }
 
 }  // namespace ist::cli

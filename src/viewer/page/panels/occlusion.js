@@ -1,4 +1,4 @@
-/** The occlusion map: both bodies by their distance from each other, its legend, and its regions. */
+/** The occlusion map: both bodies by their distance from each other, its legend, and its contacts. */
 
 import {presets, unitChoices} from '../choices.js';
 import {measurable, unitOf} from '../follow.js';
@@ -6,7 +6,7 @@ import {button, checkbox, select, slider} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {unitWord} from '../words.js';
 import {makeMapView} from '../view/map_view.js';
-import {areaFacts, legend, regionTable} from './occlusion_words.js';
+import {areaFacts, contactTable, legend} from './occlusion_words.js';
 
 /** @type {import('../context.js').MakePanel} */
 export function makeOcclusionPanel({store, stage}) {
@@ -104,16 +104,7 @@ export function makeOcclusionPanel({store, stage}) {
     const {bite} = store.get();
     const word = unitWord(unitOf(store.get()));
     caveat.textContent = bite ? bite.bite.caveat : '';
-    answer.replaceChildren(
-      ...(bite
-        ? [
-            legend(bite, word),
-            areaFacts(bite.bite, word),
-            regionTable(bite.bite, 'fixed', word, view.flyTo),
-            regionTable(bite.bite, 'moving', word, view.flyTo),
-          ]
-        : []),
-    );
+    answer.replaceChildren(...(bite ? [legend(bite, word), areaFacts(bite.bite, word), contactTable(bite.bite, word, view.choose)] : []));
     fill();
   };
   store.subscribe(['bite', 'bodies'], fillBite);

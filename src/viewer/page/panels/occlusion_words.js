@@ -1,15 +1,13 @@
-/** A bite in words: the legend of its map, its areas, shares and checks, and its regions. */
+/** A bite in words: the legend of its map, its areas, shares and checks, and its contacts. */
 
 import {button} from '../ui/controls.js';
 import {element} from '../ui/element.js';
 import {facts, table} from '../ui/table.js';
-import {count, depthWords, interval, short} from '../words.js';
+import {count, depthWords, interval, millimetresIn, short} from '../words.js';
 
 /** @typedef {import('../protocol.js').Bite} Bite */
 /** @typedef {import('../protocol.js').Line} Line */
 /** @typedef {import('../protocol.js').Role} Role */
-
-const names = {fixed: 'fixed', moving: 'moving'};
 
 /**
  * @param {Bite} bite
@@ -49,21 +47,17 @@ function swatch(colour, hatched) {
 export function areaFacts(bite, unit) {
   const both = (/** @type {(side: Line) => string} */ of) => `${of(bite.fixed)} and ${of(bite.moving)}`;
   const square = `${unit}²`;
+  /** @type {string[]} */
+  const notes = bite.hint ? [`hint: ${bite.hint}`, ...bite.checks] : bite.checks;
   /** @type {[string, string][]} */
   const lines = [
     ['Touch', bite.touch],
     ['Distance', interval(bite.distance_lower, bite.distance_upper, unit)],
     ['Depth', depthWords(bite, unit)],
-    ...bite.fixed.areas.map(
-      (/** @type {Line} */ area, /** @type {number} */ at) =>
-        /** @type {[string, string]} */ ([
-          `Area nearer than ${short(area.micrometres)} µm`,
-          `${short(area.area)} and ${short(bite.moving.areas[at].area)} ${square}`,
-        ]),
-    ),
     ['Area in each other', `${both((side) => short(side.penetrating_area))} ${square}`],
+    ...bandFacts(bite, square),
     ['Depth integral', `${both((side) => short(side.depth_integral))} ${unit}³`],
-    ['Regions', both((side) => count(side.regions.length))],
+    ['Contacts', contactCount(bite.contacts)],
   ];
   for (const [title, key] of [
     ['Shares by side', 'sides'],
@@ -75,10 +69,34 @@ export function areaFacts(bite, unit) {
   return element(
     'div',
     {},
+    element('p', {class: 'warned', hidden: !bite.warning}, bite.warning ?? ''),
     element('p', {class: 'quiet'}, "Where there are two numbers, the first is the fixed body's. Shares are geometric; they are no forces."),
     facts(lines),
-    element('ul', {class: 'checks'}, ...bite.checks.map((/** @type {string} */ check) => element('li', {}, `${check}.`))),
+    element('ul', {class: 'checks'}, ...notes.map((note) => element('li', {}, `${note}.`))),
   );
+}
+
+/**
+ * @param {Line} bite
+ * @param {string} square
+ * @returns {[string, string][]} of each limit of the preset, the area with the overlap and without it
+ */
+function bandFacts({fixed, moving}, square) {
+  return fixed.areas.flatMap((/** @type {Line} */ area, /** @type {number} */ at) => {
+    if (area.micrometres === 0) return [];
+    const within = `Area within ${short(area.micrometres)} µm`;
+    const both = (/** @type {string} */ key) => `${short(area[key])} and ${short(moving.areas[at][key])} ${square}`;
+    return [
+      [`${within} or overlapping`, both('area')],
+      [`${within}, without the overlap`, both('area_outside')],
+    ];
+  });
+}
+
+/** @param {Line[]} contacts */
+function contactCount(contacts) {
+  const alone = contacts.filter(({fixed, moving}) => !fixed.length || !moving.length);
+  return `${count(contacts.length)}, ${count(alone.length)} of them on one body alone`;
 }
 
 /** @param {Record<string, number>} shares */
@@ -88,27 +106,30 @@ function shareWords(shares) {
 }
 
 /**
+ * The contacts by their numbers, which the picture shows too.
  * @param {Line} bite
- * @param {Role} role
  * @param {string} unit
- * @param {(role: Role, point: number[]) => void} onPick
+ * @param {(number: number, role: Role | null) => void} onPick  a contact, and the body on which it is looked at; null: it is marked
  */
-export function regionTable(bite, role, unit, onPick) {
-  /** @type {Line[]} */
-  const regions = bite[role].regions;
-  const title = `Contact regions of the ${names[role]} body`;
-  if (regions.length === 0) return element('p', {}, `${title}: none at this pose.`);
-  const other = bite[role === 'fixed' ? 'moving' : 'fixed'].regions;
-  const rows = regions.map((region, at) => ({region, at})).sort((a, b) => b.region.area - a.region.area);
+export function contactTable(bite, unit, onPick) {
+  if (bite.contacts.length === 0) return element('p', {}, 'No contacts.');
+  /** @type {(contact: Line, role: Role) => string | Node} */
+  const areaOn = (contact, role) => {
+    /** @type {number[]} */
+    const regions = contact[role];
+    if (regions.length === 0) return '–';
+    const area = regions.reduce((sum, at) => sum + bite[role].regions[at].area, 0);
+    return look(`Look at contact ${contact.number} on the ${role} body`, short(area, 3), () => onPick(contact.number, role));
+  };
   return table(
-    `${title} (d ≤ ${short(bite.contact)} ${unit})`,
-    ['#', `area, ${unit}²`, `least d, ${unit}`, 'share', 'faces'],
-    rows.map(({region, at}) => [
-      look(`Look at region ${at + 1} of the ${names[role]} body`, String(at + 1), () => onPick(role, region.closest)),
-      short(region.area, 3),
-      short(region.least_distance, 3),
-      `${short(100 * region.share, 3)} %`,
-      region.partner === null || !other[region.partner] ? 'unpaired' : `region ${region.partner + 1}`,
+    `Contacts (d ≤ ${short(bite.contact)} ${unit})`,
+    ['contact', `fixed area, ${unit}²`, `moving area, ${unit}²`, 'least d, µm', 'share, %'],
+    bite.contacts.map((/** @type {Line} */ contact) => [
+      look(`Mark contact ${contact.number}`, String(contact.number), () => onPick(contact.number, null)),
+      areaOn(contact, 'fixed'),
+      areaOn(contact, 'moving'),
+      short(Math.round(1000 * millimetresIn(bite.unit) * contact.least_distance)),
+      short(100 * contact.share, 3),
     ]),
   );
 }

@@ -11,9 +11,10 @@ export function disposeLabel({material}) {
 /**
  * @param {string} text
  * @param {number} height  mesh units
+ * @param {string} [colour]
  * @returns {THREE.Sprite}
  */
-export function makeLabel(text, height) {
+export function makeLabel(text, height, colour = '#222') {
   const canvas = document.createElement('canvas');
   [canvas.width, canvas.height] = [512, 96];
   const pen = canvas.getContext('2d');
@@ -24,10 +25,12 @@ export function makeLabel(text, height) {
     pen.lineWidth = 10;
     pen.strokeStyle = 'white';
     pen.strokeText(text, 256, 48);
-    pen.fillStyle = '#222';
+    pen.fillStyle = colour;
     pen.fillText(text, 256, 48);
   }
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
+  const map = new THREE.CanvasTexture(canvas);
+  map.colorSpace = THREE.SRGBColorSpace;
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map, depthTest: false}));
   sprite.scale.set((height * 512) / 96, height, 1);
   sprite.renderOrder = 5;
   return sprite;

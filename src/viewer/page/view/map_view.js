@@ -1,8 +1,9 @@
-/** The map on both bodies: its bands, grey where it is of another pose, and the opened book. */
+/** The map on both bodies: its bands, grey where it is of another pose, the opened book, and the contacts by their numbers. */
 
 import * as THREE from 'three';
 
 import {inverse, transformed} from '../pose.js';
+import {makeLabel} from './label.js';
 import {threeOf} from './stage.js';
 
 /** @typedef {import('../context.js').Store} Store */
@@ -15,21 +16,44 @@ const roles = ['fixed', 'moving'];
 /** @type {import('../protocol.js').BookLayout[]} */
 const layouts = ['beside', 'above'];
 const viewer = [0, -1, 0];
-const dotColour = 0x111111;
+const dotColour = 0x111111,
+  chosenColour = 0xd55e00;
+/** More numbers would hide the map. */
+const mostNumbers = 40;
+/** Of a number, as a part of the picture's height at a distance of 1. */
+const numberHeight = 0.021;
 
 /**
  * @param {Stage} stage
  * @param {Store} store
- * @returns {{show: (on: boolean) => void, flyTo: (role: Role, point: number[]) => void, home: () => void}}
+ * @returns {{show: (on: boolean) => void, choose: (contact: number, role: Role | null) => void, home: () => void}}
  */
 export function makeMapView(stage, store) {
   const dots = new THREE.Group();
-  const material = new THREE.MeshBasicMaterial({color: dotColour, depthTest: false, transparent: true});
+  const [material, chosenMaterial] = [dotColour, chosenColour].map(
+    (color) => new THREE.MeshBasicMaterial({color, depthTest: false, transparent: true}),
+  );
   const dot = new THREE.SphereGeometry(1, 12, 8);
   stage.fixedFrame.add(dots);
   let seen = false,
     opened = false,
-    layout = layouts[0];
+    layout = layouts[0],
+    chosen = 0;
+  /** @type {Map<string, THREE.SpriteMaterial>} */
+  const numbers = new Map();
+  /** @param {number} contact */
+  const numberOf = (contact) => {
+    const key = `${contact} ${contact === chosen}`;
+    const made = numbers.get(key) ?? makeLabel(String(contact), 1, contact === chosen ? '#b34700' : '#111').material;
+    numbers.set(key, made);
+    made.sizeAttenuation = false;
+    const sprite = new THREE.Sprite(made);
+    const height = contact === chosen ? 1.5 * numberHeight : numberHeight;
+    sprite.scale.set((height * 512) / 96, height, 1);
+    sprite.center.set(0.5, -0.2);
+    sprite.renderOrder = contact === chosen ? 6 : 5;
+    return sprite;
+  };
 
   const colour = () => {
     const {bite, pose} = store.get();
@@ -90,18 +114,25 @@ export function makeMapView(stage, store) {
     const radius = 0.0035 * (bodies.moving?.extent ?? 1);
     for (const role of roles) {
       for (const region of bite.bite[role].regions) {
-        const mark = new THREE.Mesh(dot, material);
-        mark.position.set(...threeOf(drawnAt(bite, role, region.closest)));
-        mark.scale.setScalar(radius);
-        mark.renderOrder = 3;
         // Closed, the bodies hide their contacts, and only the fixed body's are marked.
-        if (opened || role === 'fixed') dots.add(mark);
+        if (!opened && role !== 'fixed') continue;
+        const isChosen = region.contact === chosen;
+        const mark = new THREE.Mesh(dot, isChosen ? chosenMaterial : material);
+        mark.position.set(...threeOf(drawnAt(bite, role, region.closest)));
+        mark.scale.setScalar(isChosen ? 2 * radius : radius);
+        mark.renderOrder = isChosen ? 4 : 3;
+        dots.add(mark);
+        if (region.contact > mostNumbers && !isChosen) continue;
+        const number = numberOf(region.contact);
+        number.position.copy(mark.position);
+        dots.add(number);
       }
     }
     stage.render();
   };
 
-  store.subscribe(['bite', 'book'], () => {
+  store.subscribe(['bite', 'book'], ({bite}) => {
+    if (!bite || bite.bite.contacts.length < chosen) chosen = 0;
     colour();
     arrange();
   });
@@ -119,11 +150,15 @@ export function makeMapView(stage, store) {
       arrange();
     },
     home: lookAtBook,
-    flyTo(role, point) {
+    choose(contact, role) {
       const {bite} = store.get();
       if (!bite) return;
-      const at = drawnAt(bite, role, point);
-      stage.flyTo(at);
+      chosen = contact;
+      placeDots();
+      // Opened, both its marks are seen; closed, one looks at its mark on the fixed body.
+      const on = role ?? (opened ? null : 'fixed');
+      const region = on && bite.bite[on].regions[bite.bite.contacts[contact - 1][on][0]];
+      if (on && region) stage.flyTo(drawnAt(bite, on, region.closest));
     },
   };
 }

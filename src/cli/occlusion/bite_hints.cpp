@@ -1,0 +1,185 @@
+#include "cli/occlusion/bite_hints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cli/occlusion/bite_direction.h"
+
+namespace ist::cli {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Box = Eigen::AlignedBox3d;
+using ContactList = std::vector<std::size_t>;  // contacts, from 0
+
+constexpr double kOutOfPlane = 0.423;  // the sine of 25°
+
+bool maps_nothing(const BiteBody& body) {
+  const auto& vertices = body.surface.vertices;
+  return std::all_of(vertices.begin(), vertices.end(),
+                     [](const SurfaceDistance& one) { return std::isnan(one.distance); });
+}
+
+// Groups of contacts with gaps of at most that between their centres.
+std::vector<ContactList> groups_of(const std::vector<BiteContact>& contacts, double gap) {
+  std::vector<ContactList> groups;
+  std::vector<bool> taken(contacts.size(), false);
+  for (std::size_t first = 0; first < contacts.size(); ++first) {
+    if (taken[first]) continue;
+    taken[first] = true;
+    ContactList group{first};
+    for (std::size_t at = 0; at < group.size(); ++at) {
+      for (std::size_t k = 0; k < contacts.size(); ++k) {
+        if (taken[k] || (contacts[k].centre - contacts[group[at]].centre).norm() > gap) continue;
+        taken[k] = true;
+        group.push_back(k);
+      }
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+// The largest group, and the contacts that are far from it.
+struct FarContacts {
+  ContactList arch, far;
+  double away = 0;  // the least distance of a far contact
+};
+
+FarContacts far_contacts(const Bite& bite) {
+  const std::vector<BiteContact>& contacts = bite.contacts;
+  const double gap = bite.fixed.box().sizes().maxCoeff() / 3;
+  std::vector<ContactList> groups = groups_of(contacts, gap);
+  if (groups.size() < 2) return {};
+  const auto area = [&](const ContactList& group) {
+    double sum = 0;
+    for (const std::size_t k : group) sum += contacts[k].area;
+    return sum;
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const ContactList& a, const ContactList& b) { return area(a) > area(b); });
+  const Vector towards = directions_of(bite).towards;
+  FarContacts out{groups[0], {}, std::numeric_limits<double>::infinity()};
+  for (std::size_t g = 1; g < groups.size(); ++g) {
+    for (const std::size_t k : groups[g]) {
+      Vector way = Vector::Constant(std::numeric_limits<double>::infinity());
+      for (const std::size_t other : out.arch) {
+        const Vector to = contacts[k].centre - contacts[other].centre;
+        if (to.norm() < way.norm()) way = to;
+      }
+      if (!(std::abs(way.dot(towards)) > kOutOfPlane * way.norm())) continue;
+      out.far.push_back(k);
+      out.away = std::min(out.away, way.norm());
+    }
+  }
+  std::sort(out.far.begin(), out.far.end());
+  return out;
+}
+
+Box box_of_contact(const Bite& bite, std::size_t contact) {
+  Box box;
+  const auto extend = [&](const BiteBody& body, const std::vector<std::uint32_t>& regions) {
+    for (const std::uint32_t k : regions) {
+      for (const ContactTriangle& part : body.surface.regions[k].triangles) {
+        for (const std::uint32_t v : body.mesh->triangles[part.triangle]) {
+          box.extend(body.to_fixed * body.mesh->vertices[v]);
+        }
+      }
+    }
+  };
+  extend(bite.fixed, bite.contacts[contact].fixed);
+  extend(bite.moving, bite.contacts[contact].moving);
+  return box;
+}
+
+// The box of both bodies, cut halfway between the arch and each far contact; empty if no such cut
+// parts them. Its corners have few digits.
+Box region_without(const Bite& bite, const FarContacts& parts) {
+  Box arch, region = bite.fixed.box().merged(bite.moving.box());
+  for (const std::size_t k : parts.arch) arch.extend(box_of_contact(bite, k));
+  const double digit = std::pow(10, std::floor(std::log10(region.sizes().maxCoeff() / 50)));
+  region.min() = digit * ((region.min() / digit).array().floor() - 1);
+  region.max() = digit * ((region.max() / digit).array().ceil() + 1);
+  for (const std::size_t k : parts.far) {
+    const Box far = box_of_contact(bite, k);
+    const Vector above = far.min() - arch.max(), below = arch.min() - far.max();
+    Eigen::Index axis = 0, low = 0;
+    const double gap_above = above.maxCoeff(&axis), gap_below = below.maxCoeff(&low);
+    if (std::max(gap_above, gap_below) < 4 * digit) return {};
+    if (gap_above >= gap_below) {
+      const double cut = 0.5 * (far.min()[axis] + arch.max()[axis]);
+      region.max()[axis] = std::min(region.max()[axis], digit * std::round(cut / digit));
+    } else {
+      const double cut = 0.5 * (far.max()[low] + arch.min()[low]);
+      region.min()[low] = std::max(region.min()[low], digit * std::round(cut / digit));
+    }
+  }
+  return region;
+}
+
+}  // namespace
+
+std::optional<std::string> warning_of(const Bite& bite) {
+  const double apart = bite.findings.distance->lower;
+  const double smaller =
+      std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());
+  if (!maps_nothing(bite.fixed) || !maps_nothing(bite.moving) || apart <= 0.5 * smaller) return {};
+  return fmt::format(
+      "The scans are {:.3g} {} apart: they are probably not in one coordinate system. Register "
+      "them first, or give --matrix.",
+      apart, bite.unit);
+}
+
+std::optional<std::string> hint_of(const Bite& bite) {
+  const FarContacts parts = far_contacts(bite);
+  if (parts.far.empty()) return {};
+  std::string numbers;
+  for (std::size_t i = 0; i < parts.far.size(); ++i) {
+    numbers += fmt::format("{}{}",
+                           i == 0                     ? ""
+                           : i + 1 < parts.far.size() ? ", "
+                                                      : " and ",
+                           parts.far[i] + 1);
+  }
+  const bool one = parts.far.size() == 1;
+  std::string hint =
+      fmt::format("contact{} {} {} {:.2g} {} or more from the others, perhaps in the joints",
+                  one ? "" : "s", numbers, one ? "lies" : "lie", parts.away, bite.unit);
+  const Box region = region_without(bite, parts);
+  if (region.isEmpty()) return hint;
+  const Vector &low = region.min(), &high = region.max();
+  return hint + fmt::format(": --region {:g},{:g},{:g},{:g},{:g},{:g} leaves {} out", low.x(),
+                            low.y(), low.z(), high.x(), high.y(), high.z(), one ? "it" : "them");
+}
+
+std::string region_words(const Bite& bite) {
+  return fmt::format(
+      "region: areas, contacts, shares and depths of vertices are of the triangles "
+      "with their centroid in {}; all else is of the whole bodies",
+      box_words(*bite.region));
+}
+
+std::vector<std::string> notes_of(const Bite& bite) {
+  std::vector<std::string> notes;
+  if (bite.warning) notes.push_back(*bite.warning);
+  if (bite.region) notes.push_back(region_words(bite));
+  if (bite.hint) notes.push_back("hint: " + *bite.hint);
+  notes.insert(notes.end(), bite.checks.begin(), bite.checks.end());
+  return notes;
+}
+
+std::string box_words(const Eigen::AlignedBox3d& box) {
+  std::string words;
+  for (int axis = 0; axis < 3; ++axis) {
+    words += fmt::format("{}{} {:.6g} to {:.6g}", axis == 0 ? "" : ", ", "xyz"[axis],
+                         box.min()[axis], box.max()[axis]);
+  }
+  return words;
+}
+
+}  // namespace ist::cli

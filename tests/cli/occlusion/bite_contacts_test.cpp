@@ -1,0 +1,105 @@
+#include "cli/occlusion/bite_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/occlusion/bite_hints.h"
+#include "cli/occlusion/bites.h"
+#include "support/shapes.h"
+
+namespace ist::test {
+namespace {
+
+using cli::BiteContact, cli::contacts_of;
+using Regions = std::vector<ContactRegion>;
+using Indices = std::vector<std::uint32_t>;
+using Vector = Eigen::Vector3d;
+
+// A region of an area, which faces one of the other body.
+ContactRegion region(double area, std::optional<std::uint32_t> faces, double least = 0) {
+  ContactRegion made;
+  made.area = area;
+  made.centre = made.closest = Vector(area, least, 0);
+  made.least_distance = least;
+  made.share = 0.1 * area;
+  made.faces = faces;
+  return made;
+}
+
+TEST(BiteContacts, ThoseOnBothBodiesComeFirstByArea) {
+  const Regions fixed{region(9, {}), region(1, 1), region(4, 0)},
+      moving{region(5, 2), region(2, 1), region(7, {})};
+  const std::vector<BiteContact> contacts = contacts_of(fixed, moving);
+  ASSERT_EQ(contacts.size(), 4U);
+  EXPECT_EQ(contacts[0].fixed, Indices{2});
+  EXPECT_EQ(contacts[0].moving, Indices{0});
+  EXPECT_EQ(contacts[0].area, 4.5) << "the mean of both";
+  EXPECT_EQ(contacts[0].share, 0.45);
+  EXPECT_EQ(contacts[1].fixed, Indices{1});
+  EXPECT_EQ(contacts[1].moving, Indices{1});
+  EXPECT_EQ(contacts[2].fixed, Indices{0});
+  EXPECT_FALSE(contacts[2].on_both());
+  EXPECT_EQ(contacts[2].area, 9);
+  EXPECT_EQ(contacts[3].moving, Indices{2});
+  EXPECT_EQ(contacts[3].area, 7);
+}
+
+// One region under two: a dentist sees one contact, and both marks have its number.
+TEST(BiteContacts, ARegionThatFacesTwoMakesOneContactWithBoth) {
+  const Regions fixed{region(3, 0, -0.1), region(1, 0, -0.3)}, moving{region(5, 0, -0.2)};
+  const std::vector<BiteContact> contacts = contacts_of(fixed, moving);
+  ASSERT_EQ(contacts.size(), 1U);
+  EXPECT_EQ(contacts[0].fixed, (Indices{0, 1}));
+  EXPECT_EQ(contacts[0].moving, Indices{0});
+  EXPECT_EQ(contacts[0].area, 4.5);
+  EXPECT_EQ(contacts[0].least_distance, -0.3);
+  EXPECT_EQ(contacts[0].closest, fixed[1].closest);
+  EXPECT_EQ(contacts[0].centre.x(), (3 * 3 + 1 * 1 + 5 * 5) / 9.0);
+  cli::Bite bite;
+  bite.fixed.surface.regions = fixed;
+  bite.moving.surface.regions = moving;
+  bite.number_contacts();
+  EXPECT_EQ(bite.fixed.contacts, (std::vector<std::size_t>{1, 1}));
+  EXPECT_EQ(bite.moving.contacts, (std::vector<std::size_t>{1}));
+}
+
+// A strip of bumps that touch a plate, and one more on a step of the plate.
+std::unique_ptr<MadeBite> with_bump_at(const Vector& at) {
+  TriangleMesh arch, bumps;
+  for (int i = 0; i < 4; ++i) {
+    arch = joined(arch, moved(plate(2, 0.25), {5.0 * i, 0, 0}));
+    bumps = joined(bumps, moved(icosphere(3, 1), {5.0 * i, 0, 0.9}));
+  }
+  return bite_of(joined(arch, moved(plate(1.5, 0.25), at)),
+                 joined(bumps, moved(icosphere(3, 1), at + Vector(0, 0, 0.94))));
+}
+
+TEST(BiteHints, NameContactsFarAboveTheArchAndTheRegionWithoutThem) {
+  const auto made = with_bump_at({5, 14, 10});
+  ASSERT_EQ(made->bite.contacts.size(), 5U);
+  const std::optional<std::string> hint = cli::hint_of(made->bite);
+  ASSERT_TRUE(hint);
+  EXPECT_TRUE(
+      hint->starts_with("contact 5 lies 17 mm or more from the others, perhaps in the "
+                        "joints: --region "))
+      << *hint;
+  EXPECT_TRUE(hint->ends_with(" leaves it out")) << *hint;
+  // The other side of an arch is no joint, however far, nor is what is near.
+  EXPECT_FALSE(cli::hint_of(with_bump_at({5, 20, 0.5})->bite));
+  EXPECT_FALSE(cli::hint_of(with_bump_at({5, 4, 4})->bite));
+  EXPECT_FALSE(cli::hint_of(sphere_over_plate({0, 0, -0.05})->bite));
+}
+
+TEST(BiteHints, WarnOfBodiesThatAreHardlyInOneCoordinateSystem) {
+  const auto warning = [](double height) {
+    return cli::warning_of(sphere_over_plate({0, 0, height})->bite);
+  };
+  EXPECT_FALSE(warning(-0.05));
+  EXPECT_FALSE(warning(3.5)) << "an open bite";
+  ASSERT_TRUE(warning(30));
+  EXPECT_TRUE(
+      warning(30)->starts_with("The scans are 30 mm apart: they are probably not in one "
+                               "coordinate system."));
+}
+
+}  // namespace
+}  // namespace ist::test
