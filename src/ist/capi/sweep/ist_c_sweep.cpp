@@ -153,16 +153,17 @@ ist_status ist_sweep_run_part(const ist_sweep* sweep, const char* folder, uint64
     if (held.status() != IST_OK) return held.status();
     const ist::Sweep& known = held->sweep;
     if (part >= known.parts()) return fail_part(call, part, known.parts());
-    std::optional<ist_sweep_part> made;
+    std::optional<ist::SweepFolder> parts;
+    auto outcome = ist::Sweep::Outcome::kStopped;
     followed(follower, [&](const ist::Proceed& proceed) {
-      const ist::SweepFolder parts = known.open_folder(folder);
-      const auto outcome = known.run_part(parts, part, static_cast<std::size_t>(threads), proceed);
-      if (outcome == ist::Sweep::Outcome::kStopped) return;
-      made = part_of(parts, part, parts.look(part));
-      made->made = outcome == ist::Sweep::Outcome::kMade;
+      parts.emplace(known.open_folder(folder));
+      outcome = known.run_part(*parts, part, static_cast<std::size_t>(threads), proceed);
     });
-    if (!made) return cancelled(call);
-    write_sized(*made, *result);
+    if (outcome == ist::Sweep::Outcome::kStopped) return cancelled(call);
+    // A caller who says stop when the part is there is too late.
+    ist_sweep_part made = part_of(*parts, part, parts->look(part));
+    made.made = outcome == ist::Sweep::Outcome::kMade;
+    write_sized(made, *result);
     return IST_OK;
   });
 }
