@@ -30,10 +30,14 @@ std::string words_of(const DistanceInterval& interval) {
   return fmt::format("{:.6g} to {:.6g}", interval.lower, interval.upper);
 }
 
-std::string words_of(const Depth& depth) {
+std::string depth_of(const Findings& found) {
+  const Depth& depth = found.depth;
   if (depth.certain) return words_of(*depth.certain);
   if (!depth.at_vertices) return "-";
-  return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
+  if (*depth.at_vertices > 0) {
+    return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
+  }
+  return found.touch == Answer::kNo ? "0" : "not known (open surface)";
 }
 
 std::string words_of(const std::optional<double>& number) {
@@ -78,7 +82,7 @@ void print_one(const PoseAnswer& answer) {
   };
   line("touch", word_of(found.touch, 0));
   line("distance", found.distance ? words_of(*found.distance) : "-");
-  std::string depth = words_of(found.depth);
+  std::string depth = depth_of(found);
   if (found.depth.point) {
     const Eigen::Vector3d& p = *found.depth.point;
     depth += fmt::format(" at ({:.5g}, {:.5g}, {:.5g})", p[0], p[1], p[2]);
@@ -96,7 +100,7 @@ void print_rows(const std::vector<PoseAnswer>& answers) {
   const std::vector<std::string> shared = shared_notes(answers);
   std::size_t wide = 8;  // of depth, which may be a sentence
   for (const PoseAnswer& answer : answers) {
-    wide = std::max(wide, words_of(answer.findings.depth).size());
+    wide = std::max(wide, depth_of(answer.findings).size());
   }
   fmt::print("{:>12} {:<7} {:<24} {:<{}} {:>9}{}\n", path ? "displacement" : "index", "touch",
              "distance", "depth", wide, "area", triangles ? " triangles" : "");
@@ -105,7 +109,7 @@ void print_rows(const std::vector<PoseAnswer>& answers) {
     fmt::print("{:>12} {} {:<24} {:<{}} {:>9}",
                path ? fmt::format("{:.6g}", *answers[i].displacement) : fmt::format("{}", i),
                word_of(found.touch, 7), found.distance ? words_of(*found.distance) : "-",
-               words_of(found.depth), wide, words_of(found.depth.area));
+               depth_of(found), wide, words_of(found.depth.area));
     if (triangles) fmt::print(" {:>9}", words_of(found.triangle_pairs));
     const std::string rest = rest_of(found, shared);
     fmt::print("{}{}\n", rest.empty() ? "" : "  ", rest);

@@ -122,9 +122,36 @@ Box region_without(const Bite& bite, const FarContacts& parts) {
   return region;
 }
 
+// The mean cosine between the outer normals of fixed triangles within the reach and of the moving
+// triangles nearest to them, by area and nearness: -1 if the surfaces face each other, 1 if they
+// face the same way.
+double mean_cosine(const Bite& bite) {
+  const auto normal = [](const BiteBody& body, std::uint32_t triangle) -> Vector {
+    const auto& [a, b, c] = body.mesh->triangles[triangle];
+    const auto& points = body.mesh->vertices;
+    return body.to_fixed.linear() * (points[b] - points[a]).cross(points[c] - points[a]);
+  };
+  double sum = 0, area = 0;
+  for (std::uint32_t t = 0; t < bite.fixed.mesh->triangles.size(); ++t) {
+    const SurfaceDistance& near = bite.fixed.surface.vertices[bite.fixed.mesh->triangles[t][0]];
+    if (std::isnan(near.distance)) continue;
+    const Vector mine = normal(bite.fixed, t), other = normal(bite.moving, near.triangle);
+    if (!(other.norm() > 0)) continue;
+    const double nearness = bite.reach - std::abs(near.distance);
+    sum += nearness * mine.dot(other) / other.norm();
+    area += nearness * mine.norm();
+  }
+  return area > 0 ? sum / area : -1;
+}
+
 }  // namespace
 
 std::optional<std::string> warning_of(const Bite& bite) {
+  constexpr double kSameWay = 0.5;
+  if (mean_cosine(bite) > kSameWay) {
+    return "The scans face the same way where they are near each other: they are probably scans of "
+           "one jaw, or one of them is inside out. Name the upper and the lower jaw.";
+  }
   const double apart = bite.findings.distance->lower;
   const double smaller =
       std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());

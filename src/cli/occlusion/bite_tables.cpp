@@ -32,7 +32,9 @@ std::string first_line(const Bite& bite) {
   if (depth.certain && depth.certain->upper > 0) {
     line += fmt::format(", {:.4g} to {:.4g} {} deep", depth.certain->lower, depth.certain->upper,
                         bite.unit);
-  } else if (!depth.certain && (yes || depth.at_vertices > 0.0)) {
+  } else if (!depth.certain && yes && !(depth.at_vertices > 0.0)) {
+    line += ", depth not known (open surface)";
+  } else if (!depth.certain && depth.at_vertices > 0.0) {
     line += fmt::format("{} at least {:.3g} {} deep (open surface, by vertices)",
                         yes ? "," : ", or", depth.at_vertices.value_or(0.0), bite.unit);
   }

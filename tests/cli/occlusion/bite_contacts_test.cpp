@@ -101,5 +101,19 @@ TEST(BiteHints, WarnOfBodiesThatAreHardlyInOneCoordinateSystem) {
                                "coordinate system."));
 }
 
+// Two scans of one jaw, one of them a little lower.
+TEST(BiteHints, WarnOfScansThatFaceTheSameWay) {
+  const TriangleMesh up = plate(5, 1), down = inside_out(up);
+  const auto warning = [&](const TriangleMesh& moving, double height) {
+    const Eigen::Isometry3d pose(Eigen::Translation3d(0, 0, height));
+    return cli::warning_of(bite_of(up, moving, pose)->bite);
+  };
+  for (const double height : {-0.1, 0.1, 1.0}) {
+    EXPECT_FALSE(warning(down, height)) << height;
+    ASSERT_TRUE(warning(up, height)) << height;
+    EXPECT_TRUE(warning(up, height)->starts_with("The scans face the same way"));
+  }
+}
+
 }  // namespace
 }  // namespace ist::test
