@@ -276,9 +276,10 @@ TEST_F(OcclusionCommand, ARegionLeavesOutWhatLiesBesideIt) {
     refuses({"--json", "--region", bad}, 2, "give x0,y0,z0,x1,y1,z1, two corners of a box");
   }
   refuses({"--json", "--region", "0,0,0,1,0,1"}, 2, "the box is empty: its corners must differ");
-  refuses({"--json", "--region", "50,50,50,60,60,60"}, 2,
-          "no triangle of FIXED has its centroid in x 50 to 60, y 50 to 60, z 50 to 60: the body "
-          "lies in x -5 to 5, y -5 to 5, z -3 to 0");
+  refuses(
+      {"--json", "--region", "50,50,50,60,60,60"}, 2,
+      "no triangle of plate.stl has its centroid in x 50 to 60, y 50 to 60, z 50 to 60: the body "
+      "lies in x -5 to 5, y -5 to 5, z -3 to 0");
 }
 
 TEST_F(OcclusionCommand, WritesBothBodiesWhereTheyBite) {

@@ -47,7 +47,7 @@ void fill_facing(const cli::Bodies& bodies, const Asked& asked, Progress& progre
   }
   cli::SideOptions named;
   named.frame = asked.text_or_none("frame");
-  const auto [sides, fore_aft] = cli::divisions(named, cli::box_of(bodies.fixed));
+  const auto [sides, fore_aft] = cli::divisions(named, bodies.frame(), cli::box_of(bodies.fixed));
   const cli::FacingBody fixed(*bodies.fixed.triangles(), found.fixed.vertices,
                               Eigen::Isometry3d::Identity());
   const cli::FacingBody moving(*bodies.moving.triangles(), found.moving.vertices, pose);
