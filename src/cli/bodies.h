@@ -14,6 +14,7 @@ struct Bodies {
   /// Mesh units; empty of a mesh that got no voxels, but one as large as itself.
   std::optional<double> fixed_voxel_size{}, moving_voxel_size{};
   LengthUnit told_unit = LengthUnit::kUnknown;  ///< by the user, for trees that know none
+  double moving_factor = 1;  ///< by which the lengths of the moving mesh were converted
   /// How messages call the bodies: by the names of their files, if there are any.
   std::string fixed_name = "the fixed body", moving_name = "the moving body";
   /// Whether a mesh was read that has a border. It is false for trees, which do not tell.

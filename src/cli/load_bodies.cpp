@@ -18,6 +18,7 @@
 #include "cli/source_file.h"
 #include "ist/base/error.h"
 #include "ist/mesh/mesh.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist::cli {
@@ -25,17 +26,17 @@ namespace {
 
 // A body before its tree is built.
 struct LoadedBody {
-  LoadedBody(const std::filesystem::path& path, LengthUnit given) : file(path), unit(given) {
+  // `told` is the unit that the option names.
+  LoadedBody(const std::filesystem::path& path, LengthUnit told, const char* option)
+      : file(path), unit(told) {
     if (is_tree_file(file)) {
       tree = read_tree(file);
       source = tree->source();
-      const bool contradicts = unit != LengthUnit::kUnknown &&
-                               source.unit != LengthUnit::kUnknown && source.unit != unit;
-      refuse_if(
-          contradicts, "--unit",
-          fmt::format("{} is a tree in {}: leave the option out, or build the tree again with "
-                      "its mesh's unit",
-                      name(), to_string(source.unit)));
+      const bool contradicts = told != LengthUnit::kUnknown &&
+                               source.unit != LengthUnit::kUnknown && source.unit != told;
+      refuse_if(contradicts, option,
+                fmt::format("{} is a tree in {}: leave the option out, or name the mesh", name(),
+                            to_string(source.unit)));
       if (source.unit != LengthUnit::kUnknown) unit = source.unit;
     } else {
       source = source_of(file);
@@ -74,25 +75,25 @@ SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<dou
   return tree;
 }
 
-// Brings both bodies into one unit, if both are known.
-void convert_units(LoadedBody& fixed, LoadedBody& moving) {
+// Converts the moving mesh to the unit of the fixed body, if both are known. Returns the factor.
+double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_told) {
   constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
-  refuse_if(fixed.unit == kUnknown && moving.unit != kUnknown && !moving.tree, "--unit-moving",
+  refuse_if(is_moving_told && fixed.unit == kUnknown, "--unit-moving",
             fmt::format("the unit of {} is not known: give --unit too", fixed.name()));
-  if (fixed.unit == moving.unit || fixed.unit == kUnknown || moving.unit == kUnknown) return;
-  refuse_if(fixed.tree && moving.tree, moving.name(),
-            fmt::format("the tree is in {}, and {} in {}: name the mesh of one of them, and its "
-                        "unit by --unit or --unit-moving, and it is converted",
+  if (fixed.unit == moving.unit || fixed.unit == kUnknown || moving.unit == kUnknown) return 1;
+  refuse_if(moving.tree.has_value(), moving.name(),
+            fmt::format("the tree is in {}, and {} in {}: name the tree's mesh, and its unit by "
+                        "--unit-moving, and it is converted",
                         to_string(moving.unit), fixed.name(), to_string(fixed.unit)));
-  LoadedBody &mesh = moving.tree ? fixed : moving, &other = moving.tree ? moving : fixed;
   // Both in micrometres are whole numbers, so that the factor is rounded once.
-  const double factor =
-      std::round(1e6 * metres_per_unit(mesh.unit)) / std::round(1e6 * metres_per_unit(other.unit));
-  for (Eigen::Vector3d& vertex : mesh.checked.mesh.vertices) vertex *= factor;
-  mesh.extent *= factor;
-  note(fmt::format("{} was converted from {} to {}", mesh.name(), to_string(mesh.unit),
-                   to_string(other.unit)));
-  mesh.unit = mesh.source.unit = other.unit;
+  const double factor = std::round(1e6 * metres_per_unit(moving.unit)) /
+                        std::round(1e6 * metres_per_unit(fixed.unit));
+  for (Eigen::Vector3d& vertex : moving.checked.mesh.vertices) vertex *= factor;
+  moving.extent *= factor;
+  note(fmt::format("{} was converted from {} to {}", moving.name(), to_string(moving.unit),
+                   to_string(fixed.unit)));
+  moving.unit = moving.source.unit = fixed.unit;
+  return factor;
 }
 
 // Refuses bodies in different frames, unless they are to be turned into one.
@@ -100,8 +101,8 @@ void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFram
   for (const LoadedBody* body : {&fixed, &moving}) {
     const bool turns = contradict(body->frame(), to_frame);
     refuse_if(turns && body->tree, body->name(),
-              fmt::format("the tree is in the frame {}: build it again of its mesh by 'ist build "
-                          "--to-frame {}'",
+              fmt::format("the tree is in the frame {}: name its mesh, or build it again by 'ist "
+                          "build --to-frame {}'",
                           to_string(body->frame()), to_string(to_frame)));
     if (turns) {
       note(fmt::format("{} was turned from the frame {} to {}", body->name(),
@@ -110,12 +111,14 @@ void check_frames(const LoadedBody& fixed, const LoadedBody& moving, PatientFram
       note(fmt::format("{} does not say its frame, and stays as it is", body->name()));
     }
   }
-  refuse_if(to_frame == PatientFrame::kUnknown && contradict(fixed.frame(), moving.frame()),
-            moving.name(),
-            fmt::format("its frame is {}, and the frame of {} is {}: give --to-frame {} to turn "
-                        "both into one",
+  if (to_frame != PatientFrame::kUnknown || !contradict(fixed.frame(), moving.frame())) return;
+  const PatientFrame common = moving.tree && !fixed.tree ? moving.frame() : fixed.frame();
+  const bool both_are_trees = fixed.tree && moving.tree;
+  refuse_if(true, moving.name(),
+            fmt::format("its frame is {}, and the frame of {} is {}: {} --to-frame {}{}",
                         to_string(moving.frame()), fixed.name(), to_string(fixed.frame()),
-                        to_string(fixed.frame())));
+                        both_are_trees ? "build it again of its mesh by 'ist build" : "give",
+                        to_string(common), both_are_trees ? "'" : " to turn the mesh"));
 }
 
 void tell_of_twins(const LoadedBody& fixed, const LoadedBody& moving) {
@@ -126,14 +129,6 @@ void tell_of_twins(const LoadedBody& fixed, const LoadedBody& moving) {
     note(fmt::format("{} and {} hold one mesh: it is compared with itself", fixed.name(),
                      moving.name()));
   }
-}
-
-void tell_of_borders(const LoadedBody& fixed, const LoadedBody& moving) {
-  std::vector<std::string> open;
-  for (const LoadedBody* body : {&fixed, &moving}) {
-    if (body->checked.has_border) open.push_back(body->name());
-  }
-  if (!open.empty()) note(open_surfaces(open));
 }
 
 void warn_of_units(const LoadedBody& fixed, const LoadedBody& moving) {
@@ -209,15 +204,15 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files) {
 }
 
 Bodies load_bodies(const BodyFiles& files) {
-  LoadedBody fixed(files.fixed, files.unit),
-      moving(files.moving,
-             files.moving_unit == LengthUnit::kUnknown ? files.unit : files.moving_unit);
+  const bool is_moving_told = files.moving_unit != LengthUnit::kUnknown;
+  LoadedBody fixed(files.fixed, files.unit, "--unit"),
+      moving(files.moving, is_moving_told ? files.moving_unit : files.unit,
+             is_moving_told ? "--unit-moving" : "--unit");
   const bool both_are_trees = fixed.tree && moving.tree;
   refuse_if(both_are_trees && files.voxel_size, "--voxel-size",
             "both bodies are trees, which have their own voxel sizes: leave it out");
-  convert_units(fixed, moving);
+  const double factor = convert_unit(fixed, moving, is_moving_told);
   check_frames(fixed, moving, files.to_frame);
-  tell_of_borders(fixed, moving);
   warn_of_units(fixed, moving);
   using Voxels = BodyFiles::Voxels;
   const bool triangles = fixed.has_triangles() && moving.has_triangles();
@@ -230,9 +225,10 @@ Bodies load_bodies(const BodyFiles& files) {
   }
   Bodies bodies{take_tree(fixed, files, voxel_size), take_tree(moving, files, voxel_size),
                 SpherePolicy::kTable};
-  bodies.told_unit = files.unit;
-  bodies.fixed_name = fixed.file.filename().string();
-  bodies.moving_name = moving.file.filename().string();
+  if (files.unit != LengthUnit::kUnknown || is_moving_told) bodies.told_unit = fixed.unit;
+  bodies.moving_factor = factor;
+  bodies.fixed_name = source_name(fixed.file.filename().string());
+  bodies.moving_name = source_name(moving.file.filename().string());
   bodies.fixed_has_border = fixed.checked.has_border;
   bodies.moving_has_border = moving.checked.has_border;
   bodies.policy =
@@ -251,7 +247,7 @@ Bodies load_bodies(const BodyFiles& files) {
 }
 
 SphereTree load_body(const std::filesystem::path& file, std::uint64_t max_memory) {
-  LoadedBody body(file, LengthUnit::kUnknown);
+  LoadedBody body(file, LengthUnit::kUnknown, "--unit");
   if (body.checked.has_border) note(open_surfaces({body.name()}));
   BodyFiles files;
   files.max_memory = max_memory;

@@ -57,13 +57,13 @@ struct BodyFiles {
 /// Adds --unit, --unit-moving and --to-frame to a subcommand.
 void add_units_and_frame(CLI::App& command, BodyFiles& files);
 
-/// Loads both bodies. Trees of meshes keep their triangles. A mesh in another known unit than the
-/// other body's is converted to that one.
+/// Loads both bodies. Trees of meshes keep their triangles. A moving mesh in another known unit
+/// than the fixed body's is converted to that one.
 ///
 /// Says on stderr if it takes a voxel size, converts or turns a mesh, if both files hold one mesh,
-/// if surfaces have borders, if the bodies seem to be in different units, and if voxels are large
-/// for their body. Throws CLI::ValidationError for a voxel size of two trees, for two trees of
-/// different units, for a unit that a tree contradicts, and for files in different frames.
+/// if the bodies seem to be in different units, and if voxels are large for their body. Throws
+/// CLI::ValidationError for a voxel size of two trees, for a moving tree of another unit than the
+/// fixed body's, for a unit that a tree contradicts, and for files in different frames.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
 /// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.

@@ -1,5 +1,7 @@
 // The patient's frame that files name: bodies of two frames never meet in silence.
 
+#include <fmt/format.h>
+
 #include "cli/cli_case.h"
 #include "ist/tree/sphere_tree.h"
 #include "support/shapes.h"
@@ -36,23 +38,52 @@ class Frames : public CliTest {
                     plain_ = mesh("plain.stl", ball_);
 };
 
-TEST_F(Frames, OfTwoFilesMustBeOne) {
+TEST_F(Frames, TwoInOneQueryAreRefused) {
   const CommandResult refused = collide(ras_, lps_);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_EQ(refused.out, "");
   EXPECT_TRUE(says(refused.err, lps_ + ": its frame is lps, and the frame of " + ras_ + " is ras"));
   EXPECT_TRUE(says(refused.err, "--to-frame ras"));
-  for (const char* command : {"occlusion", "approach", "advise"}) {
-    std::vector<std::string> arguments{command, ras_, lps_};
-    if (*command == 'o') arguments.insert(arguments.end(), {"--json"});
-    if (std::string(command) == "approach") {
-      arguments.insert(arguments.end(), {"--axis", "z", "--from", "0", "--to", "1"});
-    }
-    if (std::string(command) == "advise") arguments.insert(arguments.end(), {"--error", "0.1"});
+  const std::vector<std::vector<std::string>> others = {
+      {"occlusion", ras_, lps_, "--json"},
+      {"approach", ras_, lps_, "--axis", "z", "--from", "0", "--to", "1"},
+      {"advise", ras_, lps_, "--error", "0.1"},
+      {"bench", ras_, lps_}};
+  for (const std::vector<std::string>& arguments : others) {
     const CommandResult result = ist(arguments);
-    EXPECT_EQ(result.exit_code, 2) << command;
-    EXPECT_TRUE(says(result.err, "frame")) << result.err;
+    EXPECT_EQ(result.exit_code, 2) << arguments[0];
+    EXPECT_TRUE(says(result.err, "its frame is lps, and the frame of " + ras_ + " is ras"));
   }
+}
+
+TEST_F(Frames, TwoInASweepAreRefused) {
+  const std::string ras = path("ras.ist"), lps = path("lps.ist");
+  ist_well({"build", ras_, "-o", ras, "--voxel-size", "0.5"});
+  ist_well({"build", lps_, "-o", lps, "--voxel-size", "0.5"});
+  const std::string job = write(
+      "job.toml",
+      "answers = [\"intersects\"]\n[fixed]\ntree = \"ras.ist\"\n[moving]\ntree = \"lps.ist\"\n"
+      "[poses.box]\nseed = 1\ncount = 10\nfrom = [-1, -1, -1]\nto = [1, 1, 1]\nturns = \"any\"\n");
+  const CommandResult result = ist({"sweep", job, "-o", path("out")});
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_TRUE(says(result.err, lps + ": the tree is in the frame lps, and " + ras + " is in ras"));
+}
+
+// Labels lie where the mesh lies: a turned and converted mesh keeps them.
+TEST_F(Frames, LabelsAreTurnedAndConvertedWithTheirMesh) {
+  std::string obj = "# SPACE=LPS\n";
+  for (const Eigen::Vector3d& vertex : ball_.vertices) {
+    obj += fmt::format("v {} {} {}\n", -1e-3 * vertex[0], -1e-3 * vertex[1], 1e-3 * vertex[2]);
+  }
+  obj += "g tooth_16\n";
+  for (const auto& [a, b, c] : ball_.triangles) {
+    obj += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+  }
+  const std::string ball = write("ball.obj", obj);
+  const CommandResult bite =
+      ist_well({"occlusion", ras_, ball, "--to-frame", "ras", "--unit", "mm", "--unit-moving", "m",
+                "--labels-moving", ball, "--numbering", "fdi", "--json"});
+  EXPECT_TRUE(says(bite.out, R"("teeth":[{"number":16)"));
 }
 
 TEST_F(Frames, AMeshIsTurnedIfThatIsAsked) {
@@ -79,6 +110,12 @@ TEST_F(Frames, ATreeKeepsItsMeshesFrame) {
   const CommandResult fixed = collide(ras_, tree, {"--to-frame", "ras"});
   EXPECT_EQ(fixed.exit_code, 2);
   EXPECT_TRUE(says(fixed.err, "ist build --to-frame ras"));
+  EXPECT_TRUE(says(collide(ras_, tree).err, "give --to-frame lps to turn the mesh"));
+  EXPECT_TRUE(says(collide(ras_, tree, {"--to-frame", "lps"}).out, "touch      yes"));
+  const CommandResult untold =
+      ist({"build", plain_, "-o", path("no.ist"), "--voxel-size", "0.5", "--to-frame", "ras"});
+  EXPECT_EQ(untold.exit_code, 2);
+  EXPECT_TRUE(says(untold.err, "--to-frame: " + plain_ + " does not say its frame"));
   ist_well({"build", lps_, "-o", tree, "--voxel-size", "0.5", "--to-frame", "ras"});
   EXPECT_TRUE(says(collide(ras_, tree).out, "touch      yes"));
 }
@@ -96,7 +133,7 @@ TEST_F(Frames, BuildTakesNoOtherFrameThanTheFiles) {
   EXPECT_TRUE(says(refused.err, "--frame: " + lps_ + " says that its frame is lps"));
 }
 
-TEST_F(Frames, OfTheFilesNamesTheSides) {
+TEST_F(Frames, OfFilesNameTheSides) {
   const std::string ball = in(PatientFrame::kRas, "ras_ball.stl", ball_);
   const auto bite = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"occlusion", ras_, ball, "--json"};

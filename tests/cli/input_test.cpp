@@ -119,10 +119,14 @@ TEST_F(Input, WhatIsWrongWithAMeshIsAWarning) {
   const std::string open = mesh("open.stl", open_strip(3));
   const CommandResult built =
       ist_well({"build", open, "-o", path("out.ist"), "--voxel-size", "0.5", "--json"});
-  EXPECT_TRUE(says(built.err, "warning: " + open));
+  EXPECT_TRUE(says(built.err, "note: " + open + " is an open surface, as scans usually are"));
   const auto lines = json_lines(built.out);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_GT(lines[0]["warnings"].size(), 0u);
+  EXPECT_EQ(lines[0]["file"], "out.ist");
+  ASSERT_GT(lines[0]["warnings"].size(), 0u);
+  for (const nlohmann::json& warning : lines[0]["warnings"]) {
+    EXPECT_TRUE(warning.get<std::string>().starts_with("open.stl: ")) << warning;
+  }
   const CommandResult turned = ist_well({"build", mesh("turned.stl", inside_out(icosphere(1, 1))),
                                          "-o", path("turned.ist"), "--voxel-size", "0.5"});
   EXPECT_TRUE(says(turned.err, "inside out"));

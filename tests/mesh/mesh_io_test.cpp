@@ -220,6 +220,20 @@ TEST(ReadMesh, APlyMayHaveCarriageReturnsBeforeItsBytes) {
   EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(mesh)));
 }
 
+TEST(ReadMesh, TextMayBePaddedWithZerosOrCtrlZ) {
+  for (const char pad : {'\0', '\x1A'}) {
+    EXPECT_EQ(corners(read_bytes(test::as_text_stl(kBox) + std::string(5000, pad))),
+              corners(narrowed(kBox)));
+  }
+}
+
+TEST(ReadMesh, AHeaderOfAPlyMayEndItsLastLineInAnotherWay) {
+  const TriangleMesh mesh = test::icosphere(0, 1);
+  std::string bytes = test::as_binary_ply(mesh, false);
+  bytes.insert(bytes.find("end_header\n") + 10, "\r");
+  EXPECT_EQ(corners(read_bytes(bytes)), corners(narrowed(mesh)));
+}
+
 // As 3D Slicer writes it.
 TEST(ReadMesh, TellsTheFrameThatAFileNames) {
   const auto stl = [](std::string header) {

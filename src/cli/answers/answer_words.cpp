@@ -75,7 +75,7 @@ std::string rest_of(const Findings& found, const std::vector<std::string>& share
   return rest;
 }
 
-void print_one(const PoseAnswer& answer) {
+void print_one(const PoseAnswer& answer, const Bodies& bodies) {
   const Findings& found = answer.findings;
   const auto line = [](const char* name, const std::string& value) {
     fmt::print("{:<10} {}\n", name, value);
@@ -92,6 +92,11 @@ void print_one(const PoseAnswer& answer) {
   if (found.triangle_pairs) line("triangles", fmt::format("{} pairs meet", *found.triangle_pairs));
   if (const std::string inside = inside_of(found); !inside.empty()) line("inside", inside);
   for (const std::string& note : found.notes) line("note", note);
+  if (found.distance && found.distance->lower > 0.5 * bodies.extent()) {
+    line("note",
+         "far apart: the bodies are probably not in one coordinate system: register them first, or "
+         "give a pose");
+  }
 }
 
 void print_rows(const std::vector<PoseAnswer>& answers) {
@@ -144,7 +149,7 @@ void print_times(const Engines& engines, const Bodies& bodies,
 void print_answers(const Engines& engines, const Bodies& bodies,
                    const std::vector<PoseAnswer>& answers, bool timing) {
   const bool one = answers.size() == 1 && !answers.front().displacement;
-  one ? print_one(answers.front()) : print_rows(answers);
+  one ? print_one(answers.front(), bodies) : print_rows(answers);
   if (timing) print_times(engines, bodies, answers);
 }
 

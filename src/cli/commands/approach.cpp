@@ -81,6 +81,11 @@ double displacement_at(const Path& path, double parameter) {
   return path.from + parameter * (path.to - path.from);
 }
 
+// A point where the triangles of a contact meet, fixed coordinates. Precondition: there are some.
+Eigen::Vector3d contact_point(const FirstContact& found, const Path& path, const Bodies& bodies) {
+  return shared_point(bodies, *found.triangles, path.at(displacement_at(path, found.upper)));
+}
+
 bool self_intersecting(const Bodies& bodies) {
   return bodies.fixed.self_intersections() > 0 || bodies.moving.self_intersections() > 0;
 }
@@ -92,13 +97,19 @@ void print_first_contact_json(const FirstContact& found, const Path& path, const
                               {"displacement_upper", std::max(a, b)},
                               {"grazed", found.grazed},
                               {"triangles", nullptr},
+                              {"point", nullptr},
                               {"self_intersecting", self_intersecting(bodies)},
                               {"distances", found.distances}};
-  if (found.triangles) line["triangles"] = {found.triangles->fixed, found.triangles->moving};
+  if (found.triangles) {
+    const Eigen::Vector3d point = contact_point(found, path, bodies);
+    line["triangles"] = {found.triangles->fixed, found.triangles->moving};
+    line["point"] = {point[0], point[1], point[2]};
+  }
   print_json(line);
 }
 
-void print_first_contact(const FirstContact& found, const Path& path, const Bodies& bodies) {
+void print_first_contact(const FirstContact& found, const Path& path, const Bodies& bodies,
+                         double tolerance) {
   switch (found.status) {
     case FirstContact::Status::kNone:
       fmt::print("first contact: none from {:g} to {:g}\n", path.from, path.to);
@@ -114,12 +125,15 @@ void print_first_contact(const FirstContact& found, const Path& path, const Bodi
       break;
   }
   const double a = displacement_at(path, found.lower), b = displacement_at(path, found.upper);
-  fmt::print("first contact: {}displacement {:.9g} to {:.9g}",
+  // One digit more than the tolerance has.
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(tolerance))), 0, 17);
+  const LengthUnit unit = bodies.unit();
+  fmt::print("first contact: {}displacement {:.{}f} to {:.{}f}{}{}",
              found.status == FirstContact::Status::kGrazing ? "only grazing, " : "", std::min(a, b),
-             std::max(a, b));
+             digits, std::max(a, b), digits, unit == LengthUnit::kUnknown ? "" : " ",
+             unit == LengthUnit::kUnknown ? "" : to_string(unit));
   if (found.triangles) {
-    const Eigen::Isometry3d pose = path.at(displacement_at(path, found.upper));
-    const Eigen::Vector3d point = shared_point(bodies, *found.triangles, pose);
+    const Eigen::Vector3d point = contact_point(found, path, bodies);
     fmt::print(", at ({:.5g}, {:.5g}, {:.5g}), triangles {} and {}", point[0], point[1], point[2],
                found.triangles->fixed, found.triangles->moving);
   }
@@ -138,7 +152,7 @@ void tell_first_contact(const Bodies& bodies, const Path& path, const ApproachAr
   const double tolerance = options.first_contact.value_or(kContactTolerance * bodies.extent());
   const FirstContact found = find_first_contact(bodies, path, tolerance);
   options.query.json ? print_first_contact_json(found, path, bodies)
-                     : print_first_contact(found, path, bodies);
+                     : print_first_contact(found, path, bodies, tolerance);
 }
 
 void run(const ApproachArguments& options) {

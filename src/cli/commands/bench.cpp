@@ -171,6 +171,7 @@ void add_bench(CLI::App& app) {
       ->add_option("--seconds", options->seconds,
                    "time for all queries; each has three turns at least")
       ->capture_default_str();
+  add_units_and_frame(*command, options->files);
   add_max_memory(*command, options->files.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
   add_example(

@@ -59,7 +59,11 @@ void run(BuildArguments options) {
   options.build.frame = patient_frame(options.to_frame).value_or(PatientFrame::kUnknown);
   CheckedMesh checked = load_mesh(options.mesh);
   take_frame(options.frame, options.mesh, checked.mesh);
-  if (checked.has_border) checked.warnings.push_back(open_surfaces({options.mesh.string()}));
+  refuse_if(!options.to_frame.empty() && checked.mesh.frame == PatientFrame::kUnknown, "--to-frame",
+            fmt::format("{} does not say its frame: tell it by --frame", options.mesh.string()));
+  if (checked.has_border) {
+    fmt::print(stderr, "note: {}\n", open_surfaces({options.mesh.string()}));
+  }
   const double extent = largest_extent(box_of(checked.mesh));
   options.build.voxel_size =
       options.voxel_size ? *options.voxel_size : default_voxel_size(extent, "the largest extent");
@@ -76,17 +80,29 @@ void run(BuildArguments options) {
   const LinearOctree& octree = tree.parts().octree;
   if (options.json) {
     print_header("build", {{"mesh", options.mesh}});
-    nlohmann::ordered_json line{
-        {"file", options.output.string()}, {"triangles", triangles},
-        {"voxel_size", tree.voxel_size()}, {"spheres", options.spheres},
-        {"voxels", octree.leaf_count()},   {"nodes", octree.node_count()},
-        {"depth", octree.depth()},         {"bytes", bytes},
-        {"memory", tree.bytes()},          {"unit", json_of(tree.source().unit)},
-        {"frame", json_of(tree.frame())},  {"source", json_of(tree.source())}};
+    nlohmann::ordered_json line{{"file", options.output.filename().string()},
+                                {"triangles", triangles},
+                                {"voxel_size", tree.voxel_size()},
+                                {"spheres", options.spheres},
+                                {"voxels", octree.leaf_count()},
+                                {"nodes", octree.node_count()},
+                                {"depth", octree.depth()},
+                                {"bytes", bytes},
+                                {"memory", tree.bytes()},
+                                {"unit", json_of(tree.source().unit)},
+                                {"frame", json_of(tree.frame())},
+                                {"source", json_of(tree.source())}};
     if (tree.parts().proximity)
       line["proximity_voxels"] = tree.parts().proximity->octree.leaf_count();
     for (const auto& stage : report.stages) line["milliseconds"][stage.name] = stage.milliseconds;
-    line["warnings"] = checked.warnings;
+    line["warnings"] = nlohmann::ordered_json::array();
+    for (std::string warning :
+         checked.warnings) {  // which begin with the file, and JSON holds no path
+      if (warning.starts_with(options.mesh.string())) {
+        warning.replace(0, options.mesh.string().size(), options.mesh.filename().string());
+      }
+      line["warnings"].push_back(warning);
+    }
     print_json(line);
     return;
   }

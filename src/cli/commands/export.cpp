@@ -90,7 +90,7 @@ void run(const ExportArguments& options) {
   const std::uint32_t count = tree.parts().octree.node_count(options.level);
   if (options.json) {
     print_header("export", {{"tree", options.tree}});
-    const nlohmann::ordered_json line{{"file", options.output.string()},
+    const nlohmann::ordered_json line{{"file", options.output.filename().string()},
                                       {"what", options.what},
                                       {"level", options.level},
                                       {"count", count}};

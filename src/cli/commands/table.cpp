@@ -76,7 +76,7 @@ void write_table(const TableArguments& options) {
     const std::string text = table_text(format, kGenerator);
     write_text(options.output, [&text](const auto& write) { write(text); });
   }
-  tell(options, {{"file", options.output.string()}, {"format", options.format}},
+  tell(options, {{"file", options.output.filename().string()}, {"format", options.format}},
        fmt::format("the table, as {}", options.format));
 }
 
@@ -87,7 +87,7 @@ void write_golden(const TableArguments& options) {
     checksum = write_vectors(*options.vectors, seed, kGenerator, write);
   });
   tell(options,
-       {{"file", options.output.string()},
+       {{"file", options.output.filename().string()},
         {"vectors", *options.vectors},
         {"seed", seed},
         {"checksum", fmt::format("xxh64 {:016x}", checksum)}},

@@ -23,6 +23,7 @@ namespace {
 
 struct ViewArguments {
   std::filesystem::path fixed, moving, output, scene;
+  BodyFiles told;  // units and frame alone
   PoseOptions pose;
   std::uint64_t max_memory = BuildOptions{}.max_memory;
   bool no_names = false;
@@ -37,7 +38,7 @@ Bodies bodies_of(const ViewArguments& options) {
     const SphereTree body = load_body(options.fixed, options.max_memory);
     return {body, body, body.tightest()};  // trees share their content
   }
-  BodyFiles files;
+  BodyFiles files = options.told;
   files.fixed = options.fixed;
   files.moving = options.moving;
   files.voxels = BodyFiles::Voxels::kNone;  // the page makes its own
@@ -109,6 +110,7 @@ void add_view(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--no-names", options->no_names, "write fixed and moving for the files' names");
   add_max_memory(*command, options->max_memory, "each tree, and for all queries together");
+  add_units_and_frame(*command, options->told);
   add_pose_options(*command, options->pose, Poses::kOne);
   add_example(*command,
               "The page holds the engine and all data, asks no server, and can be mailed.\n"

@@ -43,11 +43,9 @@ void require_size(const Bodies& bodies, const Bite& bite) {
        {std::tuple(&bodies.fixed, &bodies.fixed_name, "--unit"),
         std::tuple(&bodies.moving, &bodies.moving_name, "--unit-moving")}) {
     const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
-    refuse_if(
-        !(size >= kLeast && size <= kLargest), option,
-        fmt::format("{} would be {:.4g} mm large if its unit were {}, and jaws are 1 to 1000: "
-                    "give its unit",
-                    *name, size, bite.unit));
+    refuse_if(!(size >= kLeast && size <= kLargest), option,
+              fmt::format("{} would be {:.4g} mm large, and jaws are 1 to 1000: tell its unit",
+                          *name, size));
   }
 }
 
@@ -172,11 +170,14 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   name(bite.fixed, sources.fixed, "fixed", questions.no_names);
   name(bite.moving, sources.moving, "moving", questions.no_names);
 
-  const auto labels_of = [&](const SphereTree& tree, const std::filesystem::path& file) {
-    return file.empty() ? ToothLabels() : read_labels(file, *tree.triangles(), *bite.numbers);
+  const auto labels_of = [&](const SphereTree& tree, const std::filesystem::path& file,
+                             double factor = 1) {
+    return file.empty() ? ToothLabels()
+                        : read_labels(file, *tree.triangles(), *bite.numbers, factor);
   };
   const ToothLabels labels_fixed = labels_of(bodies.fixed, questions.labels_fixed);
-  const ToothLabels labels_moving = labels_of(bodies.moving, questions.labels_moving);
+  const ToothLabels labels_moving =
+      labels_of(bodies.moving, questions.labels_moving, bodies.moving_factor);
 
   OcclusionOptions options = options_of(bite);
   options.proceed = shown_by(progress, "measuring the occlusion");

@@ -46,8 +46,8 @@ struct TriangleMesh {
 /// its header declares; in an OBJ, an OFF or a 3MF doubles; in a glTF floats. What a scene
 /// transforms is placed in double; where it mirrors a mesh its triangles are turned round. No
 /// coordinate is beyond the range of a float. No unit is converted: a glTF's is the metre, a 3MF
-/// names its own. At most 2^25 vertices and triangles are placed, and 2^29 bytes unpacked. The
-/// frame is read of an STL's header and of comments in a PLY or OBJ: SPACE=RAS or SPACE=LPS.
+/// names its own. At most 2^25 vertices and triangles are placed, and 2^29 bytes unpacked. A
+/// frame comes from the header of an STL, or from comments in a PLY or OBJ: SPACE=RAS or SPACE=LPS.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.

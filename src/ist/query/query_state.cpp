@@ -35,7 +35,7 @@ const SphereTree& in_one_frame(const SphereTree& fixed, const SphereTree& moving
   throw Error(
       ErrorCode::kArgumentInvalid,
       fmt::format("query: the fixed tree is in the frame {} and the moving one in {}: build "
-                  "both in one frame (BuildOptions::frame)",
+                  "both in one frame",
                   to_string(fixed.frame()), to_string(moving.frame())));
 }
 

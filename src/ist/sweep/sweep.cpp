@@ -89,6 +89,14 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
       require_triangles(loaded->fixed, "the fixed body");
       require_triangles(loaded->moving, "the moving body");
     }
+    if (contradict(loaded->fixed.frame(), loaded->moving.frame())) {
+      throw Error(ErrorCode::kInputInvalid,
+                  fmt::format("{}: the tree is in the frame {}, and {} is in {}: build one of them "
+                              "again by 'ist build --to-frame {}'",
+                              file_.moving.tree.string(), to_string(loaded->moving.frame()),
+                              file_.fixed.tree.string(), to_string(loaded->fixed.frame()),
+                              to_string(loaded->fixed.frame())));
+    }
     const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
     bodies_ = std::move(loaded);
   }

@@ -53,7 +53,7 @@ class Session {
   [[nodiscard]] Pairs& pairs();
   /// Both bodies as `ist occlusion` takes them.
   [[nodiscard]] cli::Bodies whole();
-  /// Gives the bodies the names of their files.
+  /// Gives the bodies the names of their files, and refuses two frames.
   void name(cli::Bodies& bodies);
   [[nodiscard]] const std::vector<StepFront>& recorded(const Asked& asked);
 

@@ -24,7 +24,8 @@ namespace ist::cli {
 /// Returns the labels of a mesh's triangles, by the places of those that a PLY or OBJ holds, of
 /// which `labels` are. Refuses triangles that are not in it, and places with two labels.
 [[nodiscard]] ToothLabels labels_in_place(const std::filesystem::path& file,
-                                          const ToothLabels& labels, const TriangleMesh& mesh);
+                                          const ToothLabels& labels, const TriangleMesh& mesh,
+                                          double factor);
 
 /// Returns the tooth that two of three corners name, else 0.
 [[nodiscard]] inline int tooth_of_corners(int a, int b, int c) {

@@ -27,8 +27,10 @@ Place place_of(const TriangleMesh& mesh, const Triangle& triangle) {
 }  // namespace
 
 ToothLabels labels_in_place(const std::filesystem::path& file, const ToothLabels& labels,
-                            const TriangleMesh& mesh) {
-  const TriangleMesh labelled = read_mesh(file);
+                            const TriangleMesh& mesh, double factor) {
+  TriangleMesh labelled = read_mesh(file);
+  turn_into(labelled, mesh.frame);
+  for (Eigen::Vector3d& vertex : labelled.vertices) vertex *= factor;
   if (labels.size() != labelled.triangles.size()) {
     refuse_labels(file, fmt::format("{} labels for {} triangles: export it again", labels.size(),
                                     labelled.triangles.size()));

@@ -47,10 +47,12 @@ void refuse_labels(const std::filesystem::path& file, const std::string& detail)
 }
 
 ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
-                        ToothNumbers numbers) {
+                        ToothNumbers numbers, double factor) {
   const std::string ending = file.extension().string();
-  if (same_word(ending, ".ply")) return labels_in_place(file, labels_of_ply(file, numbers), mesh);
-  if (same_word(ending, ".obj")) return labels_in_place(file, labels_of_obj(file, numbers), mesh);
+  if (same_word(ending, ".ply"))
+    return labels_in_place(file, labels_of_ply(file, numbers), mesh, factor);
+  if (same_word(ending, ".obj"))
+    return labels_in_place(file, labels_of_obj(file, numbers), mesh, factor);
   std::vector<int> labels = labels_of_lines(file, numbers);
   if (labels.size() == mesh.triangles.size()) return labels;
   if (labels.size() == mesh.vertices.size()) return of_triangles(file, mesh, labels);

@@ -29,7 +29,9 @@ using ToothLabels = std::vector<int>;
 /// without labels or without some triangle of the mesh or with two labels for one place, for a text
 /// of another count, and for one of vertices by which most of the labelled triangles lie between
 /// teeth, since those are of another order.
+/// @param factor by which the mesh's lengths were multiplied after it was read. A PLY or OBJ is
+///               multiplied too, and turned into the mesh's frame
 [[nodiscard]] ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
-                                      ToothNumbers numbers);
+                                      ToothNumbers numbers, double factor = 1);
 
 }  // namespace ist::cli

@@ -15,9 +15,10 @@ bool is_control(char c) {
   return byte < 0x20 && (byte < '\t' || byte > '\r');
 }
 
-// Text may hold a few control bytes, in names and comments and at its end. Of binary facets every
-// 25th byte is 0.
+// Text may hold a few control bytes in names and comments, and any number of zeros or Ctrl-Z at its
+// end. In binary facets every 25th byte is 0.
 bool is_text(std::string_view content) {
+  content = content.substr(0, content.find_last_not_of(std::string_view("\0\x1A", 2)) + 1);
   const auto controls = std::count_if(content.begin(), content.end(), is_control);
   return static_cast<std::size_t>(controls) <= 4 + content.size() / 100;
 }
@@ -63,7 +64,9 @@ std::string_view other_format(std::string_view content, std::string_view first_w
   for (const Format& format : kFormats) {
     const bool begins =
         content.size() > format.at && content.substr(format.at).starts_with(format.begin);
-    if (begins && (format.begin.size() > 2 || !is_text(content))) return format.name;
+    const bool may_be_other =
+        format.begin.size() == 2 && (is_text(content) || begins_like_binary_stl(content));
+    if (begins && !may_be_other) return format.name;
   }
   if (!first_word.starts_with('<')) return {};
   static constexpr Format kElements[] = {{"<COLLADA", "COLLADA"}, {"<VTKFile", "VTK"},

@@ -21,14 +21,25 @@ std::array<std::uint64_t, 3> edges_of(const Triangle& t) {
   return {edge(t[0], t[1]), edge(t[1], t[2]), edge(t[2], t[0])};
 }
 
-bool is_side(const PolygonCorners& polygon, std::uint64_t of) {
-  std::uint32_t last = polygon.back();
-  for (const std::uint32_t corner : polygon) {
-    if (edge(last, corner) == of) return true;
-    last = corner;
+// The sides of a polygon, to look up.
+class Sides {
+ public:
+  void take(const PolygonCorners& polygon) {
+    sides_.clear();
+    std::uint32_t last = polygon.back();
+    for (const std::uint32_t corner : polygon) {
+      sides_.push_back(edge(last, corner));
+      last = corner;
+    }
+    std::sort(sides_.begin(), sides_.end());
   }
-  return false;
-}
+  [[nodiscard]] bool hold(std::uint64_t of) const {
+    return std::binary_search(sides_.begin(), sides_.end(), of);
+  }
+
+ private:
+  std::vector<std::uint64_t> sides_;
+};
 
 // How many sides of triangles an edge is.
 class EdgeUses {
@@ -63,11 +74,11 @@ class EdgeUses {
   std::unordered_map<std::uint64_t, std::ptrdiff_t> changes_;  // since then
 };
 
-bool shares_diagonal(const PolygonCorners& polygon, std::span<const Triangle> triangles,
+bool shares_diagonal(const Sides& sides, std::span<const Triangle> triangles,
                      const EdgeUses& uses) {
   for (const Triangle& t : triangles) {
     for (const std::uint64_t each : edges_of(t)) {
-      if (!is_side(polygon, each) && uses.of(each) > 2) return true;
+      if (uses.of(each) > 2 && !sides.hold(each)) return true;
     }
   }
   return false;
@@ -79,6 +90,7 @@ void part_diagonals(std::span<const std::uint32_t> polygons, TriangleMesh& mesh)
   EdgeUses uses(mesh.triangles);
   if (!uses.is_any_above_two()) return;
   std::vector<Triangle> cut;
+  Sides sides;
   // A polygon may have no free diagonal until a later one is cut anew.
   for (int round = 0; round < 2; ++round) {
     std::size_t next = 0;
@@ -86,12 +98,14 @@ void part_diagonals(std::span<const std::uint32_t> polygons, TriangleMesh& mesh)
       const PolygonCorners polygon = polygons.subspan(at + 1, polygons[at]);
       const std::span<Triangle> triangles(&mesh.triangles[next], polygon.size() - 2);
       next += triangles.size();
-      if (polygon.size() == 3 || !shares_diagonal(polygon, triangles, uses)) continue;
+      if (polygon.size() == 3) continue;
+      sides.take(polygon);
+      if (!shares_diagonal(sides, triangles, uses)) continue;
       cancellation_point();
       uses.add(triangles, -1);
       cut.clear();
       const auto is_free = [&](std::uint32_t a, std::uint32_t b) {
-        return uses.of(edge(a, b)) == 0 && !is_side(polygon, edge(a, b));
+        return uses.of(edge(a, b)) == 0 && !sides.hold(edge(a, b));
       };
       triangulate_avoiding(polygon, mesh.vertices, is_free, cut);
       std::copy(cut.begin(), cut.end(), triangles.begin());

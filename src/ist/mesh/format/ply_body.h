@@ -119,7 +119,7 @@ auto with_ply_body(const TextReader& reader, const PlyHeader& header, std::strin
   if (header.encoding == PlyEncoding::kText) return read(PlyText(reader));
   std::size_t begin = reader.next_line_offset();
   // If the header's other lines end with \r alone, a \n after its last line is the first byte.
-  if (content.find("\r\n") + 2 == begin) --begin;
+  if (content.find('\n') + 1 == begin && content.substr(0, begin).ends_with("\r\n")) --begin;
   return read(PlyBytes(content, begin, header.encoding == PlyEncoding::kBigEndian, file));
 }
 

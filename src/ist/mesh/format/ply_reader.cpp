@@ -38,6 +38,9 @@ void read_corners(Body& body, std::int64_t count, const PlyProperty& property,
 template <class Body>
 void read_strips(Body& body, std::int64_t count, const PlyProperty& property,
                  std::uint64_t vertices, IndexedFaces& surface) {
+  if (count < 0)
+    body.fail(ErrorCode::kNotAMesh,
+              fmt::format("a strip has {} corners; export the mesh again", count));
   std::array<std::uint32_t, 2> last{};
   std::size_t length = 0;  // of the strip so far
   for (std::int64_t i = 0; i < count; ++i) {

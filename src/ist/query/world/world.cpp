@@ -56,9 +56,8 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
     if (!contradict(other.tree.frame(), tree.frame())) continue;
     throw Error(
         ErrorCode::kArgumentInvalid,
-        fmt::format("world: '{}' is in the frame {} and '{}' in {}: build both in one frame "
-                    "(BuildOptions::frame)",
-                    name, to_string(tree.frame()), other.name, to_string(other.tree.frame())));
+        fmt::format("world: '{}' is in the frame {} and '{}' in {}: build both in one frame", name,
+                    to_string(tree.frame()), other.name, to_string(other.tree.frame())));
   }
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
