@@ -85,6 +85,23 @@ test('another engine gets what this one had: files, their units, and the voxel s
   assert.deepEqual(await restored(), [opened, ['open', {role: 'fixed', name: 'first.stl', unit: undefined}]]);
 });
 
+test('bodies in two frames are said, and the moving one is turned if that is asked', async () => {
+  const {loader, said, asked} = made({
+    open: ({name, role, to_frame}) => ({...facts(name, 100), info: {frame: to_frame ?? (role === 'fixed' ? 'ras' : 'lps')}}),
+    build: () => trees,
+  });
+  await loader.open(file('fixed', 'a.stl'));
+  assert.deepEqual(said, []);
+  await loader.open(file('moving', 'b.stl'));
+  assert.match(said.pop()[1], /^a\.stl says that it is in the frame RAS, and b\.stl in LPS\./);
+  assert.equal(await loader.turn(), true);
+  assert.equal(asked.at(-1)[1].to_frame, 'ras');
+  assert.deepEqual(said, []);
+  const again = [];
+  await loader.restore(async (name, question) => again.push(question.to_frame));
+  assert.deepEqual(again, [undefined, 'ras']);
+});
+
 test('the pose that two bodies came with is home until both have given way', async () => {
   const {loader, store} = made({make_jaws: () => jaws, open: ({name}) => facts(name, 100), build: () => trees});
   const home = () => store.get().home;

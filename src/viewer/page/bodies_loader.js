@@ -258,7 +258,7 @@ export function makeBodiesLoader({store, say, ask}) {
  * @param {ArrayBuffer} bytes
  */
 function question({role, name, unit, toFrame}, bytes) {
-  return {role, name, bytes, unit, to_frame: toFrame};
+  return {role, name, bytes, unit, ...(toFrame && {to_frame: toFrame})};
 }
 
 /**
