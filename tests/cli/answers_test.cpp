@@ -159,7 +159,7 @@ TEST_F(Answers, AnOpenBodyHasNoInsideAndADepthByVertices) {
   // Calm: one line about both, and a note once below the rows.
   const CommandResult rows =
       ist_well({"approach", shell, shell, "--axis", "x", "--from", "0.1", "--to", "0.3"});
-  const std::string note = "depth is a lower bound, measured at vertices: shell.stl and shell.stl";
+  const std::string note = "depth is not known: shell.stl and shell.stl are open";
   EXPECT_TRUE(says(rows.out, "note: " + note)) << rows.out;
   EXPECT_EQ(rows.out.find(note), rows.out.rfind(note)) << rows.out;
   EXPECT_EQ(without_notes(rows.err), "");

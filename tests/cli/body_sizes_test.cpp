@@ -168,8 +168,8 @@ TEST_F(BodySizes, AnotherUnitIsWarnedOfBeforeAnythingIsBuilt) {
   EXPECT_EQ(bite.exit_code, 2);
   EXPECT_TRUE(says(bite.err, part));
   EXPECT_TRUE(says(bite.err,
-                   "--unit-moving: m.stl would be 0.1 mm large, and jaws are 1 to 1000: tell its "
-                   "unit"));
+                   "--unit-moving: m.stl would be 0.1 mm large, and jaws are 1 to 1000 mm: tell "
+                   "its unit"));
   EXPECT_TRUE(says(collide(jaw, other).err, part));
 }
 

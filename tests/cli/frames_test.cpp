@@ -86,6 +86,25 @@ TEST_F(Frames, LabelsAreTurnedAndConvertedWithTheirMesh) {
   EXPECT_TRUE(says(bite.out, R"("teeth":[{"number":16)"));
 }
 
+TEST_F(Frames, OcclusionFiles_NameTheFrameOfTheirCoordinates) {
+  const std::string ball = in(PatientFrame::kLps, "lps_ball.stl", ball_),
+                    plate = in(PatientFrame::kLps, "lps_plate.stl", plate_);
+  ist_well(
+      {"occlusion", plate, ball, "-o", path("b.ply"), "-o", path("b.vtp"), "-o", path("b.json")});
+  EXPECT_TRUE(says(file_content(path("b.ply")), "\ncomment SPACE=LPS\n"));
+  EXPECT_EQ(read_mesh(path("b.ply")).frame, PatientFrame::kLps);
+  EXPECT_TRUE(says(file_content(path("b.vtp")),
+                   "Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 0<"));
+  EXPECT_EQ(json::parse(file_content(path("b.json")))["frame"], "lps");
+  ist_well({"occlusion", plate, ball, "--open", "3", "-o", path("open.ply")});
+  EXPECT_FALSE(says(file_content(path("open.ply")), "SPACE"));
+  ist_well({"occlusion", plain_, plain_, "-o", path("p.ply"), "-o", path("p.vtp"), "-o",
+            path("p.json")});
+  EXPECT_FALSE(says(file_content(path("p.ply")), "SPACE"));
+  EXPECT_FALSE(says(file_content(path("p.vtp")), "SPACE"));
+  EXPECT_EQ(json::parse(file_content(path("p.json")))["frame"], nullptr);
+}
+
 TEST_F(Frames, AMeshIsTurnedIfThatIsAsked) {
   const std::string truth = collide(ras_, plain_, {"--depth", "0.001"}).out;
   EXPECT_TRUE(says(truth, "touch      yes"));

@@ -48,8 +48,11 @@ class OcclusionCommand : public CliTest {
 
 // A table of CSV: each row by its headings.
 using CsvRows = std::vector<std::map<std::string, std::string>>;
-CsvRows csv_rows(const std::string& text, char separator = ',') {
+CsvRows csv_rows(std::string text, char separator = ',') {
   CsvRows rows;
+  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
+  EXPECT_TRUE(text.starts_with(std::string(kByteOrderMark) + "kind")) << text.substr(0, 9);
+  text.erase(0, 3);
   std::vector<std::string> head, fields(1);
   bool quoted = false;
   for (const char c : text) {
@@ -108,7 +111,9 @@ TEST_F(OcclusionCommand, SaysThreeLinesAndItsContacts) {
     EXPECT_TRUE(says(result.out, part));
   }
   const CommandResult apart = ask({"--move", "0,0,2.5", "-o", path("bite.vtp")});
-  EXPECT_TRUE(says(apart.out, "touch no, 0.49"));
+  EXPECT_TRUE(says(apart.out, "touch no, 0.5 mm apart ("));
+  EXPECT_TRUE(says(apart.out, "No contacts.\n"));
+  EXPECT_FALSE(says(apart.out, "no contacts"));
   EXPECT_FALSE(says(apart.out, "overlap above"));
 }
 
@@ -160,6 +165,7 @@ TEST_F(OcclusionCommand, TablesHoldEachNumberUnderItsHeading) {
   };
   expect({{"kind", "total"}, {"body", "both"}}, "depth_mm", bite["depth_lower"]);
   expect({{"kind", "total"}, {"body", "both"}}, "depth_upper_mm", bite["depth_upper"]);
+  expect({{"kind", "total"}, {"body", "both"}}, "depth_at_vertices_mm", bite["depth_at_vertices"]);
   ASSERT_EQ(bite["contacts"].size(), 2U);
   for (const json& contact : bite["contacts"]) {
     const auto number = std::to_string(contact["number"].get<int>());
@@ -180,7 +186,8 @@ TEST_F(OcclusionCommand, TablesHoldEachNumberUnderItsHeading) {
   for (const std::string role : {"fixed", "moving"}) {
     const json& body = bite[role];
     const std::map<std::string, std::string> total{{"kind", "total"}, {"body", role}};
-    expect(total, "depth_mm", body["depth_at_vertices"]);
+    expect(total, "depth_at_vertices_mm", body["depth_at_vertices"]);
+    EXPECT_EQ(only(rows, total).at(0).at("depth_mm"), "");
     expect(total, "overlap_mm2", body["penetrating_area"]);
     expect(total, "depth_integral_mm3", body["depth_integral"]);
     expect(total, "area_mm2",
@@ -216,6 +223,97 @@ TEST_F(OcclusionCommand, TablesHoldEachNumberUnderItsHeading) {
   }
   EXPECT_EQ(only(rows, {{"kind", "tooth"}}).size(), 2U);
   EXPECT_EQ(only(rows, {{"kind", "note"}}).size(), bite["checks"].size());
+  for (const auto& row : rows) {
+    for (const auto& [heading, cell] : row) EXPECT_NE(cell, "-0") << heading;
+  }
+}
+
+// A hundred triangles of 0.0072 mm², each too small for a region, over a plate.
+TEST_F(OcclusionCommand, TotalArea_IsTheMeanOfBothBodies) {
+  TriangleMesh flakes;
+  for (int i = 0; i < 100; ++i) {
+    const double x = 0.15 * (i % 10), y = 0.15 * (i / 10);
+    const auto at = static_cast<std::uint32_t>(flakes.vertices.size());
+    for (const auto& [dx, dy] : {std::pair(0.0, 0.0), {0.0, 0.12}, {0.12, 0.0}}) {
+      flakes.vertices.emplace_back(x + dx, y + dy, 0.05);
+    }
+    flakes.triangles.push_back({at, at + 1, at + 2});
+  }
+  ist_well({"occlusion", plate_, mesh("flakes.stl", flakes), "-o", path("b.csv")});
+  const CsvRows rows = csv_rows(file_content(path("b.csv")));
+  const auto area = [&](const char* body) {
+    return std::stod(only(rows, {{"kind", "total"}, {"body", body}}).at(0).at("area_mm2"));
+  };
+  EXPECT_EQ(area("moving"), 0);
+  EXPECT_GT(area("fixed"), 1);
+  EXPECT_NEAR(area("both"), area("fixed") / 2, 0.001);
+}
+
+// Two triangles that cross. All corners are nearest to a border, where there is no sign.
+TEST_F(OcclusionCommand, OpenSurfaceWithoutADeepVertex_HasNoKnownDepth) {
+  TriangleMesh sheet, strip;
+  sheet.vertices = {{-5, -5, 0}, {5, -5, 0}, {0, 6, 0}};
+  strip.vertices = {{-4, 0, 3}, {-4, 0, 1}, {4, 0, -0.6}};
+  sheet.triangles = strip.triangles = {{0, 1, 2}};
+  const std::string lower = mesh("lower.stl", sheet), upper = mesh("upper.stl", strip);
+  const auto asked = [&](const char* move) {
+    return ist_well({"occlusion", lower, upper, "--move", move, "-o", path("b.csv"), "-o",
+                     path("b.report.html")})
+        .out;
+  };
+  const auto cells = [&](const char* heading) {
+    std::vector<std::string> found;
+    for (const auto& row : only(csv_rows(file_content(path("b.csv"))), {{"kind", "total"}})) {
+      found.push_back(row.at(heading));
+    }
+    return found;
+  };
+  const std::string met = asked("0,0,0");
+  EXPECT_TRUE(says(met, "touch yes, depth not known (open surface) ("));
+  EXPECT_TRUE(says(met, "depth is not known: lower.stl and upper.stl are open"));
+  EXPECT_FALSE(says(met, "lower bound"));
+  EXPECT_EQ(cells("depth_mm"), (std::vector<std::string>{"", "", ""}));
+  EXPECT_EQ(cells("depth_at_vertices_mm"), (std::vector<std::string>{"", "", ""}));
+  const std::string report = file_content(path("b.report.html"));
+  EXPECT_TRUE(says(report, "<td>not known (open surface)</td>"));
+  EXPECT_TRUE(says(report, "<td>not known</td>"));
+  asked("0,0,4");
+  EXPECT_EQ(cells("depth_at_vertices_mm"), (std::vector<std::string>{"0", "0", "0"}));
+}
+
+TEST_F(OcclusionCommand, Lengths_HaveFourDigitsAndNoExponent) {
+  for (const char* apart : {"130", "1450"}) {
+    const std::string said = ask({"--move", fmt::format("0,0,{}", std::stoi(apart) + 2)}).out;
+    EXPECT_TRUE(says(said, fmt::format("The scans are {} mm apart: they", apart)));
+    EXPECT_TRUE(says(said, fmt::format("touch no, {} mm apart (", apart)));
+    EXPECT_FALSE(says(said, "e+"));
+  }
+  const std::string plate = mesh("plate_um.stl", box({-5000, -5000, -3000}, {5000, 5000, 0}));
+  const std::string ball = mesh("ball_um.stl", icosphere(4, 2000));
+  const auto text = [&](const std::string& fixed, const std::string& moving, const char* unit,
+                        const char* move) {
+    const std::string said =
+        ist_well({"occlusion", fixed, moving, "--unit", unit, "--move", move}).out;
+    return said.substr(0, said.find("; 1 contact"));
+  };
+  const std::string in_mm = text(plate_, ball_, "mm", "0,0,1.8");
+  EXPECT_EQ(text(plate, ball, "um", "0,0,1800"), in_mm);
+  EXPECT_TRUE(says(in_mm, " mm deep (± 0.05 mm assumed for scanning)"));
+  EXPECT_TRUE(says(in_mm, " mm²"));
+}
+
+TEST_F(OcclusionCommand, OverlapOfMoreThan2mm_IsWarnedOf) {
+  const std::string said = ask({"--move", "0,0,-0.5"}).out;
+  EXPECT_TRUE(says(said, "The scans overlap by 2.")) << said;
+  EXPECT_TRUE(says(said, " mm, more than a bite does: check that they are the upper"));
+  EXPECT_EQ(asked({"--move", "0,0,0.1"})["warning"], nullptr);
+}
+
+TEST_F(OcclusionCommand, ReportEnding_CountsInAnyCase) {
+  const CommandResult result = ask({"-o", path("X.REPORT.HTML")});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_FALSE(says(result.err, "static report")) << result.err;
+  EXPECT_TRUE(says(file_content(path("X.REPORT.HTML")), "id=\"findings\""));
 }
 
 TEST_F(OcclusionCommand, ADecimalCommaHoldsTheSameNumbers) {
@@ -265,13 +363,21 @@ TEST_F(OcclusionCommand, ARegionLeavesOutWhatLiesBesideIt) {
     for (const char* key : {"areas", "penetrating_area", "depth_at_vertices", "depth_integral"}) {
       EXPECT_EQ(part[role][key], alone[role][key]) << role << " " << key;
     }
-    EXPECT_EQ(part[role]["sides"]["per_cent"]["-x"], 100);
   }
+  // The fixed body's box within the region is split, not the whole box.
+  EXPECT_EQ(whole["sides"]["at"], 0);
+  EXPECT_EQ(part["sides"]["at"], -2.5);
+  EXPECT_EQ(part["fore_aft"]["at"], 0);
+  EXPECT_GT(part["moving"]["sides"]["per_cent"]["-x"], 50);
+  EXPECT_NEAR(whole["depth_point"][0].get<double>(), 3, 0.5);
+  EXPECT_NEAR(part["depth_point"][0].get<double>(), -3, 0.5);
   EXPECT_LT(part["depth_at_vertices"], whole["depth_at_vertices"]);
   EXPECT_TRUE(says(ist_well({"occlusion", sheet, two, "--region", within[1]}).out,
-                   "region: areas, contacts, shares and depths of vertices are of the triangles "
-                   "with their centroid in x -6 to 0, y -6 to 6, z -9 to 9; all else is of "
-                   "the whole bodies\n"));
+                   "region: areas, contacts, shares, depths of vertices and the deepest point are "
+                   "of the triangles with their centroid in x -6 to 0, y -6 to 6, z -9 to 9; all "
+                   "else is of the whole bodies\n"));
+  EXPECT_TRUE(says(ist_well({"occlusion", sheet, two, "--region", within[1]}).out,
+                   "divided in the middle of the fixed body's box within the region (assumed)"));
   for (const char* bad : {"1,2,3,4,5", "1,2,3,4,5,x", "1,2,3,4,5,6,7"}) {
     refuses({"--json", "--region", bad}, 2, "give x0,y0,z0,x1,y1,z1, two corners of a box");
   }
@@ -460,9 +566,8 @@ TEST_F(OcclusionCommand, ABodyInTheOtherIsToldWithNumbers) {
   const CommandResult whole = ist({"occlusion", plate_, small, "--move", "0,0,-1.5", "-o",
                                    path("b.csv"), "--fail-if-touching"});
   EXPECT_EQ(whole.exit_code, 6);
-  EXPECT_TRUE(says(whole.out, "touch no, the moving body lies inside the other, 0.49"));
-  EXPECT_TRUE(says(whole.out, " mm apart, "));
-  EXPECT_TRUE(says(whole.out, " mm deep"));
+  EXPECT_TRUE(says(whole.out,
+                   "touch no, the moving body lies inside the other, 0.5 mm apart, 1.5 mm deep ("));
   EXPECT_FALSE(says(whole.out, "the map is empty"));
 }
 

@@ -20,6 +20,7 @@ test('a depth is an interval, of open scans a lower bound, and 0 where they are 
     [{depth_lower: 0.284, depth_upper: 0.2949, depth_at_vertices: 0.28, touch: 'yes'}, '0.284 to 0.2949 mm'],
     [{depth_lower: 0, depth_upper: 0, depth_at_vertices: 0, touch: 'no'}, '0 mm'],
     [open, '≥ 1.05 mm (open scans)'],
+    [{...open, depth_at_vertices: 0}, 'not known'],
     [{...open, touch: 'no', inside: null}, '0, or ≥ 1.05 mm (open scans)'],
     [{...open, touch: 'no', depth_at_vertices: 0}, '0 mm'],
     [{...open, touch: 'no', inside: null, depth_at_vertices: null}, '0 mm'],

@@ -46,8 +46,7 @@ DepthMeter::DepthMeter(Query& query, const Bodies& bodies, double tolerance)
   bool borders = true;  // of all that are open
   const auto look = [&](const SphereTree& tree, const std::string& name, bool has_border) {
     if (tree.triangles() == nullptr && why_none_.empty()) {
-      why_none_ = fmt::format(
-          "depth is not known: {} holds no triangles: build it without --no-triangles", name);
+      why_none_ = fmt::format("{} holds no triangles: build it without --no-triangles", name);
     }
     if (tree.orientation() == Orientation::kOutward) return;
     open.push_back(name);
@@ -56,9 +55,14 @@ DepthMeter::DepthMeter(Query& query, const Bodies& bodies, double tolerance)
   look(bodies.fixed, bodies.fixed_name, bodies.fixed_has_border);
   look(bodies.moving, bodies.moving_name, bodies.moving_has_border);
   if (open.empty() || !why_none_.empty()) return;
-  why_none_ = fmt::format("depth is a lower bound, measured at vertices: {} {} open{}",
-                          fmt::join(open, " and "), open.size() == 1 ? "is" : "are",
+  why_none_ = fmt::format("{} {} open{}", fmt::join(open, " and "), open.size() == 1 ? "is" : "are",
                           borders ? "" : " or not wound consistently");
+}
+
+std::string DepthMeter::why_none(const Depth& depth) const {
+  const bool bound = depth.at_vertices.value_or(0) > 0;
+  return fmt::format("depth is {}: {}", bound ? "a lower bound, measured at vertices" : "not known",
+                     why_none_);
 }
 
 double DepthMeter::open_reach() const { return kOpenReach * extent_; }

@@ -37,13 +37,14 @@ class DepthMeter {
   /// How far behind an open surface a vertex counts as inside, mesh units.
   [[nodiscard]] double open_reach() const;
 
-  /// Why there is no certain depth, as a sentence without a full stop; empty if there is one.
-  [[nodiscard]] const std::string& why_none() const { return why_none_; }
+  /// Returns why there is no certain depth, as a sentence without a full stop. It calls the depth a
+  /// lower bound only if a vertex is inside. Precondition: `depth` has no certain interval.
+  [[nodiscard]] std::string why_none(const Depth& depth) const;
 
  private:
   Query& query_;
   double tolerance_, extent_;
-  std::string why_none_;
+  std::string why_none_;  // a clause; empty if depth is certain
 };
 
 }  // namespace ist::cli

@@ -78,7 +78,7 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
         "apart, or in each other: a part lies behind an open surface, which has no inside");
   }
   if (!found.depth.certain && found.touch != Answer::kNo) {
-    found.notes.push_back(depth_->why_none());
+    found.notes.push_back(depth_->why_none(found.depth));
   }
   if (found.depth.certain && !found.depth.complete) {
     const char* const why = found.depth.capped     ? ": the search ended after 4 million pieces"

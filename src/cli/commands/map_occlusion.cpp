@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -144,8 +145,13 @@ void write(const Bite& bite, const Output& output, BiteSelection selection, Deci
     case FileFormat::kVtp:
       selection.open.reset();
       return write_vtp(joined(bite_arrays(bite, selection)), *output.file);
-    case FileFormat::kPly:
-      return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comment);
+    case FileFormat::kPly: {
+      std::vector<std::string> comments{comment};
+      const std::string frame = slicer_name(bite.frame);
+      // Opened bodies lie in no patient's frame.
+      if (!frame.empty() && !selection.open) comments.push_back("SPACE=" + frame);
+      return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comments);
+    }
     case FileFormat::kGlb: {
       std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
       for (NamedPolyData& body : bodies) {
@@ -161,9 +167,12 @@ void write(const Bite& bite, const Output& output, BiteSelection selection, Deci
   }
 }
 
-// Whether a file's name asks for the static report: bite.report.html.
+// Whether a file's name asks for the static report: bite.report.html, in any case.
 bool asks_for_report(const std::filesystem::path& file) {
-  return file.stem().extension() == ".report";
+  std::string word = file.stem().extension().string();
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word == ".report";
 }
 
 // Writes the page with the engine in it if there is one that shows all that was asked, else the

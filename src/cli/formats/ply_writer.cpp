@@ -103,6 +103,10 @@ void write_ply(const PolyData& data, const std::filesystem::path& file,
 }
 
 void write_ply(const PolyData& data, OutputFile& file, const std::string& comment) {
+  write_ply(data, file, std::vector<std::string>{comment});
+}
+
+void write_ply(const PolyData& data, OutputFile& file, const std::vector<std::string>& comments) {
   IST_ASSERT(is_consistent(data));
   if (data.points.size() > std::numeric_limits<std::int32_t>::max()) {
     throw Error(ErrorCode::kFileUnwritable,
@@ -127,8 +131,9 @@ void write_ply(const PolyData& data, OutputFile& file, const std::string& commen
     }
     vertices.add_bytes(bytes_of(array.numbers));
   }
-  std::string header = "ply\nformat binary_little_endian 1.0\ncomment " + one_line(comment) + "\n" +
-                       comments_of(data.texts) + vertices.header();
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : comments) header += "comment " + one_line(comment) + "\n";
+  header += comments_of(data.texts) + vertices.header();
   if (!data.polygons.empty()) {
     header += fmt::format("element face {}\nproperty list uchar int vertex_indices\n",
                           data.polygon_count());

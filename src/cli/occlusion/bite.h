@@ -13,6 +13,7 @@
 #include "cli/occlusion/teeth.h"
 #include "ist/measure/occlusion.h"
 #include "ist/mesh/mesh.h"
+#include "ist/mesh/patient_frame.h"
 
 namespace ist::cli {
 
@@ -53,6 +54,7 @@ struct Bite {
   std::string unit;  ///< "mm", "m", "inch" or "µm"
   bool unit_assumed = false;
   double units_per_mm = 1;
+  PatientFrame frame = PatientFrame::kUnknown;  ///< that the files name
   double reach = 2;
   const Preset* preset = nullptr;
   double scanner_band = 50;  ///< ± micrometres that scanning is assumed to err by
@@ -63,13 +65,19 @@ struct Bite {
   std::vector<BiteContact> contacts;  ///< by their numbers: the first has the number 1
   /// Only triangles with their centroid in this box count; fixed coordinates.
   std::optional<Eigen::AlignedBox3d> region;
-  std::optional<std::string> warning;  ///< what makes all numbers meaningless
+  std::optional<std::string> warning;  ///< why the numbers mean nothing
   std::optional<std::string> hint;     ///< contacts that may not belong to the arch
   std::vector<std::string> checks;     ///< sentences for people: overlap, unit, sides, open bodies
 
   /// Returns the unit as outputs tell it: "mm", or "mm (assumed)".
   [[nodiscard]] std::string unit_words() const { return unit_assumed ? unit + " (assumed)" : unit; }
   [[nodiscard]] double units_per_micrometre() const { return 1e-3 * units_per_mm; }
+  /// Returns the depth of the deepest vertex if it is known, mesh units. 0 is not known of open
+  /// surfaces that may meet: none of their vertices lies behind the other surface.
+  [[nodiscard]] std::optional<double> known_depth(double at_vertices) const {
+    const bool known = findings.depth.certain || at_vertices > 0 || findings.touch == Answer::kNo;
+    return known ? std::optional(at_vertices) : std::nullopt;
+  }
   /// Fills in `contacts` of the bite and of both bodies, from their regions.
   void number_contacts();
 };

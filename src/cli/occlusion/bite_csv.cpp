@@ -21,7 +21,7 @@ using Number = std::optional<double>;
 // To four significant digits; empty if it is not finite.
 Number rounded(double number) {
   if (!std::isfinite(number)) return {};
-  return numbers_of(fmt::format("{:.4g}", number))->front();
+  return numbers_of(fmt::format("{:.4g}", number))->front() + 0.0;  // -0 becomes 0
 }
 
 // A row of the table. Cells without a number stay empty.
@@ -30,7 +30,8 @@ struct Row {
   std::optional<const char*> body{};
   std::optional<std::size_t> contact{};
   std::optional<std::string> name{};
-  Number from_um{}, to_um{}, area{}, overlap{}, depth{}, depth_upper{}, depth_integral{}, least{};
+  Number from_um{}, to_um{}, area{}, overlap{}, depth{}, depth_upper{}, at_vertices{},
+      depth_integral{}, least{};
   std::array<Number, 3> shares{};  // of the foundation, a thinner and a thicker one; per cent
   std::optional<Eigen::Vector3d> centre{}, closest{};
 };
@@ -51,6 +52,7 @@ class BiteTable {
                 "overlap_mm2",
                 "depth_mm",
                 "depth_upper_mm",
+                "depth_at_vertices_mm",
                 "depth_integral_mm3",
                 "least_distance_um",
                 "share_percent",
@@ -76,12 +78,13 @@ class BiteTable {
     add_scaled(row.overlap, mm * mm);
     add_scaled(row.depth, mm);
     add_scaled(row.depth_upper, mm);
+    add_scaled(row.at_vertices, mm);
     add_scaled(row.depth_integral, mm * mm * mm);
     add_scaled(row.least, 1e3 * mm);
     for (const Number& share : row.shares) add_scaled(share, 1);
     for (const auto& place : {row.centre, row.closest}) {
       for (int axis = 0; axis < 3; ++axis) {
-        table_.add(place ? Number(std::round(100 * mm * (*place)[axis]) / 100) : Number());
+        table_.add(place ? Number(std::round(100 * mm * (*place)[axis]) / 100 + 0.0) : Number());
       }
     }
     table_.end_row();
@@ -105,10 +108,15 @@ void add_totals(BiteTable& table, const Bite& bite) {
   const Depth& depth = bite.findings.depth;
   Row both{"total", "both"};
   both.area = 0;
-  for (const BiteContact& contact : bite.contacts) *both.area += contact.area;
+  for (const BiteBody* body : {&bite.fixed, &bite.moving}) {
+    for (const ContactRegion& region : body->surface.regions) *both.area += 0.5 * region.area;
+  }
   both.overlap = depth.area;
-  both.depth = depth.certain ? depth.certain->lower : depth.at_vertices;
-  if (depth.certain) both.depth_upper = depth.certain->upper;
+  if (depth.certain) {
+    both.depth = depth.certain->lower;
+    both.depth_upper = depth.certain->upper;
+  }
+  both.at_vertices = bite.known_depth(depth.at_vertices.value_or(0));
   if (bite.findings.touch == Answer::kNo) both.least = bite.findings.distance->upper;
   table.add(both);
   for (const auto& [body, role] : {std::pair(&bite.fixed, "fixed"), {&bite.moving, "moving"}}) {
@@ -121,7 +129,7 @@ void add_totals(BiteTable& table, const Bite& bite) {
       row.least = std::min(row.least.value_or(region.least_distance), region.least_distance);
     }
     row.overlap = surface.penetrating_area;
-    row.depth = surface.depth_at_vertices;
+    row.at_vertices = bite.known_depth(surface.depth_at_vertices);
     row.depth_integral = surface.depth_integral;
     if (body->sides) row.centre = body->sides->centre;
     table.add(row);
@@ -204,6 +212,7 @@ void add_contacts(BiteTable& table, const Bite& bite) {
 }  // namespace
 
 void write_bite_csv(const Bite& bite, DecimalSign sign, OutputFile& file) {
+  file.write("\xEF\xBB\xBF", 3);
   BiteTable table(bite, file, sign);
   add_totals(table, bite);
   add_bands(table, bite);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/occlusion/bite_direction.h"
+#include "cli/occlusion/html/bite_numbers.h"
 
 namespace ist::cli {
 namespace {
@@ -144,22 +145,42 @@ double mean_cosine(const Bite& bite) {
   return area > 0 ? sum / area : -1;
 }
 
+// How deep the bodies are in each other at least, mesh units.
+double least_overlap(const Bite& bite) {
+  const Findings& found = bite.findings;
+  if (found.depth.certain) return found.depth.certain->lower;
+  // Open surfaces that are apart have no inside: a part of one behind the other is no overlap.
+  if (found.touch == Answer::kNo) return 0;
+  return std::max({found.depth.at_vertices.value_or(0), bite.fixed.surface.depth_at_vertices,
+                   bite.moving.surface.depth_at_vertices});
+}
+
 }  // namespace
 
 std::optional<std::string> warning_of(const Bite& bite) {
   constexpr double kSameWay = 0.5;
+  constexpr double kNoBite = 2;  // millimetres
+  const bool certain = bite.findings.depth.certain.has_value();
+  const BiteNumbers numbers(bite);
   if (mean_cosine(bite) > kSameWay) {
     return "The scans face the same way where they are near each other: they are probably scans of "
            "one jaw, or one of them is inside out. Name the upper and the lower jaw.";
+  }
+  const double overlap = least_overlap(bite);
+  if (overlap > kNoBite * bite.units_per_mm) {
+    return fmt::format(
+        "The scans overlap by {}{}, more than a bite does: check that they are the upper and the "
+        "lower jaw of one patient, in one coordinate system.",
+        certain ? "" : "at least ", numbers.millimetres(overlap));
   }
   const double apart = bite.findings.distance->lower;
   const double smaller =
       std::min(bite.fixed.box().sizes().maxCoeff(), bite.moving.box().sizes().maxCoeff());
   if (!maps_nothing(bite.fixed) || !maps_nothing(bite.moving) || apart <= 0.5 * smaller) return {};
   return fmt::format(
-      "The scans are {:.3g} {} apart: they are probably not in one coordinate system. Register "
+      "The scans are {} apart: they are probably not in one coordinate system. Register "
       "them first, or give --matrix.",
-      apart, bite.unit);
+      numbers.millimetres(apart));
 }
 
 std::optional<std::string> hint_of(const Bite& bite) {
@@ -175,8 +196,9 @@ std::optional<std::string> hint_of(const Bite& bite) {
   }
   const bool one = parts.far.size() == 1;
   std::string hint =
-      fmt::format("contact{} {} {} {:.2g} {} or more from the others, perhaps in the joints",
-                  one ? "" : "s", numbers, one ? "lies" : "lie", parts.away, bite.unit);
+      fmt::format("contact{} {} {} {} or more from the others, perhaps in the joints",
+                  one ? "" : "s", numbers, one ? "lies" : "lie",
+                  BiteNumbers::in_millimetres(std::floor(parts.away / bite.units_per_mm)));
   const Box region = region_without(bite, parts);
   if (region.isEmpty()) return hint;
   const Vector &low = region.min(), &high = region.max();
@@ -186,7 +208,8 @@ std::optional<std::string> hint_of(const Bite& bite) {
 
 std::string region_words(const Bite& bite) {
   return fmt::format(
-      "region: areas, contacts, shares and depths of vertices are of the triangles "
+      "region: areas, contacts, shares, depths of vertices and the deepest point are of the "
+      "triangles "
       "with their centroid in {}; all else is of the whole bodies",
       box_words(*bite.region));
 }

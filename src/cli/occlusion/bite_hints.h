@@ -12,7 +12,7 @@ namespace ist::cli {
 /// Returns a sentence if the bodies are no pair of jaws in a bite. Nothing of them is within the
 /// reach, and their surfaces are farther apart than half the size of the smaller body: then they
 /// are hardly in one coordinate system. Or near surfaces face the same way, as two scans of one jaw
-/// do. Else returns nothing.
+/// do. Or the bodies overlap by more than 2 mm. Else returns nothing.
 [[nodiscard]] std::optional<std::string> warning_of(const Bite& bite);
 
 /// Returns a sentence about contacts far from the arch, as the joints are: their numbers, and the

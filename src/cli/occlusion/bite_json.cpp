@@ -124,6 +124,8 @@ ordered_json json_of(const Bite& bite) {
   ordered_json out{
       {"schema", 1}, {"version", IST_VERSION}, {"commit", IST_COMMIT}, {"unit", bite.unit}};
   out["unit_assumed"] = bite.unit_assumed;
+  out["frame"] = bite.frame == PatientFrame::kUnknown ? ordered_json(nullptr)
+                                                      : ordered_json(to_string(bite.frame));
   out["pose"] = pose_json(bite.pose);
   out["rotation_error"] = bite.findings.rotation_error;
   out["reach"] = bite.reach;

@@ -10,6 +10,7 @@
 #include "cli/extents.h"
 #include "cli/measure_progress.h"
 #include "cli/occlusion/bite_hints.h"
+#include "cli/occlusion/html/bite_numbers.h"
 #include "cli/refusals.h"
 #include "cli/version.h"
 #include "ist/base/error.h"
@@ -44,8 +45,8 @@ void require_size(const Bodies& bodies, const Bite& bite) {
         std::tuple(&bodies.moving, &bodies.moving_name, "--unit-moving")}) {
     const double size = largest_extent(box_of(*tree)) / bite.units_per_mm;
     refuse_if(!(size >= kLeast && size <= kLargest), option,
-              fmt::format("{} would be {:.4g} mm large, and jaws are 1 to 1000: tell its unit",
-                          *name, size));
+              fmt::format("{} would be {} large, and jaws are 1 to 1000 mm: tell its unit", *name,
+                          BiteNumbers::in_millimetres(size)));
   }
 }
 
@@ -104,6 +105,35 @@ void name(BiteBody& body, const MeshSource& source, const char* anonymous, bool 
   if (source.hash != 0) body.hash = fmt::format("{:016x}", source.hash);
 }
 
+// The box whose middle parts the sides if nothing else does: the fixed body's, within the region.
+Eigen::AlignedBox3d middle_box(const Bite& bite, const SphereTree& fixed) {
+  const Eigen::AlignedBox3d body = box_of(fixed);
+  if (!bite.region) return body;
+  const Eigen::AlignedBox3d within = body.intersection(*bite.region);
+  return within.isEmpty() ? body : within;
+}
+
+// The deepest vertex of the triangles that count, fixed coordinates; nothing if none is inside.
+std::optional<Eigen::Vector3d> deepest_in_region(const Bite& bite) {
+  std::optional<Eigen::Vector3d> deepest;
+  double least = 0;
+  for (const BiteBody* body : {&bite.fixed, &bite.moving}) {
+    for (const Triangle& triangle : body->mesh->triangles) {
+      const auto corner = [&, body = body](std::size_t i) -> Eigen::Vector3d {
+        return body->to_fixed * body->mesh->vertices[triangle[i]];
+      };
+      if (!bite.region->contains((corner(0) + corner(1) + corner(2)) / 3)) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double distance = body->surface.vertices[triangle[i]].distance;
+        if (!(distance < least)) continue;  // NaN beyond the reach
+        least = distance;
+        deepest = corner(i);
+      }
+    }
+  }
+  return deepest;
+}
+
 std::vector<std::string> checks_of(const Bite& bite) {
   std::vector<std::string> checks;
   const Depth& depth = bite.findings.depth;
@@ -119,10 +149,13 @@ std::vector<std::string> checks_of(const Bite& bite) {
   if (bite.unit_assumed) checks.push_back(fmt::format("unit: {} (assumed)", bite.unit));
   checks.push_back(fmt::format(
       "sides: {} and {}, divided {}", bite.sides.first, bite.sides.second,
-      bite.sides.assumed ? "in the middle of the fixed body's box (assumed)" : "as named"));
+      !bite.sides.assumed ? "as named"
+      : bite.region       ? "in the middle of the fixed body's box within the region (assumed)"
+                          : "in the middle of the fixed body's box (assumed)"));
   if (bite.fore_aft.assumed != bite.sides.assumed) {
-    checks.push_back(fmt::format("{} and {} divided in the middle of that box (assumed)",
-                                 bite.fore_aft.first, bite.fore_aft.second));
+    checks.push_back(fmt::format(
+        "{} and {} divided in the middle of the fixed body's box{} (assumed)", bite.fore_aft.first,
+        bite.fore_aft.second, bite.region ? " within the region" : ""));
   }
   for (const std::string& note : bite.findings.notes) checks.push_back(note);
   const bool overlaps =
@@ -137,8 +170,8 @@ std::vector<std::string> checks_of(const Bite& bite) {
                        [](const SurfaceDistance& one) { return std::isnan(one.distance); });
   };
   if (is_empty(bite.fixed) && is_empty(bite.moving) && !(deepest > 0)) {
-    checks.push_back(fmt::format("the map is empty: nothing lies within the reach of {:g} {}",
-                                 bite.reach, bite.unit));
+    checks.push_back(fmt::format("the map is empty: nothing lies within the reach of {}",
+                                 BiteNumbers(bite).millimetres(bite.reach)));
   }
   return checks;
 }
@@ -153,6 +186,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   const KnownUnit unit = unit_of(bodies, questions);
   bite.unit_assumed = unit.assumed;
   bite.unit = to_string(unit.unit);
+  bite.frame = bodies.frame();
   bite.units_per_mm = 1e-3 / metres_per_unit(unit.unit);
   require_size(bodies, bite);
   bite.pose = *project_to_rigid(pose);
@@ -165,7 +199,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
     *length *= bite.units_per_mm;
   }
   std::tie(bite.sides, bite.fore_aft) =
-      divisions(questions.sides, bodies.frame(), box_of(bodies.fixed));
+      divisions(questions.sides, bodies.frame(), middle_box(bite, bodies.fixed));
   bite.moving.to_fixed = bite.pose;
   name(bite.fixed, sources.fixed, "fixed", questions.no_names);
   name(bite.moving, sources.moving, "moving", questions.no_names);
@@ -199,6 +233,7 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
     bite.findings.depth.at_vertices =
         std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices);
   }
+  if (bite.region) bite.findings.depth.point = deepest_in_region(bite);
   bite.number_contacts();
   bite.warning = warning_of(bite);
   bite.hint = hint_of(bite);

@@ -42,6 +42,10 @@ std::vector<NamedPolyData> surfaces(const Bite& bite, const BiteSelection& selec
 
 }  // namespace
 
+std::string slicer_name(PatientFrame frame) {
+  return frame == PatientFrame::kRas ? "RAS" : frame == PatientFrame::kLps ? "LPS" : "";
+}
+
 std::vector<NamedPolyData> bite_surfaces(const Bite& bite, const BiteSelection& selection) {
   const std::vector<MapBand> bands = map_bands(bite);
   std::vector<NamedPolyData> out = surfaces(bite, selection);
@@ -67,6 +71,9 @@ std::vector<NamedPolyData> bite_arrays(const Bite& bite, const BiteSelection& se
     }
     out[i].data.point_arrays.push_back({"Triangle", std::move(triangles)});
     out[i].data.point_arrays.push_back({"SignKnown", std::move(known)});
+    if (const std::string frame = slicer_name(bite.frame); !frame.empty()) {
+      out[i].data.texts.push_back({"SPACE", frame});
+    }
   }
   return out;
 }

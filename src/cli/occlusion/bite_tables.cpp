@@ -19,48 +19,47 @@ namespace {
 // How far apart, and how deep: of a body that lies inside the other both are known.
 std::string first_line(const Bite& bite) {
   const Findings& found = bite.findings;
+  const BiteNumbers numbers(bite);
   const bool yes = found.touch == Answer::kYes;
   std::string line = "touch " + (yes ? painted("yes", TextColour::kRed) : to_string(found.touch));
   if (found.inside && *found.inside != Inside::kNone) {
     line += fmt::format(", the {} body lies inside the other", to_string(*found.inside));
   }
-  if (!yes) {
-    line += fmt::format(", {:.4g} to {:.4g} {} apart", found.distance->lower, found.distance->upper,
-                        bite.unit);
-  }
+  if (!yes) line += fmt::format(", {} apart", numbers.millimetres(*found.distance));
   const Depth& depth = found.depth;
   if (depth.certain && depth.certain->upper > 0) {
-    line += fmt::format(", {:.4g} to {:.4g} {} deep", depth.certain->lower, depth.certain->upper,
-                        bite.unit);
-  } else if (!depth.certain && yes && !(depth.at_vertices > 0.0)) {
+    line += fmt::format(", {} deep", numbers.millimetres(*depth.certain));
+  } else if (!bite.known_depth(depth.at_vertices.value_or(0))) {
     line += ", depth not known (open surface)";
   } else if (!depth.certain && depth.at_vertices > 0.0) {
-    line += fmt::format("{} at least {:.3g} {} deep (open surface, by vertices)",
-                        yes ? "," : ", or", depth.at_vertices.value_or(0.0), bite.unit);
+    line += fmt::format("{} at least {} deep (open surface, by vertices)", yes ? "," : ", or",
+                        numbers.millimetres(*depth.at_vertices));
   }
-  return line + fmt::format(" (± {:g} {} assumed for scanning)",
-                            bite.scanner_band * bite.units_per_micrometre(), bite.unit);
+  return line + fmt::format(" (± {} assumed for scanning)",
+                            BiteNumbers::in_millimetres(1e-3 * bite.scanner_band));
 }
 
 std::string second_line(const Bite& bite) {
+  const BiteNumbers numbers(bite);
   std::string areas;
   for (std::size_t i = 0; i < bite.fixed.areas.size(); ++i) {
     const double limit = bite.preset->micrometres[i];
     areas += fmt::format(
-        "{}{} {:.4g} and {:.4g} {}²", areas.empty() ? "" : ", ",
+        "{}{} {} and {} mm²", areas.empty() ? "" : ", ",
         limit > 0 ? fmt::format("within {:g} µm or overlapping", limit) : "in each other",
-        bite.fixed.areas[i], bite.moving.areas[i], bite.unit);
+        numbers.area(bite.fixed.areas[i]), numbers.area(bite.moving.areas[i]));
     if (limit == 0) continue;
-    areas += fmt::format(" ({:.4g} and {:.4g} without the overlap{})", bite.fixed.area_outside(i),
-                         bite.moving.area_outside(i),
-                         limit < bite.scanner_band ? "; below the error assumed for scanning" : "");
+    areas +=
+        fmt::format(" ({} and {} without the overlap{})", numbers.area(bite.fixed.area_outside(i)),
+                    numbers.area(bite.moving.area_outside(i)),
+                    limit < bite.scanner_band ? "; below the error assumed for scanning" : "");
   }
   const std::size_t count = bite.contacts.size();
   const std::string contacts =
-      count == 0 ? "no contacts"
-                 : fmt::format("{} contact{}, {} of them on one body alone", count,
+      count == 0 ? ""  // print_contacts() says so
+                 : fmt::format("; {} contact{}, {} of them on one body alone", count,
                                count == 1 ? "" : "s", count - bite.fixed.on_both);
-  return fmt::format("areas, {} ({}): {}; {}", bite.preset->name, bite.preset->source, areas,
+  return fmt::format("areas, {} ({}): {}{}", bite.preset->name, bite.preset->source, areas,
                      contacts);
 }
 

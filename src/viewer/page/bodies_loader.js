@@ -46,7 +46,7 @@ const farApart = 20;
 export function makeBodiesLoader({store, say, ask}) {
   /** @type {{seed: number | null, files: Partial<Record<Role, BodyFile>>, voxelSize: number | null, built: boolean}} */
   const kept = {seed: null, files: {}, voxelSize: null, built: false};
-  /** What is not of these bodies any more. */
+  /** Results of the bodies before these are cleared. */
   const nothingKnown = {trees: null, tick: null, answer: null, cancelled: null, bite: null};
   let looked = false;
   /** @type {Partial<Record<Role, Pose>>} the home pose when a body was opened: of the bodies before it */

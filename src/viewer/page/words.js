@@ -53,7 +53,7 @@ export function interval(lower, upper, unit) {
 
 /**
  * How deep two bodies are in each other, of a line of `ist collide --json` or `ist occlusion --json`. Of open scans a
- * lower bound is known, the depth of the deepest vertex. It is 0 where no vertex is near the other surface.
+ * lower bound is known, the depth of the deepest vertex. If no vertex is inside, the depth is 0 only if they are apart.
  * @param {Line} line
  * @param {string} unit
  */
@@ -63,7 +63,7 @@ export function depthWords(
 ) {
   if (typeof lower === 'number') return interval(lower, upper, unit);
   const least = `≥ ${short(deepest, 3)} ${unit} (open scans)`;
-  if (touch === 'yes' && typeof deepest === 'number') return least;
+  if (touch === 'yes' && deepest > 0) return least;
   if (touch !== 'no' || inside === 'fixed' || inside === 'moving') return 'not known';
   if (deepest > 0) return `0, or ${least}`;
   const hasTriangles = typeof crosses === 'boolean';

@@ -83,6 +83,8 @@ TEST(BiteHints, NameContactsFarAboveTheArchAndTheRegionWithoutThem) {
                         "joints: --region "))
       << *hint;
   EXPECT_TRUE(hint->ends_with(" leaves it out")) << *hint;
+  const std::string far = cli::hint_of(with_bump_at({5, 105, 78})->bite).value_or("");
+  EXPECT_TRUE(far.starts_with("contact 5 lies 130 mm or more from the others")) << far;
   // The other side of an arch is no joint, however far, nor is what is near.
   EXPECT_FALSE(cli::hint_of(with_bump_at({5, 20, 0.5})->bite));
   EXPECT_FALSE(cli::hint_of(with_bump_at({5, 4, 4})->bite));
@@ -99,6 +101,22 @@ TEST(BiteHints, WarnOfBodiesThatAreHardlyInOneCoordinateSystem) {
   EXPECT_TRUE(
       warning(30)->starts_with("The scans are 30 mm apart: they are probably not in one "
                                "coordinate system."));
+}
+
+TEST(BiteHints, WarnOfAnOverlapThatIsNoBite) {
+  const auto made = sphere_over_plate({0, 0, -0.5});
+  made->bite.findings.depth.certain = DistanceInterval{4.6913, 4.7};
+  EXPECT_EQ(cli::warning_of(made->bite),
+            "The scans overlap by 4.691 mm, more than a bite does: check that they are the upper "
+            "and the lower jaw of one patient, in one coordinate system.");
+  made->bite.findings.depth.certain = DistanceInterval{1.99, 2.01};
+  EXPECT_FALSE(cli::warning_of(made->bite));
+  made->bite.findings.depth.certain.reset();
+  EXPECT_FALSE(cli::warning_of(made->bite));
+  made->bite.findings.depth.at_vertices = 2.05;
+  EXPECT_TRUE(cli::warning_of(made->bite)
+                  .value_or("")
+                  .starts_with("The scans overlap by at least 2.05 mm, "));
 }
 
 // Two scans of one jaw, one of them a little lower.

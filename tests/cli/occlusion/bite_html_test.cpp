@@ -12,6 +12,7 @@
 #include "cli/occlusion/bite_hints.h"
 #include "cli/occlusion/bite_view.h"
 #include "cli/occlusion/bites.h"
+#include "cli/occlusion/html/bite_numbers.h"
 #include "cli/occlusion/map_colours.h"
 #include "cli/occlusion/map_picture.h"
 #include "cli/occlusion/png_file.h"
@@ -450,8 +451,9 @@ TEST(BiteHtml, SaysItsRegionAndItsHint) {
   made->bite.region = Eigen::AlignedBox3d(Eigen::Vector3d(-5, -4, -3), Eigen::Vector3d(5, 4, 3.5));
   made->bite.hint = "contact 1 is far";
   EXPECT_EQ(Page(made->bite).content["lists"]["checks"],
-            (json{"region: areas, contacts, shares and depths of vertices are of the triangles "
-                  "with their centroid in x -5 to 5, y -4 to 4, z -3 to 3.5; all else is of the "
+            (json{"region: areas, contacts, shares, depths of vertices and the deepest point are "
+                  "of the triangles with their centroid in x -5 to 5, y -4 to 4, z -3 to 3.5; all "
+                  "else is of the "
                   "whole bodies",
                   "hint: contact 1 is far"}));
 }
@@ -465,6 +467,39 @@ TEST(BiteHtml, TellsTheOverlapOnce) {
   EXPECT_FALSE(row_of(rows, {"overlap"}).empty());
   EXPECT_FALSE(row_of(rows, {"within 100 µm or overlapping"}).empty());
   EXPECT_FALSE(row_of(rows, {"within 100 µm, without the overlap"}).empty());
+}
+
+TEST(BiteNumbers, Millimetres_HaveAtMostFourDigits) {
+  Bite bite;
+  const auto expect = [&](double lower, double upper, const char* words) {
+    EXPECT_EQ(cli::BiteNumbers(bite).millimetres(DistanceInterval{lower, upper}), words);
+    bite.units_per_mm = 1000;  // micrometres
+    EXPECT_EQ(cli::BiteNumbers(bite).millimetres(DistanceInterval{1000 * lower, 1000 * upper}),
+              words);
+    bite.units_per_mm = 1;
+  };
+  expect(0.4076, 0.4184, "0.407 to 0.419 mm");
+  expect(0.40001, 0.40004, "0.4 mm");
+  expect(1449.99, 1450.01, "1450 mm");
+  expect(129.99, 130.01, "130 mm");
+  expect(47.99, 48.02, "47.99 to 48.02 mm");
+  expect(0, 2.172e-11, "less than 0.0001 mm");
+  expect(0, 0.0004, "less than 0.001 mm");
+  expect(0, 0.0123, "0 to 0.013 mm");
+  expect(0, 0, "0 mm");
+  EXPECT_EQ(cli::BiteNumbers::in_millimetres(4.6913), "4.691 mm");
+  EXPECT_EQ(cli::BiteNumbers::in_millimetres(130), "130 mm");
+  EXPECT_EQ(cli::BiteNumbers::in_millimetres(123456.7), "123457 mm");
+  EXPECT_EQ(cli::BiteNumbers::in_millimetres(2e-7), "less than 0.0001 mm");
+}
+
+TEST(BiteHtml, UnknownDepthOfOpenSurfaces_IsNotZero) {
+  const auto made = sphere_over_plate({0, 0, 0.5});
+  EXPECT_EQ(row_of(Page(made->bite).table("depths"), {"fixed"}).at(1), "0");
+  made->bite.findings.touch = Answer::kYes;
+  const Page page(made->bite);
+  EXPECT_EQ(row_of(page.table("depths"), {"fixed"}).at(1), "not known");
+  EXPECT_TRUE(page.says("not known (open surface)"));
 }
 
 TEST(BiteHtml, OtherUnitsComeToTheSameMicrometres) {

@@ -107,7 +107,7 @@ def what_is_said(name, command, files, lines, bodies):
     deepest = max(-body.signed[body.near & (body.sign_known == 1)].astype("f8").min() for body in bodies)
     holds(f"{name}: depth_at_vertices and the map's deepest vertex differ by",
           abs(measures["depth_at_vertices"] - deepest), MICROMETRE)
-    said = f"at least {deepest:.3g} mm deep (open surface, by vertices)"
+    said = f"at least {round(deepest, 3):.4g} mm deep (open surface, by vertices)"
     assert lines[0].startswith("touch yes, ") and said in lines[0], f"{name}: {said!r} is not in {lines[0]!r}"
     print(f"{name}: {lines[0]}")
     collision = json.loads(command.run("collide", *files, "--voxel-size", 4, "--json").splitlines()[-1])

@@ -31,6 +31,30 @@ class BiteNumbers {
     return in_words(of.lower / unit, [](double x) { return std::floor(x); }) + " to " +
            in_words(of.upper / unit, [](double x) { return std::ceil(x); });
   }
+  /// A length in mesh units, as millimetres: four digits at most, none finer than 0.001 mm.
+  [[nodiscard]] std::string millimetres(double units) const {
+    return in_millimetres(units / bite_.units_per_mm);
+  }
+  /// An interval as millimetres: one number if both ends read alike, else rounded outwards.
+  [[nodiscard]] std::string millimetres(const DistanceInterval& of) const {
+    const double lower = of.lower / bite_.units_per_mm, upper = of.upper / bite_.units_per_mm;
+    if (lower <= 0 && upper > 0 && upper < 1e-3) {
+      return upper < 1e-4 ? "less than 0.0001 mm" : "less than 0.001 mm";
+    }
+    constexpr double kRounding = 1e-9;  // of a quotient that is a whole number
+    const double digit = digit_of(upper);
+    const auto at = [digit](double steps) {
+      return fmt::format("{:.{}f}", steps * digit, decimals(digit));
+    };
+    if (std::round(lower / digit) == std::round(upper / digit)) return in_millimetres(upper);
+    return trimmed(at(std::floor(lower / digit + kRounding))) + " to " +
+           trimmed(at(std::ceil(upper / digit - kRounding))) + " mm";
+  }
+  /// The same of a length in millimetres.
+  [[nodiscard]] static std::string in_millimetres(double mm) {
+    if (mm > 0 && mm < 5e-4) return mm < 1e-4 ? "less than 0.0001 mm" : "less than 0.001 mm";
+    return trimmed(fmt::format("{:.{}f}", mm == 0 ? 0.0 : mm, decimals(digit_of(mm)))) + " mm";
+  }
   /// An area in mesh units squared, as mm² without their unit.
   [[nodiscard]] std::string area(double square_units) const {
     const double area = square_units / (bite_.units_per_mm * bite_.units_per_mm);
@@ -58,6 +82,19 @@ class BiteNumbers {
   }
 
  private:
+  // The last digit that is written of a length, millimetres: four digits count.
+  static double digit_of(double mm) {
+    const double size = std::abs(mm);
+    return size < 10 ? 1e-3 : size < 100 ? 1e-2 : size < 1000 ? 0.1 : 1;
+  }
+  static int decimals(double digit) { return static_cast<int>(std::round(-std::log10(digit))); }
+  // Without noughts at its end.
+  static std::string trimmed(std::string number) {
+    if (number.find('.') == number.npos) return number;
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    return number;
+  }
   // Without a sign before a nought.
   static std::string whole(double number) {
     return fmt::format("{:.0f}", number == 0 ? 0.0 : number);

@@ -69,10 +69,14 @@ std::string plane_of(const Division& division, const BiteNumbers& numbers) {
   return plane + " = " + numbers.coordinate(division.at);
 }
 
-std::string plane_words(const Division& division, const BiteNumbers& numbers) {
+std::string plane_words(const Division& division, const Bite& bite) {
+  const BiteNumbers numbers(bite);
+  const char* const middle = !division.assumed ? ""
+                             : bite.region
+                                 ? "the middle of the fixed body's box within the region, "
+                                 : "the middle of the fixed body, ";
   return fmt::format("{} and {}: split at {}{}", escaped(division.first), escaped(division.second),
-                     division.assumed ? "the middle of the fixed body, " : "",
-                     plane_of(division, numbers) + (division.assumed ? " (assumed)" : ""));
+                     middle, plane_of(division, numbers) + (division.assumed ? " (assumed)" : ""));
 }
 
 }  // namespace
@@ -122,11 +126,14 @@ std::string findings_table(const Bite& bite) {
   if (depth.at_vertices) {
     table.add({depth.certain ? "depth of the deepest vertex"
                              : "depth of the deepest vertex (open surfaces: at least)",
-               numbers.length(*depth.at_vertices)});
+               bite.known_depth(*depth.at_vertices) ? numbers.length(*depth.at_vertices)
+                                                    : "not known (open surface)"});
   }
   if (depth.area)
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});
-  if (depth.point) table.add({"deepest point", numbers.place(*depth.point)});
+  if (depth.point)
+    table.add({bite.region ? "deepest vertex in the region" : "deepest point",
+               numbers.place(*depth.point)});
   for (const std::string& note : found.notes) table.add({"note", escaped(note)});
   return table.html();
 }
@@ -151,7 +158,8 @@ std::string area_table(const Bite& bite) {
                    {"surface", "depth of the deepest vertex, µm",
                     "depth, integrated over the overlap (no volume), mm³"});
   for (const auto& [body, role] : bodies_of(bite)) {
-    depths.add({role, numbers.micrometres(body.surface.depth_at_vertices),
+    const std::optional<double> deepest = bite.known_depth(body.surface.depth_at_vertices);
+    depths.add({role, deepest ? numbers.micrometres(*deepest) : "not known",
                 numbers.volume(body.surface.depth_integral)});
   }
   return table.html() + depths.html();
@@ -168,7 +176,7 @@ std::string share_table(const Bite& bite) {
     add_balance(table, numbers, role, bite.fore_aft, body.fore_aft);
   }
   return fmt::format("{}<p>{}; {}. Asymmetry is 100 |a − b| / (a + b).</p>\n", table.html(),
-                     plane_words(bite.sides, numbers), plane_words(bite.fore_aft, numbers));
+                     plane_words(bite.sides, bite), plane_words(bite.fore_aft, bite));
 }
 
 std::string tooth_table(const Bite& bite) {

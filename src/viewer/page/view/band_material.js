@@ -44,7 +44,7 @@ const inFragment = {
 export function makeBandMaterial(look) {
   const colours = () => Array.from({length: most}, () => new THREE.Color());
   const uniforms = {
-    // Of places without a band: no distance is less.
+    // Unused bands end below every distance.
     bandEnds: {value: new Array(most).fill(-1e30)},
     bandColours: {value: colours()},
     lineColours: {value: colours()},

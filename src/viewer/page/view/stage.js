@@ -42,7 +42,7 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {() => Promise<Blob>} picture  PNG of the canvas
  */
 
-// Of the view from in front: how far to the right, to the front, and up.
+// The direction from the bodies to the camera in the front view: right, front, up.
 const seenFrom = [0.35, 1, 0.22];
 const ownColours = {fixed: 0xd9c6a0, moving: 0x86aed6};
 
