@@ -303,7 +303,8 @@ TEST_F(OcclusionCommand, Lengths_HaveFourDigitsAndNoExponent) {
 }
 
 TEST_F(OcclusionCommand, OverlapOfMoreThan2mm_IsWarnedOf) {
-  const std::string said = ask({"--move", "0,0,-0.5"}).out;
+  const std::string block = mesh("block.stl", box({-5, -5, -9}, {5, 5, 0}));
+  const std::string said = ist_well({"occlusion", block, ball_, "--move", "0,0,-0.5"}).out;
   EXPECT_TRUE(says(said, "The scans overlap by 2.")) << said;
   EXPECT_TRUE(says(said, " mm, more than a bite does: check that they are the upper"));
   EXPECT_EQ(asked({"--move", "0,0,0.1"})["warning"], nullptr);
