@@ -25,7 +25,7 @@ TEST_F(Files, BuildSaysWhatItMade) {
   ASSERT_EQ(lines.size(), 1u);
   const json& line = lines[0];
   const SphereTree tree = read_tree(path("out.ist"));
-  EXPECT_EQ(line["file"], path("out.ist"));
+  EXPECT_EQ(line["file"], "out.ist");
   EXPECT_EQ(line["triangles"], 320);
   EXPECT_EQ(line["voxel_size"], 0.08);
   EXPECT_EQ(line["spheres"], "slab");

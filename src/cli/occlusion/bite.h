@@ -13,7 +13,6 @@
 #include "cli/occlusion/teeth.h"
 #include "ist/measure/occlusion.h"
 #include "ist/mesh/mesh.h"
-#include "ist/mesh/patient_frame.h"
 
 namespace ist::cli {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/occlusion/balance.h"
-#include "ist/mesh/patient_frame.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist::cli {
 

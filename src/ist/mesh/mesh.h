@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ist/base/api.h"
 #include "ist/base/progress.h"
-#include "ist/mesh/patient_frame.h"
 
 namespace ist {
 
@@ -26,6 +27,38 @@ enum class Orientation : std::uint8_t {
   kOutward,  ///< every component is closed: the outside is known
   kAssumed,  ///< some component is not: the file's winding is trusted
 };
+
+/// The directions of the patient that a mesh's axes point to. 3D Slicer writes SPACE=RAS or
+/// SPACE=LPS into its files. A half turn about z leads from one frame to the other.
+/// Tree files and the C interface hold the numbers.
+enum class PatientFrame : std::uint8_t {
+  kUnknown,  ///< 0: the file does not say
+  kRas,      ///< 1: +x right, +y front, +z up
+  kLps,      ///< 2: +x left, +y back, +z up
+};
+
+/// All frames but kUnknown.
+inline constexpr std::array kPatientFrames = {PatientFrame::kRas, PatientFrame::kLps};
+
+/// Returns "ras" or "lps"; "unknown" for kUnknown.
+[[nodiscard]] constexpr std::string_view to_string(PatientFrame frame) noexcept {
+  constexpr std::array<std::string_view, 3> kNames = {"unknown", "ras", "lps"};
+  const auto at = static_cast<std::size_t>(frame);
+  return at < kNames.size() ? kNames[at] : "";
+}
+
+/// Returns the frame of that name, or nullopt for another text.
+[[nodiscard]] constexpr std::optional<PatientFrame> patient_frame(std::string_view name) noexcept {
+  for (const PatientFrame frame : kPatientFrames) {
+    if (name == to_string(frame)) return frame;
+  }
+  return std::nullopt;
+}
+
+/// Returns whether both frames are known, and differ.
+[[nodiscard]] constexpr bool contradict(PatientFrame a, PatientFrame b) noexcept {
+  return a != b && a != PatientFrame::kUnknown && b != PatientFrame::kUnknown;
+}
 
 /// A surface of indexed triangles. Coordinates are in mesh units (millimetres by habit), in the
 /// body's own frame. A triangle's vertices run counterclockwise as seen from its outer side.

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "ist/mesh/patient_frame.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 

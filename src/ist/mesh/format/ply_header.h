@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ist/mesh/format/text_reader.h"
-#include "ist/mesh/patient_frame.h"
+#include "ist/mesh/mesh.h"
 
 namespace ist {
 
