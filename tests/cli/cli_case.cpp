@@ -41,6 +41,12 @@ std::string CliTest::ball_tree(const std::string& name, const std::string& spher
   return path(name);
 }
 
+std::string CliTest::smaller_fine_tree() const {
+  const std::string tree = path("smaller.ist");
+  ist_well({"build", mesh("smaller.stl", icosphere(3, 1.9)), "-o", tree, "--voxel-size", "0.05"});
+  return tree;
+}
+
 std::string CliTest::poses(const std::vector<double>& shifts) const {
   nlohmann::json list = nlohmann::json::array();
   for (const double x : shifts) {

@@ -45,6 +45,8 @@ class CliTest : public ::testing::Test {
   [[nodiscard]] std::string ball_tree(const std::string& name = "ball.ist",
                                       const std::string& spheres = "tight",
                                       const std::vector<std::string>& more = {}) const;
+  /// A tree of a ball of radius 1.9 round the origin, at voxel size 0.05.
+  [[nodiscard]] std::string smaller_fine_tree() const;
   /// Shifts along x as a file of poses.
   [[nodiscard]] std::string poses(const std::vector<double>& shifts) const;
 

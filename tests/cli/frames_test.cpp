@@ -125,6 +125,8 @@ TEST_F(Frames, ATreeKeepsItsMeshesFrame) {
   EXPECT_TRUE(says(ist_well({"info", lps_}).out, "frame lps"));
   EXPECT_EQ(json_lines(ist_well({"info", "--json", tree}).out).at(0)["frame"], "lps");
   EXPECT_EQ(json_lines(ist_well({"info", "--json", plain_}).out).at(0)["frame"], nullptr);
+  ist_well({"export", tree, "--what", "voxels", "--level", "0", "-o", path("v.ply")});
+  EXPECT_EQ(read_mesh(path("v.ply")).frame, PatientFrame::kLps);
   EXPECT_EQ(collide(ras_, tree).exit_code, 2);
   const CommandResult fixed = collide(ras_, tree, {"--to-frame", "ras"});
   EXPECT_EQ(fixed.exit_code, 2);

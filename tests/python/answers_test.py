@@ -60,6 +60,21 @@ class Command(Jaws):
 
 
 class Verbs(Jaws):
+    def test_a_tree_keeps_the_frame_that_its_file_names(self):
+        vertices, faces = box((1, 2, 3), (4, 6, 8))
+        lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+        path = os.path.join(self.place.name, "box.obj")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(["# SPACE=LPS", *lines]))
+        lps, ras = ist.build(path, 1), ist.build(path, 1, frame="ras")
+        self.assertEqual((lps.frame, ras.frame), ("lps", "ras"))
+        self.assertEqual(ist.build((vertices, faces), 1).frame, "unknown")
+        self.assertEqual(sorted(map(tuple, ras.vertices)), sorted((-x, -y, z) for x, y, z in lps.vertices))
+        with self.assertRaisesRegex(ist.InputError, "frame"):
+            ist.Query(lps, ras)
+        with self.assertRaisesRegex(ist.InputError, "frame is 'las'"):
+            ist.build(path, 1, frame="las")
+
     def test_a_pose_maps_the_moving_body_to_the_fixed_one(self):
         pose = pose_of([0, 0, 1], np.pi / 2, [5, 0, 0])  # (x, y, z) goes to (5 - y, x, z)
         fixed = ist.build(box([-6, -1, -1], [-4, 1, 1]), voxel_size=0.25)

@@ -138,7 +138,7 @@ void run(const AdviseArguments& options) {
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
   refuse_if(contradict(fixed_mesh.mesh.frame, moving_mesh.mesh.frame), options.moving.string(),
-            fmt::format("its frame is {}, and the frame of {} is {}: turn one of them first",
+            fmt::format("its frame is {}, and the frame of {} is {}: export both in one frame",
                         to_string(moving_mesh.mesh.frame), options.fixed.string(),
                         to_string(fixed_mesh.mesh.frame)));
   const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);

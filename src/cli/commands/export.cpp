@@ -39,16 +39,7 @@ FileFormat format_of(const ExportArguments& options) {
   return format_by_ending("-o", options.output, kPointFormats);
 }
 
-void write(PolyData data, FileFormat format, const std::string& comment, double metres,
-           const ExportArguments& options) {
-  if (format == FileFormat::kVtp) return write_vtp(data, options.output);
-  if (format == FileFormat::kPly) return write_ply(data, options.output, comment);
-  const std::array body{
-      NamedPolyData{fmt::format("{} of level {}", options.what, options.level), std::move(data)}};
-  write_glb(body, metres, options.output);
-}
-
-// Of a unit of the tree; millimetres where nobody says, and then aloud.
+// Returns the metres in a unit of the tree. Assumes millimetres if nobody tells it, and says so.
 double metres_of(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
   const LengthUnit stored = tree.source().unit;
   const LengthUnit named = options.unit ? *length_unit(*options.unit) : LengthUnit::kUnknown;
@@ -60,10 +51,20 @@ double metres_of(const SphereTree& tree, FileFormat format, const ExportArgument
   return metres_per_unit(LengthUnit::kMillimetre);
 }
 
+void write(PolyData data, const SphereTree& tree, FileFormat format, const std::string& comment,
+           const ExportArguments& options) {
+  const double metres = metres_of(tree, format, options);
+  data.frame = tree.frame();
+  if (format == FileFormat::kVtp) return write_vtp(data, options.output);
+  if (format == FileFormat::kPly) return write_ply(data, options.output, comment);
+  const std::array body{
+      NamedPolyData{fmt::format("{} of level {}", options.what, options.level), std::move(data)}};
+  write_glb(body, metres, options.output);
+}
+
 void write_voxels(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
-  write(level_cubes(tree, options.level), format,
-        fmt::format("voxels of level {}: cubes, inner faces left out", options.level),
-        metres_of(tree, format, options), options);
+  write(level_cubes(tree, options.level), tree, format,
+        fmt::format("voxels of level {}: cubes, inner faces left out", options.level), options);
 }
 
 void write_spheres(const SphereTree& tree, FileFormat format, const ExportArguments& options) {
@@ -72,8 +73,7 @@ void write_spheres(const SphereTree& tree, FileFormat format, const ExportArgume
   tree.require(policy, options.tree.string());
   const std::string comment =
       fmt::format("{} spheres of level {}: points with a radius", to_string(policy), options.level);
-  write(level_centres(tree, policy, options.level), format, comment,
-        metres_of(tree, format, options), options);
+  write(level_centres(tree, policy, options.level), tree, format, comment, options);
 }
 
 void run(const ExportArguments& options) {

@@ -145,13 +145,8 @@ void write(const Bite& bite, const Output& output, BiteSelection selection, Deci
     case FileFormat::kVtp:
       selection.open.reset();
       return write_vtp(joined(bite_arrays(bite, selection)), *output.file);
-    case FileFormat::kPly: {
-      std::vector<std::string> comments{comment};
-      const std::string frame = slicer_name(bite.frame);
-      // Opened bodies lie in no patient's frame.
-      if (!frame.empty() && !selection.open) comments.push_back("SPACE=" + frame);
-      return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comments);
-    }
+    case FileFormat::kPly:
+      return write_ply(joined(bite_surfaces(bite, selection)), *output.file, comment);
     case FileFormat::kGlb: {
       std::vector<NamedPolyData> bodies = bite_surfaces(bite, selection);
       for (NamedPolyData& body : bodies) {

@@ -12,6 +12,7 @@
 #include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/base/files.h"
+#include "ist/mesh/format/frame_tags.h"
 
 namespace ist::cli {
 namespace {
@@ -103,10 +104,6 @@ void write_ply(const PolyData& data, const std::filesystem::path& file,
 }
 
 void write_ply(const PolyData& data, OutputFile& file, const std::string& comment) {
-  write_ply(data, file, std::vector<std::string>{comment});
-}
-
-void write_ply(const PolyData& data, OutputFile& file, const std::vector<std::string>& comments) {
   IST_ASSERT(is_consistent(data));
   if (data.points.size() > std::numeric_limits<std::int32_t>::max()) {
     throw Error(ErrorCode::kFileUnwritable,
@@ -131,8 +128,10 @@ void write_ply(const PolyData& data, OutputFile& file, const std::vector<std::st
     }
     vertices.add_bytes(bytes_of(array.numbers));
   }
-  std::string header = "ply\nformat binary_little_endian 1.0\n";
-  for (const std::string& comment : comments) header += "comment " + one_line(comment) + "\n";
+  std::string header = "ply\nformat binary_little_endian 1.0\ncomment " + one_line(comment) + "\n";
+  if (data.frame != PatientFrame::kUnknown) {
+    header += fmt::format("comment SPACE={}\n", slicer_name(data.frame));
+  }
   header += comments_of(data.texts) + vertices.header();
   if (!data.polygons.empty()) {
     header += fmt::format("element face {}\nproperty list uchar int vertex_indices\n",

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "cli/formats/poly_data.h"
 #include "ist/base/files.h"
@@ -16,15 +15,13 @@ namespace ist::cli {
 /// `list uchar int vertex_indices`; points without polygons have no element of faces. Cell arrays
 /// are left out.
 ///
-/// @param comments texts in the header, a line each; line ends in them become spaces
+/// @param comment text for people, in the header; line ends in it become spaces
 ///
 /// Cost: linear; memory, as much as the file. Precondition: is_consistent(data). Errors:
 /// kFileUnwritable, also for over 2^31 - 1 points, which the indices cannot tell; kMeshNotFinite
 /// for a point beyond float.
-void write_ply(const PolyData& data, OutputFile& file, const std::vector<std::string>& comments);
-/// The same with one comment.
 void write_ply(const PolyData& data, OutputFile& file, const std::string& comment);
-/// The same with one comment, and completes the file.
+/// The same, and completes the file.
 void write_ply(const PolyData& data, const std::filesystem::path& file, const std::string& comment);
 
 }  // namespace ist::cli

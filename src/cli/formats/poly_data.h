@@ -43,6 +43,8 @@ struct PolyData {
   std::vector<std::uint32_t> polygons;
   std::vector<DataArray> point_arrays, cell_arrays;
   std::vector<NamedText> texts;
+  /// Of the points. VTP and PLY name it SPACE, as 3D Slicer does.
+  PatientFrame frame = PatientFrame::kUnknown;
   std::vector<Colour> colours;           ///< one a point, or empty
   std::vector<Eigen::Vector3f> normals;  ///< one a point, of length 1; or empty
 

@@ -11,6 +11,7 @@
 #include "cli/formats/little_endian.h"
 #include "ist/base/assert.h"
 #include "ist/base/files.h"
+#include "ist/mesh/format/frame_tags.h"
 
 namespace ist::cli {
 namespace {
@@ -58,7 +59,11 @@ class Document {
 };
 
 // VTK's strings are the numbers of their bytes, and end in 0.
-std::string field_data(const std::vector<NamedText>& texts) {
+std::string field_data(const PolyData& data) {
+  std::vector<NamedText> texts = data.texts;
+  if (data.frame != PatientFrame::kUnknown) {
+    texts.push_back({"SPACE", std::string(slicer_name(data.frame))});
+  }
   if (texts.empty()) return {};
   std::string xml = "    <FieldData>\n";
   for (const auto& [name, text] : texts) {
@@ -100,7 +105,7 @@ void write_vtp(const PolyData& data, OutputFile& file) {
       "  <PolyData>\n{}"
       "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" "
       "NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
-      field_data(data.texts), data.points.size(), vertices ? cells : 0, vertices ? 0 : cells));
+      field_data(data), data.points.size(), vertices ? cells : 0, vertices ? 0 : cells));
   document.add(data.normals.empty() ? "      <PointData>\n"
                                     : "      <PointData Normals=\"Normals\">\n");
   document.add_arrays(data.point_arrays);

@@ -34,6 +34,7 @@ std::vector<NamedPolyData> surfaces(const Bite& bite, const BiteSelection& selec
   std::vector<NamedPolyData> out;
   for (const BiteBody* body : bodies_of(bite, selection.side)) {
     PolyData data = placed(*body, body == &bite.fixed ? book.fixed : book.moving);
+    if (!selection.open) data.frame = bite.frame;
     data.texts = {{"Unit", bite.unit_words()}, {"Caveat", kCaveat}};
     out.push_back({body->name, std::move(data)});
   }
@@ -41,10 +42,6 @@ std::vector<NamedPolyData> surfaces(const Bite& bite, const BiteSelection& selec
 }
 
 }  // namespace
-
-std::string slicer_name(PatientFrame frame) {
-  return frame == PatientFrame::kRas ? "RAS" : frame == PatientFrame::kLps ? "LPS" : "";
-}
 
 std::vector<NamedPolyData> bite_surfaces(const Bite& bite, const BiteSelection& selection) {
   const std::vector<MapBand> bands = map_bands(bite);
@@ -71,9 +68,6 @@ std::vector<NamedPolyData> bite_arrays(const Bite& bite, const BiteSelection& se
     }
     out[i].data.point_arrays.push_back({"Triangle", std::move(triangles)});
     out[i].data.point_arrays.push_back({"SignKnown", std::move(known)});
-    if (const std::string frame = slicer_name(bite.frame); !frame.empty()) {
-      out[i].data.texts.push_back({"SPACE", frame});
-    }
   }
   return out;
 }

@@ -19,17 +19,14 @@ struct BiteSelection {
   std::optional<double> open{};
 };
 
-/// Returns "RAS" or "LPS", as 3D Slicer names a frame; empty if it is unknown.
-[[nodiscard]] std::string slicer_name(PatientFrame frame);
-
-/// Returns the surfaces in fixed coordinates, each with the point array "Signed" (float32: the
-/// signed distance, mesh units, NaN beyond the reach) and a colour for each point.
+/// Returns the surfaces in fixed coordinates and, unless they are opened, their frame, each with
+/// the point array "Signed" (float32: the signed distance, mesh units, NaN beyond the reach) and a
+/// colour for each point.
 [[nodiscard]] std::vector<NamedPolyData> bite_surfaces(const Bite& bite,
                                                        const BiteSelection& selection);
 
 /// Returns the same with the point arrays "Signed", "Triangle" (int32: the nearest triangle of the
-/// other body, -1 beyond the reach) and "SignKnown" (uint8), and without colours. The text SPACE
-/// names the frame of the files if it is known, as 3D Slicer does.
+/// other body, -1 beyond the reach) and "SignKnown" (uint8), and without colours.
 [[nodiscard]] std::vector<NamedPolyData> bite_arrays(const Bite& bite,
                                                      const BiteSelection& selection);
 

@@ -89,9 +89,8 @@ struct TriangleMesh {
 [[nodiscard]] IST_API TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes binary STL: little-endian, coordinates rounded to float, normals from the winding, and a
-/// known frame in the header. The
-/// file appears whole or not at all: it is written under a temporary name in the same folder and
-/// then renamed.
+/// known frame in the header. The file appears whole or not at all: it is written under a temporary
+/// name in the same folder and then renamed.
 ///
 /// Errors: kFileUnwritable, and kMeshNotFinite for a coordinate beyond float.
 IST_API void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file);

@@ -7,12 +7,12 @@
 #include <cstring>
 #include <limits>
 #include <string>
-#include <string_view>
 
 #include "ist/base/assert.h"
 #include "ist/base/files.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/ordered_vector.h"
+#include "ist/mesh/format/frame_tags.h"
 #include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
@@ -44,10 +44,10 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file) {
     fail_mesh(ErrorCode::kFileUnwritable, file.string(), "",
               "an STL holds at most 2^32 - 1 triangles; write the mesh in parts");
   std::string bytes(kStlCountEnd + kStlFacetBytes * mesh.triangles.size(), '\0');
-  const std::string_view tag = mesh.frame == PatientFrame::kRas   ? "SPACE=RAS"
-                               : mesh.frame == PatientFrame::kLps ? "SPACE=LPS"
-                                                                  : "";
-  std::copy(tag.begin(), tag.end(), bytes.begin());
+  if (mesh.frame != PatientFrame::kUnknown) {
+    const std::string tag = fmt::format("SPACE={}", slicer_name(mesh.frame));
+    std::copy(tag.begin(), tag.end(), bytes.begin());
+  }
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::memcpy(bytes.data() + kStlHeaderBytes, &count, sizeof count);
   char* facet = bytes.data() + kStlCountEnd;

@@ -88,14 +88,14 @@ class BiteNumbers {
     return size < 10 ? 1e-3 : size < 100 ? 1e-2 : size < 1000 ? 0.1 : 1;
   }
   static int decimals(double digit) { return static_cast<int>(std::round(-std::log10(digit))); }
-  // Without noughts at its end.
+  // Drops zeros after the decimal point.
   static std::string trimmed(std::string number) {
     if (number.find('.') == number.npos) return number;
     number.erase(number.find_last_not_of('0') + 1);
     if (number.back() == '.') number.pop_back();
     return number;
   }
-  // Without a sign before a nought.
+  // -0 is written as 0.
   static std::string whole(double number) {
     return fmt::format("{:.0f}", number == 0 ? 0.0 : number);
   }

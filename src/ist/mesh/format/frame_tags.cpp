@@ -17,13 +17,17 @@ std::string_view leading_word(std::string_view text) {
 
 }  // namespace
 
+std::string_view slicer_name(PatientFrame frame) {
+  return frame == PatientFrame::kRas ? "RAS" : frame == PatientFrame::kLps ? "LPS" : "";
+}
+
 void FrameTags::read(std::string_view text) {
   constexpr std::string_view kKey = "SPACE=";
   for (std::size_t at = text.find(kKey); at != text.npos; at = text.find(kKey, at + 1)) {
     if (at > 0 && is_letter(text[at - 1])) continue;
     const std::string_view word = leading_word(text.substr(at + kKey.size()));
     for (const PatientFrame frame : kPatientFrames) {
-      if (!same_word(word, to_string(frame))) continue;
+      if (!same_word(word, slicer_name(frame))) continue;
       if (contradict(frame_, frame))
         fail_mesh(ErrorCode::kNotAMesh, file_, "",
                   "the file says both SPACE=RAS and SPACE=LPS; export the mesh again in one frame");

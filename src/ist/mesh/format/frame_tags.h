@@ -6,6 +6,9 @@
 
 namespace ist {
 
+/// Returns "RAS" or "LPS", as 3D Slicer names a frame; empty if it is unknown.
+[[nodiscard]] std::string_view slicer_name(PatientFrame frame);
+
 /// Collects SPACE=RAS and SPACE=LPS, which 3D Slicer writes into the header of an STL and the
 /// comments of a PLY or OBJ. Another word after SPACE= says nothing here.
 class FrameTags {
