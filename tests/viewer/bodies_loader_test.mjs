@@ -190,7 +190,7 @@ test('a swap keeps the bodies where they are to each other', async () => {
 
 test('bodies that cannot be in one unit get a warning, others get none', async () => {
   const pairs = [
-    [['mm', 110], ['m', 110], /^a\.stl is in mm, and b\.stl in m\. .*convert one of them, and open it again/],
+    [['mm', 110], ['m', 110], /^a\.stl is in millimetres, and b\.stl in metres\. .*convert one of them, and open it again/],
     [[null, 110], ['inch', 4.3], /^a\.stl is 26 times as large as b\.stl: one of them may be in metres or inches/],
     [['mm', 110], [null, 110], null],
     [['m', 0.11], ['m', 0.02], null],

@@ -6,6 +6,7 @@ import {readFileSync, truncateSync, writeFileSync} from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
 
+import {zipSync} from '../../src/viewer/node_modules/three/examples/jsm/libs/fflate.module.js';
 import {
   answer,
   answerOf,
@@ -61,8 +62,8 @@ test('says what is wrong with each bad file and what to do, and keeps the bodies
     ],
     ['points.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\n', /3 vertices, but no face; export the surface as polygons$/],
     ['cut.ist', readFileSync(path.join(folder, 'cut.ist')), /it has 3000 bytes and should have \d+: copy or build it again$/],
-    ['jaw.step', 'ISO-10303-21;', /in no supported format: STL, .*; convert the mesh to one of them$/],
-    ['jaws.3mf', 'PK\x03\x04'.padEnd(40, '\0'), /a 3MF.* no zlib to unpack it: convert the mesh to STL/],
+    ['jaw.step', 'ISO-10303-21;', /the file's format is STEP, .*; export the mesh as one of them$/],
+    ['jaws.3mf', 'PK\x03\x04'.padEnd(40, '\0'), /invalid zip data\. Export the mesh as STL, PLY or OBJ/],
     ['<script>fault()<!--.stl', 'solid nothing\nendsolid nothing\n', /the STL has no facet; export the mesh again$/],
   ];
   const opened = await openPage(browser, coarse);
@@ -147,6 +148,50 @@ test('asks for the unit where both bodies are in metres, and takes it', async ()
   await ready(page);
   assert.deepEqual(await messages(page), []);
   assert.match((await readout(page)).Distance, / m$/);
+  await closePage(opened);
+});
+
+/** A 3MF of a box of 4 x 2 x 1, whose one build item is shifted along z. */
+function boxIn3mf({unit, shift = 0, model = '', config = {}}) {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `<vertex x="${4 * (i & 1)}" y="${i & 2}" z="${i >> 2}"/>`);
+  const sides = '0 2 1 1 2 3 4 5 6 5 7 6 0 1 4 1 5 4 2 6 3 3 6 7 0 4 2 2 4 6 1 3 5 3 7 5'.split(' ');
+  const triangles = Array.from({length: 12}, (_, i) => [1, 2, 3].map((k) => `v${k}="${sides[3 * i + k - 1]}"`).join(' '));
+  const parts = {
+    '[Content_Types].xml':
+      '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>',
+    '_rels/.rels':
+      '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/box.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>',
+    '3D/box.model':
+      `<model unit="${unit}" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" ${model}><resources><object id="1"><mesh><vertices>${corners.join('')}</vertices>` +
+      `<triangles>${triangles.map((triangle) => `<triangle ${triangle}/>`).join('')}</triangles></mesh></object></resources>` +
+      `<build><item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 ${shift}"/></build></model>`,
+    ...config,
+  };
+  return zipSync(Object.fromEntries(Object.entries(parts).map(([name, text]) => [name, new TextEncoder().encode(text)])));
+}
+
+test('opens a 3MF in the unit that it states, and refuses the project of a slicer', async () => {
+  const opened = await openPage(browser, coarse);
+  const {page} = opened;
+  await ready(page);
+  await dropFiles(page, [
+    ['fixed.3mf', boxIn3mf({unit: 'centimeter'})],
+    ['moving.3mf', boxIn3mf({unit: 'millimeter', shift: 14})],
+  ]);
+  await page.waitForFunction(() => window.ist.state().bodies.moving?.name === 'moving.3mf' && window.ist.state().trees !== null);
+  await ready(page);
+  assert.match((await readout(page)).Distance, /^4(\.0*)? mm/);
+  await field(page, 'fixed').setInputFiles(fileOf('inches.3mf', boxIn3mf({unit: 'inch'})));
+  assert.match(await message(page, 'inches.3mf'), /is in inches, and moving\.3mf in millimetres/);
+  const modifier = {
+    'Metadata/Slic3r_PE_model.config':
+      '<config><object id="1"><volume><metadata type="volume" key="volume_type" value="ParameterModifier"/></volume></object></config>',
+  };
+  await field(page, 'fixed').setInputFiles(fileOf('project.3mf', boxIn3mf({unit: 'inch', config: modifier})));
+  assert.match(await message(page, 'project.3mf'), /project of a slicer.*Export the mesh as STL/);
+  const production = 'requiredextensions="p" xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"';
+  await field(page, 'fixed').setInputFiles(fileOf('production.3mf', boxIn3mf({unit: 'inch', model: production})));
+  assert.match(await message(page, 'production.3mf'), /the 3MF extension p is required/);
   await closePage(opened);
 });
 

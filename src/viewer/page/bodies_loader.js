@@ -6,7 +6,8 @@
 import {faultText} from './engine/engine_client.js';
 import {builtIn, directionWords, facingOf, swapped} from './facing.js';
 import {identity, inverse} from './pose.js';
-import {bytesWords, differInFrame, frameWord, short, unitWord} from './words.js';
+import {meshBytes} from './scene_files.js';
+import {bytesWords, differInFrame, frameWord, short, unitNames} from './words.js';
 
 /** @typedef {import('./context.js').Store} Store */
 /** @typedef {import('./context.js').Context} Context */
@@ -36,6 +37,8 @@ import {bytesWords, differInFrame, frameWord, short, unitWord} from './words.js'
 const mostBytes = 1e9;
 // Of the smaller body's extent: 0.4 mm of a jaw, which answers in time for every frame.
 const firstVoxel = 1 / 275;
+// Of the larger body's extent: a finer tree of it is too large for a page.
+const finestVoxel = 1 / 2000;
 // Bodies whose sizes differ by more are of different units: an inch has 25.4 mm.
 const farApart = 20;
 
@@ -84,8 +87,7 @@ export function makeBodiesLoader({store, say, ask}) {
           'make its mesh coarser, or ask the command, ist, which has no such limit.',
       );
     }
-    const bytes = await bytesOf(file);
-    const read = await ask('open', question(file, bytes), {doing: `Reading ${file.name}`});
+    const read = await ask('open', await question(file), {doing: `Reading ${file.name}`});
     // The engine keeps it under a name that is a file's.
     const facts = {...read, name: file.name};
     const other = file.role === 'fixed' ? 'moving' : 'fixed';
@@ -121,7 +123,7 @@ export function makeBodiesLoader({store, say, ask}) {
     }
     if (fixed.unit !== null && moving.unit !== null && fixed.unit !== moving.unit) {
       say(
-        `${fixed.name} is in ${unitWord(fixed.unit)}, and ${moving.name} in ${unitWord(moving.unit)}. Both must be in one unit; nothing is converted: ` +
+        `${fixed.name} is in ${unitNames[fixed.unit]}, and ${moving.name} in ${unitNames[moving.unit]}. Both must be in one unit; nothing is converted: ` +
           'convert one of them, and open it again.',
         'warning',
       );
@@ -199,7 +201,8 @@ export function makeBodiesLoader({store, say, ask}) {
     const {fixed, moving} = store.get().bodies;
     if (!fixed || !moving) return;
     if (!looked) await look();
-    const voxelSize = wanted ?? Number((firstVoxel * Math.min(fixed.extent, moving.extent)).toPrecision(2));
+    const [small, large] = [fixed.extent, moving.extent].sort((a, b) => a - b);
+    const voxelSize = wanted ?? Number(Math.max(firstVoxel * small, finestVoxel * large).toPrecision(2));
     try {
       const trees = await ask('build', {voxel_size: voxelSize}, {doing: 'Building both trees', latest: true});
       Object.assign(kept, {voxelSize, built: true});
@@ -246,19 +249,17 @@ export function makeBodiesLoader({store, say, ask}) {
       const {seed, files, voxelSize, built} = kept;
       if (seed !== null) await again('make_jaws', {seed});
       for (const file of Object.values(files)) {
-        await again('open', question(file, await bytesOf(file)));
+        await again('open', await question(file));
       }
       if (built && trees) await again('build', {voxel_size: voxelSize});
     },
   };
 }
 
-/**
- * @param {BodyFile} file
- * @param {ArrayBuffer} bytes
- */
-function question({role, name, unit, toFrame}, bytes) {
-  return {role, name, bytes, unit, ...(toFrame && {to_frame: toFrame})};
+/** @param {BodyFile} file */
+async function question(file) {
+  const {role, name, toFrame} = file;
+  return {role, name, ...(await meshBytes(name, await bytesOf(file), file.unit)), ...(toFrame && {to_frame: toFrame})};
 }
 
 /**

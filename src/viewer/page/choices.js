@@ -1,7 +1,12 @@
 /** What people choose among, by the names that the engine and the address know. */
 
+import {unitNames} from './words.js';
+
 /** @typedef {import('./protocol.js').Policy} Policy */
 /** @typedef {import('./protocol.js').Unit} Unit */
+
+/** @type {Unit[]} */
+const units = ['mm', 'm', 'inch', 'µm'];
 
 /** @type {Policy[]} from the loosest spheres to the tightest */
 export const policies = ['simple', 'table', 'tight', 'slab'];
@@ -20,11 +25,5 @@ export const presets = [
  * @returns {{value: Unit | '', words: string}[]}
  */
 export function unitChoices(none) {
-  return [
-    {value: '', words: none},
-    {value: 'mm', words: 'millimetres'},
-    {value: 'm', words: 'metres'},
-    {value: 'inch', words: 'inches'},
-    {value: 'µm', words: 'micrometres'},
-  ];
+  return [{value: '', words: none}, ...units.map((value) => ({value, words: unitNames[value]}))];
 }

@@ -24,6 +24,9 @@ export function count(value) {
   return Math.round(value).toLocaleString('en-US');
 }
 
+/** @type {Record<import('./protocol.js').Unit, string>} */
+export const unitNames = {mm: 'millimetres', m: 'metres', inch: 'inches', µm: 'micrometres'};
+
 /**
  * @param {string | null | undefined} unit  of a body; none: millimetres are assumed
  * @returns {string}

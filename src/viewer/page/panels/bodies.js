@@ -13,7 +13,7 @@ import {unitOf} from '../follow.js';
 /** @typedef {import('../protocol.js').Role} Role */
 /** @typedef {import('../protocol.js').TreeFacts} TreeFacts */
 
-const endings = '.stl,.ply,.obj,.off,.glb,.gltf,.ist';
+const endings = '.stl,.ply,.obj,.off,.vtk,.vtp,.glb,.gltf,.3mf,.ist';
 /** @type {Role[]} */
 const roles = ['fixed', 'moving'];
 const titles = {fixed: 'Fixed body', moving: 'Moving body'};

@@ -49,6 +49,7 @@ function makeNoStage(surface) {
     camera: new Camera(),
     surface,
     render: nothing,
+    beforeFrame: nothing,
     setBody: nothing,
     setPose: nothing,
     map: nothing,

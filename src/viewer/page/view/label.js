@@ -2,6 +2,25 @@
 
 import * as THREE from 'three';
 
+/** @typedef {{x: number, y: number, width: number, height: number}} Box  its middle and its sides, in one unit */
+
+/**
+ * Tells which boxes no box before them meets, of those that are drawn.
+ * @param {Box[]} boxes
+ * @returns {boolean[]}
+ */
+export function uncovered(boxes) {
+  /** @type {Box[]} */
+  const drawn = [];
+  return boxes.map((box) => {
+    const free = drawn.every(
+      (other) => Math.abs(box.x - other.x) >= (box.width + other.width) / 2 || Math.abs(box.y - other.y) >= (box.height + other.height) / 2,
+    );
+    if (free) drawn.push(box);
+    return free;
+  });
+}
+
 /** @param {THREE.Sprite} label  is not drawn again */
 export function disposeLabel({material}) {
   material.map?.dispose();

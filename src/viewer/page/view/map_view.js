@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 
 import {inverse, transformed} from '../pose.js';
-import {makeLabel} from './label.js';
+import {makeLabel, uncovered} from './label.js';
 import {threeOf} from './stage.js';
 
 /** @typedef {import('../context.js').Store} Store */
@@ -41,6 +41,8 @@ export function makeMapView(stage, store) {
     chosen = 0;
   /** @type {Map<string, THREE.SpriteMaterial>} */
   const numbers = new Map();
+  /** The numbers that are placed, the most important first. @type {{sprite: THREE.Sprite, text: string}[]} */
+  let placed = [];
   /** @param {number} contact */
   const numberOf = (contact) => {
     const key = `${contact} ${contact === chosen}`;
@@ -110,6 +112,7 @@ export function makeMapView(stage, store) {
   const placeDots = () => {
     const {bite, bodies, pose} = store.get();
     dots.clear();
+    placed = [];
     if (!seen || !bite || bite.pose !== pose) return stage.render();
     const radius = 0.0035 * (bodies.moving?.extent ?? 1);
     for (const role of roles) {
@@ -126,10 +129,29 @@ export function makeMapView(stage, store) {
         const number = numberOf(region.contact);
         number.position.copy(mark.position);
         dots.add(number);
+        placed.push({sprite: number, text: String(region.contact)});
       }
     }
+    const rank = (/** @type {{text: string}} */ {text}) => (Number(text) === chosen ? 0 : Number(text));
+    placed.sort((a, b) => rank(a) - rank(b));
     stage.render();
   };
+  // A number that covers another one could be read as a third one.
+  const hideCovered = () => {
+    const {camera} = stage;
+    if (!(camera instanceof THREE.PerspectiveCamera) || placed.length === 0) return;
+    camera.updateMatrixWorld();
+    const scale = camera.projectionMatrix.elements[5];
+    const free = uncovered(
+      placed.map(({sprite, text}) => {
+        const at = sprite.getWorldPosition(new THREE.Vector3()).project(camera),
+          height = 0.75 * scale * sprite.scale.y;
+        return {x: camera.aspect * at.x, y: at.y, width: 0.62 * height * text.length, height: 0.9 * height};
+      }),
+    );
+    placed.forEach(({sprite}, i) => (sprite.visible = free[i]));
+  };
+  stage.beforeFrame(hideCovered);
 
   store.subscribe(['bite', 'book'], ({bite}) => {
     if (!bite || bite.bite.contacts.length < chosen) chosen = 0;

@@ -22,6 +22,7 @@ import {makeBodyMesh} from './body_mesh.js';
  * @property {THREE.Camera} camera
  * @property {HTMLElement} surface      what the pointer touches
  * @property {() => void} render        draws a frame soon; many calls draw one
+ * @property {(listen: () => void) => void} beforeFrame  calls before each frame
  * @property {(role: Role, facts: BodyFacts | null) => void} setBody
  * @property {(pose: Pose) => void} setPose
  * @property {(role: Role, map: DrawnMap | null) => void} map  null: the body's own colour
@@ -98,8 +99,11 @@ export function makeStage(surface, say) {
   });
 
   let waits = false;
+  /** @type {(() => void)[]} */
+  const beforeFrame = [];
   const draw = () => {
     waits = false;
+    for (const listen of beforeFrame) listen();
     renderer.render(scene, camera);
   };
   const render = () => {
@@ -158,6 +162,7 @@ export function makeStage(surface, say) {
     camera,
     surface: renderer.domElement,
     render,
+    beforeFrame: (listen) => void beforeFrame.push(listen),
     bounds,
     setBody(role, facts) {
       bodies[role].setFacts(facts);
