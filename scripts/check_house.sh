@@ -25,7 +25,7 @@ found=$(grep -rnE '#include (<(ist|simd)/|"\.\./)' src/ist simd src/cli src/veri
 [ -z "$found" ] || breach "an include that hides its layer: $found"
 found=$(grep -rnE '#include "(cli|advise)/' src/verify src/hardware; grep -rnE '#include "(cli|verify)/' src/advise || true)
 [ -z "$found" ] || breach "tools know the library, not each other: $found"
-found=$(grep -rnE '#include "(cli|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
+found=$(grep -rnE '#include "(cli|import|verify|advise|hardware)/|#include "ist/hardware/' src/ist simd || true)
 [ -z "$found" ] || breach "the library sees no tool: $found"
 found=$(grep -rnE '#include "viewer/' src simd | grep -v '^src/viewer/' || true)
 [ -z "$found" ] || breach "the page stands behind all others: $found"
@@ -39,17 +39,18 @@ only() {  # what, pattern, the one file (a pattern), where to look
   found=$(grep -rlE "$2" $4 | grep -vxE "$3" || true)
   [ -z "$found" ] || breach "$1 is also in: $found"
 }
-only "assimp, the second reader in tests," '#include [<"]assimp/' 'none' "src simd bench"
+only "assimp, which may crash," '#include [<"]assimp/' 'src/import/[a-z_]+\.(h|cpp)' "src simd bench"
+only "libzip, pugixml and libseccomp" '#include [<"](zip|pugixml|seccomp)\.h' 'src/import/[a-z_]+\.cpp' "src simd"
 only "TBB" '#include [<"](tbb|oneapi)/' 'src/ist/base/platform/tbb_ranges\.cpp' "src simd"
 only "Highway" '#include [<"]hwy/' 'simd/([a-z]+/)?[a-z_]+(\.cpp|-inl\.h)' "src simd tests bench"
 only "toml++" '#include [<"]toml' 'src/ist/scene/toml_document\.cpp' "src simd tests bench"
 only "GMP, an oracle of tests," '#include [<"]gmp' 'none' "src simd"
 only "xxHash" '#include [<"]xxh' 'src/(ist/base/checksum|hardware/xxh64)\.(h|cpp)' "src simd"
-only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/threemf/zip_entry\.cpp' "src simd"
+only "zlib" '#include [<"]zlib' 'src/ist/mesh/format/inflate\.cpp' "src simd"
 only "libpng" '#include [<"]png\.h' 'src/cli/occlusion/png_image\.cpp' "src simd"
-only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|viewer/engine/.*|ist/mesh/format/gltf_(file|reader)\.(h|cpp)|ist/sweep/sweep_record\.cpp)' src
+only "JSON" '#include [<"]nlohmann/' 'src/(cli/.*|viewer/engine/.*|import/gltf_check\.cpp|ist/sweep/sweep_record\.cpp)' src
 only "the command line" '#include [<"]CLI/' 'src/cli/.*' src
-only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|ist/base/platform/thread_ranges\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp)|viewer/engine/exports\.cpp)' "src --include=*.h --include=*.cpp"
+only "a catch" '(^|[^[:alnum:]_])catch \(' 'src/(cli/main\.cpp|import/ist_import\.cpp|ist/base/platform/thread_ranges\.cpp|ist/scene/scene_trees\.cpp|ist/capi/guard\.(h|cpp)|viewer/engine/exports\.cpp)' "src --include=*.h --include=*.cpp"
 only "printing" '(std::cout|std::cerr|fmt::print|[^f]printf\()' 'src/ist/base/assert\.h' "src/ist simd"
 only "a sum whose order depends on the platform's vectors (base/ordered_vector.h has one order)" '\.(dot|norm|squaredNorm|normalized|normalize|stableNorm|inverse)\(' 'none' "src/ist/base src/ist/mesh src/ist/voxel src/ist/tree src/ist/query src/ist/measure src/ist/sweep simd"
 only "what a processor or a system decides" '__x86_64__|__aarch64__|__linux__|_mm_|prctl' 'src/ist/base/platform/.*' "src/ist simd"

@@ -28,8 +28,9 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
-  libcli11-dev nlohmann-json3-dev libpng-dev)
-tests=(libgtest-dev libgmp-dev libassimp-dev python3 python3-numpy locales git dpkg-dev)
+  libcli11-dev nlohmann-json3-dev libpng-dev
+  libassimp-dev libzip-dev libpugixml-dev libseccomp-dev)
+tests=(libgtest-dev libgmp-dev python3 python3-numpy locales git dpkg-dev)
 bench=(libbenchmark-dev python3-matplotlib)
 cross=(clang-14 clang-16 emscripten googletest g++-aarch64-linux-gnu qemu-user
   libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64 libxxhash-dev:arm64 libtomlplusplus-dev:arm64

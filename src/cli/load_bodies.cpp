@@ -32,15 +32,18 @@ struct LoadedBody {
     if (is_tree_file(file)) {
       tree = read_tree(file);
       source = tree->source();
-      const bool contradicts = told != LengthUnit::kUnknown &&
-                               source.unit != LengthUnit::kUnknown && source.unit != told;
-      refuse_if(contradicts, option,
+      refuse_if(contradict(told, source.unit), option,
                 fmt::format("{} is a tree in {}: leave the option out, or name the mesh", name(),
                             to_string(source.unit)));
       if (source.unit != LengthUnit::kUnknown) unit = source.unit;
     } else {
       source = source_of(file);
       checked = load_mesh(file);
+      const LengthUnit stated = checked.mesh.unit;
+      refuse_if(contradict(told, stated), option,
+                fmt::format("{} says that its unit is {}: leave the option out", name(),
+                            to_string(stated)));
+      if (stated != LengthUnit::kUnknown) unit = stated;
     }
     source.unit = unit;
     extent = largest_extent(tree ? box_of(*tree) : box_of(checked.mesh));
@@ -75,7 +78,8 @@ SphereTree take_tree(LoadedBody& body, const BodyFiles& files, std::optional<dou
   return tree;
 }
 
-// Converts the moving mesh to the unit of the fixed body, if both are known. Returns the factor.
+// Converts the moving mesh to the unit of the fixed body, if --unit-moving asks for it, and refuses
+// two known units otherwise. Returns the factor.
 double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_told) {
   constexpr LengthUnit kUnknown = LengthUnit::kUnknown;
   refuse_if(is_moving_told && fixed.unit == kUnknown, "--unit-moving",
@@ -85,6 +89,12 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
             fmt::format("the tree is in {}, and {} in {}: name the tree's mesh, and its unit by "
                         "--unit-moving, and it is converted",
                         to_string(moving.unit), fixed.name(), to_string(fixed.unit)));
+  refuse_if(
+      !is_moving_told, moving.name(),
+      fmt::format("its unit is {}, and the unit of {} is {}: give --unit-moving {} to convert "
+                  "the mesh",
+                  to_string(moving.unit), fixed.name(), to_string(fixed.unit),
+                  to_string(moving.unit)));
   // Both in micrometres are whole numbers, so that the factor is rounded once.
   const double factor = std::round(1e6 * metres_per_unit(moving.unit)) /
                         std::round(1e6 * metres_per_unit(fixed.unit));
@@ -92,7 +102,7 @@ double convert_unit(const LoadedBody& fixed, LoadedBody& moving, bool is_moving_
   moving.extent *= factor;
   note(fmt::format("{} was converted from {} to {}", moving.name(), to_string(moving.unit),
                    to_string(fixed.unit)));
-  moving.unit = moving.source.unit = fixed.unit;
+  moving.unit = moving.source.unit = moving.checked.mesh.unit = fixed.unit;
   return factor;
 }
 
@@ -192,7 +202,7 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files) {
             name, [&unit](const std::string& word) { unit = *length_unit(word); }, help)
         ->transform(unit_name());
   };
-  add_unit("--unit", files.unit, "unit of the lengths in both files; a tree may know its own");
+  add_unit("--unit", files.unit, "unit of the lengths in both files; a file may state its own");
   add_unit("--unit-moving", files.moving_unit,
            "unit of the second file, if it is another one; its mesh is converted");
   command

@@ -63,7 +63,7 @@ void add_units_and_frame(CLI::App& command, BodyFiles& files);
 /// Says on stderr if it takes a voxel size, converts or turns a mesh, if both files hold one mesh,
 /// if the bodies seem to be in different units, and if voxels are large for their body. Throws
 /// CLI::ValidationError for a voxel size of two trees, for a moving tree of another unit than the
-/// fixed body's, for a unit that a tree contradicts, and for files in different frames.
+/// fixed body's, for a unit that a file contradicts, and for files in different frames.
 [[nodiscard]] Bodies load_bodies(const BodyFiles& files);
 
 /// Loads one body whose voxels nobody asks of: a mesh gets one as large as itself.

@@ -1,4 +1,4 @@
-# `cpack` makes four packages, each of one component.
+# `cpack` makes five packages, each of one component.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ist)
 set(CPACK_PACKAGE_CONTACT "${maintainer}")
@@ -71,5 +71,12 @@ if(TARGET ist_cli)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME ist)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS libist-dev)  # has the headers that the documents show
   ist_describe(COMMAND "command" "This package has the command ist, documents, example programs and scenes.")
+endif()
+if(TARGET ist-import)
+  list(APPEND CPACK_COMPONENTS_ALL import)
+  set(CPACK_DEBIAN_IMPORT_PACKAGE_NAME ist-import)
+  set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "ist-import (= ${PROJECT_VERSION})")
+  ist_describe(IMPORT "importer" "This package has the program that libist starts to read glTF, 3MF and what
+assimp knows.")
 endif()
 include(CPack)

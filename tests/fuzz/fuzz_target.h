@@ -11,6 +11,7 @@ namespace ist::test {
 /// throws is a finding.
 ///
 /// Each stands in a file TARGET_target.cpp, which says how it reads the bytes.
+[[nodiscard]] std::string fuzz_import(std::string_view bytes);
 [[nodiscard]] std::string fuzz_labels(std::string_view bytes);
 [[nodiscard]] std::string fuzz_mesh(std::string_view bytes);
 [[nodiscard]] std::string fuzz_poses(std::string_view bytes);

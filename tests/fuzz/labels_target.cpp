@@ -1,6 +1,6 @@
 // Tooth labels of a tetrahedron: the first byte says what the file's name ends with (p: .ply, o:
-// .obj, else .txt), and by a capital letter that numbers are universal ones; the rest is its
-// content.
+// .obj, v: .vtk, else .txt), and by a capital letter that numbers are universal ones; the rest is
+// its content.
 
 #include <algorithm>
 #include <cctype>
@@ -14,12 +14,13 @@ namespace ist::test {
 
 std::string fuzz_labels(std::string_view bytes) {
   if (bytes.empty()) return "nothing";
-  static const NamedFile file({"labels.ply", "labels.obj", "labels.txt"});
+  static const NamedFile file({"labels.ply", "labels.obj", "labels.vtk", "labels.txt"});
   const TriangleMesh mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                              {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   const auto first = static_cast<unsigned char>(bytes[0]);
   const char* name = std::tolower(first) == 'p'   ? "labels.ply"
                      : std::tolower(first) == 'o' ? "labels.obj"
+                     : std::tolower(first) == 'v' ? "labels.vtk"
                                                   : "labels.txt";
   const auto numbers =
       std::isupper(first) != 0 ? cli::ToothNumbers::kUniversal : cli::ToothNumbers::kFdi;

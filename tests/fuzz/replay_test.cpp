@@ -27,11 +27,12 @@ void PrintTo(const Target& target, std::ostream* out) { *out << target.name; }
 
 const std::vector<Target>& targets() {
   static const std::vector<Target> all{
+      {"import", fuzz_import, {"fine", "file-unreadable", "mesh-not-finite", "mesh-empty"}},
       {"labels", fuzz_labels, {"fine", "input-invalid", "not-a-mesh", "mesh-bad-index"}},
       {"mesh",
        fuzz_mesh,
        {"fine", "not-a-mesh", "mesh-empty", "mesh-points-only", "mesh-truncated", "mesh-bad-index",
-        "mesh-not-finite", "mesh-extent", "mesh-too-large"}},
+        "mesh-not-finite", "mesh-extent"}},
       {"poses", fuzz_poses, {"fine", "input-invalid", "pose-invalid"}},
       {"query", fuzz_query, {"touching", "apart", "invalid"}},
       {"scene", fuzz_scene, {"fine", "input-invalid"}},

@@ -101,8 +101,9 @@ class Packages(Installed, Pages):
         expected = ["bin/ist", *(f"{self.libraries}/{name}" for name in (
                         *(f"cmake/ist/{name}" for name in config), "libist.so", "libist.so.0", "libist.so.V",
                         "libist_hardware.so", "libist_hardware.so.0", "libist_hardware.so.V", "pkgconfig/ist.pc")),
+                    "libexec/ist/ist-import",
                     "share/bash-completion/completions/ist",
-                    *(f"share/doc/{name}/copyright" for name in ("ist", "libist-dev", "libist0"))]
+                    *(f"share/doc/{name}/copyright" for name in ("ist-import", "ist", "libist-dev", "libist0"))]
         # The page, where scripts/viewer.sh made it.
         expected += ["share/ist/page.html"] if (SOURCE / "build/viewer/ist.html").exists() else []
         # The build type names the targets' files; Documents and ManPages have the others.

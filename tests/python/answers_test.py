@@ -63,7 +63,7 @@ class Verbs(Jaws):
     def test_a_tree_keeps_the_frame_that_its_file_names(self):
         vertices, faces = box((1, 2, 3), (4, 6, 8))
         lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
-        path = os.path.join(self.place.name, "box.obj")
+        path = os.path.join(folder(self), "box.obj")
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(["# SPACE=LPS", *lines]))
         lps, ras = ist.build(path, 1), ist.build(path, 1, frame="ras")

@@ -114,6 +114,58 @@ std::string as_off(const TriangleMesh& mesh) {
   return text;
 }
 
+std::string as_vtk(const TriangleMesh& mesh) {
+  const std::string triangles = std::to_string(mesh.triangles.size());
+  std::string text = "# vtk DataFile Version 4.2\nmade by hand\nASCII\nDATASET POLYDATA\nPOINTS " +
+                     std::to_string(mesh.vertices.size()) + " float\n";
+  for (const Eigen::Vector3d& vertex : mesh.vertices) text += spelled(vertex) + "\n";
+  text += "POLYGONS " + triangles + " " + std::to_string(4 * mesh.triangles.size()) + "\n";
+  for (const auto& [a, b, c] : mesh.triangles)
+    text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+  return text;
+}
+
+std::string as_binary_vtk(const TriangleMesh& mesh) {
+  const std::size_t triangles = mesh.triangles.size();
+  std::string bytes =
+      "# vtk DataFile Version 5.1\nmade by hand\nBINARY\nDATASET POLYDATA\nPOINTS " +
+      std::to_string(mesh.vertices.size()) + " float\n";
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    for (const double x : vertex) append(bytes, static_cast<float>(x), true);
+  bytes += "\nPOLYGONS " + std::to_string(triangles + 1) + " " + std::to_string(3 * triangles) +
+           "\nOFFSETS vtktypeint64\n";
+  for (std::size_t i = 0; i <= triangles; ++i)
+    append(bytes, static_cast<std::int64_t>(3 * i), true);
+  bytes += "\nCONNECTIVITY vtktypeint64\n";
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) append(bytes, std::int64_t{vertex}, true);
+  return bytes + "\n";
+}
+
+std::string as_vtp(const TriangleMesh& mesh) {
+  const std::string triangles = std::to_string(mesh.triangles.size());
+  const auto array = [](const std::string& type, const std::string& name, const std::string& data) {
+    std::string bytes;
+    append(bytes, static_cast<std::uint32_t>(data.size()));
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+           (name == "Points" ? "3" : "1") + "\" format=\"binary\">\n  " + base64(bytes + data) +
+           "\n</DataArray>\n";
+  };
+  std::string points, corners, ends;
+  for (const Eigen::Vector3d& vertex : mesh.vertices)
+    for (const double x : vertex) append(points, static_cast<float>(x));
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) append(corners, vertex);
+    append(ends, static_cast<std::int32_t>(corners.size() / sizeof(std::uint32_t)));
+  }
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
+         std::to_string(mesh.vertices.size()) + "\" NumberOfPolys=\"" + triangles +
+         "\">\n<Points>\n" + array("Float32", "Points", points) + "</Points>\n<Polys>\n" +
+         array("UInt32", "connectivity", corners) + array("Int32", "offsets", ends) +
+         "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+}
+
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -181,6 +233,9 @@ std::vector<std::pair<std::string, std::string>> all_formats(const TriangleMesh&
           {"big-endian PLY", as_binary_ply(mesh, true)},
           {"OBJ", as_obj(narrowed(mesh))},
           {"OFF", as_off(narrowed(mesh))},
+          {"VTK", as_vtk(mesh)},
+          {"binary VTK", as_binary_vtk(mesh)},
+          {"VTP", as_vtp(mesh)},
           {"glTF", as_gltf(mesh)},
           {"GLB", as_glb(mesh)}};
 }

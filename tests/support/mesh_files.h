@@ -19,6 +19,11 @@ namespace ist::test {
 [[nodiscard]] std::string as_binary_ply(const TriangleMesh& mesh, bool big_endian);
 [[nodiscard]] std::string as_obj(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_off(const TriangleMesh& mesh);
+/// Legacy VTK PolyData: text of version 4.2, or bytes of version 5.1.
+[[nodiscard]] std::string as_vtk(const TriangleMesh& mesh);
+[[nodiscard]] std::string as_binary_vtk(const TriangleMesh& mesh);
+/// VTK's XML PolyData with inline base64.
+[[nodiscard]] std::string as_vtp(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_gltf(const TriangleMesh& mesh);
 [[nodiscard]] std::string as_glb(const TriangleMesh& mesh);
 /// A GLB of a JSON and its binary chunk.

@@ -141,6 +141,10 @@ void run(const AdviseArguments& options) {
             fmt::format("its frame is {}, and the frame of {} is {}: export both in one frame",
                         to_string(moving_mesh.mesh.frame), options.fixed.string(),
                         to_string(fixed_mesh.mesh.frame)));
+  refuse_if(contradict(fixed_mesh.mesh.unit, moving_mesh.mesh.unit), options.moving.string(),
+            fmt::format("its unit is {}, and the unit of {} is {}: export both in one unit",
+                        to_string(moving_mesh.mesh.unit), options.fixed.string(),
+                        to_string(fixed_mesh.mesh.unit)));
   const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);
   const std::uint64_t max_memory = options.calibration.max_memory;
   const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);

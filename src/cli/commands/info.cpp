@@ -29,9 +29,10 @@ struct InfoArguments {
 void show_mesh(const InfoArguments& options) {
   const TriangleMesh mesh = read_mesh(options.file);
   const MeshReport report = check_mesh(mesh);
-  if (!options.json) return print_mesh(options.file, report, mesh.frame);
+  if (!options.json) return print_mesh(options.file, report, mesh);
   print_header("info", {{"mesh", options.file}});
-  const MeshSource source = source_of(options.file);
+  MeshSource source = source_of(options.file);
+  source.unit = mesh.unit;
   print_json(mesh_json(source.name, report, source, mesh.frame));
 }
 

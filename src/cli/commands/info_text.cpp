@@ -75,13 +75,14 @@ void print_levels(const SphereTree& tree, const std::vector<LevelStatistics>& le
 
 }  // namespace
 
-void print_mesh(const std::filesystem::path& file, const MeshReport& report, PatientFrame frame) {
+void print_mesh(const std::filesystem::path& file, const MeshReport& report,
+                const TriangleMesh& mesh) {
   fmt::print("{}: a mesh of {} triangles and {} vertices, {} component{}\n", file.string(),
              report.triangles, report.vertices, report.components,
              report.components == 1 ? "" : "s");
-  print_extent({report.box_min, report.box_max}, LengthUnit::kUnknown);
-  print_frame(frame);
-  print_topology(report, LengthUnit::kUnknown);
+  print_extent({report.box_min, report.box_max}, mesh.unit);
+  print_frame(mesh.frame);
+  print_topology(report, mesh.unit);
   print_warnings(warnings(report));
 }
 

@@ -11,7 +11,8 @@
 namespace ist::cli {
 
 /// Prints for people a mesh's counts, size, topology and box; its warnings to stderr.
-void print_mesh(const std::filesystem::path& file, const MeshReport& report, PatientFrame frame);
+void print_mesh(const std::filesystem::path& file, const MeshReport& report,
+                const TriangleMesh& mesh);
 
 /// Prints for people a tree's counts, source, size and levels; and the topology of its triangles,
 /// where it keeps any.

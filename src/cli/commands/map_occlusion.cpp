@@ -27,6 +27,7 @@
 #include "cli/occlusion/bite_maker.h"
 #include "cli/occlusion/bite_surfaces.h"
 #include "cli/occlusion/bite_tables.h"
+#include "cli/occlusion/labels/tooth_labels.h"
 #include "cli/page/page_blocks.h"
 #include "cli/page/page_file.h"
 #include "cli/poses/numbers.h"
@@ -120,7 +121,8 @@ std::vector<Output> outputs_of(const OcclusionArguments& options) {
   for (const std::filesystem::path& file : options.outputs) {
     const FileFormat format = format_by_ending("-o", file, kWritable);
     refuse_to_overwrite(file, {options.files.fixed, options.files.moving, options.pose.matrix,
-                               options.questions.labels_fixed, options.questions.labels_moving});
+                               label_source(options.questions.labels_fixed).file,
+                               label_source(options.questions.labels_moving).file});
     refuse_if(!names.insert(plain(file)).second, "-o",
               fmt::format("{} is named twice", file.string()));
     open = open || format == FileFormat::kPly || format == FileFormat::kGlb;
@@ -287,10 +289,10 @@ void add_patient_options(CLI::App& command, OcclusionArguments& options) {
   command
       .add_option(
           "--labels-fixed", questions.labels_fixed,
-          "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .ply with a property "
-          "label, "
-          "or as an .obj with groups such as tooth_16; or a text of a number a line, for each "
-          "triangle or vertex")
+          "the fixed body's tooth numbers, 0 for no tooth: the mesh as a .vtk or .vtp "
+          "(FILE:ARRAY), "
+          "as a .ply with a property label, or as an .obj with groups such as tooth_16; or a text "
+          "of a number a line, for each triangle or vertex")
       ->type_name("FILE")
       ->group(group);
   command.add_option("--labels-moving", questions.labels_moving, "the moving body's")

@@ -24,6 +24,14 @@ Number rounded(double number) {
   return numbers_of(fmt::format("{:.4g}", number))->front() + 0.0;  // -0 becomes 0
 }
 
+// Returns the next number of four significant digits above or below, or the number itself.
+Number rounded_outwards(double number, bool up) {
+  const Number nearest = rounded(number);
+  if (!nearest || number == 0 || (up ? *nearest >= number : *nearest <= number)) return nearest;
+  const double digit = std::pow(10, std::floor(std::log10(std::abs(number))) - 3);
+  return rounded(*nearest + (up ? digit : -digit));
+}
+
 // A row of the table. Cells without a number stay empty.
 struct Row {
   const char* kind;
@@ -76,8 +84,8 @@ class BiteTable {
     table_.add(row.to_um);
     add_scaled(row.area, mm * mm);
     add_scaled(row.overlap, mm * mm);
-    add_scaled(row.depth, mm);
-    add_scaled(row.depth_upper, mm);
+    table_.add(row.depth ? rounded_outwards(mm * *row.depth, false) : Number());
+    table_.add(row.depth_upper ? rounded_outwards(mm * *row.depth_upper, true) : Number());
     add_scaled(row.at_vertices, mm);
     add_scaled(row.depth_integral, mm * mm * mm);
     add_scaled(row.least, 1e3 * mm);

@@ -28,6 +28,12 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Sce
     fail_at(scene, fmt::format("{}.voxel_size", body.table),
             fmt::format("{}: {}", body.name, flaw->what()));
   }
+  if (mesh.unit != LengthUnit::kUnknown && metres_per_unit(mesh.unit) != scene.unit) {
+    fail_at(
+        scene, "unit",
+        fmt::format("{} says that its unit is {}: write this unit, or name a mesh in the scene's",
+                    body.name, to_string(mesh.unit)));
+  }
   body.frame = mesh.frame;
   body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
   body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;

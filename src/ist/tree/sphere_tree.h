@@ -53,43 +53,6 @@ inline constexpr std::array kSpherePolicies = {SpherePolicy::kSimple, SpherePoli
   return std::nullopt;
 }
 
-/// The unit of a mesh's lengths, which most mesh files do not tell. No length is ever converted.
-/// Tree files and the C interface hold the numbers.
-enum class LengthUnit : std::uint8_t {
-  kUnknown,     ///< 0: nobody told
-  kMillimetre,  ///< 1
-  kMetre,       ///< 2
-  kInch,        ///< 3
-  kMicrometre,  ///< 4
-};
-
-/// All units but kUnknown.
-inline constexpr std::array kLengthUnits = {LengthUnit::kMillimetre, LengthUnit::kMetre,
-                                            LengthUnit::kInch, LengthUnit::kMicrometre};
-
-/// Returns "mm", "m", "inch" or "µm"; "unknown" for kUnknown.
-[[nodiscard]] constexpr std::string_view to_string(LengthUnit unit) noexcept {
-  constexpr std::array<std::string_view, 5> kNames = {"unknown", "mm", "m", "inch", "µm"};
-  const auto at = static_cast<std::size_t>(unit);
-  return at < kNames.size() ? kNames[at] : "";
-}
-
-/// Returns the unit of that name, which may be "um" too, or nullopt for another text.
-[[nodiscard]] constexpr std::optional<LengthUnit> length_unit(std::string_view name) noexcept {
-  if (name == "um") return LengthUnit::kMicrometre;
-  for (const LengthUnit unit : kLengthUnits) {
-    if (name == to_string(unit)) return unit;
-  }
-  return std::nullopt;
-}
-
-/// Returns the metres in a unit; 0 for kUnknown.
-[[nodiscard]] constexpr double metres_per_unit(LengthUnit unit) noexcept {
-  constexpr std::array<double, 5> kMetres = {0, 1e-3, 1, 0.0254, 1e-6};
-  const auto at = static_cast<std::size_t>(unit);
-  return at < kMetres.size() ? kMetres[at] : 0;
-}
-
 /// The file that a mesh was read from, and the unit of the mesh's lengths.
 struct MeshSource {
   /// The file's name without its folder, empty where unknown: UTF-8, at most 255 bytes, none of
@@ -149,7 +112,7 @@ class IST_API SphereTree {
   /// as check_mesh() counts them. The first call for a tree, or the first signed distance or depth,
   /// takes 1.2 µs a triangle and core. Throws kTrianglesMissing.
   [[nodiscard]] std::uint64_t self_intersections() const;
-  /// The mesh's file and unit, as BuildOptions::source told them.
+  /// The mesh's file and unit, as BuildOptions::source or the mesh told them.
   [[nodiscard]] const MeshSource& source() const noexcept;
   /// The frame of the mesh's coordinates; kUnknown if its file does not say it.
   [[nodiscard]] PatientFrame frame() const noexcept;
@@ -184,7 +147,9 @@ struct BuildOptions {
   /// neighbours only if they share indices.
   bool weld = true;
   std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for the voxels and the tree
-  MeshSource source = {};                             ///< kept by the tree; nothing is converted
+  /// Kept by the tree; nothing is converted. If its unit is unknown, the tree keeps the mesh's.
+  /// kArgumentInvalid if both are known and differ.
+  MeshSource source = {};
   /// A mesh of the other known frame is turned into this one: x and y change their signs. A mesh
   /// of unknown frame stays as it is, and kUnknown turns none.
   PatientFrame frame = PatientFrame::kUnknown;

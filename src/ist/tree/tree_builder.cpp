@@ -72,6 +72,14 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
   if (to_string(mesh.frame).empty() || to_string(options.frame).empty()) {
     throw Error(ErrorCode::kArgumentInvalid, "frame: it is out of range: give a PatientFrame");
   }
+  MeshSource source = options.source;
+  if (to_string(mesh.unit).empty() || contradict(source.unit, mesh.unit)) {
+    throw Error(
+        ErrorCode::kArgumentInvalid,
+        fmt::format("source: its unit is {}, and the mesh's is {}: leave one of them unknown",
+                    to_string(source.unit), to_string(mesh.unit)));
+  }
+  if (source.unit == LengthUnit::kUnknown) source.unit = mesh.unit;
   require_valid(mesh);
   turn_into(mesh, options.frame);
   auto begin = std::chrono::steady_clock::now();
@@ -99,7 +107,7 @@ SphereTree build_tree(TriangleMesh mesh, const BuildOptions& options, BuildRepor
                   {},
                   std::nullopt,
                   std::nullopt,
-                  options.source,
+                  source,
                   mesh.frame};
   end_stage("octree");
 

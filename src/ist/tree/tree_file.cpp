@@ -284,6 +284,7 @@ SphereTree read(TreeReader reader) {
     for (const auto& [x, y, z] : coordinates) triangles->first.vertices.emplace_back(x, y, z);
     triangles->first.triangles = reader.array<Triangle>(counts[1]);
     triangles->first.frame = static_cast<PatientFrame>(header.frame);
+    triangles->first.unit = static_cast<LengthUnit>(header.unit);
     triangles->second.first = reader.array<std::uint32_t>(std::uint64_t{stored.leaves} + 1);
     triangles->second.ids = reader.array<std::uint32_t>(counts[2]);
   }

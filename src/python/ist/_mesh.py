@@ -107,7 +107,9 @@ def handle_of(mesh, progress=None):
 
 
 def read_mesh(path, *, progress=None):
-    """Reads an STL, PLY, OBJ, OFF, glTF or 3MF file: returns vertices, (V, 3) float64, and faces, (T, 3) uint32.
+    """Reads a mesh file: returns vertices, (V, 3) float64, and faces, (T, 3) uint32.
+
+    STL, PLY, OBJ, OFF and VTK PolyData; by the program ist-import glTF, 3MF, COLLADA, FBX and others.
 
     Vertices with equal coordinates are merged. progress: called while the file is read; what it raises ends that. Raises
     FileError and InputError, which name the file and the place.

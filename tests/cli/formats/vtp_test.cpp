@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -8,6 +9,9 @@
 
 #include "cli/formats/samples.h"
 #include "cli/formats/vtp_writer.h"
+#include "ist/mesh/mesh.h"
+#include "support/errors.h"
+#include "support/mesh_files.h"
 #include "support/temp_dir.h"
 
 namespace ist::test {
@@ -134,6 +138,33 @@ TEST(Vtp, PointsWithoutPolygonsAreVertexCells) {
             (std::vector<std::int64_t>{1, 2, 3, 4, 5}));
   expect_arrays(file, "PointData", data.point_arrays);
   expect_arrays(file, "CellData", data.cell_arrays);
+}
+
+// The mesh reader reads what the command writes.
+TEST(Vtp, IsReadAsAMesh) {
+  const TempDir dir;
+  const auto file = dir.path() / "data.vtp";
+  PolyData quads = sample_quads();
+  quads.frame = PatientFrame::kRas;
+  cli::write_vtp(quads, file);
+  const TriangleMesh cube = read_mesh(file);
+  EXPECT_EQ(cube.frame, PatientFrame::kRas);
+  EXPECT_EQ(cube.vertices.size(), 8u);
+  const MeshReport report = check_mesh(cube);
+  EXPECT_TRUE(report.closed && report.consistent);
+  EXPECT_NEAR(report.signed_volume, 0.7, 1e-7);
+  const PolyData jaws = cli::joined(sample_bodies());
+  cli::write_vtp(jaws, file);
+  const std::vector<float> points = floats(jaws);
+  std::vector<std::array<double, 9>> expected;
+  for (std::size_t i = 0; i < jaws.polygons.size(); ++i) {
+    if (i % 3 == 0) expected.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      expected.back()[3 * (i % 3) + axis] = double{points[3 * jaws.polygons[i] + axis]} + 0.0;
+  }
+  EXPECT_EQ(corners(read_mesh(file)), expected);
+  cli::write_vtp(sample_points(), file);
+  EXPECT_EQ(error_name([&] { (void)read_mesh(file); }), "mesh-points-only");
 }
 
 TEST(Vtp, NothingIsAFileToo) {

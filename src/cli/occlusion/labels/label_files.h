@@ -21,7 +21,11 @@ namespace ist::cli {
 /// Returns the labels of the triangles of an OBJ, by its names, in the file's order.
 [[nodiscard]] ToothLabels labels_of_obj(const std::filesystem::path& file, ToothNumbers numbers);
 
-/// Returns the labels of a mesh's triangles, by the places of those that a PLY or OBJ holds, of
+/// Returns the labels of the triangles of a .vtk or .vtp, by an array of its cells or points, in
+/// the file's order.
+[[nodiscard]] ToothLabels labels_of_vtk(const LabelSource& source, ToothNumbers numbers);
+
+/// Returns the labels of a mesh's triangles, by the places of those that a labelled mesh holds, of
 /// which `labels` are. Refuses triangles that are not in it, and places with two labels.
 [[nodiscard]] ToothLabels labels_in_place(const std::filesystem::path& file,
                                           const ToothLabels& labels, const TriangleMesh& mesh,

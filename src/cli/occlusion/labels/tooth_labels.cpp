@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <system_error>
 
 #include "cli/occlusion/labels/label_files.h"
 #include "ist/base/error.h"
@@ -11,6 +12,11 @@
 
 namespace ist::cli {
 namespace {
+
+bool is_vtk(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return same_word(ending, ".vtk") || same_word(ending, ".vtp");
+}
 
 // Labels of other vertices are noise: where there are any, most triangles lie between teeth.
 ToothLabels of_triangles(const std::filesystem::path& file, const TriangleMesh& mesh,
@@ -46,9 +52,23 @@ void refuse_labels(const std::filesystem::path& file, const std::string& detail)
   throw Error(ErrorCode::kInputInvalid, fmt::format("{}: {}", file.string(), detail));
 }
 
-ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
+LabelSource label_source(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (std::filesystem::exists(file, unknown)) return {file, ""};
+  const std::string name = file.string();
+  for (std::size_t colon = name.find(':'); colon != name.npos; colon = name.find(':', colon + 1)) {
+    const std::filesystem::path mesh = name.substr(0, colon);
+    if (is_vtk(mesh)) return {mesh, name.substr(colon + 1)};
+  }
+  return {file, ""};
+}
+
+ToothLabels read_labels(const std::filesystem::path& given, const TriangleMesh& mesh,
                         ToothNumbers numbers, double factor) {
+  const LabelSource source = label_source(given);
+  const std::filesystem::path& file = source.file;
   const std::string ending = file.extension().string();
+  if (is_vtk(file)) return labels_in_place(file, labels_of_vtk(source, numbers), mesh, factor);
   if (same_word(ending, ".ply"))
     return labels_in_place(file, labels_of_ply(file, numbers), mesh, factor);
   if (same_word(ending, ".obj"))

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "cli/occlusion/labels/tooth_numbers.h"
@@ -11,6 +12,15 @@ namespace ist::cli {
 /// The tooth of each triangle of a mesh, by its number; 0: none.
 using ToothLabels = std::vector<int>;
 
+/// A file of labels, and the array in it that labels: scan.vtp:Label.
+struct LabelSource {
+  std::filesystem::path file;
+  std::string array;  ///< of a .vtk or .vtp; may be empty
+};
+
+/// Splits a file and its array. A file that exists keeps its name, whatever colons it holds.
+[[nodiscard]] LabelSource label_source(const std::filesystem::path& file);
+
 /// Reads labels by the file's ending. Where labels are of vertices, a triangle is of the tooth that
 /// two of its corners name, else of none.
 ///
@@ -18,18 +28,21 @@ using ToothLabels = std::vector<int>;
 /// - `.obj`: groups whose names are the number alone, or after `tooth`, `t`, `fdi` or `universal`
 ///   in any case, with `_`, `-` or nothing between. A number that goes on, such as `16.001`, is
 ///   refused; other names are of no tooth. Objects count where no group is a tooth.
+/// - `.vtk`, `.vtp`: the array that `file.vtp:ARRAY` names, one whole number for each cell, else
+/// for
+///   each point. Without a name, the only array of whole numbers counts, if it is called a label.
 /// - else: a whole number a line, for each triangle or vertex in the mesh's order, which of
 ///   vertices is their first use by triangles. Lines may be blank at the end.
 ///
-/// A PLY or OBJ holds the mesh too, or more: its triangles are found by their corners' positions as
-/// floats, in any order. Cost: as of read_mesh(), and O(n log n).
+/// A PLY, OBJ or VTK file holds the mesh too, or more: its triangles are found by their corners'
+/// positions as floats, in any order. Cost: as of read_mesh(), and O(n log n).
 ///
-/// Throws kFileUnreadable; the errors of read_mesh() for a PLY or OBJ that is no mesh; and
-/// kInputInvalid, naming the place, for a number outside the system or no number, for a PLY or OBJ
+/// Throws kFileUnreadable; the errors of read_mesh() for such a file that is no mesh; and
+/// kInputInvalid, naming the place, for a number outside the system or no number, for a mesh
 /// without labels or without some triangle of the mesh or with two labels for one place, for a text
 /// of another count, and for one of vertices by which most of the labelled triangles lie between
 /// teeth, since those are of another order.
-/// @param factor by which the mesh's lengths were multiplied after it was read. A PLY or OBJ is
+/// @param factor by which the mesh's lengths were multiplied after it was read. A labelled mesh is
 ///               multiplied too, and turned into the mesh's frame
 [[nodiscard]] ToothLabels read_labels(const std::filesystem::path& file, const TriangleMesh& mesh,
                                       ToothNumbers numbers, double factor = 1);

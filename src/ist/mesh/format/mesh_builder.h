@@ -58,6 +58,8 @@ class IndexedFaces {
   void add_face(std::span<const std::uint32_t> corners);
   [[nodiscard]] std::size_t vertices() const { return points_.size(); }
   [[nodiscard]] std::size_t faces() const { return faces_; }
+  /// Whether both hold the same vertices and faces, in the same order.
+  [[nodiscard]] bool operator==(const IndexedFaces&) const = default;
   /// Builds the mesh of all faces. Precondition: each corner is an index of a vertex.
   [[nodiscard]] TriangleMesh weld() const;
 

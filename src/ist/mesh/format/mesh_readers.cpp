@@ -6,6 +6,7 @@
 
 #include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/import/imported_mesh.h"
 
 namespace ist {
 namespace {
@@ -37,46 +38,80 @@ bool is_utf16(std::string_view content) {
   return pairs >= 8 && 10 * std::max(low_first, high_first) >= (marked ? 5 : 9) * pairs;
 }
 
-// Returns the name of a format that is not read, or an empty text.
-std::string_view other_format(std::string_view content, std::string_view first_word) {
-  struct Format {
-    std::string_view begin, name;
-    std::size_t at = 0;
-  };
-  static constexpr Format kFormats[] = {
-      {"# vtk DataFile", "VTK"},
-      {"BLENDER", "Blender's"},
+bool begins_with_element(std::string_view content, std::string_view element) {
+  return content.substr(0, 4096).find(element) != content.npos;
+}
+
+// A format that the content tells, and whether ist-import reads it.
+struct OtherFormat {
+  std::string_view begin, name;
+  bool imported = false;
+  std::size_t at = 0;
+};
+
+// Returns nullptr for none of them.
+const OtherFormat* other_format(std::string_view content, std::string_view first_word) {
+  static constexpr OtherFormat kFormats[] = {
+      {"glTF", "glTF", true},
+      {"PK\3\4", "3MF", true},
+      {"BLENDER", "Blender's", true},
+      {"LWO", "LightWave's", true, 8},
+      {"MM", "3DS", true},
+      {"Kaydara FBX Binary", "FBX", true},
+      {"; FBX", "FBX", true},
+      {"xof ", "DirectX", true},
+      {"AC3D", "AC3D", true},
       {"DRACO", "Draco"},
-      {"LWO", "LightWave's", 8},
-      {"MM", "3DS"},
-      {"Kaydara FBX Binary", "FBX"},
-      {"; FBX", "FBX"},
       {"ISO-10303-21", "STEP"},
       {"#VRML", "VRML"},
-      {"xof ", "DirectX"},
-      {"AC3D", "AC3D"},
       {"OCTM", "OpenCTM"},
-      {"DICM", "DICOM", 128},
+      {"DICM", "DICOM", false, 128},
       {"%PDF", "PDF"},
       {"\x89PNG", "PNG"},
       {"\x1F\x8B", "gzip, a packed file"},
   };
-  for (const Format& format : kFormats) {
+  for (const OtherFormat& format : kFormats) {
     const bool begins =
         content.size() > format.at && content.substr(format.at).starts_with(format.begin);
     const bool may_be_other =
         format.begin.size() == 2 && (is_text(content) || begins_like_binary_stl(content));
-    if (begins && !may_be_other) return format.name;
+    if (begins && !may_be_other) return &format;
   }
-  if (!first_word.starts_with('<')) return {};
-  static constexpr Format kElements[] = {{"<COLLADA", "COLLADA"}, {"<VTKFile", "VTK"},
-                                         {"<X3D", "X3D"},         {"<amf", "AMF"},
-                                         {"<svg", "SVG"},         {"<html", "HTML"}};
-  const std::string_view begin = content.substr(0, 4096);
-  for (const Format& format : kElements) {
-    if (begin.find(format.begin) != begin.npos) return format.name;
+  static constexpr OtherFormat kJson = {"{", "glTF", true}, kXml = {"<", "XML"};
+  if (first_word.starts_with(kJson.begin)) return &kJson;
+  if (!first_word.starts_with(kXml.begin)) return nullptr;
+  static constexpr OtherFormat kElements[] = {{"<COLLADA", "COLLADA", true},
+                                              {"<X3D", "X3D", true},
+                                              {"<amf", "AMF", true},
+                                              {"<svg", "SVG"},
+                                              {"<html", "HTML"}};
+  for (const OtherFormat& format : kElements) {
+    if (begins_with_element(content, format.begin)) return &format;
   }
-  return "XML";
+  return &kXml;
+}
+
+// Whether ist-import reads files of this name whose content has no mark.
+bool is_imported_name(std::string_view extension) {
+  constexpr std::string_view kNames[] = {".3ds", ".ac",  ".ase", ".b3d",  ".cob", ".dxf",
+                                         ".fbx", ".lws", ".lxo", ".ms3d", ".nff", ".ogex",
+                                         ".q3o", ".smd", ".x",   ".xgl"};
+  return std::any_of(std::begin(kNames), std::end(kNames),
+                     [&](std::string_view name) { return same_word(name, extension); });
+}
+
+// Whether the first word, comments skipped, is a keyword of an OFF, or a keyword and a count. A
+// file with the ending .off needs no keyword.
+bool begins_like_off(std::string_view content, std::string_view file, std::string_view extension) {
+  TextReader reader(content, file);
+  std::string_view word;
+  while (word.empty() && reader.next_line()) word = reader.word_before_comment();
+  const std::size_t keyword = word.rfind("OFF");
+  const bool is_count =
+      word.find_first_not_of("0123456789", keyword == word.npos ? 0 : keyword + 3) == word.npos;
+  const bool is_begin =
+      !word.empty() && is_count && (keyword != word.npos || same_word(extension, ".off"));
+  return is_begin && (is_text(content) || reader.word() == "BINARY");
 }
 
 // Whether the first line of more than one word, comments skipped, is one of an OBJ; every lone word
@@ -106,23 +141,26 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   if (content.find_first_not_of(" \t\r\n") == content.npos)
     fail_mesh(ErrorCode::kMeshEmpty, name, "", "the file is empty; export the mesh again");
   if (first_word == "ply" && content.starts_with("ply")) return read_ply(content, name);
-  if (content.starts_with("glTF") || first_word.starts_with('{')) return read_gltf(content, name);
-  if (content.starts_with("PK\3\4")) return read_3mf(content, name);
+  if (content.starts_with(kVtkBegin)) return read_vtk(content, name);
+  if (first_word.starts_with('<') && begins_with_element(content, "<VTKFile"))
+    return read_vtp(content, name);
   if (is_utf16(content))
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               "the text is UTF-16; save it as UTF-8 or ASCII, or export the mesh again");
-  if (const std::string_view format = other_format(content, first_word); !format.empty())
+  const OtherFormat* const format = other_format(content, first_word);
+  if (format != nullptr && format->imported) return read_imported(content, file);
+  if (format != nullptr)
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               fmt::format("the file's format is {}, and the supported formats are {}; export the "
                           "mesh as one of them",
-                          format, kMeshFormats));
-  if (first_word.ends_with("OFF") && (is_text(content) || reader.word() == "BINARY"))
-    return read_off(content, name);
+                          format->name, kMeshFormats));
+  if (begins_like_off(content, name, extension)) return read_off(content, name);
   if (is_text(content)) {
     if (same_word(first_word, "solid")) return read_text_stl(content, name);
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
       return read_obj(content, name);
   }
+  if (is_imported_name(extension)) return read_imported(content, file);
   // The rest is no mesh, a mesh that was cut early, or a binary STL of the wrong size. A text of
   // several lines, or one longer than an STL header, is neither of the last two.
   const bool could_be_cut = std::string_view("solid").starts_with(content) ||

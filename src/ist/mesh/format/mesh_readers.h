@@ -8,20 +8,18 @@
 
 namespace ist {
 
-/// The formats that read_content() reads, for messages and helps.
-inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, glTF or 3MF";
+struct VtkLabels;
 
-/// Reads the content of a mesh file, whose format the content tells (of an OBJ also the name). The
-/// file itself is not opened.
+/// The formats that read_content() reads, for messages and helps.
+inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, VTK PolyData, glTF or 3MF";
+
+/// Reads the content of a mesh file, whose format the content tells (of an OBJ and an OFF also the
+/// name). The file itself is not opened. glTF, 3MF and formats of assimp go to read_imported().
 ///
 /// Cost: linear in the content, for any counts that the file claims. Errors: kNotAMesh, kMeshEmpty,
 /// kMeshPointsOnly, kMeshTruncated, kMeshBadIndex, kMeshNotFinite, kMeshTooLarge.
 [[nodiscard]] TriangleMesh read_content(std::string_view content,
                                         const std::filesystem::path& file);
-
-// No reader hands a file to assimp, the tests' second reader. Version 5.2 ends the process for JSON
-// or XML nested deeply, for a 3MF's component or a COLLADA's node that holds itself, and for an
-// accessor that counts too far. After the checks against all of these, nothing is left to read.
 
 /// Reads the content of one format; `file` is named in errors only.
 [[nodiscard]] TriangleMesh read_binary_stl(std::string_view content, std::string_view file);
@@ -29,10 +27,16 @@ inline constexpr std::string_view kMeshFormats = "STL, PLY, OBJ, OFF, glTF or 3M
 [[nodiscard]] TriangleMesh read_ply(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_obj(std::string_view content, std::string_view file);
 [[nodiscard]] TriangleMesh read_off(std::string_view content, std::string_view file);
-/// Both forms of glTF 2.0: text with its buffers in base64, and GLB.
-[[nodiscard]] TriangleMesh read_gltf(std::string_view content, std::string_view file);
-/// The core of 3MF, without its extensions.
-[[nodiscard]] TriangleMesh read_3mf(std::string_view content, std::string_view file);
+/// The legacy form of VTK PolyData (.vtk), of versions up to 5.1: text and binary. Fills `labels`,
+/// if it is not null, with all arrays.
+[[nodiscard]] TriangleMesh read_vtk(std::string_view content, std::string_view file,
+                                    VtkLabels* labels = nullptr);
+/// The XML form of VTK PolyData (.vtp): text, base64 and raw appended data, packed by zlib or not.
+[[nodiscard]] TriangleMesh read_vtp(std::string_view content, std::string_view file,
+                                    VtkLabels* labels = nullptr);
+
+/// How each legacy VTK file begins.
+inline constexpr std::string_view kVtkBegin = "# vtk DataFile";
 
 /// Whether the size matches the facet count of a binary STL.
 [[nodiscard]] bool has_size_of_binary_stl(std::string_view content);

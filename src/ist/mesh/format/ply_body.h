@@ -93,14 +93,7 @@ class PlyBytes {
   }
 
   double number(const PlyType* type) {
-    std::array<char, sizeof(double)> raw;
-    const std::string_view bytes = take(type->size);
-    if (big_endian_) {
-      std::reverse_copy(bytes.begin(), bytes.end(), raw.begin());
-    } else {
-      std::copy(bytes.begin(), bytes.end(), raw.begin());
-    }
-    return type->number(raw.data());
+    return number_in(take(type->size).data(), *type, big_endian_);
   }
 
   std::string_view content_;

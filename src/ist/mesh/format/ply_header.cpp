@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 #include "ist/base/printable.h"
 #include "ist/mesh/format/frame_tags.h"
@@ -12,29 +10,19 @@
 namespace ist {
 namespace {
 
-template <class T>
-constexpr PlyType type_named(std::string_view name) {
-  return {name, sizeof(T), std::is_integral_v<T>,
-          std::is_same_v<T, float> ? Precision::kFloat : Precision::kDouble, [](const char* raw) {
-            T value;
-            std::memcpy(&value, raw, sizeof(T));
-            return static_cast<double>(value);
-          }};
-}
-
-constexpr PlyType kTypes[] = {
-    type_named<std::int8_t>("char"),     type_named<std::int8_t>("int8"),
-    type_named<std::uint8_t>("uchar"),   type_named<std::uint8_t>("uint8"),
-    type_named<std::int16_t>("short"),   type_named<std::int16_t>("int16"),
-    type_named<std::uint16_t>("ushort"), type_named<std::uint16_t>("uint16"),
-    type_named<std::int32_t>("int"),     type_named<std::int32_t>("int32"),
-    type_named<std::uint32_t>("uint"),   type_named<std::uint32_t>("uint32"),
-    type_named<float>("float"),          type_named<float>("float32"),
-    type_named<double>("double"),        type_named<double>("float64")};
+constexpr PlyType kPlyTypes[] = {
+    number_type<std::int8_t>("char"),     number_type<std::int8_t>("int8"),
+    number_type<std::uint8_t>("uchar"),   number_type<std::uint8_t>("uint8"),
+    number_type<std::int16_t>("short"),   number_type<std::int16_t>("int16"),
+    number_type<std::uint16_t>("ushort"), number_type<std::uint16_t>("uint16"),
+    number_type<std::int32_t>("int"),     number_type<std::int32_t>("int32"),
+    number_type<std::uint32_t>("uint"),   number_type<std::uint32_t>("uint32"),
+    number_type<float>("float"),          number_type<float>("float32"),
+    number_type<double>("double"),        number_type<double>("float64")};
 
 const PlyType* read_type(TextReader& reader) {
   const std::string_view name = reader.word();
-  for (const PlyType& type : kTypes)
+  for (const PlyType& type : kPlyTypes)
     if (type.name == name) return &type;
   reader.fail_malformed(
       fmt::format("'{}' is not a PLY property type; export the mesh again", printable(name)));

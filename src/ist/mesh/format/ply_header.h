@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ist/mesh/format/number_type.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/mesh.h"
 
@@ -12,14 +13,8 @@ namespace ist {
 
 enum class PlyEncoding : std::uint8_t { kText, kLittleEndian, kBigEndian };
 
-/// The type of a property's numbers.
-struct PlyType {
-  std::string_view name;
-  std::size_t size;  ///< bytes in a binary file
-  bool is_integer;
-  Precision precision;                ///< of a number written as text
-  double (*number)(const char* raw);  ///< reads `size` bytes in the machine's byte order: exact
-};
+/// The type of a property's numbers. All are exact as a double.
+using PlyType = NumberType;
 
 /// The role of a property in the surface; the first three are a vertex's axes.
 enum class PlyRole : std::uint8_t { kX, kY, kZ, kCorners, kOther };

@@ -142,14 +142,19 @@ double TextReader::coordinate(std::string_view word, Precision precision) const 
   return *number;
 }
 
+std::optional<std::int64_t> TextReader::whole(std::string_view word) {
+  std::int64_t value = 0;
+  const auto [stop, error] = from_chars(word, value);
+  if (error != std::errc() || stop != word.data() + word.size()) return {};
+  return value;
+}
+
 std::int64_t TextReader::integer(std::string_view word) const {
   if (word.empty()) fail_malformed("an integer is missing; export the mesh again");
-  std::int64_t value = 0;
-  const char* const end = word.data() + word.size();
-  const auto [stop, error] = from_chars(word, value);
-  if (error != std::errc() || stop != end)
+  const std::optional<std::int64_t> value = whole(word);
+  if (!value)
     fail_malformed(fmt::format("'{}' is not an integer; export the mesh again", printable(word)));
-  return value;
+  return *value;
 }
 
 void TextReader::fail(ErrorCode code, std::string_view cause) const {

@@ -52,6 +52,8 @@ class TextReader {
   }
   void skip_line() { cursor_ = line_close_; }
 
+  /// Returns the integer that a word spells; nothing if it spells none.
+  [[nodiscard]] static std::optional<std::int64_t> whole(std::string_view word);
   /// Converts a word to a coordinate, rounded once. Errors: kMeshNotFinite, kNotAMesh,
   /// kMeshTruncated.
   [[nodiscard]] double coordinate(std::string_view word, Precision precision) const;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace ist::import {
+
+/// Refuses a glTF that assimp 5.2 would read otherwise than it is meant, and says why: another
+/// version, an extension that changes the geometry, skins, morph targets, sparse accessors, numbers
+/// of a type or a place that it takes for another one.
+void check_gltf(std::string_view content);
+
+}  // namespace ist::import

@@ -1,0 +1,13 @@
+#include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/import/imported_mesh.h"
+
+namespace ist {
+
+// Where no process can be started.
+TriangleMesh read_imported(std::string_view, const std::filesystem::path& file) {
+  fail_mesh(ErrorCode::kNotAMesh, file.string(), "",
+            "its format is read by the program ist-import, which does not run on this platform; "
+            "convert the mesh to STL, PLY, OBJ or OFF");
+}
+
+}  // namespace ist

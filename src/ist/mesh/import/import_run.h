@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace ist {
+
+/// What a run of ist-import wrote, and how it ended.
+struct ImportRun {
+  enum class End : std::uint8_t {
+    kUnknown,  ///< another part of the host has waited for it
+    kExit,     ///< with the exit code `code`
+    kSignal,   ///< by the signal `code`
+    kTooLate,  ///< killed after 120 seconds
+    kTooMuch,  ///< killed after 1 GiB of output
+  };
+  std::string answer;
+  End end = End::kUnknown;
+  int code = 0;
+};
+
+/// Runs the program with the content as its stdin and the file's path as its argument, and takes
+/// its stdout. It gets no environment but LC_ALL=C, and a process group of its own.
+/// Errors: kFileUnreadable if it cannot be started; kCancelled.
+[[nodiscard]] ImportRun run_importer(const std::filesystem::path& importer,
+                                     std::string_view content, const std::filesystem::path& file);
+
+}  // namespace ist

@@ -1,0 +1,234 @@
+// The formats that assimp reads, by ist-import: units, axes, placements, side files.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "import/scene_files.h"
+#include "ist/base/error.h"
+#include "ist/mesh/mesh.h"
+#include "support/errors.h"
+#include "support/mesh_files.h"
+#include "support/shapes.h"
+#include "support/temp_dir.h"
+#include "support/zip_file.h"
+
+namespace ist {
+namespace {
+
+TriangleMesh read_as(const std::string& name, std::string_view bytes) {
+  const test::TempDir folder;
+  return read_mesh(folder.write(name, bytes));
+}
+
+std::string refusal_as(const std::string& name, std::string_view bytes) {
+  const auto error = test::error_of([&] { static_cast<void>(read_as(name, bytes)); });
+  if (!error) return "fine";
+  const std::string text = error->what();
+  return std::string(to_string(error->code())) + text.substr(text.find(": "));
+}
+
+// A closed mesh, wound outward, of that unit, box and volume.
+void expect_box(const TriangleMesh& mesh, LengthUnit unit, const Eigen::Vector3d& low,
+                const Eigen::Vector3d& high) {
+  const MeshReport report = check_mesh(mesh);
+  const double tolerance = 1e-6 * (high - low).maxCoeff();
+  EXPECT_EQ(mesh.unit, unit);
+  EXPECT_EQ(report.triangles, 12u);
+  EXPECT_TRUE(report.closed && report.consistent);
+  EXPECT_LE((report.box_min - low).cwiseAbs().maxCoeff(), tolerance) << report.box_min.transpose();
+  EXPECT_LE((report.box_max - high).cwiseAbs().maxCoeff(), tolerance) << report.box_max.transpose();
+  EXPECT_NEAR(report.signed_volume / (high - low).prod(), 1, 1e-5);
+}
+
+// assimp converts to metres, with y up.
+TEST(ImportFormats, Collada) {
+  const std::string mm = "<unit meter=\"0.001\" name=\"millimeter\"/>";
+  expect_box(read_as("a.dae", test::box_dae(mm, "Y_UP")), LengthUnit::kMetre, {0, 0, 0},
+             {0.001, 0.002, 0.003});
+  expect_box(read_as("a.dae", test::box_dae("", "Y_UP")), LengthUnit::kMetre, {0, 0, 0}, {1, 2, 3});
+  expect_box(read_as("a", test::box_dae(mm, "Z_UP")), LengthUnit::kMetre, {0, 0, -0.002},
+             {0.001, 0.003, 0});
+  expect_box(read_as("a.dae", test::box_dae("", "Y_UP",
+                                            "<translate>5 0 0</translate><scale>-1 1 1"
+                                            "</scale>")),
+             LengthUnit::kMetre, {4, 0, 0}, {5, 2, 3});
+  const std::string nested =
+      "<translate>1 0 0</translate><node id=\"m\"><translate>0 0 10</translate>"
+      "<instance_geometry url=\"#g\"/></node>";
+  EXPECT_EQ(read_as("a.dae", test::box_dae("", "Y_UP", nested)).triangles.size(), 24u);
+  EXPECT_EQ(check_mesh(read_as("a.dae", test::box_dae("", "Y_UP", nested))).box_max,
+            Eigen::Vector3d(2, 2, 13));
+  EXPECT_TRUE(refusal_as("a.dae", test::box_dae("", "Y_UP", "<instance_geometry url=\"#h\"/>"))
+                  .starts_with("not-a-mesh: a part of it cannot be read (Collada: Unable to find "
+                               "geometry for ID \"h\". Skipping.); "));
+  const std::string in_itself = test::box_dae("", "Y_UP", "<instance_node url=\"#n\"/>");
+  EXPECT_TRUE(test::says_crash(refusal_as("a.dae", in_itself)));
+}
+
+TEST(ImportFormats, X3d) {
+  expect_box(read_as("a.x3d", test::box_x3d()), LengthUnit::kMetre, {0, 0, 0}, {1, 2, 3});
+  expect_box(read_as("a.x3d", test::box_x3d("<Transform scale='-1 1 1' translation='5 0 0'>",
+                                            "</Transform>")),
+             LengthUnit::kMetre, {4, 0, 0}, {5, 2, 3});
+  EXPECT_EQ(refusal_as("a.x3d", test::replaced(test::box_x3d(), "<IndexedFaceSet ",
+                                               "<IndexedFaceSet ccw=\"false\" ")),
+            "not-a-mesh: its faces run clockwise (ccw=false), which is not supported; export them "
+            "counterclockwise");
+  EXPECT_EQ(
+      refusal_as("a.x3d", test::replaced(test::box_x3d(), "0 2 3 1 -1", "0 2 33 1 -1")),
+      "mesh-bad-index: node '(main file).x3d', mesh 0: a face names vertex 33, but there are 8, "
+      "counted from 0; export the mesh again");
+  EXPECT_EQ(
+      refusal_as("a.x3d",
+                 "<X3D><Scene><Shape><IndexedLineSet coordIndex='0 1 -1'><Coordinate point='0 "
+                 "0 0 1 0 0'/></IndexedLineSet></Shape></Scene></X3D>"),
+      "not-a-mesh: it holds lines or points, which are taken for triangles; export the surface "
+      "alone");
+}
+
+TEST(ImportFormats, Amf) {
+  expect_box(read_as("a.amf", test::box_amf(" unit=\"inch\"")), LengthUnit::kInch, {0, 0, 0},
+             {1, 2, 3});
+  expect_box(read_as("a.amf", test::box_amf(" unit='micron'")), LengthUnit::kMicrometre, {0, 0, 0},
+             {1, 2, 3});
+  expect_box(read_as("a.amf", test::box_amf(" unit=\"feet\"")), LengthUnit::kInch, {0, 0, 0},
+             {12, 24, 36});
+  expect_box(read_as("a", test::box_amf("")), LengthUnit::kMillimetre, {0, 0, 0}, {1, 2, 3});
+  EXPECT_TRUE(refusal_as("a.amf", test::replaced(test::box_amf(""), "<v3>7", "<v3>77"))
+                  .starts_with("not-a-mesh: "));
+  EXPECT_TRUE(refusal_as("a.amf", test::box_amf("",
+                                                "<constellation id=\"2\"><instance "
+                                                "objectid=\"1\"/></constellation>"))
+                  .starts_with("not-a-mesh: a constellation places its objects"));
+  const std::string two = test::replaced(test::box_amf(""), "</volume>", "</volume><volume/>");
+  EXPECT_EQ(
+      refusal_as("a.amf", two),
+      "not-a-mesh: an object has several volumes, which is not supported; export them as one");
+  EXPECT_EQ(refusal_as("a.amf", test::replaced(test::box_amf(""), "<x>1", "<x>a")),
+            "not-a-mesh: 'a' is no number; export the mesh again");
+  const std::string packed = test::as_zip({{"a.amf", test::box_amf(" unit=\"inch\"")}});
+  expect_box(read_as("a.amf", packed), LengthUnit::kInch, {0, 0, 0}, {1, 2, 3});
+  EXPECT_EQ(refusal_as("b.amf", packed),
+            "not-a-mesh: the archive does not hold an AMF of its name; unpack it, and give that "
+            "file");
+}
+
+TEST(ImportFormats, ColladaThatAssimpWouldMisreadIsRefused) {
+  const std::string box = test::box_dae("", "Y_UP");
+  EXPECT_EQ(refusal_as("a.dae", test::replaced(box, "count=\"24\">0", "count=\"24\">0,5")),
+            "not-a-mesh: its numbers have decimal commas; export the mesh again with decimal "
+            "points");
+  EXPECT_EQ(refusal_as("a.dae", test::replaced(box, "<p>0 2", "<p>-1 2")),
+            "mesh-bad-index: an index is negative; export the mesh again");
+  const std::string placed = "not-a-mesh: a node is placed by <lookat> or <skew>";
+  const std::string lookat = "<lookat>0 0 1 0 0 0 0 1 0</lookat>";
+  EXPECT_TRUE(refusal_as("a.dae", test::box_dae("", "Y_UP", lookat)).starts_with(placed));
+  const std::string parent = lookat + "<node><instance_geometry url=\"#g\"/></node>";
+  EXPECT_TRUE(refusal_as("a.dae", test::box_dae("", "Y_UP", parent)).starts_with(placed));
+  expect_box(read_as("a.dae", test::box_dae("", "Y_UP", "<node>" + lookat + "</node>")),
+             LengthUnit::kMetre, {0, 0, 0}, {1, 2, 3});
+}
+
+TEST(ImportFormats, BlenderIsRefusedWithTheRemedy) {
+  EXPECT_EQ(refusal_as("a.blend", "BLENDER-v293" + std::string(100, '\1')),
+            "not-a-mesh: files of Blender are read in part; export the mesh as PLY, STL or glTF in "
+            "Blender");
+}
+
+// The factor of an FBX is the centimetres of its unit.
+TEST(ImportFormats, Fbx) {
+  const auto read = [](const std::string& factor) {
+    return read_as("a.fbx", test::box_fbx(factor));
+  };
+  expect_box(read("0.1"), LengthUnit::kMillimetre, {5, 0, 0}, {6, 2, 3});
+  expect_box(read("1"), LengthUnit::kMillimetre, {50, 0, 0}, {60, 20, 30});
+  expect_box(read("2.54"), LengthUnit::kInch, {5, 0, 0}, {6, 2, 3});
+  expect_box(read("100"), LengthUnit::kMetre, {5, 0, 0}, {6, 2, 3});
+  expect_box(read("3"), LengthUnit::kUnknown, {5, 0, 0}, {6, 2, 3});
+  EXPECT_TRUE(refusal_as("a.fbx", test::replaced(test::box_fbx("1"), "0,2,3,-2", "0,2,30,-2"))
+                  .starts_with("mesh-bad-index: "));
+}
+
+TEST(ImportFormats, OthersHaveNoUnit) {
+  expect_box(read_as("a.ac", test::box_ac()), LengthUnit::kUnknown, {1, 2, 3}, {2, 4, 6});
+  expect_box(read_as("a.3ds", test::box_3ds()), LengthUnit::kUnknown, {0, 0, 0}, {1, 2, 3});
+  // DirectX has left hands: its z points away.
+  expect_box(read_as("a.x", test::box_x()), LengthUnit::kUnknown, {0, 0, -3}, {1, 2, 0});
+}
+
+// Without a mark in the content the name tells the format.
+TEST(ImportFormats, TheNameMayTellTheFormat) {
+  const std::string ase =
+      "*3DSMAX_ASCIIEXPORT 200\n*GEOMOBJECT {\n*NODE_NAME \"b\"\n*MESH {\n*TIMEVALUE "
+      "0\n*MESH_NUMVERTEX 3\n*MESH_NUMFACES 1\n*MESH_VERTEX_LIST {\n*MESH_VERTEX 0 0 0 "
+      "0\n*MESH_VERTEX 1 1 0 0\n*MESH_VERTEX 2 0 2 0\n}\n*MESH_FACE_LIST {\n*MESH_FACE 0: A: 0 B: "
+      "1 "
+      "C: 2 AB: 1 BC: 1 CA: 1 *MESH_SMOOTHING 1 *MESH_MTLID 0\n}\n}\n}\n";
+  EXPECT_EQ(test::corners(read_as("a.ASE", ase)),
+            test::corners(test::triangle({0, 0, 0}, {1, 0, 0}, {0, 2, 0})));
+  EXPECT_TRUE(
+      refusal_as("a", ase).starts_with("not-a-mesh: the content is in no supported format"));
+  EXPECT_TRUE(refusal_as("a.dxf", ase).starts_with("not-a-mesh: "));
+}
+
+TEST(ImportFormats, WhatAssimpDoesNotReadIsRefusedByName) {
+  for (const auto& [name, begin] :
+       {std::pair{"STEP", "ISO-10303-21;\n"}, {"VRML", "#VRML V2.0 utf8\n"}, {"PDF", "%PDF-1.4\n"}})
+    EXPECT_TRUE(refusal_as("a", begin)
+                    .starts_with("not-a-mesh: the file's format is " + std::string(name) + ", "))
+        << name;
+}
+
+class SideFile : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::string refusal(const std::string& uri) const {
+    const auto file = folder_.write("scene/jaw.gltf", test::gltf_json(kTriangle, uri));
+    const auto error = test::error_of([&] { static_cast<void>(read_mesh(file)); });
+    return error ? error->what() : "fine";
+  }
+  [[nodiscard]] std::string missing(const std::string& uri) const {
+    return (folder_.path() / "scene/jaw.gltf").string() + ": it names the file '" + uri +
+           "', which is not in its folder or below: copy it there, or export one file that holds "
+           "all";
+  }
+
+  const TriangleMesh kTriangle = test::triangle({1, 0, 0}, {0, 2, 0}, {0, 0, 3});
+  const test::TempDir folder_;
+  const bool made_ = std::filesystem::create_directories(folder_.path() / "scene/below");
+  const std::filesystem::path inside_ =
+      folder_.write("scene/jaw.bin", test::gltf_buffer(kTriangle));
+  const std::filesystem::path outside_ = folder_.write("secret.bin", test::gltf_buffer(kTriangle));
+};
+
+TEST_F(SideFile, MayLieInTheFolderOrBelow) {
+  EXPECT_EQ(refusal("jaw.bin"), "fine");
+  folder_.write("scene/below/a jaw.bin", test::gltf_buffer(kTriangle));
+  EXPECT_EQ(refusal("below/a%20jaw.bin"), "fine");
+  EXPECT_EQ(refusal("below/a jaw.bin"), "fine");
+  folder_.write("scene/100%25.bin", test::gltf_buffer(kTriangle));
+  EXPECT_EQ(refusal("100%25.bin"), "fine");
+  std::filesystem::create_symlink("jaw.bin", folder_.path() / "scene/link.bin");
+  EXPECT_EQ(refusal("link.bin"), "fine");
+  EXPECT_EQ(refusal("below/../jaw.bin"), "fine");
+}
+
+TEST_F(SideFile, IsNeverOutside) {
+  EXPECT_EQ(refusal("../secret.bin"), missing("../secret.bin"));
+  EXPECT_NE(refusal(outside_.string()), "fine");
+  EXPECT_NE(refusal("..%2Fsecret.bin"), "fine");
+  EXPECT_NE(refusal("file://" + outside_.string()), "fine");
+  std::filesystem::create_symlink("../secret.bin", folder_.path() / "scene/out.bin");
+  EXPECT_EQ(refusal("out.bin"), missing("out.bin"));
+  std::filesystem::create_directory_symlink("..", folder_.path() / "scene/up");
+  EXPECT_EQ(refusal("up/secret.bin"), missing("up/secret.bin"));
+  EXPECT_EQ(refusal("below"), missing("below"));
+  EXPECT_EQ(refusal("no.bin"), missing("no.bin"));
+  EXPECT_NE(refusal("/dev/zero"), "fine");
+}
+
+}  // namespace
+}  // namespace ist
