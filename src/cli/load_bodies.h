@@ -19,7 +19,7 @@ struct CheckedMesh {
   std::vector<std::string> warnings;
   bool has_border = false;  ///< no flaw, because scans have one
 };
-/// Reads and checks a mesh. Throws kNotAMesh for a tree, and as read_mesh does.
+/// Reads and checks a mesh. Throws kNotAMesh for a tree, and the errors of read_mesh().
 [[nodiscard]] CheckedMesh load_mesh(const std::filesystem::path& file);
 
 /// Prints "warning: …" lines to stderr.
@@ -40,7 +40,7 @@ struct BodyFiles {
   /// Whether meshes get voxels, or only one as large as themselves.
   enum class Voxels : std::uint8_t {
     kMade,
-    kNeeded,  ///< made if a tree holds no triangles, so that voxels alone can answer
+    kNeeded,  ///< made if the other body is a tree without triangles
     kNone,
   };
 

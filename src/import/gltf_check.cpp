@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Finds the byte at which a text stops being JSON.
+// Notes the place of a JSON text's first error.
 struct ErrorPlace : nlohmann::detail::json_sax_acceptor<Json> {
   std::size_t at = 0;
   bool parse_error(std::size_t position, const std::string&, const Json::exception&) {

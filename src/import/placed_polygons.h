@@ -34,7 +34,7 @@ struct Refusal {
 /// every platform.
 [[nodiscard]] Eigen::Affine3d joined(const Eigen::Affine3d& second, const Eigen::Affine3d& first);
 
-/// The meshes of a scene as one list of polygons, each mesh where a transform places it. A few
+/// The placed meshes of a scene as one list of polygons. A few
 /// bytes of a file can place a mesh many times, so the list has a limit (kMostPlaced).
 class PlacedPolygons {
  public:

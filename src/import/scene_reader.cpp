@@ -14,6 +14,7 @@
 #include "import/gltf_check.h"
 #include "import/scene_format.h"
 #include "import/side_files.h"
+#include "import/xml_check.h"
 #include "ist/base/printable.h"
 
 namespace ist::import {
@@ -37,7 +38,6 @@ class LossLog : public Assimp::LogStream {
                                             "not currently implemented",
                                             "not currently supported",
                                             "Invalid vertex reference",
-                                            "handler for modifier",
                                             "Unexpected EOF",
                                             "not all vertices",
                                             "Chunk overflow",
@@ -118,7 +118,7 @@ void place_nodes(const aiScene& scene, const Eigen::Affine3d& root, PlacedPolygo
 PlacedPolygons read_scene(const Input& input) {
   const std::string format = scene_format(input);
   if (format == "glb" || format == "gltf") check_gltf(input.content);
-  check_scene(format, input);
+  check_xml(format, input.content);
   auto* files = new SideFiles(input, format);  // the importer deletes it
   Assimp::Importer importer;
   importer.SetIOHandler(files);

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "import/percent.h"
+#include "ist/mesh/format/percent.h"
 
 namespace ist::import {
 namespace {

@@ -16,9 +16,9 @@ class SideFiles : public Assimp::IOSystem {
   /// `extension` tells assimp the format, whatever the file's own name is.
   SideFiles(const Input& input, std::string_view extension);
 
-  /// The name by which assimp opens the main file.
+  /// Returns assimp's name for the main file.
   [[nodiscard]] const std::string& main_file() const { return main_; }
-  /// The last side file that could not be opened; empty if there is none.
+  /// Returns the last side file that could not be opened; an empty text for none.
   [[nodiscard]] const std::string& missing() const { return missing_; }
 
   bool Exists(const char* file) const override;

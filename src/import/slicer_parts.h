@@ -11,8 +11,8 @@
 
 namespace ist::import {
 
-/// What a slicer's project adds to the body for its own use: modifiers, blockers and enforcers of
-/// supports. PrusaSlicer and Slic3r keep them as triangles of the same mesh
+/// The modifiers and the blockers and enforcers of supports in a slicer's project. They are no part
+/// of the body. PrusaSlicer and Slic3r keep them as triangles of the same mesh
 /// (Metadata/Slic3r_PE_model.config), Bambu Studio and OrcaSlicer as components of the object
 /// (Metadata/model_settings.config). Throws a Refusal for a negative volume: it cuts the body.
 class SlicerParts {

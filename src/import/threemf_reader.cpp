@@ -169,8 +169,8 @@ class Model {
   mutable std::map<std::string, std::string> names_;
 };
 
-// Returns the name of the root model, which the package's relationships tell; where they do not,
-// the usual one.
+// Returns the name of the root model. The package's relationships name it; the usual name is the
+// default.
 std::string root_part(ZipParts& archive) {
   constexpr std::string_view kType = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
   pugi::xml_document document;
@@ -199,7 +199,7 @@ class ThreeMfReader {
   }
 
  private:
-  // An object of a model, where a transform places it.
+  // An object of a model and its place.
   struct Use {
     Model* model;
     std::uint32_t object;
@@ -210,7 +210,7 @@ class ThreeMfReader {
   Model* model(const std::string& name) {
     std::unique_ptr<Model>& model = models_[name];
     if (model == nullptr) model = std::make_unique<Model>(archive_, name);
-    if (root_ != nullptr && unit_of(*model).unit != placed_.unit)
+    if (root_ != nullptr && unit_of(*model) != unit_of(*root_))
       model->fail("its unit is another one than the root model's; export the mesh again");
     return model.get();
   }
@@ -231,7 +231,7 @@ class ThreeMfReader {
     return use;
   }
 
-  // Twelve numbers: where the axes x, y and z and the origin come to lie.
+  // Twelve numbers: the images of the axes x, y and z and of the origin.
   static Eigen::Affine3d transform_of(const Model& model, const Node& node) {
     Eigen::Affine3d result = Eigen::Affine3d::Identity();
     const pugi::xml_attribute text = node.attribute("transform");

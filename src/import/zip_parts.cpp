@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <zip.h>
 
-#include "import/percent.h"
 #include "import/placed_polygons.h"
 #include "ist/base/printable.h"
+#include "ist/mesh/format/percent.h"
 
 namespace ist::import {
 namespace {

@@ -18,8 +18,8 @@ class ZipParts {
   ZipParts(const ZipParts&) = delete;
   ZipParts& operator=(const ZipParts&) = delete;
 
-  /// Returns a part unpacked, or nothing if there is none of that name. A slash at its beginning
-  /// does not count, nor does the case of letters; %XX may stand for a byte.
+  /// Unpacks the part of a name, or returns nothing if it is missing. A first slash and the case of
+  /// letters do not matter. %XX may stand for a byte.
   [[nodiscard]] std::optional<std::string> part(std::string_view name);
 
  private:

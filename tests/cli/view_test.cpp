@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,7 +38,9 @@ class View : public CliTest {
     return json::parse(html.substr(begin, end - begin));
   }
   static SphereTree tree_of(const json& body) {
-    const std::string bytes = *decode_base64(body["tree"].get<std::string>());
+    const std::string text = body["tree"];
+    const auto padding = static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
+    const std::string bytes = *decode_base64(text, text.size() / 4 * 3 - padding);
     return tree_from_bytes(std::as_bytes(std::span(bytes)), "page");
   }
   void refuses(const std::vector<std::string>& arguments, int code, const std::string& part) const {

@@ -133,12 +133,6 @@ TEST(ImportFormats, ColladaThatAssimpWouldMisreadIsRefused) {
              LengthUnit::kMetre, {0, 0, 0}, {1, 2, 3});
 }
 
-TEST(ImportFormats, BlenderIsRefusedWithTheRemedy) {
-  EXPECT_EQ(refusal_as("a.blend", "BLENDER-v293" + std::string(100, '\1')),
-            "not-a-mesh: files of Blender are read in part; export the mesh as PLY, STL or glTF in "
-            "Blender");
-}
-
 // The factor of an FBX is the centimetres of its unit.
 TEST(ImportFormats, Fbx) {
   const auto read = [](const std::string& factor) {

@@ -118,6 +118,18 @@ TEST(ThreeMf, AMirroredObjectKeepsItsOuterSide) {
   }
 }
 
+TEST(ThreeMf, NumbersMayHaveBlanksRoundThem) {
+  const std::string model = model_with("z=\"3.1\"", "z=\" 3.1\n\"");
+  EXPECT_EQ(corners(read_3mf_bytes(as_3mf(model))), corners(kCorner));
+  EXPECT_TRUE(refusal_of_3mf(as_3mf(model_with("z=\"3.1\"", "z=\"3.1 2\"")))
+                  .ends_with("z: '3.1 2' is no number; export the mesh again"));
+}
+
+TEST(ThreeMf, ObjectsThatAreNotPlacedMayHaveBeams) {
+  const std::string beams = "<object id=\"9\"><mesh><b:beamlattice/></mesh></object>\n</resources>";
+  EXPECT_EQ(corners(read_3mf_bytes(as_3mf(model_with("</resources>", beams)))), corners(kCorner));
+}
+
 TEST(ThreeMf, RefusesWhatItCannotRead) {
   const std::string at = "3D/3dmodel.model";
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -215,6 +227,10 @@ TEST(ThreeMf, ReadsObjectsOfOtherParts) {
   EXPECT_TRUE(
       refusal_of_3mf(package(root, replaced(kModelText, "unit=\"millimeter\"", "unit=\"inch\"")))
           .starts_with("not-a-mesh: 3D/Objects/a.model: its unit is another one"));
+  // Both become millimetres, by other factors.
+  EXPECT_TRUE(refusal_of_3mf(
+                  package(root, replaced(kModelText, "unit=\"millimeter\"", "unit=\"centimeter\"")))
+                  .starts_with("not-a-mesh: 3D/Objects/a.model: its unit is another one"));
 }
 
 // PrusaSlicer keeps modifiers and supports as triangles of the same mesh.

@@ -279,6 +279,7 @@ std::string cause(std::string_view bytes, const char* name) {
 TEST(ReadMesh, NamesFormatsThatItDoesNotRead) {
   const std::string zeros(2000, '\0'), blank(2000, '\1');
   for (const auto& [format, bytes] : std::vector<std::pair<const char*, std::string>>{
+           {"Blender's", "BLENDER-v293" + blank},
            {"Draco", "DRACO\2\2" + blank},
            {"XML", "<?xml version=\"1.0\"?>\n<a></a>\n"},
            {"DICOM", std::string(128, '\0') + "DICM" + blank},

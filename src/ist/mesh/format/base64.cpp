@@ -38,17 +38,7 @@ bool append_base64(std::string_view text, std::string& bytes) {
 
 }  // namespace
 
-std::optional<std::string> decode_base64(std::string_view text) {
-  if (text.size() % 4 == 0) {
-    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
-  }
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
-  if (!append_base64(text, bytes)) return {};
-  return bytes;
-}
-
-std::optional<std::string> decode_base64_texts(std::string_view text, std::size_t bytes) {
+std::optional<std::string> decode_base64(std::string_view text, std::size_t bytes) {
   std::string decoded;
   while (decoded.size() < bytes) {
     // Whole groups of four, up to the padding.

@@ -7,13 +7,9 @@
 
 namespace ist {
 
-/// Decodes base64 of RFC 4648, padded or not; none for any other character or a length that no
-/// bytes have.
-[[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);
-
-/// Decodes the first `bytes` bytes of texts in base64 that stand one after the other, each padded.
+/// Decodes the first `bytes` bytes of base64 (RFC 4648), padded. Several texts may stand one after
+/// the other, each padded.
 /// Returns nothing for another character, or if the text ends early.
-[[nodiscard]] std::optional<std::string> decode_base64_texts(std::string_view text,
-                                                             std::size_t bytes);
+[[nodiscard]] std::optional<std::string> decode_base64(std::string_view text, std::size_t bytes);
 
 }  // namespace ist

@@ -54,7 +54,7 @@ const OtherFormat* other_format(std::string_view content, std::string_view first
   static constexpr OtherFormat kFormats[] = {
       {"glTF", "glTF", true},
       {"PK\3\4", "3MF", true},
-      {"BLENDER", "Blender's", true},
+      {"BLENDER", "Blender's"},
       {"LWO", "LightWave's", true, 8},
       {"MM", "3DS", true},
       {"Kaydara FBX Binary", "FBX", true},
@@ -91,7 +91,7 @@ const OtherFormat* other_format(std::string_view content, std::string_view first
   return &kXml;
 }
 
-// Whether ist-import reads files of this name whose content has no mark.
+// Returns whether ist-import reads files with this ending. Their content has no mark.
 bool is_imported_name(std::string_view extension) {
   constexpr std::string_view kNames[] = {".3ds", ".ac",  ".ase", ".b3d",  ".cob", ".dxf",
                                          ".fbx", ".lws", ".lxo", ".ms3d", ".nff", ".ogex",
@@ -100,8 +100,8 @@ bool is_imported_name(std::string_view extension) {
                      [&](std::string_view name) { return same_word(name, extension); });
 }
 
-// Whether the first word, comments skipped, is a keyword of an OFF, or a keyword and a count. A
-// file with the ending .off needs no keyword.
+// Returns whether the first word behind comments is a keyword of an OFF, with or without a count.
+// The ending .off replaces a keyword.
 bool begins_like_off(std::string_view content, std::string_view file, std::string_view extension) {
   TextReader reader(content, file);
   std::string_view word;

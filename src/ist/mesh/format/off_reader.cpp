@@ -31,8 +31,8 @@ constexpr std::array<OffKind, 8> kOffKinds = {{{"OFF", 0},
                                                {"STNOFF", 5},
                                                {"STCNOFF", 9}}};
 
-// By lines: a line holds one vertex or face, and other words at the line's end are skipped. Free:
-// line ends are blanks, and no word is skipped.
+// By lines: a line holds one vertex or face, and more words on the line are skipped.
+// Free: line ends are blanks, and no word is skipped.
 struct OffLayout {
   bool vertices_by_lines, faces_by_lines;
 };

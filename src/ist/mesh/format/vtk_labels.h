@@ -25,7 +25,7 @@ struct VtkLabels {
     std::size_t corners;
     Triangle points;  ///< the first three
   };
-  std::vector<Array> arrays;  ///< all that have one component
+  std::vector<Array> arrays;  ///< the arrays of one component
   std::vector<Face> faces;
 };
 

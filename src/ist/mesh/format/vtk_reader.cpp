@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <utility>
 
 #include "ist/base/printable.h"
 #include "ist/mesh/format/mesh_readers.h"
+#include "ist/mesh/format/percent.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/format/vtk_surface.h"
 
@@ -31,21 +31,6 @@ constexpr NumberType kVtkTypes[] = {number_type<std::int8_t>("char"),
                                     number_type<double>("double")};
 constexpr NumberType kShortLong = number_type<std::int32_t>("long"),
                      kShortUnsignedLong = number_type<std::uint32_t>("unsigned_long");
-
-// Decodes a name: %20 is a blank.
-std::string decoded(std::string_view text) {
-  std::string name;
-  while (!text.empty()) {
-    unsigned value = 0;
-    const auto digits = text.substr(std::min<std::size_t>(1, text.size()), 2);
-    const char* const end = digits.data() + digits.size();
-    const bool is_code = text[0] == '%' && digits.size() == 2 &&
-                         std::from_chars(digits.data(), end, value, 16).ptr == end;
-    name += is_code ? static_cast<char>(value) : text[0];
-    text.remove_prefix(is_code ? 3 : 1);
-  }
-  return name;
-}
 
 class VtkReader {
  public:
@@ -199,7 +184,8 @@ class VtkReader {
       static_cast<void>(line());
       for (std::size_t i = 0, size = product(tuples, components); i < size; ++i) {
         if (rest_.empty()) fail_end();
-        const std::string text = is_binary_ ? std::string(binary_string()) : decoded(line());
+        const std::string text =
+            is_binary_ ? std::string(binary_string()) : percent_decoded(line());
         if (name == "SPACE") tags_.read("SPACE=" + text);
       }
     } else if (same_word(type, "bit") && is_binary_) {
@@ -210,7 +196,8 @@ class VtkReader {
       const NumberType& known = type_named(is_bit ? "char" : type);
       std::vector<double> read = numbers(known.name, tuples, components).numbers;
       if (labels_ != nullptr && tuples_ && components == 1 && !is_bit)
-        labels_->arrays.push_back({decoded(name), of_cells_, known.is_integer, std::move(read)});
+        labels_->arrays.push_back(
+            {percent_decoded(name), of_cells_, known.is_integer, std::move(read)});
     }
     skip_metadata(components);
   }

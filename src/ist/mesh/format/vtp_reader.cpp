@@ -280,7 +280,7 @@ class VtpReader {
   std::string first_bytes(const Packed& packed, std::size_t size, std::string_view place) const {
     if (size > packed.text.size()) fail_end(place);
     if (packed.is_raw) return std::string(packed.text.substr(0, size));
-    std::optional<std::string> bytes = decode_base64_texts(packed.text, size);
+    std::optional<std::string> bytes = decode_base64(packed.text, size);
     if (!bytes)
       fail(place, ErrorCode::kNotAMesh, "its base64 is damaged; copy or export the file again");
     return *std::move(bytes);

@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kImportProtocol = 1;
 /// Shows that the answer is complete.
 inline constexpr std::string_view kImportEnd = "IST-DONE";
 
-/// The most vertices and corners of a mesh, and so of what a scene places.
+/// A mesh has at most so many vertices, and as many corners.
 inline constexpr std::size_t kMostPlaced = std::size_t{1} << 25;
 
 /// Returns the header of this library's version, without its numbers.

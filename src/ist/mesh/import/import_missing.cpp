@@ -3,7 +3,7 @@
 
 namespace ist {
 
-// Where no process can be started.
+// For platforms without processes.
 TriangleMesh read_imported(std::string_view, const std::filesystem::path& file) {
   fail_mesh(ErrorCode::kNotAMesh, file.string(), "",
             "its format is read by the program ist-import, which does not run on this platform; "

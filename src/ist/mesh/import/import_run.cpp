@@ -59,7 +59,7 @@ class Descriptor {
   int number_;
 };
 
-// A running program. Whatever is left of it is killed and waited for at the end.
+// A running program. The destructor kills it and waits for its end.
 class Child {
  public:
   explicit Child(pid_t id) : id_(id) {}
@@ -71,8 +71,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Looks without waiting. Where the host ignores SIGCHLD, or waits for all children, the status is
-  // not known.
+  // Does not wait. The status stays unknown if the host ignores SIGCHLD or waits for all children.
   bool has_ended() {
     if (ended_) return true;
     const pid_t got = ::waitpid(id_, &status_, WNOHANG);
@@ -139,7 +138,7 @@ int start(const std::filesystem::path& importer, const std::filesystem::path& fi
   return reason;
 }
 
-// Takes all that the program writes until it closes its end, or a limit is met.
+// Reads the answer until the program closes the pipe or exceeds a limit.
 void take_answer(int pipe, Clock::time_point deadline, ImportRun& run) {
   std::vector<char> buffer(kAtOnce);
   for (;;) {

@@ -7,7 +7,7 @@
 
 namespace ist {
 
-/// What a run of ist-import wrote, and how it ended.
+/// The output of a run of ist-import, and its end.
 struct ImportRun {
   enum class End : std::uint8_t {
     kUnknown,  ///< another part of the host has waited for it

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace ist::import {
+namespace ist {
 
-/// Returns a part of a URI with each %XX turned into its byte; other text stays.
+/// Returns a text with each %XX turned into its byte. Other text stays.
 [[nodiscard]] inline std::string percent_decoded(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -23,4 +23,4 @@ namespace ist::import {
   return decoded;
 }
 
-}  // namespace ist::import
+}  // namespace ist
