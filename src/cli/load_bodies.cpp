@@ -24,6 +24,15 @@
 namespace ist::cli {
 namespace {
 
+// Refuses an option that names another unit than the file. To leave the option out is no remedy:
+// the other file may state no unit, and would be taken to be in this file's unit.
+void require_unit(LengthUnit told, LengthUnit stated, const char* option, const std::string& file) {
+  refuse_if(contradict(told, stated), option,
+            fmt::format("{} says that its unit is {}: name the unit of the first file by --unit, "
+                        "and of the second by --unit-moving",
+                        file, to_string(stated)));
+}
+
 // A body before its tree is built.
 struct LoadedBody {
   // `told` is the unit that the option names.
@@ -32,17 +41,13 @@ struct LoadedBody {
     if (is_tree_file(file)) {
       tree = read_tree(file);
       source = tree->source();
-      refuse_if(contradict(told, source.unit), option,
-                fmt::format("{} is a tree in {}: leave the option out, or name the mesh", name(),
-                            to_string(source.unit)));
+      require_unit(told, source.unit, option, name());
       if (source.unit != LengthUnit::kUnknown) unit = source.unit;
     } else {
       source = source_of(file);
       checked = load_mesh(file);
       const LengthUnit stated = checked.mesh.unit;
-      refuse_if(contradict(told, stated), option,
-                fmt::format("{} says that its unit is {}: leave the option out", name(),
-                            to_string(stated)));
+      require_unit(told, stated, option, name());
       if (stated != LengthUnit::kUnknown) unit = stated;
     }
     source.unit = unit;

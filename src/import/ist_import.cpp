@@ -112,10 +112,10 @@ void run(const char* path) {
   try {
     struct stat status {};
     const bool known = ::fstat(STDIN_FILENO, &status) == 0;
-    limit_resources(known ? static_cast<std::size_t>(status.st_size) : 0);
-    if (!limit_system_calls())
+    if (!limit_resources(known ? static_cast<std::size_t>(status.st_size) : 0) ||
+        !limit_system_calls())
       refuse(ErrorCode::kFileUnreadable, "",
-             "the kernel does not limit the system calls of ist-import (seccomp): allow it, or "
+             "the kernel does not limit what ist-import may do (setrlimit, seccomp): allow it, or "
              "convert the mesh to STL, PLY or OBJ");
     Input input{all_of_stdin(), path};
     if (is_packed(input) && same_word(input.path.extension().string(), ".amf")) unpack(input);

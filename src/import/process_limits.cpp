@@ -14,25 +14,26 @@
 namespace ist::import {
 namespace {
 
-void limit(int resource, rlim_t most) {
-  const rlimit both{most, most};
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
+// At the limit of processor time the kernel sends SIGXCPU, and after the grace SIGKILL.
+bool limit(int resource, rlim_t most, rlim_t grace = 0) {
+  const rlimit both{most, most + grace};
+  return ::setrlimit(static_cast<__rlimit_resource>(resource), &both) == 0;
 }
 
 }  // namespace
 
-void limit_resources(std::size_t content_bytes) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  ::close_range(3, ~0U, 0);
+bool limit_resources(std::size_t content_bytes, unsigned seconds) {
+  bool done = ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
+  done &= ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
+  done &= ::close_range(3, ~0U, 0) == 0;
   // A sanitizer reserves terabytes of addresses.
-  if (!IST_SANITIZED) limit(RLIMIT_AS, (rlim_t{4} << 30) + content_bytes);
-  limit(RLIMIT_CPU, 60);
-  limit(RLIMIT_CORE, 0);
+  if (!IST_SANITIZED) done &= limit(RLIMIT_AS, (rlim_t{4} << 30) + content_bytes);
+  done &= limit(RLIMIT_CPU, seconds, 5);
+  done &= limit(RLIMIT_CORE, 0);
   // The answer may go to a file, if a person asked for it.
   struct stat output {};
   const bool to_file = ::fstat(STDOUT_FILENO, &output) == 0 && S_ISREG(output.st_mode);
-  limit(RLIMIT_FSIZE, to_file ? rlim_t{2} << 30 : 0);
+  return done & limit(RLIMIT_FSIZE, to_file ? rlim_t{2} << 30 : 0);
 }
 
 bool limit_system_calls() {

@@ -137,7 +137,7 @@ TEST_F(OcclusionTable, OpenSurfaceWithoutADeepVertex_HasNoKnownDepth) {
   const std::string lower = mesh("lower.stl", sheet), upper = mesh("upper.stl", strip);
   const auto asked = [&](const char* move) {
     return ist_well({"occlusion", lower, upper, "--move", move, "-o", path("b.csv"), "-o",
-                     path("b.report.html")})
+                     path("b.json"), "-o", path("b.report.html")})
         .out;
   };
   const auto cells = [&](const char* heading) {
@@ -156,7 +156,18 @@ TEST_F(OcclusionTable, OpenSurfaceWithoutADeepVertex_HasNoKnownDepth) {
   const std::string report = file_content(path("b.report.html"));
   EXPECT_TRUE(says(report, "<td>not known (open surface)</td>"));
   EXPECT_TRUE(says(report, "<td>not known</td>"));
+  const auto depths = [&] {
+    const json bite = json::parse(file_content(path("b.json")));
+    return std::vector<json>{bite["depth_at_vertices"], bite["fixed"]["depth_at_vertices"],
+                             bite["moving"]["depth_at_vertices"]};
+  };
+  EXPECT_EQ(depths(), std::vector<json>(3, json(nullptr)));
+  const std::string answers = ist_well({"collide", lower, upper, "--json"}).out;
+  const json line = json::parse(answers.substr(answers.find('\n') + 1));
+  EXPECT_EQ(line["touch"], "yes");
+  EXPECT_TRUE(line["depth_at_vertices"].is_null());
   asked("0,0,4");
+  EXPECT_EQ(depths(), std::vector<json>(3, json(0.0)));
   EXPECT_EQ(cells("depth_at_vertices_mm"), (std::vector<std::string>{"0", "0", "0"}));
 }
 

@@ -21,9 +21,11 @@
 #include "import/fake_importer.h"
 #include "ist/base/cancellation.h"
 #include "ist/base/error.h"
+#include "ist/mesh/import/import_run.h"
 #include "ist/mesh/mesh.h"
 #include "support/errors.h"
 #include "support/mesh_files.h"
+#include "support/scoped_variable.h"
 #include "support/shapes.h"
 #include "support/temp_dir.h"
 
@@ -128,6 +130,37 @@ TEST_F(ImportCaller, NamesAProgramThatCannotStart) {
                            "convert the mesh to STL, PLY or OBJ");
   const test::ScopedImporter folder(folder_.path().string());
   EXPECT_NE(refusal().find("cannot be started: Permission denied"), std::string::npos);
+}
+
+TEST_F(ImportCaller, EndsAnImporterAtItsTime) {
+  for (const char* script : {"sleep 1000", "exec >&-; sleep 1000", "while :; do echo x; done"}) {
+    const test::FakeImporter importer(script);
+    const ImportRun run =
+        run_importer(importer.program(), "", file_, std::chrono::milliseconds(300));
+    EXPECT_EQ(run.end, ImportRun::End::kTooLate) << script;
+  }
+}
+
+// The current folder and PATH may be anybody's.
+TEST_F(ImportCaller, StartsNoProgramOfTheCurrentFolder) {
+  const test::FakeImporter importer("touch '" + (folder_.path() / "started").string() + "'");
+  std::filesystem::copy_file(importer.program(), folder_.path() / "ist-import");
+  const std::filesystem::path before = std::filesystem::current_path();
+  const std::string path = folder_.path().string() + ":" + std::getenv("PATH");
+  const test::ScopedVariable scoped_path("PATH", path.c_str());
+  std::filesystem::current_path(folder_.path());
+  for (const char* named : {"", "ist-import", "./ist-import"}) {
+    const test::ScopedImporter relative(named);
+    const std::string got = refusal();
+    if (*named != '\0') {
+      EXPECT_EQ(got, "file-unreadable: the environment variable IST_IMPORT is '" +
+                         std::string(named) + "': give an absolute path");
+    } else {
+      EXPECT_NE(got.find("ist-import, which is not installed: install it"), std::string::npos);
+    }
+  }
+  std::filesystem::current_path(before);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "started"));
 }
 
 // A hanging importer, and a child of its own that holds the pipe, are killed when the caller ends

@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <functional>
+#include <sstream>
 #include <string>
 
 #include "import/process_limits.h"
@@ -23,8 +28,7 @@ namespace {
 bool under_limits(const std::function<bool()>& holds) {
   const pid_t child = ::fork();
   if (child == 0) {
-    limit_resources(0);
-    ::_exit(limit_system_calls() && holds() ? 0 : 1);
+    ::_exit(limit_resources(0) && limit_system_calls() && holds() ? 0 : 1);
   }
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
@@ -71,6 +75,54 @@ TEST(ImportLimits, MemoryAndFilesOfTheHostAreOut) {
     return ::mmap(nullptr, std::size_t{5} << 30, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) ==
            MAP_FAILED;
   }));
+}
+
+TEST(ImportLimits, ProcessorTimeEndsBySigxcpu) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (!limit_resources(0, 1)) ::_exit(1);
+    for (;;) static_cast<void>(::getppid());
+  }
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) << status;
+}
+
+// The program itself, as it waits for its content.
+TEST(ImportLimits, IstImportSetsThemBeforeItReads) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(ends[0], 0);
+    ::close(ends[1]);
+    ::execl(std::getenv("IST_IMPORT"), "ist-import", "jaw.glb", nullptr);
+    ::_exit(9);
+  }
+  const std::string folder = "/proc/" + std::to_string(child) + "/";
+  const auto reads = [&] {  // the number of the system call that it waits in
+    return test::file_content(folder + "syscall").starts_with(std::to_string(SYS_read) + " 0x0 ");
+  };
+  for (int i = 0; i < 2000 && !reads(); ++i) ::usleep(5000);
+  const std::string status = test::file_content(folder + "status"),
+                    limits = test::file_content(folder + "limits");
+  EXPECT_NE(status.find("\nSeccomp:\t2\n"), std::string::npos) << status;
+  EXPECT_NE(status.find("\nNoNewPrivs:\t1\n"), std::string::npos) << status;
+  const auto has = [&](const char* name, const std::string& soft, const std::string& hard) {
+    std::istringstream lines(limits.substr(limits.find(name) + std::strlen(name)));
+    std::string a, b;
+    lines >> a >> b;
+    EXPECT_EQ(a, soft) << name;
+    EXPECT_EQ(b, hard) << name;
+  };
+  has("Max cpu time", "60", "65");
+  has("Max core file size", "0", "0");
+  has("Max file size", "0", "0");
+  if (!IST_SANITIZED) has("Max address space", "4294967296", "4294967296");
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 }  // namespace

@@ -58,6 +58,20 @@ TEST_F(Misuse, OfTreesInDifferentFramesThrows) {
   EXPECT_EQ(error_name([&] { Query(ras, ras), Query(ras, tree_), Query(tree_, lps); }), "none");
 }
 
+TEST_F(Misuse, OfTreesInDifferentUnitsThrows) {
+  TriangleMesh mesh = icosphere(2, 2);
+  const auto in = [&](LengthUnit unit) {
+    mesh.unit = unit;
+    return build_tree(mesh, {.voxel_size = 0.5});
+  };
+  const SphereTree mm = in(LengthUnit::kMillimetre), inch = in(LengthUnit::kInch);
+  const std::string text = refusal([&] { Query(mm, inch); });
+  EXPECT_NE(text.find("the fixed tree is in mm, and the moving tree is in inch: convert"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(error_name([&] { Query(mm, mm), Query(mm, tree_), Query(tree_, inch); }), "none");
+}
+
 TEST_F(Misuse, OfManifoldOptionsThrows) {
   const auto made = [&](const ManifoldOptions& options) {
     return refusal([&] { ContactManifold(tree_, tree_, SpherePolicy::kSlab, options); });

@@ -33,11 +33,9 @@ std::string words_of(const DistanceInterval& interval) {
 std::string depth_of(const Findings& found) {
   const Depth& depth = found.depth;
   if (depth.certain) return words_of(*depth.certain);
-  if (!depth.at_vertices) return "-";
-  if (*depth.at_vertices > 0) {
-    return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
-  }
-  return found.touch == Answer::kNo ? "0" : "not known (open surface)";
+  if (!depth.at_vertices) return depth.area ? "not known (open surface)" : "-";
+  if (*depth.at_vertices == 0) return "0";
+  return fmt::format("at least {:.3g} (open surface, by vertices)", *depth.at_vertices);
 }
 
 std::string words_of(const std::optional<double>& number) {

@@ -15,7 +15,8 @@ struct Depth {
   std::optional<DistanceInterval> certain{};
   bool complete = true;  ///< that interval is as narrow as the tolerance, or as rounding allows
   bool capped = false;   ///< the search ended after 4 million pieces of triangles
-  /// The depth of the deepest vertex of either body; empty with open bodies that are not near.
+  /// The depth of the deepest vertex of either body; empty if it is not known: open bodies are not
+  /// near each other, or may meet with no vertex behind the other surface.
   std::optional<double> at_vertices{};
   /// The area of a surface that lies inside the other body: the mean of both, mesh units²; empty
   /// with open bodies that are not near.

@@ -72,6 +72,10 @@ Findings Examiner::at(const Eigen::Isometry3d& pose) {
   find_inside(pose, found);
   const bool near = found.touch == Answer::kYes || found.distance->lower <= depth_->open_reach();
   found.depth = depth_->at(pose, near, budget_);
+  // Open surfaces may meet although no vertex lies behind the other one.
+  if (!found.depth.certain && found.touch != Answer::kNo && found.depth.at_vertices == 0.0) {
+    found.depth.at_vertices.reset();
+  }
   if (found.touch == Answer::kNo && !found.depth.certain && found.depth.area > 0.0) {
     found.inside.reset();
     found.notes.emplace_back(

@@ -84,7 +84,8 @@ ordered_json json_of(const BiteBody& body, const Bite& bite) {
   out["total_area"] = surface.total_area;
   out["penetrating_area"] = surface.penetrating_area;
   out["depth_integral"] = surface.depth_integral;
-  out["depth_at_vertices"] = surface.depth_at_vertices;
+  const std::optional<double> deepest = bite.known_depth(surface.depth_at_vertices);
+  out["depth_at_vertices"] = deepest ? ordered_json(*deepest) : ordered_json(nullptr);
   out["regions"] = ordered_json::array();
   for (std::size_t i = 0; i < surface.regions.size(); ++i) {
     out["regions"].push_back(json_of(surface.regions[i], body.contacts[i]));

@@ -229,9 +229,9 @@ Bite make_bite(const Bodies& bodies, const BiteSources& sources, const Eigen::Is
   // Of the same triangles as all areas here.
   bite.findings.depth.area =
       0.5 * (bite.fixed.surface.penetrating_area + bite.moving.surface.penetrating_area);
-  if (bite.region && bite.findings.depth.at_vertices) {
-    bite.findings.depth.at_vertices =
-        std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices);
+  if (bite.region || !bite.findings.depth.certain) {
+    bite.findings.depth.at_vertices = bite.known_depth(
+        std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices));
   }
   if (bite.region) bite.findings.depth.point = deepest_in_region(bite);
   bite.number_contacts();

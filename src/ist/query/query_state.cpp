@@ -8,6 +8,7 @@
 #include "ist/query/query_rules.h"
 #include "ist/query/relative_pose.h"
 #include "ist/query/traversal/search_pose.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/tree_parts.h"
 #include "simd/dispatch.h"
 
@@ -29,21 +30,18 @@ std::size_t within_limit(const char* option, std::size_t value) {
               fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
 }
 
-// Returns the first tree of two whose files say one frame, or say none.
-const SphereTree& in_one_frame(const SphereTree& fixed, const SphereTree& moving) {
-  if (!contradict(fixed.frame(), moving.frame())) return fixed;
-  throw Error(
-      ErrorCode::kArgumentInvalid,
-      fmt::format("query: the fixed tree is in the frame {} and the moving one in {}: build "
-                  "both in one frame",
-                  to_string(fixed.frame()), to_string(moving.frame())));
+// Returns the fixed tree of two that can be compared.
+const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving) {
+  const std::string reason = contradiction(fixed, "the fixed tree", moving, "the moving tree");
+  if (reason.empty()) return fixed;
+  throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
 }
 
 }  // namespace
 
 QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tree,
                        const QueryOptions& options, const ScopedFloatEnvironment&)
-    : fixed(in_one_frame(fixed_tree, moving_tree)),
+    : fixed(comparable(fixed_tree, moving_tree)),
       moving(moving_tree),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),

@@ -13,8 +13,16 @@
 namespace ist {
 namespace {
 
-void take_tree(LoadedBody& body, const std::filesystem::path& file) {
+void require_unit(const LoadedBody& body, LengthUnit unit, const Scene& scene) {
+  if (unit == LengthUnit::kUnknown || metres_per_unit(unit) == scene.unit) return;
+  fail_at(scene, "unit",
+          fmt::format("{} is in {}: write this unit, or convert the mesh to the scene's unit",
+                      body.name, to_string(unit)));
+}
+
+void take_tree(LoadedBody& body, const std::filesystem::path& file, const Scene& scene) {
   body.tree = std::make_unique<const SphereTree>(read_tree(file));
+  require_unit(body, body.tree->source().unit, scene);
   body.outside_is_known = body.tree->orientation() == Orientation::kOutward;
   body.frame = body.tree->frame();
   body.origin = body.tree->origin();
@@ -28,12 +36,7 @@ void take_mesh(LoadedBody& body, TriangleMesh mesh, double voxel_size, const Sce
     fail_at(scene, fmt::format("{}.voxel_size", body.table),
             fmt::format("{}: {}", body.name, flaw->what()));
   }
-  if (mesh.unit != LengthUnit::kUnknown && metres_per_unit(mesh.unit) != scene.unit) {
-    fail_at(
-        scene, "unit",
-        fmt::format("{} says that its unit is {}: write this unit, or name a mesh in the scene's",
-                    body.name, to_string(mesh.unit)));
-  }
+  require_unit(body, mesh.unit, scene);
   body.frame = mesh.frame;
   body.mesh = std::make_unique<TriangleMesh>(std::move(mesh));
   body.outside_is_known = orient_outward(*body.mesh).orientation == Orientation::kOutward;
@@ -59,7 +62,7 @@ LoadedBody load_body(const Scene& scene, const SceneBody& body, bool held, std::
       }
       take_mesh(loaded, std::move(mesh), *body.voxel_size, scene);
     } else {
-      take_tree(loaded, file);
+      take_tree(loaded, file, scene);
     }
   }
   loaded.outside_is_known |= body.trust_normals;

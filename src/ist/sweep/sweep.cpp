@@ -20,6 +20,7 @@
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/start_mark.h"
 #include "ist/sweep/sweep_record.h"
+#include "ist/tree/mesh_source.h"
 #include "ist/tree/sphere_tree.h"
 
 namespace ist {
@@ -89,13 +90,11 @@ std::shared_ptr<const Sweep::Bodies> Sweep::bodies() const {
       require_triangles(loaded->fixed, "the fixed body");
       require_triangles(loaded->moving, "the moving body");
     }
-    if (contradict(loaded->fixed.frame(), loaded->moving.frame())) {
+    const std::string reason =
+        contradiction(loaded->moving, "the tree", loaded->fixed, file_.fixed.tree.string());
+    if (!reason.empty()) {
       throw Error(ErrorCode::kInputInvalid,
-                  fmt::format("{}: the tree is in the frame {}, and {} is in {}: build one of them "
-                              "again by 'ist build --to-frame {}'",
-                              file_.moving.tree.string(), to_string(loaded->moving.frame()),
-                              file_.fixed.tree.string(), to_string(loaded->fixed.frame()),
-                              to_string(loaded->fixed.frame())));
+                  fmt::format("{}: {}", file_.moving.tree.string(), reason));
     }
     const Query needs_the_spheres(loaded->fixed, loaded->moving, {.policy = file_.spheres});
     bodies_ = std::move(loaded);

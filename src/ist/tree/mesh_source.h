@@ -20,4 +20,9 @@ inline constexpr std::size_t kMaxSourceName = 255;
 /// nullptr for an allowed source.
 [[nodiscard]] const char* source_flaw(const MeshSource& source);
 
+/// Returns the reason why two trees cannot be compared, with a remedy: their meshes are in
+/// different frames, or in different units. Returns an empty string if they can be.
+[[nodiscard]] std::string contradiction(const SphereTree& a, std::string_view a_name,
+                                        const SphereTree& b, std::string_view b_name);
+
 }  // namespace ist

@@ -497,6 +497,7 @@ TEST(BiteHtml, UnknownDepthOfOpenSurfaces_IsNotZero) {
   const auto made = sphere_over_plate({0, 0, 0.5});
   EXPECT_EQ(row_of(Page(made->bite).table("depths"), {"fixed"}).at(1), "0");
   made->bite.findings.touch = Answer::kYes;
+  made->bite.findings.depth.at_vertices.reset();
   const Page page(made->bite);
   EXPECT_EQ(row_of(page.table("depths"), {"fixed"}).at(1), "not known");
   EXPECT_TRUE(page.says("not known (open surface)"));

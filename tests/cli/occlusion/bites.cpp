@@ -62,6 +62,8 @@ std::unique_ptr<MadeBite> bite_of(const TriangleMesh& fixed, const TriangleMesh&
   bite.findings.distance = query.distance(pose, 1e-3).distance;
   bite.findings.depth.at_vertices =
       std::max(bite.fixed.surface.depth_at_vertices, bite.moving.surface.depth_at_vertices);
+  bite.findings.depth.area =
+      0.5 * (bite.fixed.surface.penetrating_area + bite.moving.surface.penetrating_area);
   return made;
 }
 

@@ -244,7 +244,23 @@ TEST_F(WorldMemory, OfBodiesInDifferentFramesIsRefused) {
   const std::optional<Error> error = error_of([&] { world.add(other); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
-  EXPECT_NE(std::string(error->what()).find("'upper' in lps"), std::string::npos) << error->what();
+  EXPECT_NE(std::string(error->what()).find("'upper' is in lps"), std::string::npos)
+      << error->what();
+}
+
+TEST_F(WorldMemory, OfBodiesInDifferentUnitsIsRefused) {
+  TriangleMesh mesh = icosphere(1, 1);
+  mesh.unit = LengthUnit::kMetre;
+  const SphereTree upper = build_tree(mesh, {.voxel_size = 0.5});
+  World world;
+  world.add(upper, Eigen::Isometry3d::Identity(), "upper");
+  mesh.unit = LengthUnit::kInch;
+  const SphereTree other = build_tree(mesh, {.voxel_size = 0.5});
+  const std::optional<Error> error = error_of([&] { world.add(other); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kArgumentInvalid);
+  EXPECT_NE(std::string(error->what()).find("is in inch, and 'upper' is in m:"), std::string::npos)
+      << error->what();
 }
 
 TEST_F(WorldMemory, OfTooManyBodiesIsRefused) {

@@ -123,11 +123,11 @@ std::string findings_table(const Bite& bite) {
   if (found.distance) table.add({"distance of the surfaces", numbers.interval(*found.distance)});
   const Depth& depth = found.depth;
   if (depth.certain) table.add({"penetration depth", numbers.interval(*depth.certain)});
-  if (depth.at_vertices) {
-    table.add({depth.certain ? "depth of the deepest vertex"
-                             : "depth of the deepest vertex (open surfaces: at least)",
-               bite.known_depth(*depth.at_vertices) ? numbers.length(*depth.at_vertices)
-                                                    : "not known (open surface)"});
+  if (depth.area) {
+    table.add(
+        {depth.certain ? "depth of the deepest vertex"
+                       : "depth of the deepest vertex (open surfaces: at least)",
+         depth.at_vertices ? numbers.length(*depth.at_vertices) : "not known (open surface)"});
   }
   if (depth.area)
     table.add({"area inside the other body, mean of both", numbers.area(*depth.area) + " mm²"});

@@ -25,7 +25,6 @@ namespace ist {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kMostTime{120};
 constexpr std::size_t kMostOutput = std::size_t{1} << 30;
 constexpr std::size_t kAtOnce = std::size_t{1} << 18;  // bytes, between two cancellation points
 
@@ -163,7 +162,7 @@ void take_answer(int pipe, Clock::time_point deadline, ImportRun& run) {
 }  // namespace
 
 ImportRun run_importer(const std::filesystem::path& importer, std::string_view content,
-                       const std::filesystem::path& file) {
+                       const std::filesystem::path& file, std::chrono::milliseconds time) {
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_to_start(importer, file, errno);
   const Descriptor from(ends[0]);
@@ -179,7 +178,7 @@ ImportRun run_importer(const std::filesystem::path& importer, std::string_view c
   to.close();
 
   ImportRun run;
-  const Clock::time_point deadline = Clock::now() + kMostTime;
+  const Clock::time_point deadline = Clock::now() + time;
   take_answer(from.number(), deadline, run);
   // Without a complete answer the end of the program tells the cause.
   while (run.end == ImportRun::End::kUnknown && !is_complete_import(run.answer) &&

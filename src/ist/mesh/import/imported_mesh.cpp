@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"
 #include "ist/mesh/import/import_run.h"
@@ -17,20 +18,24 @@ namespace {
 
 constexpr std::string_view kConvert = "convert the mesh to STL, PLY or OBJ";
 
-// The folder of the shared library that holds this code; of the program, if it is linked into one.
+// Returns the folder of the shared library that holds this code, or of the program, if the code is
+// linked into it. The loader tells a relative path of a library that was named so. It is no use:
+// the current folder may be another one today.
 std::filesystem::path own_folder() {
   Dl_info info{};
+  if (::dladdr(kConvert.data(), &info) == 0 || info.dli_fname == nullptr) return {};
   std::error_code ignored;
-  const bool found = ::dladdr(kConvert.data(), &info) != 0 && info.dli_fname != nullptr;
-  if (found && std::string_view(info.dli_fname).find(".so") != std::string_view::npos)
-    return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
 }
 
 // Returns an empty path if the program is not installed.
-std::filesystem::path importer_path() {
-  if (const char* named = ::secure_getenv("IST_IMPORT"); named != nullptr && *named != '\0')
-    return std::filesystem::absolute(named);
+std::filesystem::path importer_path(const std::string& file) {
+  if (const char* named = ::secure_getenv("IST_IMPORT"); named != nullptr && *named != '\0') {
+    if (*named == '/') return named;
+    fail_mesh(ErrorCode::kFileUnreadable, file, "",
+              fmt::format("the environment variable IST_IMPORT is '{}': give an absolute path",
+                          printable(named)));
+  }
   std::error_code ignored;
   const std::filesystem::path own = own_folder(),
                               host = std::filesystem::read_symlink("/proc/self/exe", ignored);
@@ -67,8 +72,8 @@ std::filesystem::path importer_path() {
 }  // namespace
 
 TriangleMesh read_imported(std::string_view content, const std::filesystem::path& file) {
-  const std::filesystem::path importer = importer_path();
   const std::string name = file.string();
+  const std::filesystem::path importer = importer_path(name);
   if (importer.empty())
     fail_mesh(ErrorCode::kFileUnreadable, name, "",
               fmt::format("its format is read by the program ist-import, which is not installed: "

@@ -9,6 +9,7 @@
 #include "ist/base/error.h"
 #include "ist/base/pose.h"
 #include "ist/query/world/world_state.h"
+#include "ist/tree/mesh_source.h"
 #include "simd/dispatch.h"
 
 namespace ist {
@@ -53,11 +54,9 @@ BodyIndex World::add(const SphereTree& tree, const Eigen::Isometry3d& pose, std:
                 fmt::format("world: no room for '{}': {} bodies are the most", name, kMostBodies));
   }
   for (const detail::WorldState::Body& other : s.bodies) {
-    if (!contradict(other.tree.frame(), tree.frame())) continue;
-    throw Error(
-        ErrorCode::kArgumentInvalid,
-        fmt::format("world: '{}' is in the frame {} and '{}' in {}: build both in one frame", name,
-                    to_string(tree.frame()), other.name, to_string(other.tree.frame())));
+    const std::string reason =
+        contradiction(tree, fmt::format("'{}'", name), other.tree, fmt::format("'{}'", other.name));
+    if (!reason.empty()) throw Error(ErrorCode::kArgumentInvalid, "world: " + reason);
   }
   if (s.options.query.policy) tree.require(*s.options.query.policy, name);
   if (!body_pose(pose)) {
