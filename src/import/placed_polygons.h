@@ -34,8 +34,8 @@ struct Refusal {
 /// every platform.
 [[nodiscard]] Eigen::Affine3d joined(const Eigen::Affine3d& second, const Eigen::Affine3d& first);
 
-/// The placed meshes of a scene as one list of polygons. A few
-/// bytes of a file can place a mesh many times, so the list has a limit (kMostPlaced).
+/// The placed meshes of a scene as one list of polygons. A few bytes of a file can place a mesh many
+/// times, so the list has a limit (kMostPlaced).
 class PlacedPolygons {
  public:
   LengthUnit unit = LengthUnit::kUnknown;

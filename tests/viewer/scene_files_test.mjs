@@ -67,6 +67,13 @@ test('a unit that contradicts the file is refused', async () => {
   await assert.rejects(meshBytes('a.gltf', text(json()), 'mm'), /a\.gltf: the file says metres, and millimetres are chosen/);
 });
 
+test('a rotation of four digits is a rotation', async () => {
+  const half = Math.SQRT1_2.toFixed(4);
+  const {bytes} = await meshBytes('a.gltf', text(json({nodes: [{mesh: 0, rotation: [0, 0, Number(half), Number(half)]}]})));
+  const [, x, y] = cornersOf(bytes)[0];
+  assert.ok(Math.hypot(x[0], x[1] - 1) < 1e-12 && Math.hypot(y[0] + 2, y[1]) < 1e-12, `${x}; ${y}`);
+});
+
 test('a mirror image is wound the other way', async () => {
   const {bytes} = await meshBytes('a.gltf', text(json({nodes: [{mesh: 0, scale: [-1, 1, 1]}]})));
   assert.deepEqual(cornersOf(bytes), [[[0, 0, 0], [0, 2, 0], [-1, 0, 0]]].map((face) => face.map((p) => p.map((x) => x + 0)))); // prettier-ignore
@@ -90,6 +97,10 @@ test('what the page cannot read is refused with the remedy', async () => {
   await refused({asset: {version: '1.0'}}, /2\.0/);
   await refused({meshes: [{primitives: [{attributes: {POSITION: 0}, indices: 1, mode: 1}]}]}, /no triangle/);
   await refused({skins: [{joints: [0]}], nodes: [{mesh: 0, skin: 0}]}, /skin/);
+  await refused({nodes: [{mesh: 0, rotation: [0, 0, 0, 1.1]}]}, /rotation has the length 1\.1/);
+  await refused({nodes: [{mesh: 0, extensions: {EXT_mesh_gpu_instancing: {}}}]}, /EXT_mesh_gpu_instancing/);
+  await refused({nodes: [{mesh: 0, children: [1]}, {children: [0]}]}, /circle of nodes/); // prettier-ignore
+  await refused({nodes: [{children: [1, 1]}, {mesh: 0}]}, /two parents/); // prettier-ignore
   const broken = json();
   broken.accessors[0].count = 2;
   await refused(broken, /vertex 2, but there are 2/);

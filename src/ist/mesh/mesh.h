@@ -131,7 +131,7 @@ struct TriangleMesh {
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.
-/// A file for ist-import takes 10 ms more, and ends after 60 s of processor time.
+/// A file for ist-import takes 10 ms more. After 60 s of processor time the file is refused.
 /// Errors: kFileUnreadable, kNotAMesh, kMeshEmpty, kMeshPointsOnly, kMeshTruncated, kMeshBadIndex,
 /// kMeshNotFinite, kMeshExtent, kMeshTooLarge; the text names the file and the place in it. If the
 /// importer crashes, kNotAMesh says so.

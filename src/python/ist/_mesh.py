@@ -111,7 +111,8 @@ def read_mesh(path, *, progress=None):
 
     STL, PLY, OBJ, OFF and VTK PolyData; by the program ist-import glTF, 3MF, COLLADA, FBX and others.
 
-    Vertices with equal coordinates are merged. progress: called while the file is read; what it raises ends that. Raises
+    Vertices with equal coordinates are merged. The arrays have no unit and no frame: build() of a path keeps those that
+    the file states. progress: called while the file is read; what it raises ends that. Raises
     FileError and InputError, which name the file and the place.
     """
     return read(path, "path", progress).arrays()

@@ -13,13 +13,15 @@ import {unitNames} from './words.js';
 /** @typedef {import('./protocol.js').Unit} Unit */
 /** @typedef {{bytes: ArrayBuffer, unit?: Unit}} MeshBytes */
 /** @typedef {{unit: Unit, scale: number}} Length  a length times the scale is in the unit */
-/** @typedef {{asset?: {version?: string}, scenes?: unknown[], scene?: number, extensionsRequired?: string[], buffers?: {uri?: string}[],
+/** @typedef {{asset?: {version?: string}, scenes?: {nodes?: number[]}[], scene?: number, extensionsRequired?: string[], buffers?: {uri?: string}[],
  *   bufferViews?: {buffer: number, byteOffset?: number, byteLength: number}[], meshes?: {primitives?: {material?: number, targets?: unknown[]}[]}[],
- *   nodes?: {mesh?: number, skin?: number}[],
+ *   nodes?: {mesh?: number, skin?: number, children?: number[], rotation?: number[], extensions?: Record<string, unknown>}[],
  *   animations?: unknown[], cameras?: unknown[], textures?: unknown[]}} Gltf */
 
 /** Extensions of glTF that move no vertex, or that the loader knows. */
 const harmless = /^(KHR_materials_|KHR_texture_|EXT_texture_|KHR_lights_|KHR_xmp|KHR_mesh_quantization$|KHR_animation_pointer$)/;
+/** Bytes of all parts of a 3MF. */
+const mostUnpacked = 1e9;
 /** Of 3MF; the engine has no centimetres and no feet. @type {Record<string, Length>} */
 const lengths = {
   micron: {unit: 'µm', scale: 1},
@@ -89,7 +91,7 @@ function geometryAlone(json) {
       delete primitive.material;
     }
   }
-  if (json.nodes?.some((node) => node.mesh !== undefined && node.skin !== undefined)) throw new Error('a skin bends its mesh');
+  checkNodes(json);
   Object.assign(json, {animations: [], cameras: [], textures: []});
   return {
     name: 'IST_geometry_alone',
@@ -108,11 +110,37 @@ function geometryAlone(json) {
 }
 
 /**
+ * Refuses nodes that the loader would place wrongly, or wait for without an end. A rotation may be rounded to four digits.
+ * @param {Gltf} json
+ */
+function checkNodes({nodes = [], scenes = []}) {
+  const below = new Set(scenes.flatMap((scene) => scene.nodes ?? []));
+  for (const node of nodes) {
+    if (node.mesh !== undefined && node.skin !== undefined) throw new Error('a skin bends its mesh');
+    if (node.extensions?.EXT_mesh_gpu_instancing) throw new Error('a node repeats its mesh by EXT_mesh_gpu_instancing, which is not supported');
+    for (const child of node.children ?? []) {
+      if (below.has(child)) throw new Error(`node ${child} has two parents, or is in a circle of nodes`);
+      below.add(child);
+    }
+    if (!node.rotation) continue;
+    const length = Math.hypot(...node.rotation);
+    if (!(Math.abs(length - 1) < 1e-3)) throw new Error(`a rotation has the length ${length}, not 1`);
+    node.rotation = node.rotation.map((value) => value / length);
+  }
+}
+
+/**
  * @param {ArrayBuffer} bytes
  * @returns {MeshBytes}
  */
 function threeMfBytes(bytes) {
-  const {unit, scale} = lengthOf(unzipSync(new Uint8Array(bytes), {filter: ({name}) => /\.(model|config|rels)$/.test(name)}));
+  let total = 0;
+  const filter = (/** @type {{name: string, originalSize: number}} */ {name, originalSize}) => {
+    total += originalSize;
+    if (total > mostUnpacked) throw new Error('its parts unpack to more than 1 GB');
+    return /\.(model|config|rels)$/.test(name);
+  };
+  const {unit, scale} = lengthOf(unzipSync(new Uint8Array(bytes), {filter}));
   return {bytes: ply(new ThreeMFLoader().parse(bytes), scale), unit};
 }
 
@@ -135,6 +163,8 @@ function lengthOf(parts) {
   const models = Object.keys(parts).filter((name) => name.endsWith('.model'));
   if (models.some((name) => /<(?:\w+:)?(component|item)\b[^>]*\w:path\s*=/.test(text(name))))
     throw new Error('its objects are in several models');
+  if (models.some((name) => /<(?:\w+:)?object\b[^>]*\btype\s*=\s*"(solid)?support"|"cura:\w+_mesh"/.test(text(name))))
+    throw new Error('it holds supports or modifiers of a slicer beside the bodies');
   const config = text('Metadata/Slic3r_PE_model.config') + text('Metadata/model_settings.config');
   if (/"volume_type"\s+value="(?!ModelPart")|\bsubtype="(?!normal_part")|"modifier"\s+value="1"/.test(config)) {
     throw new Error('it is the project of a slicer, and holds modifiers or blockers of supports beside the bodies');

@@ -28,8 +28,7 @@ struct LabelSource {
 /// - `.obj`: groups whose names are the number alone, or after `tooth`, `t`, `fdi` or `universal`
 ///   in any case, with `_`, `-` or nothing between. A number that goes on, such as `16.001`, is
 ///   refused; other names are of no tooth. Objects count where no group is a tooth.
-/// - `.vtk`, `.vtp`: the array that `file.vtp:ARRAY` names, one whole number for each cell, else
-/// for
+/// - `.vtk`, `.vtp`: the array that `file.vtp:ARRAY` names, a whole number for each cell, or for
 ///   each point. Without a name, the only array of whole numbers counts, if it is called a label.
 /// - else: a whole number a line, for each triangle or vertex in the mesh's order, which of
 ///   vertices is their first use by triangles. Lines may be blank at the end.

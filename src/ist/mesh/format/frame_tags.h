@@ -9,8 +9,9 @@ namespace ist {
 /// Returns "RAS" or "LPS", as 3D Slicer names a frame; empty if it is unknown.
 [[nodiscard]] std::string_view slicer_name(PatientFrame frame);
 
-/// Collects SPACE=RAS and SPACE=LPS, which 3D Slicer writes into the header of an STL and the
-/// comments of a PLY or OBJ. Another word after SPACE= says nothing here.
+/// Collects SPACE=RAS and SPACE=LPS. 3D Slicer writes them into the header of an STL, the comments
+/// of a PLY or OBJ, and the title or the field data of a VTK file. Another word after SPACE= is
+/// ignored.
 class FrameTags {
  public:
   explicit FrameTags(std::string_view file) : file_(file) {}

@@ -138,7 +138,7 @@ class OffBody {
       fault_ = [reader = reader_, corners] { require_face_size(corners, reader); };
     corners_.clear();
     for (std::int64_t i = 0; i < corners && !fault_; ++i) {
-      if (at_line_end() && surface_.faces() == 0) faces_seem_free_ = true;
+      if (surface_.faces() == 0 && at_line_end()) faces_seem_free_ = true;
       corners_.push_back(read_corner());
     }
     if (fault_) return;
