@@ -133,7 +133,8 @@ TEST_F(BodySizes, AMeshInAnotherUnitIsConvertedIfBothAreTold) {
   EXPECT_TRUE(says(both.err, "name the tree's mesh"));
   const CommandResult wrong = ist({"collide", path("mm.ist"), m, "--unit", "m"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_TRUE(says(wrong.err, "--unit: " + path("mm.ist") + " says that its unit is mm: name the unit"));
+  EXPECT_TRUE(
+      says(wrong.err, "--unit: " + path("mm.ist") + " says that its unit is mm: name the unit"));
   const CommandResult bite = ist_well(
       {"occlusion", mm, m, "--move", "4.05,0,0", "--unit", "mm", "--unit-moving", "m", "--json"});
   EXPECT_TRUE(says(bite.out, R"("unit":"mm","unit_assumed":false)"));

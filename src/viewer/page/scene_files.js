@@ -117,7 +117,8 @@ function checkNodes({nodes = [], scenes = []}) {
   const below = new Set(scenes.flatMap((scene) => scene.nodes ?? []));
   for (const node of nodes) {
     if (node.mesh !== undefined && node.skin !== undefined) throw new Error('a skin bends its mesh');
-    if (node.extensions?.EXT_mesh_gpu_instancing) throw new Error('a node repeats its mesh by EXT_mesh_gpu_instancing, which is not supported');
+    if (node.extensions?.EXT_mesh_gpu_instancing)
+      throw new Error('a node repeats its mesh by EXT_mesh_gpu_instancing, which is not supported');
     for (const child of node.children ?? []) {
       if (below.has(child)) throw new Error(`node ${child} has two parents, or is in a circle of nodes`);
       below.add(child);
