@@ -64,8 +64,7 @@ case $what in
   thread) scripts/setup.sh --tests; threads ;;
   sanitize) scripts/setup.sh --tests; sanitize ;;
   page) scripts/setup.sh --tests --viewer; page; labelled test -L '^page$' ;;
-  slow | package) scripts/setup.sh --all; labelled test -L "^$what\$" ;;
-  oracle) scripts/setup.sh --all; scripts/sweep_readers.sh; labelled test -L '^oracle$' ;;
+  slow | oracle | package) scripts/setup.sh --all; labelled test -L "^$what\$" ;;
   long) scripts/setup.sh --all; page; labelled test -L '^long$' ;;
   --all)
     scripts/setup.sh --all
@@ -73,8 +72,6 @@ case $what in
     sanitize
     golden
     page
-    part "readers of tables"
-    scripts/sweep_readers.sh
     labelled all
     ;;
   --long) shift; exec scripts/long.sh "$@" ;;

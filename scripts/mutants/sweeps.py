@@ -52,7 +52,4 @@ MUTANTS = [
     Mutant("rows-of-the-block-before", "the numbers of rows begin anew with each block",
            [(SWEEP + "sweep.cpp", "write_row(file_.questions, first + done + index,", "write_row(file_.questions, first + index,")],
            ["sweep_test SweepParts.*"]),
-    Mutant("page-of-the-group", "the Parquet file says that each chunk begins with its row group",
-           [(SWEEP + "parquet_writer.cpp", "rows_, written_ - page, page)", "rows_, written_ - page, begin)")],
-           ["sweep_test ParquetWriter.*:Merge.*"]),
 ]

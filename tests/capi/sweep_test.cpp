@@ -101,7 +101,7 @@ TEST_F(CSweep, MakesThePartsOfTheLibrary) {
   ASSERT_EQ(name(merge()), "ok");
   EXPECT_EQ(merged_.rows, 10U);
   EXPECT_EQ(merged_.missing + merged_.given_up, 0U);
-  EXPECT_TRUE(std::filesystem::exists(dir_.path() / "out" / "rows.parquet"));
+  EXPECT_TRUE(std::filesystem::exists(dir_.path() / "out" / "rows.npy"));
 }
 
 TEST_F(CSweep, MergesNoPartIntoATableOfNoRows) {
@@ -110,7 +110,7 @@ TEST_F(CSweep, MergesNoPartIntoATableOfNoRows) {
       << ist_last_error_message();
   EXPECT_EQ(merged_.rows + merged_.missing + merged_.given_up, 0U);
   EXPECT_EQ(names_in(folder_),
-            (std::vector<std::string>{"manifest.json", "rows.npy", "rows.parquet", "sweep.json"}));
+            (std::vector<std::string>{"manifest.json", "rows.npy", "sweep.json"}));
   EXPECT_EQ(name(ist_sweep_free(none)), "ok");
 }
 
@@ -321,7 +321,6 @@ TEST_F(CSweep, AFullDiskIsAnUnwritableFile) {
   ASSERT_EQ(name(run(2)), "ok");
   std::filesystem::create_symlink("/dev/full", dir_.path() / "out" / "rows.npy");
   EXPECT_EQ(name(merge()), "file-unwritable");
-  EXPECT_FALSE(std::filesystem::exists(dir_.path() / "out" / "rows.parquet"));
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "out" / "manifest.json"));
 }
 

@@ -1,5 +1,5 @@
-// What becomes of a sweep where disks fail or are full. A part is there and whole, or not there;
-// and the table is that of an undisturbed sweep.
+// Sweeps on disks that fail or are full. A part is there and whole, or not there. The table has the
+// bytes of an undisturbed sweep.
 
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ TEST_F(SweepCommand, ADiskThatFailsLeavesNothingHalfWritten) {
   const std::string job = sweep_file({});
   make_whole(job, "whole");
   Files parts = results("whole");
-  for (const char* table : {"rows.npy", "rows.parquet", "manifest.json"}) parts.erase(table);
+  for (const char* table : {"rows.npy", "manifest.json"}) parts.erase(table);
   for (const char* call : {"fsync", "rename"}) {
     int refused = 0;
     for (bool fits = false; !fits; ++refused) {
@@ -47,7 +47,7 @@ TEST_F(SweepCommand, ADiskThatFailsLeavesNothingHalfWritten) {
                : result.exit_code == 1 && result.out.empty() && files("out") == before;
       seen.sample(!right, 0, fmt::format("{} {} of a merge: {}", call, refused, result.err));
     }
-    EXPECT_GE(refused, 4) << call;
+    EXPECT_GE(refused, 3) << call;
   }
 }
 

@@ -1,4 +1,4 @@
-// One table of all parts: in order, checked, and all of it or nothing.
+// The merge of all parts into one table: the order of rows, the checks, and no half-written file.
 
 #include "ist/sweep/merge_parts.h"
 
@@ -6,7 +6,6 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "ist/sweep/npy_file.h"
 #include "ist/sweep/sweep_record.h"
 #include "support/errors.h"
-#include "sweep/parquet_table.h"
 #include "sweep/sweep_case.h"
 
 namespace ist::test {
@@ -40,12 +38,7 @@ TEST_F(Merge, HasAllRowsInOrder) {
   const MergeResult merged = merge_parts(parts, job.layout());
   EXPECT_TRUE(merged.whole());
   EXPECT_EQ(merged.rows, 10U);
-  const std::string known = rows_of(parts, job.layout());
-  EXPECT_EQ(file_content(parts.path() / "rows.npy"), known);
-  const ParquetTable table = read_parquet(file_content(parts.path() / "rows.parquet"));
-  const auto rows = std::as_bytes(std::span(known)).subspan(npy_header(job.layout(), 10).size());
-  EXPECT_EQ(table.values, columns_of(job.layout(), rows));
-  EXPECT_EQ(table.group_rows, std::vector<std::int64_t>{10});
+  EXPECT_EQ(file_content(parts.path() / "rows.npy"), rows_of(parts, job.layout()));
 }
 
 TEST_F(Merge, TheManifestHasEveryChecksum) {
@@ -75,7 +68,6 @@ TEST_F(Merge, AMissingPartIsNamedAndNothingWritten) {
   EXPECT_EQ(merged.missing, Numbers{0});
   EXPECT_EQ(merged.given_up, Numbers{2});
   EXPECT_FALSE(std::filesystem::exists(parts.path() / "rows.npy"));
-  EXPECT_FALSE(std::filesystem::exists(parts.path() / "rows.parquet"));
   EXPECT_FALSE(std::filesystem::exists(parts.path() / "manifest.json"));
 }
 
@@ -97,7 +89,7 @@ TEST_F(Merge, DamagedPartsAreRefused) {
   }
 }
 
-// A part whose rows are of other poses, with a record that fits it.
+// The rows of part 0 belong to other poses, and its record has their checksum.
 TEST_F(Merge, RowsOfOtherNumbersAreRefused) {
   const Sweep job = sweep();
   const SweepFolder parts = folder(job);
@@ -116,9 +108,6 @@ TEST_F(Merge, OfNoRowsIsATableOfNone) {
   const SweepFolder parts = folder(job);
   EXPECT_TRUE(merge_parts(parts, job.layout()).whole());
   EXPECT_EQ(file_content(parts.path() / "rows.npy"), npy_header(job.layout(), 0));
-  const ParquetTable table = read_parquet(file_content(parts.path() / "rows.parquet"));
-  EXPECT_TRUE(table.group_rows.empty());
-  EXPECT_EQ(table.columns.size(), job.layout().columns.size());
 }
 
 TEST_F(Merge, ThatTheCallerEndsLeavesNoFile) {
@@ -136,9 +125,11 @@ TEST_F(Merge, CanBeMadeAgain) {
   const SweepFolder parts = folder(job);
   run_all(job, parts);
   merge_parts(parts, job.layout());
-  const std::string parquet = file_content(parts.path() / "rows.parquet");
+  const std::string rows = file_content(parts.path() / "rows.npy");
+  const std::string manifest = file_content(parts.path() / "manifest.json");
   merge_parts(parts, job.layout());
-  EXPECT_EQ(file_content(parts.path() / "rows.parquet"), parquet);
+  EXPECT_EQ(file_content(parts.path() / "rows.npy"), rows);
+  EXPECT_EQ(file_content(parts.path() / "manifest.json"), manifest);
 }
 
 TEST(ContentHash, IsXxh3Of128Bits) {

@@ -128,8 +128,7 @@ void merge(const SweepArguments& options, const Sweep& sweep) {
         {"rows", merged.rows}, {"missing", merged.missing}, {"given_up", merged.given_up}};
     print_json(sweep, json);
   } else if (merged.whole()) {
-    fmt::print("rows    {} in {} and {}\n", merged.rows, (options.folder / "rows.npy").string(),
-               (options.folder / "rows.parquet").string());
+    fmt::print("rows    {} in {}\n", merged.rows, (options.folder / "rows.npy").string());
   }
   std::string lacks;
   if (!merged.missing.empty()) {
@@ -176,8 +175,7 @@ void add_sweep(CLI::App& app) {
                       ->check(CLI::Range(0, 1024))
                       ->capture_default_str();
   auto* merge_flag = command->add_flag(
-      "--merge", options->merge,
-      "merge all parts into rows.npy and rows.parquet; exit code 1 where a part lacks");
+      "--merge", options->merge, "merge all parts into rows.npy; exit code 1 if a part is missing");
   auto* status = command->add_flag("--status", options->status, "list how the parts stand");
   command->add_flag("--verify", options->verify, "compare the checksums of all parts too")
       ->needs(status);
@@ -193,6 +191,7 @@ void add_sweep(CLI::App& app) {
               "shares.");
   command->callback([options] {
     static_cast<void>(share_of(options->share));
+    refuse_parquet("-o", options->folder);
     const Sweep sweep(options->file);
     if (options->merge) return merge(*options, sweep);
     if (options->status) return show_status(*options, sweep);

@@ -17,7 +17,8 @@ enum class FileFormat { kVtp, kPly, kGlb, kCsv, kJsonl, kJson, kHtml };
 /// @param option the option that names the file, such as "-o", for the error's text
 /// @param writable the formats that the command can write there, at least one
 ///
-/// Throws CLI::ValidationError, naming the endings that can be written, for every other ending.
+/// Throws CLI::ValidationError for every other ending. The text names the endings that the command
+/// can write, or of .parquet the line of Python that makes such a file.
 [[nodiscard]] FileFormat format_by_ending(const std::string& option,
                                           const std::filesystem::path& file,
                                           std::span<const FileFormat> writable);

@@ -113,13 +113,12 @@ typedef struct ist_sweep_merge_result {
   uint64_t reserved;  /**< zero */
 } ist_sweep_merge_result;
 
-/** Merges the parts into rows.npy, rows.parquet and manifest.json of the folder. While a part is
- * missing, or given up, nothing is written, and the call returns IST_OK with the number of such
- * parts: ist_sweep_get_part says which they are. Errors: IST_FILE_UNREADABLE for a folder in which
- * nobody has begun; IST_INPUT_INVALID for a folder or a part of another sweep, for a part that is
- * damaged, and for a folder that the user may not write to; IST_FILE_UNWRITABLE, IST_CANCELLED.
- * Cost: that of reading and writing; 40 MB of memory, 200 bytes a part, and for each 131072 rows 60
- * bytes a column. */
+/** Merges the parts into rows.npy of the folder, and writes all checksums to manifest.json. If a
+ * part is missing or given up, the call writes nothing and returns IST_OK with the number of such
+ * parts; ist_sweep_get_part finds them. Errors: IST_FILE_UNREADABLE if nobody has begun in the
+ * folder; IST_INPUT_INVALID if the folder or a part belongs to another sweep, if a part is damaged,
+ * and if the user may not write to the folder; IST_FILE_UNWRITABLE, IST_CANCELLED. Cost: the time
+ * to read and write all rows; memory of 10 MB, and 200 bytes a part. */
 IST_C_API ist_status ist_sweep_merge(const ist_sweep* sweep, const char* folder,
                                      const ist_progress* progress,
                                      ist_sweep_merge_result* result) IST_NOEXCEPT;

@@ -11,7 +11,6 @@
 #include "ist/base/error.h"
 #include "ist/base/files.h"
 #include "ist/sweep/npy_file.h"
-#include "ist/sweep/parquet_writer.h"
 #include "ist/sweep/sweep_record.h"
 
 namespace ist {
@@ -19,47 +18,37 @@ namespace {
 
 constexpr std::uint64_t kMergedAtOnce = 1 << 16;
 
-// The tables that the rows of all parts go to.
-class Tables {
+// Writes rows.npy and its checksum.
+class Table {
  public:
-  Tables(const SweepFolder& folder, const RowLayout& layout)
-      : npy_(folder.path() / "rows.npy"),
-        parquet_file_(folder.path() / "rows.parquet"),
-        parquet_(parquet_file_, layout, ParquetWriter::rows_a_group_of(folder.identity().rows)) {
+  Table(const SweepFolder& folder, const RowLayout& layout) : npy_(folder.path() / "rows.npy") {
     const std::string header = npy_header(layout, folder.identity().rows);
-    add_bytes(header.data(), header.size());
+    add(std::as_bytes(std::span(header)));
   }
 
-  void add(std::span<const std::byte> rows) {
-    add_bytes(rows.data(), rows.size());
-    parquet_.add(rows);
+  void add(std::span<const std::byte> bytes) {
+    npy_.write(bytes.data(), bytes.size());
+    hash_.add(bytes.data(), bytes.size());
   }
 
-  // Writes the manifest, and gives all three files their names.
+  // Writes the manifest, and gives both files their names.
   void commit(const SweepFolder& folder, const RowLayout& layout,
               const std::vector<std::string>& checksums) {
-    parquet_.finish();
     OutputFile manifest(folder.path() / "manifest.json");
     const std::string text = manifest_of(folder.identity(), layout, checksums, hash_.text());
     manifest.write(text.data(), text.size());
-    const std::array<OutputFile*, 3> files = {&npy_, &parquet_file_, &manifest};
+    const std::array<OutputFile*, 2> files = {&npy_, &manifest};
     OutputFile::commit_all(files);
   }
 
  private:
-  void add_bytes(const void* data, std::size_t bytes) {
-    npy_.write(data, bytes);
-    hash_.add(data, bytes);
-  }
-
-  OutputFile npy_, parquet_file_;
+  OutputFile npy_;
   ContentHash hash_;
-  ParquetWriter parquet_;
 };
 
-// Reads the rows of a part, and compares its header, its numbers and its checksum.
+// Reads the rows of a part into the table. Compares the part's header, row numbers and checksum.
 void merge_part(const SweepFolder& folder, const RowLayout& layout, std::uint64_t part,
-                const std::string& checksum, Tables& tables,
+                const std::string& checksum, Table& table,
                 const std::function<void(std::uint64_t rows)>& proceed) {
   const std::uint64_t rows = folder.identity().rows_of(part);
   const std::string header = npy_header(layout, rows);
@@ -82,7 +71,7 @@ void merge_part(const SweepFolder& folder, const RowLayout& layout, std::uint64_
         fail_damaged(folder, part);
       }
     }
-    tables.add(block);
+    table.add(block);
     done += count;
     proceed(part * folder.identity().rows_per_part + done);
   }
@@ -109,11 +98,11 @@ MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
     if (!proceed || proceed(static_cast<double>(rows) / static_cast<double>(all))) return;
     throw Error(ErrorCode::kCancelled, "the merge was ended by its caller");
   };
-  Tables tables(folder, layout);
+  Table table(folder, layout);
   for (std::uint64_t part = 0; part < parts; ++part) {
-    merge_part(folder, layout, part, checksums[part], tables, go_on);
+    merge_part(folder, layout, part, checksums[part], table, go_on);
   }
-  tables.commit(folder, layout, checksums);
+  table.commit(folder, layout, checksums);
   result.rows = all;
   return result;
 }

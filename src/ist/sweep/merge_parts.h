@@ -16,14 +16,15 @@ struct MergeResult {
   [[nodiscard]] bool whole() const noexcept { return missing.empty() && given_up.empty(); }
 };
 
-/// Merges the parts of a folder into rows.npy and rows.parquet, with the checksums of all parts and
-/// of rows.npy in manifest.json: all three or none. Where a part lacks nothing is written.
+/// Merges the parts of a folder into rows.npy. Writes the checksums of all parts and of rows.npy
+/// to manifest.json. Writes both files, or none. Writes nothing if a part is missing or given up.
 ///
-/// @param proceed asked at each block of 64 KiB rows; false throws kCancelled, and leaves no file
+/// @param proceed called after each 65536 rows. If it returns false, the merge throws kCancelled
+///        and leaves no file
 ///
-/// Throws kInputInvalid for a part of another sweep, for one that is damaged, and for a folder that
-/// the user may not write to; UnwritableFile.
-/// Memory: 40 MB, 200 bytes a part, and for each 131072 rows 60 bytes a column.
+/// Throws kInputInvalid if a part is damaged or belongs to another sweep, and if the user may not
+/// write to the folder; UnwritableFile.
+/// Memory: 10 MB, and 200 bytes a part.
 MergeResult merge_parts(const SweepFolder& folder, const RowLayout& layout,
                         const Proceed& proceed = {});
 

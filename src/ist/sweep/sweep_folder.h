@@ -41,7 +41,8 @@ struct PartStatus {
 ///     part-000017.npy        the rows of a part: there and whole, or not there
 ///     part-000017.json       its checksum, and the seconds that it took
 ///     part-000017.start-1    somebody began the part and has not ended it
-///     rows.npy, rows.parquet, manifest.json      the merged table, and the checksums
+///     rows.npy               all rows, after a merge
+///     manifest.json          what sweep.json holds, and the checksums of all parts
 ///
 /// No file holds a path. Any number of processes on any machines may work in one folder at a time.
 class SweepFolder {

@@ -117,11 +117,11 @@ class Sweep(Handle):
         return SweepPart(number, outcome, result.rows, result.seconds)
 
     def merge(self, folder=None, *, progress=None):
-        """Merges the parts into the table of all rows: rows.npy, rows.parquet and manifest.json of the folder.
+        """Merges the parts into rows.npy of the folder, the table of all rows, and writes all checksums to manifest.json.
 
-        While a part is missing, or given up, nothing is written, and the answer names such parts. progress: called with the
-        share that is done; what it raises ends the call. Raises InputError for a part that is damaged. Cost: that of reading
-        and writing.
+        If a part is missing or given up, nothing is written, and the answer names such parts. progress: called with the
+        share that is done; if it raises an exception, the call ends with it. Raises InputError if a part is damaged. Cost: the
+        time to read and write all rows.
         """
         place, result = self._place(folder), MergeResult()
         while True:
