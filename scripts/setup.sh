@@ -28,7 +28,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhwy-dev libfmt-dev libxxhash-dev libtomlplusplus-dev zlib1g-dev
-  libcli11-dev nlohmann-json3-dev libpng-dev
+  libcli11-dev nlohmann-json3-dev libpng-dev help2man
   libassimp-dev libzip-dev libpugixml-dev libseccomp-dev)
 tests=(libgtest-dev libgmp-dev python3 python3-numpy locales git dpkg-dev)
 bench=(libbenchmark-dev python3-matplotlib)

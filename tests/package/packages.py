@@ -151,7 +151,7 @@ class Packages(Installed, Pages):
 
     def Debian(self):
         """The packages, in a root that holds what they depend on and nothing else."""
-        need("pkg-config", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file")
+        need("pkg-config", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "help2man")
         folder = self.fresh("debian")
         run("cpack", "--config", self.build / "CPackConfig.cmake", "-B", folder / "packages")
         root = CleanRoot(folder / "root", (folder / "packages").glob("*.deb"))
@@ -185,7 +185,7 @@ class Packages(Installed, Pages):
 
     def Lintian(self):
         """Debian's checker has nothing to say of the packages, but for what src/package/lintian argues."""
-        need("lintian", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "pkg-config")
+        need("lintian", "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "pkg-config", "help2man")
         packages = sorted((self.work / "debian/packages").glob("*.deb"))
         require(len(packages) == 4, f"the packages are {packages}")
         said = run("lintian", "--allow-root", "--tag-display-limit", "0", "--display-info", "--pedantic", "--fail-on",

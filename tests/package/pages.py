@@ -8,7 +8,9 @@ import subprocess
 
 from checks import need, require, run
 
-SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "EXIT STATUS", "SEE ALSO"]
+SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "EXAMPLES", "SEE ALSO"]
+# help2man breaks no line, and names the month alone.
+ACCEPTED = ["STYLE: input text line longer than 80 bytes", "WARNING: cannot parse date, using it verbatim"]
 # Asks the completion without a terminal: prints what it offers, a line each, and what it asks of readline.
 ASK = """source "$1"; shift
 compopt() { echo "compopt $*"; }
@@ -49,36 +51,35 @@ class Pages:
         return sorted((self.prefix / "share/man/man1").iterdir())
 
     def ManPages(self):
-        """Each subcommand has one, and each option of --help is an entry there, with its choices."""
+        """Each subcommand has one, and each option of --help is an entry there, with its value."""
+        need("help2man")
         helps = self.helps()
         names = sorted(["ist.1", *(f"ist-{name}.1" for name in helps if name != "ist")])
         require([page.name for page in self.man_pages()] == names, f"the pages are {self.man_pages()}")
         for name, told in helps.items():
             page = self.prefix / "share/man/man1" / ("ist.1" if name == "ist" else f"ist-{name}.1")
-            text = page.read_text().replace("\\-", "-")
-            sections = re.findall(r'^\.SH "(.*)"$', text, re.M)
+            text = re.sub(r"\\f(\(CW|.)|\\[,/]", "", page.read_text().replace("\\-", "-"))
+            sections = re.findall(r'^\.SH "?(.*?)"?$', text, re.M)
             require(sections == SECTIONS, f"{page} has the sections {sections}")
             entries = {}
-            for heading in re.findall(r"^\.TP\n(.*)$", text.split('.SH "OPTIONS"')[1], re.M):
-                for spelling in re.findall(r"(?:^|, )\\fB(-[\w-]+)\\fR", heading):
-                    entries[spelling] = heading
+            for spellings, rest in re.findall(r"^\.TP\n(-[\w-]+(?:, -[\w-]+)*)(.*)$", text.split(".SH OPTIONS\n")[1], re.M):
+                entries.update({spelling: rest for spelling in spellings.split(", ")})
             require(entries.keys() == told.values.keys(), f"{page} has {set(entries) ^ set(told.values)} alone, or lacks it")
             for spelling, value in told.values.items():
                 require(not value.startswith("TEXT") or choices_of(value),
                         f"ist {name} {spelling}: type_name() has to say whether its text is a FILE")
-                shown = "|".join(f"\\fB{choice}\\fR" for choice in choices_of(value))
-                require(shown in entries[spelling] and (value == "") == (" " not in entries[spelling].split(", ")[-1]),
-                        f"{page} shows {spelling} {value} as {entries[spelling]}")
+                shown = entries[spelling].replace("Excludes:", "Needs:").split(" Needs:")[0]
+                require(shown.startswith(f" {value}") if value else not shown, f"{page} shows {spelling} {value} as{shown}")
             for argument in told.arguments:
-                require(f".TP\n\\fI{argument}\\fR\n" in text, f"{page} lacks {argument}")
-            examples = re.findall(r"^\.EX\n(.*)\n\.EE$", text, re.M)
+                require(f".TP\n{argument} FILE" in text, f"{page} lacks {argument}")
+            examples = re.findall(r"^\$ (.*)$", text, re.M)
             require(examples and all(example.startswith("ist ") for example in examples), f"{page} has no examples")
             require(name == "ist" or all(example in told.text for example in examples), f"{page} shows {examples}")
             require("medical device" in text and "avx" not in text, f"{page} lacks the purpose, or tells of this machine")
 
     def ManPagesAreClean(self):
-        """groff, mandoc and apropos find nothing to say against them."""
-        need("man", "mandoc", "lexgrog")
+        """groff and apropos find nothing to say against them, and mandoc nothing but what is accepted."""
+        need("help2man", "man", "mandoc", "lexgrog")
         plain = {**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"}
         for page in self.man_pages():
             said = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", page], capture_output=True, text=True,
@@ -86,7 +87,8 @@ class Pages:
             require(said.returncode == 0 and said.stderr == "", f"man of {page}:\n{said.stderr}")
             require(all(re.search(rf"^{section}$", said.stdout, re.M) for section in SECTIONS), said.stdout)
             lint = subprocess.run(["mandoc", "-T", "lint", page], capture_output=True, text=True, check=False)
-            require(lint.returncode == 0 and lint.stdout == "", f"mandoc of {page}:\n{lint.stdout}")
+            said = [line for line in lint.stdout.splitlines() if not any(each in line for each in ACCEPTED)]
+            require(not said, f"mandoc of {page}:\n{lint.stdout}")
             require(f'"{page.stem} - ' in run("lexgrog", page), f"apropos would not find {page}")
 
     def completed(self, *words):

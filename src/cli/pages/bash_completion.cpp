@@ -11,7 +11,7 @@ namespace {
 // Patterns of `case` by what stands in their branch.
 using Branches = std::map<std::string, std::vector<std::string>>;
 
-// Files are left to bash, which completes them where the function finds nothing.
+// Bash completes files itself if the function finds nothing.
 constexpr const char* kFiles = "return";
 // Nobody can complete a number.
 constexpr const char* kNothing = "compopt +o default\n      return";
@@ -21,22 +21,19 @@ std::string choose(const std::vector<std::string>& choices) {
 }
 
 bool is_of_files(const OptionView& option) {
-  return option.value == "file" || option.value == "folder";
+  return option.value == "FILE" || option.value == "FOLDER";
 }
 
 Branches values_of(const std::vector<CommandView>& subcommands) {
   Branches branches;
   for (const CommandView& each : subcommands) {
-    for (const OptionGroup& group : each.groups) {
-      for (const OptionView& option : group.options) {
-        if (option.value.empty()) continue;
-        std::vector<std::string>& patterns =
-            branches[!option.choices.empty() ? choose(option.choices)
-                     : is_of_files(option)   ? kFiles
-                                             : kNothing];
-        for (const std::string& spelling : option.spellings) {
-          patterns.push_back(each.name + ":" + spelling);
-        }
+    for (const OptionView& option : each.options) {
+      if (option.value.empty()) continue;
+      std::vector<std::string>& patterns = branches[!option.choices.empty() ? choose(option.choices)
+                                                    : is_of_files(option)   ? kFiles
+                                                                            : kNothing];
+      for (const std::string& spelling : option.spellings) {
+        patterns.push_back(each.name + ":" + spelling);
       }
     }
   }
@@ -45,10 +42,8 @@ Branches values_of(const std::vector<CommandView>& subcommands) {
 
 std::vector<std::string> spellings_of(const CommandView& command) {
   std::vector<std::string> spellings;
-  for (const OptionGroup& group : command.groups) {
-    for (const OptionView& option : group.options) {
-      spellings.insert(spellings.end(), option.spellings.begin(), option.spellings.end());
-    }
+  for (const OptionView& option : command.options) {
+    spellings.insert(spellings.end(), option.spellings.begin(), option.spellings.end());
   }
   return spellings;
 }
@@ -93,9 +88,8 @@ std::string bash_completion(const CommandView& command, const std::vector<Comman
   for (const auto& [body, patterns] : values_of(subcommands)) script += branch(patterns, body);
   for (const CommandView& each : subcommands) {
     const std::string options = choose(spellings_of(each));
-    const bool files = !each.arguments.empty();
     script += branch({each.name + ":*"},
-                     files ? "[[ $word == -* ]] || return\n      " + options : options);
+                     each.takes_files ? "[[ $word == -* ]] || return\n      " + options : options);
   }
   return script + kEnd;
 }

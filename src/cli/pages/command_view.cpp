@@ -1,64 +1,34 @@
 #include "cli/pages/command_view.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <sstream>
-#include <string_view>
 
 namespace ist::cli {
 namespace {
 
-// The text between two words, such as the choices in TEXT:{lps,ras}; empty where they are not.
-std::string between(const std::string& text, std::string_view open, std::string_view close) {
-  const std::size_t begin = text.find(open);
-  if (begin == text.npos) return {};
-  const std::size_t end = text.find(close, begin);
-  return text.substr(begin + open.size(), end - begin - open.size());
-}
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
-
-// CLI11 names C++ types: FLOAT:FLOAT in [1 - 10].
-std::string value_name(const std::string& type) {
-  std::string name = type.substr(0, type.find(':'));
-  if (name == "FLOAT" || name == "INT" || name == "UINT") return "number";
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return name;
+// Returns the words in TEXT:{lps,ras}; none if the type has no braces.
+std::vector<std::string> choices_of(const std::string& type) {
+  std::vector<std::string> choices;
+  const std::size_t open = type.find('{');
+  if (open == type.npos) return choices;
+  std::istringstream stream(type.substr(open + 1, type.find('}', open) - open - 1));
+  for (std::string each; std::getline(stream, each, ',');) choices.push_back(each);
+  return choices;
 }
 
 OptionView option_view(const CLI::Option& option) {
   OptionView view;
-  view.is_argument = option.get_positional();
-  if (view.is_argument) view.spellings = {option.get_name()};
   for (const std::string& name : option.get_snames()) view.spellings.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) view.spellings.push_back("--" + name);
-  view.description = option.get_description();
-  view.required = option.get_required();
-  for (const CLI::Option* other : option.get_excludes()) {
-    view.excluded.push_back(other->get_name());
-  }
-  std::sort(view.excluded.begin(), view.excluded.end());  // CLI11 keeps them by address
   if (option.get_items_expected_max() == 0) return view;
   const std::string type = option.get_type_name();
-  view.value = value_name(type);
-  view.choices = split(between(type, "{", "}"));
-  view.range = between(type, " in [", "]");
-  if (const std::size_t dash = view.range.find(" - "); dash != view.range.npos) {
-    view.range.replace(dash, 3, " to ");
-  }
-  const std::string words = option.get_default_str();  // of a list [simd]
-  view.default_value = words.starts_with('[') ? between(words, "[", "]") : words;
+  view.value = type.substr(0, type.find(':'));
+  view.choices = choices_of(type);
   return view;
 }
 
-// A footer is lines of notes, paragraphs apart, and "Examples: ist …" with more of them indented.
+// Splits a footer into paragraphs of notes and examples. The first example stands behind
+// "Example: " or "Examples: ", and each other one in an indented line.
 void add_footer(const std::string& footer, CommandView& view) {
   std::istringstream stream(footer);
   bool begins = true;
@@ -83,15 +53,15 @@ void add_footer(const std::string& footer, CommandView& view) {
 CommandView command_view(const CLI::App& command) {
   CommandView view;
   view.name = command.get_name();
-  view.description = command.get_description();
   for (const std::string& title : command.get_groups()) {
-    OptionGroup group{title, {}};
     for (const CLI::Option* option : command.get_options()) {
       if (option->get_group() != title) continue;
-      OptionView each = option_view(*option);
-      (each.is_argument ? view.arguments : group.options).push_back(std::move(each));
+      if (option->get_positional()) {
+        view.takes_files = true;
+      } else {
+        view.options.push_back(option_view(*option));
+      }
     }
-    view.groups.push_back(std::move(group));
   }
   if (const CLI::App* parent = command.get_parent(); parent != nullptr) {
     const std::string footer = command.get_footer();

@@ -7,34 +7,23 @@
 
 namespace ist::cli {
 
-/// The description of an option, or of a positional argument.
+/// The description of an option.
 struct OptionView {
-  std::vector<std::string> spellings;  ///< such as -o and --output; of an argument its name alone
-  std::string value;                   ///< such as file; empty for a flag
+  std::vector<std::string> spellings;  ///< such as -o and --output
+  std::string value;                   ///< such as FILE; empty for a flag
   std::vector<std::string> choices;    ///< the only values, if the set is fixed
-  std::string range;                   ///< such as 1 to 2; empty: any
-  std::string default_value;
-  std::vector<std::string> excluded;  ///< options that it does not go with, by name
-  std::string description;
-  bool is_argument = false, required = false;
-};
-
-struct OptionGroup {
-  std::string title;
-  std::vector<OptionView> options;
 };
 
 /// The description of the command or of a subcommand.
 struct CommandView {
-  std::string name;         ///< such as collide; ist for the command itself
-  std::string description;  ///< begins with a capital, and has no full stop
-  std::vector<OptionView> arguments;
-  std::vector<OptionGroup> groups;
-  std::vector<std::string> notes;  ///< paragraphs
+  std::string name;                 ///< such as collide; ist for the command itself
+  std::vector<OptionView> options;  ///< in the order of the help
+  bool takes_files = false;         ///< as arguments without an option
+  std::vector<std::string> notes;   ///< the help's last paragraphs, without the examples
   std::vector<std::string> examples;
 };
 
-/// Returns the view of a command, by the same description from which CLI11 prints --help.
+/// Returns the view of a command, from the same description as its help.
 [[nodiscard]] CommandView command_view(const CLI::App& command);
 
 }  // namespace ist::cli
