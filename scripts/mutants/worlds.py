@@ -28,7 +28,7 @@ MUTANTS = [
            [(WORLD + "world_state.cpp", "if (table[pair] == PairTable::kIgnored) return false;", "")],
            ["world_test World.NeverLooksAtAPairThatIsIgnored:WorldDistance.*"]),
     Mutant("a-budget-for-each-pair", "each pair of a world may spend the whole budget",
-           [(WORLD + "not_asked.h", "budget.tests - std::min(budget.tests, spent)", "budget.tests")],
+           [(WORLD + "world_answers.cpp", "BudgetMeter(budget, all.sphere_tests).rest()", "budget")],
            ["world_test WorldBudget.*"]),
     Mutant("late-pairs-asked", "pairs are asked after the deadline too",
            [(WORLD + "world_answers.cpp", "at.near.status != QueryStatus::kDone || budget.is_past()",

@@ -230,6 +230,65 @@ TEST(BudgetMeter, AllowsWhatIsLeft) {
   EXPECT_EQ(BudgetMeter({.tests = 7, .deadline = start + std::chrono::hours(1)}).allow(), 7u);
 }
 
+TEST(BudgetMeter, LeavesABudgetOfTheRest) {
+  const auto deadline = Budget::Clock::time_point(std::chrono::seconds(1));
+  BudgetMeter meter({.tests = 1000, .deadline = deadline, .now = FakeClock::now}, 100);
+  EXPECT_EQ(meter.rest().tests, 900u);
+  EXPECT_EQ(meter.rest().deadline, deadline);
+  EXPECT_EQ(meter.rest().now, &FakeClock::now);
+  meter.spend(2000);
+  EXPECT_EQ(meter.rest().tests, 0u);
+  EXPECT_FALSE(BudgetMeter({}, 100).rest().is_limited());
+  EXPECT_EQ(Budget{.tests = 7}.within(9).tests, 7u);
+  EXPECT_EQ(Budget{}.within(9).tests, 9u);
+}
+
+TEST(BudgetMeter, WithoutLimitsAllowsAllAndReadsNoClock) {
+  FakeClock::looks = 0;
+  BudgetMeter meter({.now = FakeClock::now});
+  EXPECT_FALSE(meter.is_limited());
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(meter.allows(1'000'000'000));
+    meter.spend(1'000'000'000);
+  }
+  EXPECT_EQ(FakeClock::looks, 0u);
+}
+
+TEST(BudgetMeter, OfTestsAllowsNoMore) {
+  BudgetMeter meter({.tests = 100}, 10);
+  EXPECT_TRUE(meter.allows(90));
+  EXPECT_FALSE(meter.allows(91));
+  meter.spend(90);
+  EXPECT_TRUE(meter.allows(0));
+  EXPECT_FALSE(meter.allows(1));
+  EXPECT_EQ(meter.spent(), 100u);
+}
+
+TEST(BudgetMeter, OfTimeReadsTheClockAtLeastEvery500Tests) {
+  BudgetMeter meter(LateClock::budget_of(3));
+  std::uint64_t unwatched = 0;
+  while (meter.allows(16)) {
+    meter.spend(16);
+    unwatched += 16;
+    ASSERT_LE(unwatched,
+              (static_cast<std::uint64_t>(LateClock::looks) + 1) * BudgetMeter::kUnwatchedTests);
+  }
+  EXPECT_EQ(LateClock::looks, 4);
+}
+
+TEST(BudgetMeter, HasOneRuleForTheClock) {
+  FakeClock::looks = 0;
+  BudgetMeter meter(
+      {.deadline = Budget::Clock::time_point(std::chrono::seconds(1)), .now = FakeClock::now});
+  EXPECT_EQ(meter.allow(), 500u);
+  EXPECT_EQ(FakeClock::looks, 1u);
+  meter.spend(300);
+  EXPECT_TRUE(meter.allows(199));
+  EXPECT_EQ(FakeClock::looks, 1u);
+  EXPECT_TRUE(meter.allows(200));
+  EXPECT_EQ(FakeClock::looks, 2u);
+}
+
 TEST(WithinABudget, AnInvalidPoseIsAStatus) {
   const Scene& scene = solids()[0];
   Query query(scene.fixed, scene.moving, options_of(SpherePolicy::kTable));

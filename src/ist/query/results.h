@@ -12,23 +12,23 @@
 
 namespace ist {
 
-/// The limits of one query: one contract for every verb that takes them.
+/// The limits of one query. They mean the same for every verb that takes them.
 ///
-/// A search never makes more tests than allowed, but for the test of the roots, which is always
-/// made. With a deadline it reads the clock at least every 500 tests, every 512 leaf pairs, and
-/// every 2,048 pairs of a front whose rows were turned, some 3 ns each, and ends at the first look
-/// after the deadline. The result of a search that ended early holds what the tests so far tell:
-/// of bounds the level and the interval of the distance, of triangles the pairs, or the interval
-/// that was asked for. With a limit of tests alone the answer is the same
-/// on every machine and in every run; a limit of as many tests as a deadline allowed ends the
-/// search at the same place, but for an answer from kept pairs: where a deadline ended it, it holds
-/// none.
+/// A search never makes more tests than allowed, except for the root test, which it always makes.
+/// If there is a deadline, it reads the clock at least every 500 tests, every 512 leaf pairs, and
+/// every 2,048 kept pairs, some 3 ns each. It ends at the first look after the deadline.
+///
+/// A search that ended early returns its findings so far: for bounds the level and an interval of
+/// the distance, for triangles the pairs or the interval. If only tests are limited, the answer is
+/// the same on every machine and in every run. If a deadline ended a search, a limit of as many
+/// tests ends it at the same place. An answer from kept pairs is an exception: if a deadline ended
+/// it, the answer holds no pairs.
 struct Budget {
   /// The clock that deadlines are times of.
   using Clock = std::chrono::steady_clock;
 
-  /// The most pairs of bounds to test. Of clusters of triangles, a pair whose triangles are
-  /// compared counts as 16 more.
+  /// The most pairs of bounds to test. A pair of triangle clusters counts as 16 more if its
+  /// triangles are compared.
   std::uint64_t tests = std::numeric_limits<std::uint64_t>::max();
   /// The time at which the search ends; time_point::max(): never.
   Clock::time_point deadline = Clock::time_point::max();
@@ -43,8 +43,12 @@ struct Budget {
   [[nodiscard]] bool has_deadline() const noexcept { return deadline != Clock::time_point::max(); }
   /// Whether anything is limited.
   [[nodiscard]] bool is_limited() const noexcept { return has_tests() || has_deadline(); }
-  /// Returns whether the deadline has passed. Reads the clock only where there is a deadline.
+  /// Returns whether the deadline has passed. Reads the clock only if there is a deadline.
   [[nodiscard]] bool is_past() const noexcept { return has_deadline() && now() >= deadline; }
+  /// Returns this budget with a limit of at most `most` tests.
+  [[nodiscard]] Budget within(std::uint64_t most) const noexcept {
+    return {most < tests ? most : tests, deadline, now};
+  }
 };
 
 /// The distance between two surfaces lies in [lower, upper], mesh units. Both ends are finite: a

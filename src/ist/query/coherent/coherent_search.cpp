@@ -106,10 +106,7 @@ CoherentSearch::FrontAt CoherentSearch::find(const RelativePose& pose, double ma
     at_once_ = true;
   }
   const std::uint64_t before = search_.tests();
-  Budget rest;
-  rest.deadline = budget.deadline;
-  rest.now = budget.now;
-  search_.advance(rest);
+  search_.advance(budget);
   found.tests = search_.tests() - before;
   give_up_where_full();
   if (adopt(pose, need)) answer_from_kept();
@@ -176,11 +173,7 @@ void CoherentSearch::prepare(const RelativePose& pose, double margin, std::uint6
   if (search_.state() == State::kNone) want_next(pose, need);
   if (search_.state() != State::kUnderWay) return;
   if (worker_ && worker_->offer(job_)) return;
-  Budget slice;
-  slice.tests = FrontSchedule::slice(search_tests_, tests > 0);
-  slice.deadline = budget.deadline;
-  slice.now = budget.now;
-  search_.advance(slice);
+  search_.advance(budget.within(FrontSchedule::slice(search_tests_, tests > 0)));
 }
 
 template <class Sink>

@@ -42,11 +42,12 @@ class CoherentSearch {
     double motion = 0;             ///< since the front's centre, mesh units
     double upper = 0;              ///< of an empty one: bounds the distance, mesh units
   };
-  /// Begins a tick, at a pose where bounds no farther apart than `margin` count.
+  /// Begins a tick, at a pose where bounds no farther apart than `margin` count. The budget must
+  /// have no limit of tests.
   [[nodiscard]] FrontAt find(const RelativePose& pose, double margin,
                              const Budget& budget) noexcept;
   /// Ends a tick that had an answer, found by as many tests of a search: goes on with the next
-  /// front.
+  /// front. The budget must have no limit of tests.
   void prepare(const RelativePose& pose, double margin, std::uint64_t leaf_pairs,
                std::uint64_t tests, const Budget& budget) noexcept;
 

@@ -52,10 +52,8 @@ void FrontSearch::begin(Front& front, const Wanted& wanted) noexcept {
 
 FrontSearch::State FrontSearch::advance(const Budget& budget) noexcept {
   if (state_ != State::kUnderWay) return state_;
-  Budget part = budget;
   const std::uint64_t left = wanted_.most_tests - std::min(wanted_.most_tests, tests_);
-  part.tests = std::min(part.tests, left);
-  Keeper keeper(wanted_.pose, wanted_.measured, *front_, bounds_, BudgetMeter(part));
+  Keeper keeper(wanted_.pose, wanted_.measured, *front_, bounds_, BudgetMeter(budget.within(left)));
   const bool whole = begun_ ? search_.resume(keeper) : search_.begin(keeper);
   begun_ = true;
   tests_ += keeper.tests();

@@ -43,16 +43,16 @@ void ClusterSearch::begin(const ClusterPose& pose) noexcept {
 
 // Lists the lanes that are near some of the nodes.
 bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, LaneNodes nodes,
-                              float reach, ClusterBudget& budget, LaneNodes& found) noexcept {
+                              float reach, BudgetMeter& meter, LaneNodes& found) noexcept {
   bool allowed = true;
   std::size_t k = 0;
   for (; k < nodes.count; k += kPart) {
     const LaneNodes part = nodes.part(k, kPart);
-    allowed = budget.allows(lanes * part.count);
+    allowed = meter.allows(lanes * part.count);
     if (!allowed) break;
     kernels_.meet_nodes(step.turned, lanes, fixed_at(fixed_level), part, reach,
                         step.bits.data() + k);
-    budget.spend(lanes * part.count);
+    meter.spend(lanes * part.count);
   }
   if (!allowed) std::fill_n(step.bits.data(), nodes.count, (1U << lanes) - 1);  // all are left
   found = {step.near.data(), kernels_.list_lanes(nodes, step.bits.data(), step.near.data())};
@@ -62,17 +62,17 @@ bool ClusterSearch::find_near(Step& step, std::uint32_t lanes, int fixed_level, 
 
 // Lists the children that may be near the lanes of their parents.
 bool ClusterSearch::find_children(Step& step, int level, LaneNodes parents, float reach,
-                                  ClusterBudget& budget, LaneNodes& found) const noexcept {
+                                  BudgetMeter& meter, LaneNodes& found) const noexcept {
   const FixedNodes children = fixed_at(level);
   found = {step.deeper.data(), 0};
-  const std::size_t most = budget.is_limited() ? kPart : parents.count;
+  const std::size_t most = meter.is_limited() ? kPart : parents.count;
   for (std::size_t k = 0; k < parents.count; k += most) {
     const LaneNodes part = parents.part(k, most);
     const std::uint64_t tests = children.children_of(part);
-    if (!budget.allows(tests)) return false;
+    if (!meter.allows(tests)) return false;
     found.count += kernels_.meet_children(step.turned, children, part, reach,
                                           step.deeper.data() + found.count);
-    budget.spend(tests);
+    meter.spend(tests);
   }
   return true;
 }

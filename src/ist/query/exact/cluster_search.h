@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ist/mesh/clusters/triangle_clusters.h"
-#include "ist/query/exact/cluster_budget.h"
+#include "ist/query/traversal/budget_meter.h"
 #include "simd/exact/cluster_step.h"
 
 namespace ist {
@@ -20,32 +20,37 @@ struct ClusterTask {
 };
 
 /// A traversal of two trees of clusters, depth first: one moving node after the other, each with
-/// all fixed nodes of its level that may be near it. Where the fixed tree is deeper, its upper
-/// levels come first; where the moving tree is, its own.
+/// all fixed nodes of its level that may be near it. The upper levels of the deeper tree come
+/// first.
 ///
-/// A visitor says what is looked for:
+/// A visitor decides on the purpose:
 ///
-///     float reach() const                 what is farther apart is not looked for; may shrink
+///     float reach() const                 leaves out pairs that are farther apart; may shrink
 ///     bool visit(const ClusterPairs&)     compares the triangles; false ends the search
 ///     bool kMostFirst                     begin with the children that may meet most nodes
 ///     bool kMeasuresRest                  nearest_left() is asked for
 ///     bool take(const ClusterTask&)       instead of visit(), for later; false ends the search
+///
+/// A meter counts one test for each pair of bounds, and kClusterTests for each pair of clusters
+/// whose triangles are compared.
 class ClusterSearch {
  public:
+  static constexpr std::uint64_t kClusterTests = 16;
+
   /// Reserves all memory: 80 bytes for each fixed cluster. Holds references to both trees.
   ClusterSearch(const TriangleClusters& fixed, const TriangleClusters& moving,
                 const ClusterKernels& kernels);
 
   /// Sets the pose.
   void begin(const ClusterPose& pose) noexcept;
-  /// Searches from the roots. Returns false where the budget or the visitor ended the search.
+  /// Searches from the roots. Returns false if the budget or the visitor ended the search.
   template <class Visitor>
-  bool run(ClusterBudget& budget, Visitor& visitor) noexcept;
+  bool run(BudgetMeter& meter, Visitor& visitor) noexcept;
 
   /// Goes on with a task that another search was given at the same pose.
   template <class Visitor>
-  bool run(const ClusterTask& task, ClusterBudget& budget, Visitor& visitor) noexcept {
-    return descend(1, task.moving, task.fixed_level, task.nodes, budget, visitor);
+  bool run(const ClusterTask& task, BudgetMeter& meter, Visitor& visitor) noexcept {
+    return descend(1, task.moving, task.fixed_level, task.nodes, meter, visitor);
   }
 
   /// The clusters, at the pose.
@@ -87,15 +92,15 @@ class ClusterSearch {
   }
   template <class Visitor>
   bool descend(int moving_level, std::uint32_t moving, int fixed_level, LaneNodes nodes,
-               ClusterBudget& budget, Visitor& visitor) noexcept;
+               BudgetMeter& meter, Visitor& visitor) noexcept;
   template <class Visitor>
   bool go_deeper(Step& step, int moving_level, std::uint32_t first, int fixed_level,
-                 LaneNodes pairs, ClusterBudget& budget, Visitor& visitor) noexcept;
+                 LaneNodes pairs, BudgetMeter& meter, Visitor& visitor) noexcept;
   template <class Visitor>
-  bool compare(const ClusterPairs& clusters, ClusterBudget& budget, Visitor& visitor) noexcept;
+  bool compare(const ClusterPairs& clusters, BudgetMeter& meter, Visitor& visitor) noexcept;
   bool find_near(Step& step, std::uint32_t lanes, int fixed_level, LaneNodes nodes, float reach,
-                 ClusterBudget& budget, LaneNodes& found) noexcept;
-  bool find_children(Step& step, int level, LaneNodes parents, float reach, ClusterBudget& budget,
+                 BudgetMeter& meter, LaneNodes& found) noexcept;
+  bool find_children(Step& step, int level, LaneNodes parents, float reach, BudgetMeter& meter,
                      LaneNodes& found) const noexcept;
   static Groups by_lanes(LaneNodes pairs, bool most_first) noexcept;
   void leave(const Step& step, int fixed_level, LaneNodes pairs) noexcept;
@@ -109,7 +114,7 @@ class ClusterSearch {
 };
 
 template <class Visitor>
-bool ClusterSearch::run(ClusterBudget& budget, Visitor& visitor) noexcept {
+bool ClusterSearch::run(BudgetMeter& meter, Visitor& visitor) noexcept {
   measures_rest_ = Visitor::kMeasuresRest;
   nearest_left_ = std::numeric_limits<double>::infinity();
   // Above its root the moving tree has a node of one child.
@@ -120,20 +125,20 @@ bool ClusterSearch::run(ClusterBudget& budget, Visitor& visitor) noexcept {
   top.near[0] = 0;
   while (level > moving_.root_level()) {
     LaneNodes children{};
-    if (!find_children(top, --level, nodes, visitor.reach(), budget, children)) {
+    if (!find_children(top, --level, nodes, visitor.reach(), meter, children)) {
       leave(top, level + 1, nodes);
       return false;
     }
     std::copy_n(children.codes, children.count, top.near.begin());
     nodes.count = children.count;
   }
-  return descend(moving_.root_level(), 0, level, nodes, budget, visitor);
+  return descend(moving_.root_level(), 0, level, nodes, meter, visitor);
 }
 
-// Goes on with the children of a moving node, and those of `nodes` that they may be near.
+// Goes on with the children of a moving node, and with the `nodes` that they may be near.
 template <class Visitor>
 bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_level,
-                            LaneNodes nodes, ClusterBudget& budget, Visitor& visitor) noexcept {
+                            LaneNodes nodes, BudgetMeter& meter, Visitor& visitor) noexcept {
   if (nodes.count == 0) return true;
   if constexpr (requires(ClusterTask task) { visitor.take(task); }) {
     if (moving_level == 1) return visitor.take({moving, fixed_level, nodes});
@@ -142,13 +147,12 @@ bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_le
   const std::uint32_t lanes = moving_.child_count(moving_level - 1, moving);
   kernels_.turn_nodes(moving_.bounds(moving_level - 1)[moving], step_.pose, step.turned);
   LaneNodes near{};
-  if (!find_near(step, lanes, fixed_level, nodes, visitor.reach(), budget, near)) return false;
+  if (!find_near(step, lanes, fixed_level, nodes, visitor.reach(), meter, near)) return false;
   const auto go_on = [&](LaneNodes some) {
-    return go_deeper(step, moving_level, kClusterWidth * moving, fixed_level, some, budget,
-                     visitor);
+    return go_deeper(step, moving_level, kClusterWidth * moving, fixed_level, some, meter, visitor);
   };
   if (!Visitor::kMostFirst || moving_level == 1 || near.count == 0) return go_on(near);
-  // The lane near most nodes goes alone, and all others then at once, which is faster.
+  // The lane near most nodes goes alone, and all others follow at once. This is faster.
   const LaneNodes first = by_lanes(near, true).pairs[0];
   const auto before = static_cast<std::size_t>(first.codes - near.codes);
   const LaneNodes parts[] = {first, near.part(0, before),
@@ -161,22 +165,22 @@ bool ClusterSearch::descend(int moving_level, std::uint32_t moving, int fixed_le
   return true;
 }
 
-// Goes on with some of a moving node's children, each with the children of nodes near it where it
-// is not above these.
+// Goes on with some children of a moving node. Takes the fixed nodes one level down first, unless
+// they are below the moving one.
 template <class Visitor>
 bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first, int fixed_level,
-                              LaneNodes pairs, ClusterBudget& budget, Visitor& visitor) noexcept {
+                              LaneNodes pairs, BudgetMeter& meter, Visitor& visitor) noexcept {
   if (moving_level <= fixed_level) {
     LaneNodes deeper{};
     --fixed_level;
-    if (!find_children(step, fixed_level, pairs, visitor.reach(), budget, deeper)) {
+    if (!find_children(step, fixed_level, pairs, visitor.reach(), meter, deeper)) {
       leave(step, fixed_level + 1, pairs);
       return false;
     }
     pairs = deeper;
   }
   if constexpr (requires(ClusterPairs some) { visitor.visit(some); }) {
-    if (moving_level == 1) return compare({step.turned, first, pairs}, budget, visitor);
+    if (moving_level == 1) return compare({step.turned, first, pairs}, meter, visitor);
   }
   const Groups groups = by_lanes(pairs, Visitor::kMostFirst);
   for (std::size_t k = 0; k < groups.count; ++k) {
@@ -184,7 +188,7 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
     if (k + 1 < groups.count) {
       load_ahead(moving_.bounds(moving_level - 2)[first + groups.pairs[k + 1].lane(0)]);
     }
-    if (descend(moving_level - 1, first + group.lane(0), fixed_level, group, budget, visitor)) {
+    if (descend(moving_level - 1, first + group.lane(0), fixed_level, group, meter, visitor)) {
       continue;
     }
     while (++k < groups.count) leave(step, fixed_level, groups.pairs[k]);
@@ -195,16 +199,16 @@ bool ClusterSearch::go_deeper(Step& step, int moving_level, std::uint32_t first,
 
 // Compares the triangles of pairs of clusters.
 template <class Visitor>
-bool ClusterSearch::compare(const ClusterPairs& clusters, ClusterBudget& budget,
+bool ClusterSearch::compare(const ClusterPairs& clusters, BudgetMeter& meter,
                             Visitor& visitor) noexcept {
   const LaneNodes& all = clusters.pairs;
-  const std::size_t most = budget.is_limited() ? kPart : all.count;
+  const std::size_t most = meter.is_limited() ? kPart : all.count;
   for (std::size_t k = 0; k < all.count; k += most) {
     const LaneNodes part = all.part(k, most);
-    const std::uint64_t tests = ClusterBudget::kClusterTests * part.count;
-    bool goes_on = budget.allows(tests);
+    const std::uint64_t tests = kClusterTests * part.count;
+    bool goes_on = meter.allows(tests);
     if (goes_on) {
-      budget.spend(tests);
+      meter.spend(tests);
       goes_on = visitor.visit({clusters.lanes, clusters.moving, part});
     }
     if (!goes_on) {

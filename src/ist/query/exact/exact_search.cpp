@@ -106,24 +106,24 @@ ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   search_.begin(cluster_pose(pose));
   AllPairs<PairList> all({search_.step(), kernels_, meshes, memory_, budget}, list_);
-  ClusterBudget spent(budget, kRootTests);
+  BudgetMeter meter(budget, kRootTests);
   bool complete =
-      shared_ ? shared_->run(search_, meshes, budget, spent, all, list_) : search_.run(spent, all);
+      shared_ ? shared_->run(search_, meshes, meter, all, list_) : search_.run(meter, all);
   complete = all.finish() && complete;
   list_.finish();
   if (list_.count() > 0 && !out.empty()) met_ = {out[0].fixed, out[0].moving};
-  return {complete, spent.spent() - kRootTests};
+  return {complete, meter.spent() - kRootTests};
 }
 
 ExactSearch::Any ExactSearch::any(const ExactPose& pose, const Budget& budget) noexcept {
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   if (still_meet(meshes, budget)) return {{true, 1}, true};
   AnyPair any({search_.step(), kernels_, meshes, memory_, budget});
-  ClusterBudget spent(budget, kRootTests);
+  BudgetMeter meter(budget, kRootTests);
   search_.begin(cluster_pose(pose));
-  const bool complete = search_.run(spent, any);
+  const bool complete = search_.run(meter, any);
   if (any.found()) met_ = any.found();
-  return {{complete || any.found(), spent.spent() - kRootTests}, any.found().has_value()};
+  return {{complete || any.found(), meter.spent() - kRootTests}, any.found().has_value()};
 }
 
 ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double tolerance,
@@ -137,16 +137,16 @@ ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double toleranc
   search_.begin(cluster_pose(pose));
   NearestPair nearest({search_.step(), kernels_, meshes, memory_, budget}, tolerance, longest_edge_,
                       distance.upper);
-  ClusterBudget spent(budget, kRootTests);
+  BudgetMeter meter(budget, kRootTests);
   bool near = false;
   if (nearest_ && !budget.has_tests()) {
     nearest.measure(nearest_->ids);
     near = nearest.ids() && nearest.distance() <= kNearWitness * nearest_->distance + tolerance &&
            nearest.distance() <= kNearBodies * radii();
-    spent.spend(1);
+    meter.spend(1);
   }
-  if (!near) begin_nearest(spent, nearest);
-  bool complete = nearest.distance() == 0 || search_.run(spent, nearest);
+  if (!near) begin_nearest(meter, nearest);
+  bool complete = nearest.distance() == 0 || search_.run(meter, nearest);
   complete = complete || nearest.distance() == 0;
   if (nearest.distance() == 0) {
     met_ = nearest.ids();
@@ -159,7 +159,7 @@ ExactSearch::Nearest ExactSearch::nearest(const ExactPose& pose, double toleranc
   if (!complete) lower = std::min(lower, search_.nearest_left());
   const double upper = nearest.ids() ? nearest.distance() + error : distance.upper;
   distance = {std::max(distance.lower, lower), std::min(distance.upper, upper)};
-  return {{complete, spent.spent() - kRootTests}, error};
+  return {{complete, meter.spent() - kRootTests}, error};
 }
 
 // Returns whether the triangles that met last still do. A limit of tests does not ask.
@@ -169,12 +169,12 @@ bool ExactSearch::still_meet(const Meshes& meshes, const Budget& budget) const n
 
 // Finds a first bound, as far as the budget allows.
 template <class Visitor>
-void ExactSearch::begin_nearest(ClusterBudget& budget, Visitor& nearest) noexcept {
+void ExactSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept {
   const ClusterPose& pose = search_.step().pose;
   TurnedBlock turned;
-  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, pose, budget)) {
-    if (!budget.allows(ClusterBudget::kClusterTests)) return;
-    budget.spend(ClusterBudget::kClusterTests);
+  for (const auto& pair : NearestBeam(fixed_clusters_, moving_clusters_, kernels_, pose, meter)) {
+    if (!meter.allows(ClusterSearch::kClusterTests)) return;
+    meter.spend(ClusterSearch::kClusterTests);
     const std::uint32_t block = pair.moving / kClusterWidth, lane = pair.moving % kClusterWidth;
     kernels_.turn_nodes(moving_clusters_.bounds(0)[block], pose, turned);
     const std::uint32_t code = kClusterWidth * pair.fixed + lane;

@@ -42,7 +42,7 @@ class ExactSearch {
   /// The end of a search, and its cost.
   struct End {
     bool complete;        ///< the budget did not end it
-    std::uint64_t tests;  ///< as ClusterBudget counts them
+    std::uint64_t tests;  ///< as Budget::tests counts them
   };
   struct Any : End {
     bool found;
@@ -97,7 +97,7 @@ class ExactSearch {
   [[nodiscard]] ClusterPose cluster_pose(const ExactPose& pose) const noexcept;
   [[nodiscard]] bool still_meet(const Meshes& meshes, const Budget& budget) const noexcept;
   template <class Visitor>
-  void begin_nearest(ClusterBudget& budget, Visitor& nearest) noexcept;
+  void begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept;
 
   const SphereTree &fixed_, &moving_;
   const TriangleClusters &fixed_clusters_, &moving_clusters_;

@@ -24,7 +24,7 @@ struct Best {
 
 NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
                          const ClusterKernels& kernels, const ClusterPose& pose,
-                         ClusterBudget& budget) noexcept {
+                         BudgetMeter& meter) noexcept {
   int fixed_level = fixed.root_level(), moving_level = moving.root_level();
   Best best;
   best.add({0, 0, 0});
@@ -44,8 +44,8 @@ NearestBeam::NearestBeam(const TriangleClusters& fixed, const TriangleClusters& 
       for (std::uint32_t m = 0; m < moving.child_count(below_moving, moving_block); ++m) {
         const std::uint32_t moving_node = kClusterWidth * moving_block + m;
         if (!moving_goes && moving_node != pair.moving) continue;
-        if (!budget.allows(kClusterWidth)) return;
-        budget.spend(kClusterWidth);
+        if (!meter.allows(kClusterWidth)) return;
+        meter.spend(kClusterWidth);
         kernels.score_children(turned, m, fixed.bounds(below_fixed)[fixed_block], scores);
         for (std::uint32_t f = 0; f < fixed.child_count(below_fixed, fixed_block); ++f) {
           const std::uint32_t fixed_node = kClusterWidth * fixed_block + f;

@@ -3,16 +3,16 @@
 #include <array>
 
 #include "ist/mesh/clusters/triangle_clusters.h"
-#include "ist/query/exact/cluster_budget.h"
+#include "ist/query/traversal/budget_meter.h"
 #include "simd/exact/cluster_step.h"
 
 namespace ist {
 
 inline constexpr std::size_t kBeamWidth = 6;
 
-/// Pairs of clusters that are near each other, best first, for the first bound of a distance: by
-/// going down both trees with the kBeamWidth pairs of nodes that score best at each level. None
-/// where the budget ends it.
+/// Pairs of clusters that are near each other, best first, for the first bound of a distance. The
+/// constructor goes down both trees with the kBeamWidth best pairs of nodes of each level. There
+/// are no pairs if the budget ended it.
 class NearestBeam {
  public:
   struct NodePair {
@@ -21,8 +21,7 @@ class NearestBeam {
   };
 
   NearestBeam(const TriangleClusters& fixed, const TriangleClusters& moving,
-              const ClusterKernels& kernels, const ClusterPose& pose,
-              ClusterBudget& budget) noexcept;
+              const ClusterKernels& kernels, const ClusterPose& pose, BudgetMeter& meter) noexcept;
 
   [[nodiscard]] const NodePair* begin() const noexcept { return pairs_.data(); }
   [[nodiscard]] const NodePair* end() const noexcept { return pairs_.data() + count_; }

@@ -61,20 +61,20 @@ SharedPairs::~SharedPairs() {
   job_.wait_idle();
 }
 
-bool SharedPairs::run(ClusterSearch& search, const Meshes& meshes, const Budget& budget,
-                      ClusterBudget& spent, AllPairs<PairList>& all, PairList& list) noexcept {
+bool SharedPairs::run(ClusterSearch& search, const Meshes& meshes, BudgetMeter& meter,
+                      AllPairs<PairList>& all, PairList& list) noexcept {
   worker_.tick(std::chrono::steady_clock::now(), period_);
   ++sharing_.queries;
-  if (budget.has_tests() || job_.busy()) return search.run(spent, all);
-  ClusterBudget above = spent;
+  if (meter.budget().has_tests() || job_.busy()) return search.run(meter, all);
+  BudgetMeter above = meter;
   Tasks tasks(*this, all.reach());
   const bool whole = search.run(above, tasks);
-  if (tasks.full()) return search.run(spent, all);
-  spent = above;
+  if (tasks.full()) return search.run(meter, all);
+  meter = above;
   if (!whole) return false;
   if (node_count_ < kFewestNodes) {
     for (std::size_t i = 0; i < task_count_; ++i) {
-      if (!search.run(task(i), spent, all)) return false;
+      if (!search.run(task(i), meter, all)) return false;
     }
     return true;
   }
@@ -82,7 +82,7 @@ bool SharedPairs::run(ClusterSearch& search, const Meshes& meshes, const Budget&
   helper_.begin(search.step().pose);
   meshes_.emplace(meshes);
   cut();
-  return do_chunks(search, budget, spent, all, list);
+  return do_chunks(search, meter, all, list);
 }
 
 ClusterTask SharedPairs::task(std::size_t index) const noexcept {
@@ -103,34 +103,34 @@ void SharedPairs::cut() noexcept {
 }
 
 template <class Visitor>
-bool SharedPairs::do_chunk(std::size_t chunk, ClusterSearch& search, ClusterBudget& budget,
+bool SharedPairs::do_chunk(std::size_t chunk, ClusterSearch& search, BudgetMeter& meter,
                            Visitor& visitor) const noexcept {
   for (std::size_t i = chunk == 0 ? 0 : chunk_ends_[chunk - 1]; i < chunk_ends_[chunk]; ++i) {
-    if (!search.run(task(i), budget, visitor)) return false;
+    if (!search.run(task(i), meter, visitor)) return false;
   }
   return true;
 }
 
-bool SharedPairs::do_chunks(ClusterSearch& search, const Budget& budget, ClusterBudget& spent,
-                            AllPairs<PairList>& all, PairList& list) noexcept {
+bool SharedPairs::do_chunks(ClusterSearch& search, BudgetMeter& meter, AllPairs<PairList>& all,
+                            PairList& list) noexcept {
   // With back-to-back queries the worker starts polling in the middle of one, so the job is offered
   // before each chunk.
   bool taken = worker_.offer(job_), in_time = true;
   while (in_time) {
     const auto chunk = queue_.claim_front();
     if (!chunk) break;
-    in_time = do_chunk(*chunk, search, spent, all);
+    in_time = do_chunk(*chunk, search, meter, all);
     if (!taken) taken = worker_.offer(job_);
   }
   for (std::size_t chunk = queue_.close(); chunk < chunk_count_ && in_time; ++chunk) {
-    if (queue_.collect(chunk, patience(budget)) && parts_[chunk].whole) {
+    if (queue_.collect(chunk, patience(meter.budget())) && parts_[chunk].whole) {
       const Part& part = parts_[chunk];
       for (std::size_t k = part.begin; k < part.begin + part.count; ++k) list.add(found_.pairs[k]);
-      spent.spend(part.tests);
+      meter.spend(part.tests);
       ++sharing_.chunks;
     } else {
       ++sharing_.dropped;
-      in_time = do_chunk(chunk, search, spent, all);
+      in_time = do_chunk(chunk, search, meter, all);
     }
   }
   if (taken && !worker_.retract(job_)) ++sharing_.shared;
@@ -143,11 +143,11 @@ void SharedPairs::help() noexcept {
     hand_over(HandOver::kClaimed);
     found_.count = used;
     AllPairs<Found> all({helper_.step(), kernels_, *meshes_, memory_, {}}, found_);
-    ClusterBudget budget({}, 0);
-    do_chunk(*chunk, helper_, budget, all);
+    BudgetMeter meter;
+    do_chunk(*chunk, helper_, meter, all);
     all.finish();
     const bool whole = found_.count <= found_.pairs.size();
-    parts_[*chunk] = {used, found_.count - used, budget.spent(), whole};
+    parts_[*chunk] = {used, found_.count - used, meter.spent(), whole};
     if (whole) used = found_.count;
     hand_over(HandOver::kWorked);
     queue_.complete(epoch_, *chunk);

@@ -30,8 +30,8 @@ class SharedPairs {
 
   /// Searches at the pose of `search`, as that does for `all`, whose list is `list`. With a limit
   /// of tests the caller searches alone. Returns false where the budget ended the search.
-  bool run(ClusterSearch& search, const Meshes& meshes, const Budget& budget, ClusterBudget& spent,
-           AllPairs<PairList>& all, PairList& list) noexcept;
+  bool run(ClusterSearch& search, const Meshes& meshes, BudgetMeter& meter, AllPairs<PairList>& all,
+           PairList& list) noexcept;
 
   [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -66,11 +66,11 @@ class SharedPairs {
 
   [[nodiscard]] ClusterTask task(std::size_t index) const noexcept;
   template <class Visitor>
-  bool do_chunk(std::size_t chunk, ClusterSearch& search, ClusterBudget& budget,
+  bool do_chunk(std::size_t chunk, ClusterSearch& search, BudgetMeter& meter,
                 Visitor& visitor) const noexcept;
   void cut() noexcept;
-  [[nodiscard]] bool do_chunks(ClusterSearch& search, const Budget& budget, ClusterBudget& spent,
-                               AllPairs<PairList>& all, PairList& list) noexcept;
+  [[nodiscard]] bool do_chunks(ClusterSearch& search, BudgetMeter& meter, AllPairs<PairList>& all,
+                               PairList& list) noexcept;
   void help() noexcept;
 
   const ClusterKernels& kernels_;

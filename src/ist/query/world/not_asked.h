@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "ist/query/world/near_set.h"
 #include "ist/query/world/world.h"
 
@@ -30,13 +28,6 @@ inline void leave(const PairAtPose& at, PairDistance& pair) noexcept {
   pair.result.sphere_tests = 1;
   pair.result.distance = at.near.roots;
   pair.result.narrowest = at.near.roots.upper - at.near.roots.lower;
-}
-
-/// Returns what is left of a budget.
-[[nodiscard]] inline Budget rest_of(const Budget& budget, std::uint64_t spent) noexcept {
-  Budget rest = budget;
-  if (budget.has_tests()) rest.tests = budget.tests - std::min(budget.tests, spent);
-  return rest;
 }
 
 }  // namespace ist

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ist/query/traversal/budget_meter.h"
 #include "ist/query/world/not_asked.h"
 #include "ist/query/world/world_state.h"
 
@@ -44,7 +45,7 @@ WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& b
     if (at.near.status != QueryStatus::kDone || budget.is_past()) {
       leave(at, pair);
     } else {
-      ask(pair, s.memory(at), to_isometry(at.pose), rest_of(budget, all.sphere_tests));
+      ask(pair, s.memory(at), to_isometry(at.pose), BudgetMeter(budget, all.sphere_tests).rest());
     }
     pair.result.rotation_error = s.rotation_error_of(pair.bodies);
     all.sphere_tests += pair.result.sphere_tests;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ist/query/traversal/budget_meter.h"
 #include "ist/query/world/not_asked.h"
 #include "ist/query/world/world_state.h"
 
@@ -46,16 +47,15 @@ WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   });
 
   const double width = tolerance > 0 ? tolerance : 0;
-  std::uint64_t spent = 0;
+  BudgetMeter meter(budget);
   for (PairDistance& pair : pairs) {
     // All pairs that are left are no nearer than this one's roots.
     const bool enough =
         pair.roots.lower > upper || upper - std::min(lower, pair.roots.lower) <= width;
     if (!enough && pair.status == QueryStatus::kDone && !budget.is_past()) {
       const PairAtPose at = s.look(pair.bodies);
-      pair.result =
-          s.memory(at).query.distance(to_isometry(at.pose), tolerance, rest_of(budget, spent));
-      spent += pair.result.sphere_tests;
+      pair.result = s.memory(at).query.distance(to_isometry(at.pose), tolerance, meter.rest());
+      meter.spend(pair.result.sphere_tests);
     }
     pair.result.rotation_error = s.rotation_error_of(pair.bodies);
     lower = std::min(lower, pair.result.distance.lower);
