@@ -41,7 +41,7 @@ MUTANTS = [
            [(EXACT + "exact_search.cpp", "if (!complete) lower = std::min(lower, search_.nearest_left());", "")],
            ["exact_test ExactBudget*"]),
     Mutant("helped-pair-lost", "the last pair of each of the worker's chunks is lost",
-           [(EXACT + "shared_pairs.cpp", "k < part.begin + part.count; ++k", "k + 1 < part.begin + part.count; ++k")],
+           [(EXACT + "shared_pairs.cpp", "k < part.count; ++k", "k + 1 < part.count; ++k")],
            ["search_test SharedPairs*"]),
     Mutant("normals-without-angles", "a vertex's normal is the plain sum of its faces'",
            [("src/ist/mesh/pseudonormals.cpp", "add_to(of_vertex_[indices[i]], scaled(angle, normal));",

@@ -105,7 +105,7 @@ ExactSearch::End ExactSearch::pairs(const ExactPose& pose, const Budget& budget,
   list_.begin(out);
   const Meshes meshes{*fixed_.triangles(), {*moving_.triangles(), pose.rigid}};
   search_.begin(cluster_pose(pose));
-  AllPairs<PairList> all({search_.step(), kernels_, meshes, memory_, budget}, list_);
+  AllPairs all({search_.step(), kernels_, meshes, memory_, budget}, list_);
   BudgetMeter meter(budget, kRootTests);
   bool complete =
       shared_ ? shared_->run(search_, meshes, meter, all, list_) : search_.run(meter, all);

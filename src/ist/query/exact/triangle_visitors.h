@@ -7,6 +7,7 @@
 
 #include "ist/mesh/triangles_meet.h"
 #include "ist/query/exact/moved_triangles.h"
+#include "ist/query/exact/pair_list.h"
 #include "ist/query/results.h"
 #include "simd/exact/cluster_step.h"
 
@@ -23,7 +24,7 @@ struct Meshes {
   }
 };
 
-/// The memory for what the kernels find.
+/// The memory for the findings of the kernels.
 class FoundMemory {
  public:
   FoundMemory() : ids_(4 * kLength), squares_(kLength) {}
@@ -48,9 +49,9 @@ class FoundMemory {
   std::vector<float> squares_;
 };
 
-/// The tools of a visitor: the bodies at a pose, the kernels, and the memory for their findings. No
-/// limit of tests counts the pairs that exact arithmetic decides or measures, 0.1 to 2 µs each, but
-/// the clock is read before every eighth.
+/// The tools of a visitor: the bodies at a pose, the kernels, and the memory for their findings. A
+/// limit of tests does not count the pairs that exact arithmetic decides or measures, 0.1 to 2 µs
+/// each. The clock is read before every eighth.
 struct Bench {
   Bench(const ClusterStep& of, const ClusterKernels& by, const Meshes& bodies, FoundMemory& memory,
         const Budget& within) noexcept
@@ -62,7 +63,7 @@ struct Bench {
         budget(within) {
     memory.clear();
   }
-  /// Returns whether there is no time for the `k`-th pair.
+  /// Returns whether the deadline has passed. Looks before every eighth pair `k`.
   [[nodiscard]] bool is_late(std::size_t k) const noexcept {
     return k % 8 == 0 && budget.is_past();
   }
@@ -75,8 +76,8 @@ struct Bench {
   Budget budget;
 };
 
-/// Calls `run(rest)` for the rest of the pairs until it has done all, and `take()` after each,
-/// which empties the lists of what was found and says whether to go on.
+/// Calls `run(rest)` for the rest of the pairs until it has done all. After each call, `take()`
+/// empties the lists of found triangles and returns whether to go on.
 template <class Run, class Take>
 bool in_turns(const ClusterPairs& clusters, Run run, Take take) {
   const LaneNodes& all = clusters.pairs;
@@ -87,13 +88,12 @@ bool in_turns(const ClusterPairs& clusters, Run run, Take take) {
   return true;
 }
 
-/// Lists all pairs that intersect. A list has add(TrianglePair).
-template <class List>
+/// Lists all pairs that intersect.
 class AllPairs {
  public:
   static constexpr bool kMostFirst = false, kMeasuresRest = false;
 
-  AllPairs(const Bench& bench, List& list) noexcept : bench_(bench), list_(list) {}
+  AllPairs(const Bench& bench, PairList& list) noexcept : bench_(bench), list_(list) {}
 
   [[nodiscard]] float reach() const noexcept { return bench_.step.pose.error; }
   bool visit(const ClusterPairs& clusters) noexcept {
@@ -104,7 +104,7 @@ class AllPairs {
         },
         [&] { return bench_.found.has_room() || add_found(); });
   }
-  /// Decides and adds what is left. Returns false where the deadline came before.
+  /// Decides and adds the pairs that are left. Returns false if the deadline came before.
   bool finish() noexcept {
     const bool in_time = bench_.found.has_room() || add_found();
     bench_.kernels.decide_triangles(bench_.batch, bench_.found);
@@ -126,7 +126,7 @@ class AllPairs {
   void add(TriangleIds ids) noexcept { list_.add({ids.fixed, ids.moving}); }
 
   Bench bench_;
-  List& list_;
+  PairList& list_;
 };
 
 /// Ends with the first pair that intersects.
@@ -151,7 +151,7 @@ class AnyPair {
   }
 
  private:
-  // Returns false where the deadline came before the end.
+  // Returns false if the deadline came before the end.
   bool look() noexcept {
     FoundTriangles& found = bench_.found;
     if (found.certain.count > 0) found_ = found.certain[0];
