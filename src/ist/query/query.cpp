@@ -181,15 +181,9 @@ const SphereTree& Query::fixed() const noexcept { return state_->fixed; }
 const SphereTree& Query::moving() const noexcept { return state_->moving; }
 SpherePolicy Query::policy() const noexcept { return state_->policy; }
 const char* Query::target() const noexcept { return state_->kernels.target; }
+std::size_t Query::bytes() const noexcept { return state_->bytes; }
 int Query::workers() const noexcept {
   return std::holds_alternative<SharedSearch>(state_->searches) ? 2 : 1;
-}
-
-std::size_t Query::bytes() const noexcept {
-  const auto* shared = std::get_if<SharedSearch>(&state_->searches);
-  return (shared != nullptr ? shared->bytes() : state_->serial().bytes()) +
-         (state_->coherent ? state_->coherent->bytes() : 0) +
-         (state_->exact ? state_->exact->bytes() : 0) + state_->window.size() * sizeof(LeafPair);
 }
 
 Sharing Query::sharing() const noexcept {

@@ -18,23 +18,40 @@ namespace {
 // The most leaf pairs that a stream is given at once.
 constexpr std::size_t kWindow = 1 << 12;
 
-int one_or_two(int workers) {
-  if (workers == 1 || workers == 2) return workers;
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("query option workers is {}: give 1 or 2", workers));
-}
-
-std::size_t within_limit(const char* option, std::size_t value) {
-  if (value <= kMostItems) return value;
-  throw Error(ErrorCode::kArgumentInvalid,
-              fmt::format("query option {} is {}: {} is the most", option, value, kMostItems));
-}
-
 // Returns the fixed tree of two that can be compared.
 const SphereTree& comparable(const SphereTree& fixed, const SphereTree& moving) {
   const std::string reason = contradiction(fixed, "the fixed tree", moving, "the moving tree");
   if (reason.empty()) return fixed;
   throw Error(ErrorCode::kArgumentInvalid, "query: " + reason);
+}
+
+CoherentOptions coherent_options(const QueryOptions& options) {
+  return {options.frontier_pairs, options.front_pairs, options.workers, options.period};
+}
+
+// Returns the bytes that a query with such a plan reserves. Throws kArgumentInvalid for an option
+// out of range.
+std::size_t bytes_with(const SearchPlan& plan, const SphereTree& fixed, const SphereTree& moving,
+                       const QueryOptions& options) {
+  if (options.workers != 1 && options.workers != 2) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("query option workers is {}: give 1 or 2", options.workers));
+  }
+  if (options.front_pairs > kMostItems) {
+    throw Error(ErrorCode::kArgumentInvalid,
+                fmt::format("query option front_pairs is {}: {} is the most", options.front_pairs,
+                            kMostItems));
+  }
+  std::size_t bytes = (options.workers == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
+                                            : Search::bytes_for(plan, options.frontier_pairs)) +
+                      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
+  if (options.front_pairs > 0) {
+    bytes += CoherentSearch::bytes_for(plan, coherent_options(options));
+  }
+  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
+    bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -45,17 +62,15 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
       moving(moving_tree),
       policy(policy_of(fixed, moving, options)),
       kernels(select_kernels(options.target)),
-      plan(fixed, moving, policy) {
-  if (one_or_two(options.workers) == 2) {
+      plan(fixed, moving, policy),
+      bytes(bytes_with(plan, fixed, moving, options)) {
+  if (options.workers == 2) {
     searches.emplace<SharedSearch>(plan, kernels, options.frontier_pairs, options.period);
   } else {
     searches.emplace<Search>(plan, kernels, options.frontier_pairs);
   }
   if (options.front_pairs > 0) {
-    coherent.emplace(
-        fixed, moving, policy, plan, kernels,
-        CoherentOptions{options.frontier_pairs, within_limit("front_pairs", options.front_pairs),
-                        options.workers, options.period});
+    coherent.emplace(fixed, moving, policy, plan, kernels, coherent_options(options));
   }
   window.resize(kWindow + kLeafPairSpare);
   if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
@@ -66,19 +81,7 @@ QueryState::QueryState(const SphereTree& fixed_tree, const SphereTree& moving_tr
 std::size_t QueryState::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                   const QueryOptions& options) {
   const SearchPlan plan(fixed, moving, policy_of(fixed, moving, options));
-  std::size_t bytes =
-      (one_or_two(options.workers) == 2 ? SharedSearch::bytes_for(plan, options.frontier_pairs)
-                                        : Search::bytes_for(plan, options.frontier_pairs)) +
-      (kWindow + kLeafPairSpare) * sizeof(LeafPair);
-  if (options.front_pairs > 0) {
-    const std::size_t pairs = within_limit("front_pairs", options.front_pairs);
-    bytes += CoherentSearch::bytes_for(
-        plan, {options.frontier_pairs, pairs, options.workers, options.period});
-  }
-  if (fixed.triangles() != nullptr && moving.triangles() != nullptr) {
-    bytes += ExactSearch::bytes_for(fixed, moving, options.workers);
-  }
-  return bytes;
+  return bytes_with(plan, fixed, moving, options);
 }
 
 double QueryState::triangle_error(const Eigen::Isometry3d& pose) const noexcept {

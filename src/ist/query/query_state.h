@@ -84,6 +84,7 @@ struct QueryState {
   SpherePolicy policy;
   const Kernels& kernels;
   SearchPlan plan;
+  std::size_t bytes;
   std::variant<std::monostate, Search, SharedSearch> searches;  // made after the plan it refers to
   std::optional<CoherentSearch> coherent;
   std::optional<ExactSearch> exact;

@@ -34,6 +34,54 @@ TEST(Allocations, AreCountedHoweverMemoryIsAskedFor) {
   EXPECT_EQ(allocations_of([] {}), 0u);
 }
 
+// Returns the bytes that making an object takes beside those that it states.
+template <class Make>
+std::int64_t more_than_stated(const Make& make) {
+  const std::uint64_t before = allocated_bytes();
+  const auto made = make();
+  const std::uint64_t after = allocated_bytes();
+  return static_cast<std::int64_t>(after - before) - static_cast<std::int64_t>(made.bytes());
+}
+
+// Its plan and other parts of one size come beside the bytes that it states.
+TEST(Allocations, OfAQueryAreTheBytesThatItStates) {
+  constexpr std::int64_t kMostBeside = 72'000;
+  const SphereTree exact = exact_tree(icosphere(3, 1), 20);
+  const SphereTree trees[] = {exact, without_triangles(exact)};
+  const Query first(exact, exact, {.workers = 2});  // has TBB make its threads
+  for (const SphereTree& tree : trees) {
+    for (const int workers : {1, 2}) {
+      for (const std::size_t front_pairs : {0u, 1000u, 65536u}) {
+        for (const std::size_t frontier_pairs : {1u, 300u, 65536u}) {
+          QueryOptions options;
+          options.workers = workers;
+          options.front_pairs = front_pairs;
+          options.frontier_pairs = frontier_pairs;
+          const std::int64_t beside = more_than_stated([&] { return Query(tree, tree, options); });
+          EXPECT_GE(beside, 0) << workers << ", " << front_pairs << ", " << frontier_pairs;
+          EXPECT_LE(beside, kMostBeside)
+              << workers << ", " << front_pairs << ", " << frontier_pairs;
+        }
+      }
+    }
+  }
+}
+
+TEST(Allocations, OfAManifoldAreTheBytesThatItStates) {
+  const SphereTree tree = exact_tree(icosphere(3, 1), 20);
+  for (const std::size_t points : {0u, 1u, 32u}) {
+    for (const std::size_t leaves : {1u, 100u, 1u << 20}) {
+      ManifoldOptions options;
+      options.points = points;
+      options.max_leaves = leaves;
+      const std::int64_t beside =
+          more_than_stated([&] { return ContactManifold(tree, tree, tree.tightest(), options); });
+      EXPECT_GE(beside, 0) << points << ", " << leaves;
+      EXPECT_LE(beside, 1000) << points << ", " << leaves;
+    }
+  }
+}
+
 TEST(Allocations, TheReferenceMakesSome) {
   const Scene& scene = solids()[0];
   ReferenceQuery query(scene.fixed, scene.moving, SpherePolicy::kTight);

@@ -228,10 +228,6 @@ void CoherentSearch::drop_stale() noexcept {
   stale_ = false;
 }
 
-std::size_t CoherentSearch::bytes() const noexcept {
-  return fronts_[0].bytes() + fronts_[1].bytes() + rows_.bytes() + search_.bytes();
-}
-
 std::size_t CoherentSearch::bytes_for(const SearchPlan& plan,
                                       const CoherentOptions& options) noexcept {
   return 2 * Front::bytes_for(options.front_pairs) +

@@ -58,7 +58,6 @@ class CoherentSearch {
                              Sink& sink) noexcept;
   /// Begins afresh, as if there had been no pose. Does not wait for the worker.
   void forget() noexcept;
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that a search with these options reserves.
   [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan,
                                              const CoherentOptions& options) noexcept;

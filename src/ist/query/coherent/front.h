@@ -30,7 +30,6 @@ class Front {
   double upper = 0;
 
   [[nodiscard]] bool empty() const noexcept { return lanes.pair_count == 0; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return memory_.size() * sizeof(FrontLine); }
   /// Returns the bytes that a front with room for `pairs` reserves.
   [[nodiscard]] static std::size_t bytes_for(std::size_t pairs) noexcept;
 
@@ -45,7 +44,6 @@ class FrontRowMemory {
   explicit FrontRowMemory(std::size_t pairs);
 
   [[nodiscard]] FrontRows& rows() noexcept { return rows_; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return memory_.size() * sizeof(FrontLine); }
   /// Returns the bytes that the rows of a front with room for `pairs` reserve.
   [[nodiscard]] static std::size_t bytes_for(std::size_t pairs) noexcept;
 

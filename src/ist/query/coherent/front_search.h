@@ -41,7 +41,6 @@ class FrontSearch {
   [[nodiscard]] std::uint64_t most_tests() const noexcept { return wanted_.most_tests; }
   /// Returns the tests made since begin().
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return search_.bytes(); }
 
  private:
   Search search_;

@@ -42,6 +42,7 @@ ContactReducer::ContactReducer(const SphereTree& fixed, const SphereTree& moving
       policy_(policy),
       scale_(scale_of(fixed, moving, options)),
       rates_(contact_rates(fixed_, moving_, policy, scale_)),
+      bytes_(bytes_for(fixed, moving, options)),
       adder_(std::make_unique<ContactAdder>()),
       points_(options.points) {
   adder_->rule = contact_rule(scale_, rates_.lever);
@@ -85,11 +86,6 @@ void ContactReducer::finish(const RelativePose& pose, bool complete) noexcept {
   leaf_sums_->close();
   const LeafSumUnits units{weight, lever, scale_.least_depth(), scale_.size, pose, sums_.about};
   count_ = cluster(*leaf_sums_, units, points_);
-}
-
-std::size_t ContactReducer::bytes() const noexcept {
-  return sizeof(ContactAdder) + (leaf_sums_ ? leaf_sums_->bytes() : 0) +
-         points_.size() * sizeof(Contact);
 }
 
 std::size_t ContactReducer::bytes_for(const SphereTree& fixed, const SphereTree& moving,

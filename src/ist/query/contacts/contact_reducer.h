@@ -64,7 +64,7 @@ class ContactReducer {
            policy == policy_;
   }
   /// Returns the bytes reserved.
-  [[nodiscard]] std::size_t bytes() const noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
   /// Returns the bytes that a reducer for this fixed tree reserves. Throws kArgumentInvalid for an
   /// option out of range.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
@@ -75,6 +75,7 @@ class ContactReducer {
   SpherePolicy policy_;
   ContactScale scale_;
   ContactRates rates_;
+  std::size_t bytes_;
   std::unique_ptr<ContactAdder> adder_;
   std::optional<LeafSums> leaf_sums_;
   std::vector<Contact> points_;

@@ -33,7 +33,7 @@ void add(const ContactTerms& terms, std::size_t begin, std::size_t end, LeafSum&
 }  // namespace
 
 LeafSums::LeafSums(const LinearOctree& octree, std::size_t most)
-    : octree_(&octree), nodes_(std::min<std::size_t>(most, octree.leaf_count())) {
+    : octree_(&octree), nodes_(bytes_for(octree, most) / sizeof(LeafSum)) {
   IST_ASSERT(most > 0 && static_cast<std::size_t>(octree.depth()) < kMostLevels);
 }
 

@@ -65,7 +65,6 @@ class LeafSums final : public ContactTermsStream {
   /// Keeps the first `count` nodes; then nothing is left out.
   void shorten(std::size_t count) noexcept;
 
-  [[nodiscard]] std::size_t bytes() const noexcept { return nodes_.size() * sizeof(LeafSum); }
   /// Returns the bytes that a list of at most `most` nodes of an octree reserves.
   [[nodiscard]] static std::size_t bytes_for(const LinearOctree& octree, std::size_t most) noexcept;
 

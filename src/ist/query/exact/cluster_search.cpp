@@ -114,15 +114,6 @@ void ClusterSearch::leave(const Step& step, int fixed_level, LaneNodes pairs) no
   }
 }
 
-std::size_t ClusterSearch::bytes() const noexcept {
-  std::size_t bytes = 0;
-  for (const Step& step : steps_) {
-    bytes += sizeof(Step) +
-             (step.bits.size() + step.near.size() + step.deeper.size()) * sizeof(std::uint32_t);
-  }
-  return bytes;
-}
-
 std::size_t ClusterSearch::bytes_for(const TriangleClusters& fixed,
                                      const TriangleClusters& moving) noexcept {
   std::size_t bytes = 0;

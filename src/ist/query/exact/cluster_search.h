@@ -57,7 +57,6 @@ class ClusterSearch {
   [[nodiscard]] const ClusterStep& step() const noexcept { return step_; }
   /// Returns a lower bound of the distance of all nodes that an ended search did not come to.
   [[nodiscard]] double nearest_left() const noexcept { return nearest_left_; }
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that a search of these trees reserves.
   [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
                                              const TriangleClusters& moving) noexcept;

@@ -182,17 +182,12 @@ void ExactSearch::begin_nearest(BudgetMeter& meter, Visitor& nearest) noexcept {
   }
 }
 
-std::size_t ExactSearch::bytes() const noexcept {
-  return search_.bytes() + list_.bytes() + memory_.bytes() + (shared_ ? shared_->bytes() : 0);
-}
-
 std::size_t ExactSearch::bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                    int workers) noexcept {
   const TriangleClusters &of_fixed = fixed.parts().triangles->clusters,
                          &of_moving = moving.parts().triangles->clusters;
   return ClusterSearch::bytes_for(of_fixed, of_moving) + kSorted * sizeof(TrianglePair) +
-         FoundMemory::bytes_reserved() +
-         (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
+         FoundMemory::bytes() + (workers == 2 ? SharedPairs::bytes_for(of_fixed, of_moving) : 0);
 }
 
 }  // namespace ist

@@ -81,7 +81,6 @@ class ExactSearch {
   [[nodiscard]] Sharing sharing() const noexcept {
     return shared_ ? shared_->sharing() : Sharing{};
   }
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that a search of these trees reserves, with one worker or two.
   [[nodiscard]] static std::size_t bytes_for(const SphereTree& fixed, const SphereTree& moving,
                                              int workers) noexcept;

@@ -21,9 +21,6 @@ class PairList {
   void finish() noexcept;
   /// Returns the number of pairs that were added, in the span or not.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return scratch_.size() * sizeof(TrianglePair);
-  }
 
  private:
   std::span<TrianglePair> out_;

@@ -86,15 +86,9 @@ void SharedPairs::help(std::size_t chunk, Part& part) noexcept {
   part.whole = part.count <= found_.size() - part.begin;
 }
 
-std::size_t SharedPairs::bytes() const noexcept {
-  return helper_.bytes() + memory_.bytes() + found_.size() * sizeof(TrianglePair) +
-         tasks_.nodes.size() * sizeof(std::uint32_t) + tasks_.list.size() * sizeof(ClusterTask) +
-         work_.bytes();
-}
-
 std::size_t SharedPairs::bytes_for(const TriangleClusters& fixed,
                                    const TriangleClusters& moving) noexcept {
-  return ClusterSearch::bytes_for(fixed, moving) + FoundMemory::bytes_reserved() +
+  return ClusterSearch::bytes_for(fixed, moving) + FoundMemory::bytes() +
          kFoundPairs * sizeof(TrianglePair) + (kMostNodes + kClusterWidth) * sizeof(std::uint32_t) +
          kMostTasks * sizeof(ClusterTask) + SharedWork<Part>::bytes_for(kMostChunks);
 }

@@ -27,7 +27,6 @@ class SharedPairs {
            PairList& list) noexcept;
 
   [[nodiscard]] const Sharing& sharing() const noexcept { return work_.sharing(); }
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that it reserves for these clusters.
   [[nodiscard]] static std::size_t bytes_for(const TriangleClusters& fixed,
                                              const TriangleClusters& moving) noexcept;

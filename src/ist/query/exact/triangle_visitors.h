@@ -34,8 +34,7 @@ class FoundMemory {
     found = {{ids, ids + kLength}, {ids + 2 * kLength, ids + 3 * kLength}, squares_.data()};
     batch.count = 0;
   }
-  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_reserved(); }
-  [[nodiscard]] static constexpr std::size_t bytes_reserved() noexcept {
+  [[nodiscard]] static constexpr std::size_t bytes() noexcept {
     return 4 * kLength * sizeof(std::uint32_t) + kLength * sizeof(float) + sizeof(TriangleBatch);
   }
 

@@ -92,15 +92,6 @@ float Search::beam(const SearchPose& pose, BudgetMeter& meter) noexcept {
   return upper;
 }
 
-std::size_t Search::bytes() const noexcept {
-  std::size_t bytes = sizeof(SearchScratch);
-  for (const Memory& memory : memory_) {
-    bytes +=
-        memory.groups.size() * sizeof(SearchGroup) + memory.moving.size() * sizeof(std::uint32_t);
-  }
-  return bytes;
-}
-
 std::size_t Search::bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept {
   std::size_t bytes = sizeof(SearchScratch);
   for (std::size_t i = 0; i <= plan.steps().size(); ++i) {

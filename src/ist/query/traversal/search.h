@@ -56,7 +56,6 @@ class Search {
   /// distance, until the budget is spent. Cost: some 1,000 tests a step.
   [[nodiscard]] float beam(const SearchPose& pose, BudgetMeter& meter) noexcept;
 
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that a search with this memory reserves.
   [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept;
 

@@ -161,13 +161,6 @@ void SharedSearch::help(std::size_t chunk, Part& part) noexcept {
   }
 }
 
-std::size_t SharedSearch::bytes() const noexcept {
-  return caller_.bytes() + helper_.bytes() + found_.size() * sizeof(LeafPair) +
-         sizeof(ContactAdder) + found_leaves_.bytes() +
-         shared_.groups.size() * sizeof(SearchGroup) +
-         shared_.moving.size() * sizeof(std::uint32_t) + work_.bytes();
-}
-
 std::size_t SharedSearch::bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept {
   return 2 * Search::bytes_for(plan, pairs) + kFoundPairs * sizeof(LeafPair) +
          sizeof(ContactAdder) + kFoundLeaves * sizeof(LeafSum) +

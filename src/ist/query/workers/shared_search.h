@@ -40,7 +40,6 @@ class SharedSearch {
   [[nodiscard]] Search& serial() noexcept { return caller_; }
   [[nodiscard]] const Sharing& sharing() const noexcept { return work_.sharing(); }
 
-  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Returns the bytes that a search reserves.
   [[nodiscard]] static std::size_t bytes_for(const SearchPlan& plan, std::size_t pairs) noexcept;
 

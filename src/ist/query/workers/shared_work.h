@@ -92,7 +92,6 @@ class SharedWork {
 
   /// Returns how often the worker helped. Chunks are counted only in run() calls that took them.
   [[nodiscard]] const Sharing& sharing() const noexcept { return sharing_; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_for(queue_.capacity()); }
   /// Returns the bytes that work of up to `most_chunks` chunks reserves.
   [[nodiscard]] static constexpr std::size_t bytes_for(std::size_t most_chunks) noexcept {
     return most_chunks * (sizeof(Part) + sizeof(std::size_t) + sizeof(std::uint64_t));
