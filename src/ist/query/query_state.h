@@ -92,20 +92,22 @@ struct QueryState {
   std::atomic_flag in_use;
 };
 
-/// The use of a query by one thread: false where another thread is using it.
+/// The use of a query or a world by one thread, until the end of the scope. Is false if another
+/// thread is using it. @param state has an `in_use`
 class Use {
  public:
-  explicit Use(QueryState& state) noexcept
-      : state_(state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state) {}
+  template <class State>
+  explicit Use(State& state) noexcept
+      : in_use_(state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state.in_use) {}
   ~Use() {
-    if (state_ != nullptr) state_->in_use.clear(std::memory_order_release);
+    if (in_use_ != nullptr) in_use_->clear(std::memory_order_release);
   }
   Use(const Use&) = delete;
   Use& operator=(const Use&) = delete;
-  [[nodiscard]] explicit operator bool() const noexcept { return state_ != nullptr; }
+  [[nodiscard]] explicit operator bool() const noexcept { return in_use_ != nullptr; }
 
  private:
-  QueryState* state_;
+  std::atomic_flag* in_use_;
 };
 
 }  // namespace ist::detail

@@ -114,7 +114,7 @@ void World::prepare(std::optional<std::span<const BodyPair>> pairs, const Procee
 QueryStatus World::set_pose(BodyIndex body, const Eigen::Isometry3d& pose) noexcept {
   const ScopedFloatEnvironment environment;
   detail::WorldState& s = *state_;
-  const detail::WorldUse use(s);
+  const detail::Use use(s);
   if (!use) return QueryStatus::kBusy;
   if (!s.is_there(body)) return QueryStatus::kNoSuchBody;
   s.move(body, pose);
@@ -123,7 +123,7 @@ QueryStatus World::set_pose(BodyIndex body, const Eigen::Isometry3d& pose) noexc
 
 void World::forget() noexcept {
   detail::WorldState& s = *state_;
-  const detail::WorldUse use(s);
+  const detail::Use use(s);
   if (!use) return;
   for (const auto& memory : s.made) {
     if (memory) memory->query.forget();

@@ -8,13 +8,13 @@
 namespace ist {
 namespace {
 
+using detail::Use;
 using detail::WorldState;
-using detail::WorldUse;
 
 // Begins an answer with the pairs that are near. Its status is other than kDone where there is
 // none.
 template <class Pair>
-WorldAnswer<Pair> begin_answer(WorldState& s, const WorldUse& use) noexcept {
+WorldAnswer<Pair> begin_answer(WorldState& s, const Use& use) noexcept {
   WorldAnswer<Pair> all;
   if (!use || !s.ready) {
     all.status = use ? QueryStatus::kNotPrepared : QueryStatus::kBusy;
@@ -33,7 +33,7 @@ WorldAnswer<Pair> begin_answer(WorldState& s, const WorldUse& use) noexcept {
 template <class Pair, class Ask>
 WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& budget,
                           Ask ask) noexcept {
-  const WorldUse use(s);
+  const Use use(s);
   WorldAnswer<Pair> all = begin_answer<Pair>(s, use);
   if (all.status != QueryStatus::kDone) return all;
   const NearSet& near = s.answers.near;
@@ -60,7 +60,7 @@ WorldAnswer<Pair> ask_all(WorldState& s, std::vector<Pair>& out, const Budget& b
 WorldAnswer<NearPair> World::near_pairs() noexcept {
   const ScopedFloatEnvironment environment;
   WorldState& s = *state_;
-  const WorldUse use(s);
+  const Use use(s);
   WorldAnswer<NearPair> all = begin_answer<NearPair>(s, use);
   if (all.status != QueryStatus::kDone) return all;
   const NearSet& near = s.answers.near;

@@ -27,7 +27,7 @@ bool lacks_a_pose(const detail::WorldState& s) noexcept {
 WorldDistance World::distance(double tolerance, const Budget& budget) noexcept {
   const ScopedFloatEnvironment environment;
   detail::WorldState& s = *state_;
-  const detail::WorldUse use(s);
+  const detail::Use use(s);
   if (!use) return {.status = QueryStatus::kBusy};
   if (!s.ready) return {.status = QueryStatus::kNotPrepared};
 

@@ -8,7 +8,6 @@
 #include "ist/base/cancellation.h"
 #include "ist/base/error.h"
 #include "ist/query/contacts/contact_reducer.h"
-#include "ist/query/query_state.h"
 #include "ist/query/world/world_state.h"
 
 namespace ist::detail {

@@ -5,7 +5,6 @@
 
 #include "ist/base/pose.h"
 #include "ist/query/contacts/contact_scale.h"
-#include "ist/query/query_state.h"
 #include "ist/query/traversal/root_test.h"
 #include "ist/tree/tree_parts.h"
 

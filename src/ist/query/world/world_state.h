@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ist/base/float_environment.h"
+#include "ist/query/query_state.h"
 #include "ist/query/world/broad_phase.h"
 #include "ist/query/world/near_set.h"
 #include "ist/query/world/pair_table.h"
@@ -100,22 +101,6 @@ struct WorldState {
   bool ready = false;  // the answers have room for these bodies
   bool stale = true;   // a body was moved since the last find_near()
   std::atomic_flag in_use;
-};
-
-/// The use of a world by one thread: false where another thread is using it.
-class WorldUse {
- public:
-  explicit WorldUse(WorldState& state) noexcept
-      : state_(state.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &state) {}
-  ~WorldUse() {
-    if (state_ != nullptr) state_->in_use.clear(std::memory_order_release);
-  }
-  WorldUse(const WorldUse&) = delete;
-  WorldUse& operator=(const WorldUse&) = delete;
-  [[nodiscard]] explicit operator bool() const noexcept { return state_ != nullptr; }
-
- private:
-  WorldState* state_;
 };
 
 }  // namespace ist::detail
