@@ -7,8 +7,8 @@
 #   scripts/release.sh --out FOLDER        into another folder, which is not there yet
 #   scripts/release.sh --once              a draft, in FOLDER-draft: built once, in half the time, and so nothing shows that the
 #                                          bytes are the same elsewhere
-#   scripts/release.sh --despite-figures   a draft, too: made even where figures are older than their code, or long runs
-#                                          (scripts/check_figures.sh, scripts/long_table.py --check)
+#   scripts/release.sh --despite-figures   a draft, too: made even if figures are older than their code, or a long
+#                                          test has not passed at the commit (scripts/check_figures.sh, scripts/test.sh --left)
 #   scripts/release.sh -DIST_MAINTAINER='Name <address>' -DIST_HOMEPAGE=https://…
 #                                          whom the packages name; without them "IST developers", and no page
 #
@@ -45,14 +45,14 @@ say "ist $version of commit $(git log -1 --format='%h, %cs') into $out"
 [[ ${contact[*]} == *IST_MAINTAINER=* ]] || say 'IST_MAINTAINER is unset: the packages say "IST developers"'
 [[ ${contact[*]} == *IST_HOMEPAGE=* ]] || say "IST_HOMEPAGE is unset: the packages name no page"
 stale=''
-for check in "check_figures.sh" "long_table.py --check"; do
+for check in "check_figures.sh" "test.sh --left"; do
   # shellcheck disable=SC2086  # words
   said=$(scripts/$check 2>&1) || stale+=$said$'\n'
 done
 if [ -n "$stale" ]; then
   printf '%s' "$stale" >&2
-  $despite || fail "figures or long runs are older than their code: make these anew, or a draft by --despite-figures"
-  say "figures or long runs are older than their code: this is a draft"
+  $despite || fail "figures are older than their code, or long tests have not passed: make these anew, or a draft by --despite-figures"
+  say "figures are older than their code, or long tests have not passed: this is a draft"
 fi
 scripts/setup.sh --viewer --python --docs --package
 

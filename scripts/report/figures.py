@@ -54,7 +54,7 @@ RESTS = {
     "world_bench": [*QUERY, "src/ist/models"],
     "calls.py": [*MEASURE, "bench/python", "src/ist/capi", "src/python/ist"],
     "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/cli/engine.cpp", "src/ist/models"],
-    "mutate.sh": ["scripts/mutants", "scripts/parts.sh", "scripts/report", "scripts/try.py", "examples", "simd", "src", "tests"],
+    "mutate.sh": ["scripts/mutants", "scripts/report", "scripts/try.py", "examples", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],

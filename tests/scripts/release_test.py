@@ -18,7 +18,7 @@ FILES = {
     ".gitignore": "build/\n",
     "scripts/setup.sh": "#!/bin/sh\n",
     "scripts/check_figures.sh": "#!/bin/sh\n[ ! -e figures ] || { cat figures; exit 1; }\n",
-    "scripts/long_table.py": '#!/bin/sh\n[ "$1" = --check ] || exit 2\n[ ! -e runs ] || { cat runs; exit 1; }\n',
+    "scripts/test.sh": '#!/bin/sh\n[ "$1" = --left ] || exit 2\n[ ! -e runs ] || { cat runs; exit 1; }\n',
     # What it has been given, and what the sources say of their commit.
     "scripts/release/build.sh": '#!/bin/sh\nset -e\ncd "$(dirname "$0")/../.."\nout=$1\nshift\n'
                                 'echo "$@" >"$out/options"\ncmake -P src/package/commit.cmake >"$out/time"\n. ./more.sh\n',
