@@ -11,7 +11,7 @@ import sys
 
 from report.figures import here, stamp, stamped
 from report.results import Results
-from report.text import number, table
+from report.tables import markdown as table, number
 
 CIRCUIT = pathlib.Path("src/hardware/rtl/ist_pair_test.v")
 

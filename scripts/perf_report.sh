@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Makes perf/REPORT.md, with its plots, from raw results in perf/results/<machine>/: what accuracy
-# costs in time, the article's own measurements again, what each part gives, and other libraries
-# side by side. Runs the benchmarks that have no results of this code, so that after an interruption
-# it goes on where it was; results of an earlier commit count where no source of theirs has changed,
-# those of changes that no commit holds do not. Some half an hour on two cores that have nothing else
-# to do, and 5 to build.
+# Makes the tables of perf/REPORT.md and of the closing in docs/performance.md, and the plots, from
+# raw results in perf/results/<machine>/. The text of the pages is written by hand. Without the real
+# jaws the pages go to build/report, as with --quick. The script runs the benchmarks that have no
+# results of this code, so it goes on after an interruption. Results of an earlier commit count if no
+# source of theirs has changed. Results of changes that no commit holds do not count. It takes some
+# half an hour on two cores that have nothing else to do, and 5 minutes to build.
 #
 #   scripts/perf_report.sh            runs what has no results of this code
 #   scripts/perf_report.sh --fresh    runs all again
@@ -18,7 +18,7 @@ options=()
 for argument in "$@"; do
   case $argument in
     --quick | --fresh) options+=("$argument") ;;
-    -h | --help) sed -n '2,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "perf_report: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done

@@ -23,17 +23,14 @@ MUTANTS = [
 
     # The report.
     Mutant("verdict-always-agrees", "the worst case is right before collision wherever it is",
-           [("scripts/report/seed_rates.py", "\"*Agrees*\" if beyond in (0, 1) else", "\"*Agrees*\" if True else")],
-           ["python verdicts_seed_test.py"]),
+           [("scripts/report/seed.py", "\"*Agrees*\" if r[\"beyond\"] in (0, 1) else", "\"*Agrees*\" if True else")], ["python report_test.py"]),
     Mutant("win-against-nobody", "a pose at which no other counts is a win",
-           [("scripts/report/peer_answers.py", "        if not others:\n            continue\n",
-             "        if not others:\n            count += 1\n            continue\n")],
-           ["python verdicts_peers_test.py"]),
+           [("scripts/report/peers.py", "        if other is None:\n            continue\n", "        if other is None:\n            count += 1\n            continue\n")],
+           ["python report_test.py"]),
     Mutant("away-hidden", "queries that were off their core count among those that the quantiles are of",
-           [("scripts/report/deadlines.py", "{run['n'] - run['over_away']:,.0f}", "{run['n']:,.0f}")], ["python verdicts_deadlines_test.py"]),
-
-    Mutant("verdict-always-fails", "the report says of every query that it needs a budget",
-           [("scripts/report/scaling_conformal.py", "if worst[\"p50_us\"] > TICK:", "if worst[\"p50_us\"] > 0:")], ["python verdicts_time_test.py"]),
+           [("scripts/report/timing.py", "number(r[\"n\"] - r[key])", "number(r[\"n\"])")], ["python report_test.py"]),
+    Mutant("losses-plain", "a loss of the report is not bold",
+           [("scripts/report/tables.py", "if is_bold and is_bold(row) else text", "if False else text")], ["python report_test.py"]),
 
     # The package.
     Mutant("export-map-loosened", "symbols of other libraries are exported too",

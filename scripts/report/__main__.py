@@ -1,86 +1,63 @@
-"""Makes the report: see scripts/perf_report.sh, which runs this."""
+"""Fills the tables of perf/REPORT.md and docs/performance.md, and draws the plots: see scripts/perf_report.sh, which runs this.
+
+A page holds its text. Between `<!-- NAME table -->` and `<!-- end of NAME table -->` stand the lines that the results of NAME give."""
 
 import pathlib
+import re
 import sys
 
-from report import ablation, accuracy, bodies, closing, coherent, deadlines, guard, loop, measures, peers, scaling, seed, sweeps
-from report.draw import Pictures
-from report.figures import machine_state, stamp, stamped
-from report.made_with import made_with
+from report import ablation, accuracy, peers, scaling, seed, timing
+from report.draw import draw
+from report.figures import ROOT, machine_state, stamp
 from report.results import Results
 from report.runner import Runner
 
-CHAPTERS = [accuracy, coherent, measures, seed, ablation, peers, scaling, deadlines, loop, bodies, sweeps, guard]
-HEAD = """# What accuracy costs in time
+TABLES = accuracy.TABLES | seed.TABLES | ablation.TABLES | peers.TABLES | scaling.TABLES | timing.TABLES
+PROGRAMS = list(dict.fromkeys(table.program for table in TABLES.values()))
+PAGES = ("perf/REPORT.md", "docs/performance.md")
+BLOCK = re.compile(r"(<!-- (?!end of )([^>]*) table -->\n).*?(<!-- end of \2 table -->)", re.S)
 
-Made by `scripts/perf_report.sh` from the raw results in `{results}`; no measured number in it is typed by hand, \
-but for the times of peers that were built elsewhere, which say so. Times are wall times
-of a query alone, trees loaded, unless stated otherwise; a *median* is over *n* queries. Two jaws are a *{pair}*
-pair: {triangles}. Lengths are in millimetres. The *closing* moves the lower jaw along z: at dz = 0 teeth are in full
-occlusion, at dz = -1.5 they are just apart. In tables and plots, **bold** marks the best of a row or column, or a loss;
-the text says which. What is worse by 3 % or more is a loss: less is noise.
 
-A shared machine changes its speed within minutes, so the same query may take different times in different chapters: compare within one.
-These measurements took turns, under the same conditions: all bounds of one voxel size in the cost of accuracy, coherent ticks and fresh ones, \
-the article's
-rates, saved spheres, folding and levels, the parts of the query, the peers, worlds, and sweeps. All others ran one after the other: \
-voxel sizes, gaps,
-advice, one worker and two, deadlines, the loop. The last chapter states the load of the machine.
-"""
+def lines_of(name, results):
+    """The lines of a block: a table with its stamp, or what names its own commits."""
+    if name == "instructions":
+        return timing.instructions()
+    if name == "made with":
+        return timing.made_with(results, PROGRAMS)
+    lines, context = TABLES[name].lines(results), results.context(TABLES[name].program)
+    return [*lines, "", stamp(context["commit"], context["date"][:10], TABLES[name].program, machine_state(context))] if len(lines) > 1 else lines
+
+
+def filled(text, results):
+    """A page with its tables made anew, and the name of the results. A block that no table fills stays as it is: other scripts make it."""
+    known = {*TABLES, "instructions", "made with"}
+    text = re.sub(r"`results/[^`]*`", f"`results/{results.folder.name}`", text)
+    return BLOCK.sub(lambda block: block[0] if block[2] not in known else
+                     block[1] + "\n".join(lines_of(block[2], results)) + "\n" + block[3], text)
 
 
 def description(results, program):
-    """Returns the machine, compiler, commit and date of a program's run, as the caption of a plot."""
+    """The machine, compiler, commit and date of a program's run, as the caption of a plot."""
     c = results.context(program)
-    level = c["flags"].split()[:1]
-    return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1],
-                      *level, f"commit {c['commit']}", c["date"][:10]])
+    return ", ".join([c["processor"], f"{c['num_cpus']} cores", "g++ " + c["compiler"].split(") ")[-1], *c["flags"].split()[:1],
+                      f"commit {c['commit']}", c["date"][:10]])
 
 
-def with_stamps(lines, chapter, results):
-    """Returns the lines with a stamp below each table: of the program that its section names, or else of the chapter's first."""
-    if not chapter.PROGRAMS:
-        return lines
-    made, begins = [], [0, *(i for i, line in enumerate(lines) if line.startswith("#") and i > 0), len(lines)]
-    for begin, end in zip(begins, begins[1:]):
-        section = lines[begin:end]
-        program = getattr(chapter, "SECTIONS", {}).get(section[0].lstrip("# "), chapter.PROGRAMS[0]) if section else None
-        context = results.context(program)
-        made += stamped(section, stamp(context["commit"], context["date"][:10], program, machine_state(context)))
-    return made
-
-
-def programs():
-    return list(dict.fromkeys(program for chapter in CHAPTERS for program in chapter.PROGRAMS))
-
-
-def main():
-    options = {argument for argument in sys.argv[1:] if argument.startswith("--")}
-    raw, *context = [argument for argument in sys.argv[1:] if argument not in options]
+def main(arguments):
+    options = {argument for argument in arguments if argument.startswith("--")}
+    raw, *context = [argument for argument in arguments if argument not in options]
     quick = "--quick" in options
-    raw = pathlib.Path(raw)
-    out = pathlib.Path("build/report") if quick else raw.parent.parent
-    results_folder = out / "results" / raw.name if quick else raw
-    Runner(results_folder, context, quick).run(programs(), again=quick or "--fresh" in options)
-
-    results = Results(results_folder)
-    folder = out / "pictures" / "report"
-    voxels = results.runs("seed_bench", "voxels")[0]
-    first = results.runs("accuracy_bench", "first")[0]
-    lines = [HEAD.format(results=results_folder.relative_to(out), pair=first["label"],
-                         triangles=f"the lower jaw has {voxels['triangles']:,.0f} triangles and is {voxels['extent']:.0f} mm long")]
-    if quick:
-        lines += ["**A quick run: it shows that everything runs, and no number in it counts.**", ""]
-    for chapter in CHAPTERS:
-        machine = description(results, chapter.PROGRAMS[0]) if chapter.PROGRAMS else ""
-        lines += [*with_stamps(chapter.chapter(results, Pictures(folder, machine)), chapter, results), ""]
-    lines += made_with(results, programs())
-    report = out / "REPORT.md"
-    report.write_text("\n".join(lines) + "\n")
-    if not quick:
-        closing.update(results, description(results, "ablation_bench"))
-    print(f"perf_report: {report}", file=sys.stderr)
+    folder = ROOT / "build/report/results" / pathlib.Path(raw).name if quick else pathlib.Path(raw)
+    Runner(folder, context, quick).run(PROGRAMS, again=quick or "--fresh" in options)
+    results = Results(folder)
+    # The text of the pages is about the human pair.
+    out = ROOT / "build/report" if quick or results.runs("ablation_bench", "ablation")[0]["label"] != "human" else ROOT
+    for page in PAGES:
+        (out / page).parent.mkdir(parents=True, exist_ok=True)
+        (out / page).write_text(filled((ROOT / page).read_text(), results))
+        print(f"perf_report: {out / page}", file=sys.stderr)
+    draw(out / "perf/pictures/report", lambda program: description(results, program), results)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

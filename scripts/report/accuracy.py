@@ -1,241 +1,213 @@
-"""Chapter: what accuracy costs in time. Errors are measured, never assumed."""
+"""Tables and plots of the cost of accuracy, of coherent ticks and of measures."""
 
-from report import advice
-from report.curves import between, power
-from report.losses import bold_if, by_reason, is_loss
-from report.styles import style
-from report.text import number, table
+from report.draw import DOTTED, LOG, line, panel, plot, style
+from report.results import Run
+from report.tables import POLICIES, Table, between, code, is_loss, number, ratio, row, runs, scaled, value_of
 
-PROGRAMS = ["accuracy_bench", "advise_bench"]
-SECTIONS = {"Advice, held against this curve": "advise_bench"}  # tables of another program than the first
-POLICIES = ("simple", "table", "tight", "slab")
-BUDGET = 300  # µs, of the question that the first plot answers
-NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
-FORCE_ERRORS = (("angle_p50", 1), ("angle_max", 1), ("length_p50", 100), ("length_max", 100))
+BUDGET = 300  # µs, of the first question
 WANTED = 0.1  # mm, of the second
+TICK = 1000  # µs, of a haptic loop at 1 kHz
+NAMES = {"exact": "pairs of triangles", "touches": "whether triangles meet"}
+HERTZ = ("rate, Hz", lambda r: 1e6 / r["p50_us"])
 
 
-class FirstContacts:
-    """By policy, from the coarsest voxels to the finest: error, time and all else of first/…"""
+class First:
+    """The errors and times at first contact, as curves of a policy."""
 
     def __init__(self, results):
         self.runs = results.runs("accuracy_bench", "first")
-        self.by_policy = {}
-        for run in self.runs:
-            self.by_policy.setdefault(run.parts[2], []).append(run)
-        self.n, self.rounds = self.runs[0]["n"], self.runs[0]["rounds"]
+
+    def of(self, policy):
+        return [run for run in self.runs if run.parts[2] == policy]
 
     def curve(self, policy, x, y):
-        return sorted((run[x], run[y]) for run in self.by_policy[policy])
-
-    def sized(self, policy, y):
-        """Any number of the policy's runs over the voxel size."""
-        return sorted((float(run.parts[1]), run[y]) for run in self.by_policy[policy])
-
-    def sizes(self, policy, x):
-        """Voxel size over any other number of the policy's runs."""
-        return sorted((run[x], float(run.parts[1])) for run in self.by_policy[policy])
+        """Points of two counters."""
+        return sorted((value_of(run, x), value_of(run, y)) for run in self.of(policy))
 
 
-def chapter(results, pictures):
-    first = FirstContacts(results)
-    return ["## The cost of accuracy", "", *_meaning(first), *_budget(first, pictures), *_wanted(first, pictures),
-            *_table(first), *advice.section(results, first), *_verdicts(results), *_gaps(results, pictures), *_deadlines(results, pictures),
-            *_points(results), *_forces(results)]
+def size(run):
+    return float(run.parts[1])
 
 
-def _meaning(first):
-    some = first.runs[0]
-    return [
-        f"Two jaws approach each other on {first.n:.0f} straight paths, turned by up to {number(some['turned_degrees'], 2)} degrees about each axis "
-        f"and inclined by up to {number(some['inclined_degrees'], 2)} to each side. The "
-        "**error** is the distance of the surfaces, by exact triangles, when voxels first report a contact: "
-        "the largest of all paths. A contact is never reported too late, and no error exceeds the certain bound: otherwise the program that measures "
-        f"fails, and it did not. The **time** is the median ({first.rounds:.0f} rounds, all bounds of a voxel size in turns) of the slowest "
-        f"pose, among {some['closing_poses']:.0f} of the closing and the first contacts of the paths: one worker, all pairs of overlapping voxels, "
-        "written. This is the search's part of a tick; contact points and effects add to it.", ""]
-
-
-def _budget(first, pictures):
-    figure, axes = pictures.figure(width=7.6, height=4)
-    floor = 0.7 * min(run["error_max"] for run in first.runs if run["error_max"] > 0)
+def within_budget(results, _program):
+    first, found = First(results), []
     for policy in POLICIES:
-        runs = first.by_policy[policy]
-        axes.plot([r["p50_us"] for r in runs], [r["error_max"] for r in runs], **style(policy))
-        for r in runs if policy in ("slab", "table") else ():
-            axes.annotate(r.parts[1], (r["p50_us"], r["error_max"]), xytext=(4, 3), textcoords="offset points", fontsize=7)
-    exact, touches = (first.by_policy[name][0] for name in ("exact", "touches"))
-    axes.plot([exact["p50_us"]], [floor], linestyle="", **style("exact", label="all pairs of triangles: error 0"))
-    axes.plot([touches["p50_us"]], [floor], linestyle="", **style("touches", label="whether triangles meet: error 0"))
-    axes.axvline(BUDGET, color="black", linestyle=":", linewidth=1)
-    axes.annotate(f"{BUDGET} µs", (BUDGET, floor), xytext=(3, 0), textcoords="offset points", fontsize=8)
-    axes.set(xscale="log", yscale="log", xlabel="slowest pose, µs (median, one worker)",
-             ylabel="largest error at first contact, mm", title=f"I have {BUDGET} µs: what accuracy can I have?")
-    axes.legend(title="bounds; numbers are\nvoxel sizes, mm", fontsize=8, title_fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
-    picture = pictures.save(figure, "accuracy_for_time", "Largest error at first contact over the time of the slowest pose, by policy",
-                            f"n = {first.n:.0f} ways of approach, {first.rounds:.0f} rounds")
-    said = []
-    for policy in POLICIES:
-        error = between(first.curve(policy, "p50_us", "error_max"), BUDGET)
+        error, at = (between(first.curve(policy, "p50_us", y), BUDGET) for y in ("error_max", size))
         if error is None:
-            points = first.curve(policy, "p50_us", "error_max")
-            if points[0][0] > BUDGET:
-                said.append((float("inf"), f"`{policy}` is too slow at every size measured"))
-            else:
-                said.append((points[-1][1], f"`{policy}` {number(points[-1][1])} mm or better, the finest measured"))
-        else:
-            size = between(first.sizes(policy, "p50_us"), BUDGET)
-            said.append((error, f"`{policy}` {number(error)} mm, with voxels of {number(size, 2)} mm"))
-    said.sort()
-    return [f"### I have {BUDGET} µs: what accuracy can I have?", "", picture, "",
-            "Read between the points: " + "; ".join(text for _, text in said) + ". All pairs of "
-            f"triangles that meet, without any error, take {number(exact['p50_us'])} µs at any voxel size; the yes or no whether any meet, "
-            f"from which no force can be computed, takes {number(touches['p50_us'])} µs.", ""]
+            coarsest, *_, finest = first.curve(policy, "p50_us", "error_max")
+            error = f"over {number(coarsest[1])}" if coarsest[0] > BUDGET else f"{number(finest[1])} or better"
+        found.append(row(policy, policy=f"`{policy}`", error=error, size=number(at, 2) if at else "beyond the measured ones", time=BUDGET))
+    return [*found, *(row(name, policy=NAMES[name], error="0", size="any", time=first.of(name)[0]["p50_us"]) for name in NAMES)]
 
 
-def _wanted(first, pictures):
-    figure, (times, memory) = pictures.figure(2, height=3.8)
+def for_wanted(results, _program):
+    first, found = First(results), []
     for policy in POLICIES:
-        runs = first.by_policy[policy]
-        errors = [r["error_max"] for r in runs]
-        times.plot(errors, [r["p50_us"] for r in runs], **style(policy))
-        memory.plot(errors, [r["MB"] for r in runs], **style(policy))
-    for axes, label in ((times, "slowest pose, µs (median)"), (memory, "both trees in memory, MB")):
-        axes.axvline(WANTED, color="black", linestyle=":", linewidth=1)
-        axes.set(xscale="log", yscale="log", xlabel="largest error at first contact, mm", ylabel=label)
-    times.legend(fontsize=8)
-    figure.suptitle(f"I need {WANTED} mm: what does it take?")
-    picture = pictures.save(figure, "time_for_accuracy", "Time and memory over the error at first contact, by policy",
-                            f"n = {first.n:.0f} ways of approach, {first.rounds:.0f} rounds")
-    rows = []
-    for policy in POLICIES:
-        size = between(first.sizes(policy, "error_max"), WANTED)
-        if size is None:
+        at = {y: between(first.curve(policy, "error_max", y), WANTED) for y in (size, "p50_us", "MB", "build_ms")}
+        if at[size] is None:
             best = first.curve(policy, "error_max", "p50_us")[0][0]
-            rows.append([f"`{policy}`", f"not reached: {number(best)} mm with the finest", "", "", "", ""])
-            continue
-        at = {key: between(first.curve(policy, "error_max", key), WANTED) for key in ("p50_us", "MB", "build_ms")}
-        rows.append([f"`{policy}`", number(size, 2), at["p50_us"], 1e6 / at["p50_us"], at["MB"], at["build_ms"] / 1e3])
-    return [f"### I need {WANTED} mm: what does it take?", "", picture, "",
-            *table(["bounds", "voxel size, mm", "slowest pose, µs", "rate, Hz", "both trees, MB", "to build both, s"], rows), ""]
+            found.append(row(policy, **dict.fromkeys(("time", "rate", "MB", "s"), ""), size=f"not reached: {number(best)} mm with the finest"))
+        else:
+            found.append(row(policy, size=number(at[size], 2), time=at["p50_us"], rate=1e6 / at["p50_us"], MB=at["MB"], s=at["build_ms"] / 1e3))
+    return found
 
 
-def _table(first):
-    rows = []
-    for run in sorted(first.runs, key=lambda r: (-r["error_max"], r["p50_us"])):
-        size, policy = run.parts[1:3]
-        rows.append([NAMES.get(policy, f"`{policy}`"), "any" if policy in NAMES else size, run["error_p50"], run["error_max"],
-                     run["resolution"], run["build_ms"] / 1e3, run["MB"], run["p50_us"], run["p99_us"], 1e6 / run["p50_us"]])
-    slab = first.by_policy["slab"]
-    growth, _ = power([float(run.parts[1]) for run in slab], [run["error_max"] for run in slab])
-    worst = max(run["error_max"] / run["resolution"] for run in first.runs if run["resolution"] > 0)
-    return ["### Every accuracy", "",
-            *table(["bounds", "voxel size, mm", "error, median, mm", "error, largest, mm", "certain bound, mm", "to build both, s",
-                    "both trees, MB", "slowest pose, µs", "its 99 of 100, µs", "rate, Hz"], rows), "",
-            f"With `slab` the error grows as size^{growth:.2f}. The rate is one over the median; each pair was built once. "
-            f"The certain bound is `resolution`, which every answer states; measured errors are at most {100 * worst:.0f} % of it. Answers about "
-            f"triangles do not depend on voxels; their trees have voxels of {first.by_policy['exact'][0].parts[1]} mm, and the table states the "
-            "memory and build time of these.", ""]
+def advice(results, program):
+    first = First(results)
+    curves = {"error": first.curve("slab", size, "error_max"), "budget": first.curve("slab", size, "p50_us")}
+    return [Run(run | {f"curve_{key}": between(curve, run["voxel_size"]) or "beyond what was measured" for key, curve in curves.items()})
+            for run in results.runs(program, "advise")]
 
 
-def _verdicts(results):
-    runs = results.runs("accuracy_bench", "verdict")
-    rows = [[f"`{run.parts[2]}`", run.parts[1], f"{run['missed']:.0f}", f"{run['false']:.0f}", run["leaf_pairs"],
-             100 * (1 - run["crossing"] / run["leaf_pairs"])] for run in runs]
-    some = runs[0]
-    return ["### Missed and false contacts", "",
-            f"Measured at {some['n']:.0f} poses from {some['before_mm']:g} mm before first contact to {some['behind_mm']:g} mm behind it; "
-            f"triangles meet at {some['touching']:.0f} of them. A pose is missed if triangles meet and no voxels do, and false if voxels meet and no "
-            "triangles do. A leaf pair of the closed pose is false if its own triangles, clipped to the voxels, do not cross. A missing "
-            "leaf pair would stop the program. " + missed_verdict(runs), "",
-            *table(["bounds", "voxel size, mm", "missed", "false", "leaf pairs, closed", "of which false, %"], rows), ""]
+def exceeds(kind):
+    return lambda r: r.parts[1] == kind and not isinstance(r[f"curve_{kind}"], str) and r[f"curve_{kind}"] > float(r.parts[2])
 
 
-def missed_verdict(runs):
-    """Whether voxels missed a contact of triangles, and in which rows."""
-    lost = [(f"{run['missed']:.0f} by `{run.parts[2]}` at {run.parts[1]} mm", None) for run in runs if run["missed"] > 0]
-    return f"Missed are {by_reason(lost)}, which no bounds may miss." if lost else "None is missed in any row."
+def farther_off(key):
+    """Whether a force is farther off than the force by the voxels' balls of the same size."""
+    def rule(r):
+        ball, = (other for other in r.rows if other.parts[1:3] == [r.parts[1], "simple"])
+        return r[key] and is_loss(ball[key] / r[key])
+    return rule
 
 
-def _gaps(results, pictures):
-    runs = results.runs("accuracy_bench", "gap")
-    distances = sorted({run.parts[3] for run in runs}, key=float)
-    figure, axes = pictures.figure(len(distances), width=11, height=3.4)
-    for plot, distance in zip(axes, distances):
-        for policy in POLICIES:
-            of = [run for run in runs if run.parts[2] == policy and run.parts[3] == distance]
-            plot.plot([r["p50_us"] for r in of], [r["width_p50"] for r in of], **style(policy))
-        of = [run for run in runs if run.parts[2].startswith("exact") and run.parts[3] == distance]
-        plot.plot([r["p50_us"] for r in of], [r["width_p50"] for r in of], **style("exact", label="with triangles"))
-        plot.set(xscale="log", yscale="log", xlabel="time, µs (median)", title=f"{distance} mm apart")
-    axes[0].set_ylabel("width of the interval, mm (median)")
-    axes[0].legend(fontsize=7)
-    picture = pictures.save(figure, "gap_width", "Width of the gap's interval over time, by distance",
-                            f"n = {runs[0]['n']:.0f} queries a point")
-    coarse = max(runs, key=lambda r: r["width_max"])
-    return ["### The gap", "", picture, "",
-            "The certified interval of the distance between the surfaces, from voxels alone (a point for each voxel size, "
-            "coarse ones above) and with triangles, to tolerances of "
-            + ", ".join(dict.fromkeys(r.parts[2].split("-")[1] for r in runs if "-" in r.parts[2])) + " mm. Every interval was compared with exact "
-            f"triangles and contains the distance. The widest of all is {number(coarse['width_max'])} mm "
-            f"(`{coarse.parts[2]}`, voxels of {coarse.parts[1]} mm).", ""]
+def motion(r):
+    name = " ".join(r.parts[2:-1]).replace("_s", "/s").replace("_", " ").replace("mm/s", " mm/s")
+    return f"{name} at {r.parts[1]} mm" + (" with two workers" if r.parts[-1] == "2" else "")
 
 
-def _deadlines(results, pictures):
-    runs = results.runs("accuracy_bench", "deadline")
-    figure, axes = pictures.figure(width=6, height=3.8)
-    for distance, mark in zip(sorted({run.parts[2] for run in runs}, key=float), "osD^"):
-        of = [run for run in runs if run.parts[2] == distance]
-        axes.plot([float(r.parts[1]) for r in of], [r["width_p50"] for r in of], marker=mark, label=f"{distance} mm apart")
-    axes.set(xscale="log", yscale="log", xlabel="budget, µs", ylabel="width of the interval, mm (median)",
-             title="What is known of the gap at a deadline")
-    axes.legend(fontsize=8)
-    picture = pictures.save(figure, "gap_by_budget", "Width of the gap's interval by the query's budget",
-                            f"n = {runs[0]['n']:.0f} queries a point, slab, voxels of {runs[0]['voxel_size']:g} mm")
-    late = max((run["p50_us"] - float(run.parts[1]) for run in runs if run["p50_us"] > float(run.parts[1])), default=0)
-    return ["### Deadlines", "", picture, "",
-            "A contact query that a budget stops returns the interval known by then, and the interval always contains the distance. Where surfaces "
-            "are far apart the query ends before its budget, and the interval stays as wide as the pruning left it: for a narrow one "
-            f"ask for the gap itself. In the median no query ended more than {number(late, 2)} µs after its budget.", ""]
+def by_tolerance(results, question):
+    """The run of the slowest pose for each tolerance, from the coarsest to the finest."""
+    found = {}
+    for run in results.runs("measure_bench", "by_accuracy", question):
+        found.setdefault(float(run.parts[2]), []).append(run)
+    return [Run(max(of, key=lambda run: run["p50_us"]) | {"width": max(run["upper"] - run["lower"] for run in of)})
+            for _, of in sorted(found.items(), reverse=True)]
 
 
-def _points(results):
-    runs = results.runs("accuracy_bench", "form")
-    some = runs[0]
-    rows = [[f"`{run.parts[2]}`", run.parts[1], run["depth_mean"], run["depth_max"], run["depth_max"] / float(run.parts[1]),
-             run["normal_mean"], run["normal_max"], run["n"]] for run in runs]
-    return ["### Depths and normals", "",
-            f"Measured on {some['forms']:.0f} pairs of bodies with known surfaces (spheres, planes, a bore, boxes, tori), whose "
-            f"radii of curvature are many voxels, from {number(some['apart_voxels'])} voxel apart to {number(some['deep_voxels'])} deep. "
-            "n is the number of contact points.", "",
-            *table(["bounds", "voxel size, mm", "depth error, mean, mm", "largest, mm", "largest, voxels",
-                    "normal error, mean, °", "largest, °", "n"], rows), ""]
+QUESTIONS = {"touch": "exact touch", "distance": "distance of the surfaces", "depth": "penetration depth"}
+OTHERS = {"distances": "vertices of both jaws within {reach:g} mm, with their distances", "first_contact": "first contact, to {tolerance:g} mm",
+          "occlusion": "occlusion: areas, regions and depths"}
+
+TABLES = {
+    "budget": Table("accuracy_bench", within_budget, [
+        ("bounds", "policy"), ("largest error, mm", "error"), ("voxel size, mm", "size"), ("slowest pose, µs", "time")]),
+    "wanted accuracy": Table("accuracy_bench", for_wanted, [
+        ("bounds", code(0)), ("voxel size, mm", "size"), ("slowest pose, µs", "time"), ("rate, Hz", "rate"), ("both trees, MB", "MB"),
+        ("to build both, s", "s")]),
+    "every accuracy": Table("accuracy_bench", runs("first", sort=lambda r: (-r["error_max"], r["p50_us"])), [
+        ("bounds", lambda r: NAMES.get(r.parts[2], f"`{r.parts[2]}`")), ("voxel size, mm", lambda r: "any" if r.parts[2] in NAMES else r.parts[1]),
+        ("error, median, mm", "error_p50"), ("error, largest, mm", "error_max"), ("certain bound, mm", "resolution"),
+        ("to build both, s", scaled("build_ms", 1e-3)), ("both trees, MB", "MB"), ("slowest pose, µs", "p50_us"),
+        ("its 99 of 100, µs", "p99_us"), HERTZ]),
+    "advice": Table("advise_bench", advice, [
+        ("asked for", lambda r: f"{float(r.parts[2]):g} {'µs' if r.parts[1] == 'budget' else 'mm'}"),
+        ("recommended, mm", lambda r: f"{r['voxel_size']:g}"), ("its error, mm", "error"), ("curve, mm", "curve_error", exceeds("error")),
+        ("its slowest pose, µs", "slowest_us"), ("curve, µs", "curve_budget", exceeds("budget")), ("sizes tried", "sizes"),
+        ("seconds", "seconds")]),
+    "missed contacts": Table("accuracy_bench", runs("verdict"), [
+        ("bounds", code(2)), ("voxel size, mm", 1), ("missed", "missed", lambda r: r["missed"] > 0), ("false", "false"),
+        ("leaf pairs, closed", "leaf_pairs"), ("of which false, %", lambda r: 100 * (1 - r["crossing"] / r["leaf_pairs"]))]),
+    "depths and normals": Table("accuracy_bench", runs("form"), [
+        ("bounds", code(2)), ("voxel size, mm", 1), ("depth error, mean, mm", "depth_mean"), ("largest, mm", "depth_max"),
+        ("largest, voxels", lambda r: r["depth_max"] / float(r.parts[1])), ("normal error, mean, °", "normal_mean"), ("largest, °", "normal_max"),
+        ("n", "n")]),
+    "forces": Table("accuracy_bench", runs("force"), [
+        ("bounds", code(2)), ("voxel size, mm", 1), ("direction off by, median, °", "angle_p50", farther_off("angle_p50")),
+        ("largest, °", "angle_max", farther_off("angle_max")), ("length off by, median, %", scaled("length_p50", 100), farther_off("length_p50")),
+        ("largest, %", scaled("length_max", 100), farther_off("length_max")), ("no force", "none")]),
+    "coherent": Table("coherent_bench", runs("ticks", sort=lambda r: (int(r.parts[-1]), r["step_p50_voxels"])), [
+        ("motion, voxels", motion), ("motion a tick, voxels", "step_p50_voxels"), ("fresh, median, µs", "fresh_p50_us"),
+        ("kept, median, µs", "kept_p50_us", lambda r: is_loss(r["fresh_p50_us"] / r["kept_p50_us"])), ("fresh, slowest, µs", "fresh_max_us"),
+        ("kept, slowest, µs", "kept_max_us", lambda r: is_loss(r["fresh_max_us"] / r["kept_max_us"])), ("ticks by search", "by_search"),
+        ("by kept pairs", "among_kept"), ("in a clearance", "in_clearance")]),
+    "tolerance": Table("measure_bench", lambda results, _: [run for question in QUESTIONS for run in by_tolerance(results, question)], [
+        ("question", lambda r: QUESTIONS[r.parts[1]]), ("tolerance, mm", lambda r: float(r.parts[2])), ("slowest at dz, mm", 3),
+        ("slowest pose, µs", "p50_us", lambda r: r["p50_us"] > TICK), ("its 99 of 100, µs", "p99_us"), HERTZ, ("widest interval, mm", "width")]),
+    "warm depth": Table("measure_bench", lambda results, program: [
+        r for r in runs("measure", "depth", by=2)(results, program) if r["cold:upper"] > 0], [
+        ("dz, mm", 3), ("afresh, µs", "cold:real_time"),
+        ("from the last answer, µs", "warm:real_time", lambda r: is_loss(r["cold:real_time"] / r["warm:real_time"])),
+        ("points afresh", "cold:points"), ("points from it", "warm:points"), ("depth at least, mm", "cold:lower")]),
+    "other measures": Table("measure_bench", lambda results, program: [
+        max(results.runs(program, "measure", kind), key=lambda run: run["real_time"]) for kind in OTHERS], [
+        ("question", lambda r: OTHERS[r.parts[1]].format(**r)), ("slowest at dz, mm, or motion", 2),
+        ("slowest, ms (mean)", scaled("real_time", 1e-3))]),
+}
 
 
-def _forces(results):
-    runs = results.runs("accuracy_bench", "force")
-    finest = min(runs, key=lambda r: float(r.parts[1])).parts[1]
-    balls = {run.parts[1]: run for run in runs if run.parts[2] == "simple"}  # what a voxel's ball gives, by size
-    loses = lambda run, key: is_loss(balls[run.parts[1]][key] / run[key]) if run[key] else False
-    rows = [[f"`{run.parts[2]}`", run.parts[1], *(bold_if(number(factor * run[key]), loses(run, key)) for key, factor in FORCE_ERRORS),
-             f"{run['none']:.0f}"] for run in runs]
-    return ["### Forces", "",
-            f"The contact force at {runs[0]['n']:.0f} poses, {runs[0]['least_depth_mm']:g} to {runs[0]['most_depth_mm']:g} mm behind first contact, "
-            f"compared with the force by voxels of {finest} mm with `slab`. Its length differs at the same pose, because a surface "
-            "begins to push a part of a voxel before contact: coarse voxels push earlier, and a hand rests farther out.", "",
-            *table(["bounds", "voxel size, mm", "direction off by, median, °", "largest, °",
-                    "length off by, median, %", "largest, %", "no force"], rows), "",
-            forces_verdict({(run.parts[2], run.parts[1]): (run["angle_p50"], run["angle_max"]) for run in runs}), ""]
+def of_first(first):
+    return f"n = {first.runs[0]['n']:.0f} ways of approach, {first.runs[0]['rounds']:.0f} rounds"
 
 
-def forces_verdict(angles):
-    """Where the direction of a force by tight or slab bounds is farther off than by the voxels' balls; (median, largest) in degrees, by
-    policy and size."""
-    said = []
-    for at, name in enumerate(("In the median", "At the most")):
-        lost = [(f"`{policy}` at {size} mm, {number(off[at])}° beside {number(angles['simple', size][at])}°", None)
-                for (policy, size), off in angles.items()
-                if policy in ("tight", "slab") and off[at] and is_loss(angles["simple", size][at] / off[at])]
-        said.append(f"{name} the direction is farther off than with `simple` for {by_reason(lost)}." if lost else
-                    f"{name} the direction is nowhere farther off than with `simple`.")
-    return " ".join(said)
+@plot("accuracy_bench")
+def accuracy_for_time(results):
+    first = First(results)
+    floor = 0.7 * min(run["error_max"] for run in first.runs if run["error_max"] > 0)
+    exact = [([first.of(name)[0]["p50_us"]], [floor], style(name, label=f"{words}: error 0", linestyle=""))
+             for name, words in (("exact", "all pairs of triangles"), ("touches", "whether triangles meet"))]
+
+    def name_sizes(_, all_axes):
+        for run in first.of("slab") + first.of("table"):
+            all_axes[0].annotate(run.parts[1], (run["p50_us"], run["error_max"]), xytext=(4, 3), textcoords="offset points", fontsize=7)
+        all_axes[0].annotate(f"{BUDGET} µs", (BUDGET, floor), xytext=(3, 0), textcoords="offset points", fontsize=8)
+    return {"width": 7.6, "height": 4, "n": of_first(first), "then": name_sizes, "panels": [panel(
+        [*(line(first.of(policy), "p50_us", "error_max", **style(policy)) for policy in POLICIES), *exact], [("axvline", BUDGET, DOTTED)],
+        {"title": "bounds; numbers are\nvoxel sizes, mm", "title_fontsize": 8, "loc": "upper left", "bbox_to_anchor": (1, 1)}, **LOG,
+        xlabel="slowest pose, µs (median, one worker)", ylabel="largest error at first contact, mm",
+        title=f"I have {BUDGET} µs: what accuracy can I have?")]}
+
+
+@plot("accuracy_bench")
+def time_for_accuracy(results):
+    first = First(results)
+    return {"height": 3.8, "n": of_first(first), "then": lambda figure, _: figure.suptitle(f"I need {WANTED} mm: what does it take?"), "panels": [
+        panel([line(first.of(policy), "error_max", counter, **style(policy)) for policy in POLICIES], [("axvline", WANTED, DOTTED)], legend,
+              **LOG, xlabel="largest error at first contact, mm", ylabel=label)
+        for counter, label, legend in (("p50_us", "slowest pose, µs (median)", {}), ("MB", "both trees in memory, MB", None))]}
+
+
+@plot("accuracy_bench")
+def gap_width(results):
+    gaps = results.runs("accuracy_bench", "gap")
+    distances = sorted({run.parts[3] for run in gaps}, key=float)
+    looks = {policy: style(policy) for policy in POLICIES} | {"exact": style("exact", label="with triangles")}
+    return {"width": 11, "height": 3.4, "n": f"n = {gaps[0]['n']:.0f} queries a point", "panels": [panel(
+        [line([r for r in gaps if r.parts[2].split("-")[0] == name and r.parts[3] == at], "p50_us", "width_p50", **look)
+         for name, look in looks.items()],
+        legend=None if place else {"fontsize": 7}, **LOG, xlabel="time, µs (median)", title=f"{at} mm apart",
+        ylabel="" if place else "width of the interval, mm (median)") for place, at in enumerate(distances)]}
+
+
+@plot("accuracy_bench")
+def gap_by_budget(results):
+    given = results.runs("accuracy_bench", "deadline")
+    n = f"n = {given[0]['n']:.0f} queries a point, slab, voxels of {given[0]['voxel_size']:g} mm"
+    return {"width": 6, "height": 3.8, "n": n, "panels": [panel(
+        [line([r for r in given if r.parts[2] == at], lambda r: float(r.parts[1]), "width_p50", marker=mark, label=f"{at} mm apart")
+         for at, mark in zip(sorted({run.parts[2] for run in given}, key=float), "osD^")], legend={}, **LOG, xlabel="budget, µs",
+        ylabel="width of the interval, mm (median)", title="What is known of the gap at a deadline")]}
+
+
+@plot("coherent_bench")
+def coherent_by_motion(results):
+    ticks = sorted(results.runs("coherent_bench", "ticks"), key=lambda r: r["step_p50_voxels"])
+    counts = [r["ticks"] for r in ticks]
+    n = f"n = {number(min(counts))} to {number(max(counts))} ticks a point; above the dotted line keeping pairs loses"
+    return {"height": 3.8, "n": n, "panels": [
+        panel([line([r for r in ticks if r.parts[-1] == workers], "step_p50_voxels", ratio(f"kept_{counter}", f"fresh_{counter}"), **style(
+            colour, linestyle="", marker=mark, label=f"{workers} worker{'s' if workers == '2' else ''}"))
+            for workers, mark, colour in (("1", "D", "slab"), ("2", "o", "table"))], [("axhline", 1, DOTTED)], legend, **LOG,
+            xlabel="motion of a tick, voxels", title=f"{kind} tick", ylabel="time by kept pairs / fresh")
+        for kind, counter, legend in (("median", "p50_us", {}), ("slowest", "max_us", None))]}
+
+
+@plot("measure_bench")
+def measures_by_tolerance(results):
+    touch, = by_tolerance(results, "touch")
+    return {"width": 7, "height": 3.8, "n": f"n = {touch['n']:.0f} rounds a pose", "panels": [panel(
+        [line(by_tolerance(results, question), lambda r: float(r.parts[2]), "p50_us", **style(look, label=QUESTIONS[question]))
+         for question, look in (("distance", "slab"), ("depth", "tight"))],
+        [("axhline", touch["p50_us"], {"label": "exact touch", "color": style("touches")["color"]}),
+         ("axhline", TICK, DOTTED | {"label": f"a tick of {TICK:,} µs"})], {}, **LOG,
+        xlabel="tolerance, mm", ylabel="slowest pose, µs (median, one worker)", title="What an accuracy takes")]}

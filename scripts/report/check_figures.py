@@ -19,7 +19,7 @@ def verdict(commit, maker):
         return f"measured at {commit}, which is no commit of this history"
     changed = changed_since(commit, maker)
     files = f"{len(changed)} file{'s' if len(changed) > 1 else ''}"
-    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed, sources_of(maker)).replace('`', '')}"
+    return changed and f"measured at {commit} by {maker}; since then {files} changed in {rooms(changed, sources_of(maker))}"
 
 
 def stale(page):

@@ -1,13 +1,42 @@
-"""How every plot of the report looks, and where it goes."""
+"""How every plot of the report looks, and where it goes. A plot is a function that gives panels of lines as data."""
 
 import math
 import pathlib
 import textwrap
 import xml.etree.ElementTree as ElementTree
 
-# matplotlib is imported by what draws alone: the verdicts of chapters are tested where it is missing.
+from report.tables import value_of
 
-from report.styles import style  # noqa: E402, F401  for those who draw
+# Each policy and engine has one colour and one mark in all plots, so that they differ without colours too.
+STYLE = {"simple": ("#888888", "s"), "table": ("#d95f02", "o"), "tight": ("#7570b3", "^"), "slab": ("#1b9e77", "D"), "exact": ("#e7298a", "*"),
+         "touches": ("#e6ab02", "P")}
+LOG = {"xscale": "log", "yscale": "log"}
+DOTTED = {"color": "black", "linestyle": ":", "linewidth": 1}
+PLOTS = {}  # by the name of the picture: the program that measures it, and the function that gives it
+
+
+def plot(program):
+    """Registers a function of the results that returns `panels`, `n` (how often each point was measured), and sizes in inches. A panel has
+    lines, rules (axvline or axhline), what Axes.set() takes, and what legend() takes. `then` changes the axes after that."""
+    def add(function):
+        PLOTS[function.__name__] = program, function
+        return function
+    return add
+
+
+def style(name, **more):
+    """Returns colour and mark of a policy or engine."""
+    colour, mark = STYLE[name]
+    return {"color": colour, "marker": mark, "label": name} | more
+
+
+def line(rows, x, y, **look):
+    """Returns a line through two values of each row."""
+    return [value_of(r, x) for r in rows], [value_of(r, y) for r in rows], look
+
+
+def panel(lines, rules=(), legend=None, **settings):
+    return {"lines": lines, "rules": rules, "legend": legend, "settings": settings}
 
 
 def plain_ticks(axes):
@@ -15,44 +44,42 @@ def plain_ticks(axes):
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        if axis.get_scale() != "log":
-            continue
-        decades = abs(math.log10(high / low))
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < 2.4 else (1,), numticks=20))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}" if 1e-4 < value < 1e6 else f"{value:.0e}"))
-        axis.set_minor_formatter(NullFormatter())
+        if axis.get_scale() == "log":
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5) if abs(math.log10(high / low)) < 2.4 else (1,), numticks=20))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,g}" if 1e-4 < value < 1e6 else f"{value:.0e}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
-class Pictures:
-    """Makes plots and keeps them, each with what it takes to read it on paper."""
+def draw(folder, machine_of, results):
+    """Writes each plot as NAME.svg. Below it stand how often its points were measured, and the machine."""
+    import matplotlib
 
-    def __init__(self, folder, machine):
-        import matplotlib
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt  # after the backend is chosen
 
-        matplotlib.use("svg")
-        import matplotlib.pyplot as plt  # after the backend is chosen
-
-        self.folder, self.machine, self.plt = pathlib.Path(folder), machine, plt
-        self.folder.mkdir(parents=True, exist_ok=True)
-        plt.rcParams.update({
-            "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3,
-            "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "lines.markersize": 4.5,
-            "lines.linewidth": 1.3, "figure.constrained_layout.use": True,
-        })
-
-    def figure(self, columns=1, width=None, height=3.6):
-        """A figure and its axes, side by side; one axes alone where there is one column."""
-        return self.plt.subplots(1, columns, figsize=(width or 4.6 * columns + 1, height))
-
-    def save(self, figure, name, alt, n):
-        """Writes NAME.svg, under it `n` (what was measured how often) and the machine; gives the markdown."""
-        for axes in figure.axes:
+    plt.rcParams.update({
+        "svg.hashsalt": "ist", "svg.fonttype": "path", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False,
+        "axes.spines.right": False, "legend.frameon": False, "lines.markersize": 4.5, "lines.linewidth": 1.3, "figure.constrained_layout.use": True})
+    pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    for name, (program, function) in PLOTS.items():
+        made = function(results)
+        panels = made["panels"]
+        width = made.get("width", 4.6 * len(panels) + 1)
+        figure, (all_axes,) = plt.subplots(1, len(panels), figsize=(width, made.get("height", 3.6)), squeeze=False)
+        for axes, each in zip(all_axes, panels):
+            for xs, ys, look in each["lines"]:
+                axes.plot(xs, ys, **look)
+            for kind, at, look in each["rules"]:
+                getattr(axes, kind)(at, **look)
+            axes.set(**each["settings"])
+            if each["legend"] is not None:
+                axes.legend(**{"fontsize": 8} | each["legend"])
+        if "then" in made:
+            made["then"](figure, all_axes)
+        for axes in all_axes:
             plain_ticks(axes)
         # 6.5 points are some 20 letters an inch.
-        caption = textwrap.fill(f"{n}. {self.machine}", int(20 * figure.get_figwidth()))
-        figure.supxlabel(caption, fontsize=6.5, color="#555555", x=0.01, ha="left")
-        file = self.folder / f"{name}.svg"
-        figure.savefig(file, metadata={"Date": None})
-        self.plt.close(figure)
-        ElementTree.parse(file)
-        return f"![{alt}](pictures/{self.folder.name}/{name}.svg)"
+        figure.supxlabel(textwrap.fill(f"{made['n']}. {machine_of(program)}", int(20 * width)), fontsize=6.5, color="#555555", x=0.01, ha="left")
+        figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+        plt.close(figure)
+        ElementTree.parse(folder / f"{name}.svg")

@@ -2,7 +2,7 @@
 
 A stamp is one line below a table:
 
-    Measured at commit `0123456` on 2026-11-23 by `ablation_bench`; its code was the same when this was written. …
+    Measured at commit `0123456` on 2026-11-23 by `ablation_bench`. …
 
 scripts/check_figures.sh reads the stamps again, and names those whose sources have changed by now.
 """
@@ -13,57 +13,31 @@ import pathlib
 import re
 import subprocess
 
-from report import flags
-
 ROOT = pathlib.Path(__file__).parents[2]
 
 
-def both(stem):
-    """A source and its header."""
-    return [f"{stem}.cpp", f"{stem}.h"]
-
-
-# What every query rests on.
-PREDICATES = [*both("src/ist/mesh/orientation"), *both("src/ist/mesh/triangles_meet"), "src/ist/mesh/whole_number.h"]
-QUERY = ["simd", "src/ist/base", "src/ist/mesh/clusters", "src/ist/mesh/mesh.h", *PREDICATES, "src/ist/query", "src/ist/tree", "src/ist/voxel"]
-MEASURE = [*QUERY, "src/ist/measure", "src/ist/mesh/bounding_box.h", *both("src/ist/mesh/nearest_point"), *both("src/ist/mesh/pseudonormals"),
-           *both("src/ist/mesh/self_intersections"), *both("src/ist/mesh/surface_sides"), *both("src/ist/mesh/winding_number")]
-LOOP = [*QUERY, "src/ist/haptics", "src/ist/scene"]
-SHAPES = ["src/ist/models", *both("tests/support/shapes")]
-# What figures rest on, by the benchmark or the script that makes them, beside a benchmark's own files. A benchmark's bodies come
-# from files or from built-in models, by readers that are not timed.
-RESTS = {
-    "ablation_bench": [*QUERY, "src/verify"],
-    "accuracy_bench": [*MEASURE, *SHAPES, "src/ist/haptics", "src/verify", *both("tests/query/contacts/closed_forms"),
-                       "tests/query/contacts/contact_cases.h", *both("tests/query/contacts/form_errors"), *both("tests/query/query_cases"),
-                       *both("tests/support/random")],
-    "advise_bench": [*QUERY, "src/advise"],
-    "build_bench": ["src/ist/base", "src/ist/mesh", "src/ist/tree", "src/ist/voxel"],
-    "coherent_bench": LOOP,
-    "deadline_bench": [*QUERY, *SHAPES, *both("tests/support/conformal")],
-    "hardware_bench": ["src/hardware", "src/ist/query/query_rules.h", "src/ist/tree", "src/ist/voxel", "tests/hardware/node_pair.h",
-                       "tests/hardware/pair_walk.h"],
+# Where compilers look for headers.
+FOLDERS = ("src", ".", "bench", "tests", "src/hardware/include")
+# What figures begin with, by the script or the benchmark that makes them, beside a benchmark's own files: sources and folders. They rest
+# on these, on the folder of each file of src and simd that these include, directly or not, and on all else that these include.
+BEGINS = {
+    "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
     "hardware_report.sh": ["scripts/hardware", "src/hardware"],
-    "haptics_bench": LOOP,
-    "loop_bench": LOOP,
-    "measure_bench": MEASURE,
-    "peers_bench": [*MEASURE, "src/cli/bench/rivals.h"],
-    "scaling_bench": [*QUERY, *SHAPES, *both("tests/support/conformal")],
-    "seed_bench": [*QUERY, "src/ist/mesh/bounding_box.h"],
-    "sweep_bench": [*MEASURE, "bench/python/sweep_loop.py", "src/ist/capi", "src/ist/sweep", "src/python/ist"],
-    "world_bench": [*QUERY, "src/ist/models"],
-    "calls.py": [*MEASURE, "bench/python", "src/ist/capi", "src/python/ist"],
-    "ist bench": [*QUERY, "src/advise", "src/cli/bench", "src/cli/commands/bench.cpp", "src/cli/engine.cpp", "src/ist/models"],
-    "mutate.sh": ["scripts/mutants", "scripts/report", "scripts/try.py", "examples", "simd", "src", "tests"],
-    "stability_border.sh": ["bench/stability_border.cpp", *QUERY, "src/ist/haptics", "tests/haptics/wall_press.cpp"],
+    "ist bench": ["src/cli/bench", "src/cli/commands/bench.cpp", "src/advise", "src/ist/models"],
+    "mutate.sh": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
+    "stability_border.sh": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/cli", "src/ist", "src/verify",
                             *(f"tests/{room}" for room in ("capi", "cli", "fuzz", "query", "scene", "simd", "stability", "support"))],
-    "target_instructions.py": [*QUERY, "tests/instructions"],
-    "viewer_ratio.mjs": [*QUERY, "src/cli/engine.cpp", "src/viewer/engine/pair.cpp"],
+    "sweep_bench": ["bench/python/sweep_loop.py", "src/ist/capi", "src/python/ist"],
+    "target_instructions.py": ["tests/instructions"],
+    "viewer_ratio.mjs": ["src/cli/engine.cpp", "src/viewer/engine/pair.cpp"],
 }
-# The presets that build what makes them, where these are not that of the benchmarks.
-PRESETS = {"calls.py": ["release"], "hardware_report.sh": [], "ist bench": ["release"], "mutate.sh": [], "stability_report.sh": ["test"],
-           "target_instructions.py": ["arm64", "release"], "viewer_ratio.mjs": ["release", "wasm"]}
+# Those that no compiler of this project makes.
+UNCOMPILED = {"hardware_report.sh", "mutate.sh"}
+# Files of CMake, of which the flags count that decide the compiled code. Warnings, names of folders and exceptions from sanitizers do not.
+FLAGGED = ["CMakeLists.txt", "CMakePresets.json", "bench/CMakeLists.txt", "src/ist/CMakeLists.txt", "src/platform.cmake"]
+FLAG = re.compile(r"(?<![\w-])-[OfmDs][\w=+,.-]*|CMAKE_(?:BUILD_TYPE|CXX_\w*FLAGS\w*|CXX_STANDARD|INTERPROCEDURAL_\w+)\W+\w+")
+IDLE = re.compile(r"-f\w+-prefix-map|-fno-sanitize|-fsanitize")
 # Those that count, and time nothing: a count is the same on every machine, whatever else runs there.
 COUNTERS = {"hardware_bench", "hardware_report.sh", "mutate.sh", "stability_border.sh", "stability_report.sh", "target_instructions.py"}
 STAMP = re.compile(r"Measured at commit `([0-9a-f]+\+?)` on (\d{4}-\d\d-\d\d) by `([\w. ]+)`")
@@ -106,22 +80,36 @@ def here():
     return commit.rstrip("+") + ("+" if changed else ""), datetime.date.today().isoformat()
 
 
+def included(begins):
+    """The project's files that sources include, directly or not, with the source beside each header, and the room that a header names."""
+    waiting = [file for begin in map(ROOT.joinpath, begins) for file in (begin.rglob("*.*") if begin.is_dir() else [begin])]
+    seen = set()
+    while waiting:
+        file = waiting.pop()
+        if file in seen or file.suffix not in (".h", ".cpp") or not file.is_file():
+            continue
+        seen.add(file)
+        waiting += [file.with_suffix(".h"), file.with_suffix(".cpp"), *file.with_suffix("").glob("*.*")]
+        for name in re.findall(r'^ *# *include "([^"]+)"', file.read_text(), re.M):
+            waiting += [folder / name for folder in (file.parent, *map(ROOT.joinpath, FOLDERS)) if (folder / name).is_file()][:1]
+    return {file.relative_to(ROOT) for file in seen}
+
+
 def sources_of(maker):
     """The folders and files that the figures of a benchmark or a script rest on."""
     stem = maker.removesuffix("_bench")
-    own = ["bench/CMakeLists.txt", f"bench/{maker}.cpp", f"bench/{stem}", "bench/support"] if stem != maker else []
-    if stem == maker and maker not in RESTS:
+    own = [f"bench/{maker}.cpp", f"bench/{stem}"] if stem != maker else []
+    if not own and maker not in BEGINS:
         raise ValueError(f"{maker} makes no figures")
-    compiled = flags.FILES if presets_of(maker) else []
-    return sorted({*RESTS.get(maker, QUERY), *(path for path in [*own, *compiled] if (ROOT / path).exists())})
-
-
-def presets_of(maker):
-    return PRESETS.get(maker, ["bench"])
+    begins = [*BEGINS.get(maker, ()), *(path for path in own if (ROOT / path).exists())]
+    reached = {str(file.parent if file.parts[0] in ("src", "simd") else file) for file in included(begins)}
+    return sorted({*begins, *reached, *(file for file in FLAGGED if maker not in UNCOMPILED and (ROOT / file).exists())})
 
 
 def code_of(text, name):
-    """The text without comments and without the space between words, where it is code; of other files the text as it is."""
+    """What of a text decides the compiled code: of sources all but comments and space, of CMake's files the flags, of others all."""
+    if name in FLAGGED:
+        return [flag for flag in FLAG.findall(re.sub("#.*", "", text)) if not IDLE.match(flag)]
     if not name.endswith((".h", ".cpp", ".c")):
         return text
     string = r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\''
@@ -147,40 +135,29 @@ def texts_at(commit, names):
 
 def changed_since(commit, maker):
     """Returns the files that the figures of a maker rest on whose code is another in the working tree than at a commit, in order
-    of name. Comments and texts about the code do not count, nor the figure that the page shows, nor CMake's files but for the flags in
-    them."""
-    def code(text):
-        return flags.of(name, text, presets_of(maker)) if name in flags.FILES else code_of(text, name)
-
-    names = git("diff", "--name-only", commit, "--", *sources_of(maker))
+    of name. Texts about the code do not count, nor the figure that the page shows."""
+    begins = {*BEGINS.get(maker, ())}
+    paths = [path if path in begins or not (ROOT / path).is_dir() else f":(glob){path}/*" for path in sources_of(maker)]
+    names = git("diff", "--name-only", commit, "--", *paths)
     if names is None:
         raise ValueError(f"{commit} is no commit of this history")
     found, names = [], [name for name in names.splitlines() if not name.endswith(".md") and name != SHOWN[0]]
     for name, before in texts_at(commit, names).items():
         now = ROOT / name
-        if before is None or not now.exists() or code(before) != code(now.read_bytes().decode("latin-1")):
+        if before is None or not now.exists() or code_of(before, name) != code_of(now.read_bytes().decode("latin-1"), name):
             found.append(name)
     return found
 
 
 def rooms(files, sources):
-    """Those of the sources that hold some of the files: `simd`, `src/ist/query`."""
-    return ", ".join(f"`{source}`" for source in sources if any(file == source or file.startswith(source + "/") for file in files))
+    """The innermost of the sources that hold the files: simd, src/ist/query."""
+    return ", ".join(sorted({max((source for source in sources if file == source or file.startswith(source + "/")), key=len) for file in files}))
 
 
 def stamp(commit, date, maker, more=""):
     """Returns the line for the foot of a table that a benchmark or a script measured at a commit."""
-    if commit.endswith("+"):
-        state = "**with changes that no commit holds**"
-    elif not has_history():
-        state = "and no history was here to say whether its code has changed since"
-    elif not is_commit(commit):
-        state = "**a commit that this history does not have**"
-    else:
-        changed = changed_since(commit, maker)
-        state = (f"**its code has changed since**, in {rooms(changed, sources_of(maker))}" if changed else
-                 "its code was the same when this was written")
-    return f"Measured at commit `{commit}` on {date} by `{maker}`; {state}.{' ' + more if more else ''}"
+    state = ", **with changes that no commit holds**" if commit.endswith("+") else ""
+    return f"Measured at commit `{commit}` on {date} by `{maker}`{state}.{' ' + more if more else ''}"
 
 
 def stamped(lines, line):

@@ -1,154 +1,255 @@
-"""The same questions put to other libraries, in one run."""
+"""Tables and the plot of the same questions put to other libraries, in one run."""
 
-import matplotlib.pyplot as plt
+from report.draw import panel, plot
+from report.results import Run
+from report.tables import NOISE, Table, is_loss, number, row, runs
 
-from report import peers_builds, peers_elsewhere, peers_otherwise
-from report.peer_answers import GUARANTEES, QUESTIONS, USES, Answers, all_players, medians, verdict
-from report.text import number, table
-
-PROGRAMS = ["peers_bench"]
+GUARANTEES = ["exact", "rounded", "sampled"]
+QUESTIONS = {
+    "meets": "Do any triangles meet?",
+    "pairs": "Which triangles meet? (all pairs)",
+    "candidates": "Which may meet? (pairs among which are all that do)",
+    "distance": "How far apart are the surfaces? (to within a tolerance)",
+}
+SERIES = {"peers": "as given", "turned": "in turned frames", "cold": "with cold caches"}
 MARKS = ["D", "o", "s", "^", "v", "P", "X", "<", ">", "h", "d", "p"]
 
 
-def chapter(results, pictures):
-    context = results.context("peers_bench")
-    answers = {question: Answers(results, question) for question in QUESTIONS}
-    poses = answers["meets"].poses
-    known = " and poses whose true distance was computed by other means" if any(
-        "true_distance" in run for run in answers["meets"].row("ist")) else ""
-    lines = [
-        "## Peers", "",
-        f"Other libraries answer in one process and one thread, about the same two meshes (the {context['pair']} jaws) at "
-        f"the same poses: the closing (named by dz in mm){known}. Voxels, where used, have "
-        f"{number(float(context['voxel_size']))} mm. The contestant with the least time so far answers at all poses next, so that all "
-        "get the same time, and a slow one has fewer rounds (n). Before each round one uncounted query "
-        "brings the contestant's data back into the caches. In each column, which is a pose, the fastest is in "
-        "**bold**; if it has a mark, the fastest without a mark is bold too. Marks: ~ samples points, so may be "
-        "wrong; + has its moving mesh moved before the time begins; ≠ another answer than IST's.", ""]
-    lines += missing(context) + compiled(context) + peers_elsewhere.absent(answers)
-    lines += versions(results) + pose_table(answers, poses)
-    for question, title in QUESTIONS.items():
-        lines += [f"### {title}", *within(question, context), ""] + medians(question, answers[question]) + verdict(answers[question]) + [""]
-        lines += peers_elsewhere.native_fcl(question, answers[question])
-    lines += plot(answers, poses, pictures) + tails(answers)
-    lines += peers_otherwise.turned(results, answers) + peers_otherwise.cold(results, answers)
-    lines += peers_otherwise.avx2(results) + peers_otherwise.points(results)
-    lines += sampled(answers) + peers_builds.section(results) + cannot(answers)
-    return lines
-
-
-def within(question, context):
-    return ["", f"The tolerance is {context['tolerance']} mm."] if question == "distance" and "tolerance" in context else []
-
-
-def missing(context):
-    if not context["missing_peers"]:
+def players(results, series, question):
+    """A row a contestant, with the counters of each pose as pose:counter; none if the program did not ask so."""
+    if not results.has("peers_bench", series, question):
         return []
-    return [f"Missing, since they were not installed when this was built: {context['missing_peers']}.", ""]
+    rows = runs(series, question, by=3)(results, "peers_bench")
+    for one in rows:
+        one.asked = rows
+    return rows
 
 
-def compiled(context):
-    """Returns a sentence on the peers' flags; older results have none."""
-    if "peer_flags" not in context:
-        return []
-    flags = f"for the processor they run on (`{context['peer_flags']}`), as" if context["peer_flags"] else "for any processor, though"
-    return [f"CGAL is made of headers, and OpenVDB's grids are read by headers: they, and the code here that calls the others, are compiled {flags} "
-            "IST chooses its vectors by the processor. The own code of FCL, Embree and Bullet is Debian's build.", ""]
+def player(r):
+    return r.parts[2]
 
 
-def versions(results):
-    built = results.runs("peers_bench", "peers", "build")
-    return ["Versions: " + ", ".join(f"{run.parts[2]} {run['label']}" for run in built) + ".", ""]
+def marked(r):
+    """The contestant's name with its marks: ~ samples, + is prepared."""
+    return player(r) + (" ~" if GUARANTEES[int(r["promise"])] == "sampled" else "") + (" +" if r["prepared"] else "")
 
 
-def pose_table(answers, poses):
-    rows = []
-    for pose, label in poses.items():
-        pairs, gap = answers["pairs"].runs["ist", pose], answers["distance"].runs["ist", pose]
-        distance = gap.get("true_distance")
-        rows.append([pose, label, pairs["pairs"], interval(gap), "" if distance is None else number(distance)])
-    return table(["pose", "description", "pairs that meet", "gap by ist (mm)", "true gap (mm)"], rows) + [""]
+def poses_of(rows):
+    return [key.removesuffix(":p50_us") for key in rows[0] if key.endswith(":p50_us")]
 
 
-def interval(run):
-    return f"{number(run['lower'])} to {number(run['upper'])}" if "upper" in run else f"over {number(run['lower'])}"
+def unmarked(r, pose):
+    return marked(r) == player(r) and r[f"{pose}:agree"]
 
 
-def tails(answers):
-    """One row a question and contestant: 17 poses more would not be read."""
-    rows = []
-    for question, asked in answers.items():
-        for player in asked.players:
-            runs = dict(zip(asked.poses, asked.row(player)))
-            slowest = max(runs, key=lambda pose: runs[pose]["p99.9_us"])
-            worst = max(runs, key=lambda pose: runs[pose]["max_us"])
-            rows.append([question, asked.name(player), runs[slowest]["p50_us"], runs[slowest]["p99.9_us"], slowest,
-                         runs[worst]["max_us"], worst, str(asked.rounds(player))])
-    return ["### The slowest answers", "",
-            "The p99.9 of the pose with the largest p99.9, and the worst answer at any pose; where n is below 1,000, "
-            "the p99.9 is the worst answer at that pose.", "",
-            *table(["question", "", "median there (µs)", "p99.9 (µs)", "pose", "worst (µs)", "pose", "n"], rows), ""]
+def fastest(rows, pose):
+    return min(rows, key=lambda r: r[f"{pose}:p50_us"], default=None)
 
 
-def plot(answers, poses, pictures):
-    """A panel a question, and one for the legend that they share."""
-    figure, axes = pictures.figure(len(answers) + 1, width=15, height=4.6)
-    players = all_players(answers)
-    colours = plt.get_cmap("tab20").colors
-    places = range(len(poses))
-    times = [run["p50_us"] for asked in answers.values() for run in asked.runs.values()]
-    for axis, (question, asked) in zip(axes, answers.items()):
-        for player in asked.players:
-            index, first = players.index(player), player == "ist"
-            axis.plot(places, [run["p50_us"] for run in asked.row(player)], color=colours[index % len(colours)],
-                      marker=MARKS[index % len(MARKS)], linewidth=2.4 if first else 1, zorder=3 if first else 2,
-                      label=asked.name(player))
-        axis.set(title=question, yscale="log", ylim=(0.7 * min(times), 1.4 * max(times)), xlabel="pose")
-        axis.set_xticks(list(places))
-        axis.set_xticklabels(list(poses), rotation=90, fontsize=7)
-    axes[0].set_ylabel("median time of an answer (µs)")
-    shared = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels())}
-    axes[-1].axis("off")
-    axes[-1].legend(shared.values(), shared.keys(), loc="center left")
-    rounds = [run["n"] for asked in answers.values() for run in asked.runs.values()]
-    name = pictures.save(figure, "peers", "Time by pose for each question and contestant",
-                         f"Medians of n = {number(min(rounds))} to {number(max(rounds))} rounds, one thread")
-    return [name, ""]
+def wins(pose):
+    """Whether a contestant is the fastest at a pose, of all or of those without a mark."""
+    return lambda r: r is fastest(r.asked, pose) or r is fastest([one for one in r.asked if unmarked(one, pose)], pose)
 
 
-def sampled(answers):
-    """Returns the errors of the contestants that sample points."""
-    meets, distance = answers["meets"], answers["distance"]
-    rows = []
-    for player in meets.players:
-        if GUARANTEES[int(meets.row(player)[0]["promise"])] != "sampled":
+def differs(r, pose):
+    return "" if r[f"{pose}:agree"] else " ≠"
+
+
+def time_at(pose, more=differs):
+    """The median of a contestant at a pose, in bold if it wins, and more of it."""
+    return lambda r: f"{'**' * wins(pose)(r)}{number(r[f'{pose}:p50_us'])}{'**' * wins(pose)(r)}{more(r, pose)}"
+
+
+def n(r):
+    return str(int(r["n"]))
+
+
+def medians(rows):
+    return [("", marked), *((pose, time_at(pose)) for pose in poses_of(rows)), ("n", n)]
+
+
+def multiple(r, before, pose):
+    return r[f"{pose}:p50_us"] / before[f"{pose}:p50_us"]
+
+
+def cold(results, _program):
+    found = []
+    for question in QUESTIONS:
+        given = {player(r): r for r in players(results, "peers", question)}
+        for r in players(results, "cold", question):
+            r["given"] = given[player(r)]
+            found.append(r)
+    return found
+
+
+def cold_columns(rows):
+    def more(r, pose):
+        return f" ({number(multiple(r, r['given'], pose), 2)})"
+    return [("question", 1), ("", marked), *((pose, time_at(pose, more)) for pose in poses_of(rows)), ("n", n)]
+
+
+def span(values, digits=2):
+    low, high = number(min(values), digits), number(max(values), digits)
+    return low if low == high else f"{low} to {high}"
+
+
+def turned(results, _program):
+    """By contestant, the span over the poses of the time in turned frames as a multiple of the time as given."""
+    found = {}
+    for question in QUESTIONS:
+        given = {player(r): r for r in players(results, "peers", question)}
+        for r in players(results, "turned", question):
+            times = [multiple(r, given[player(r)], pose) for pose in poses_of([r])]
+            found.setdefault(player(r), row(player(r), **dict.fromkeys(QUESTIONS, "")))[question] = span(times)
+    return list(found.values())
+
+
+def avx2(results, _program):
+    return [Run(r | {"own": own}) for question in QUESTIONS for rows in [{player(r): r for r in players(results, "avx2", question)}]
+            for r, own in [(rows.get("ist_avx2"), rows.get("ist"))] if r]
+
+
+def standing(rows, counts):
+    """At how many poses IST is the fastest of those that count, as fast as the fastest, and slower; None if no other counts."""
+    ist, lost, near, count = next(r for r in rows if player(r) == "ist"), [], 0, 0
+    for pose in poses_of(rows):
+        other = fastest([r for r in rows if r is not ist and counts(r, pose)], pose)
+        if other is None:
             continue
-        touching = sum(run["meets"] for run in meets.row("ist"))
-        missed = sum(run["missed"] for run in meets.row(player))
-        false = sum(run["false_touch"] for run in meets.row(player))
-        known = [run for run in distance.row(player) if "true_distance" in run and "upper" in run]
-        errors = [run["upper"] - run["true_distance"] for run in known]
-        beyond = sum("upper" not in run for run in distance.row(player))
-        rows.append([player, f"{missed:.0f} of {touching:.0f}", f"{false:.0f} of {len(meets.poses) - touching:.0f}",
-                     f"{min(errors):+.4f} to {max(errors):+.4f}" if errors else "none known", str(beyond)])
-    if not rows:
+        count += 1
+        if is_loss(multiple(other, ist, pose)):
+            lost.append((multiple(ist, other, pose), pose, player(other)))
+        else:
+            near += multiple(other, ist, pose) < 1
+    if not count:
+        return None
+    worst, at, who = max(lost, default=(0, "", ""))
+    to = ", ".join(f"{name} at {sum(one == name for _, _, one in lost)}" for name in sorted({name for _, _, name in lost}))
+    return {"count": count, "first": count - near - len(lost), "near": near, "lost": len(lost),
+            "worst": f"{number(worst)} ({who}, {at})" if lost else "–", "to": to or "–"}
+
+
+def standings(results, _program):
+    return [row(question, series=words, among=among, **found) for series, words in SERIES.items() for question in QUESTIONS
+            for rows in [players(results, series, question)] if rows
+            for among, counts in (("all", lambda r, pose: True), ("without a mark", unmarked))
+            for found in [standing(rows, counts)] if found]
+
+
+def poses(results, _program):
+    pairs, gap = ({"ist": r for r in players(results, "peers", question) if player(r) == "ist"}["ist"] for question in ("pairs", "distance"))
+
+    def interval(pose):
+        low = number(gap[f"{pose}:lower"])
+        return f"{low} to {number(gap[f'{pose}:upper'])}" if f"{pose}:upper" in gap else f"over {low}"
+    return [row(pose, words=gap[f"{pose}:label"], pairs=pairs[f"{pose}:pairs"], gap=interval(pose), true=gap.get(f"{pose}:true_distance", ""))
+            for pose in poses_of([gap])]
+
+
+def tails(results, _program):
+    found = []
+    for question in QUESTIONS:
+        for r in players(results, "peers", question):
+            slow, worst = (max(poses_of([r]), key=lambda pose: r[f"{pose}:{key}"]) for key in ("p99.9_us", "max_us"))
+            found.append(row(r["name"], question=question, who=marked(r), median=r[f"{slow}:p50_us"], tail=r[f"{slow}:p99.9_us"], slow=slow,
+                             max=r[f"{worst}:max_us"], worst=worst, n=n(r)))
+    return found
+
+
+def point_distances(results, _program):
+    if not results.has("peers_bench", "points"):
         return []
-    return ["### What sampling costs", "",
-            "Contestants marked ~ read values of voxels at points of the moving surface, so they are compared with "
-            "the tolerance of a voxel, and this table counts their errors.", "",
-            *table(["", "contacts missed", "false contacts", "error of distance (mm)",
-                    "poses beyond the band, distance unknown"], rows), ""]
+    rows = runs("points", "distances", by=3)(results, "peers_bench")
+    ist, all_poses = next(r for r in rows if player(r) == "ist"), poses_of(rows)
+
+    def times(r):
+        return {pose: number(r[f"{pose}:p50_us"] / 1e3) + (f" ({multiple(r, ist, pose):.1f})" if r is not ist else "") for pose in all_poses}
+    return [row("points/distances/vertices", **{pose: number(ist[f"{pose}:points"]) for pose in all_poses}, n="", lost=()),
+            *(row(r["name"], **times(r), n=n(r), lost=[pose for pose in all_poses if multiple(r, ist, pose) < 1]) for r in rows)]
 
 
-def cannot(answers):
-    players = all_players(answers)
-    rows = []
-    for player in players:
-        not_answered = [question for question, asked in answers.items() if player not in asked.players]
-        one = next(asked.row(player)[0] for asked in answers.values() if player in asked.players)
-        rows.append([player, GUARANTEES[int(one["promise"])], ", ".join(not_answered) or "–", USES[player]])
-    return ["### What each cannot do", "",
-            "Exact: decided without rounding, and checked: the run fails if two exact answers differ. Rounded: decided in "
-            "float or double. Sampled: at points only. Answers are compared by their number of pairs. "
-            "Where a library has several contestants, each answers the questions that it is best at.", "",
-            *table(["", "answers are", "not asked for", "use and differences"], rows), ""]
+def sampled(results, _program):
+    distance = {player(r): r for r in players(results, "peers", "distance")}
+    meets = players(results, "peers", "meets")
+    ist, all_poses = next(r for r in meets if player(r) == "ist"), poses_of(meets)
+    touching = sum(ist[f"{pose}:meets"] for pose in all_poses)
+    for r in meets:
+        if GUARANTEES[int(r["promise"])] != "sampled":
+            continue
+        of = distance[player(r)]
+        errors = [of[f"{pose}:upper"] - of[f"{pose}:true_distance"] for pose in all_poses if {f"{pose}:upper", f"{pose}:true_distance"} <= {*of}]
+        yield row(player(r), missed=f"{sum(r[f'{pose}:missed'] for pose in all_poses):.0f} of {touching:.0f}",
+                  false=f"{sum(r[f'{pose}:false_touch'] for pose in all_poses):.0f} of {len(all_poses) - touching:.0f}",
+                  error=f"{min(errors):+.4f} to {max(errors):+.4f}" if errors else "none known",
+                  beyond=sum(f"{pose}:upper" not in of for pose in all_poses))
+
+
+def least(key):
+    return lambda r: r[key] == min(one[key] for one in r.rows)
+
+
+def all_players(results):
+    """The contestants by name, each with a row and the questions that it answers."""
+    found = {}
+    for question in QUESTIONS:
+        for r in players(results, "peers", question):
+            found.setdefault(player(r), (r, []))[1].append(question)
+    return dict(sorted(found.items(), key=lambda item: (item[0] != "ist", item[0])))
+
+
+TABLES = {
+    "versions": Table("peers_bench", runs("peers", "build"), [("library", 2), ("version", "label")]),
+    "poses": Table("peers_bench", poses, [
+        ("pose", 0), ("description", "words"), ("pairs that meet", "pairs"), ("gap by ist (mm)", "gap"), ("true gap (mm)", "true")]),
+    **{f"{question} {words}": Table("peers_bench", lambda results, _, s=series, q=question: players(results, s, q), medians)
+       for series, words in SERIES.items() if series != "cold" for question in QUESTIONS},
+    "standings": Table("peers_bench", standings, [
+        ("question", 0), ("bodies", "series"), ("among", "among"), ("poses", "count"), ("IST is the fastest at", "first"),
+        (f"as fast, within {100 * NOISE:.0f} %, at", "near"), ("slower at", "lost", lambda r: r["lost"] > 0), ("by up to, times", "worst"),
+        ("than", "to")]),
+    "slowest answers": Table("peers_bench", tails, [
+        ("question", "question"), ("", "who"), ("median there (µs)", "median"), ("p99.9 (µs)", "tail"), ("pose", "slow"), ("worst (µs)", "max"),
+        ("pose", "worst"), ("n", "n")]),
+    "turned frames": Table("peers_bench", turned, [("", 0), *((question, question) for question in QUESTIONS)]),
+    "cold caches": Table("peers_bench", cold, cold_columns),
+    "kernels for AVX2": Table("peers_bench", avx2, lambda rows: [
+        ("question", 1), *((pose, lambda r, pose=pose: f"{number(r[f'{pose}:p50_us'])} ({number(multiple(r, r['own'], pose))})",
+                            lambda r, pose=pose: is_loss(multiple(r, r["own"], pose))) for pose in poses_of(rows)), ("n", n)]),
+    "vertices": Table("peers_bench", point_distances, lambda rows: [
+        ("", 2), *((pose, pose, lambda r, pose=pose: pose in r["lost"]) for pose in rows[0] if pose not in ("name", "n", "lost")), ("n", "n")]),
+    "sampling": Table("peers_bench", lambda *given: list(sampled(*given)), [
+        ("", 0), ("contacts missed", "missed"), ("false contacts", "false"), ("error of distance (mm)", "error"),
+        ("poses beyond the band, distance unknown", "beyond")]),
+    "build and memory": Table("peers_bench", runs("peers", "build"), [
+        ("", 2), ("median (ms)", lambda r: r["p50_us"] / 1e3, least("p50_us")), ("worst (ms)", lambda r: r["max_us"] / 1e3), ("n", "n"),
+        ("held (MB)", "held_mb", least("held_mb")), ("grown (MB)", "grown_mb"), ("peak (MB)", "peak_mb", least("peak_mb"))]),
+    "answers": Table("peers_bench", lambda results, _: [
+        row(name, promise=GUARANTEES[int(r["promise"])], lacks=", ".join(q for q in QUESTIONS if q not in asked) or "–")
+        for name, (r, asked) in all_players(results).items()], [("", 0), ("answers are", "promise"), ("not asked for", "lacks")]),
+}
+
+
+@plot("peers_bench")
+def peers(results):
+    """A panel a question, and one for the legend that they share."""
+    asked, names = {question: players(results, "peers", question) for question in QUESTIONS}, list(all_players(results))
+    shown = poses_of(asked["meets"])
+    counts, times = zip(*((r["n"], r[f"{pose}:p50_us"]) for rows in asked.values() for r in rows for pose in shown))
+
+    def look(r):
+        index, is_ist = names.index(player(r)), player(r) == "ist"
+        return {"color": f"C{index % 10}", "marker": MARKS[index % len(MARKS)], "linewidth": 2.4 if is_ist else 1, "zorder": 3 if is_ist else 2,
+                "label": marked(r)}
+
+    def share(_, all_axes):
+        *axes, last = all_axes
+        for one in axes:
+            one.set_xticklabels(shown, rotation=90, fontsize=7)
+        handles = {label: handle for one in axes for handle, label in zip(*one.get_legend_handles_labels())}
+        last.axis("off")
+        last.legend(handles.values(), handles.keys(), loc="center left")
+    n = f"Medians of n = {number(min(counts))} to {number(max(counts))} rounds, one thread"
+    return {"width": 15, "height": 4.6, "n": n, "then": share, "panels": [
+        *(panel([(range(len(shown)), [r[f"{pose}:p50_us"] for pose in shown], look(r)) for r in rows], title=question, yscale="log",
+                ylim=(0.7 * min(times), 1.4 * max(times)), xlabel="pose", xticks=range(len(shown)),
+                ylabel="" if place else "median time of an answer (µs)") for place, (question, rows) in enumerate(asked.items())), panel([])]}

@@ -13,7 +13,7 @@ class Run(dict):
 
 
 class Results:
-    """All results of one machine. What a chapter asks for and is not there is an error."""
+    """All results of one machine. A run that a table asks for and that is not there is an error."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -28,14 +28,17 @@ class Results:
         """Of a program's run: processor, compiler, flags, commit, load_avg, date."""
         return self._file(program)["context"]
 
+    def _found(self, program, first):
+        found = map(Run, self._file(program)["benchmarks"])
+        return [run for run in found if run.get("run_type") != "aggregate" and tuple(run.parts[: len(first)]) == first]
+
     def has(self, program, *first):
         """Whether a program made any run whose name begins with these parts."""
-        return any(tuple(Run(raw).parts[: len(first)]) == first for raw in self._file(program)["benchmarks"])
+        return bool(self._found(program, first))
 
     def runs(self, program, *first):
         """The runs whose names begin with these parts, in the order they were made in."""
-        found = [Run(raw) for raw in self._file(program)["benchmarks"] if raw.get("run_type") != "aggregate"]
-        found = [run for run in found if tuple(run.parts[: len(first)]) == first]
+        found = self._found(program, first)
         failed = [run for run in found if run.get("error_occurred")]
         if failed:
             raise SystemExit(f"report: {program}: {failed[0]['name']}: {failed[0]['error_message']}")

@@ -1,123 +1,138 @@
-"""What the report decides by: curves between measured points, and numbers as they are written."""
+"""The tables of the report: they are those that the stored results give, and a loss in the results is bold in its table."""
 
+import json
 import pathlib
+import re
 import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-from report import bodies  # noqa: E402  after its folder is known
-from report.curves import between, crossings, power  # noqa: E402
-from report.peer_answers import Answers  # noqa: E402
-from report.peers_elsewhere import ELSEWHERE, absent, native_fcl  # noqa: E402
-from report.peers_otherwise import asked_in  # noqa: E402
-from report.results import Results  # noqa: E402
-from report.text import number, table  # noqa: E402
+from report import __main__ as report  # noqa: E402  after its folder is known
+from report import draw, peers  # noqa: E402
+from report.figures import ROOT  # noqa: E402
+from report.results import Results, Run  # noqa: E402
+from report.tables import Table, between, factor, number, power, runs  # noqa: E402
+
+TEXT = {page: (ROOT / page).read_text() for page in report.PAGES}
+STORED = ROOT / "perf" / re.search(r"`(results/[\w-]+)`", TEXT["perf/REPORT.md"])[1]
+# By table: a program, the begin of names of its runs, a counter, and a factor that makes a loss, or a win of a loss.
+LOSSES = {
+    "advice": ("advise_bench", "advise", "voxel_size", 1.5),
+    "missed contacts": ("accuracy_bench", "verdict/0.8/slab", "missed", None),
+    "forces": ("accuracy_bench", "force/0.2/slab", "angle_max", 100),
+    "coherent": ("coherent_bench", "ticks/0.8/held_closed", "kept_p50_us", 100),
+    "tolerance": ("measure_bench", "by_accuracy/distance/0.1/", "p50_us", 100),
+    "warm depth": ("measure_bench", "measure/depth/warm", "real_time", 2),
+    "saved spheres": ("seed_bench", "saved/0.8/simple/saved", "p50_us", 2),
+    "added at 0.2 mm": ("ablation_bench", "ablation/ladder/", "p50_us", "tight"),
+    "same spheres at 0.2 mm": ("ablation_bench", "ablation/same/fast-slab/0.2", "p50_us", 100),
+    "left out at 0.2 mm": ("ablation_bench", "ablation/without/0-full/0.2", "p50_us", 100),
+    "closing": ("ablation_bench", "ablation/same/fast-slab/0.2", "p50_us", 100),
+    "standings": ("peers_bench", "peers/pairs/ist", "p50_us", 1000),
+    "vertices": ("peers_bench", "points/distances/ist", "p50_us", 1000),
+    "workers": ("scaling_bench", "workers/2", "p50_us", 10),
+    "conformal": ("scaling_bench", "conformal/plates/0.5", "p50_us", 0.01),
+    "largest pair": ("scaling_bench", "largest", "peak_MB", 2),
+    "deadlines": ("deadline_bench", "within_100us/leaf_pairs/jaws", "over_max_us", 100),
+    "lateness": ("loop_bench", "loop/1/idle", "missed", None),
+    "pairs of a tick": ("loop_bench", "bodies", "ratio", 2),
+    "pairs apart": ("loop_bench", "bodies", "apart_p50_us", 10),
+    "world": ("world_bench", "world/four_bodies", "ratio", 2),
+    "grid": ("world_bench", "world/hundred_at_rest", "real_time", 1e5),
+    "sweeps": ("sweep_bench", "sweep/rates", "loop_in_c", 2),
+}
 
 
-class Curves(unittest.TestCase):
-    def test_a_power_law_is_read_exactly_between_its_points(self):
-        points = [(x, 3 * x**-2) for x in (1, 2, 8)]
-        self.assertAlmostEqual(between(points, 4), 3 / 16)
-        self.assertAlmostEqual(between(points, 8), 3 / 64)
-
-    def test_nothing_is_read_beyond_the_points(self):
-        self.assertIsNone(between([(1, 1), (2, 2)], 0.9))
-        self.assertIsNone(between([(1, 1), (2, 2)], 2.1))
-
-    def test_the_power_is_found(self):
-        exponent, factor = power([1, 2, 4], [5 * x**1.5 for x in (1, 2, 4)])
-        self.assertAlmostEqual(exponent, 1.5)
-        self.assertAlmostEqual(factor, 5)
-
-    def test_curves_cross_where_the_lead_changes(self):
-        (place,) = crossings([0, 10], [1, 2], [2, 1])
-        self.assertAlmostEqual(place, 5)
-        self.assertEqual(crossings([0, 1, 2], [1, 1, 1], [2, 2, 2]), [])
-
-    def test_a_lead_within_the_noise_is_none(self):
-        self.assertEqual(crossings([0, 1, 2], [1, 1.02, 1], [2, 1, 2]), [])
-        self.assertEqual(len(crossings([0, 1, 2], [1, 1.2, 1], [2, 1, 2])), 2)
+def bold(name, results):
+    return "\n".join(report.lines_of(name, results)).count("**")
 
 
-class Bodies(unittest.TestCase):
-    """Four bodies within their goals, and a hundred at rest that take longer."""
+class Pages(unittest.TestCase):
+    def test_the_tables_are_those_of_the_stored_results(self):
+        for page, text in TEXT.items():
+            self.assertEqual(report.filled(text, Results(STORED)), text, page)
 
-    def setUp(self):
-        times = {f"{kind}{quantile}_us": 10 for kind in ("", "one_by_one_", "together_", "apart_") for quantile in ("p50", "p99")}
-        self.results = Results("nowhere")
-        self.results._read["loop_bench"] = {"benchmarks": [
-            {"name": "bodies/splint/iterations:1", "ticks": 100, "ticks_apart": 10, "ratio": 1.1, **times, "apart_p50_us": 0.5}]}
-        self.results._read["world_bench"] = {"benchmarks": [
-            {"name": "world/four_bodies/contacts/iterations:1/manual_time", "ratio": 1.2, "bodies": 4, "pairs": 6,
-             "voxel_size": 0.4, "tremble_voxels": 0.05, **times},
-            {"name": "world/hundred_at_rest/real_time", "real_time": 25, "bodies": 100, "moved": 0},
-            {"name": "world/a_pair_apart/real_time", "real_time": 0.3, "bodies": 2, "moved": 1}]}
-        self.text = "\n".join(bodies.chapter(self.results, None))
+    def test_a_number_typed_by_hand_is_found(self):
+        text = TEXT["perf/REPORT.md"].replace("| `slab` | 0.8 |", "| `slab` | 0.7 |")
+        self.assertNotEqual(report.filled(text, Results(STORED)), text)
 
-    def test_a_promise_that_holds_is_said_plainly(self):
-        self.assertIn("\nTogether they take 1.1 times the pairs one by one: the goal is at most 1.15.", self.text)
-        self.assertIn("\nA pair that is apart takes 0.5 µs: the goal is at most 2.", self.text)
+    def test_each_table_and_each_plot_has_a_place(self):
+        placed = {block[2] for text in TEXT.values() for block in report.BLOCK.finditer(text)}
+        self.assertEqual({*report.TABLES, "instructions", "made with"} - placed, set())
+        shown = set(re.findall(r"pictures/report/(\w+)\.svg", TEXT["perf/REPORT.md"]))
+        self.assertEqual(shown, set(draw.PLOTS))
 
-    def test_one_that_does_not_is_bold_in_words_and_in_the_table(self):
-        self.assertIn("**`contacts` of the world takes 1.2 times its queries; the goal is at most 1.15** (a world also", self.text)
-        self.assertIn("| 100 bodies, none near, 0 moving | **25** | 20 |", self.text)
-
-
-class Peers(unittest.TestCase):
-    """Two poses, at which FCL takes 1.5 and 3 times as long as IST, and the sampler takes 1 µs."""
-
-    TIMES = {"ist": (10, 10), "fcl": (15, 30), "openvdb": (1, 1)}
-
-    def setUp(self):
-        runs = [{"name": f"peers/meets/{player}/{pose}/iterations:1/manual_time", "label": pose, "p50_us": time, "n": 5, "agree": 1,
-                 "promise": 2 if player == "openvdb" else 0, "prepared": 0}
-                for player, times in self.TIMES.items() for pose, time in zip(("truth7", "far"), times)]
-        self.results = Results("nowhere")
-        self.results._read["peers_bench"] = {"benchmarks": runs}
-        self.meets = Answers(self.results, "meets")
-
-    def with_fcl(self, *times):
-        for run in self.meets.runs.values():
-            if "/fcl/" in run["name"]:
-                run["p50_us"] = times[run["label"] == "far"]
-        return native_fcl("meets", self.meets)[0]
-
-    def test_fcl_as_it_could_be_wins_where_either_factor_suffices(self):
-        text = native_fcl("meets", self.meets)[0]
-        self.assertIn("some 1.7 to 2.1 times faster", text)
-        self.assertIn("By either factor it would be the fastest of those without a mark at 1 of 2 poses (truth7).", text)
-
-    def test_and_where_the_greater_factor_alone_does(self):
-        self.assertIn("By the greater factor it would be the fastest of those without a mark at 1 of 2 poses (far), by the lesser one at 0.",
-                      self.with_fcl(22, 20))
-        self.assertIn("at 2 of 2 poses (truth7, far), by the lesser one at 1 (truth7).", self.with_fcl(15, 20))
-
-    def test_or_nowhere(self):
-        self.assertIn("By either factor it would win at no pose.", self.with_fcl(22, 30))
+    def test_each_plot_gives_lines_of_equal_length(self):
+        for name, (program, function) in draw.PLOTS.items():
+            self.assertIn(program, report.PROGRAMS)
+            for panel in function(Results(STORED))["panels"]:
+                for xs, ys, _ in panel["lines"]:
+                    self.assertEqual(len(list(xs)), len(list(ys)), name)
 
     def test_every_figure_from_elsewhere_has_a_source(self):
-        for name, figures in ELSEWHERE.items():
-            self.assertGreater(len(figures["source"]), 50, name)
-
-    def test_nothing_is_said_of_a_question_that_was_not_measured_so(self):
-        self.assertEqual(native_fcl("candidates", self.meets), [])
-
-    def test_who_is_absent_stands_in_proportion_to_fcl_here(self):
-        self.assertIn(f"some {number(15 * ELSEWHERE['pqp']['p50_us']['pqp'] / ELSEWHERE['pqp']['p50_us']['fcl'])} µs here; IST takes 10.",
-                      absent({"pairs": self.meets})[0])
-
-    def test_what_was_not_asked_is_left_out(self):
-        self.assertEqual(asked_in(self.results, "avx2"), {})
+        for name, told in json.loads((ROOT / "perf/elsewhere.json").read_text()).items():
+            self.assertGreater(len(told["source"]), 50, name)
 
 
-class Texts(unittest.TestCase):
+class Losses(unittest.TestCase):
+    def test_a_loss_in_the_results_is_bold_in_its_table(self):
+        for table, (program, begin, counter, times) in LOSSES.items():
+            results = Results(STORED)
+            before = bold(table, results)
+            changed = [run for run in results._file(program)["benchmarks"] if run["name"].startswith(begin) and counter in run
+                       and (not isinstance(times, str) or times in run["name"])]
+            self.assertTrue(changed, table)
+            for run in changed:
+                run[counter] = 1 if times is None else run[counter] * (100 if isinstance(times, str) else times)
+            self.assertNotEqual(bold(table, results), before, table)
+
+    def test_a_pose_at_which_no_other_answers_is_no_win(self):
+        rows = [Run({"name": f"peers/meets/{name}", "promise": promise, "prepared": 0, "a:p50_us": 2, "b:p50_us": 2, "a:agree": 1, "b:agree": agree})
+                for name, promise, agree in (("ist", 0, 1), ("fcl", 0, 0), ("openvdb", 2, 1))]
+        self.assertEqual(peers.standing(rows, peers.unmarked)["count"], 1)
+        self.assertEqual(peers.standing(rows, lambda *_: True)["count"], 2)
+
+    def test_the_worst_case_agrees_only_right_before_contact(self):
+        results = Results(STORED)
+        for run in results._file("seed_bench")["benchmarks"]:
+            if re.match(r"rate/0\.8/reference/\w+/1\.5/", run["name"]):
+                run["p50_us"] = 1e6
+        rows = [line for line in report.lines_of("worst cases", results) if line.startswith("| 0.8 |")]
+        self.assertEqual([row.split(" | ")[4] for row in rows], ["*Agrees*"] * 2)
+
+    def test_queries_that_were_away_are_not_among_those_that_count(self):
+        results = Results(STORED)
+        run = next(run for run in results._file("deadline_bench")["benchmarks"] if run["name"].startswith("within_100us/leaf_pairs/jaws"))
+        run["n"], run["over_away"], run["loop_away"] = 1000, 400, 0
+        row = next(line for line in report.lines_of("deadlines", results) if line.startswith("| jaws, five poses | leaf pairs | 100 |"))
+        self.assertTrue(row.endswith("| 600, 1,000 | **400, 0** |"), row)
+
+
+class Parts(unittest.TestCase):
+    def test_runs_that_differ_in_one_part_are_one_row(self):
+        results = Results("nowhere")
+        results._read["some"] = {"benchmarks": [{"name": f"a/{way}/{size}", "t": t} for size in "xy" for way, t in (("slow", 4), ("fast", 2))]}
+        table = Table("some", runs("a", by=1), [("size", 2), ("times", lambda r: r["slow:t"] / r["fast:t"], lambda r: r.parts[2] == "y")])
+        self.assertEqual(table.lines(results), ["| size | times |", "|---|---|", "| x | 2 |", "| y | **2** |"])
+
+    def test_results_that_are_missing_or_failed_are_named(self):
+        results = Results("nowhere")
+        results._read["some"] = {"benchmarks": [{"name": "a/b", "error_occurred": True, "error_message": "no memory"}]}
+        self.assertRaisesRegex(SystemExit, "some: a/b: no memory", results.runs, "some", "a")
+        self.assertRaisesRegex(SystemExit, "some.json has no c", results.runs, "some", "c")
+
     def test_numbers_have_the_digits_that_count(self):
-        written = {0: "0", 12345.6: "12,346", 123.4: "123", 12.34: "12.3", 0.012345: "0.0123", 0.00001234: "0.0000123"}
-        for value, text in written.items():
+        for value, text in {0: "0", 12345.6: "12,346", 123.4: "123", 12.34: "12.3", 0.012345: "0.0123", 0.00001234: "0.0000123"}.items():
             self.assertEqual(number(value), text)
+        self.assertEqual([factor(value) for value in (0.96, 0.98, 12.34)], ["**0.96**", "0.98", "12.3"])
 
-    def test_tables_are_markdown(self):
-        self.assertEqual(table(["a", "b"], [["x", 1.5]]), ["| a | b |", "|---|---|", "| x | 1.5 |"])
+    def test_a_power_law_is_read_exactly_between_its_points_and_not_beyond(self):
+        points = [(x, 3 * x**-2) for x in (1, 2, 8)]
+        self.assertAlmostEqual(between(points, 4), 3 / 16)
+        self.assertIsNone(between(points, 0.9))
+        exponent, times = power(*zip(*points))
+        self.assertAlmostEqual(exponent, -2)
+        self.assertAlmostEqual(times, 3)
 
 
 if __name__ == "__main__":

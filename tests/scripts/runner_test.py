@@ -11,8 +11,6 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 from report import figures  # noqa: E402  after its folder is known
-from report.made_with import made_with  # noqa: E402
-from report.results import Results  # noqa: E402
 from report.runner import Runner  # noqa: E402
 
 MADE = {"compiler": "g++ 12", "flags": "-O3"}
@@ -25,7 +23,7 @@ class Missing(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for name, value in (("ROOT", self.root), ("RESTS", {"some_bench": ["src"]})):
+        for name, value in (("ROOT", self.root), ("BEGINS", {"some_bench": ["src"]})):
             self.addCleanup(setattr, figures, name, getattr(figures, name))
             setattr(figures, name, value)
         self.git("init", "-q")
@@ -86,24 +84,6 @@ class Missing(unittest.TestCase):
     def test_results_of_another_compiler_or_of_other_flags_are_missing(self):
         for name in MADE:
             self.assertEqual(self.runs({"commit": self.first}, self.first, **{name: "another"}), ["some_bench"], name)
-
-
-class MadeWith(unittest.TestCase):
-    """The chapter on the machine and the programs."""
-
-    def text(self, commit_of_last):
-        results = Results("nowhere")
-        for program, commit in (("first_bench", "1111111"), ("last_bench", commit_of_last)):
-            results._read[program] = {"context": {
-                **MADE, "processor": "a processor", "num_cpus": 2, "mhz_per_cpu": 2000, "caches": [], "date": "2026-01-01T00:00:00",
-                "seconds": "1", "load_avg": [0.1, 0.2, 0.3], "loop_before": "140.0", "loop_after": "141.0", "commit": commit}}
-        return "\n".join(made_with(results, list(results._read)))
-
-    def test_several_commits_are_bold(self):
-        self.assertIn("**Not all of it is of one commit, but of 1111111, 2222222:", self.text("2222222"))
-
-    def test_one_is_not(self):
-        self.assertNotIn("**", self.text("1111111"))
 
 
 if __name__ == "__main__":
