@@ -51,5 +51,6 @@ if command -v nextpnr-ice40 >/dev/null; then
     --timing-allow-fail --seed 1 --report "$made/placed.json" 2>"$made/placed.log" ||
     { tail -n 5 "$made/placed.log" >&2; exit 1; }
 fi
-PYTHONPATH=scripts /usr/bin/python3 scripts/hardware_report.py "$results" "$made" perf/HARDWARE.md
+PYTHONPATH=scripts /usr/bin/python3 scripts/hardware_report.py "$made" perf/HARDWARE.md
+scripts/perf_report.sh --fill
 echo perf/HARDWARE.md >&2

@@ -8,6 +8,7 @@
 #
 #   scripts/perf_report.sh            runs what has no results of this code
 #   scripts/perf_report.sh --fresh    runs all again
+#   scripts/perf_report.sh --fill     makes the tables from the results as they are, and runs nothing
 #   scripts/perf_report.sh --quick    shows that all of it runs, in 3 minutes once built: few rounds,
 #                                     large voxels; everything goes to build/report instead
 #
@@ -17,14 +18,16 @@ cd "$(dirname "$0")/.."
 options=()
 for argument in "$@"; do
   case $argument in
-    --quick | --fresh) options+=("$argument") ;;
-    -h | --help) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --quick | --fresh | --fill) options+=("$argument") ;;
+    -h | --help) sed -n '2,16s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "perf_report: unknown option $argument; see --help" >&2; exit 2 ;;
   esac
 done
-scripts/setup.sh --peers >&2
-cmake --preset bench | grep '^-- Peers' >&2 || true
-echo "perf_report: building" >&2
-cmake --build --preset bench >build/bench.log || { cat build/bench.log >&2; exit 1; }
+if [[ " ${options[*]} " != *" --fill "* ]]; then
+  scripts/setup.sh --peers >&2
+  cmake --preset bench | grep '^-- Peers' >&2 || true
+  echo "perf_report: building" >&2
+  cmake --build --preset bench >build/bench.log || { cat build/bench.log >&2; exit 1; }
+fi
 source scripts/machine.sh
 PYTHONPATH=scripts exec /usr/bin/python3 -m report "${options[@]}" "$results" "${context[@]}"

@@ -9,9 +9,9 @@ import subprocess
 import sys
 
 from report.figures import ROOT, here, stamp
+from report.tables import fill
 
-PROGRAM, PAGE = ROOT / "build/release/ist", ROOT / "README.md"
-BEGIN, END = "<!-- ist bench -->\n", "<!-- end of ist bench -->\n"
+PROGRAM = ROOT / "build/release/ist"
 
 
 def ratios(printed):
@@ -47,13 +47,8 @@ def main():
         sys.exit(f"readme_bench: ist bench: {done.stderr}")
     note = "<!-- snippet: output varies, since it is times -->\n"
     text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{ratios(done.stdout)}```\n\n"
-            f"{stamp(commit, date, 'ist bench', state(done.stdout, os.getloadavg()[0]))}\n")
-    page = PAGE.read_text()
-    before, begin, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        sys.exit(f"readme_bench: README.md has no place for the figures: {BEGIN.strip()} and its end")
-    PAGE.write_text(before + BEGIN + text + END + after)
+            f"{stamp(commit, date, 'ist bench', state(done.stdout, os.getloadavg()[0]))}")
+    fill(ROOT / "README.md", "ist bench", text)
     print("README.md", file=sys.stderr)
 
 

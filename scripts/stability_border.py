@@ -5,16 +5,19 @@
 import collections
 import json
 import pathlib
+import shutil
 import sys
 
 import matplotlib
 
-from report.figures import stamp
+from report.figures import ROOT, stamp
+from report.tables import fill
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.colors import SymLogNorm
 
+PAGE = ROOT / "perf/HAPTIC_STABILITY.md"
 USED = 0.8  # of the computed border: what clamp_coupling() leaves
 HIGHEST = 4  # times the computed border: where measured_border() ends its search
 UNITS = {"push": ("N/m", "N s/m"), "turn": ("N m/rad", "N m s/rad")}
@@ -86,26 +89,11 @@ def main():
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     plot(groups, folder / "pictures/stability_border.svg")
     rows, used, broken = table(groups)
-    lines = [
-        "# Stability of the haptic loop", "",
-        "A hand presses a wall and lets go, with couplings within and beyond the border that the loop computes,",
-        "b > K (T/2 + t_d) + |B|, with B = 0 and no clamping. Made by `scripts/stability_border.sh`; it uses no clock,",
-        "so the results are the same on every machine. The tests `Passivity.*` repeat parts of it.", "",
-        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within "
-        f"{100 * USED:.0f} % of the border, the part that the loop uses, {broken} returned more than their allowance.", "",
-        "- *push*: a block on a slab, along the normal. *turn*: two balls on two slabs that stop a turn.",
-        "- *returned*: the energy that the wrench gave the hand while bodies touched, less the energy that the device's own",
-        "  damping took. The hand's arm is a spring without damping, so it takes none.",
-        "- *allowance*: the most energy from encoders of 2 µm and 20 µrad, and from the tick in which bodies meet:",
-        "  (K/2 + |B|/T) q times the distance moved in contact, and (K T + |B|) T v² for the tick. The hand itself is",
-        "  integrated without error.",
-        "- *grows from*: the least part of the computed border at which motion in the hold grows.",
-        "- *measured*: the least stiffness at which the energy returned exceeds the allowance, by bisection between a half and",
-        f"  {HIGHEST} times the computed border. It is above 1 where the contact yields beside the coupling: a wall is no",
-        "  stiffer than both in series, and the loop assumes a contact steeper than it is, which damps.", "",
-        "![Energy returned by a press over device damping and stiffness](pictures/stability_border.svg)", "",
-        *rows, "", stamp(commit, date, "stability_border.sh"), ""]
-    (folder / "HAPTIC_STABILITY.md").write_text("\n".join(lines))
+    if folder.resolve() != PAGE.parent:
+        shutil.copy(PAGE, folder)
+    fill(folder / PAGE.name, "presses", "\n".join([
+        f"{machine}. {sum(len(p) for p, _ in groups.values())} presses; of the {used} within {100 * USED:.0f} % of the border, the part that "
+        f"the loop uses, {broken} returned more than their allowance.", "", *rows, "", stamp(commit, date, "stability_border.sh")]))
     if broken:
         sys.exit(f"stability_border: {broken} presses within the part used returned more than their allowance")
 

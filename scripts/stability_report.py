@@ -5,15 +5,18 @@
 import json
 import math
 import pathlib
+import shutil
 import sys
 
 import matplotlib
 
-from report.figures import stamp
+from report.figures import ROOT, stamp
+from report.tables import fill
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+PAGE = ROOT / "perf/STABILITY.md"
 FLOOR, CEILING = 1e-6, 10  # ends of the plot: values beyond them are drawn there, as triangles
 GROUPS = {
     "tangency": "Bodies that only just touch",
@@ -80,21 +83,15 @@ def main():
     (folder / "pictures").mkdir(parents=True, exist_ok=True)
     plot(cases, folder / "pictures/stability.svg")
     broken = [case for case in cases if case["broken"]]
-    lines = [
-        "# Stability", "",
-        "Each hard case with its number of samples, its worst error and the guaranteed bound. Made by",
-        "`scripts/stability_report.sh`; every row is a test, and a run of all tests tries it too, with fewer samples.",
-        "A case that is right or wrong counts wrong samples, and its bound is 0. Cases of real bodies have the names of their",
-        "meshes: `human` is one patient's jaws, `spl` a skull of the SPL's atlas (Surgical Planning Laboratory), "
-        "and a mesh called `dirty` has faults.", "",
-        f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, "
-        f"{len(broken)} broken.", "",
-        "![The worst error of each case over its bound](pictures/stability.svg)", ""]
+    lines = [f"{machine}. {len(cases)} cases, {sum(c['samples'] for c in cases):,} samples, {len(broken)} broken.", "",
+             "![The worst error of each case over its bound](pictures/stability.svg)", ""]
     for group, title in GROUPS.items():
         chosen = [case for case in cases if case["group"] == group]
         if chosen:
             lines += [f"## {title}", "", *table(chosen), "", stamp(commit, date, "stability_report.sh"), ""]
-    (folder / "STABILITY.md").write_text("\n".join(lines))
+    if folder.resolve() != PAGE.parent:
+        shutil.copy(PAGE, folder)
+    fill(folder / PAGE.name, "cases", "\n".join(lines))
     if broken:
         print(f"stability_report: {len(broken)} cases break their guarantee", file=sys.stderr)
 

@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 
 from report.figures import here, stamp
+from report.tables import fill
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/performance.md"
-BEGIN, END = "<!-- instruction table -->\n", "<!-- end of instruction table -->\n"
 PLUGIN = ROOT / "build/counting_plugin.so"
 STEPS = ROOT / "build/counting_steps"
 QEMU = ["-plugin", PLUGIN]
@@ -51,11 +51,6 @@ def main():
     if sys.argv[1:]:
         print(__doc__.strip())
         sys.exit(0 if sys.argv[1] in ("-h", "--help") else 2)
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not end:
-        sys.exit(f"target_instructions: {PAGE} has no place for the table: {BEGIN.strip()}")
     PLUGIN.parent.mkdir(exist_ok=True)
     run("cc", "-shared", "-fPIC", "-O2", "-o", PLUGIN, ROOT / "tests/instructions/counting_plugin.c")
     run("cc", "-O2", "-o", STEPS, ROOT / "tests/instructions/counting_steps.c")
@@ -73,9 +68,9 @@ def main():
     if len(asked_of) != 1:
         sys.exit(f"target_instructions: platforms differ in sphere tests and leaf pairs: {sorted(asked_of)}")
     lines += ["\n", "Each makes {:,} sphere tests and lists {:,} leaf pairs.\n".format(*asked_of.pop())]
-    lines += ["\n", stamp(*here(), "target_instructions.py"), "\n"]
-    PAGE.write_text(before + BEGIN + "".join(lines) + END + after)
-    print("".join(lines), end="")
+    lines += ["\n", stamp(*here(), "target_instructions.py")]
+    fill(PAGE, "instruction table", "".join(lines))
+    print("".join(lines))
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 from report.figures import here, machine_state, stamp  # noqa: E402  after its folder is known
 from report.runner import fixed_loop  # noqa: E402
+from report.tables import fill  # noqa: E402
 
 CALLS, POSES, ROUNDS = 1000, 20_000, 31
 # What was promised: a call takes so much more, µs, and rows reach so much of C's poses a second.
@@ -116,7 +117,7 @@ def main():
               f"`rows` on two threads: {c:,.0f} poses a second in C, {python:,.0f} in Python: "
               f"{bold(100 * share, share < LEAST_SHARE, '.0f')} %, the median of {ROUNDS} rounds (promised: {100 * LEAST_SHARE:.0f}).", ""]
     lines.append(stamp(*here(), "calls.py", machine_state(context)))
-    show("\n".join(lines) + "\n")
+    show("\n".join(lines))
 
 
 def bold(value, is_missed, digits):
@@ -127,13 +128,8 @@ def bold(value, is_missed, digits):
 def show(text):
     """Prints the table, or writes it into a page between its marks."""
     if len(sys.argv) < 2:
-        return print(text, end="")
-    page = pathlib.Path(sys.argv[1])
-    before, begin, rest = page.read_text().partition("<!-- python table -->\n")
-    _, end, after = rest.partition("<!-- end of python table -->")
-    if not begin or not end:
-        sys.exit(f"{page} has no place for the table: <!-- python table --> and its end")
-    page.write_text(before + begin + text + end + after)
+        return print(text)
+    fill(pathlib.Path(sys.argv[1]), "python table", text)
 
 
 if __name__ == "__main__":

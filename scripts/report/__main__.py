@@ -1,4 +1,4 @@
-"""Fills the tables of perf/REPORT.md and docs/performance.md, and draws the plots: see scripts/perf_report.sh, which runs this.
+"""Fills the tables of pages from results, and draws the plots: see scripts/perf_report.sh, which runs this.
 
 A page holds its text. Between `<!-- NAME table -->` and `<!-- end of NAME table -->` stand the lines that the results of NAME give."""
 
@@ -6,16 +6,17 @@ import pathlib
 import re
 import sys
 
-from report import ablation, accuracy, peers, scaling, seed, timing
+from report import ablation, accuracy, counts, peers, scaling, seed, timing
 from report.draw import draw
-from report.figures import ROOT, machine_state, stamp
+from report.figures import COUNTERS, ROOT, machine_state, stamp
 from report.results import Results
 from report.runner import Runner
+from report.tables import BLOCK
 
 TABLES = accuracy.TABLES | seed.TABLES | ablation.TABLES | peers.TABLES | scaling.TABLES | timing.TABLES
 PROGRAMS = list(dict.fromkeys(table.program for table in TABLES.values()))
-PAGES = ("perf/REPORT.md", "docs/performance.md")
-BLOCK = re.compile(r"(<!-- (?!end of )([^>]*) table -->\n).*?(<!-- end of \2 table -->)", re.S)
+TABLES |= counts.TABLES
+PAGES = ("perf/REPORT.md", "docs/performance.md", "perf/HARDWARE.md")
 
 
 def lines_of(name, results):
@@ -24,16 +25,20 @@ def lines_of(name, results):
         return timing.instructions()
     if name == "made with":
         return timing.made_with(results, PROGRAMS)
-    lines, context = TABLES[name].lines(results), results.context(TABLES[name].program)
-    return [*lines, "", stamp(context["commit"], context["date"][:10], TABLES[name].program, machine_state(context))] if len(lines) > 1 else lines
+    program = TABLES[name].program
+    lines, context = TABLES[name].lines(results), results.context(program)
+    state = "" if program in COUNTERS else machine_state(context)
+    return [*lines, "", stamp(context["commit"], context["date"][:10], program, state)] if len(lines) > 1 else lines
 
 
 def filled(text, results):
-    """A page with its tables made anew, and the name of the results. A block that no table fills stays as it is: other scripts make it."""
-    known = {*TABLES, "instructions", "made with"}
+    """A page with its tables made anew, and the name of the results. A block stays as it is if its program has no results, or if another
+    script makes it."""
+    known = {f"{name} table" for name, table in TABLES.items() if results.made(table.program)} | {"instructions table"}
+    known |= {"made with table"} if all(map(results.made, PROGRAMS)) else set()
     text = re.sub(r"`results/[^`]*`", f"`results/{results.folder.name}`", text)
     return BLOCK.sub(lambda block: block[0] if block[2] not in known else
-                     block[1] + "\n".join(lines_of(block[2], results)) + "\n" + block[3], text)
+                     block[1] + "\n".join(lines_of(block[2].removesuffix(" table"), results)) + "\n" + block[3], text)
 
 
 def description(results, program):
@@ -48,15 +53,18 @@ def main(arguments):
     raw, *context = [argument for argument in arguments if argument not in options]
     quick = "--quick" in options
     folder = ROOT / "build/report/results" / pathlib.Path(raw).name if quick else pathlib.Path(raw)
-    Runner(folder, context, quick).run(PROGRAMS, again=quick or "--fresh" in options)
+    if "--fill" not in options:
+        Runner(folder, context, quick).run(PROGRAMS, again=quick or "--fresh" in options)
     results = Results(folder)
     # The text of the pages is about the human pair.
-    out = ROOT / "build/report" if quick or results.runs("ablation_bench", "ablation")[0]["label"] != "human" else ROOT
+    others = results.made("ablation_bench") and results.runs("ablation_bench", "ablation")[0]["label"] != "human"
+    out = ROOT / "build/report" if quick or others else ROOT
     for page in PAGES:
         (out / page).parent.mkdir(parents=True, exist_ok=True)
         (out / page).write_text(filled((ROOT / page).read_text(), results))
         print(f"perf_report: {out / page}", file=sys.stderr)
-    draw(out / "perf/pictures/report", lambda program: description(results, program), results)
+    if "--fill" not in options:
+        draw(out / "perf/pictures/report", lambda program: description(results, program), results)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,10 @@ class Results:
             self._read[program] = json.loads((self.folder / f"{program}.json").read_text())
         return self._read[program]
 
+    def made(self, program):
+        """Whether a program has results."""
+        return program in self._read or (self.folder / f"{program}.json").exists()
+
     def context(self, program):
         """Of a program's run: processor, compiler, flags, commit, load_avg, date."""
         return self._file(program)["context"]

@@ -5,13 +5,12 @@ import pathlib
 
 from report.draw import DOTTED, LOG, line, panel, plot, style
 from report.results import Run
-from report.tables import POLICIES, Table, code, factor, power, ratio, row, runs
+from report.tables import POLICIES, Table, code, factor, runs
 
 PUBLISHED = json.loads((pathlib.Path(__file__).parents[2] / "perf/published.json").read_text())
 VOXELS, NODES, LENGTH = PUBLISHED["voxels_by_size"], PUBLISHED["nodes_at_1"], PUBLISHED["lower_jaw"]["size"][0]
+TWOS = [2**n for n in range(32)]
 NEAR = 2  # a number agrees with a published one if neither is more than this many times the other
-LEAD = 1.05  # a smaller lead does not count
-CUBIC = 2.5  # an exponent beyond this one is nearer to a space than to a surface
 
 
 def voxel_size(run):
@@ -26,37 +25,8 @@ def published_nodes(run):
     return NODES["all"] if run.parts[1] == "1" else ""
 
 
-def growth(results, program):
-    """How counts and times grow with l/s, the jaw's length in voxels, from 1 mm down."""
-    fine = [run for run in results.runs(program, "voxels") if float(run.parts[1]) <= 1]
-    curves = {"voxels": [(float(run.parts[1]), run["leaves"]) for run in fine],
-              "time to find them": [(float(run.parts[1]), run["voxels_ms"]) for run in fine],
-              "published voxels": [(float(size), count) for size, count in VOXELS.items()]}
-    return [row(name, exponent=-power(*zip(*points))[0]) for name, points in curves.items()]
-
-
 def size(run):
     return float(run.parts[1])
-
-
-def twos(foldings):
-    """The powers of two between the fewest and the most voxels along the jaw."""
-    return [2**n for n in range(32) if foldings[0]["cells"] < 2**n < foldings[-1]["cells"]]
-
-
-def foldings(results, program):
-    """The last folding of at most 2^n voxels along the jaw and the first one of more."""
-    found = sorted(results.runs(program, "octree"), key=lambda r: r["cells"])
-    pairs = [([r for r in found if r["cells"] <= two][-1], next(r for r in found if r["cells"] > two)) for two in twos(found)]
-    return [row("folding", below=below["cells"], above=above["cells"],
-                **{key: f"{100 * (above[key] / below[key] - 1):+.0f}" for key in ("octree_ms", "leaves")}) for below, above in pairs]
-
-
-def made(results, program):
-    """The time to make all spheres above the leaves, by policy."""
-    levels = [run for run in results.runs(program, "levels") if run.parts[2] != "0"]
-    return [row("made", **{policy: sum(r["make_us"] for r in levels if r.parts[1] == policy) for policy in POLICIES},
-                nodes=sum(r["nodes"] for r in levels if r.parts[1] == "simple"))]
 
 
 def by_distance(results, program, *engine):
@@ -99,18 +69,6 @@ def published_hertz(r):
     return hertz(r) / PUBLISHED["worst_hz"][r.parts[3]]
 
 
-def leads(results, program):
-    """At how many distances below and above the published ones the published query is faster with `simple` or with `table`, by LEAD."""
-    found, (low, high) = dict(by_distance(results, program, "reference")), PUBLISHED["simple_wins_below"]
-    for size in dict.fromkeys(size for size, _, _ in found):
-        simple, table = (found[size, "reference", policy] for policy in ("simple", "table"))
-        pairs = [(float(s.parts[4]), t["p50_us"] / s["p50_us"]) for s, t in zip(simple, table)]
-        below, above = [gain for at, gain in pairs if at < low], [gain for at, gain in pairs if at > high]
-        simple, table = sum(gain > LEAD for gain in below), sum(gain < 1 / LEAD for gain in above)
-        yield row(f"leads/{size}", simple=f"{simple} of {len(below)}", table=f"{table} of {len(above)}",
-                  verdict=agrees(2 * simple > len(below) and 2 * table > len(above)))
-
-
 def saved(results, program):
     found = {tuple(run.parts[1:]): run for run in results.runs(program, "saved")}
     return [Run(found[size, policy, "saved", at] | {"fly": fly["p50_us"], "tested": fly["tests"]})
@@ -126,16 +84,9 @@ TABLES = {
         ("published size", 1), ("l/s", lambda r: LENGTH / float(r.parts[1])), ("published voxels", lambda r: VOXELS[r.parts[1]]),
         ("voxels here", "leaves"), ("ratio", lambda r: r["leaves"] / VOXELS[r.parts[1]]), ("published nodes", published_nodes),
         ("nodes here", "nodes")]),
-    "growth of voxels": Table("seed_bench", growth, [
-        ("count", 0), ("grows as", lambda r: f"(l/s)^{r['exponent']:.2f}"), ("cubic in l/s", lambda r: agrees(r["exponent"] > CUBIC))]),
-    "folding": Table("seed_bench", foldings, [
-        ("from voxels along the jaw", "below"), ("to", "above"), ("time, %", "octree_ms"), ("voxels, %", "leaves")]),
     "spheres by level": Table("seed_bench", runs("levels", by=1), [
         ("level", 2), ("nodes", "simple:nodes"), ("`simple`, unit balls", "simple:leaf_balls"),
         *((f"`{p}`", lambda r, p=p: f"{r[p + ':leaf_balls'] / r['simple:leaf_balls']:.3f}") for p in POLICIES[1:])]),
-    "spheres made": Table("seed_bench", made, [
-        ("spheres above the leaves", "nodes"), *((f"`{p}`, µs", p) for p in POLICIES), ("`table` / `simple`", ratio("table", "simple")),
-        ("dearer by the table", lambda r: agrees(r["table"] > 1.1 * r["simple"]))]),
     "saved spheres": Table("seed_bench", saved, [
         ("voxel size", 1), ("spheres", code(2)), ("distance", 4), ("sphere tests", "tested"), ("on the fly, µs", "fly"), ("saved, µs", "p50_us"),
         ("times as fast", lambda r: factor(r["fly"] / r["p50_us"])), ("octree, MB", "octree_MB"), ("saved spheres, MB", "saved_MB")]),
@@ -146,9 +97,6 @@ TABLES = {
         ("voxel size", voxel_size), ("spheres", code(3)), ("worst at", 4), ("before contact", "contact"), ("right before collision", place),
         ("worst rate, Hz", hertz), ("published, Hz", lambda r: PUBLISHED["worst_hz"][r.parts[3]]), ("ratio", lambda r: f"{published_hertz(r):.2f}"),
         ("as published", lambda r: agrees(1 / NEAR <= published_hertz(r) <= NEAR))]),
-    "leads": Table("seed_bench", lambda results, program: list(leads(results, program)), [
-        ("voxel size", voxel_size), (f"`simple` ahead below {PUBLISHED['simple_wins_below'][0]}", "simple"),
-        (f"`table` ahead above {PUBLISHED['simple_wins_below'][1]}", "table"), ("as published", "verdict")]),
 }
 
 
@@ -173,7 +121,7 @@ def seed_voxels(results):
 def seed_octree(results):
     found = sorted(results.runs("seed_bench", "octree"), key=lambda r: r["cells"])
     return {"width": 6, "height": 3.2, "n": f"n = {found[0]['n']:.0f} foldings a point, in turns", "panels": [panel(
-        [line(found, "cells", "octree_ms", color="#7570b3", marker="^")], [("axvline", two, DOTTED) for two in twos(found)], ylim=(0, None),
+        [line(found, "cells", "octree_ms", color="#7570b3", marker="^")], [("axvline", two, DOTTED) for two in TWOS if found[0]["cells"] < two < found[-1]["cells"]], ylim=(0, None),
         xlabel="voxels along the jaw, l/s (dotted: powers of two)", ylabel="octree, ms (median)")]}
 
 

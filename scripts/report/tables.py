@@ -1,9 +1,12 @@
 """Tables of runs. A table names its program, its rows and its columns; a column has a head, a counter and a rule for bold."""
 
 import math
+import re
 
 from report.results import Run
 
+# What a script writes on a page stands between these.
+BLOCK = re.compile(r"(<!-- (?!end of )([^>\n]*) -->\n).*?(<!-- end of \2 -->)", re.S)
 NOISE = 0.03  # factors nearer to 1 are no gain and no loss
 POLICIES = ("simple", "table", "tight", "slab")
 
@@ -38,6 +41,14 @@ def markdown(head, rows):
 def value_of(row, value):
     """Returns a counter by its name, a part of the run's name by its place, or what a function of the row gives."""
     return value(row) if callable(value) else row.parts[value] if isinstance(value, int) else row[value]
+
+
+def fill(page, name, text):
+    """Writes a text between `<!-- NAME -->` and `<!-- end of NAME -->` of a page."""
+    before = page.read_text()
+    if name not in {block[2] for block in BLOCK.finditer(before)}:
+        raise SystemExit(f"{page} has no place for it: write <!-- {name} --> and <!-- end of {name} --> there")
+    page.write_text(BLOCK.sub(lambda block: f"{block[1]}{text}\n{block[3]}" if block[2] == name else block[0], before))
 
 
 class Table:

@@ -11,7 +11,7 @@ from report import __main__ as report  # noqa: E402  after its folder is known
 from report import draw, peers  # noqa: E402
 from report.figures import ROOT  # noqa: E402
 from report.results import Results, Run  # noqa: E402
-from report.tables import Table, between, factor, number, power, runs  # noqa: E402
+from report.tables import BLOCK, Table, between, factor, number, power, runs  # noqa: E402
 
 TEXT = {page: (ROOT / page).read_text() for page in report.PAGES}
 STORED = ROOT / "perf" / re.search(r"`(results/[\w-]+)`", TEXT["perf/REPORT.md"])[1]
@@ -39,6 +39,7 @@ LOSSES = {
     "pairs apart": ("loop_bench", "bodies", "apart_p50_us", 10),
     "world": ("world_bench", "world/four_bodies", "ratio", 2),
     "grid": ("world_bench", "world/hundred_at_rest", "real_time", 1e5),
+    "by memory": ("hardware_bench", "hardware/0.8/", "words", 100),
     "sweeps": ("sweep_bench", "sweep/rates", "loop_in_c", 2),
 }
 
@@ -57,8 +58,8 @@ class Pages(unittest.TestCase):
         self.assertNotEqual(report.filled(text, Results(STORED)), text)
 
     def test_each_table_and_each_plot_has_a_place(self):
-        placed = {block[2] for text in TEXT.values() for block in report.BLOCK.finditer(text)}
-        self.assertEqual({*report.TABLES, "instructions", "made with"} - placed, set())
+        placed = {block[2] for text in TEXT.values() for block in BLOCK.finditer(text)}
+        self.assertEqual({f"{name} table" for name in (*report.TABLES, "instructions", "made with")} - placed, set())
         shown = set(re.findall(r"pictures/report/(\w+)\.svg", TEXT["perf/REPORT.md"]))
         self.assertEqual(shown, set(draw.PLOTS))
 
@@ -99,6 +100,17 @@ class Losses(unittest.TestCase):
                 run["p50_us"] = 1e6
         rows = [line for line in report.lines_of("worst cases", results) if line.startswith("| 0.8 |")]
         self.assertEqual([row.split(" | ")[4] for row in rows], ["*Agrees*"] * 2)
+
+    def test_a_hit_that_the_circuit_misses_stops_the_report(self):
+        results = Results(STORED)
+        results._file("hardware_bench")["benchmarks"][0]["false_misses"] = 3
+        self.assertRaisesRegex(SystemExit, "the circuit misses 3 hits", report.lines_of, "near misses", results)
+
+    def test_one_build_makes_no_median(self):
+        results = Results(STORED)
+        builds = results._file("build_bench")["benchmarks"]
+        builds[:] = [run for run in builds if not run["name"].startswith("build/slab/0.8") or run.get("repetition_index") == 0]
+        self.assertRaisesRegex(SystemExit, "too few builds for a median", report.lines_of, "build", results)
 
     def test_queries_that_were_away_are_not_among_those_that_count(self):
         results = Results(STORED)
