@@ -42,7 +42,8 @@ def placed(made):
 
 def lines(made):
     ice40, ecp5 = cells(made / "ice40.json"), cells(made / "ecp5.json")
-    rows = [[name, used(lut, luts), f"{total(counts, flip_flop):,}", used(total(counts, multiplier), multipliers), used(total(counts, memory), blocks), clock]
+    rows = [[name, used(lut, luts), f"{total(counts, flip_flop):,}", used(total(counts, multiplier), multipliers),
+             used(total(counts, memory), blocks), clock]
             for (name, luts, multipliers, blocks), counts, lut, flip_flop, multiplier, memory, clock in (
                 (ICE40, ice40, total(ice40, "SB_LUT4"), "SB_DFF.*", "SB_MAC16", "SB_RAM40_4K", placed(made)),
                 (ECP5, ecp5, total(ecp5, "LUT4") + 2 * total(ecp5, "CCU2C"), "TRELLIS_FF", "MULT18X18D", "DP16KD", "not measured"))]

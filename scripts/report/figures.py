@@ -8,6 +8,7 @@ scripts/check_figures.sh reads the stamps again, and names those whose sources h
 """
 
 import datetime
+import functools
 import json
 import pathlib
 import re
@@ -117,20 +118,15 @@ def code_of(text, name):
     return " ".join(without.split())
 
 
-def texts_at(commit, names):
-    """By name, the text of each file at a commit, or None where it was not there: by one process, for thousands are asked for."""
-    done = subprocess.run(["git", "-C", ROOT, "cat-file", "--batch"], input="".join(f"{commit}:{name}\n" for name in names).encode("latin-1"),
-                          capture_output=True, check=True).stdout
-    texts, at = {}, 0
-    for name in names:
-        end = done.index(b"\n", at)
-        head, at = done[at:end], end + 1
-        if head.endswith(b" missing"):
-            texts[name] = None
-        else:
-            size = int(head.split()[-1])
-            texts[name], at = done[at:at + size].decode("latin-1"), at + size + 1
-    return texts
+@functools.cache
+def code_at(_root, commit, name):
+    """The code of a file at a commit; None if it is not there. Makers share files, so each is read once."""
+    text = git("show", f"{commit}:{name}")
+    return None if text is None else code_of(text, name)
+
+
+def code_now(name):
+    return code_of((ROOT / name).read_bytes().decode("latin-1"), name) if (ROOT / name).exists() else None
 
 
 def changed_since(commit, maker):
@@ -141,12 +137,7 @@ def changed_since(commit, maker):
     names = git("diff", "--name-only", commit, "--", *paths)
     if names is None:
         raise ValueError(f"{commit} is no commit of this history")
-    found, names = [], [name for name in names.splitlines() if not name.endswith(".md") and name != SHOWN[0]]
-    for name, before in texts_at(commit, names).items():
-        now = ROOT / name
-        if before is None or not now.exists() or code_of(before, name) != code_of(now.read_bytes().decode("latin-1"), name):
-            found.append(name)
-    return found
+    return [name for name in names.splitlines() if not name.endswith(".md") and name != SHOWN[0] and code_at(ROOT, commit, name) != code_now(name)]
 
 
 def rooms(files, sources):
@@ -158,16 +149,6 @@ def stamp(commit, date, maker, more=""):
     """Returns the line for the foot of a table that a benchmark or a script measured at a commit."""
     state = ", **with changes that no commit holds**" if commit.endswith("+") else ""
     return f"Measured at commit `{commit}` on {date} by `{maker}`{state}.{' ' + more if more else ''}"
-
-
-def stamped(lines, line):
-    """Returns the lines with one more below each table."""
-    made = []
-    for this, after in zip(lines, [*lines[1:], ""]):
-        made.append(this)
-        if this.startswith("|") and not after.startswith("|"):
-            made += ["", line]
-    return made
 
 
 def machine_state(context):

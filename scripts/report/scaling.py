@@ -152,7 +152,8 @@ def scaling_conformal(results):
               [("axhline", TICK, {"color": "#555555", "linestyle": ":", "label": "1 ms"})],
               ylabel="time of a query, µs", title="Time against area (medians)", **common),
         panel([line(met, "area_mm2", "contacts", label=f"{r.parts[0]} apart", **look) for r, look in kinds
-               for met in [[one for one in r["own"] if one["contacts"] > 0]] if met], ylabel="leaf pairs", title="Leaf pairs against area", **common)]}
+               for met in [[one for one in r["own"] if one["contacts"] > 0]] if met],
+              ylabel="leaf pairs", title="Leaf pairs against area", **common)]}
 
 
 @plot(PROGRAM)

@@ -54,7 +54,8 @@ def worst_rates(results, program, *engine):
 
 def worst_cases(results, program):
     rates = worst_rates(results, program, "reference")
-    return [r for size in dict.fromkeys(r.parts[1] for r in rates) for policy in PUBLISHED["worst_hz"] for r in rates if r.parts[1:4:2] == [size, policy]]
+    return [r for size in dict.fromkeys(r.parts[1] for r in rates) for policy in PUBLISHED["worst_hz"]
+            for r in rates if r.parts[1:4:2] == [size, policy]]
 
 
 def place(r):
@@ -111,7 +112,8 @@ def seed_voxels(results):
                 panel([of(lambda r: r["cells"] ** 3, color="#888888", linestyle="--", label="all cells of a cubic grid, (l/s)³"),
                        of("nodes", color="#7570b3", marker="^", label="nodes of the octree"),
                        of("leaves", color="#1b9e77", marker="D", label="surface voxels, its leaves"),
-                       ([float(at) for at in VOXELS], list(VOXELS.values()), dict(color="black", marker="x", linestyle="", label="published voxels"))],
+                       ([float(at) for at in VOXELS], list(VOXELS.values()),
+                        {"color": "black", "marker": "x", "linestyle": "", "label": "published voxels"})],
                       ylabel="count", **fine),
                 panel([of("voxels_ms", color="#1b9e77", marker="D", label="voxels"), of("octree_ms", color="#7570b3", marker="^", label="octree")],
                       ylabel="time, ms (median)", **fine)]}
@@ -121,7 +123,8 @@ def seed_voxels(results):
 def seed_octree(results):
     found = sorted(results.runs("seed_bench", "octree"), key=lambda r: r["cells"])
     return {"width": 6, "height": 3.2, "n": f"n = {found[0]['n']:.0f} foldings a point, in turns", "panels": [panel(
-        [line(found, "cells", "octree_ms", color="#7570b3", marker="^")], [("axvline", two, DOTTED) for two in TWOS if found[0]["cells"] < two < found[-1]["cells"]], ylim=(0, None),
+        [line(found, "cells", "octree_ms", color="#7570b3", marker="^")],
+        [("axvline", two, DOTTED) for two in TWOS if found[0]["cells"] < two < found[-1]["cells"]], ylim=(0, None),
         xlabel="voxels along the jaw, l/s (dotted: powers of two)", ylabel="octree, ms (median)")]}
 
 

@@ -55,7 +55,8 @@ CONDITIONS = {"idle": "idle", "noisy": "beside a noisy neighbour"}
 def loop_table(what, kinds):
     return Table("loop_bench", lambda results, program: [
         results.runs(program, *kind.split("/"), condition)[0] for kind in LOOPS if kind.startswith(kinds) for condition in CONDITIONS], [
-        ("", lambda r: LOOPS["/".join(r.parts[:2])][0] + (", **without what the system denied**" if r.get("denied") else "")), ("machine", lambda r: CONDITIONS[r.parts[2]]),
+        ("", lambda r: LOOPS["/".join(r.parts[:2])][0] + (", **without what the system denied**" if r.get("denied") else "")),
+        ("machine", lambda r: CONDITIONS[r.parts[2]]),
         *((f"{quantile}, µs", f"{what}_{quantile}_us") for quantile in ("p50", "p90", "p99", "p99.9", "max")),
         ("missed", "missed", lambda r: r["missed"] > 0), ("ticks", "ticks")])
 

@@ -76,7 +76,8 @@ class Sources(unittest.TestCase):
     """Figures rest on what their program includes, directly or not."""
 
     def test_a_benchmark_rests_on_the_rooms_that_it_asks(self):
-        for maker, rooms in (("sweep_bench", ["src/ist/sweep", "src/ist/measure", "src/python/ist"]), ("loop_bench", ["src/ist/scene", "src/ist/haptics"]),
+        for maker, rooms in (("sweep_bench", ["src/ist/sweep", "src/ist/measure", "src/python/ist"]),
+                             ("loop_bench", ["src/ist/scene", "src/ist/haptics"]),
                              ("deadline_bench", ["tests/support/conformal.cpp", "src/ist/query/traversal", "simd"]),
                              ("hardware_bench", ["src/hardware/include/ist/hardware", "tests/hardware/pair_walk.h"]),
                              ("peers_bench", ["src/ist/measure", "src/ist/query/exact"]), ("stability_border.sh", ["src/ist/haptics"])):
