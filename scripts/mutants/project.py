@@ -17,7 +17,7 @@ MUTANTS = [
     Mutant("comments-age-figures", "a comment that changes makes figures stale",
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["python figures_test.py History"]),
     Mutant("report-mixes-codes", "results of other code count as results of this one",
-           [("scripts/report/runner.py", " and not changed_since(commit, program)", "")], ["python runner_test.py"]),
+           [("scripts/report/runner.py", " and not changed_since(commit, program)", "")], ["python figures_test.py Missing"]),
     Mutant("long-runs-of-other-code", "a long test that passed at any commit counts",
            [("scripts/test.sh", "grep -qsx \"$commit\"", "grep -qs .")], ["python long_test.py"]),
 

@@ -4,6 +4,7 @@ Without the history of commits that is said, and the exit code is 77; with IST_R
 
 import contextlib
 import io
+import json
 import os
 import pathlib
 import re
@@ -15,6 +16,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 import readme_bench  # noqa: E402  after its folder is known
 from report import check_figures, figures  # noqa: E402
+from report.runner import Runner  # noqa: E402
 
 
 class Pages(unittest.TestCase):
@@ -126,7 +128,7 @@ class Code(unittest.TestCase):
         self.assertNotEqual(figures.code_of("a // b", "a.cmake"), figures.code_of("a // c", "a.cmake"))
 
 
-class History(unittest.TestCase):
+class Project(unittest.TestCase):
     """A project of one source and one page, in a history of its own."""
 
     PAGE = "page.md"
@@ -158,6 +160,8 @@ class History(unittest.TestCase):
         self.git("commit", "-q", "-m", "a change")
         return self.git("rev-parse", "--short=7", "HEAD")
 
+
+class History(Project):
     def page(self, below):
         (self.root / self.PAGE).write_text("| a |\n|---|\n| 1 |\n\n" + below + "\n")
 
@@ -239,6 +243,54 @@ class History(unittest.TestCase):
         with self.assertRaises(SystemExit) as said:
             check_figures.main(["nowhere.md"])
         self.assertIn("nowhere.md is not there", str(said.exception))
+
+
+class Missing(Project):
+    """scripts/perf_report.sh runs a benchmark again that has no results, or results of other code."""
+
+    MADE = {"compiler": "g++ 12", "flags": "-O3"}
+
+    def runs(self, results, now, again=False, **context):
+        """The programs that run if `results` is the context of what was measured before, or None."""
+        ran, folder = [], self.root / "build"
+        runner = Runner(folder, [f"{name}={value}" for name, value in {**self.MADE, "commit": now, **context}.items()], quick=False)
+        runner._run = lambda program, _: ran.append(program)
+        file = folder / "made.json"
+        file.unlink(missing_ok=True)
+        if results is not None:
+            file.write_text(json.dumps({"context": {**self.MADE, **results}}))
+        with contextlib.redirect_stderr(io.StringIO()):
+            runner.run(["made"], again)
+        return ran
+
+    def test_after_an_interruption_it_goes_on_where_it_was(self):
+        self.assertEqual(self.runs({"commit": self.commit}, self.commit), [])
+        self.assertEqual(self.runs(None, self.commit), ["made"])
+
+    def test_fresh_runs_all(self):
+        self.assertEqual(self.runs({"commit": self.commit}, self.commit, again=True), ["made"])
+
+    def test_results_of_other_code_are_missing(self):
+        now = self.write("int b;\n")
+        self.assertEqual(self.runs({"commit": self.commit}, now), ["made"])
+
+    def test_results_before_a_commit_of_texts_count(self):
+        self.assertEqual(self.runs({"commit": self.commit}, self.write("int a;  // why\n")), [])
+
+    def test_results_of_changes_that_no_commit_holds_are_missing(self):
+        self.assertEqual(self.runs({"commit": self.commit + "+"}, self.commit + "+"), ["made"])
+        self.assertEqual(self.runs({"commit": self.commit + "+"}, self.commit), ["made"])
+
+    def test_results_of_a_commit_that_is_not_there_are_missing(self):
+        self.assertEqual(self.runs({"commit": "fedcba9"}, self.commit), ["made"])
+
+    def test_results_of_a_part_are_missing(self):
+        self.assertEqual(self.runs({"commit": self.commit, "arguments": "--benchmark_filter=a"}, self.commit), ["made"])
+        self.assertEqual(self.runs({"commit": self.commit, "arguments": ""}, self.commit), [])
+
+    def test_results_of_another_compiler_or_of_other_flags_are_missing(self):
+        for name in self.MADE:
+            self.assertEqual(self.runs({"commit": self.commit}, self.commit, **{name: "another"}), ["made"], name)
 
 
 if __name__ == "__main__":
