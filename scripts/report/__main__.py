@@ -61,7 +61,7 @@ def main(arguments):
     out = ROOT / "build/report" if quick or others else ROOT
     for page in PAGES:
         (out / page).parent.mkdir(parents=True, exist_ok=True)
-        (out / page).write_text(filled((ROOT / page).read_text(), results))
+        (out / page).write_text("**A quick run: no number in it counts.**\n\n" * quick + filled((ROOT / page).read_text(), results))
         print(f"perf_report: {out / page}", file=sys.stderr)
     if "--fill" not in options:
         draw(out / "perf/pictures/report", lambda program: description(results, program), results)

@@ -33,7 +33,7 @@ def stale(page):
 
 
 def stale_in_page():
-    """Yields a line of text where that is so of the figure that the page shows."""
+    """Yields a line of text if the figure that the page shows is stale."""
     if said := verdict(shown_commit(), SHOWN[1]):
         yield f"{SHOWN[0]}: {said}"
 

@@ -35,7 +35,7 @@ BEGINS = {
 }
 # Those that no compiler of this project makes.
 UNCOMPILED = {"hardware_report.sh", "mutate.sh"}
-# Files of CMake, of which the flags count that decide the compiled code. Warnings, names of folders and exceptions from sanitizers do not.
+# Files of CMake. Their flags decide the compiled code; warnings, names of folders and exceptions from sanitizers do not.
 FLAGGED = ["CMakeLists.txt", "CMakePresets.json", "bench/CMakeLists.txt", "src/ist/CMakeLists.txt", "src/platform.cmake"]
 FLAG = re.compile(r"(?<![\w-])-[OfmDs][\w=+,.-]*|CMAKE_(?:BUILD_TYPE|CXX_\w*FLAGS\w*|CXX_STANDARD|INTERPROCEDURAL_\w+)\W+\w+")
 IDLE = re.compile(r"-f\w+-prefix-map|-fno-sanitize|-fsanitize")
@@ -58,7 +58,7 @@ def shown_commit():
 
 
 def git(*arguments):
-    """Returns what git prints, or None where it fails: no history, or no such commit."""
+    """Returns the output of git, or None if it fails: no history, or no such commit."""
     # Files of any kind are compared: each byte is a character.
     done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, encoding="latin-1")
     return done.stdout if done.returncode == 0 else None
@@ -75,7 +75,7 @@ def is_commit(name):
 
 
 def here():
-    """The commit of the working tree, with a + where files that are compiled differ from it, and the date of today."""
+    """The commit of the working tree, with a + if files that are compiled differ from it, and the date of today."""
     commit = (git("rev-parse", "--short=7", "HEAD") or "0000000+\n").strip()
     changed = git("diff", "--quiet", "HEAD", "--", "CMakeLists.txt", "CMakePresets.json", "src", "simd", "tests", "bench") is None
     return commit.rstrip("+") + ("+" if changed else ""), datetime.date.today().isoformat()
@@ -108,7 +108,7 @@ def sources_of(maker):
 
 
 def code_of(text, name):
-    """What of a text decides the compiled code: of sources all but comments and space, of CMake's files the flags, of others all."""
+    """The part of a text that decides the compiled code: sources without comments and space, the flags of CMake's files, all of others."""
     if name in FLAGGED:
         return [flag for flag in FLAG.findall(re.sub("#.*", "", text)) if not IDLE.match(flag)]
     if not name.endswith((".h", ".cpp", ".c")):

@@ -5,12 +5,7 @@ from report.results import Run
 from report.tables import NOISE, Table, is_loss, number, row, runs
 
 GUARANTEES = ["exact", "rounded", "sampled"]
-QUESTIONS = {
-    "meets": "Do any triangles meet?",
-    "pairs": "Which triangles meet? (all pairs)",
-    "candidates": "Which may meet? (pairs among which are all that do)",
-    "distance": "How far apart are the surfaces? (to within a tolerance)",
-}
+QUESTIONS = ("meets", "pairs", "candidates", "distance")
 SERIES = {"peers": "as given", "turned": "in turned frames", "cold": "with cold caches"}
 MARKS = ["D", "o", "s", "^", "v", "P", "X", "<", ">", "h", "d", "p"]
 
@@ -73,12 +68,10 @@ def multiple(r, before, pose):
 
 
 def cold(results, _program):
-    found = []
-    for question in QUESTIONS:
-        given = {player(r): r for r in players(results, "peers", question)}
-        for r in players(results, "cold", question):
-            r["given"] = given[player(r)]
-            found.append(r)
+    """The rows of all questions with cold caches, each with its row as given."""
+    found = [r for question in QUESTIONS for r in players(results, "cold", question)]
+    for r in found:
+        r["given"], = (one for one in players(results, "peers", r.parts[1]) if player(one) == player(r))
     return found
 
 

@@ -112,20 +112,16 @@ class States(unittest.TestCase):
 
 
 class Code(unittest.TestCase):
-    def test_comments_and_space_do_not_count(self):
-        self.assertEqual(figures.code_of("int a; // one\n/* two\nlines */ int b;\n", "a.cpp"), figures.code_of("int a;\n  int b;", "a.cpp"))
-
-    def test_what_looks_like_a_comment_in_a_text_counts(self):
-        self.assertNotEqual(figures.code_of('auto a = "//1";', "a.cpp"), figures.code_of('auto a = "//2";', "a.cpp"))
+    def test_comments_and_space_of_sources_do_not_count(self):
+        for one, other, name, same in (("int a; // one\n/* two\nlines */ int b;\n", "int a;\n  int b;", "a.cpp", True),
+                                       ('auto a = "//1";', 'auto a = "//2";', "a.cpp", False), ("a // b", "a // c", "a.cmake", False)):
+            self.assertEqual(figures.code_of(one, name) == figures.code_of(other, name), same, one)
 
     def test_of_cmake_the_flags_count_and_warnings_do_not(self):
         text = 'project(ist VERSION 1)\ntarget_compile_options(ist INTERFACE -O3 -Wall)  # -O1\nset(CMAKE_BUILD_TYPE Release)\n'
         for old, new, same in (("-O3", "-O2", False), ("Release", "Debug", False), ("VERSION 1", "VERSION 2", True), (" -Wall", " -Wextra", True),
                                ("# -O1", "# why", True), (" -Wall", " -fno-sanitize=vptr", True), (" -Wall", " -fmacro-prefix-map=/=", True)):
             self.assertEqual(figures.code_of(text, "CMakeLists.txt") == figures.code_of(text.replace(old, new), "CMakeLists.txt"), same, new)
-
-    def test_other_files_count_as_they_are(self):
-        self.assertNotEqual(figures.code_of("a // b", "a.cmake"), figures.code_of("a // c", "a.cmake"))
 
 
 class Project(unittest.TestCase):
@@ -208,21 +204,14 @@ class History(Project):
     def rows(self, commit):
         (self.root / self.PAGE).write_text(f"| program | commit |\n|---|---|\n| `made` | {commit} |\n")
 
-    def test_a_table_whose_rows_name_their_programs_and_commits_needs_none(self):
+    def test_a_row_may_name_its_program_and_its_commit(self):
         self.rows(self.commit)
         self.assertEqual(self.check()[0], 0)
         self.assertEqual(list(figures.stamps_in(self.PAGE)), [(3, self.commit, "made")])
-
-    def test_the_commit_of_a_row_is_looked_up(self):
-        self.rows("fedcba9")
-        self.assertEqual(self.check(), (1, "page.md:3: measured at fedcba9, which is no commit of this history\n"))
-
-    def test_the_code_of_a_row_is_compared(self):
-        self.rows(self.commit)
         self.write("int b;\n")
         self.assertEqual(self.check()[0], 1)
-
-    def test_a_column_of_commits_alone_is_no_stamp(self):
+        self.rows("fedcba9")
+        self.assertEqual(self.check(), (1, "page.md:3: measured at fedcba9, which is no commit of this history\n"))
         (self.root / self.PAGE).write_text(f"| a | commit |\n|---|---|\n| 1 | {self.commit} |\n")
         self.assertEqual(self.check()[0], 1)
 
@@ -263,34 +252,17 @@ class Missing(Project):
             runner.run(["made"], again)
         return ran
 
-    def test_after_an_interruption_it_goes_on_where_it_was(self):
-        self.assertEqual(self.runs({"commit": self.commit}, self.commit), [])
-        self.assertEqual(self.runs(None, self.commit), ["made"])
-
-    def test_fresh_runs_all(self):
+    def test_results_of_this_code_count_unless_all_is_asked_for(self):
+        self.assertEqual(self.runs({"commit": self.commit, "arguments": ""}, self.commit), [])
+        self.assertEqual(self.runs({"commit": self.commit}, self.write("int a;  // why\n")), [])
         self.assertEqual(self.runs({"commit": self.commit}, self.commit, again=True), ["made"])
 
-    def test_results_of_other_code_are_missing(self):
-        now = self.write("int b;\n")
-        self.assertEqual(self.runs({"commit": self.commit}, now), ["made"])
-
-    def test_results_before_a_commit_of_texts_count(self):
-        self.assertEqual(self.runs({"commit": self.commit}, self.write("int a;  // why\n")), [])
-
-    def test_results_of_changes_that_no_commit_holds_are_missing(self):
+    def test_other_results_are_missing(self):
+        for results in (None, {"commit": self.commit + "+"}, {"commit": "fedcba9"}, {"commit": self.commit, "arguments": "--benchmark_filter=a"},
+                        *({"commit": self.commit, name: "another"} for name in self.MADE)):
+            self.assertEqual(self.runs(results, self.commit), ["made"], results)
         self.assertEqual(self.runs({"commit": self.commit + "+"}, self.commit + "+"), ["made"])
-        self.assertEqual(self.runs({"commit": self.commit + "+"}, self.commit), ["made"])
-
-    def test_results_of_a_commit_that_is_not_there_are_missing(self):
-        self.assertEqual(self.runs({"commit": "fedcba9"}, self.commit), ["made"])
-
-    def test_results_of_a_part_are_missing(self):
-        self.assertEqual(self.runs({"commit": self.commit, "arguments": "--benchmark_filter=a"}, self.commit), ["made"])
-        self.assertEqual(self.runs({"commit": self.commit, "arguments": ""}, self.commit), [])
-
-    def test_results_of_another_compiler_or_of_other_flags_are_missing(self):
-        for name in self.MADE:
-            self.assertEqual(self.runs({"commit": self.commit}, self.commit, **{name: "another"}), ["made"], name)
+        self.assertEqual(self.runs({"commit": self.commit}, self.write("int b;\n")), ["made"])
 
 
 if __name__ == "__main__":
