@@ -35,8 +35,9 @@ def filled(text, results):
     """A page with its tables made anew, and the name of the results. A block stays as it is if its program has no results, or if another
     script makes it."""
     known = {f"{name} table" for name, table in TABLES.items() if results.made(table.program)} | {"instructions table"}
-    known |= {"made with table"} if all(map(results.made, PROGRAMS)) else set()
-    text = re.sub(r"`results/[^`]*`", f"`results/{results.folder.name}`", text)
+    if all(map(results.made, PROGRAMS)):
+        known.add("made with table")
+        text = re.sub(r"`results/[^`]*`", f"`results/{results.folder.name}`", text)
     return BLOCK.sub(lambda block: block[0] if block[2] not in known else
                      block[1] + "\n".join(lines_of(block[2].removesuffix(" table"), results)) + "\n" + block[3], text)
 
