@@ -31,7 +31,7 @@ for program in "${programs[@]}"; do
   begin=$SECONDS
   before=$(build/bench/bench/fixed_loop)
   build/bench/bench/"$program" --benchmark_out="$results/$program.part" --benchmark_out_format=json "$@"
-  PYTHONPATH=scripts /usr/bin/python3 -m report.stamp "$results/$program.part" "${context[@]}" \
+  PYTHONPATH=scripts /usr/bin/python3 -m report.results "$results/$program.part" "${context[@]}" \
     "seconds=$((SECONDS - begin))" "arguments=$*" "loop_before=$before" \
     "loop_after=$(build/bench/bench/fixed_loop)" "load_after=$(cut -d' ' -f1 /proc/loadavg)"
   mv "$results/$program.part" "$results/$program.json"

@@ -9,4 +9,4 @@ cd "$(dirname "$0")/.."
 case ${1:-} in
   -h | --help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
-PYTHONPATH=scripts exec python3 -B -m report.check_figures "$@"
+PYTHONPATH=scripts exec python3 -B -m report.figures "$@"

@@ -30,7 +30,7 @@ counts=$results/hardware_bench.json
 if $fresh || [ ! -f "$counts" ]; then
   begin=$SECONDS
   build/bench/bench/hardware_bench --benchmark_out="$counts.part" --benchmark_out_format=json >&2
-  PYTHONPATH=scripts /usr/bin/python3 -m report.stamp "$counts.part" "${context[@]}" \
+  PYTHONPATH=scripts /usr/bin/python3 -m report.results "$counts.part" "${context[@]}" \
     "seconds=$((SECONDS - begin))" "arguments="
   mv "$counts.part" "$counts"
 fi

@@ -13,7 +13,7 @@ MUTANTS = [
            [("src/cli/bench/bench_report.cpp", "lines += fmt::format(\"not a quiet machine: {}\\n\", *noise);", "")],
            ["cli_test BenchHeading.*"]),
     Mutant("stale-figures-pass", "figures that are older than their code are no failure",
-           [("scripts/report/check_figures.py", "return 1 if found else 0", "return 0")], ["python figures_test.py History"]),
+           [("scripts/report/figures.py", "return 1 if found else 0", "return 0")], ["python figures_test.py History"]),
     Mutant("comments-age-figures", "a comment that changes makes figures stale",
            [("scripts/report/figures.py", "    return \" \".join(without.split())", "    return text")], ["python figures_test.py History"]),
     Mutant("report-mixes-codes", "results of other code count as results of this one",

@@ -8,7 +8,7 @@ import sys
 import time
 
 from report.figures import changed_since, has_history, is_commit
-from report.stamp import stamp
+from report.results import stamp
 
 PROGRAMS = pathlib.Path("build/bench/bench")
 

@@ -15,7 +15,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
 import readme_bench  # noqa: E402  after its folder is known
-from report import check_figures, figures  # noqa: E402
+from report import figures  # noqa: E402
 from report.runner import Runner  # noqa: E402
 
 
@@ -44,9 +44,9 @@ class Pages(unittest.TestCase):
             self.assertTrue((figures.ROOT / source).exists(), f"{file} rests on {source}")
         if figures.has_history():
             first = figures.git("rev-list", "--max-parents=0", "HEAD").split()[0]
-            self.addCleanup(setattr, check_figures, "shown_commit", check_figures.shown_commit)
-            check_figures.shown_commit = lambda: first
-            self.assertEqual([line.split(":")[0] for line in check_figures.stale_in_page()], [file])
+            self.addCleanup(setattr, figures, "shown_commit", figures.shown_commit)
+            figures.shown_commit = lambda: first
+            self.assertEqual([line.split(":")[0] for line in figures.stale_in_page()], [file])
 
     def test_the_figures_of_ist_bench_have_a_stamp(self):
         begin, end = "<!-- ist bench -->", "<!-- end of ist bench -->"
@@ -133,7 +133,7 @@ class Project(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root, real = pathlib.Path(folder.name), (figures.ROOT, dict(figures.BEGINS))
-        figures.ROOT = check_figures.ROOT = self.root
+        figures.ROOT = self.root
         figures.BEGINS = {"made": ["src"]}
         self.addCleanup(self.restore, *real)
         (self.root / "src").mkdir()
@@ -144,7 +144,7 @@ class Project(unittest.TestCase):
 
     @staticmethod
     def restore(root, begins):
-        figures.ROOT = check_figures.ROOT = root
+        figures.ROOT = root
         figures.BEGINS = begins
 
     def git(self, *arguments):
@@ -164,7 +164,7 @@ class History(Project):
     def check(self):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
-            return check_figures.main([self.PAGE]), said.getvalue()
+            return figures.main([self.PAGE]), said.getvalue()
 
     def test_figures_of_the_code_as_it_is_are_fine(self):
         self.page(figures.stamp(self.commit, "2026-01-01", "made"))
@@ -230,7 +230,7 @@ class History(Project):
 
     def test_a_page_that_is_not_there_is_named(self):
         with self.assertRaises(SystemExit) as said:
-            check_figures.main(["nowhere.md"])
+            figures.main(["nowhere.md"])
         self.assertIn("nowhere.md is not there", str(said.exception))
 
 
