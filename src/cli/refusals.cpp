@@ -25,13 +25,6 @@ void refuse_to_overwrite(const std::filesystem::path& output,
   }
 }
 
-void refuse_parquet(const std::string& option, const std::filesystem::path& output) {
-  refuse_if(CLI::detail::to_lower(output.extension().string()) == ".parquet",
-            option + " " + output.string(),
-            "ist writes no Parquet: make it from the table of a sweep, in Python, by "
-            "pandas.DataFrame(numpy.load(\"rows.npy\")).to_parquet(\"rows.parquet\")");
-}
-
 CLI::Validator whole_number(const std::string& what) {
   return {[what](const std::string& text) {
             std::uint64_t value = 0;

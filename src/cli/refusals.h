@@ -15,10 +15,6 @@ void refuse_if(bool wrong, const std::string& option, const std::string& why);
 void refuse_to_overwrite(const std::filesystem::path& output,
                          std::initializer_list<std::filesystem::path> inputs);
 
-/// Throws CLI::ValidationError if the name ends in .parquet, in upper or lower case. The text names
-/// the line of Python that makes such a file from the table of a sweep.
-void refuse_parquet(const std::string& option, const std::filesystem::path& output);
-
 /// Accepts only the decimal digits of a number below 2^64, which `what` names. CLI11 would read -1
 /// and too large numbers as the largest one, and 010 as 8.
 [[nodiscard]] CLI::Validator whole_number(const std::string& what);

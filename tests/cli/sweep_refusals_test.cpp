@@ -34,15 +34,6 @@ TEST_F(SweepCommand, RefusesWhatIsNoUseOfIt) {
     EXPECT_TRUE(says(result.err, text));
     EXPECT_FALSE(exists("out")) << words[0];
   }
-  for (const char* name : {"rows.parquet", "out.Parquet"}) {
-    const CommandResult result = sweep(job, name);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(
-        says(result.err, "-o " + path(name) + ": ist writes no Parquet: make it from the "));
-    EXPECT_TRUE(says(result.err,
-                     "pandas.DataFrame(numpy.load(\"rows.npy\")).to_parquet(\"rows.parquet\")"));
-    EXPECT_FALSE(exists(name));
-  }
   const CommandResult nowhere = ist({"sweep", job});
   EXPECT_EQ(nowhere.exit_code, 2);
   EXPECT_TRUE(says(nowhere.err, "--output is required"));

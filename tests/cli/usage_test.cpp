@@ -251,8 +251,6 @@ TEST_F(Usage, OptionsOfExport) {
                ": .glb cannot be written here: name a file that ends in .vtp or .ply");
   refuses_name("spheres", path("v"),
                ": a name without an ending says no format: name a file that ends in .vtp or .ply");
-  refuses_name("voxels", path("v.parquet"),
-               ": ist writes no Parquet: make it from the table of a sweep, in Python, by pandas.");
   refuses({"export", tree, "--what", "voxels", "--level", "0", "--unit", "mm", "-o", out},
           "--unit: goes with a .glb");
   refuses(

@@ -191,7 +191,6 @@ void add_sweep(CLI::App& app) {
               "shares.");
   command->callback([options] {
     static_cast<void>(share_of(options->share));
-    refuse_parquet("-o", options->folder);
     const Sweep sweep(options->file);
     if (options->merge) return merge(*options, sweep);
     if (options->status) return show_status(*options, sweep);

@@ -42,7 +42,6 @@ const char* ending(FileFormat format) {
 
 FileFormat format_by_ending(const std::string& option, const std::filesystem::path& file,
                             std::span<const FileFormat> writable) {
-  refuse_parquet(option, file);
   const std::string written = file.extension().string();
   std::string lower = written;
   std::transform(lower.begin(), lower.end(), lower.begin(),

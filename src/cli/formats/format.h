@@ -18,7 +18,7 @@ enum class FileFormat { kVtp, kPly, kGlb, kCsv, kJsonl, kJson, kHtml };
 /// @param writable the formats that the command can write there, at least one
 ///
 /// Throws CLI::ValidationError for every other ending. The text names the endings that the command
-/// can write, or of .parquet the line of Python that makes such a file.
+/// can write.
 [[nodiscard]] FileFormat format_by_ending(const std::string& option,
                                           const std::filesystem::path& file,
                                           std::span<const FileFormat> writable);
