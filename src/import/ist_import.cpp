@@ -8,17 +8,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "import/placed_polygons.h"
 #include "import/process_limits.h"
+#include "import/scene_format.h"
 #include "import/scene_reader.h"
 #include "import/threemf_reader.h"
-#include "import/zip_parts.h"
-#include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/import_message.h"
 
 namespace ist::import {
@@ -96,18 +94,6 @@ void answer(const Refusal& refusal) {
   write_all(kImportEnd);
 }
 
-bool is_packed(const Input& input) { return input.content.starts_with("PK\3\4"); }
-
-// An AMF may be packed, under its own name.
-void unpack(Input& input) {
-  const std::string name = input.path.filename().string();
-  std::optional<std::string> content = ZipParts(input.content).part(name);
-  if (!content)
-    refuse(ErrorCode::kNotAMesh, "",
-           "the archive does not hold an AMF of its name; unpack it, and give that file");
-  input.content = *std::move(content);
-}
-
 void run(const char* path) {
   try {
     struct stat status {};
@@ -115,20 +101,19 @@ void run(const char* path) {
     if (!limit_resources(known ? static_cast<std::size_t>(status.st_size) : 0) ||
         !limit_system_calls())
       refuse(ErrorCode::kFileUnreadable, "",
-             "the kernel does not limit what ist-import may do (setrlimit, seccomp): allow it, or "
-             "convert the mesh to STL, PLY or OBJ");
+             fmt::format("the kernel does not limit what ist-import may do (setrlimit, seccomp): "
+                         "allow it, or {}",
+                         kConvert));
     Input input{all_of_stdin(), path};
-    if (is_packed(input) && same_word(input.path.extension().string(), ".amf")) unpack(input);
-    answer(is_packed(input) ? read_3mf(input) : read_scene(input));
+    const std::string format = scene_format(input);
+    answer(format == "3mf" ? read_3mf(input) : read_scene(std::move(input), format));
   } catch (const Refusal& refusal) {
     answer(refusal);
   } catch (const std::bad_alloc&) {
     answer(Refusal{ErrorCode::kMeshTooLarge, "",
-                   "to read it takes more than 4 GiB of memory; convert the mesh to STL, PLY or "
-                   "OBJ"});
+                   fmt::format("to read it takes more than 4 GiB of memory; {}", kConvert)});
   } catch (const std::exception& error) {
-    answer(Refusal{ErrorCode::kNotAMesh, "",
-                   fmt::format("{}; convert the mesh to STL, PLY or OBJ", error.what())});
+    answer(Refusal{ErrorCode::kNotAMesh, "", fmt::format("{}; {}", error.what(), kConvert)});
   }
   // The answer is complete. A foreign destructor could only crash.
   ::_exit(0);

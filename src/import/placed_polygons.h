@@ -27,6 +27,10 @@ struct Refusal {
   std::string place, cause;
 };
 
+/// The remedy for a mesh that is not read.
+inline constexpr std::string_view kConvert =
+    "convert the mesh to STL, PLY or OBJ, for example with Blender or MeshLab";
+
 /// Throws a Refusal.
 [[noreturn]] void refuse(ErrorCode code, std::string_view place, std::string_view cause);
 

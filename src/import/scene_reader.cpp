@@ -9,7 +9,9 @@
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <new>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "import/gltf_check.h"
 #include "import/scene_format.h"
@@ -20,41 +22,42 @@
 namespace ist::import {
 namespace {
 
-// Keeps the first message that tells of a lost part of the surface. assimp would go on.
+// Words of messages that speak of something other than the surface.
+constexpr std::string_view kHarmless[] = {
+    "anim",           "keyframe",      "key time",     "camera",
+    "light",          "material",      "texture",      "texcoord",
+    "image",          "embedded",      "video",        "effect",
+    "<bind>",         "color",         "emissive",     "specular",
+    "diffuse",        "ambient",       "shading",      "shader",
+    "source surface", "normal",        "tangent",      "uv",
+    "input type",     "vmad",          "vmap",         "clip",
+    "layer",          "mapping",       "access type",  "empty geometry",
+    "empty line",     "null geometry", "mesh with no", "newer format",
+    "no hierarchy",   "data object",   "same contents"};
+
+// Keeps the first warning or error that may tell of a lost part of the surface: each without a
+// harmless word. assimp would go on.
 class LossLog : public Assimp::LogStream {
  public:
   explicit LossLog(std::string& first) : first_(first) {}
   void write(const char* message) override {
-    constexpr std::string_view kLosses[] = {"out-of-range indices",
-                                            "were dropped",
-                                            "Vertex index overflow",
-                                            "Unable to find geometry",
-                                            "reference to instanced node",
-                                            "Unresolved reference format of node",
-                                            "face index is out of range",
-                                            "Failure evaluating face record",
-                                            "unsupported primitive chunk",
-                                            "unknown polygon type",
-                                            "not currently implemented",
-                                            "not currently supported",
-                                            "Invalid vertex reference",
-                                            "Unexpected EOF",
-                                            "not all vertices",
-                                            "Chunk overflow",
-                                            "unrecognized geometry",
-                                            "Unsupported RotationMode",
-                                            "unexpected face count",
-                                            "unexpected vertex count",
-                                            "not supported primitive type",
-                                            "unsupported `Hole`"};
-    const std::string_view text = message;
-    const auto says = [text](std::string_view part) { return text.find(part) != text.npos; };
-    // An object of an FBX that it cannot read, apart from materials. It tries newer versions.
-    const bool fbx = says("FBX-DOM") && !says("newer format version") && !says("shading mode");
-    const bool lost = fbx || std::any_of(std::begin(kLosses), std::end(kLosses), says);
+    std::string_view text = message;
     // Before the message are its kind and its thread.
-    const std::size_t begin = std::min(text.find(": "), text.size() - 2) + 2;
-    if (lost && first_.empty()) first_ = text.substr(begin, text.find('\n', begin) - begin);
+    text.remove_prefix(std::min(text.find(": "), text.size() - 2) + 2);
+    text = text.substr(0, text.find('\n'));
+    // Names in the file come after a quote, a second colon or these words.
+    constexpr std::string_view kBeforeName = "instanced node ";
+    const std::size_t colon = text.find(": ");
+    std::string said(
+        text.substr(0, std::min({text.find_first_of("\"'"), text.find(kBeforeName),
+                                 text.find(": ", colon == text.npos ? colon : colon + 1)})));
+    std::transform(said.begin(), said.end(), said.begin(), [](char c) {
+      return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    const bool lost =
+        std::none_of(std::begin(kHarmless), std::end(kHarmless),
+                     [&](std::string_view part) { return said.find(part) != said.npos; });
+    if (lost && first_.empty()) first_ = text;
   }
 
  private:
@@ -91,15 +94,17 @@ void place_mesh(const aiMesh& mesh, const Eigen::Affine3d& transform, const std:
   }
 }
 
-// Places the meshes of all nodes, parents before children, in the order of the file.
-void place_nodes(const aiScene& scene, const Eigen::Affine3d& root, PlacedPolygons& placed) {
+// Places the meshes of all nodes, parents before children, in the order of the file. A node may be
+// named like the main file, which every error names.
+void place_nodes(const aiScene& scene, const Eigen::Affine3d& root, const std::string& main_file,
+                 PlacedPolygons& placed) {
   std::vector<std::pair<const aiNode*, Eigen::Affine3d>> left = {{scene.mRootNode, root}};
   while (!left.empty()) {
     const auto [node, parent] = left.back();
     left.pop_back();
-    std::string_view named = node->mName.C_Str();
-    named.remove_prefix(named.rfind('/') + 1);  // an X3D is named by its path
-    const std::string name = fmt::format("node '{}'", printable(named));
+    const std::string_view named = node->mName.C_Str();
+    const std::string name =
+        named == main_file ? "the scene" : fmt::format("node '{}'", printable(named));
     const Eigen::Affine3d transform = joined(parent, transform_of(node->mTransformation, name));
     for (unsigned i = 0; i < node->mNumMeshes; ++i) {
       const unsigned mesh = node->mMeshes[i];
@@ -113,12 +118,23 @@ void place_nodes(const aiScene& scene, const Eigen::Affine3d& root, PlacedPolygo
   }
 }
 
+// Throws the error of a scene that assimp read not at all, or not whole.
+[[noreturn]] void refuse_scene(bool whole, std::string cause, const std::string& main_file) {
+  if (cause.find("bad_alloc") != cause.npos) throw std::bad_alloc();
+  if (const std::size_t at = cause.find(main_file); at != cause.npos)
+    cause.replace(at, main_file.size(), "the file");
+  cause.resize(cause.find_last_not_of(" .;\r\n") + 1);
+  const bool index = cause.find("range") != cause.npos || cause.find("ertex") != cause.npos;
+  refuse(index ? ErrorCode::kMeshBadIndex : ErrorCode::kNotAMesh, "",
+         fmt::format("{} cannot be read ({}); export the mesh again, or {}",
+                     whole ? "it" : "a part of it", cause, kConvert));
+}
+
 }  // namespace
 
-PlacedPolygons read_scene(const Input& input) {
-  const std::string format = scene_format(input);
+PlacedPolygons read_scene(Input input, std::string_view format) {
   if (format == "glb" || format == "gltf") check_gltf(input.content);
-  check_xml(format, input.content);
+  const StatedUnit of_xml = check_xml(format, input.content);
   auto* files = new SideFiles(input, format);  // the importer deletes it
   Assimp::Importer importer;
   importer.SetIOHandler(files);
@@ -130,32 +146,21 @@ PlacedPolygons read_scene(const Input& input) {
                                              Assimp::Logger::Warn | Assimp::Logger::Err);
   const aiScene* scene = importer.ReadFile(files->main_file(), 0);
   Assimp::DefaultLogger::kill();
-  if (!files->missing().empty() && (scene == nullptr || !loss.empty()))
+  const bool unread = scene == nullptr || scene->mRootNode == nullptr;
+  if (!files->missing().empty() && (unread || !loss.empty()))
     refuse(
         ErrorCode::kFileUnreadable, "",
         fmt::format("it names the file '{}', which is not in its folder or below: copy it there, "
                     "or export one file that holds all",
                     printable(files->missing(), 200)));
-  if (!loss.empty())
-    refuse(loss.find("range") != loss.npos || loss.find("ertex") != loss.npos
-               ? ErrorCode::kMeshBadIndex
-               : ErrorCode::kNotAMesh,
-           "",
-           fmt::format("a part of it cannot be read ({}); export the mesh again, or convert it to "
-                       "STL, PLY or OBJ",
-                       loss));
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    std::string cause = importer.GetErrorString();
-    if (cause.find("bad_alloc") != cause.npos) throw std::bad_alloc();
-    const std::string name = files->main_file();
-    if (const std::size_t at = cause.find(name); at != cause.npos)
-      cause.replace(at, name.size(), input.path.filename().string());
-    refuse(ErrorCode::kNotAMesh, "",
-           fmt::format("{}; export the mesh again, or convert it to STL, PLY or OBJ", cause));
-  }
+  if (unread || !loss.empty())
+    refuse_scene(unread, loss.empty() ? importer.GetErrorString() : loss, files->main_file());
   PlacedPolygons placed;
-  tell_unit(format, input, *scene, placed);
-  place_nodes(*scene, root_turn(format), placed);
+  const StatedUnit stated =
+      of_xml.unit == LengthUnit::kUnknown ? unit_of_scene(format, *scene) : of_xml;
+  placed.unit = stated.unit;
+  placed.factor = stated.factor;
+  place_nodes(*scene, root_turn(format), files->main_file(), placed);
   placed.require_polygons();
   return placed;
 }

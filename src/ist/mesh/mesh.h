@@ -113,7 +113,7 @@ struct TriangleMesh {
 
 /// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text) or VTK PolyData
 /// (.vtk or .vtp). The program ist-import, started by this call, reads glTF 2.0, 3MF, COLLADA, FBX,
-/// X3D, AMF, 3DS and other formats of assimp. The content decides the format; the file's name helps
+/// X3D, AMF, 3DS, AC3D, LightWave and DirectX. The content decides the format; the file's name helps
 /// only for an OBJ, an OFF without a keyword and formats without a mark. Several solids, groups,
 /// pieces or meshes of a scene become one mesh, polygons and strips become triangles, and vertices
 /// at exactly the same position become one. Vertices are in the order in which the faces first use
@@ -127,7 +127,8 @@ struct TriangleMesh {
 /// 2^29 bytes unpacked. A frame comes from the header of an STL, from comments in a PLY or OBJ, or
 /// from the title or field data of a VTK file: SPACE=RAS or SPACE=LPS. A unit comes from a glTF,
 /// COLLADA or X3D (metres), a 3MF, an AMF or an FBX. No length is converted, but centimetres become
-/// 10 mm and feet 12 inches. A COLLADA gets y up.
+/// 10 mm, feet 12 inches, each unit of an FBX millimetres and each unit of an X3D metres. A COLLADA
+/// gets y up.
 ///
 /// Cost: linear in the file, some 50 ms for 100,000 triangles; memory, at most five times a binary
 /// STL, and twice for a closed surface.

@@ -4,25 +4,13 @@
 
 #include <algorithm>
 
+#include "ist/mesh/format/other_formats.h"
 #include "ist/mesh/format/stl_layout.h"
 #include "ist/mesh/format/text_reader.h"
 #include "ist/mesh/import/imported_mesh.h"
 
 namespace ist {
 namespace {
-
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte < 0x20 && (byte < '\t' || byte > '\r');
-}
-
-// Text may hold a few control bytes in names and comments, and any number of zeros or Ctrl-Z at its
-// end. In binary facets every 25th byte is 0.
-bool is_text(std::string_view content) {
-  content = content.substr(0, content.find_last_not_of(std::string_view("\0\x1A", 2)) + 1);
-  const auto controls = std::count_if(content.begin(), content.end(), is_control);
-  return static_cast<std::size_t>(controls) <= 4 + content.size() / 100;
-}
 
 // Whether characters of a text are ASCII in two bytes each: half of them after a byte order mark,
 // nine of ten without one.
@@ -36,68 +24,6 @@ bool is_utf16(std::string_view content) {
     if (b != 0 && !is_control(b) && a == 0) ++high_first;
   }
   return pairs >= 8 && 10 * std::max(low_first, high_first) >= (marked ? 5 : 9) * pairs;
-}
-
-bool begins_with_element(std::string_view content, std::string_view element) {
-  return content.substr(0, 4096).find(element) != content.npos;
-}
-
-// A format that the content tells, and whether ist-import reads it.
-struct OtherFormat {
-  std::string_view begin, name;
-  bool imported = false;
-  std::size_t at = 0;
-};
-
-// Returns nullptr for none of them.
-const OtherFormat* other_format(std::string_view content, std::string_view first_word) {
-  static constexpr OtherFormat kFormats[] = {
-      {"glTF", "glTF", true},
-      {"PK\3\4", "3MF", true},
-      {"BLENDER", "Blender's"},
-      {"LWO", "LightWave's", true, 8},
-      {"MM", "3DS", true},
-      {"Kaydara FBX Binary", "FBX", true},
-      {"; FBX", "FBX", true},
-      {"xof ", "DirectX", true},
-      {"AC3D", "AC3D", true},
-      {"DRACO", "Draco"},
-      {"ISO-10303-21", "STEP"},
-      {"#VRML", "VRML"},
-      {"OCTM", "OpenCTM"},
-      {"DICM", "DICOM", false, 128},
-      {"%PDF", "PDF"},
-      {"\x89PNG", "PNG"},
-      {"\x1F\x8B", "gzip, a packed file"},
-  };
-  for (const OtherFormat& format : kFormats) {
-    const bool begins =
-        content.size() > format.at && content.substr(format.at).starts_with(format.begin);
-    const bool may_be_other =
-        format.begin.size() == 2 && (is_text(content) || begins_like_binary_stl(content));
-    if (begins && !may_be_other) return &format;
-  }
-  static constexpr OtherFormat kJson = {"{", "glTF", true}, kXml = {"<", "XML"};
-  if (first_word.starts_with(kJson.begin)) return &kJson;
-  if (!first_word.starts_with(kXml.begin)) return nullptr;
-  static constexpr OtherFormat kElements[] = {{"<COLLADA", "COLLADA", true},
-                                              {"<X3D", "X3D", true},
-                                              {"<amf", "AMF", true},
-                                              {"<svg", "SVG"},
-                                              {"<html", "HTML"}};
-  for (const OtherFormat& format : kElements) {
-    if (begins_with_element(content, format.begin)) return &format;
-  }
-  return &kXml;
-}
-
-// Returns whether ist-import reads files with this ending. Their content has no mark.
-bool is_imported_name(std::string_view extension) {
-  constexpr std::string_view kNames[] = {".3ds", ".ac",  ".ase", ".b3d",  ".cob", ".dxf",
-                                         ".fbx", ".lws", ".lxo", ".ms3d", ".nff", ".ogex",
-                                         ".q3o", ".smd", ".x",   ".xgl"};
-  return std::any_of(std::begin(kNames), std::end(kNames),
-                     [&](std::string_view name) { return same_word(name, extension); });
 }
 
 // Returns whether the first word behind comments is a keyword of an OFF, with or without a count.
@@ -147,8 +73,8 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
   if (is_utf16(content))
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               "the text is UTF-16; save it as UTF-8 or ASCII, or export the mesh again");
-  const OtherFormat* const format = other_format(content, first_word);
-  if (format != nullptr && format->imported) return read_imported(content, file);
+  const OtherFormat* const format = other_format(content);
+  if (format != nullptr && !format->ending.empty()) return read_imported(content, file);
   if (format != nullptr)
     fail_mesh(ErrorCode::kNotAMesh, name, "",
               fmt::format("the file's format is {}, and the supported formats are {}; export the "
@@ -160,7 +86,7 @@ TriangleMesh read_content(std::string_view content, const std::filesystem::path&
     if (same_word(extension, ".obj") || begins_like_obj(content, name))
       return read_obj(content, name);
   }
-  if (is_imported_name(extension)) return read_imported(content, file);
+  if (!imported_ending(file).empty()) return read_imported(content, file);
   // The rest is no mesh, a mesh that was cut early, or a binary STL of the wrong size. A text of
   // several lines, or one longer than an STL header, is neither of the last two.
   const bool could_be_cut = std::string_view("solid").starts_with(content) ||
