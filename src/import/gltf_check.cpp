@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,18 @@ std::string_view json_of_glb(std::string_view content) {
   return content.substr(20, word(12));
 }
 
+// Replaces the JSON of a GLB. Blanks fill it up to whole words.
+void set_json_of_glb(std::string& content, std::string json) {
+  json.append((4 - json.size() % 4) % 4, ' ');
+  content.replace(20, json_of_glb(content).size(), json);
+  const auto set_word = [&](std::size_t at, std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    std::memcpy(content.data() + at, &word, sizeof word);
+  };
+  set_word(8, content.size());
+  set_word(12, json.size());
+}
+
 // Extensions that change looks, light or names alone.
 bool is_harmless(std::string_view extension) {
   constexpr std::string_view kBegins[] = {"KHR_materials_", "KHR_texture_",   "EXT_texture_",
@@ -71,7 +84,8 @@ class GltfCheck {
            "the text is no JSON from here on; copy or export the mesh again");
   }
 
-  void check() {
+  // Returns the JSON for assimp if it differs from the text.
+  std::optional<std::string> check() {
     check_version();
     for (const Json& extension : elements(root_, "extensionsRequired")) {
       const std::string name = extension.is_string() ? extension.get<std::string>() : "";
@@ -90,7 +104,8 @@ class GltfCheck {
     while (!left.empty()) {
       const std::uint64_t node = left.back();
       left.pop_back();
-      const Json& described = element("nodes", node);
+      static_cast<void>(element("nodes", node));  // it exists
+      Json& described = root_["nodes"][node];
       const std::string place = fmt::format("node {}", node);
       if (visited[node])
         refuse_mesh(place, "it is the child of several nodes, or of itself; export the mesh again");
@@ -98,6 +113,8 @@ class GltfCheck {
       check_node(described, place);
       push(described, "children", left);
     }
+    if (!changed_) return {};
+    return root_.dump();
   }
 
  private:
@@ -151,7 +168,7 @@ class GltfCheck {
                                        printable(least.empty() ? version : least)));
   }
 
-  void check_node(const Json& node, const std::string& place) const {
+  void check_node(Json& node, const std::string& place) {
     if (!node.is_object()) refuse_mesh(place, "it is no object; export the mesh again");
     if (node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing"))
       refuse_mesh(place, "an extension repeats its mesh; export each as a node of its own");
@@ -165,8 +182,9 @@ class GltfCheck {
       check_primitive(primitives[i], fmt::format("{}, mesh {}, primitive {}", place, mesh, i));
   }
 
-  // assimp passes over an array of another kind, and takes any quaternion for a rotation.
-  static void check_transform(const Json& node, const std::string& place) {
+  // assimp passes over an array of another kind, and takes any quaternion for a rotation. Exporters
+  // round them, some to four digits.
+  void check_transform(Json& node, const std::string& place) {
     constexpr std::pair<const char*, std::size_t> kArrays[] = {
         {"matrix", 16}, {"translation", 3}, {"rotation", 4}, {"scale", 3}};
     for (const auto& [key, size] : kArrays) {
@@ -177,14 +195,18 @@ class GltfCheck {
       if (node.contains(key) && !right)
         refuse_mesh(place, fmt::format("'{}' is not {} numbers; export the mesh again", key, size));
     }
-    constexpr double kMostError = 1e-5;
+    if (!node.contains("rotation")) return;
+    constexpr double kMostError = 1e-3;
     double square = 0;
-    for (const Json& number : elements(node, "rotation"))
+    for (const Json& number : node["rotation"])
       square += number.get<double>() * number.get<double>();
-    if (node.contains("rotation") && !(std::abs(square - 1) <= kMostError))
+    const double length = std::sqrt(square);
+    if (!(std::abs(length - 1) <= kMostError))
       refuse_mesh(place, fmt::format("its rotation has the length {:g}, not 1; apply it before you "
                                      "export the mesh",
-                                     std::sqrt(square)));
+                                     length));
+    changed_ = changed_ || length != 1;
+    for (Json& number : node["rotation"]) number = number.get<double>() / length;
   }
 
   void check_primitive(const Json& primitive, const std::string& place) const {
@@ -240,12 +262,20 @@ class GltfCheck {
   }
 
   Json root_;
+  bool changed_ = false;
 };
 
 }  // namespace
 
-void check_gltf(std::string_view content) {
-  GltfCheck(content.starts_with("glTF") ? json_of_glb(content) : content).check();
+void check_gltf(std::string& content) {
+  const bool binary = content.starts_with("glTF");
+  std::optional<std::string> json =
+      GltfCheck(binary ? json_of_glb(content) : std::string_view(content)).check();
+  if (!json) return;
+  if (binary)
+    set_json_of_glb(content, *std::move(json));
+  else
+    content = *std::move(json);
 }
 
 }  // namespace ist::import

@@ -64,17 +64,24 @@ TEST(Gltf, NodesPlaceTheirMeshes) {
         << i;
 }
 
-// A turn of 90 degrees about z, as exporters round it. Rounded to fewer digits it would scale.
+// A turn of 90 degrees about z, as exporters round it, in a text and in a GLB. It would scale.
 TEST(Gltf, ARotationNeverScales) {
-  for (const char* half : {"0.707107", "0.70710678"}) {
-    const auto got = corners(read_gltf_bytes(with(
-        R"({"mesh":0})", std::string(R"({"mesh":0,"rotation":[0,0,)") + half + "," + half + "]}")));
-    const std::array<double, 9> turned{0, 1, 0, -2, 0, 0, 0, 0, 3};
-    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got.at(0)[i], turned[i], 2e-6) << half << i;
+  const std::array<double, 9> turned{0, 1, 0, -2, 0, 0, 0, 0, 3};
+  const auto rotated = [](const std::string& text, const std::string& half) {
+    return replaced(text, R"({"mesh":0})",
+                    R"({"mesh":0,"rotation":[0,0,)" + half + "," + half + "]}");
+  };
+  for (const char* half : {"0.707", "0.7071", "0.707107", "0.70710678"}) {
+    for (const std::string& bytes :
+         {rotated(kPlain, half),
+          test::as_glb(rotated(test::gltf_json(kOne, ""), half), test::gltf_buffer(kOne))}) {
+      const auto got = corners(read_gltf_bytes(bytes));
+      for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(got.at(0)[i], turned[i], 3e-7) << half << i;
+    }
   }
   const std::pair<const char*, const char*> refused[] = {
-      {"[0,0,0.9,0.9]", "1.27279"}, {"[0,0,0.7071,0.7071]", "0.99999"}, {"[0,0,0,0]", "0"},
-      {"[0,0,0,1.001]", "1.001"},   {"[0,0,0,0.999]", "0.999"},         {"[0,0,1e200,0]", "inf"}};
+      {"[0,0,0.9,0.9]", "1.27279"}, {"[0,0,0.71,0.71]", "1.00409"}, {"[0,0,0,0]", "0"},
+      {"[0,0,0,1.002]", "1.002"},   {"[0,0,0,0.998]", "0.998"},     {"[0,0,1e200,0]", "inf"}};
   for (const auto& [rotation, length] : refused)
     EXPECT_EQ(
         refusal(with(R"({"mesh":0})", std::string(R"({"mesh":0,"rotation":)") + rotation + "}")),
@@ -140,10 +147,11 @@ TEST(Gltf, RefusesWhatItCannotRead) {
       {"file-unreadable: it names the file 'jaw.bin', which is not in its folder or below: copy it "
        "there, or export one file that holds all",
        test::gltf_json(kOne, "jaw.bin")},
-      {"not-a-mesh: GLTF: buffer", with(uri, "data:application/octet-stream,")},
-      {"not-a-mesh: Invalid base64", with(uri, uri + "*")},
-      {"not-a-mesh: GLTF: buffer", test::gltf_json(kOne, "")},
-      {"not-a-mesh: GLTF: buffer", with(R"([{"byteLength":48)", R"([{"byteLength":49)")},
+      {"not-a-mesh: it cannot be read (GLTF: buffer", with(uri, "data:application/octet-stream,")},
+      {"not-a-mesh: it cannot be read (Invalid base64", with(uri, uri + "*")},
+      {"not-a-mesh: it cannot be read (GLTF: buffer", test::gltf_json(kOne, "")},
+      {"not-a-mesh: it cannot be read (GLTF: buffer",
+       with(R"([{"byteLength":48)", R"([{"byteLength":49)")},
       {"not-a-mesh: extensionsRequired: KHR_draco_mesh_compression is not supported",
        with("{\"asset\"", R"({"extensionsRequired":["KHR_draco_mesh_compression"],"asset")")},
       {"not-a-mesh: asset: glTF 1.0 is not supported", with("\"2.0\"", "\"1.0\"")},
@@ -200,7 +208,8 @@ TEST(Gltf, RefusesWhatItCannotRead) {
       {"mesh-bad-index: accessor 0: its 3 elements", with("VEC3\",", "VEC3\",\"byteOffset\":4,")},
       {"mesh-bad-index: accessor 0: its 3 elements",
        with("VEC3\",", "VEC3\",\"byteOffset\":18446744073709551614,")},
-      {"not-a-mesh: GLTF: Buffer view", with("\"byteOffset\":36", "\"byteOffset\":40")},
+      {"mesh-bad-index: it cannot be read (GLTF: Buffer view",
+       with("\"byteOffset\":36", "\"byteOffset\":40")},
       {"mesh-bad-index: accessor 0: its 3 elements",
        with("\"byteLength\":36}", "\"byteLength\":36,\"byteStride\":11}")},
       {"mesh-bad-index: accessor 0: its 3 elements",
@@ -216,7 +225,7 @@ TEST(Gltf, RefusesWhatItCannotRead) {
 TEST(Gltf, RefusesAnIndexOutOfRange) {
   TriangleMesh mesh = kOne;
   mesh.triangles[0][2] = 9;
-  EXPECT_TRUE(refusal(test::as_glb(mesh)).starts_with("mesh-bad-index: a part of it"));
+  EXPECT_TRUE(refusal(test::as_glb(mesh)).starts_with("mesh-bad-index: it cannot be read ("));
   mesh = test::box({0, 0, 0}, {1, 1, 1});
   mesh.triangles[5][2] = 9;  // assimp leaves this triangle out
   EXPECT_TRUE(refusal(test::as_glb(mesh)).starts_with("mesh-bad-index: a part of it"));
