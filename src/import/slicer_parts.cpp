@@ -50,9 +50,17 @@ SlicerParts::SlicerParts(ZipParts& archive) {
   const pugi::xml_document prusa = settings(archive, kPrusa), bambu = settings(archive, kBambu);
   for (const pugi::xml_node& object : prusa.child("config").children("object"))
     for (const pugi::xml_node& volume : object.children("volume"))
-      if (!is_body_type(type_of(volume), kPrusa))
+      if (!is_body_type(type_of(volume), kPrusa)) {
+        const pugi::xml_attribute first = volume.attribute("firstid"),
+                                  last = volume.attribute("lastid");
+        if (!first || !last)
+          refuse(
+              ErrorCode::kNotAMesh, kPrusa,
+              "a modifier does not name its triangles (firstid, lastid): export the plate as STL "
+              "in the slicer");
         left_out_[object.attribute("id").as_uint()].push_back(
-            {volume.attribute("firstid").as_ullong(), volume.attribute("lastid").as_ullong()});
+            {first.as_ullong(), last.as_ullong()});
+      }
   for (const pugi::xml_node& object : bambu.child("config").children("object"))
     for (const pugi::xml_node& part : object.children("part"))
       if (!is_body_type(part.attribute("subtype").value(), kBambu))

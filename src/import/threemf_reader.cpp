@@ -28,6 +28,7 @@ using Node = pugi::xml_node;
 struct Object {
   Node node;         // <mesh> or <components>
   std::string flaw;  // of an object that cannot be placed
+  bool is_body = true;
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
@@ -40,7 +41,10 @@ class Model {
   Model(ZipParts& archive, std::string_view name)
       : name_(printable(name.substr(name.starts_with('/') ? 1 : 0), 200)) {
     const std::optional<std::string> text = archive.part(name);
-    if (!text) fail("the archive does not hold it; convert the mesh to 3MF or STL");
+    if (!text)
+      fail(
+          "the zip holds no such 3D model, so it is no 3MF project; unpack it and give the mesh in "
+          "it, or export the mesh as 3MF or STL");
     const pugi::xml_parse_result result = document_.load_buffer(text->data(), text->size());
     if (!result) {
       const auto at = text->begin() + std::min<std::ptrdiff_t>(result.offset, std::ssize(*text));
@@ -65,7 +69,7 @@ class Model {
              fmt::format("object {} is named, but not defined; export the mesh again", id));
     Object& object = found->second;
     if (!object.flaw.empty()) fail(object.flaw);
-    if (object.vertices.empty() && is(object.node, "mesh")) read_mesh(id, object);
+    if (object.is_body && object.vertices.empty() && is(object.node, "mesh")) read_mesh(object);
     return object;
   }
 
@@ -120,11 +124,22 @@ class Model {
   void add(const Node& node) {
     const std::uint32_t id = whole(node, "id");
     const Node mesh = child(node, "mesh"), components = child(node, "components");
-    if (!objects_.emplace(id, Object{mesh ? mesh : components, {}, {}, {}}).second)
+    if (!objects_.emplace(id, Object{mesh ? mesh : components, {}, true, {}, {}}).second)
       fail(fmt::format("object {} is defined twice; export the mesh again", id));
     if (mesh && components)
       fail(fmt::format("object {} is a mesh and has components; export it again", id));
-    std::string& flaw = objects_.at(id).flaw;
+    Object& object = objects_.at(id);
+    std::string& flaw = object.flaw;
+    const std::string_view type = node.attribute("type").value();
+    if (type == "support" || type == "solidsupport") object.is_body = false;
+    for (const Node& data : children(child(node, "metadatagroup"), "metadata")) {
+      const std::string_view setting = local_name(data.attribute("name").value());
+      if (!same_word(data.text().get(), "true")) continue;
+      if (setting == "anti_overhang_mesh" || setting == "support_mesh" || setting == "infill_mesh")
+        object.is_body = false;
+      if (setting == "cutting_mesh")
+        flaw = fmt::format("object {} cuts others (cutting_mesh); export the plate as an STL", id);
+    }
     for (const pugi::xml_attribute& attribute : node.attributes())
       if (local_name(attribute.name()) == "meshresolution" &&
           std::string_view(attribute.value()) == "lowres")
@@ -138,7 +153,7 @@ class Model {
         flaw = fmt::format("object {} is no plain mesh; export it as an STL", id);
   }
 
-  void read_mesh(std::uint32_t id, Object& object) const {
+  void read_mesh(Object& object) const {
     for (const Node& vertex : children(child(object.node, "vertices"), "vertex"))
       object.vertices.emplace_back(number(needed(vertex, "x"), "x"),
                                    number(needed(vertex, "y"), "y"),
@@ -146,13 +161,6 @@ class Model {
     for (const Node& triangle : children(child(object.node, "triangles"), "triangle"))
       object.triangles.push_back(
           {whole(triangle, "v1"), whole(triangle, "v2"), whole(triangle, "v3")});
-    for (const auto& triangle : object.triangles)
-      for (const std::uint32_t corner : triangle)
-        if (corner >= object.vertices.size())
-          refuse(ErrorCode::kMeshBadIndex, fmt::format("{}, object {}", name_, id),
-                 fmt::format("a triangle names vertex {}, but there are {}, counted from 0; export "
-                             "the mesh again",
-                             corner, object.vertices.size()));
   }
 
   [[nodiscard]] std::string_view needed(const Node& node, const char* name) const {
@@ -194,6 +202,9 @@ class ThreeMfReader {
     placed_.factor = stated.factor;
     const Node build = root_->child(root_->root(), "build");
     for (const Node& item : root_->children(build, "item")) place(use_of(*root_, item));
+    if (left_out_ && placed_.sizes().empty())
+      refuse(ErrorCode::kMeshEmpty, "",
+             "all of its objects are supports or modifiers; export the model itself");
     placed_.require_polygons();
     return std::move(placed_);
   }
@@ -258,12 +269,19 @@ class ThreeMfReader {
             fmt::format("object {} holds itself, or is nested too deeply; export the "
                         "mesh again",
                         use.object));
+      if (!object.is_body) {
+        left_out_ = true;
+        continue;
+      }
       place_mesh(object, use);
       std::vector<Use> components;
       if (!use.model->is(object.node, "components")) continue;
       for (const Node& node : use.model->children(object.node, "component")) {
         Use component = use_of(*use.model, node);
-        if (use.model == root_ && !slicer_.is_body_part(use.object, component.object)) continue;
+        if (use.model == root_ && !slicer_.is_body_part(use.object, component.object)) {
+          left_out_ = true;
+          continue;
+        }
         component.transform = joined(use.transform, component.transform);
         component.depth = use.depth + 1;
         components.push_back(component);
@@ -279,6 +297,8 @@ class ThreeMfReader {
     for (std::size_t i = 0; i < object.triangles.size(); ++i)
       if (use.model != root_ || slicer_.is_body(use.object, i))
         placed_.add_polygon(object.triangles[i]);
+      else
+        left_out_ = true;
   }
 
   ZipParts archive_;
@@ -286,6 +306,7 @@ class ThreeMfReader {
   std::map<std::string, std::unique_ptr<Model>> models_;
   PlacedPolygons placed_;
   Model* root_ = nullptr;
+  bool left_out_ = false;  // a support or a modifier
 };
 
 }  // namespace

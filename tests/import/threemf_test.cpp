@@ -133,7 +133,7 @@ TEST(ThreeMf, ObjectsThatAreNotPlacedMayHaveBeams) {
 TEST(ThreeMf, RefusesWhatItCannotRead) {
   const std::string at = "3D/3dmodel.model";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"mesh-bad-index: " + at + ", object 1: a triangle names vertex 9, but there are 3",
+      {"mesh-bad-index: object 1: a face names vertex 9, but there are 3",
        model_with("v3=\"2\"", "v3=\"9\"")},
       {"not-a-mesh: " + at + ": <triangle> has no v3", model_with("v3=\"2\"", "")},
       {"not-a-mesh: " + at + ": v3=\"x\" is no whole number", model_with("v3=\"2\"", "v3=\"x\"")},
@@ -258,6 +258,59 @@ TEST(ThreeMf, LeavesOutWhatAPrusaProjectAdds) {
       "plate as STL in the slicer");
 }
 
+// The triangles of such a modifier are unknown.
+TEST(ThreeMf, RefusesAPrusaModifierWithoutTriangles) {
+  const auto project = [&](const std::string& range) {
+    return refusal_of_3mf(test::as_zip(
+        {{"3D/3dmodel.model", kModelText},
+         {"Metadata/Slic3r_PE_model.config",
+          "<config><object id=\"1\"><volume" + range +
+              "><metadata type=\"volume\" key=\"volume_type\" value=\"ParameterModifier\"/>"
+              "</volume></object></config>"}}));
+  };
+  for (const char* range : {"", " firstid=\"0\"", " lastid=\"0\""})
+    EXPECT_EQ(project(range),
+              "not-a-mesh: Metadata/Slic3r_PE_model.config: a modifier does not name its triangles "
+              "(firstid, lastid): export the plate as STL in the slicer")
+        << range;
+  EXPECT_EQ(project(" firstid=\"0\" lastid=\"0\""),
+            "mesh-empty: all of its objects are supports or modifiers; export the model itself");
+}
+
+// The core of 3MF has types of objects, and Cura adds settings to them.
+TEST(ThreeMf, LeavesOutSupportsAndCurasModifiers) {
+  const auto with_second = [](const std::string& attributes, const std::string& inside) {
+    return as_3mf(model_with(
+        "</resources>\n<build>",
+        "<object id=\"2\" " + attributes + ">" + inside +
+            "<mesh><vertices><vertex x=\"5\" y=\"0\" z=\"0\"/><vertex x=\"6\" y=\"0\" "
+            "z=\"0\"/><vertex x=\"5\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" "
+            "v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources>\n<build><item "
+            "objectid=\"2\"/>"));
+  };
+  const auto metadata = [](const std::string& name, const std::string& value) {
+    return "<metadatagroup><metadata name=\"cura:" + name + "\">" + value +
+           "</metadata></metadatagroup>";
+  };
+  for (const char* type : {"support", "solidsupport"})
+    EXPECT_EQ(corners(read_3mf_bytes(with_second("type=\"" + std::string(type) + "\"", ""))),
+              corners(kCorner))
+        << type;
+  for (const char* name : {"anti_overhang_mesh", "support_mesh", "infill_mesh"}) {
+    EXPECT_EQ(corners(read_3mf_bytes(with_second("", metadata(name, "True")))), corners(kCorner))
+        << name;
+    EXPECT_EQ(read_3mf_bytes(with_second("", metadata(name, "False"))).triangles.size(), 2u);
+  }
+  for (const char* type : {"type=\"model\"", "type=\"surface\"", ""})
+    EXPECT_EQ(read_3mf_bytes(with_second(type, "")).triangles.size(), 2u) << type;
+  EXPECT_EQ(
+      refusal_of_3mf(with_second("", metadata("cutting_mesh", "True"))),
+      "not-a-mesh: 3D/3dmodel.model: object 2 cuts others (cutting_mesh); export the plate as "
+      "an STL");
+  EXPECT_EQ(refusal_of_3mf(as_3mf(model_with("<object ", "<object type=\"support\" "))),
+            "mesh-empty: all of its objects are supports or modifiers; export the model itself");
+}
+
 // Bambu Studio and OrcaSlicer keep them as components of the object.
 TEST(ThreeMf, LeavesOutWhatABambuProjectAdds) {
   const std::string objects =
@@ -306,8 +359,11 @@ TEST(ThreeMf, RefusesAnArchiveThatIsDamaged) {
   std::string wrong = archive;
   wrong[wrong.find("3dmodel.model") + 40] ^= 1;
   EXPECT_TRUE(refusal_of_3mf(wrong).starts_with(part + "Zlib error")) << refusal_of_3mf(wrong);
-  EXPECT_TRUE(refusal_of_3mf(test::as_zip("a.txt", "a"))
-                  .starts_with(part + "the archive does not hold it"));
+  for (const char* other : {"word/document.xml", "scene.dae"})
+    EXPECT_EQ(refusal_of_3mf(test::as_zip(other, "<a/>")),
+              part +
+                  "the zip holds no such 3D model, so it is no 3MF project; unpack it and give "
+                  "the mesh in it, or export the mesh as 3MF or STL");
   std::string other = test::as_zip("3D/3dmodel.model", kModelText, false);
   other[other.find("x=\"1\"") + 3] = '2';
   EXPECT_TRUE(refusal_of_3mf(other).starts_with(part + "CRC error")) << refusal_of_3mf(other);
@@ -365,7 +421,8 @@ TEST(ThreeMf, ReadsThePartThatTheRelationshipsName) {
   EXPECT_EQ(corners(read_3mf_bytes(package("/3D/part.model", "3D/part.model"))), corners(kCorner));
   EXPECT_EQ(corners(read_3mf_bytes(package("a.model", "A.model"))), corners(kCorner));
   EXPECT_EQ(refusal_of_3mf(package("/b\x1B.model", "a.model")),
-            "not-a-mesh: b?.model: the archive does not hold it; convert the mesh to 3MF or STL");
+            "not-a-mesh: b?.model: the zip holds no such 3D model, so it is no 3MF project; unpack "
+            "it and give the mesh in it, or export the mesh as 3MF or STL");
   EXPECT_TRUE(refusal_of_3mf(test::as_zip({{"a.model", replaced(kModelText, "v3=\"2\"", "")},
                                            {"_rels/.rels", relationships("a.model")}}))
                   .starts_with("not-a-mesh: a.model: <triangle> has no v3"));

@@ -7,7 +7,7 @@ namespace ist {
 TriangleMesh read_imported(std::string_view, const std::filesystem::path& file) {
   fail_mesh(ErrorCode::kNotAMesh, file.string(), "",
             "its format is read by the program ist-import, which does not run on this platform; "
-            "convert the mesh to STL, PLY, OBJ or OFF");
+            "convert the mesh to STL, PLY, OBJ or OFF, for example with Blender or MeshLab");
 }
 
 }  // namespace ist
