@@ -18,6 +18,7 @@
 #include "import/side_files.h"
 #include "import/xml_check.h"
 #include "ist/base/printable.h"
+#include "ist/mesh/format/text_reader.h"
 
 namespace ist::import {
 namespace {
@@ -63,6 +64,21 @@ class LossLog : public Assimp::LogStream {
  private:
   std::string& first_;
 };
+
+// assimp passes over the surfaces of an AC3D beyond the stated number.
+void check_ac(std::string_view content) {
+  TextReader reader(content, "");
+  double stated = 0, surfaces = 0;
+  while (reader.next_line()) {
+    const std::string_view word = reader.word();
+    if (word == "SURF") ++surfaces;
+    if (word == "numsurf") stated += number_of(reader.word(), Precision::kDouble).value_or(0);
+  }
+  if (surfaces > stated)
+    refuse(
+        ErrorCode::kNotAMesh, "",
+        fmt::format("it has {} surfaces, but states {}; export the mesh again", surfaces, stated));
+}
 
 Eigen::Affine3d transform_of(const aiMatrix4x4& m, std::string_view place) {
   Eigen::Affine3d transform;
@@ -134,6 +150,7 @@ void place_nodes(const aiScene& scene, const Eigen::Affine3d& root, const std::s
 
 PlacedPolygons read_scene(Input input, std::string_view format) {
   if (format == "glb" || format == "gltf") check_gltf(input.content);
+  if (format == "ac") check_ac(input.content);
   const StatedUnit of_xml = check_xml(format, input.content);
   auto* files = new SideFiles(input, format);  // the importer deletes it
   Assimp::Importer importer;

@@ -197,6 +197,8 @@ TEST(ImportFormats, ALossIsRefused) {
        test::replaced(test::box_ac(), "0 0 0\n2 0 0\n", "0 0 0\n22 0 0\n")},
       {"not-a-mesh: " + part + "AC3D: SURF token was expected",
        test::replaced(test::box_ac(), "numsurf 6", "numsurf 8")},
+      {"not-a-mesh: it has 6 surfaces, but states 4; export the mesh again",
+       test::replaced(test::box_ac(), "numsurf 6", "numsurf 4")},
       {"not-a-mesh: " + part + "Collada: Unable to resolve reference to instanced node light",
        test::box_dae("", "Y_UP", "<instance_node url=\"#light\"/>")},
       {"not-a-mesh: it cannot be read (Expected different index count",
