@@ -145,11 +145,6 @@ std::string box_3ds() {
                            chunk(0x3D3D, chunk(0x3D3E, version) + chunk(0x4000, object)));
 }
 
-std::string box_x() {
-  return "xof 0303txt 0032\nMesh {\n8;\n" + points(";", ";,\n") + ";;\n12;\n3;" +
-         faces(triangles(), ",", ";,\n3;") + ";;\n}\n";
-}
-
 bool says_crash(const std::string& refusal) {
   return refusal.find("the importer ended by signal ") != refusal.npos ||
          refusal.find("ended without a complete answer (exit code") != refusal.npos;

@@ -13,7 +13,6 @@ namespace ist::test {
 [[nodiscard]] std::string box_fbx(const std::string& unit_scale_factor);
 [[nodiscard]] std::string box_ac();
 [[nodiscard]] std::string box_3ds();
-[[nodiscard]] std::string box_x();
 
 /// Whether a refusal says that the importer crashed. A sanitizer makes an exit code of a signal.
 [[nodiscard]] bool says_crash(const std::string& refusal);

@@ -113,7 +113,7 @@ struct TriangleMesh {
 
 /// Reads a mesh from STL (binary or text), PLY (binary or text), OBJ, OFF (text) or VTK PolyData
 /// (.vtk or .vtp). The program ist-import, started by this call, reads glTF 2.0, 3MF, COLLADA, FBX,
-/// X3D, AMF, 3DS, AC3D, LightWave and DirectX. The content decides the format; the file's name helps
+/// X3D, AMF, 3DS, AC3D and LightWave. The content decides the format; the file's name helps
 /// only for an OBJ, an OFF without a keyword and formats without a mark. Several solids, groups,
 /// pieces or meshes of a scene become one mesh, polygons and strips become triangles, and vertices
 /// at exactly the same position become one. Vertices are in the order in which the faces first use

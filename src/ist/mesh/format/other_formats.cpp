@@ -31,7 +31,7 @@ const OtherFormat* other_format(std::string_view content) {
       {"MM", "3DS", "3ds"},
       {"Kaydara FBX Binary", "FBX", "fbx"},
       {"; FBX", "FBX", "fbx"},
-      {"xof ", "DirectX", "x"},
+      {"xof ", "DirectX"},
       {"AC3D", "AC3D", "ac"},
       {"DRACO", "Draco"},
       {"ISO-10303-21", "STEP"},
