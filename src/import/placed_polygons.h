@@ -27,10 +27,6 @@ struct Refusal {
   std::string place, cause;
 };
 
-/// The remedy for a mesh that is not read.
-inline constexpr std::string_view kConvert =
-    "convert the mesh to STL, PLY or OBJ, for example with Blender or MeshLab";
-
 /// Throws a Refusal.
 [[noreturn]] void refuse(ErrorCode code, std::string_view place, std::string_view cause);
 
@@ -38,8 +34,8 @@ inline constexpr std::string_view kConvert =
 /// every platform.
 [[nodiscard]] Eigen::Affine3d joined(const Eigen::Affine3d& second, const Eigen::Affine3d& first);
 
-/// The placed meshes of a scene as one list of polygons. A few bytes of a file can place a mesh many
-/// times, so the list has a limit (kMostPlaced).
+/// The placed meshes of a scene as one list of polygons. A few bytes of a file can place a mesh
+/// many times, so the list has a limit (kMostPlaced).
 class PlacedPolygons {
  public:
   LengthUnit unit = LengthUnit::kUnknown;

@@ -8,6 +8,7 @@
 
 #include "ist/mesh/format/other_formats.h"
 #include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/import/import_message.h"
 
 namespace ist::import {
 

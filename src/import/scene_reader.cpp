@@ -19,6 +19,7 @@
 #include "import/xml_check.h"
 #include "ist/base/printable.h"
 #include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/import/import_message.h"
 
 namespace ist::import {
 namespace {

@@ -80,7 +80,7 @@ TEST_F(ImportCaller, GivesThePathAndTheContent) {
 }
 
 TEST_F(ImportCaller, TellsHowAnImporterEnds) {
-  const std::string remedy = ": convert the mesh to STL, PLY or OBJ";
+  const std::string remedy = ": " + std::string(kConvert);
   const std::string whole = test::FakeMesh().counted().bytes();
   {
     const test::FakeImporter importer("exit 0");
@@ -126,8 +126,8 @@ TEST_F(ImportCaller, NamesAProgramThatCannotStart) {
   const std::string missing = (folder_.path() / "no importer").string();
   const test::ScopedImporter importer(missing);
   EXPECT_EQ(refusal(), "file-unreadable: ist-import at " + missing +
-                           " cannot be started: No such file or directory; install it again, or "
-                           "convert the mesh to STL, PLY or OBJ");
+                           " cannot be started: No such file or directory; install it again, or " +
+                           std::string(kConvert));
   const test::ScopedImporter folder(folder_.path().string());
   EXPECT_NE(refusal().find("cannot be started: Permission denied"), std::string::npos);
 }

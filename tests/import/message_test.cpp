@@ -25,7 +25,8 @@ std::string refused_answer(const std::string& answer) {
 
 const std::string kNoTrust =
     "file-unreadable: jaw.glb: ist-import at /opt/ist-import gave no mesh that can be trusted: "
-    "install it again, or convert the file to STL, PLY or OBJ";
+    "install it again, or " +
+    std::string(kConvert);
 
 TEST(ImportMessage, HoldsAMesh) {
   test::FakeMesh mesh;

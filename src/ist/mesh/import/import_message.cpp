@@ -111,10 +111,10 @@ class ImportReader {
 
   void require(bool holds) const {
     if (holds) return;
-    fail_mesh(ErrorCode::kFileUnreadable, file_, "",
-              fmt::format("ist-import at {} gave no mesh that can be trusted: install it again, or "
-                          "convert the file to STL, PLY or OBJ",
-                          importer_.string()));
+    fail_mesh(
+        ErrorCode::kFileUnreadable, file_, "",
+        fmt::format("ist-import at {} gave no mesh that can be trusted: install it again, or {}",
+                    importer_.string(), kConvert));
   }
 
   std::string_view answer_;

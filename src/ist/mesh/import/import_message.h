@@ -36,6 +36,10 @@ inline constexpr std::string_view kImportEnd = "IST-DONE";
 /// A mesh has at most so many vertices, and as many corners.
 inline constexpr std::size_t kMostPlaced = std::size_t{1} << 25;
 
+/// The remedy for a mesh that is not read.
+inline constexpr std::string_view kConvert =
+    "convert the mesh to STL, PLY or OBJ, for example with Blender or MeshLab";
+
 /// Returns the header of this library's version, without its numbers.
 [[nodiscard]] ImportHeader import_header();
 

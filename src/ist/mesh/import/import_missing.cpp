@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "ist/mesh/format/text_reader.h"
+#include "ist/mesh/import/import_message.h"
 #include "ist/mesh/import/imported_mesh.h"
 
 namespace ist {
@@ -6,8 +9,9 @@ namespace ist {
 // For platforms without processes.
 TriangleMesh read_imported(std::string_view, const std::filesystem::path& file) {
   fail_mesh(ErrorCode::kNotAMesh, file.string(), "",
-            "its format is read by the program ist-import, which does not run on this platform; "
-            "convert the mesh to STL, PLY, OBJ or OFF, for example with Blender or MeshLab");
+            fmt::format("its format is read by the program ist-import, which does not run on this "
+                        "platform; {}",
+                        kConvert));
 }
 
 }  // namespace ist

@@ -30,11 +30,9 @@ constexpr std::size_t kAtOnce = std::size_t{1} << 18;  // bytes, between two can
 
 [[noreturn]] void fail_to_start(const std::filesystem::path& importer,
                                 const std::filesystem::path& file, int reason) {
-  throw Error(
-      ErrorCode::kFileUnreadable,
-      fmt::format("{}: ist-import at {} cannot be started: {}; install it again, or convert "
-                  "the mesh to STL, PLY or OBJ",
-                  file.string(), importer.string(), std::strerror(reason)));
+  throw Error(ErrorCode::kFileUnreadable,
+              fmt::format("{}: ist-import at {} cannot be started: {}; install it again, or {}",
+                          file.string(), importer.string(), std::strerror(reason), kConvert));
 }
 
 // A file descriptor above 2, which a program started here does not inherit. A host may have closed

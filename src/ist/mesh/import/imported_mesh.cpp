@@ -16,14 +16,14 @@
 namespace ist {
 namespace {
 
-constexpr std::string_view kConvert = "convert the mesh to STL, PLY or OBJ";
-
 // Returns the folder of the shared library that holds this code, or of the program, if the code is
 // linked into it. The loader tells a relative path of a library that was named so. It is no use:
 // the current folder may be another one today.
 std::filesystem::path own_folder() {
   Dl_info info{};
-  if (::dladdr(kConvert.data(), &info) == 0 || info.dli_fname == nullptr) return {};
+  if (::dladdr(reinterpret_cast<const void*>(&read_imported), &info) == 0 ||
+      info.dli_fname == nullptr)
+    return {};
   std::error_code ignored;
   return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
 }
