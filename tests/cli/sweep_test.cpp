@@ -203,7 +203,7 @@ TEST_F(SweepCommand, NoFileHoldsAPath) {
   const std::string job = sweep_file({});
   make_whole(job, "out");
   const Files all = files("out");
-  ASSERT_EQ(all.size(), 10u);
+  ASSERT_EQ(all.size(), 9u);
   for (const auto& [name, bytes] : all) {
     for (const std::string& part :
          {dir_.path().string(), std::string("ball.ist"), std::string("job.toml")}) {
