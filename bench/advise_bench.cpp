@@ -28,7 +28,7 @@ void advise(benchmark::State& state, const AdviceGoal& goal) {
                                            bodies.moving_box().diagonal().maxCoeff());
     advice = advise_voxel_size(goal, sizes, [&](double size) { return calibration.measure(size); });
     state.counters["seconds"] = 1e-3 * watch.milliseconds();
-    state.counters["poses"] = static_cast<double>(Calibration::kPoses);
+    state.counters["poses"] = static_cast<double>(kClosingPoses);
     state.counters["paths_beside"] = static_cast<double>(paths_beside(bodies, *path).size());
   }
   if (!advice.recommended) {

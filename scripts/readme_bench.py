@@ -1,40 +1,25 @@
 #!/usr/bin/env python3
-"""Writes the figures of the README: the ratios that `ist bench` prints on this machine.
+"""Writes the figures of the README: what `ist bench` prints on this machine.
 
-    scripts/readme_bench.py     after cmake --preset release && cmake --build --preset release; on a quiet machine
+    scripts/readme_bench.py     on a quiet machine, after cmake --preset release && cmake --build --preset release, and
+                                cmake --preset bench && cmake --build --preset bench --target fixed_loop
 """
 import os
+import pathlib
 import re
 import subprocess
 import sys
 
-from report.figures import ROOT, here, stamp
+from report.figures import ROOT, here, machine_state, stamp
+from report.runner import fixed_loop
 from report.tables import fill
 
 PROGRAM = ROOT / "build/release/ist"
-
-
-def ratios(printed):
-    """Returns what `ist bench` prints before the times of each query, and refuses a busy machine. One that changes its speed by
-    itself is named in what is printed; ratios hold there."""
-    noise = re.search(r"^not a quiet machine: other work .*", printed, re.M)
-    if noise:
-        sys.exit(f"readme_bench: {noise.group(0)}: wait until nothing else runs")
-    before, found, _ = printed.partition("\nµs a query")
-    if not found:
-        sys.exit(f"readme_bench: {PROGRAM} bench prints no times")
-    return before.rstrip() + "\n"
-
-
-def state(printed, load_after):
-    """Returns a sentence on the machine before and after: what `ist bench` prints of it, and the load now."""
-    found = re.search(r"load before ([\d.]+)[^;]*; a fixed loop took (\S+ to \S+ µs)", printed)
-    if not found:
-        sys.exit(f"readme_bench: {PROGRAM} bench prints neither the load before nor the time of its fixed loop")
-    return f"Load {found.group(1)} before, {load_after:.1f} after; a fixed loop took {found.group(2)} between the queries."
+MOST_LOAD = 0.5  # cores that other work may take
 
 
 def main():
+    os.chdir(ROOT)
     commit, date = here()
     if commit.endswith("+"):
         sys.exit("readme_bench: the code differs from its commit: commit it first, so that the figures name what they are of")
@@ -42,12 +27,17 @@ def main():
     built = re.search(r"commit (\S+)", said).group(1)
     if not built.startswith(commit) or built.endswith("+"):
         sys.exit(f"readme_bench: {PROGRAM} was built at {built}, and this is {commit}: cmake --build --preset release")
+    processor = re.search(r"^model name[^:]*: (.*)", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+    context = {"processor": processor.group(1) if processor else os.uname().machine, "load_avg": os.getloadavg(), "loop_before": fixed_loop()}
+    if context["load_avg"][0] > MOST_LOAD:
+        sys.exit(f"readme_bench: other work took {context['load_avg'][0]:.1f} cores: wait until nothing else runs")
     done = subprocess.run([PROGRAM, "bench"], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"readme_bench: ist bench: {done.stderr}")
+    context |= {"load_after": os.getloadavg()[0], "loop_after": fixed_loop()}
     note = "<!-- snippet: output varies, since it is times -->\n"
-    text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{ratios(done.stdout)}```\n\n"
-            f"{stamp(commit, date, 'ist bench', state(done.stdout, os.getloadavg()[0]))}")
+    text = (f"{note}```sh\nist bench\n```\n\n{note}```\n{done.stdout}```\n\n"
+            f"{stamp(commit, date, 'ist bench', machine_state(context))}")
     fill(ROOT / "README.md", "ist bench", text)
     print("README.md", file=sys.stderr)
 

@@ -13,7 +13,7 @@ def read(folder, side):
         for line in map(json.loads, file.read_text().splitlines()):
             if "question" not in line:
                 continue
-            key = (line["question"], line["way"], line["spheres"] or "", line["workers"], line["at"])
+            key = (line["question"], line["way"], line["spheres"] or "", line["workers"])
             times.setdefault(key, []).append(line["microseconds_median"])
             listed.setdefault(key, set()).add(line["listed"])
     return times, listed
@@ -37,8 +37,8 @@ def rows_of(head, tree):
     for key, before in head.items():
         if key not in tree:
             continue
-        question, way, spheres, workers, at = key
-        name = ", ".join(word for word in (question, way, spheres, f"{workers} workers" if workers > 1 else "", at) if word)
+        question, way, spheres, workers = key
+        name = ", ".join(word for word in (question, way, spheres, f"{workers} workers" if workers > 1 else "") if word)
         a, b = statistics.median(before), statistics.median(tree[key])
         yield name, a, b, b / a, verdict(before, tree[key])
 

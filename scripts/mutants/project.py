@@ -4,14 +4,9 @@ from .mutant import Mutant, PAGES
 
 MUTANTS = [
     # Figures.
-    Mutant("ratio-of-other-spheres", "a ratio that names the same spheres on both sides takes the published circumspheres",
-           [("src/cli/bench/ratios.cpp", "{\"leaf pairs\", kPublishedWay, spheres});", "{\"leaf pairs\", kPublishedWay, \"simple\"});")],
-           ["cli_test Bench.ComparesTheSameSpheres*"]),
-    Mutant("slow-asked-as-often", "a bench asks everybody as often, however long it takes",
-           [("src/cli/bench/contest.cpp", "spent[next] += seconds_since(turn);", "spent[next] += 1;")], ["cli_test BenchContest.*"]),
-    Mutant("noise-unsaid", "a bench says nothing of a machine that is not quiet",
-           [("src/cli/bench/bench_report.cpp", "lines += fmt::format(\"not a quiet machine: {}\\n\", *noise);", "")],
-           ["cli_test BenchHeading.*"]),
+    Mutant("ratio-of-itself", "a ratio of leaf pairs compares a query with itself",
+           [("src/cli/commands/bench.cpp", "ways[*way.over].quantile(0.5) / way.quantile(0.5)", "way.quantile(0.5) / way.quantile(0.5)")],
+           ["cli_test Bench.*"]),
     Mutant("stale-figures-pass", "figures that are older than their code are no failure",
            [("scripts/report/figures.py", "return 1 if found else 0", "return 0")], ["python figures_test.py History"]),
     Mutant("comments-age-figures", "a comment that changes makes figures stale",

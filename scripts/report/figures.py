@@ -25,7 +25,7 @@ FOLDERS = ("src", ".", "bench", "tests", "src/hardware/include")
 BEGINS = {
     "calls.py": ["bench/python", "src/ist/capi", "src/python/ist"],
     "hardware_report.sh": ["scripts/hardware", "src/hardware"],
-    "ist bench": ["src/cli/bench", "src/cli/commands/bench.cpp", "src/advise", "src/ist/models"],
+    "ist bench": ["src/cli/commands/bench.cpp", "src/advise/closing_path.cpp", "src/ist/models"],
     "mutate.sh": ["examples", "scripts/mutants", "scripts/report", "scripts/try.py", "simd", "src", "tests"],
     "stability_border.sh": ["bench/stability_border.cpp", "tests/haptics/wall_press.cpp"],
     "stability_report.sh": ["simd", "src/cli", "src/ist", "src/verify",

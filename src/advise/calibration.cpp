@@ -114,10 +114,7 @@ double error_at_poses(ExactBodies& bodies, Query& query, std::span<const Eigen::
 
 Calibration::Calibration(ExactBodies& bodies, const ClosingPath& path,
                          const CalibrationOptions& options)
-    : bodies_(bodies),
-      paths_(paths_beside(bodies, path)),
-      poses_(path.poses(kPoses)),
-      options_(options) {
+    : bodies_(bodies), paths_(paths_beside(bodies, path)), poses_(path.poses()), options_(options) {
   paths_.push_back(path);
 }
 

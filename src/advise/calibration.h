@@ -47,9 +47,6 @@ struct CalibrationOptions {
 /// compares them with the distance of the triangles.
 class Calibration {
  public:
-  /// The number of timed poses on a closing path.
-  static constexpr std::size_t kPoses = 12;
-
   /// Times the poses of a closing path; measures errors on it and on paths_beside. `bodies` must
   /// outlive the calibration.
   Calibration(ExactBodies& bodies, const ClosingPath& path, const CalibrationOptions& options);

@@ -21,6 +21,9 @@ struct AxisDirection {
   }
 };
 
+/// The poses of a closing path that are timed, if nobody says otherwise.
+inline constexpr std::size_t kClosingPoses = 12;
+
 /// A straight closing path of a moving body to a fixed one. Offsets on it are displacements of the
 /// moving body from its stored place in the open direction, mesh units.
 struct ClosingPath {
@@ -35,7 +38,7 @@ struct ClosingPath {
   /// Returns the pose at an offset, mesh units.
   [[nodiscard]] Eigen::Isometry3d pose(double offset) const noexcept;
   /// Returns evenly spaced poses from begin to end. Precondition: count >= 2.
-  [[nodiscard]] std::vector<Eigen::Isometry3d> poses(std::size_t count) const;
+  [[nodiscard]] std::vector<Eigen::Isometry3d> poses(std::size_t count = kClosingPoses) const;
 };
 
 /// Returns the direction in which the moving body's bounding box leaves the fixed one's soonest.

@@ -65,7 +65,7 @@ class SphereOnBox : public ::testing::Test {
 
 TEST_F(SphereOnBox, MeasuresTheErrorOfAClosing) {
   Calibration calibration(bodies_, path(), options_);
-  EXPECT_EQ(calibration.poses().size(), Calibration::kPoses);
+  EXPECT_EQ(calibration.poses().size(), kClosingPoses);
   for (const double voxel_size : {0.4, 0.17, 0.1}) {
     SCOPED_TRACE(voxel_size);
     const std::optional<SizeMeasure> measured = calibration.measure(voxel_size);
@@ -111,7 +111,7 @@ struct ScriptedClock {
   // The time of a query, by its number. In each round the poses take 101, 102 ... microseconds; in
   // the second all take 1 ms more, in the fourth 50 less, and in the last pose 3 takes the longest.
   static std::chrono::microseconds query_time(std::size_t query) {
-    const std::size_t round = query / Calibration::kPoses, pose = query % Calibration::kPoses;
+    const std::size_t round = query / kClosingPoses, pose = query % kClosingPoses;
     const int usual = 101 + static_cast<int>(pose);
     return std::chrono::microseconds(round == 1                ? usual + 1000
                                      : round == 3              ? usual - 50
@@ -130,7 +130,7 @@ TEST_F(SphereOnBox, MeasuresTheSlowestPose) {
   Calibration calibration(bodies_, path(), options);
   ScriptedClock::readings = 0;
   const SizeMeasure measured = *calibration.measure(0.1);
-  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * Calibration::kPoses);
+  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * kClosingPoses);
   EXPECT_DOUBLE_EQ(measured.build_milliseconds, 250);
   // Pose 3 takes 104, 1104, 104, 54 and 5000. Pose 11 takes 112, 1112, 112, 62 and 112.
   EXPECT_DOUBLE_EQ(measured.slowest_query, 112);
@@ -151,12 +151,12 @@ TEST_F(SphereOnBox, MeasuresTheSlowestPose) {
   options.time = std::chrono::milliseconds(20);  // five rounds take more
   ScriptedClock::readings = 0;
   EXPECT_DOUBLE_EQ(Calibration(bodies_, path(), options).measure(0.1)->slowest_query, 112);
-  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * Calibration::kPoses + 1);
+  EXPECT_EQ(ScriptedClock::readings, 3 + 2 * 5 * kClosingPoses + 1);
   options.time = std::chrono::milliseconds(30);
   ScriptedClock::readings = 0;
   static_cast<void>(Calibration(bodies_, path(), options).measure(0.1));
-  EXPECT_GT(ScriptedClock::readings, 3 + 2 * 6 * Calibration::kPoses);
-  EXPECT_LT(ScriptedClock::readings, 3 + 2 * 20 * Calibration::kPoses);
+  EXPECT_GT(ScriptedClock::readings, 3 + 2 * 6 * kClosingPoses);
+  EXPECT_LT(ScriptedClock::readings, 3 + 2 * 20 * kClosingPoses);
 }
 
 // Jaws come up to each other in other ways than the one that is measured.

@@ -56,7 +56,7 @@ seen() {
 step "docs/performance.md: scripts/try.sh sees it, and ends with 1" seen
 in_the_clone "back again" "git checkout -- simd && git status --short"
 
-in_the_clone "docs/performance.md: FCL and Embree" "$(block docs/performance.md block 'ist bench --against fcl,embree')"
-beside() { grep -E 'against (fcl|embree)' "$work/printed"; grep -q 'against fcl' "$work/printed" && grep -q 'against embree' "$work/printed"; }
+in_the_clone "docs/performance.md: FCL and Embree" "$(block docs/performance.md block 'bench/peers_bench')"
+beside() { grep -E '/(ist|fcl|embree)/' "$work/printed"; grep -q /fcl/ "$work/printed" && grep -q /embree/ "$work/printed"; }
 step "both are beside IST" beside
 end_door

@@ -7,14 +7,12 @@ import io
 import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "scripts"))
-import readme_bench  # noqa: E402  after its folder is known
 from report import figures  # noqa: E402
 from report.runner import Runner  # noqa: E402
 
@@ -60,15 +58,13 @@ class Pages(unittest.TestCase):
                 self.assertTrue((figures.ROOT / source).exists(), f"{maker} rests on {source}")
 
     def test_times_name_the_load_and_a_fixed_loop_beside_their_commit(self):
-        # `ist bench` prints both itself, too, above its stamp.
-        printed = re.compile(r"load before [\d., ]+; a fixed loop took [\d.]+ to [\d.]+ µs")
         bare, timed = [], 0
         for page in figures.PAGES:
             text = (figures.ROOT / page).read_text()
             for number, line in enumerate(text.splitlines(), 1):
                 makers = {found.group(3) for found in figures.STAMP.finditer(line)} - figures.COUNTERS
                 timed += len(makers)
-                if makers and not figures.STATE.search(line) and not (makers == {"ist bench"} and printed.search(text)):
+                if makers and not figures.STATE.search(line):
                     bare.append(f"{page}:{number}")
         self.assertEqual(bare, [])
         self.assertGreater(timed, 0)
@@ -104,11 +100,6 @@ class States(unittest.TestCase):
         for name in self.CONTEXT:
             with self.assertRaisesRegex(ValueError, name):
                 figures.machine_state({key: value for key, value in self.CONTEXT.items() if key != name})
-
-    def test_the_figures_of_ist_bench_get_them_from_what_it_prints(self):
-        printed = "AMD, 2 cores, governor unknown; load before 0.2, 2.3, 3.7; a fixed loop took 148 to 177 µs\n"
-        self.assertRegex(readme_bench.state(printed, 0.9), figures.STATE)
-        self.assertIn("Load 0.2 before, 0.9 after; a fixed loop took 148 to 177 µs", readme_bench.state(printed, 0.9))
 
 
 class Code(unittest.TestCase):

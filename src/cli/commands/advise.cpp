@@ -19,6 +19,7 @@
 #include "cli/header_line.h"
 #include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
+#include "cli/poses/pose_options.h"
 #include "cli/progress_bar.h"
 #include "cli/refusals.h"
 #include "ist/base/error.h"
@@ -103,32 +104,6 @@ SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
   return tree;
 }
 
-std::string name_of(AxisDirection direction) {
-  return fmt::format("{}{}", direction.sign < 0 ? "-" : "", "xyz"[direction.axis]);
-}
-
-AxisDirection named_direction(const std::string& name) {
-  return {name.back() - 'x', name.size() > 1 ? -1 : +1};
-}
-
-ClosingPath find_path(ExactBodies& bodies, const std::string& axis) {
-  const AxisDirection direction =
-      axis.empty() ? shortest_open_direction(bodies.fixed_box(), bodies.moving_box())
-                   : named_direction(axis);
-  const std::optional<ClosingPath> path = find_closing_path(bodies, direction);
-  if (!path) {
-    throw CLI::ValidationError(
-        "--poses", fmt::format("needed, because the bodies do not touch where they are stored, nor "
-                               "when the moving one goes from there along {}: give poses at which "
-                               "they do, or another --axis",
-                               name_of({direction.axis, -direction.sign})));
-  }
-  fmt::print(stderr,
-             "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
-             Calibration::kPoses, name_of(direction), path->begin, path->end, path->first_contact);
-  return *path;
-}
-
 void run(const AdviseArguments& options) {
   check(options);
   std::vector<Eigen::Isometry3d> poses;
@@ -151,8 +126,9 @@ void run(const AdviseArguments& options) {
   const SphereTree moving = load_exact(options.moving, std::move(moving_mesh), max_memory);
   ExactBodies bodies(fixed, moving);
   Calibration calibration =
-      poses.empty() ? Calibration(bodies, find_path(bodies, options.axis), options.calibration)
-                    : Calibration(bodies, std::move(poses), options.calibration);
+      poses.empty()
+          ? Calibration(bodies, find_closing_way(fixed, moving, options.axis), options.calibration)
+          : Calibration(bodies, std::move(poses), options.calibration);
 
   const AdviceGoal goal = options.budget
                               ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfGoal * *options.budget}

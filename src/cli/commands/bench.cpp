@@ -4,182 +4,146 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "cli/bench/bench_poses.h"
-#include "cli/bench/bench_report.h"
-#include "cli/bench/contestants.h"
-#include "cli/bench/rivals.h"
+#include "advise/closing_path.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
+#include "cli/engine.h"
 #include "cli/header_line.h"
 #include "cli/load_bodies.h"
-#include "cli/measure_progress.h"
 #include "cli/poses/pose_file.h"
-#include "cli/progress_bar.h"
+#include "cli/poses/pose_options.h"
 #include "cli/refusals.h"
-#include "ist/base/parallel.h"
 #include "ist/models/models.h"
-#include "simd/dispatch.h"
 
 namespace ist::cli {
 namespace {
 
-constexpr double kJawVoxels = 0.2;  // mm
+using Listed = std::optional<std::uint64_t>;  // pairs, if the answer is a list
 
 struct BenchArguments {
   BodyFiles files;
   std::filesystem::path poses;
-  std::vector<std::string> against;
   double seconds = 6;
   bool json = false;
-
-  [[nodiscard]] bool own_bodies() const { return !files.fixed.empty(); }
 };
 
-std::vector<Rival> rivals_named(const std::vector<std::string>& names) {
-  std::vector<Rival> asked;
-  for (const Rival& rival : rivals()) {
-    if (std::ranges::find(names, rival.name) == names.end()) continue;
-    refuse_if(
-        !rival.here, "--against",
-        fmt::format(
-            "this ist was built without {}: install it by ./scripts/setup.sh --peers, "
-            "then cmake --preset bench && cmake --build --preset bench --target ist_cli, and run "
-            "build/bench/ist bench",
-            rival.name));
-    asked.push_back(rival);
+// A way to ask a question, the place of the way that it is compared with, and its times.
+struct BenchWay {
+  std::string question, way, spheres;
+  int workers;
+  std::optional<std::size_t> over;
+  std::function<Listed(const Eigen::Isometry3d&)> ask;
+  Listed listed = {};              // at all poses together
+  std::vector<double> times = {};  // microseconds, sorted before they are printed
+  [[nodiscard]] double quantile(double part) const {
+    return times[static_cast<std::size_t>(part * static_cast<double>(times.size() - 1))];
   }
-  return asked;
+};
+
+Bodies built_in_jaws(const BodyFiles& files) {
+  const BuildOptions build{.voxel_size = files.voxel_size.value_or(0.2),  // mm
+                           .max_memory = files.max_memory};
+  return {build_tree(make_jaw(Jaw::kUpper, 1), build), build_tree(make_jaw(Jaw::kLower, 1), build),
+          build.spheres};
 }
 
-Bodies built_in_jaws(const BodyFiles& options) {
-  BuildOptions build;
-  build.voxel_size = options.voxel_size.value_or(kJawVoxels);
-  build.max_memory = options.max_memory;
-  std::vector<std::string> warnings;
-  Bodies jaws{build_with_progress("upper jaw", make_jaw(Jaw::kUpper, 1), build, warnings),
-              build_with_progress("lower jaw", make_jaw(Jaw::kLower, 1), build, warnings),
-              build.spheres};
-  print_warnings(warnings);
-  return jaws;
-}
-
-std::vector<BenchPose> poses_for(const BenchArguments& options, const Bodies& bodies) {
-  if (!options.poses.empty()) {
-    return poses_among(options.poses, read_poses(options.poses), bodies.fixed, bodies.moving);
+// The ways refer to the trees.
+std::vector<BenchWay> ways_to_ask(const SphereTree& fixed, const SphereTree& moving) {
+  std::vector<BenchWay> ways;
+  for (const SpherePolicy policy : kSpherePolicies) {
+    if (!fixed.has(policy) || !moving.has(policy)) continue;
+    const std::size_t published = ways.size();
+    for (const int workers : {0, 1, 2}) {  // 0: the published query
+      const EngineOptions options{.policy = policy, .workers = std::max(workers, 1)};
+      const auto made =
+          std::make_shared<Engine>(kEngineNames[workers == 0], fixed, moving, options);
+      ways.push_back({"leaf pairs", workers == 0 ? "published" : "IST",
+                      std::string(to_string(policy)), options.workers, published,
+                      [=](const auto& pose) { return made->ask(pose).result.leaf_pairs; }});
+    }
   }
-  if (!options.own_bodies()) return poses_of_jaws();
-  const bool triangles =
-      bodies.fixed.triangles() != nullptr && bodies.moving.triangles() != nullptr;
-  refuse_if(!triangles, "--poses",
-            "needed, because a tree holds no triangles to find a way by: give poses at which the "
-            "bodies meet");
-  return poses_on_way(bodies.fixed, bodies.moving);
-}
-
-std::string bodies_words(const BenchArguments& options, const Bodies& bodies, double seconds) {
-  const auto sizes = [](const SphereTree& fixed, const SphereTree& moving) {
-    const double a = fixed.voxel_size(), b = moving.voxel_size();
-    return a == b ? fmt::format("{:g}", a) : fmt::format("{:g} and {:g}", a, b);
+  if (fixed.triangles() == nullptr || moving.triangles() == nullptr) return ways;
+  const auto add = [&](const char* question, auto ask) {
+    const auto query = std::make_shared<Query>(fixed, moving);
+    ways.push_back({question, "IST", "", 1, {}, [=](const auto& pose) mutable {
+                      query->forget();  // no answer depends on the pose before
+                      return ask(*query, pose);
+                    }});
   };
-  return fmt::format("{}: voxels of {}, {} and {} of them, loaded in {:.1f} s",
-                     options.own_bodies() ? fmt::format("{} and {}", options.files.fixed.string(),
-                                                        options.files.moving.string())
-                                          : "the built-in jaws",
-                     sizes(bodies.fixed, bodies.moving), bodies.fixed.leaf_count(),
-                     bodies.moving.leaf_count(), seconds);
+  add("touch", [](auto& query, auto& pose) { return (void)query.intersects(pose), Listed(); });
+  add("distance", [](auto& query, auto& pose) { return (void)query.distance(pose, 0), Listed(); });
+  std::vector<TrianglePair> room(1 << 20);
+  add("triangle pairs", [room](auto& query, auto& pose) mutable {
+    return Listed(query.triangle_pairs(pose, room).triangle_pairs);
+  });
+  return ways;
+}
+
+// Asks every way at each pose, in turns. The first turn fills the caches and is not timed.
+void take_turns(std::vector<BenchWay>& ways, const std::vector<Eigen::Isometry3d>& poses,
+                double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  for (int turn = 0; turn <= 3 || Clock::now() < end; ++turn) {
+    for (BenchWay& way : ways)
+      for (const auto& pose : poses) {
+        const auto begin = Clock::now();
+        const Listed listed = way.ask(pose);
+        const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
+        if (turn > 0) way.times.push_back(time.count());
+        if (turn == 0 && listed) way.listed = way.listed.value_or(0) + *listed;
+      }
+  }
+  for (BenchWay& way : ways) std::ranges::sort(way.times);
 }
 
 void run(const BenchArguments& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  refuse_if(!(options.seconds > 0 && options.seconds <= 3600), "--seconds",
-            "give a positive number, 3600 at most");
-  refuse_if(options.files.fixed.empty() != options.files.moving.empty(), "FIXED, MOVING",
+  const auto& [files, poses, seconds, json] = options;
+  refuse_if(!(seconds > 0 && seconds <= 3600), "--seconds", "give a positive number, 3600 at most");
+  refuse_if(files.fixed.empty() != files.moving.empty(), "FIXED, MOVING",
             "give both bodies, or none for the built-in jaws");
-  BenchSetting setting;
-  setting.machine = this_machine();
-  setting.target = select_kernels({}).target;
-  setting.seconds = options.seconds;
-  const std::vector<Rival> rivals = rivals_named(options.against);
-  const Bodies bodies =
-      options.own_bodies() ? load_bodies(options.files) : built_in_jaws(options.files);
-  const std::chrono::duration<double> loaded = std::chrono::steady_clock::now() - begin;
-  setting.bodies = bodies_words(options, bodies, loaded.count());
-  const std::vector<BenchPose> poses = poses_for(options, bodies);
-
-  std::vector<Contestant> contestants = contestants_of(bodies.fixed, bodies.moving, poses);
-  if (!rivals.empty()) require_triangles(bodies);
-  for (const Rival& rival : rivals) {
-    const ScopedThreadLimit one(1);
-    for (Contestant& each :
-         rival.contestants(*bodies.fixed.triangles(), *bodies.moving.triangles(), poses)) {
-      contestants.push_back(std::move(each));
-    }
-    setting.rivals +=
-        fmt::format("{}{} {}", setting.rivals.empty() ? "" : ", ", rival.name, rival.version);
-  }
-  Contest contest(std::move(contestants), poses);
-  {
-    ProgressBar progress;
-    contest.hold(options.seconds, shown_by(progress, "asking"));
-  }
-  if (options.json) {
-    NamedFiles files;
-    if (options.own_bodies())
-      files = {{"fixed", options.files.fixed}, {"moving", options.files.moving}};
-    print_header("bench", files);
-    print_bench_json(setting, contest);
-  } else {
-    print_bench(setting, contest);
+  const Bodies bodies = files.fixed.empty() ? built_in_jaws(files) : load_bodies(files);
+  const auto at =
+      poses.empty() ? find_closing_way(bodies.fixed, bodies.moving, "").poses() : read_poses(poses);
+  std::vector<BenchWay> ways = ways_to_ask(bodies.fixed, bodies.moving);
+  take_turns(ways, at, seconds);
+  NamedFiles named;
+  if (!files.fixed.empty()) named = {{"fixed", files.fixed}, {"moving", files.moving}};
+  if (json) print_header("bench", named);
+  if (!json)
+    fmt::print(
+        "question       by        bounds  workers     pairs median µs      90 %      99 %  "
+        "ratio\n");
+  const std::string line =
+      json ? R"({{"question":"{}","way":"{}","spheres":"{}","workers":{},"listed":{},)"
+             R"("microseconds_median":{:.3f},"microseconds_p90":{:.3f},"microseconds_p99":{:.3f},)"
+             R"("samples":{},"times":{}}})"
+           : "{0:<15}{1:<10}{2:<7}{3:>8}{4:>10}{5:>10.2f}{6:>10.2f}{7:>10.2f}{9:>7}";
+  for (const BenchWay& way : ways) {
+    std::string listed = json ? "null" : "", times = listed;
+    if (way.listed) listed = std::to_string(*way.listed);
+    if (way.over) times = fmt::format("{:.2f}", ways[*way.over].quantile(0.5) / way.quantile(0.5));
+    fmt::print(fmt::runtime(line + '\n'), way.question, way.way, way.spheres, way.workers, listed,
+               way.quantile(0.5), way.quantile(0.9), way.quantile(0.99), way.times.size(), times);
   }
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "bench",
-      "Time every way to ask on this machine, in ten seconds, on built-in jaws or two bodies");
+  CLI::App* command = app.add_subcommand("bench", "Time every way to ask on this machine");
   const auto options = std::make_shared<BenchArguments>();
-  command
-      ->add_option("FIXED", options->files.fixed,
-                   "mesh or tree of the body that stays; by default the built-in jaws")
-      ->type_name("FILE");
-  command->add_option("MOVING", options->files.moving, "mesh or tree of the body that is moved")
-      ->type_name("FILE");
-  command
-      ->add_option("--voxel-size", options->files.voxel_size,
-                   "edge of the voxels, mesh units; by default 0.2 of the jaws, 1/500 of the "
-                   "smaller body")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--poses", options->poses,
-                   "JSON file of poses: those with most and fewest pairs are asked; by default two "
-                   "on a straight way that closes the bodies")
-      ->type_name("FILE");
-  std::vector<std::string> names;
-  for (const Rival& rival : rivals()) names.push_back(rival.name);
-  command->add_option("--against", options->against, "other libraries to ask too")
-      ->delimiter(',')
-      ->allow_extra_args(false)  // bodies may come behind it
-      ->transform(one_of(names));
-  command
-      ->add_option("--seconds", options->seconds,
-                   "time for all queries; each has three turns at least")
-      ->capture_default_str();
-  add_units_and_frame(*command, options->files);
-  add_max_memory(*command, options->files.max_memory);
-  command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(
-      *command,
-      "All queries take turns, so that other work on the machine affects all of them: ratios "
-      "hold, times less.\n"
-      "Examples: ist bench\n"
-      "          ist bench upper.stl lower.stl --voxel-size 0.4 --json");
+  auto& [files, poses, seconds, json] = *options;
+  command->add_option("FIXED", files.fixed, "body that stays; by default a jaw")->type_name("FILE");
+  command->add_option("MOVING", files.moving, "body that is moved")->type_name("FILE");
+  command->add_option("--voxel-size", files.voxel_size, "mesh units")->check(CLI::PositiveNumber);
+  command->add_option("--poses", poses, "JSON file; by default 12 of a closing")->type_name("FILE");
+  command->add_option("--seconds", seconds, "time for all turns")->capture_default_str();
+  add_units_and_frame(*command, files);
+  add_max_memory(*command, files.max_memory);
+  command->add_flag("--json", json, "print one JSON object a line");
+  add_example(*command, "Example: ist bench upper.stl lower.stl --voxel-size 0.4 --json");
   command->callback([options] { run(*options); });
 }
 

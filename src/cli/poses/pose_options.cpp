@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "advise/closing_path.h"
 #include "cli/poses/matrix_file.h"
 #include "cli/poses/numbers.h"
 #include "cli/poses/pose_file.h"
@@ -135,6 +136,29 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses) {
       ->excludes(move)
       ->excludes(turn)
       ->excludes(matrix);
+}
+
+ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
+                             const std::string& axis) {
+  refuse_if(fixed.triangles() == nullptr || moving.triangles() == nullptr, "--poses",
+            "needed, because a tree holds no triangles to find a way by: give poses at which the "
+            "bodies meet");
+  ExactBodies bodies(fixed, moving);
+  const AxisDirection direction =
+      axis.empty() ? shortest_open_direction(bodies.fixed_box(), bodies.moving_box())
+                   : AxisDirection{axis.back() - 'x', axis.size() > 1 ? -1 : +1};
+  const auto name = [&](int sign) {
+    return fmt::format("{}{}", sign < 0 ? "-" : "", "xyz"[direction.axis]);
+  };
+  const std::optional<ClosingPath> path = find_closing_path(bodies, direction);
+  refuse_if(!path, "--poses",
+            fmt::format("needed, because the bodies do not touch where they are stored, nor when "
+                        "the moving one goes from there along {}: give poses at which they do",
+                        name(-direction.sign)));
+  fmt::print(stderr,
+             "{} poses: opening towards {}, from {:.4g} to {:.4g}; first contact at {:.6g}\n",
+             kClosingPoses, name(direction.sign), path->begin, path->end, path->first_contact);
+  return *path;
 }
 
 void echo_pose(const PoseOptions& options, const Eigen::Isometry3d& pose) {

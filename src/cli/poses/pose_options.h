@@ -8,10 +8,14 @@
 #include "cli/cli11_fwd.h"
 #include "cli/poses/given_pose.h"
 
+namespace ist {
+struct ClosingPath;
+class SphereTree;
+}  // namespace ist
+
 namespace ist::cli {
 
-/// Where the moving body is, as a user says it; nowhere else than its file says, where all is
-/// empty.
+/// The pose of the moving body in a user's words. If all are empty, the body stays as stored.
 struct PoseOptions {
   std::string move;              ///< x,y,z
   std::string turn;              ///< axis,degrees[@x,y,z]
@@ -20,8 +24,8 @@ struct PoseOptions {
 
   /// Returns whether any motion is named.
   [[nodiscard]] bool is_named() const;
-  /// Returns one pose, or those of the file. Throws CLI::ValidationError for words that are no
-  /// motion, and as read_poses() and read_matrix().
+  /// Returns one pose, or the poses of the file. Throws CLI::ValidationError for words that are no
+  /// motion, and the errors of read_poses() and read_matrix().
   [[nodiscard]] std::vector<GivenPose> poses_named() const;
 };
 
@@ -35,7 +39,14 @@ void add_pose_options(CLI::App& command, PoseOptions& options, Poses poses);
 /// begins with `option`.
 [[nodiscard]] Eigen::Vector3d axis_named(const std::string& word, const std::string& option);
 
-/// Prints a pose to stderr as four lines of four numbers, where a motion is named.
+/// Finds the straight way on which the moving body closes to its stored place, and prints it to
+/// stderr. `axis`, x to -z, is the opposite direction. If it is empty, the bounding box of the body
+/// leaves soonest in the direction that is taken. Throws CLI::ValidationError, which names --poses,
+/// for trees without triangles and for bodies that do not meet on that way.
+[[nodiscard]] ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
+                                           const std::string& axis);
+
+/// Prints a pose to stderr as four lines of four numbers, if a motion is named.
 void echo_pose(const PoseOptions& options, const Eigen::Isometry3d& pose);
 
 }  // namespace ist::cli
