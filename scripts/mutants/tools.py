@@ -7,14 +7,11 @@ MUTANTS = [
     Mutant("advice-breaks-its-goal", "a size a tenth beyond the limit is recommended",
            [(ADVICE + "voxel_advice.h", "return value(measure) <= limit;", "return value(measure) <= 1.1 * limit;")],
            ["advise_test"]),
-    Mutant("advice-far-from-best", "the search stops at the first size within the limit",
-           [(ADVICE + "voxel_advice.cpp", "if (holds_ && holds_->excess >= kGoodEnough) return std::nullopt;",
-             "if (holds_) return std::nullopt;")], ["advise_test"]),
-    Mutant("first-contact-only", "the error of a closing counts only next to the first contact",
-           [(ADVICE + "calibration.cpp", "      error = std::max(error, distance.upper);\n      last = offset;\n", "      break;\n")],
+    Mutant("advice-far-from-best", "no size between the four is tried",
+           [(ADVICE + "voxel_advice.cpp", "kBetween = 3;", "kBetween = 0;")], ["advise_test"]),
+    Mutant("first-contact-only", "the error of a closing is that of its first sample",
+           [(ADVICE + "voxel_advice.cpp", "if (apart.lower > resolution || ", "if (apart.lower >= 0 || resolution < 0 || ")],
            ["advise_test"]),
-    Mutant("one-way-alone", "errors are measured on the straight path alone",
-           [(ADVICE + "calibration.cpp", "paths_(paths_beside(bodies, path))", "paths_()")], ["advise_test"]),
 
     # The circuit.
     Mutant("circuit-reach-rounded-down", "the reach that is squared is rounded down",

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <string>
 
-#include "ist/base/assert.h"
 #include "ist/base/float_environment.h"
 #include "ist/base/platform/from_chars.h"
 #include "ist/voxel/lattice.h"
@@ -14,168 +13,182 @@
 namespace ist {
 namespace {
 
-// Logarithms of factors. No query result depends on this search, so libm may be used.
-const double kLeastStep = std::log(1.12), kMostStep = std::log(3.0);
-const double kClose = std::log(1.15), kCloseToUnfit = std::log(1.5);
-const double kGoodEnough = std::log(0.9);
-// Bounds of a power law's assumed exponent, and of the logarithm of value / limit.
-constexpr double kFlattest = 0.25, kSteepest = 4, kFarthest = 10;
-// The least distance of a new size from either of two measured ones, as a fraction of theirs.
-constexpr double kNearest = 0.2;
-constexpr std::size_t kMostSizes = 40;
+using Clock = std::chrono::steady_clock;
+using Poses = std::vector<Eigen::Isometry3d>;
 
-// A measured size, in logarithms: the value is close to a power law of the size.
+double milliseconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+std::uint64_t leaf_pairs_at(Query& query, const Eigen::Isometry3d& pose) {
+  return query.leaf_pairs(pose, std::span<LeafPair>{}).leaf_pairs;
+}
+
+// Returns the median at the slowest pose, microseconds.
+double slowest_query(Query& query, const Poses& poses, std::uint64_t room, double milliseconds) {
+  constexpr int kLeastRounds = 5;
+  std::vector<LeafPair> leaf_pairs(room + 1);
+  std::vector<std::vector<double>> times(poses.size());
+  const Clock::time_point begin = Clock::now();
+  for (int round = 0; round < kLeastRounds || milliseconds_since(begin) < milliseconds; ++round) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Clock::time_point asked = Clock::now();
+      static_cast<void>(query.leaf_pairs(poses[i], leaf_pairs));
+      times[i].push_back(1e3 * milliseconds_since(asked));
+    }
+  }
+  double slowest = 0;
+  for (std::vector<double>& of_pose : times) {
+    const auto middle = of_pose.begin() + static_cast<std::ptrdiff_t>(of_pose.size() / 2);
+    std::nth_element(of_pose.begin(), middle, of_pose.end());
+    slowest = std::max(slowest, *middle);
+  }
+  return slowest;
+}
+
+DistanceInterval distance(Query& exact, const Eigen::Isometry3d& pose, double tolerance) {
+  exact.forget();  // no answer depends on the pose before
+  return exact.distance(pose, tolerance).distance;
+}
+
+// Returns poses from first contact outward. The steps are 1/16 of a voxel, or 1/64 of the way if
+// that is more.
+Poses opening(Query& exact, const ClosingPath& path, double voxel_size, double resolution) {
+  Poses poses;
+  for (double way = voxel_size / 16;; way += std::max(voxel_size / 16, way / 64)) {
+    poses.push_back(path.pose(path.first_contact + way));
+    const DistanceInterval apart = distance(exact, poses.back(), voxel_size / 1024);
+    if (apart.lower > resolution || !(apart.upper > 0)) return poses;
+  }
+}
+
+double largest_error(Query& exact, Query& query, const Poses& poses) {
+  constexpr int kHalvings = 16;
+  double error = 0;
+  std::optional<std::size_t> with, without;  // the last pose with leaf pairs, and without
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const bool has = leaf_pairs_at(query, poses[i]) > 0;
+    if (has) error = std::max(error, distance(exact, poses[i], 0).upper);
+    (has ? with : without) = i;
+    const std::optional<std::size_t>& other = has ? without : with;
+    if (i == 0 || other != i - 1 || poses[i].linear() != poses[i - 1].linear()) continue;
+    Eigen::Isometry3d near = poses[*with];
+    Eigen::Vector3d far = poses[*without].translation();
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      Eigen::Isometry3d middle = near;
+      middle.translation() = 0.5 * (near.translation() + far);
+      if (leaf_pairs_at(query, middle) > 0) {
+        near = middle;
+      } else {
+        far = middle.translation();
+      }
+    }
+    error = std::max(error, distance(exact, near, 0).upper);
+  }
+  return error;
+}
+
+// Rounds to two significant digits, by at most a tenth.
+double two_digits(double size, bool up) {
+  double rounded = 0;
+  from_chars(fmt::format("{:.1e}", up ? 1.05 * size : size / 1.05), rounded);
+  return rounded;
+}
+
+// A size, and its value if it could be built.
 struct Tried {
-  double at;      // log of the size, its sign such that it grows from safe sizes to failing ones
-  double excess;  // log of value / limit: above 0 the goal is missed
+  double size;
+  std::optional<double> value;
 };
 
-class SizeSearch {
- public:
-  SizeSearch(const AdviceGoal& goal, const SizeRange& range, const MeasureSize& measure)
-      : goal_(goal),
-        range_{round_to_two_digits(range.finest, true), range.first,
-               round_to_two_digits(range.coarsest, false)},
-        measure_(measure) {
-    IST_ASSERT(range_.finest <= range_.coarsest);
+// Returns the size whose value should be `limit`, or the middle if a value is unknown.
+double between(const Tried& coarse, const Tried& fine, double limit) {
+  double part = 0.5;
+  if (fine.value && *fine.value > 0 && *coarse.value > 0) {
+    part = std::log(limit / *coarse.value) / std::log(*fine.value / *coarse.value);
   }
-
-  VoxelAdvice run() {
-    for (std::size_t tries = 0; tries < kMostSizes; ++tries) {
-      const std::optional<double> size = unseen(next());
-      if (!size) break;
-      note(*size, measure_(*size));
-    }
-    std::sort(advice_.measured.begin(), advice_.measured.end(),
-              [](const auto& a, const auto& b) { return a.voxel_size > b.voxel_size; });
-    const auto best =
-        std::find_if(advice_.measured.begin(), advice_.measured.end(),
-                     [&](const SizeMeasure& measure) { return measure.voxel_size == best_; });
-    if (best != advice_.measured.end()) advice_.recommended = best - advice_.measured.begin();
-    return std::move(advice_);
-  }
-
- private:
-  [[nodiscard]] bool coarse_is_safe() const { return goal_.of == AdviceGoal::Of::kSlowestQuery; }
-  [[nodiscard]] double at(double size) const {
-    return coarse_is_safe() ? -std::log(size) : std::log(size);
-  }
-  // Returns the size at `at`, rounded towards meeting the goal (away from it if not `safe`) and
-  // clamped to the range.
-  [[nodiscard]] double size_at(double at, bool safe = true) const {
-    const double size = std::exp(coarse_is_safe() ? -at : at);
-    return std::clamp(round_to_two_digits(size, coarse_is_safe() == safe), range_.finest,
-                      range_.coarsest);
-  }
-
-  void note(double size, const std::optional<SizeMeasure>& measure) {
-    tried_.push_back(size);
-    if (!measure) {
-      advice_.too_fine = std::max(size, advice_.too_fine.value_or(size));
-      if (coarse_is_safe()) fails_ = Tried{at(size), kFarthest};
-      return;
-    }
-    advice_.measured.push_back(*measure);
-    const double excess =
-        std::clamp(std::log(goal_.value(*measure) / goal_.limit), -kFarthest, kFarthest);
-    const Tried tried{at(size), excess};
-    if (last_) {
-      const double slope = (tried.excess - last_->excess) / (tried.at - last_->at);
-      slope_ = slope >= kFlattest ? std::min(slope, kSteepest) : kFlattest;
-    }
-    last_ = tried;
-    if (goal_.holds(*measure)) {
-      holds_ = tried;
-      best_ = size;
-    } else {
-      fails_ = tried;
-    }
-  }
-
-  // Returns where to measure next, or nothing if the search is done.
-  [[nodiscard]] std::optional<double> next() const {
-    if (!holds_ && !fails_) {
-      if (!advice_.too_fine) return at(range_.first);
-      return at(*advice_.too_fine) + kMostStep;  // for errors, which grow with the size
-    }
-    if (holds_ && holds_->excess >= kGoodEnough) return std::nullopt;
-    if (!fails_) return holds_->at + step(-holds_->excess);
-    if (!holds_) return towards_safety();
-    const double width = fails_->at - holds_->at;
-    const bool is_unfit = advice_.too_fine && at(*advice_.too_fine) == fails_->at;
-    if (width <= (is_unfit ? kCloseToUnfit : kClose)) return std::nullopt;
-    const double part = is_unfit ? 0.5 : holds_->excess / (holds_->excess - fails_->excess);
-    return holds_->at + width * std::clamp(part, kNearest, 1 - kNearest);
-  }
-
-  [[nodiscard]] std::optional<double> towards_safety() const {
-    const double to = fails_->at - step(fails_->excess);
-    if (coarse_is_safe() || !advice_.too_fine || to > at(*advice_.too_fine)) return to;
-    const double room = fails_->at - at(*advice_.too_fine);
-    if (room <= kCloseToUnfit) return std::nullopt;
-    return fails_->at - room / 2;
-  }
-
-  // Returns the step that should change the excess by `excess`, clamped to the limits of a step.
-  [[nodiscard]] double step(double excess) const {
-    return std::clamp(excess / slope_, kLeastStep, kMostStep);
-  }
-
-  // Returns the size at `at` if it is new, else its rounding to the other side if that is new.
-  [[nodiscard]] std::optional<double> unseen(std::optional<double> at) const {
-    if (!at) return std::nullopt;
-    for (const bool safe : {true, false}) {
-      const double size = size_at(*at, safe);
-      if (std::find(tried_.begin(), tried_.end(), size) == tried_.end()) return size;
-    }
-    return std::nullopt;
-  }
-
-  AdviceGoal goal_;
-  SizeRange range_;
-  const MeasureSize& measure_;
-  VoxelAdvice advice_;
-  std::vector<double> tried_;
-  std::optional<Tried> last_, holds_, fails_;  // holds_ and fails_ bracket the goal
-  double slope_ = 1;
-  double best_ = 0;
-};
-
-double number(const std::string& text) {  // unlike std::stod, independent of the locale
-  double value = 0;
-  from_chars(text, value);
-  return value;
+  return coarse.size * std::pow(fine.size / coarse.size, std::clamp(part, 0.1, 0.9));
 }
 
 }  // namespace
 
-double round_to_two_digits(double size, bool up) {
+std::optional<SizeMeasure> measure_size(Query& exact, const Poses& poses,
+                                        const std::optional<ClosingPath>& path, double voxel_size,
+                                        const MeasureOptions& options, Progress& progress) {
   const ScopedFloatEnvironment environment;
-  // 15 digits reproduce any decimal that was read from fewer.
-  const std::string text = fmt::format("{:.14e}", size);
-  const int digits = 10 * (text[0] - '0') + (text[2] - '0');
-  const int exponent = static_cast<int>(number(text.substr(text.find('e') + 2))) *
-                       (text[text.find('e') + 1] == '-' ? -1 : 1);
-  const bool is_rounder = text.find_first_not_of('0', 3) == text.find('e');
-  return number(fmt::format("{}e{}", up && !is_rounder ? digits + 1 : digits, exponent - 1));
+  const TriangleMesh &fixed_mesh = *exact.fixed().triangles(),
+                     &moving_mesh = *exact.moving().triangles();
+  BuildOptions build;
+  build.voxel_size = voxel_size;
+  build.keep_triangles = false;
+  build.max_memory = options.max_memory;
+  if (!can_build_tree(fixed_mesh, build, &progress) ||
+      !can_build_tree(moving_mesh, build, &progress)) {
+    return std::nullopt;
+  }
+  SizeMeasure measured{.voxel_size = voxel_size};
+  const Clock::time_point begin = Clock::now();
+  const SphereTree fixed = build_tree(fixed_mesh, build, nullptr, &progress);
+  const SphereTree moving = build_tree(moving_mesh, build, nullptr, &progress);
+  measured.build_milliseconds = milliseconds_since(begin);
+  measured.bytes = fixed.bytes() + moving.bytes();
+
+  QueryOptions asked;
+  asked.target = options.target;
+  asked.workers = options.workers;
+  asked.period = {};  // one query follows the other
+  Query query(fixed, moving, asked);
+  progress.begin_stage("timing queries, and comparing with triangles", 0);
+  measured.resolution = query.leaf_pairs(poses.front(), std::span<LeafPair>{}).resolution;
+  for (const Eigen::Isometry3d& pose : poses) {
+    measured.max_leaf_pairs = std::max(measured.max_leaf_pairs, leaf_pairs_at(query, pose));
+  }
+  measured.slowest_query =
+      slowest_query(query, poses, measured.max_leaf_pairs, options.milliseconds);
+  measured.error = largest_error(
+      exact, query, path ? opening(exact, *path, voxel_size, measured.resolution) : poses);
+  return measured;
 }
 
-std::optional<SizeRange> sizes_between(double fixed_extent, double moving_extent) {
-  constexpr double kFirst = 1.0 / 50, kCoarsest = 1.0 / 5;
+std::optional<double> coarsest_size(double fixed_extent, double moving_extent) {
   const auto [smaller, larger] = std::minmax(fixed_extent, moving_extent);
-  SizeRange range{larger / Lattice::kMaxCells, kFirst * larger, kCoarsest * larger};
-  range.coarsest = std::min(range.coarsest, 0.5 * Lattice::kMaxRelativeSize * smaller);
-  range.first = std::min(range.first, range.coarsest);
-  if (!(2 * range.finest < range.first)) return std::nullopt;
-  return range;
+  const double coarsest = std::min(larger / 16, 0.5 * Lattice::kMaxRelativeSize * smaller);
+  if (!(2 * larger / Lattice::kMaxCells < coarsest)) return std::nullopt;
+  return coarsest;
 }
 
-VoxelAdvice advise_voxel_size(const AdviceGoal& goal, const SizeRange& range,
-                              const MeasureSize& measure) {
+VoxelAdvice advise_voxel_size(
+    const AdviceGoal& goal, double coarsest,
+    const std::function<std::optional<SizeMeasure>(double voxel_size)>& measure) {
+  constexpr int kSizes = 4, kBetween = 3;
   const ScopedFloatEnvironment environment;
-  IST_ASSERT(goal.limit > 0 && range.finest > 0);
-  IST_ASSERT(range.finest <= range.first && range.first <= range.coarsest);
-  return SizeSearch(goal, range, measure).run();
+  const bool coarse_is_safe = goal.of == AdviceGoal::Of::kSlowestQuery;
+  VoxelAdvice advice;
+  std::optional<Tried> coarse, fine;  // the neighbours of the best size
+  const auto try_size = [&](double size) {
+    const std::optional<SizeMeasure> measured = measure(size);
+    if (!measured) {
+      advice.too_fine = size;
+      fine = Tried{size, std::nullopt};
+      return;
+    }
+    advice.measured.push_back(*measured);
+    (goal.holds(*measured) == coarse_is_safe ? coarse : fine) = Tried{size, goal.value(*measured)};
+  };
+  for (int i = 0; i < kSizes && !fine; ++i) {
+    try_size(two_digits(coarsest / (1 << 2 * i), coarse_is_safe));
+  }
+  for (int i = 0; i < kBetween && coarse && fine; ++i) {
+    const double size = two_digits(between(*coarse, *fine, goal.limit), coarse_is_safe);
+    if (size <= fine->size || size >= coarse->size) break;
+    try_size(size);
+  }
+  std::ranges::sort(advice.measured, std::greater{}, &SizeMeasure::voxel_size);
+  for (std::size_t i = 0; i < advice.measured.size(); ++i) {
+    const bool is_better = coarse_is_safe || !advice.recommended;
+    if (is_better && goal.holds(advice.measured[i])) advice.recommended = i;
+  }
+  return advice;
 }
 
 }  // namespace ist

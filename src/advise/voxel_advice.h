@@ -1,10 +1,14 @@
 #pragma once
 
-#include <cstddef>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "advise/closing_path.h"
+#include "ist/base/progress.h"
 
 namespace ist {
 
@@ -23,14 +27,35 @@ struct SizeMeasure {
   std::uint64_t bytes = 0;        ///< in memory, both trees
 };
 
-/// Measures a voxel size; returns nothing if its voxels are too many to build.
-using MeasureSize = std::function<std::optional<SizeMeasure>(double voxel_size)>;
+struct MeasureOptions {
+  int workers = 1;            ///< threads of a query, 1 or 2
+  std::string target = {};    ///< instruction set; empty: IST_TARGET's, or the best
+  double milliseconds = 500;  ///< of timed queries; there are five rounds at least
+  std::uint64_t max_memory = std::uint64_t{4} << 30;  ///< bytes, for each tree
+};
 
-/// The goal of a search for a voxel size.
+/// Builds trees of both bodies with slabs, and measures them at `poses`, at least one. `exact` has
+/// the triangles. The time is the median of Query::leaf_pairs over at least five rounds, with room
+/// for all leaf pairs.
+///
+/// The error is measured by triangles. On `path` the samples go from first contact outward, until
+/// no leaf pair is possible or the surfaces meet again. Without a path the samples are `poses`. If
+/// only one of two neighbours of equal rotation has leaf pairs, the way between is bisected.
+///
+/// Returns nothing if a tree cannot be built (can_build_tree). Cost: both builds, the time of
+/// queries, and 0.3 ms for each of some 100 to 400 samples. Throws kTargetMissing; std::bad_alloc.
+[[nodiscard]] std::optional<SizeMeasure> measure_size(Query& exact,
+                                                      const std::vector<Eigen::Isometry3d>& poses,
+                                                      const std::optional<ClosingPath>& path,
+                                                      double voxel_size,
+                                                      const MeasureOptions& options,
+                                                      Progress& progress);
+
+/// The goal of advice.
 struct AdviceGoal {
   enum class Of : std::uint8_t {
     kSlowestQuery,  ///< the smallest size that takes at most `limit` microseconds
-    kError,         ///< the largest size whose error is at most `limit` mesh units
+    kError,         ///< the largest size with an error of at most `limit` mesh units
   };
   Of of;
   double limit;  ///< positive
@@ -43,43 +68,28 @@ struct AdviceGoal {
   }
 };
 
-/// The range of a search, mesh units: `first` is tried first, nothing finer than `finest` or
-/// coarser than `coarsest`. The coarsest is at least 1.2 times the finest, so that a size of two
-/// digits lies between them.
-struct SizeRange {
-  double finest, first, coarsest;
-};
-
-/// Returns the range for two bodies of these largest extents, mesh units: first 1/50 of the larger
-/// extent, down to the finest lattice and up to 1/5. Returns nothing if one body is too small for a
-/// common size.
-[[nodiscard]] std::optional<SizeRange> sizes_between(double fixed_extent, double moving_extent);
-
 /// The fraction of a requested limit that becomes the goal: times are noisy, a loop has more to do,
-/// and errors are a little larger on paths that were not measured.
+/// and errors are larger on paths that were not measured.
 inline constexpr double kOfGoal = 0.8;
+
+/// Returns the coarsest voxel size to try for two bodies of these largest extents, mesh units: 1/16
+/// of the larger one, or less for a small body. Returns nothing if no size suits both bodies.
+[[nodiscard]] std::optional<double> coarsest_size(double fixed_extent, double moving_extent);
 
 struct VoxelAdvice {
   std::vector<SizeMeasure> measured;       ///< coarse to fine
   std::optional<std::size_t> recommended;  ///< index into `measured`, if a size meets the goal
-  /// The largest size that could not be built; nothing if all could.
-  std::optional<double> too_fine;
+  std::optional<double> too_fine;          ///< the last size that could not be built
 };
 
-/// Searches for the voxel size of a goal: by factors of at most 3 until one size meets it and
-/// another does not, then between them, as if the value were a power law of the size. The
-/// recommended size was measured to meet the goal; and a size 1.15 times as fine (for kError as
-/// coarse) was measured to miss it, or the value is within a tenth of the limit, or the range ends
-/// there, or a size 1.5 times as fine cannot be built. If the value is not monotonic, finds one
-/// such size.
+/// Tries `coarsest` and three sizes below, each a quarter of the one before, until the goal begins
+/// or ceases to hold. Then tries up to three sizes between both neighbours, by interpolation of the
+/// logarithms. The recommended size was measured to meet the goal. It is within 15 % of the best
+/// size if the value is a power law of the size. All sizes have two significant digits.
 ///
-/// All sizes have two significant digits. Cost: 4 to 8 measurements if the goal is 10 to 30 times
-/// as fine as the first size, at most 40.
-[[nodiscard]] VoxelAdvice advise_voxel_size(const AdviceGoal& goal, const SizeRange& range,
-                                            const MeasureSize& measure);
-
-/// Rounds a number up or down to two significant digits; leaves one with no more unchanged.
-/// Precondition: positive and finite.
-[[nodiscard]] double round_to_two_digits(double size, bool up);
+/// @param measure returns nothing for a size that cannot be built
+[[nodiscard]] VoxelAdvice advise_voxel_size(
+    const AdviceGoal& goal, double coarsest,
+    const std::function<std::optional<SizeMeasure>(double voxel_size)>& measure);
 
 }  // namespace ist

@@ -24,7 +24,7 @@ class Advise : public CliTest {
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(dir_.entries(), before);
   }
-  // Of lines that were printed: their keys, their order, and which is recommended.
+  // Checks keys and order of the printed lines, and returns the recommended one.
   static nlohmann::json recommended(const std::string& text) {
     nlohmann::json found;
     double last = HUGE_VAL;

@@ -11,11 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "advise/calibration.h"
+#include "advise/voxel_advice.h"
 #include "cli/commands/advise_report.h"
 #include "cli/commands/commands.h"
 #include "cli/common_options.h"
-#include "cli/engine.h"
 #include "cli/header_line.h"
 #include "cli/load_bodies.h"
 #include "cli/poses/pose_file.h"
@@ -31,14 +30,11 @@
 namespace ist::cli {
 namespace {
 
-// Voxel size of the trees for exact queries, as a fraction of the body's extent.
-constexpr double kExact = 1.0 / 200;
-
 struct AdviseArguments {
   std::filesystem::path fixed, moving, poses;
   std::optional<double> budget, error;
   std::string axis;
-  CalibrationOptions calibration;
+  MeasureOptions measure;
   bool json = false;
 };
 
@@ -53,7 +49,7 @@ void check(const AdviseArguments& options) {
   positive("--error", options.error, "mesh units");
   refuse_if(!options.poses.empty() && !options.axis.empty(), "--axis",
             "contradicts --poses, which give the poses to measure");
-  static_cast<void>(select_kernels(options.calibration.target));  // before anything is built
+  static_cast<void>(select_kernels(options.measure.target));  // before anything is built
   for (const std::filesystem::path& file : {options.fixed, options.moving}) {
     refuse_if(is_tree_file(file), file.string(),
               "it is a tree, whose voxel size is fixed already: name the mesh that it was built "
@@ -73,10 +69,10 @@ CheckedMesh load(const std::filesystem::path& file) {
   return checked;
 }
 
-SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving,
+double coarsest_for(const TriangleMesh& fixed, const TriangleMesh& moving,
                     const AdviseArguments& options) {
   const double of_fixed = extent_of(fixed), of_moving = extent_of(moving);
-  if (const auto range = sizes_between(of_fixed, of_moving)) return *range;
+  if (const auto coarsest = coarsest_size(of_fixed, of_moving)) return *coarsest;
   const bool fixed_is_larger = of_fixed > of_moving;
   const std::filesystem::path& larger = fixed_is_larger ? options.fixed : options.moving;
   const std::filesystem::path& smaller = fixed_is_larger ? options.moving : options.fixed;
@@ -88,16 +84,12 @@ SizeRange sizes_for(const TriangleMesh& fixed, const TriangleMesh& moving,
                   smaller.string()));
 }
 
-// Builds a tree for exact queries, which do without voxels: these are enlarged until they fit the
-// memory.
+// Builds a tree of one voxel for exact queries, which do without voxels.
 SphereTree load_exact(const std::filesystem::path& file, CheckedMesh checked,
                       std::uint64_t max_memory) {
-  const double extent = extent_of(checked.mesh);
   BuildOptions build;
-  build.voxel_size = kExact * extent;
-  build.keep_triangles = true;
+  build.voxel_size = extent_of(checked.mesh);
   build.max_memory = max_memory;
-  while (build.voxel_size < extent && !can_build_tree(checked.mesh, build)) build.voxel_size *= 2;
   SphereTree tree =
       build_with_progress(file.string(), std::move(checked.mesh), build, checked.warnings);
   print_warnings(checked.warnings);
@@ -112,31 +104,31 @@ void run(const AdviseArguments& options) {
     fmt::print(stderr, "{} poses from {}\n", poses.size(), options.poses.string());
   }
   CheckedMesh fixed_mesh = load(options.fixed), moving_mesh = load(options.moving);
-  refuse_if(contradict(fixed_mesh.mesh.frame, moving_mesh.mesh.frame), options.moving.string(),
-            fmt::format("its frame is {}, and the frame of {} is {}: export both in one frame",
-                        to_string(moving_mesh.mesh.frame), options.fixed.string(),
-                        to_string(fixed_mesh.mesh.frame)));
-  refuse_if(contradict(fixed_mesh.mesh.unit, moving_mesh.mesh.unit), options.moving.string(),
-            fmt::format("its unit is {}, and the unit of {} is {}: export both in one unit",
-                        to_string(moving_mesh.mesh.unit), options.fixed.string(),
-                        to_string(fixed_mesh.mesh.unit)));
-  const SizeRange range = sizes_for(fixed_mesh.mesh, moving_mesh.mesh, options);
-  const std::uint64_t max_memory = options.calibration.max_memory;
+  const auto refuse_other = [&](const char* what, auto of_fixed, auto of_moving) {
+    refuse_if(contradict(of_fixed, of_moving), options.moving.string(),
+              fmt::format("its {0} is {1}, and the {0} of {2} is {3}: export both in one {0}", what,
+                          to_string(of_moving), options.fixed.string(), to_string(of_fixed)));
+  };
+  refuse_other("frame", fixed_mesh.mesh.frame, moving_mesh.mesh.frame);
+  refuse_other("unit", fixed_mesh.mesh.unit, moving_mesh.mesh.unit);
+  const double coarsest = coarsest_for(fixed_mesh.mesh, moving_mesh.mesh, options);
+  const std::uint64_t max_memory = options.measure.max_memory;
   const SphereTree fixed = load_exact(options.fixed, std::move(fixed_mesh), max_memory);
   const SphereTree moving = load_exact(options.moving, std::move(moving_mesh), max_memory);
-  ExactBodies bodies(fixed, moving);
-  Calibration calibration =
-      poses.empty()
-          ? Calibration(bodies, find_closing_way(fixed, moving, options.axis), options.calibration)
-          : Calibration(bodies, std::move(poses), options.calibration);
+  std::optional<ClosingPath> path;
+  if (poses.empty()) {
+    path = find_closing_way(fixed, moving, options.axis);
+    poses = path->poses();
+  }
+  Query exact(fixed, moving);
 
   const AdviceGoal goal = options.budget
                               ? AdviceGoal{AdviceGoal::Of::kSlowestQuery, kOfGoal * *options.budget}
                               : AdviceGoal{AdviceGoal::Of::kError, kOfGoal * *options.error};
   const VoxelAdvice advice = [&] {
     ProgressBar progress;
-    return advise_voxel_size(goal, range, [&](double voxel_size) {
-      const std::optional<SizeMeasure> measured = calibration.measure(voxel_size, &progress);
+    return advise_voxel_size(goal, coarsest, [&](double voxel_size) {
+      const auto measured = measure_size(exact, poses, path, voxel_size, options.measure, progress);
       // Coarse voxels overlap first, and are tried first.
       if (options.budget && measured && measured->max_leaf_pairs == 0) {
         throw Error(ErrorCode::kInputInvalid,
@@ -205,22 +197,23 @@ void add_advise(CLI::App& app) {
                    "direction in which the moving body leaves the fixed one; by default the "
                    "direction in which its bounding box leaves soonest")
       ->transform(one_of({"x", "-x", "y", "-y", "z", "-z"}));
-  command->add_option("--workers", options->calibration.workers, "threads of a query")
+  command->add_option("--workers", options->measure.workers, "threads of a query")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   command
-      ->add_option("--target", options->calibration.target,
+      ->add_option("--target", options->measure.target,
                    "instruction set, one that ist --version lists; by default IST_TARGET of "
                    "the environment, or the first")
       ->type_name("NAME");
-  add_max_memory(*command, options->calibration.max_memory);
+  add_max_memory(*command, options->measure.max_memory);
   command->add_flag("--json", options->json, "print one JSON object a line");
-  add_example(*command,
-              "Each voxel size is built and timed, so let nothing else run: the printed time is "
-              "the median of the slowest pose.\n"
-              "The error is measured against triangles, on tilted paths too; the bound beside it "
-              "is certain for any pose.\n"
-              "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
+  add_example(
+      *command,
+      "Each voxel size is built and timed, so let nothing else run: the printed time is "
+      "the median of the slowest pose.\n"
+      "The error is measured against triangles, on the same path; the bound beside it is certain "
+      "for any pose.\n"
+      "Example: ist advise maxilla.stl mandible.stl --budget-us 300");
   command->callback([options] { run(*options); });
 }
 

@@ -143,14 +143,14 @@ ClosingPath find_closing_way(const SphereTree& fixed, const SphereTree& moving,
   refuse_if(fixed.triangles() == nullptr || moving.triangles() == nullptr, "--poses",
             "needed, because a tree holds no triangles to find a way by: give poses at which the "
             "bodies meet");
-  ExactBodies bodies(fixed, moving);
-  const AxisDirection direction =
-      axis.empty() ? shortest_open_direction(bodies.fixed_box(), bodies.moving_box())
-                   : AxisDirection{axis.back() - 'x', axis.size() > 1 ? -1 : +1};
+  const AxisDirection direction = axis.empty()
+                                      ? shortest_open_direction(fixed, moving)
+                                      : AxisDirection{axis.back() - 'x', axis.size() > 1 ? -1 : +1};
   const auto name = [&](int sign) {
     return fmt::format("{}{}", sign < 0 ? "-" : "", "xyz"[direction.axis]);
   };
-  const std::optional<ClosingPath> path = find_closing_path(bodies, direction);
+  Query exact(fixed, moving);
+  const std::optional<ClosingPath> path = find_closing_path(exact, direction);
   refuse_if(!path, "--poses",
             fmt::format("needed, because the bodies do not touch where they are stored, nor when "
                         "the moving one goes from there along {}: give poses at which they do",
