@@ -1,5 +1,5 @@
-// A search that is made in parts finds the pairs of one that is made in one go, in the same order,
-// wherever the parts end and whatever the memory.
+// A search in parts finds the same pairs as a search in one go, in the same order. The ends of the
+// parts and the size of the memory make no difference.
 
 #include <gtest/gtest.h>
 
@@ -17,19 +17,19 @@ namespace {
 
 class ResumedSearch : public ::testing::TestWithParam<SpherePolicy> {
  protected:
-  // All leaf pairs of a search in parts, of `tests(part)` each.
+  // Returns all leaf pairs of a search in parts. Part `part` makes `tests(part)` tests.
   template <class Tests>
   static std::vector<LeafPair> in_parts(Search& search, const SearchPlan& plan,
                                         const SearchPose& pose, std::size_t room,
                                         const Tests& tests) {
     std::vector<LeafPair> out(room);
     LeafPairSink sink(plan, select_kernels(""), out);
-    bool whole = false;
-    for (int part = 0; !whole && part < 1'000'000; ++part) {
+    SearchPosition at = search.roots();
+    for (int part = 0; !at.is_end() && part < 1'000'000; ++part) {
       PairLister lister(pose, sink, BudgetMeter({.tests = tests(part)}));
-      whole = part == 0 ? search.begin(lister) : search.resume(lister);
+      at = search.resume(at, lister);
     }
-    EXPECT_TRUE(whole);
+    EXPECT_TRUE(at.is_end());
     EXPECT_LE(sink.count(), room);
     out.resize(sink.count());
     return out;
@@ -48,7 +48,7 @@ TEST_P(ResumedSearch, FindsTheSamePairsInTheSameOrder) {
                       moving = lengths_of(scene.moving, GetParam());
     const RelativePose relative =
         *relative_pose(scene.pose, scene.fixed.parts().lattice, scene.moving.parts().lattice);
-    // With the greatest margin the rows of inner steps are longer than a piece.
+    // With the largest margin the rows of inner steps are longer than a piece.
     for (const double voxels : {0.0, 1.0, 5.0}) {
       const double voxel = std::min(scene.fixed.voxel_size(), scene.moving.voxel_size());
       const SearchPose pose = to_float(relative, fixed, moving, voxels * voxel);
@@ -68,7 +68,7 @@ TEST_P(ResumedSearch, FindsTheSamePairsInTheSameOrder) {
           EXPECT_EQ(in_parts(search, plan, pose, all.size() + 100, [&](int) { return tests; }), all)
               << tests;
         }
-        // Parts that are too small for any progress among them.
+        // Some of these parts are too small for any test.
         EXPECT_EQ(
             in_parts(search, plan, pose, all.size() + 100, [&](int) { return random.below(2000); }),
             all);
@@ -79,7 +79,7 @@ TEST_P(ResumedSearch, FindsTheSamePairsInTheSameOrder) {
   EXPECT_GT(found, 50'000u);
 }
 
-// What one search left undone does not show in the next.
+// A search that was left unfinished does not change the next one.
 TEST_P(ResumedSearch, IsForgottenByTheNextOne) {
   const Scene& scene = solids()[1];
   const SearchPlan plan(scene.fixed, scene.moving, GetParam());
@@ -94,10 +94,10 @@ TEST_P(ResumedSearch, IsForgottenByTheNextOne) {
     LeafPairSink cut(plan, select_kernels(""), unused), sink(plan, select_kernels(""), out);
     if (tests > 0) {
       PairLister some(pose, cut, BudgetMeter({.tests = tests}));
-      search.begin(some);
+      static_cast<void>(search.resume(search.roots(), some));
     }
     PairLister all(pose, sink);
-    ASSERT_TRUE(search.begin(all));
+    ASSERT_TRUE(search.resume(search.roots(), all).is_end());
     out.resize(sink.count());
     if (tests == 0) expected = out;
     ASSERT_GT(out.size(), 100u);

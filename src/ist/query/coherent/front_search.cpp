@@ -46,7 +46,7 @@ void FrontSearch::begin(Front& front, const Wanted& wanted) noexcept {
   front.extent = wanted.extent;
   bounds_ = {};
   tests_ = 0;
-  begun_ = false;
+  position_ = search_.roots();
   state_ = State::kUnderWay;
 }
 
@@ -54,10 +54,9 @@ FrontSearch::State FrontSearch::advance(const Budget& budget) noexcept {
   if (state_ != State::kUnderWay) return state_;
   const std::uint64_t left = wanted_.most_tests - std::min(wanted_.most_tests, tests_);
   Keeper keeper(wanted_.pose, wanted_.measured, *front_, bounds_, BudgetMeter(budget.within(left)));
-  const bool whole = begun_ ? search_.resume(keeper) : search_.begin(keeper);
-  begun_ = true;
+  position_ = search_.resume(position_, keeper);
   tests_ += keeper.tests();
-  if (whole) {
+  if (position_.is_end()) {
     front_->upper = bounds_.upper - wanted_.extent;  // by which radii were inflated
     state_ = State::kDone;
   } else if (keeper.full() || (budget.tests >= left && !budget.is_past())) {

@@ -28,7 +28,7 @@ class FrontSearch {
 
   /// Reserves the memory of a Search.
   FrontSearch(const SearchPlan& plan, const Kernels& kernels, std::size_t frontier_pairs)
-      : search_(plan, kernels, frontier_pairs) {}
+      : search_(plan, kernels, frontier_pairs), position_(search_.roots()) {}
 
   /// Begins a search for `front`, which stays the caller's.
   void begin(Front& front, const Wanted& wanted) noexcept;
@@ -44,12 +44,12 @@ class FrontSearch {
 
  private:
   Search search_;
+  SearchPosition position_;
   Front* front_ = nullptr;
   Wanted wanted_{};
   DistanceBounds bounds_;
   std::uint64_t tests_ = 0;
   State state_ = State::kNone;
-  bool begun_ = false;
 };
 
 }  // namespace ist

@@ -7,13 +7,14 @@
 namespace ist {
 namespace {
 
-// The most pairs from which a beam goes down.
+// A beam goes down from at most this number of pairs.
 constexpr std::size_t kBeamPairs = 16;
 
-// Where even this part of the widest beam holds too many pairs, some of them are left out.
+// A beam is made no narrower than this part of the widest one. If it still holds too many pairs,
+// it leaves some of them out.
 constexpr float kLeastWidth = 0x1p-6F;
 
-// The most pairs before step `i`, or leaf pairs, that fit the memory.
+// Returns the most pairs before step `i`, or leaf pairs, that fit the memory.
 std::size_t capacity_of(const SearchPlan& plan, std::size_t i, std::size_t pairs) noexcept {
   const std::size_t most = i == 0 ? 1 : plan.most_pairs(i - 1);
   const std::size_t row = i == 0 ? 1 : plan.longest_row(i - 1);
@@ -32,7 +33,10 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
     memory.moving.resize(capacity + kFrontierSpare);
     frontiers_.push_back({memory.groups.data(), memory.moving.data(), 0, 0, capacity});
   }
-  cursors_.resize(steps + 1);
+  Frontier& roots = frontiers_.front();
+  roots.groups[0] = {0, 1};
+  roots.moving[0] = 0;
+  roots.group_count = roots.moving_count = 1;
   // Makes the first dispatched calls. With infinite pads all bounds overlap, wherever the bodies
   // lie.
   SearchPose pose{};
@@ -42,17 +46,15 @@ Search::Search(const SearchPlan& plan, const Kernels& kernels, std::size_t pairs
   static_cast<void>(beam(pose, unlimited));
 }
 
-const Frontier& Search::roots() noexcept {
-  Frontier& roots = frontiers_.front();
-  roots.groups[0] = {0, 1};
-  roots.moving[0] = 0;
-  roots.group_count = roots.moving_count = 1;
-  return roots;
+std::size_t Search::whole_steps(const SearchPosition& at, std::size_t most) const noexcept {
+  std::size_t step = at.first_step;
+  while (step < most && at.cursors[step].group == pairs_before(step, at).group_count) ++step;
+  return step;
 }
 
 float Search::beam(const SearchPose& pose, BudgetMeter& meter) noexcept {
   float upper = DistanceBounds::kNone;
-  Frontier in = roots();
+  Frontier in = frontiers_.front();
   for (std::size_t i = 0; i < plan_.steps().size(); ++i) {
     SearchStep step = plan_.steps()[i];
     step.last = true;  // so that every pair is measured

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "ist/query/traversal/search_plan.h"
@@ -12,9 +12,33 @@
 
 namespace ist {
 
-/// The breadth-first traversal of two bounding volume hierarchies and its memory: one frontier, or
-/// front, for each step. A full frontier is searched down to the leaves before it is filled again,
-/// which bounds the memory and keeps the order of leaf pairs. One object belongs to one thread.
+/// A place in a search: the next pair to be tested in each step that has begun. It refers to the
+/// pairs that its Search keeps, so it is valid until that Search makes another search.
+struct SearchPosition {
+  /// Makes the position of group `first` of `in`, the pairs before step `top`.
+  SearchPosition(std::size_t top, const Frontier& in, std::size_t first) noexcept
+      : pairs(in), first_group(first), first_step(top), step(top) {
+    cursors[top] = {first};
+  }
+
+  /// Returns whether all pairs have been searched down to the leaves.
+  [[nodiscard]] bool is_end() const noexcept {
+    return step == first_step && cursors[step].group == pairs.group_count;
+  }
+
+  Frontier pairs;           ///< before the first step
+  std::size_t first_group;  ///< of these
+  std::size_t first_step;
+  std::size_t step;  ///< the deepest step that has begun: the search goes on with it
+  /// By step, from the first one to the deepest one. Only a cursor inside a row of an inner step
+  /// has `moving` > 0. Then the pairs behind the step end with the tested part of that row, and
+  /// are not searched before the row is whole.
+  std::array<SearchCursor, SearchPlan::kMostSteps> cursors{};
+};
+
+/// The breadth-first traversal of two bounding volume hierarchies and its memory: one frontier
+/// for each step. A full frontier is searched down to the leaves before it is filled again. This
+/// bounds the memory and keeps the order of leaf pairs. One object belongs to one thread.
 class Search {
  public:
   /// Reserves all memory: 12 bytes a step for each of `pairs`, but at least for every moving node
@@ -25,28 +49,29 @@ class Search {
   /// whole: all, unless the visitor ended the search early.
   template <SearchVisitor Visitor>
   std::size_t run(Visitor& visitor) noexcept {
-    return descend(0, roots(), 0, visitor);
+    SearchPosition at = roots();
+    return advance(at, visitor);
   }
-  /// Searches from group `first` of `in`, the pairs before `step`; `in` may belong to another
+  /// Searches from group `first` of `in`, the pairs before `step`. `in` may belong to another
   /// search. Returns the number of steps that are whole.
   template <SearchVisitor Visitor>
   std::size_t descend(std::size_t step, const Frontier& in, std::size_t first,
                       Visitor& visitor) noexcept {
-    cursors_[step] = SearchCursor{first};
-    in_row_ = false;
-    return advance(step, in, visitor);
+    SearchPosition at(step, in, first);
+    return advance(at, visitor);
   }
-  /// Searches as run() does, but may be resumed where the visitor ends it by making no test.
-  /// Returns whether all steps are whole.
-  template <SearchVisitor Visitor>
-  bool begin(Visitor& visitor) noexcept {
-    return run(visitor) == plan_.steps().size();
-  }
-  /// Goes on with such a search.
-  template <SearchVisitor Visitor>
-  bool resume(Visitor& visitor) noexcept;
 
-  /// Returns the pairs before a step, where a visitor's enter() ended the search.
+  /// Returns the position at which a search begins: the pair of roots.
+  [[nodiscard]] SearchPosition roots() const noexcept { return {0, frontiers_.front(), 0}; }
+  /// Searches from roots(), or goes on from the position that the last call returned. Returns the
+  /// position at which the visitor ended the search by making no test, or the end.
+  template <SearchVisitor Visitor>
+  [[nodiscard]] SearchPosition resume(SearchPosition at, Visitor& visitor) noexcept {
+    advance(at, visitor);
+    return at;
+  }
+
+  /// Returns the pairs before a step. Use it after a visitor's enter() ended the search.
   [[nodiscard]] const Frontier& frontier(std::size_t step) const noexcept {
     return frontiers_[step];
   }
@@ -64,69 +89,77 @@ class Search {
     std::vector<SearchGroup> groups;
     std::vector<std::uint32_t> moving;
   };
-  [[nodiscard]] const Frontier& roots() noexcept;
-  // Searches from a step's cursor on.
+
+  // Searches from a position on, and moves it. Returns the number of steps that are whole.
   template <SearchVisitor Visitor>
-  std::size_t advance(std::size_t step, const Frontier& in, Visitor& visitor) noexcept;
+  std::size_t advance(SearchPosition& at, Visitor& visitor) noexcept;
+  // Fills the frontier behind a step: tests the pairs `in` from `cursor` on. Returns true if all
+  // were tested or the frontier is full, and false if the visitor ended the search before.
+  template <SearchVisitor Visitor>
+  bool fill(std::size_t step, const Frontier& in, SearchCursor& cursor, Visitor& visitor) noexcept;
+  [[nodiscard]] const Frontier& pairs_before(std::size_t step,
+                                             const SearchPosition& at) const noexcept {
+    return step == at.first_step ? at.pairs : frontiers_[step];
+  }
+  // Returns the first step that has pairs left at a position, or `most`.
+  [[nodiscard]] std::size_t whole_steps(const SearchPosition& at, std::size_t most) const noexcept;
 
   const SearchPlan& plan_;
   const Kernels& kernels_;
   std::vector<Memory> memory_;
   std::vector<Frontier> frontiers_;  // the pairs before each step, and the leaf pairs
-  std::vector<SearchCursor> cursors_;
-  std::size_t ended_ = 0;  // the deepest step with pairs left when a visitor ended the search
-  bool in_row_ = false;    // that step ended within a row, which is not searched from until whole
   std::unique_ptr<SearchScratch> scratch_;
 };
 
 template <SearchVisitor Visitor>
-bool Search::resume(Visitor& visitor) noexcept {
+std::size_t Search::advance(SearchPosition& at, Visitor& visitor) noexcept {
   const std::size_t steps = plan_.steps().size();
-  for (std::size_t step = ended_ + 1; step-- > 0;) {
-    if (advance(step, frontiers_[step], visitor) < steps) return false;
+  while (true) {
+    const std::size_t step = at.step;
+    const Frontier& in = pairs_before(step, at);
+    SearchCursor& cursor = at.cursors[step];
+    if (cursor.group == in.group_count) {
+      if (step == at.first_step) return steps;
+      --at.step;
+      continue;
+    }
+    // A visitor enters a frontier as a whole one if a single filling holds all pairs of the step.
+    const bool begins = cursor == SearchCursor{step == at.first_step ? at.first_group : 0};
+    const bool enough = fill(step, in, cursor, visitor);
+    const Frontier& out = frontiers_[step + 1];
+    if (step + 1 == steps) {
+      const bool wanted = out.group_count == 0 || visitor.leaves(out);
+      if (!wanted || !enough) return whole_steps(at, step);
+      continue;
+    }
+    // The pairs that were found are searched before the rest, but for a row that is not whole yet.
+    const bool descends = out.group_count > 0 && cursor.moving == 0;
+    if (descends && enough) {
+      const bool whole = begins && cursor.group == in.group_count;
+      if (!visitor.enter(step + 1, out, whole)) return whole_steps(at, whole ? step + 1 : step);
+    }
+    if (descends) at.cursors[at.step = step + 1] = {};
+    if (!enough) return whole_steps(at, step);
   }
-  return true;
 }
 
 template <SearchVisitor Visitor>
-std::size_t Search::advance(std::size_t step, const Frontier& in, Visitor& visitor) noexcept {
-  const std::size_t steps = plan_.steps().size();
-  if (step == steps) return visitor.leaves(in) ? steps : steps - 1;
-  const bool last = step + 1 == steps;
+bool Search::fill(std::size_t step, const Frontier& in, SearchCursor& cursor,
+                  Visitor& visitor) noexcept {
+  const bool last = step + 1 == plan_.steps().size();
+  Frontier some = in;
+  some.group_count = cursor.group + std::min(visitor.most_groups(), in.group_count - cursor.group);
   Frontier& out = frontiers_[step + 1];
-  SearchCursor& cursor = cursors_[step];
-  const SearchCursor first = cursor;
-  while (cursor.group < in.group_count) {
-    const bool begins = cursor == first;
-    Frontier some = in;
-    some.group_count =
-        cursor.group + std::min(visitor.most_groups(), in.group_count - cursor.group);
-    Frontier next = out;
-    if (!std::exchange(in_row_, false)) next.group_count = next.moving_count = 0;
-    if (last) next.capacity = std::min(next.capacity, visitor.most_leaves());
-    Advanced made;
-    do {
-      made = visitor.advance({kernels_, plan_.steps()[step], some, cursor, next, *scratch_});
-    } while (made.tests > 0 && !made.full && cursor.group < some.group_count);
-    out.group_count = next.group_count;
-    out.moving_count = next.moving_count;
-    const bool ended = !made.full && cursor.group < some.group_count;
-    if (ended && last) visitor.leaves(out);
-    if (ended) {
-      in_row_ = !last && cursor.moving > 0;
-      const bool found = !last && !in_row_ && out.group_count > 0;
-      if (found) cursors_[step + 1] = {};
-      ended_ = found ? step + 1 : step;
-      return step;
-    }
-    const bool rest = cursor.group < in.group_count;
-    if (out.group_count == 0) continue;
-    const bool whole = begins && !rest;
-    if (!last && !visitor.enter(step + 1, out, whole)) return whole ? step + 1 : step;
-    const std::size_t whole_steps = descend(step + 1, out, 0, visitor);
-    if (whole_steps < steps) return rest ? step : whole_steps;
-  }
-  return steps;
+  Frontier next = out;
+  if (last || cursor.moving == 0) next.group_count = next.moving_count = 0;
+  if (last) next.capacity = std::min(next.capacity, visitor.most_leaves());
+  Advanced made;
+  do {
+    made = visitor.advance({kernels_, plan_.steps()[step], some, cursor, next, *scratch_});
+  } while (made.tests > 0 && !made.full && cursor.group < some.group_count);
+  out.group_count = next.group_count;
+  out.moving_count = next.moving_count;
+  return made.full || cursor.group == some.group_count;
 }
 
 }  // namespace ist

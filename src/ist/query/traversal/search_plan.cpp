@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ist/base/assert.h"
 #include "ist/base/error.h"
 #include "ist/query/query_rules.h"
 #include "ist/tree/tree_parts.h"
@@ -115,6 +116,7 @@ SearchPlan::SearchPlan(const SphereTree& fixed, const SphereTree& moving, Sphere
     sizes_.push_back(
         {moving.parts().octree.node_count(b), before * (open_a ? 8 : 1) * (open_b ? 8 : 1)});
   }
+  IST_ASSERT(steps_.size() <= kMostSteps);
   if (!steps_.back().fixed.descends) fixed_leaves_ = steps_.back().fixed.nodes;
   if (!steps_.back().moving.descends) moving_leaves_ = steps_.back().moving.nodes;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,6 +24,9 @@ struct SearchLevels {
 /// against the other's leaves.
 class SearchPlan {
  public:
+  /// The most steps of a plan: a tree has at most 17 levels below its root.
+  static constexpr std::size_t kMostSteps = 2 * 17;
+
   /// Makes the steps down to the levels `last`. Both trees must have `policy` and these levels;
   /// throws kPolicyMissing, and kMemoryLimit for a tree too large to be addressed.
   SearchPlan(const SphereTree& fixed, const SphereTree& moving, SpherePolicy policy,
